@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Forward kinematics: poses, joint axes and velocities of all bodies.
+///
+/// Spatial vectors of a tree are in world axes about O, the origin of the tree's root body (T.4).
+
+#include <vector>
+
+#include "engine/model/state.hpp"
+
+namespace softgauss {
+
+/// Stage written by computeKinematics().
+struct Kinematics {
+  std::vector<Transform> X_WB;  ///< (bodies) pose of each body
+  std::vector<Vector3> p_WO;    ///< (trees) reference point O of each tree [m]
+  std::vector<Motion> S;        ///< (nv) motion subspace of each dof, about O
+  std::vector<Motion> V;        ///< (bodies) spatial velocity about O
+  std::vector<Motion> A_bias;   ///< (bodies) spatial acceleration at v̇ = 0, without gravity: J̇ v
+
+  Kinematics() = default;
+  explicit Kinematics(const Model& model);
+};
+
+/// Poses and axes from q, velocities from v.
+void computeKinematics(const Model& model, const State& state, Kinematics& kinematics);
+
+/// Pose of a named frame in the world.
+inline Transform framePose(const Model& model, const Kinematics& k, int frame) {
+  const Frame& f = model.frames[static_cast<std::size_t>(frame)];
+  return k.X_WB[static_cast<std::size_t>(f.body)] * f.X_BF;
+}
+
+/// Velocity [m/s] of the point of `body` that is now at p_WP.
+Vector3 pointVelocity(const Model& model, const Kinematics& k, int body, const Vector3& p_WP);
+
+/// Acceleration [m/s²] at v̇ = 0 (that is, J̇ v) of the point of `body` that is now at p_WP.
+Vector3 pointBiasAcceleration(const Model& model, const Kinematics& k, int body,
+                              const Vector3& p_WP);
+
+}  // namespace softgauss

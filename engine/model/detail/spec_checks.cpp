@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/model/detail/spec_checks.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+namespace softgauss::detail {
+namespace {
+
+std::string number(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", x);
+  return text;
+}
+
+Vector3 principalMoments(const Matrix3& I) {
+  return Eigen::SelfAdjointEigenSolver<Matrix3>(I, Eigen::EigenvaluesOnly).eigenvalues();
+}
+
+std::string momentsText(const Vector3& m) {
+  return "(" + number(m[0]) + ", " + number(m[1]) + ", " + number(m[2]) + ") kg m²";
+}
+
+/// Eigenvalues below this share of the largest are zero up to rounding.
+constexpr double kZeroMoment = 1e-12;
+
+}  // namespace
+
+void checkLink(const LinkSpec& link) {
+  const std::string element = "link '" + link.name + "'";
+  const auto fail = [&](const std::string& text) { throw ModelError(link.where, element, text); };
+  if (link.name.empty()) fail("has no name");
+  if (!std::isfinite(link.mass)) fail("mass is " + number(link.mass) + ", expected a number");
+  if (link.mass < 0.0) fail("mass is " + number(link.mass) + " kg, expected 0 or more");
+  if (!link.com.allFinite()) fail("centre of mass is not finite");
+  if (!link.I_Lcm.allFinite()) fail("inertia is not finite");
+  if (!link.I_Lcm.isApprox(link.I_Lcm.transpose(), 1e-9)) fail("inertia is not symmetric");
+  const Vector3 moments = principalMoments(link.I_Lcm);
+  if (moments.minCoeff() < -kZeroMoment * moments.cwiseAbs().maxCoeff())
+    fail("inertia has a negative principal moment " + momentsText(moments) + ", expected none");
+}
+
+void checkJoint(const JointSpec& joint) {
+  const std::string element = "joint '" + joint.name + "'";
+  const auto fail = [&](const std::string& text) { throw ModelError(joint.where, element, text); };
+  if (joint.name.empty()) fail("has no name");
+  if (!joint.X_PC.R.allFinite() || !joint.X_PC.p.allFinite()) fail("origin is not finite");
+  if (!joint.axis.allFinite() || joint.axis.norm() < 1e-9)
+    fail("axis has length " + number(joint.axis.norm()) + ", expected a direction");
+  if (joint.lower.has_value() != joint.upper.has_value())
+    fail("has one end of a range; expected lower and upper, or neither");
+  if (joint.lower) {
+    if (std::isnan(*joint.lower) || std::isnan(*joint.upper)) fail("range is not a number");
+    if (*joint.lower > *joint.upper)
+      fail("lower " + number(*joint.lower) + " > upper " + number(*joint.upper) +
+           ", expected lower <= upper");
+  }
+  const auto notNegative = [&](double x, const char* what) {
+    if (!(x >= 0.0) || !std::isfinite(x))
+      fail(std::string(what) + " is " + number(x) + ", expected 0 or more");
+  };
+  notNegative(joint.damping, "damping");
+  notNegative(joint.dryFriction, "friction");
+  notNegative(joint.armature, "armature");
+  if (joint.effort) notNegative(*joint.effort, "effort");
+  if (joint.velocity) notNegative(*joint.velocity, "velocity");
+  if (joint.mimic && !(std::isfinite(joint.mimic->multiplier) && std::isfinite(joint.mimic->offset)))
+    fail("mimic multiplier or offset is not finite");
+}
+
+void checkGeometry(const GeometrySpec& g) {
+  const std::string element = "geometry '" + g.name + "'";
+  const auto fail = [&](const std::string& text) { throw ModelError(g.where, element, text); };
+  const auto positive = [&](double x, const char* what) {
+    if (!(x > 0.0) || !std::isfinite(x))
+      fail(std::string(what) + " is " + number(x) + " m, expected more than 0");
+  };
+  if (!g.X_LG.R.allFinite() || !g.X_LG.p.allFinite()) fail("pose is not finite");
+  switch (g.shape.kind) {
+    case ShapeKind::plane:
+      break;
+    case ShapeKind::sphere:
+      positive(g.shape.radius, "radius");
+      break;
+    case ShapeKind::capsule:
+    case ShapeKind::cylinder:
+      positive(g.shape.radius, "radius");
+      positive(g.shape.halfLength, "half length");
+      break;
+    case ShapeKind::box:
+      positive(g.shape.halfExtents.minCoeff(), "smallest half extent");
+      positive(g.shape.halfExtents.maxCoeff(), "largest half extent");
+      break;
+    case ShapeKind::mesh:
+      if (!g.shape.mesh || g.shape.mesh->vertices.empty()) fail("mesh has no vertices");
+      break;
+  }
+  const Material& m = g.material;
+  if (!(m.slidingFriction >= 0.0)) fail("friction is negative, expected 0 or more");
+  if (m.condim != 1 && m.condim != 3) fail("condim is not 1 or 3");
+}
+
+void checkOptions(const Options& options) {
+  const auto fail = [](const std::string& text) { throw ModelError({}, "options", text); };
+  if (!(options.timestep > 0.0) || !std::isfinite(options.timestep))
+    fail("timestep is " + number(options.timestep) + " s, expected more than 0");
+  if (!options.gravity.allFinite()) fail("gravity is not finite");
+  if (!(options.impedanceRatio > 0.0)) fail("impedance ratio is not positive");
+  if (options.maxIterations < 1) fail("maximum iterations is less than 1");
+}
+
+void checkMovingInertias(const Model& model, const std::vector<const SourceLocation*>& where) {
+  const auto fail = [&](int body, const std::string& text) {
+    const SourceLocation* at = where[static_cast<std::size_t>(body)];
+    throw ModelError(at ? *at : SourceLocation{},
+                     "link '" + model.bodyNames[static_cast<std::size_t>(body)] + "'", text);
+  };
+  for (int b = 1; b < model.bodyCount(); ++b) {
+    const Body& body = model.bodies[static_cast<std::size_t>(b)];
+    double carried = 0.0;
+    for (int i = b; i < body.subtreeEnd; ++i) carried += model.bodies[static_cast<std::size_t>(i)].mass;
+    if (carried == 0.0)
+      fail(b, "moves on joint '" + model.jointNames[static_cast<std::size_t>(b)] +
+                  "' but neither it nor anything that hangs from it has mass; "
+                  "the mass matrix would be singular");
+    if (body.massless) continue;
+    const Vector3 moments = principalMoments(body.I_Bcm.matrix());
+    if (moments.minCoeff() <= kZeroMoment * moments.cwiseAbs().maxCoeff())
+      fail(b, "moves, and its inertia with all links fixed to it has principal moments " +
+                  momentsText(moments) + ", expected all positive");
+  }
+}
+
+}  // namespace softgauss::detail

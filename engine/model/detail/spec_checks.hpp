@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Checks of single elements of a description; each throws ModelError with what was expected.
+
+#include <vector>
+
+#include "engine/model/model_builder.hpp"
+
+namespace softgauss::detail {
+
+void checkLink(const LinkSpec& link);
+void checkJoint(const JointSpec& joint);
+void checkGeometry(const GeometrySpec& geometry);
+void checkOptions(const Options& options);
+
+/// After merging: a moving body with mass has a positive definite inertia, and every joint moves
+/// some mass. `where[i]` is the place of body i's link, or null.
+void checkMovingInertias(const Model& model, const std::vector<const SourceLocation*>& where);
+
+}  // namespace softgauss::detail

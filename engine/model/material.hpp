@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// How soft a constraint is, and how a surface rubs. Parameters only, in MuJoCo's terms; their
+/// meaning is computed in constraints/impedance.hpp and constraints/contact.hpp.
+
+namespace softgauss {
+
+/// Impedance of a soft constraint. With r the constraint's distance or violation (docs/theory.md):
+///   reference acceleration  a_ref = −b ṙ − k d(r) r,   regulariser  R = (1 − d)/d · A
+/// where d(r) rises from dMin at r = 0 to dMax at |r| = width along a power curve. Defaults are
+/// MuJoCo's (solref 0.02 1, solimp 0.9 0.95 0.001 0.5 2).
+struct Impedance {
+  double timeConstant = 0.02;  ///< [s] of the reference spring-damper; > 0
+  double dampingRatio = 1.0;   ///< [-] 1 is critical
+  double dMin = 0.9;           ///< impedance at zero violation, in (0, 1)
+  double dMax = 0.95;          ///< impedance at |r| ≥ width, in (0, 1)
+  double width = 0.001;        ///< [m or rad]
+  double midpoint = 0.5;       ///< inflection of the curve, in (0, 1)
+  double power = 2.0;          ///< ≥ 1
+};
+
+/// Surface parameters of a geometry; a pair is mixed by the rules of constraints/contact.hpp.
+struct Material {
+  double slidingFriction = 1.0;      ///< μ, Coulomb [-]
+  double torsionalFriction = 0.005;  ///< [m], read by condim 4 and 6
+  double rollingFriction = 0.0001;   ///< [m], read by condim 6
+  int condim = 3;                    ///< 1 frictionless, 3 sliding friction
+  double margin = 0.0;               ///< [m] a contact makes rows where distance < margin
+  Impedance impedance;
+};
+
+}  // namespace softgauss

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// The immutable description of a scene: kinematic trees, joints, shapes, options.
+///
+/// Made by ModelBuilder::build(), shared by any number of threads. Body 0 is the world; bodies are
+/// sorted depth first, so parent < child and a subtree is a contiguous range. Each body but the
+/// world hangs from its parent by one joint, and dofs follow the order of the bodies.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/core/check.hpp"
+#include "engine/core/spatial.hpp"
+#include "engine/model/effects.hpp"
+#include "engine/model/shape.hpp"
+
+namespace softgauss {
+
+enum class JointKind : std::uint8_t {
+  world,      ///< body 0 only: no joint, no dof
+  revolute,   ///< one angle [rad] about an axis through the body's origin
+  prismatic,  ///< one displacement [m] along an axis
+  floating    ///< pose in the world: q = (x y z, qw qx qy qz), v = (world ṗ, ω in body axes)
+};
+
+/// A rigid body and the joint that carries it.
+struct Body {
+  JointKind joint = JointKind::world;
+  bool massless = true;  ///< no inertia at all (an intermediate link of a joint of several dofs)
+  int parent = 0;        ///< index of the parent body
+  int q = 0;             ///< first entry in State::q
+  int v = 0;             ///< first entry in State::v (its first dof)
+  int dofs = 0;          ///< 0, 1 or 6
+  int tree = -1;         ///< kinematic tree it belongs to; −1 for the world
+  int subtreeEnd = 0;    ///< bodies [this, subtreeEnd) are its subtree
+  Transform X_PB;        ///< pose in the parent body at q = 0 (floating: unused)
+  Vector3 axis = Vector3::UnitZ();  ///< joint axis in B, unit (revolute, prismatic)
+
+  double mass = 0.0;                  ///< [kg]
+  Vector3 com = Vector3::Zero();      ///< p_BoBcm_B [m]
+  Symmetric3 I_Bcm;                   ///< central rotational inertia in B axes [kg m²]
+};
+
+/// A kinematic tree: everything that hangs from one child of the world.
+struct Tree {
+  int rootBody = 0;
+  int bodyEnd = 0;   ///< bodies [rootBody, bodyEnd)
+  int firstDof = 0;
+  int dofEnd = 0;    ///< dofs [firstDof, dofEnd)
+};
+
+/// One entry of the velocity vector v.
+struct Dof {
+  int body = 0;
+  int parent = -1;        ///< the next dof towards the root, −1 at the root
+  double damping = 0.0;   ///< [N m s/rad or N s/m], force −damping·v
+  double armature = 0.0;  ///< rotor inertia added to the diagonal of M [kg m² or kg]
+  double dryFriction = 0.0;  ///< [N m or N], read; simulated by a later effect
+  bool actuated = false;     ///< has a control u
+  double effortLower = -kInfinity;  ///< control box [N m or N]
+  double effortUpper = kInfinity;
+  double velocityLimit = kInfinity;  ///< [rad/s or m/s], read, not enforced
+};
+
+/// A range q_min ≤ q ≤ q_max of a scalar joint.
+struct JointRange {
+  int body = 0;
+  double lower = -kInfinity;  ///< [rad or m]
+  double upper = kInfinity;
+  double margin = 0.0;        ///< a limit makes a row where its distance < margin
+  Impedance impedance;
+};
+
+/// q_follower = multiplier · q_leader + offset, as the URDF says it.
+struct Mimic {
+  int follower = 0;  ///< bodies
+  int leader = 0;
+  double multiplier = 1.0;
+  double offset = 0.0;
+};
+
+/// A named frame fixed to a body: every link of the URDF, merged or not.
+struct Frame {
+  std::string name;
+  int body = 0;
+  Transform X_BF;
+};
+
+/// Choices that hold for the whole simulation.
+struct Options {
+  double timestep = 0.002;                      ///< h [s]
+  Vector3 gravity = Vector3(0.0, 0.0, -9.81);   ///< [m/s²], world
+  EffectSet effects = EffectSet::all();         ///< which effects may be simulated
+  double impedanceRatio = 1.0;                  ///< impratio: friction against normal impedance
+  int maxIterations = 100;                      ///< Newton
+  double tolerance = 1e-12;                     ///< Newton: scaled gradient, see solver/newton.hpp
+};
+
+struct Model {
+  std::string name;
+  Options options;
+
+  std::vector<Body> bodies;             ///< [0] is the world
+  std::vector<std::string> bodyNames;
+  std::vector<std::string> jointNames;  ///< of the joint that carries body i; "" for the world
+  std::vector<Tree> trees;
+  std::vector<Dof> dofs;
+  std::vector<JointRange> ranges;       ///< ordered by body
+  std::vector<Mimic> mimics;
+  std::vector<Frame> frames;
+  std::vector<Geometry> geometries;
+  std::vector<Visual> visuals;
+  std::vector<std::string> warnings;    ///< what a user should know about how it was read
+
+  int nq = 0;   ///< size of State::q
+  int nv = 0;   ///< size of State::v
+  VectorX q0;   ///< initial configuration (floating bases at their initial pose)
+
+  int bodyCount() const { return static_cast<int>(bodies.size()); }
+  double totalMass() const;             ///< of all moving bodies [kg]
+  int findFrame(const std::string& name) const;  ///< index or −1
+  int findJoint(const std::string& name) const;  ///< body that the joint carries, or −1
+};
+
+}  // namespace softgauss

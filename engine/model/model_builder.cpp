@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/model/model_builder.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "engine/model/detail/kinematic_tree.hpp"
+#include "engine/model/detail/spec_checks.hpp"
+
+namespace softgauss {
+
+ModelBuilder& ModelBuilder::link(LinkSpec spec) {
+  links_.push_back(std::move(spec));
+  return *this;
+}
+ModelBuilder& ModelBuilder::joint(JointSpec spec) {
+  joints_.push_back(std::move(spec));
+  return *this;
+}
+ModelBuilder& ModelBuilder::geometry(GeometrySpec spec) {
+  geometries_.push_back(std::move(spec));
+  return *this;
+}
+ModelBuilder& ModelBuilder::visual(VisualSpec spec) {
+  visuals_.push_back(std::move(spec));
+  return *this;
+}
+ModelBuilder& ModelBuilder::warning(std::string text) {
+  warnings_.push_back(std::move(text));
+  return *this;
+}
+
+namespace {
+
+/// Where a link ended up: a pose in a body.
+struct Placement {
+  int body = 0;
+  Transform X_BL;
+};
+
+/// Turns checked specs into a Model, link by link, parents first.
+class Assembler {
+ public:
+  Assembler(Model& model, const std::vector<LinkSpec>& links, const std::vector<JointSpec>& joints)
+      : model_(model), links_(links), joints_(joints), placement_(links.size()) {
+    Body world;
+    world.subtreeEnd = 1;
+    model_.bodies.push_back(world);
+    model_.bodyNames.emplace_back("world");
+    model_.jointNames.emplace_back();
+    where_.push_back(nullptr);
+  }
+
+  /// A root link: the world itself, welded to the world, or free.
+  void addRoot(int link, BaseKind base, const Transform& X_WRoot) {
+    const LinkSpec& spec = links_[static_cast<std::size_t>(link)];
+    const bool isWorld = spec.name == "world";
+    const bool floats = base == BaseKind::floating || (base == BaseKind::automatic && !isWorld);
+    if (isWorld) {
+      place(link, {0, Transform{}});
+    } else if (!floats) {
+      place(link, {0, X_WRoot});
+    } else {
+      const int body = addBody(JointKind::floating, 0, X_WRoot, Vector3::UnitZ(), spec.name, link);
+      place(link, {body, Transform{}});
+    }
+  }
+
+  void addJoint(const detail::TreeEdge& edge, bool zeroEffortIsUnlimited) {
+    const JointSpec& joint = joints_[static_cast<std::size_t>(edge.joint)];
+    const Placement parent = placement_[static_cast<std::size_t>(edge.parent)];
+    const Transform X_BC = parent.X_BL * joint.X_PC;
+    const Vector3 axis = joint.axis.normalized();
+    switch (joint.type) {
+      case JointType::fixed:
+        place(edge.child, {parent.body, X_BC});
+        return;
+      case JointType::floating: {
+        if (parent.body != 0)
+          throw ModelError(joint.where, "joint '" + joint.name + "'",
+                           "a floating joint hangs from '" + joint.parent +
+                               "', which moves; expected the world or a link fixed to it");
+        place(edge.child, {addBody(JointKind::floating, 0, X_BC, axis, joint.name, edge.child), {}});
+        return;
+      }
+      case JointType::planar: {
+        // Two slides along the plane, then a hinge about its normal, as three bodies.
+        const Matrix3 R = Quaternion::FromTwoVectors(Vector3::UnitZ(), axis).toRotationMatrix();
+        int body = addBody(JointKind::prismatic, parent.body, X_BC, R.col(0), joint.name + ".x", -1);
+        addDofData(body, joint, false);
+        body = addBody(JointKind::prismatic, body, {}, R.col(1), joint.name + ".y", -1);
+        addDofData(body, joint, false);
+        body = addBody(JointKind::revolute, body, {}, axis, joint.name + ".rz", edge.child);
+        addDofData(body, joint, false);
+        place(edge.child, {body, {}});
+        return;
+      }
+      case JointType::revolute:
+      case JointType::continuous:
+      case JointType::prismatic: {
+        const JointKind kind =
+            joint.type == JointType::prismatic ? JointKind::prismatic : JointKind::revolute;
+        const int body = addBody(kind, parent.body, X_BC, axis, joint.name, edge.child);
+        const bool powerless = joint.effort && *joint.effort == 0.0 && !zeroEffortIsUnlimited;
+        if (powerless && !joint.mimic) powerless_.push_back(joint.name);
+        addDofData(body, joint, !powerless && !joint.mimic);
+        place(edge.child, {body, {}});
+        if (joint.type != JointType::continuous && joint.lower && joint.upper) {
+          JointRange range;
+          range.body = body;
+          range.lower = *joint.lower;
+          range.upper = *joint.upper;
+          model_.ranges.push_back(range);
+        }
+        return;
+      }
+    }
+  }
+
+  const Placement& placement(int link) const { return placement_[static_cast<std::size_t>(link)]; }
+
+  /// Trees, subtrees, ancestor dofs and the checks that need the merged bodies.
+  void finish() {
+    for (int b = model_.bodyCount() - 1; b > 0; --b) {
+      Body& parent = model_.bodies[static_cast<std::size_t>(model_.bodies[idx(b)].parent)];
+      parent.subtreeEnd = std::max(parent.subtreeEnd, model_.bodies[idx(b)].subtreeEnd);
+    }
+    for (int b = 1; b < model_.bodyCount(); ++b) {
+      const Body& body = model_.bodies[idx(b)];
+      if (body.parent != 0) continue;
+      const Body& last = model_.bodies[idx(body.subtreeEnd - 1)];
+      model_.trees.push_back({b, body.subtreeEnd, body.v, last.v + last.dofs});
+      for (int i = b; i < body.subtreeEnd; ++i)
+        model_.bodies[idx(i)].tree = static_cast<int>(model_.trees.size()) - 1;
+    }
+    detail::checkMovingInertias(model_, where_);
+    if (!powerless_.empty()) {
+      std::string text = "effort 0: not actuated (--zero-effort unlimited changes this):";
+      for (const std::string& name : powerless_) text += " " + name;
+      model_.warnings.push_back(text);
+    }
+  }
+
+ private:
+  static std::size_t idx(int i) { return static_cast<std::size_t>(i); }
+
+  int addBody(JointKind kind, int parent, const Transform& X_PB, const Vector3& axis,
+              const std::string& jointName, int link) {
+    Body body;
+    body.joint = kind;
+    body.parent = parent;
+    body.q = model_.nq;
+    body.v = model_.nv;
+    body.dofs = kind == JointKind::floating ? 6 : 1;
+    body.X_PB = X_PB;
+    body.axis = axis;
+    const int index = model_.bodyCount();
+    body.subtreeEnd = index + 1;
+    model_.bodies.push_back(body);
+    model_.bodyNames.push_back(link < 0 ? jointName : links_[idx(link)].name);
+    model_.jointNames.push_back(jointName);
+    where_.push_back(link < 0 ? nullptr : &links_[idx(link)].where);
+    const Body& up = model_.bodies[idx(parent)];
+    for (int k = 0; k < body.dofs; ++k) {
+      Dof dof;
+      dof.body = index;
+      dof.parent = k > 0 ? model_.nv + k - 1 : (up.dofs > 0 ? up.v + up.dofs - 1 : -1);
+      model_.dofs.push_back(dof);
+    }
+    model_.nv += body.dofs;
+    model_.nq += kind == JointKind::floating ? 7 : 1;
+    return index;
+  }
+
+  void addDofData(int body, const JointSpec& joint, bool actuated) {
+    Dof& dof = model_.dofs[idx(model_.bodies[idx(body)].v)];
+    dof.damping = joint.damping;
+    dof.dryFriction = joint.dryFriction;
+    dof.armature = joint.armature;
+    dof.actuated = actuated;
+    if (joint.effort && *joint.effort > 0.0) {
+      dof.effortLower = -*joint.effort;
+      dof.effortUpper = *joint.effort;
+    }
+    if (joint.velocity && *joint.velocity > 0.0) dof.velocityLimit = *joint.velocity;
+  }
+
+  /// Fixes a link to a body: a frame keeps its name, the body gains its inertia.
+  void place(int link, const Placement& where) {
+    placement_[idx(link)] = where;
+    const LinkSpec& spec = links_[idx(link)];
+    model_.frames.push_back({spec.name, where.body, where.X_BL});
+    Body& body = model_.bodies[idx(where.body)];
+    if (where.body == 0 || (spec.mass == 0.0 && spec.I_Lcm.isZero(0.0))) return;
+
+    // Parallel axes about the combined centre of mass.
+    const Vector3 com = where.X_BL * spec.com;
+    const Symmetric3 I = rotated(where.X_BL.R, Symmetric3::fromMatrix(spec.I_Lcm));
+    const double mass = body.mass + spec.mass;
+    Symmetric3 sum = body.I_Bcm;
+    sum += I;
+    if (mass > 0.0) {
+      const Vector3 d = com - body.com;
+      const double reduced = body.mass * spec.mass / mass;
+      sum += Inertia::fromCentral(reduced, d, {}).I_O;
+      body.com = (body.mass * body.com + spec.mass * com) / mass;
+    }
+    body.mass = mass;
+    body.I_Bcm = sum;
+    body.massless = false;
+  }
+
+  Model& model_;
+  const std::vector<LinkSpec>& links_;
+  const std::vector<JointSpec>& joints_;
+  std::vector<Placement> placement_;
+  std::vector<const SourceLocation*> where_;  ///< of each body's link, or null
+  std::vector<std::string> powerless_;
+};
+
+/// Configuration at zero, or at the middle of the range where zero lies outside it.
+VectorX initialConfiguration(const Model& model) {
+  VectorX q = VectorX::Zero(model.nq);
+  for (const Body& body : model.bodies) {
+    if (body.joint != JointKind::floating) continue;
+    q.segment<3>(body.q) = body.X_PB.p;
+    const Quaternion r(body.X_PB.R);
+    q.segment<4>(body.q + 3) << r.w(), r.x(), r.y(), r.z();
+  }
+  for (const JointRange& range : model.ranges) {
+    const int i = model.bodies[static_cast<std::size_t>(range.body)].q;
+    if (range.lower > 0.0 || range.upper < 0.0) q[i] = 0.5 * (range.lower + range.upper);
+  }
+  return q;
+}
+
+}  // namespace
+
+Model ModelBuilder::build() const {
+  for (const LinkSpec& link : links_) detail::checkLink(link);
+  for (const JointSpec& joint : joints_) detail::checkJoint(joint);
+  detail::checkOptions(options);
+  const detail::LinkOrder order = detail::orderLinks(name_, links_, joints_);
+
+  Model model;
+  model.name = name_;
+  model.options = options;
+  model.warnings = warnings_;
+  Assembler assembler(model, links_, joints_);
+  for (const detail::TreeEdge& edge : order.visits) {
+    if (edge.joint < 0)
+      assembler.addRoot(edge.child, base, X_WRoot);
+    else
+      assembler.addJoint(edge, zeroEffortIsUnlimited);
+  }
+
+  const auto placementOf = [&](const std::string& link, const SourceLocation& where,
+                               const std::string& element) {
+    const int index = order.find(link);
+    if (index >= 0) return assembler.placement(index);
+    if (link == "world") return Placement{};
+    throw ModelError(where, element, "is on link '" + link + "', which does not exist");
+  };
+  for (const GeometrySpec& spec : geometries_) {
+    detail::checkGeometry(spec);
+    const Placement at = placementOf(spec.link, spec.where, "geometry '" + spec.name + "'");
+    model.geometries.push_back(
+        {spec.name, spec.link, at.body, at.X_BL * spec.X_LG, spec.shape, spec.material});
+  }
+  for (const VisualSpec& spec : visuals_) {
+    const Placement at = placementOf(spec.link, {}, "visual");
+    model.visuals.push_back({spec.link, at.body, at.X_BL * spec.X_LG, spec.shape, spec.rgba});
+  }
+  for (const JointSpec& joint : joints_) {
+    if (!joint.mimic) continue;
+    const int follower = model.findJoint(joint.name), leader = model.findJoint(joint.mimic->leader);
+    if (leader < 0)
+      throw ModelError(joint.where, "joint '" + joint.name + "'",
+                       "mimics '" + joint.mimic->leader + "', which is not a moving joint");
+    model.mimics.push_back({follower, leader, joint.mimic->multiplier, joint.mimic->offset});
+  }
+  assembler.finish();
+  model.q0 = initialConfiguration(model);
+  return model;
+}
+
+}  // namespace softgauss

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Builds a Model from links and joints, as a URDF lists them.
+///
+/// build() validates every input once, merges links on fixed joints (their names stay as frames),
+/// splits a planar joint into two slides and a hinge, sorts bodies depth first and throws
+/// ModelError naming file, line and element when the description cannot be simulated.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/model/model.hpp"
+
+namespace softgauss {
+
+struct LinkSpec {
+  std::string name;
+  double mass = 0.0;                          ///< [kg]
+  Vector3 com = Vector3::Zero();              ///< p_LoLcm_L [m]
+  Matrix3 I_Lcm = Matrix3::Zero();            ///< central inertia in link axes [kg m²]
+  SourceLocation where;
+};
+
+enum class JointType : std::uint8_t { fixed, revolute, continuous, prismatic, floating, planar };
+
+struct MimicSpec {
+  std::string leader;
+  double multiplier = 1.0;
+  double offset = 0.0;
+};
+
+struct JointSpec {
+  std::string name;
+  JointType type = JointType::fixed;
+  std::string parent;                     ///< link names
+  std::string child;
+  Transform X_PC;                         ///< pose of the child link in the parent link at q = 0
+  Vector3 axis = Vector3::UnitX();        ///< in the child link; normal of the plane for planar
+  std::optional<double> lower, upper;     ///< range [rad or m]; both or neither
+  std::optional<double> effort;           ///< |u| ≤ effort; absent: no box; 0: not actuated
+  std::optional<double> velocity;         ///< [rad/s or m/s]
+  double damping = 0.0;
+  double dryFriction = 0.0;
+  double armature = 0.0;
+  std::optional<MimicSpec> mimic;
+  SourceLocation where;
+};
+
+struct GeometrySpec {
+  std::string name;
+  std::string link;
+  Transform X_LG;
+  Shape shape;
+  Material material;
+  SourceLocation where;
+};
+
+struct VisualSpec {
+  std::string link;
+  Transform X_LG;
+  Shape shape;
+  Eigen::Vector4d rgba = Eigen::Vector4d(0.7, 0.7, 0.7, 1.0);
+};
+
+enum class BaseKind : std::uint8_t {
+  automatic,  ///< fixed when the root link is called "world", else floating
+  fixed,
+  floating
+};
+
+class ModelBuilder {
+ public:
+  explicit ModelBuilder(std::string name = "model") : name_(std::move(name)) {}
+
+  ModelBuilder& link(LinkSpec spec);
+  ModelBuilder& joint(JointSpec spec);
+  ModelBuilder& geometry(GeometrySpec spec);  ///< link "world" fixes it to the world
+  ModelBuilder& visual(VisualSpec spec);
+  ModelBuilder& warning(std::string text);
+
+  Options options;
+  BaseKind base = BaseKind::automatic;  ///< of every root link
+  Transform X_WRoot;                    ///< initial (floating) or permanent (fixed) pose of roots
+  bool zeroEffortIsUnlimited = false;   ///< a limit with effort 0: actuated without a box
+
+  /// Throws ModelError.
+  Model build() const;
+
+ private:
+  std::string name_;
+  std::vector<LinkSpec> links_;
+  std::vector<JointSpec> joints_;
+  std::vector<GeometrySpec> geometries_;
+  std::vector<VisualSpec> visuals_;
+  std::vector<std::string> warnings_;
+};
+
+}  // namespace softgauss

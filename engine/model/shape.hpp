@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Collision and visual shapes as plain data. No collision library is known here.
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/core/spatial.hpp"
+#include "engine/model/material.hpp"
+
+namespace softgauss {
+
+/// Triangle mesh in the geometry's own frame G [m], scale already applied.
+struct Mesh {
+  std::vector<Vector3> vertices;
+  std::vector<std::array<int, 3>> triangles;
+  std::string file;  ///< where it was read from, for messages and viewers
+};
+
+enum class ShapeKind : std::uint8_t {
+  plane,     ///< half-space z ≤ 0 of G; the normal is +z
+  sphere,    ///< radius
+  capsule,   ///< radius, halfLength of the segment along z of G (without the caps)
+  cylinder,  ///< radius, halfLength along z of G
+  box,       ///< halfExtents along the axes of G
+  mesh       ///< convex hull of mesh->vertices
+};
+
+struct Shape {
+  ShapeKind kind = ShapeKind::sphere;
+  double radius = 0.0;                          ///< [m] sphere, capsule, cylinder
+  double halfLength = 0.0;                      ///< [m] capsule, cylinder
+  Vector3 halfExtents = Vector3::Zero();        ///< [m] box
+  std::shared_ptr<const Mesh> mesh = nullptr;   ///< mesh
+
+  static Shape plane() { return make(ShapeKind::plane, 0.0, 0.0); }
+  static Shape sphere(double radius) { return make(ShapeKind::sphere, radius, 0.0); }
+  static Shape capsule(double radius, double halfLength) {
+    return make(ShapeKind::capsule, radius, halfLength);
+  }
+  static Shape cylinder(double radius, double halfLength) {
+    return make(ShapeKind::cylinder, radius, halfLength);
+  }
+  static Shape box(const Vector3& halfExtents) {
+    Shape shape = make(ShapeKind::box, 0.0, 0.0);
+    shape.halfExtents = halfExtents;
+    return shape;
+  }
+  static Shape hull(std::shared_ptr<const Mesh> mesh) {
+    Shape shape = make(ShapeKind::mesh, 0.0, 0.0);
+    shape.mesh = std::move(mesh);
+    return shape;
+  }
+
+ private:
+  static Shape make(ShapeKind kind, double radius, double halfLength) {
+    Shape shape;
+    shape.kind = kind;
+    shape.radius = radius;
+    shape.halfLength = halfLength;
+    return shape;
+  }
+};
+
+/// A collision shape fixed to a body.
+struct Geometry {
+  std::string name;     ///< e.g. "left_foot/0"
+  std::string link;     ///< the URDF link that it was written in (also after merging)
+  int body = 0;         ///< index into Model::bodies; 0 is the world
+  Transform X_BG;       ///< pose in the body
+  Shape shape;
+  Material material;
+};
+
+/// A shape that is only looked at.
+struct Visual {
+  std::string link;
+  int body = 0;
+  Transform X_BG;
+  Shape shape;
+  Eigen::Vector4d rgba = Eigen::Vector4d(0.7, 0.7, 0.7, 1.0);
+};
+
+}  // namespace softgauss

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/model/state.hpp"
+
+#include <cstring>
+
+#include "engine/core/rotation.hpp"
+
+namespace softgauss {
+namespace {
+
+Quaternion readQuaternion(const VectorX& q, int i) {
+  return {q[i], q[i + 1], q[i + 2], q[i + 3]};  // w first
+}
+
+/// FNV-1a over the bytes of an array.
+void mix(std::uint64_t& h, const double* data, Eigen::Index count) {
+  for (Eigen::Index i = 0; i < count; ++i) {
+    std::uint64_t bits;
+    std::memcpy(&bits, data + i, sizeof bits);
+    for (int byte = 0; byte < 8; ++byte) {
+      h ^= (bits >> (8 * byte)) & 0xffu;
+      h *= 0x100000001b3ull;
+    }
+  }
+}
+
+}  // namespace
+
+State::State(const Model& model) : q(model.q0), v(VectorX::Zero(model.nv)) {
+  warmstart.a = VectorX::Zero(model.nv);
+  warmstart.gddA = VectorX::Zero(model.nv);
+  warmstart.multipliers = VectorX::Zero(model.nv);
+}
+
+std::uint64_t hash(const State& state) {
+  std::uint64_t h = 0xcbf29ce484222325ull;
+  for (const VectorX* x : {&state.q, &state.v, &state.warmstart.a, &state.warmstart.gddA,
+                           &state.warmstart.multipliers})
+    mix(h, x->data(), x->size());
+  const double rest[] = {state.time, state.warmstart.valid ? 1.0 : 0.0,
+                         state.warmstart.gddValid ? 1.0 : 0.0};
+  mix(h, rest, 3);
+  return h;
+}
+
+void integratePosition(const Model& model, const VectorX& v, double h, VectorX& q) {
+  for (const Body& body : model.bodies) {
+    if (body.joint == JointKind::floating) {
+      q.segment<3>(body.q) += h * v.segment<3>(body.v);
+      const Quaternion r = readQuaternion(q, body.q + 3) *
+                           quaternionExp(h * Vector3(v.segment<3>(body.v + 3)));
+      q.segment<4>(body.q + 3) = Eigen::Vector4d(r.w(), r.x(), r.y(), r.z()) / r.norm();
+    } else if (body.joint != JointKind::world) {
+      q[body.q] += h * v[body.v];
+    }
+  }
+}
+
+VectorX positionDifference(const Model& model, const VectorX& q0, const VectorX& q1) {
+  VectorX v = VectorX::Zero(model.nv);
+  for (const Body& body : model.bodies) {
+    if (body.joint == JointKind::floating) {
+      v.segment<3>(body.v) = q1.segment<3>(body.q) - q0.segment<3>(body.q);
+      const Quaternion d =
+          readQuaternion(q0, body.q + 3).conjugate() * readQuaternion(q1, body.q + 3);
+      v.segment<3>(body.v + 3) = quaternionLog(d);
+    } else if (body.joint != JointKind::world) {
+      v[body.v] = q1[body.q] - q0[body.q];
+    }
+  }
+  return v;
+}
+
+}  // namespace softgauss

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// What the next step depends on, and what the caller applies to it.
+
+#include <cstdint>
+#include <vector>
+
+#include "engine/model/model.hpp"
+
+namespace softgauss {
+
+/// Solutions of the last step, from which the next solve starts. They change the number of
+/// iterations, and the result only within the solver's tolerance.
+struct WarmStart {
+  VectorX a;            ///< acceleration of the forward solve (nv)
+  VectorX gddA;         ///< acceleration of the GDD solve (nv)
+  VectorX multipliers;  ///< of g_z = 0 and of the control box (nv)
+  bool valid = false;   ///< a is set
+  bool gddValid = false;
+};
+
+/// Everything that the next step depends on, and nothing else. Copyable.
+struct State {
+  VectorX q;          ///< configuration (nq)
+  VectorX v;          ///< generalised velocity (nv)
+  double time = 0.0;  ///< [s]
+  WarmStart warmstart;
+
+  State() = default;
+  /// At rest in the model's initial configuration.
+  explicit State(const Model& model);
+};
+
+/// An external force on a body: wrench about the body's origin, in world axes.
+struct ExternalWrench {
+  int body = 0;
+  Force F_Bo_W;  ///< moment [N m] about Bo and force [N]
+};
+
+/// What acts on the system during a step besides its own forces.
+struct Input {
+  VectorX tau;  ///< generalised applied force (nv) [N or N m]; empty: none
+  std::vector<ExternalWrench> wrenches;
+};
+
+/// 64-bit hash of q, v, time and the warm start, bit for bit.
+std::uint64_t hash(const State& state);
+
+/// q ← q ⊕ h v on the configuration manifold; v in the convention of JointKind.
+void integratePosition(const Model& model, const VectorX& v, double h, VectorX& q);
+
+/// The v with q1 = q0 ⊕ v (the inverse of integratePosition with h = 1).
+VectorX positionDifference(const Model& model, const VectorX& q0, const VectorX& q1);
+
+}  // namespace softgauss

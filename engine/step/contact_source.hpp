@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Where contacts come from: the engine's only virtual call, once per step.
+
+#include "engine/constraints/contact_set.hpp"
+#include "engine/dynamics/kinematics.hpp"
+#include "engine/model/model.hpp"
+
+namespace softgauss {
+
+class ContactSource {
+ public:
+  virtual ~ContactSource() = default;
+
+  /// Fills `contacts` (cleared first) with every point whose distance < margin of its pair, in an
+  /// order that depends on the model and the poses alone. Throws nothing; a query that cannot be
+  /// answered is counted in contacts.pairsSkipped.
+  virtual void detect(const Model& model, const Kinematics& kinematics,
+                      ContactSet& contacts) noexcept = 0;
+};
+
+/// The same contacts at every step, for tests and for callers with a collision engine of their own.
+class FixedContacts final : public ContactSource {
+ public:
+  std::vector<Contact> points;
+  void detect(const Model&, const Kinematics&, ContactSet& contacts) noexcept override {
+    contacts.clear();
+    for (const Contact& contact : points) contacts.add(contact);
+  }
+};
+
+}  // namespace softgauss
