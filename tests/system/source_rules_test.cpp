@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/system/source_rules.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+namespace softgauss::test {
+namespace {
+
+const std::vector<SourceFile>& tree() {
+  static const std::vector<SourceFile> files = readTree(SOFTGAUSS_SOURCE_DIR);
+  return files;
+}
+
+template <class Rule>
+void expectHolds(const Rule& rule) {
+  for (const SourceFile& file : tree())
+    for (const std::string& complaint : rule(file)) ADD_FAILURE() << complaint;
+}
+
+// Complaints about a file of one line.
+template <class Rule>
+std::size_t count(const Rule& rule, const std::string& path, const std::string& line) {
+  return rule(SourceFile{path, {line}}).size();
+}
+
+// ---- The tree ----
+
+TEST(Tree, IsRead) {
+  std::set<std::string> paths;
+  for (const SourceFile& file : tree()) paths.insert(file.path);
+  for (const char* path : {"CMakeLists.txt", "dev", ".ci/run", "engine/core/types.hpp"})
+    EXPECT_EQ(paths.count(path), 1u) << path;
+}
+
+TEST(Tree, IncludesFollowTheLayers) { expectHolds(checkIncludes); }
+TEST(Tree, FilesAreShort) { expectHolds(checkLength); }
+TEST(Tree, FilesNameTheirLicence) { expectHolds(checkLicence); }
+TEST(Tree, NamesNoMachineAndNoWorkLeftOver) { expectHolds(checkWords); }
+
+TEST(Tree, CitedEquationsExist) {
+  std::set<std::string> theory;
+  for (const SourceFile& file : tree())
+    if (file.path == "docs/theory.md") theory = equationsIn(file);
+  // The rules' own tests cite equations that exist nowhere.
+  expectHolds([&](const SourceFile& file) {
+    return file.path.find("/source_rules") == std::string::npos ? checkEquations(file, theory)
+                                                                : Complaints();
+  });
+}
+
+TEST(Tree, RootHoldsOnlyWhatBelongsThere) {
+  std::set<std::string> entries;
+  for (const auto& entry : std::filesystem::directory_iterator(SOFTGAUSS_SOURCE_DIR))
+    entries.insert(entry.path().filename().string());
+  for (const std::string& complaint : checkRoot(entries)) ADD_FAILURE() << complaint;
+}
+
+// ---- The rules can fail ----
+
+TEST(SourceRules, LayersIncludeDownwards) {
+  const auto ours = [](const std::string& path, const std::string& header) {
+    return count(checkIncludes, path, "#include \"" + header + "\"");
+  };
+  EXPECT_EQ(ours("engine/step/step.cpp", "engine/solver/newton.hpp"), 0u);
+  EXPECT_EQ(ours("engine/model/detail/a.cpp", "engine/model/model.hpp"), 0u);
+  EXPECT_EQ(ours("engine/engine.hpp", "engine/step/step.hpp"), 0u);
+  EXPECT_EQ(ours("io/goals.cpp", "gdd/goal.hpp"), 0u);
+  EXPECT_EQ(ours("apps/simulate_gdd.cpp", "io/urdf.hpp"), 0u);
+
+  EXPECT_EQ(ours("engine/core/types.hpp", "engine/model/model.hpp"), 1u);
+  EXPECT_EQ(ours("engine/solver/newton.cpp", "engine/model/model.hpp"), 1u);
+  EXPECT_EQ(ours("engine/forces/spring.cpp", "engine/constraints/rows.hpp"), 1u);
+  EXPECT_EQ(ours("engine/model/model.hpp", "engine/engine.hpp"), 1u);
+  EXPECT_EQ(ours("engine/step/step.cpp", "gdd/goal.hpp"), 1u);
+  EXPECT_EQ(ours("collision/manifold.cpp", "io/urdf.hpp"), 1u);
+  EXPECT_EQ(ours("io/urdf.cpp", "collision/manifold.hpp"), 1u);
+  EXPECT_EQ(ours("io/urdf.cpp", "urdf.hpp"), 1u);
+}
+
+TEST(SourceRules, LibrariesStayInTheirSources) {
+  const auto theirs = [](const std::string& path, const std::string& header) {
+    return count(checkIncludes, path, "#include <" + header + ">");
+  };
+  EXPECT_EQ(theirs("engine/core/types.hpp", "Eigen/Core"), 0u);
+  EXPECT_EQ(theirs("collision/fcl_contact_source.cpp", "fcl/fcl.h"), 0u);
+  EXPECT_EQ(theirs("io/urdf.cpp", "tinyxml2.h"), 0u);
+  EXPECT_EQ(theirs("apps/simulate_gdd.cpp", "CLI/CLI.hpp"), 0u);
+
+  EXPECT_EQ(theirs("collision/fcl_contact_source.hpp", "fcl/fcl.h"), 1u);
+  EXPECT_EQ(theirs("engine/model/shape.cpp", "fcl/fcl.h"), 1u);
+  EXPECT_EQ(theirs("io/mesh.cpp", "ccd/ccd.h"), 1u);
+  EXPECT_EQ(theirs("io/urdf.hpp", "urdf_model/model.h"), 1u);
+  EXPECT_EQ(theirs("io/log.cpp", "iostream"), 1u);
+}
+
+TEST(SourceRules, LongFilesAreFound) {
+  EXPECT_TRUE(checkLength({"engine/a.cpp", std::vector<std::string>(400)}).empty());
+  EXPECT_FALSE(checkLength({"engine/a.cpp", std::vector<std::string>(401)}).empty());
+}
+
+TEST(SourceRules, MissingLicencesAreFound) {
+  EXPECT_EQ(count(checkLicence, "gdd/goal.hpp", "// SPDX-License-Identifier: Apache-2.0"), 0u);
+  EXPECT_EQ(count(checkLicence, "gdd/goal.hpp", "#pragma once"), 1u);
+  EXPECT_EQ(count(checkLicence, "gdd/CMakeLists.txt", "project(x)"), 1u);
+  EXPECT_FALSE(checkLicence({"gdd/goal.hpp", {}}).empty());
+}
+
+TEST(SourceRules, MachinePathsAndLeftOversAreFound) {
+  // In pieces, so that this file passes its own test.
+  const std::string home = "/ho" "me/anna/robot.urdf", left = "TO" "DO", fix = "FIX" "ME";
+  EXPECT_EQ(count(checkWords, "docs/a.md", "see " + home), 1u);
+  EXPECT_EQ(count(checkWords, "dev", home), 1u);
+  EXPECT_EQ(count(checkWords, "gdd/goal.hpp", "// " + left + ": later"), 1u);
+  EXPECT_EQ(count(checkWords, "gdd/goal.hpp", "// " + fix), 1u);
+  EXPECT_EQ(count(checkWords, "docs/a.md", "https://example.org" + home), 0u);
+  EXPECT_EQ(count(checkWords, "docs/a.md", "the todo list"), 0u);
+}
+
+TEST(SourceRules, UnknownEquationsAreFound) {
+  const std::set<std::string> theory = equationsIn({"docs/theory.md", {"x = y (T.1), (T.2a)"}});
+  EXPECT_EQ(theory, (std::set<std::string>{"1", "2a"}));
+  EXPECT_TRUE(checkEquations({"gdd/goal.hpp", {"/// (T.1) and (T.2a)"}}, theory).empty());
+  EXPECT_EQ(checkEquations({"gdd/goal.hpp", {"/// (T.1), (T.2), (T.3)"}}, theory).size(), 2u);
+}
+
+TEST(SourceRules, StrangersAtTheRootAreFound) {
+  EXPECT_TRUE(checkRoot({"engine", "dev", ".git", "build"}).empty());
+  EXPECT_EQ(checkRoot({"engine", "scratch.txt", "src"}).size(), 2u);
+}
+
+}  // namespace
+}  // namespace softgauss::test
