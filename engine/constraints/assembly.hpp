@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// What an effect may read when it makes its rows.
+
+#include "engine/constraints/contact_set.hpp"
+#include "engine/constraints/inverse_weight.hpp"
+#include "engine/dynamics/kinematics.hpp"
+#include "engine/dynamics/tree_matrix.hpp"
+
+namespace softgauss {
+
+struct Assembly {
+  const Model& model;
+  const State& state;
+  const Kinematics& kinematics;
+  const ContactSet& contacts;
+  const InverseWeights& weights;
+  const TreeSparsity& tree;  ///< pattern of M: row i lists the dofs that move body(i)
+};
+
+}  // namespace softgauss

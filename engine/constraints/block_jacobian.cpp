@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/constraints/block_jacobian.hpp"
+
+#include <algorithm>
+
+#include "engine/dynamics/jacobian.hpp"
+
+namespace softgauss {
+namespace {
+
+int lastDof(const Model& model, int body) {
+  const Body& b = model.bodies[body];
+  return b.dofs > 0 ? b.v + b.dofs - 1 : -1;
+}
+
+/// The last dof that moves both, −1 if none does.
+int commonDof(const Model& model, int i, int j) {
+  while (i != j) {
+    if (i > j)
+      i = model.dofs[i].parent;
+    else
+      j = model.dofs[j].parent;
+  }
+  return i;
+}
+
+}  // namespace
+
+void BlockJacobian::clear() {
+  blocks_.clear();
+  segments_.clear();
+  values_.clear();
+}
+
+void BlockJacobian::add(const Model& model, const Kinematics& k, const TreeSparsity& tree,
+                        int bodyA, int bodyB, const Vector3& p_WP, const Matrix3& directions,
+                        int dim) {
+  JacobianBlock block;
+  block.dim = dim;
+  block.value = static_cast<int>(values_.size());
+  block.segment = static_cast<int>(segments_.size());
+
+  const int lastA = lastDof(model, bodyA), lastB = lastDof(model, bodyB);
+  const int common = commonDof(model, lastA, lastB);
+  block.couples = lastA > common && lastB > common;
+
+  // Depth-first numbering puts one whole branch before the other.
+  const bool aFirst = lastA < lastB;
+  const int last[2] = {aFirst ? lastA : lastB, aFirst ? lastB : lastA};
+  int split = 0;  // columns of the first branch
+  for (int side = 0; side < 2; ++side) {
+    if (last[side] > common) {
+      for (const Segment* s = tree.begin(last[side]); s != tree.end(last[side]); ++s) {
+        if (s->end <= common + 1) continue;
+        const int begin = std::max(s->begin, common + 1);
+        if (block.columns > 0 && segments_.back().end == begin)
+          segments_.back().end = s->end;
+        else
+          segments_.push_back({begin, s->end});
+        block.columns += s->end - begin;
+      }
+    }
+    if (side == 0) split = block.columns;
+  }
+  block.segmentEnd = static_cast<int>(segments_.size());
+
+  values_.resize(values_.size() + static_cast<std::size_t>(dim * block.columns));
+  double* J = values_.data() + block.value;
+  Vector3 r[2];  // the point from O, in the tree of each branch
+  double sign[2];
+  for (int side = 0; side < 2; ++side) {
+    const int body = (side == 0) == aFirst ? bodyA : bodyB;
+    sign[side] = body == bodyB ? 1.0 : -1.0;
+    r[side] = body == 0 ? Vector3::Zero() : Vector3(p_WP - k.p_WO[model.bodies[body].tree]);
+  }
+  int c = 0;
+  for (int s = block.segment; s < block.segmentEnd; ++s) {
+    for (int i = segments_[s].begin; i < segments_[s].end; ++i, ++c) {
+      const int side = c < split ? 0 : 1;
+      const Vector3 u = sign[side] * dofPointVelocity(k.S[i], r[side]);
+      for (int d = 0; d < dim; ++d) J[d * block.columns + c] = directions.col(d).dot(u);
+    }
+  }
+  scratch_.resize(std::max(scratch_.size(), static_cast<std::size_t>(dim * block.columns)));
+  blocks_.push_back(block);
+}
+
+void BlockJacobian::multiply(int i, const VectorX& a, double* y) const {
+  const JacobianBlock& block = blocks_[i];
+  for (int d = 0; d < block.dim; ++d) {
+    const double* J = values_.data() + block.value + d * block.columns;
+    double sum = 0.0;
+    for (int s = block.segment; s < block.segmentEnd; ++s)
+      for (int j = segments_[s].begin; j < segments_[s].end; ++j) sum += *J++ * a[j];
+    y[d] = sum;
+  }
+}
+
+void BlockJacobian::addTransposed(int i, const double* f, VectorX& tau) const {
+  const JacobianBlock& block = blocks_[i];
+  for (int d = 0; d < block.dim; ++d) {
+    if (f[d] == 0.0) continue;
+    const double* J = values_.data() + block.value + d * block.columns;
+    for (int s = block.segment; s < block.segmentEnd; ++s)
+      for (int j = segments_[s].begin; j < segments_[s].end; ++j) tau[j] += f[d] * *J++;
+  }
+}
+
+void BlockJacobian::addCurvature(int i, const double* H, TreeMatrix& P) {
+  const JacobianBlock& block = blocks_[i];
+  const int n = block.columns, dim = block.dim;
+  const double* J = values_.data() + block.value;
+  double* HJ = scratch_.data();
+  for (int d = 0; d < dim; ++d) {
+    double* row = HJ + d * n;
+    for (int c = 0; c < n; ++c) row[c] = H[d * dim] * J[c];
+    for (int e = 1; e < dim; ++e)
+      for (int c = 0; c < n; ++c) row[c] += H[d * dim + e] * J[e * n + c];
+  }
+  // Row by row of P, over the segments up to the diagonal.
+  int ci = 0;
+  for (int s = block.segment; s < block.segmentEnd; ++s) {
+    for (int row = segments_[s].begin; row < segments_[s].end; ++row, ++ci) {
+      double* p = P.row(row);
+      int c = 0;
+      for (int t = block.segment; t <= s; ++t) {
+        const int begin = segments_[t].begin, end = t == s ? row + 1 : segments_[t].end;
+        if (dim == 3) {
+          const double h0 = HJ[ci], h1 = HJ[n + ci], h2 = HJ[2 * n + ci];
+          const double *J0 = J + c, *J1 = J0 + n, *J2 = J1 + n;
+          for (int j = begin; j < end; ++j)
+            p[j] += h0 * J0[j - begin] + h1 * J1[j - begin] + h2 * J2[j - begin];
+        } else {
+          for (int d = 0; d < dim; ++d)
+            for (int j = begin; j < end; ++j) p[j] += HJ[d * n + ci] * J[d * n + c + j - begin];
+        }
+        c += end - begin;
+      }
+    }
+  }
+}
+
+void BlockJacobian::denseRow(int i, int row, Eigen::Ref<Eigen::RowVectorXd> J) const {
+  const JacobianBlock& block = blocks_[i];
+  const double* value = values_.data() + block.value + row * block.columns;
+  J.setZero();
+  for (int s = block.segment; s < block.segmentEnd; ++s)
+    for (int j = segments_[s].begin; j < segments_[s].end; ++j) J[j] = *value++;
+}
+
+void BlockJacobian::appendCouplings(std::vector<Segment>& segments,
+                                    std::vector<int>& setEnd) const {
+  for (const JacobianBlock& block : blocks_) {
+    if (!block.couples) continue;
+    segments.insert(segments.end(), segments_.begin() + block.segment,
+                    segments_.begin() + block.segmentEnd);
+    setEnd.push_back(static_cast<int>(segments.size()));
+  }
+}
+
+}  // namespace softgauss

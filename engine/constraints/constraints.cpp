@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/constraints/constraints.hpp"
+
+#include <algorithm>
+
+namespace softgauss {
+namespace {
+
+bool same(const std::vector<Segment>& a, const std::vector<Segment>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](Segment s, Segment t) {
+    return s.begin == t.begin && s.end == t.end;
+  });
+}
+
+}  // namespace
+
+void Constraints::assemble(const Assembly& in) {
+  visit([&](auto& c) { c.assemble(in); });
+
+  couplings_.clear();
+  couplingEnd_.clear();
+  contact.appendCouplings(couplings_, couplingEnd_);
+  if (couplings_.empty()) {
+    sparsity_ = &in.tree;
+    return;
+  }
+  if (!same(couplings_, lastCouplings_) || couplingEnd_ != lastCouplingEnd_) {
+    coupled_.couple(in.tree, couplings_, couplingEnd_);
+    lastCouplings_ = couplings_;
+    lastCouplingEnd_ = couplingEnd_;
+  }
+  sparsity_ = &coupled_;
+}
+
+int Constraints::rowCount() const {
+  int rows = 0;
+  visit([&](const auto& c) { rows += c.rowCount(); });
+  return rows;
+}
+
+void Constraints::setResidual(const VectorX& a) {
+  visit([&](auto& c) {
+    c.multiply(a, c.x);
+    for (std::size_t i = 0; i < c.x.size(); ++i) c.x[i] -= c.reference[i];
+  });
+}
+
+void Constraints::setRay(const VectorX& d) {
+  visit([&](auto& c) { c.multiply(d, c.dx); });
+}
+
+double Constraints::evaluate(bool& cellChanged) {
+  double cost = 0.0;
+  visit([&](auto& c) { cost += c.evaluate(cellChanged); });
+  return cost;
+}
+
+void Constraints::along(double alpha, Jet& jet) const {
+  visit([&](const auto& c) { c.along(alpha, jet); });
+}
+
+void Constraints::advance(double alpha) {
+  visit([&](auto& c) { c.advance(alpha); });
+}
+
+void Constraints::addForce(VectorX& tau) const {
+  visit([&](const auto& c) { c.addForce(tau); });
+}
+
+void Constraints::addCurvature(TreeMatrix& P) {
+  visit([&](auto& c) { c.addCurvature(P); });
+}
+
+MatrixX Constraints::denseJacobian() const {
+  MatrixX J(rowCount(), sparsity_->size());
+  Eigen::RowVectorXd row(J.cols());
+  int first = 0;
+  visit([&](const auto& c) {
+    for (int i = 0; i < c.rowCount(); ++i) {
+      c.jacobianRow(i, row);
+      J.row(first + i) = row;
+    }
+    first += c.rowCount();
+  });
+  return J;
+}
+
+}  // namespace softgauss

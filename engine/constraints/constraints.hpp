@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Every soft constraint of the engine, and the operations that run over all of them:
+///   s(Ja − r) of the extended Gauss principle (T.1), its force −Jᵀ∇s and curvature Jᵀ∇²s J.
+///
+/// To add an effect: write its file, add a member, name it in visit(). A kind without rows costs
+/// an empty loop.
+
+#include <concepts>
+#include <vector>
+
+#include "engine/constraints/contact.hpp"
+#include "engine/constraints/joint_limit.hpp"
+
+namespace softgauss {
+
+template <class C>
+concept SoftConstraint = requires(C c, const Assembly& in, const VectorX& a, VectorX& tau,
+                                  std::vector<double>& y, TreeMatrix& P, bool& changed, Jet& jet,
+                                  Eigen::Ref<Eigen::RowVectorXd> J) {
+  { c.rowCount() } -> std::convertible_to<int>;
+  c.assemble(in);                                         // rows, a_ref, D
+  c.multiply(a, y);                                       // y = J a
+  { c.evaluate(changed) } -> std::convertible_to<double>;  // cost; force, curvature
+  c.along(0.0, jet);                                      // derivatives along a ray
+  c.advance(0.0);                                         // x += α dx
+  c.addForce(tau);                                        // tau += Jᵀ f
+  c.addCurvature(P);                                      // P += Jᵀ ∇²s J
+  c.jacobianRow(0, J);
+};
+
+class Constraints {
+ public:
+  JointLimit jointLimit;
+  PyramidalContact contact;
+
+  template <class F>
+  void visit(F&& f) {
+    f(jointLimit);
+    f(contact);
+  }
+  template <class F>
+  void visit(F&& f) const {
+    f(jointLimit);
+    f(contact);
+  }
+
+  void assemble(const Assembly& in);
+  int rowCount() const;
+  /// Pattern of P = M + Jᵀ∇²s J: the trees', or with fill-in where rows couple branches.
+  const TreeSparsity& sparsity() const { return *sparsity_; }
+
+  /// x ← J a − a_ref.
+  void setResidual(const VectorX& a);
+  /// dx ← J d.
+  void setRay(const VectorX& d);
+  /// Forces and curvatures at x; returns the cost s(x) and whether any row changed its piece.
+  double evaluate(bool& cellChanged);
+  /// Adds the derivatives of s(x + α dx) in α.
+  void along(double alpha, Jet& jet) const;
+  void advance(double alpha);
+  void addForce(VectorX& tau) const;
+  void addCurvature(TreeMatrix& P);
+  /// (rows × nv) J, dense; allocates.
+  MatrixX denseJacobian() const;
+
+ private:
+  const TreeSparsity* sparsity_ = nullptr;
+  TreeSparsity coupled_;
+  std::vector<Segment> couplings_, lastCouplings_;
+  std::vector<int> couplingEnd_, lastCouplingEnd_;
+};
+
+static_assert(SoftConstraint<JointLimit>);
+static_assert(SoftConstraint<PyramidalContact>);
+
+}  // namespace softgauss

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Constant inverse inertias that scale the regulariser of every row (T.12).
+///
+/// Computed once in the initial configuration, armature included: for a body the mean of the
+/// diagonal of J M⁻¹ Jᵀ over the three translations, and over the three rotations, of its centre
+/// of mass; for a dof the diagonal of M⁻¹ (for a floating joint the mean of three).
+
+#include <vector>
+
+#include "engine/model/model.hpp"
+
+namespace softgauss {
+
+struct InverseWeights {
+  std::vector<double> translation;  ///< (bodies) [1/kg]; 0 for the world
+  std::vector<double> rotation;     ///< (bodies) [1/(kg m²)]
+  std::vector<double> dof;          ///< (nv)
+
+  InverseWeights() = default;
+  /// Throws ModelError when the mass matrix is singular in the initial configuration.
+  explicit InverseWeights(const Model& model);
+};
+
+}  // namespace softgauss

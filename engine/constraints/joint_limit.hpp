@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Joint limits  q_min ≤ q ≤ q_max, one row per end whose distance r < margin.
+///
+/// Distance r = q − q_min (lower) or q_max − q (upper), so J = ±eᵢ and a force ≥ 0 pushes inward:
+///   x = ±aᵢ − a_ref,   a_ref = −b ṙ − k d (r − margin),   s(x) = ½ D min(x, 0)²          (T.13)
+/// b, k, D come from the joint's Impedance. Contract: f ≥ 0, f·max(x, 0) = 0.
+
+#include <vector>
+
+#include "engine/constraints/assembly.hpp"
+#include "engine/constraints/rows.hpp"
+
+namespace softgauss {
+
+class JointLimit : public ScalarRows<HalfQuadratic> {
+ public:
+  void assemble(const Assembly& in);
+  void multiply(const VectorX& a, std::vector<double>& y) const {
+    for (std::size_t i = 0; i < dof_.size(); ++i) y[i] = sign_[i] * a[dof_[i]];
+  }
+  void addForce(VectorX& tau) const {
+    for (std::size_t i = 0; i < dof_.size(); ++i) tau[dof_[i]] += sign_[i] * f[i];
+  }
+  void addCurvature(TreeMatrix& P) {
+    for (std::size_t i = 0; i < dof_.size(); ++i) P.row(dof_[i])[dof_[i]] += h[i];
+  }
+  /// Row i of J, dense.
+  void jacobianRow(int i, Eigen::Ref<Eigen::RowVectorXd> J) const {
+    J.setZero();
+    J[dof_[i]] = sign_[i];
+  }
+  int dof(int row) const { return dof_[row]; }
+  double sign(int row) const { return sign_[row]; }
+
+ private:
+  std::vector<int> dof_;
+  std::vector<double> sign_;  ///< +1 lower, −1 upper
+};
+
+}  // namespace softgauss

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Penalties s(x) on the residual x = J a − a_ref of a scalar row: convex, C¹, piecewise quadratic
+/// (T.8). Value, slope and curvature come from the one kernel `at`, so that forward dynamics, its
+/// inverse, the line search and goal directed dynamics cannot disagree.
+
+#include <concepts>
+
+namespace softgauss {
+
+/// Value, first and second derivative of a scalar function.
+struct Jet {
+  double value = 0.0;
+  double slope = 0.0;
+  double curvature = 0.0;
+
+  Jet& operator+=(const Jet& o) {
+    value += o.value, slope += o.slope, curvature += o.curvature;
+    return *this;
+  }
+};
+
+/// Unilateral constraint: limits, contact normals, edges of a friction pyramid.
+///   s(x) = ½ D min(x, 0)²,   force f = −s′(x) = −D min(x, 0) ≥ 0
+/// A row is active where x < 0. At the knot x = 0 the curvature is that of the free side.
+struct HalfQuadratic {
+  static Jet at(double x, double D) {
+    const double overshoot = x < 0.0 ? x : 0.0;
+    return {0.5 * D * overshoot * overshoot, D * overshoot, x < 0.0 ? D : 0.0};
+  }
+};
+
+template <class P>
+concept ScalarPenalty = requires(double x, double D) {
+  { P::at(x, D) } -> std::same_as<Jet>;
+};
+static_assert(ScalarPenalty<HalfQuadratic>);
+
+}  // namespace softgauss

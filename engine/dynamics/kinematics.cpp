@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/dynamics/kinematics.hpp"
+
+#include "engine/core/rotation.hpp"
+
+namespace softgauss {
+
+Kinematics::Kinematics(const Model& model)
+    : X_WB(model.bodies.size()),
+      p_WO(model.trees.size(), Vector3::Zero()),
+      S(model.dofs.size()),
+      V(model.bodies.size()),
+      A_bias(model.bodies.size()) {
+  for (int b = 1; b < model.bodyCount(); ++b)
+    if (model.bodies[b].parent == 0) X_WB[b] = model.bodies[b].X_PB;
+}
+
+namespace {
+
+/// Free body: S = [translations | rotations about the body's own axes through its origin p = O].
+void floatingJoint(const Body& body, const State& state, int b, Kinematics& k) {
+  Transform& X = k.X_WB[b];
+  X.p = state.q.segment<3>(body.q);
+  const Quaternion r(state.q[body.q + 3], state.q[body.q + 4], state.q[body.q + 5],
+                     state.q[body.q + 6]);
+  X.R = r.normalized().toRotationMatrix();
+  k.p_WO[body.tree] = X.p;
+  for (int i = 0; i < 3; ++i) {
+    k.S[body.v + i] = {Vector3::Zero(), Vector3::Unit(i)};
+    k.S[body.v + 3 + i] = {X.R.col(i), Vector3::Zero()};
+  }
+  const Vector3 pdot = state.v.segment<3>(body.v);
+  const Vector3 omega = X.R * state.v.segment<3>(body.v + 3);
+  k.V[b] = {omega, pdot};
+  // Ṡ v: the rotation axes are carried along with the body's origin.
+  k.A_bias[b] = {Vector3::Zero(), pdot.cross(omega)};
+}
+
+}  // namespace
+
+void computeKinematics(const Model& model, const State& state, Kinematics& k) {
+  const int bodies = model.bodyCount();
+  for (int b = 1; b < bodies; ++b) {
+    const Body& body = model.bodies[b];
+    if (body.joint == JointKind::floating) {
+      floatingJoint(body, state, b, k);
+      continue;
+    }
+    // Pose: the joint moves the body by q along or about its axis.
+    const Transform& X_WP = k.X_WB[body.parent];
+    Transform& X = k.X_WB[b];
+    const double q = state.q[body.q];
+    X.p.noalias() = X_WP.R * body.X_PB.p;
+    X.p += X_WP.p;
+    Matrix3 R_WJ;
+    R_WJ.noalias() = X_WP.R * body.X_PB.R;
+    Vector3 axis_W;
+    axis_W.noalias() = R_WJ * body.axis;
+    if (body.parent == 0) k.p_WO[body.tree] = X.p;
+    const Vector3 r = X.p - k.p_WO[body.tree];
+
+    Motion& S = k.S[body.v];
+    if (body.joint == JointKind::revolute) {
+      X.R.noalias() = R_WJ * axisRotation(body.axis, q);
+      S = {axis_W, r.cross(axis_W)};
+    } else {
+      X.R = R_WJ;
+      X.p += q * axis_W;
+      S = {Vector3::Zero(), axis_W};
+    }
+
+    // Velocity and bias acceleration: Ṡ = V_P × S, as S × S = 0.
+    const double qdot = state.v[body.v];
+    const Motion Sv = S * qdot;
+    k.V[b] = k.V[body.parent] + Sv;
+    k.A_bias[b] = k.A_bias[body.parent] + cross(k.V[body.parent], Sv);
+  }
+}
+
+Vector3 pointVelocity(const Model& model, const Kinematics& k, int body, const Vector3& p_WP) {
+  if (body == 0) return Vector3::Zero();
+  const Vector3 r = p_WP - k.p_WO[model.bodies[body].tree];
+  return k.V[body].linear + k.V[body].angular.cross(r);
+}
+
+Vector3 pointBiasAcceleration(const Model& model, const Kinematics& k, int body,
+                              const Vector3& p_WP) {
+  if (body == 0) return Vector3::Zero();
+  const Vector3 r = p_WP - k.p_WO[model.bodies[body].tree];
+  const Motion& A = k.A_bias[body];
+  const Vector3& omega = k.V[body].angular;
+  const Vector3 v = k.V[body].linear + omega.cross(r);
+  // Classical from spatial acceleration: a = A_lin + α × r + ω × v.
+  return A.linear + A.angular.cross(r) + omega.cross(v);
+}
+
+}  // namespace softgauss

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/dynamics/rnea.hpp"
+
+namespace softgauss {
+namespace {
+
+/// Force that moves body b with acceleration A against gravity g:  I (A − g) + V ×* I V.
+Force bodyForce(const Inertia& I, const Motion& V, Motion A, const Vector3& g, bool coriolis) {
+  A.linear -= g;
+  Force F = I * A;
+  if (coriolis) F += crossForce(V, I * V);
+  return F;
+}
+
+/// Adds the forces of the subtrees up to the root and projects them on the joints.
+void project(const Model& model, const Kinematics& k, RneaWorkspace& work, VectorX& tau) {
+  for (int b = model.bodyCount() - 1; b > 0; --b) {
+    const Body& body = model.bodies[b];
+    const Force& F = work.F[b];
+    for (int i = body.v; i < body.v + body.dofs; ++i) tau[i] = dot(k.S[i], F);
+    if (body.parent != 0) work.F[body.parent] += F;
+  }
+}
+
+Vector3 gravityOf(const Model& model) {
+  return model.options.effects.has(Effect::gravity) ? model.options.gravity : Vector3::Zero();
+}
+
+}  // namespace
+
+void computeBias(const Model& model, const Kinematics& k, const MassMatrix& inertia,
+                 RneaWorkspace& work, VectorX& bias) {
+  const Vector3 g = gravityOf(model);
+  const bool coriolis = model.options.effects.has(Effect::coriolis);
+  for (int b = 1; b < model.bodyCount(); ++b)
+    work.F[b] = model.bodies[b].massless
+                    ? Force{}
+                    : bodyForce(inertia.body[b], k.V[b], coriolis ? k.A_bias[b] : Motion{}, g,
+                                coriolis);
+  project(model, k, work, bias);
+}
+
+void inverseDynamicsTree(const Model& model, const Kinematics& k, const MassMatrix& inertia,
+                         const VectorX& vdot, RneaWorkspace& work, VectorX& tau) {
+  const Vector3 g = gravityOf(model);
+  const bool coriolis = model.options.effects.has(Effect::coriolis);
+  for (int b = 1; b < model.bodyCount(); ++b) {
+    const Body& body = model.bodies[b];
+    // Acceleration without the bias part, which the kinematics already hold.
+    Motion& A = work.A[b];
+    A = work.A[body.parent];
+    for (int i = body.v; i < body.v + body.dofs; ++i) A += k.S[i] * vdot[i];
+    work.F[b] = body.massless ? Force{}
+                              : bodyForce(inertia.body[b], k.V[b],
+                                          coriolis ? A + k.A_bias[b] : A, g, coriolis);
+  }
+  project(model, k, work, tau);
+  if (model.options.effects.has(Effect::armature))
+    for (int i = 0; i < model.nv; ++i) tau[i] += model.dofs[i].armature * vdot[i];
+}
+
+}  // namespace softgauss

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Recursive Newton–Euler algorithm (Featherstone 2008, section 5.3): bias forces and inverse
+/// dynamics of the tree without constraints,  τ = M v̇ + b  (T.5).
+
+#include <vector>
+
+#include "engine/dynamics/inertia.hpp"
+
+namespace softgauss {
+
+/// Scratch of the recursion.
+struct RneaWorkspace {
+  std::vector<Motion> A;  ///< (bodies)
+  std::vector<Force> F;   ///< (bodies) force transmitted by the joint
+  RneaWorkspace() = default;
+  explicit RneaWorkspace(const Model& model) : A(model.bodies.size()), F(model.bodies.size()) {}
+};
+
+/// Bias force b(q, v): gravity, Coriolis and centripetal terms, as options.effects has them.
+/// M v̇ + b = τ.
+void computeBias(const Model& model, const Kinematics& kinematics, const MassMatrix& inertia,
+                 RneaWorkspace& work, VectorX& bias);
+
+/// τ = M v̇ + b by the recursion, never forming M (armature included).
+void inverseDynamicsTree(const Model& model, const Kinematics& kinematics,
+                         const MassMatrix& inertia, const VectorX& vdot, RneaWorkspace& work,
+                         VectorX& tau);
+
+}  // namespace softgauss

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/dynamics/tree_matrix.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace softgauss {
+
+TreeSparsity::TreeSparsity(const Model& model) {
+  const int n = model.nv;
+  rowBegin_.push_back(0);
+  std::vector<int> columns;
+  for (int row = 0; row < n; ++row) {
+    columns.clear();
+    for (int j = row; j >= 0; j = model.dofs[j].parent) columns.push_back(j);
+    std::reverse(columns.begin(), columns.end());
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      if (c == 0 || columns[c] != columns[c - 1] + 1)
+        segments_.push_back({columns[c], columns[c] + 1});
+      else
+        segments_.back().end = columns[c] + 1;
+    }
+    finishRow(row, columns.front());
+  }
+}
+
+void TreeSparsity::finishRow(int row, int firstColumn) {
+  rowBegin_.push_back(static_cast<int>(segments_.size()));
+  offset_.push_back(static_cast<std::ptrdiff_t>(storage_) - firstColumn);
+  storage_ += static_cast<std::size_t>(row - firstColumn + 1);
+}
+
+void TreeSparsity::couple(const TreeSparsity& tree, const std::vector<Segment>& couplings,
+                          const std::vector<int>& setEnd) {
+  const int n = tree.size();
+  const std::size_t words = (static_cast<std::size_t>(n) + 63) / 64;
+  bits_.assign(words * static_cast<std::size_t>(n), 0);
+  const auto row = [&](int i) { return bits_.data() + words * static_cast<std::size_t>(i); };
+  const auto insert = [&](std::uint64_t* bits, int begin, int end) {
+    for (int j = begin; j < end; ++j) bits[j / 64] |= std::uint64_t{1} << (j % 64);
+  };
+  for (int i = 0; i < n; ++i)
+    for (const Segment* s = tree.begin(i); s != tree.end(i); ++s) insert(row(i), s->begin, s->end);
+
+  // A coupled set is a clique: its last dof sees all the others, elimination spreads the rest.
+  int first = 0;
+  for (const int last : setEnd) {
+    const int top = couplings[last - 1].end - 1;
+    for (int s = first; s < last; ++s) insert(row(top), couplings[s].begin, couplings[s].end);
+    first = last;
+  }
+
+  // Closure: the next dof of row k (its parent in the elimination tree) inherits the rest.
+  for (int k = n - 1; k > 0; --k) {
+    std::uint64_t* bits = row(k);
+    int parent = -1;
+    for (int w = k / 64; w >= 0 && parent < 0; --w) {
+      std::uint64_t word = bits[w];
+      if (w == k / 64) word &= (std::uint64_t{1} << (k % 64)) - 1;
+      if (word) parent = 64 * w + 63 - std::countl_zero(word);
+    }
+    if (parent < 0) continue;
+    std::uint64_t* up = row(parent);
+    for (int w = 0; w <= parent / 64; ++w) up[w] |= bits[w];
+    const int w = parent / 64;
+    if (parent % 64 != 63) up[w] &= (std::uint64_t{1} << (parent % 64 + 1)) - 1;
+  }
+
+  segments_.clear();
+  rowBegin_.assign(1, 0);
+  offset_.clear();
+  storage_ = 0;
+  for (int i = 0; i < n; ++i) {
+    const std::uint64_t* bits = row(i);
+    const std::size_t before = segments_.size();
+    for (int j = 0; j <= i; ++j) {
+      if (!((bits[j / 64] >> (j % 64)) & 1)) continue;
+      if (segments_.size() > before && segments_.back().end == j)
+        segments_.back().end = j + 1;
+      else
+        segments_.push_back({j, j + 1});
+    }
+    finishRow(i, segments_[before].begin);
+  }
+}
+
+void TreeMatrix::setZero() { std::fill(values_.begin(), values_.end(), 0.0); }
+
+void TreeMatrix::assign(const TreeMatrix& other) {
+  const bool samePattern = sparsity_ == other.sparsity_;
+  if (samePattern) {
+    std::copy_n(other.values_.data(), sparsity_->storage(), values_.data());
+    return;
+  }
+  std::fill_n(values_.data(), sparsity_->storage(), 0.0);
+  for (int i = 0; i < size(); ++i) {
+    const double* from = other.row(i);
+    double* to = row(i);
+    for (const Segment* s = other.sparsity().begin(i); s != other.sparsity().end(i); ++s)
+      std::copy(from + s->begin, from + s->end, to + s->begin);
+  }
+}
+
+void TreeMatrix::multiply(const VectorX& x, VectorX& y) const {
+  const int n = size();
+  for (int i = 0; i < n; ++i) {
+    const double* a = row(i);
+    const double xi = x[i];
+    double sum = 0.0;
+    for (const Segment* s = sparsity_->begin(i); s != sparsity_->end(i); ++s) {
+      const int end = std::min(s->end, i);
+      for (int j = s->begin; j < end; ++j) {
+        sum += a[j] * x[j];
+        y[j] += a[j] * xi;
+      }
+    }
+    y[i] = sum + a[i] * xi;
+  }
+}
+
+MatrixX TreeMatrix::dense() const {
+  MatrixX A = MatrixX::Zero(size(), size());
+  for (int i = 0; i < size(); ++i)
+    for (const Segment* s = sparsity_->begin(i); s != sparsity_->end(i); ++s)
+      for (int j = s->begin; j < s->end; ++j) A(i, j) = A(j, i) = row(i)[j];
+  return A;
+}
+
+bool TreeFactor::compute(const TreeMatrix& A, const double* diagonal) {
+  const TreeSparsity& pattern = A.sparsity();
+  LD_.resize(pattern);
+  LD_.assign(A);
+  const int n = A.size();
+  inversePivot_.resize(static_cast<std::size_t>(n));
+  if (diagonal)
+    for (int i = 0; i < n; ++i) LD_.row(i)[i] += diagonal[i];
+
+  for (int k = n - 1; k >= 0; --k) {
+    double* Hk = LD_.row(k);
+    const double pivot = Hk[k];
+    if (!(pivot > 0.0) || !std::isfinite(pivot)) return false;
+    const double inverse = 1.0 / pivot;
+    inversePivot_[k] = inverse;
+    // Rank-one update of every row i that dof k touches, from the nearest to the root.
+    const Segment* const first = pattern.begin(k);
+    for (const Segment* s = pattern.end(k); s != first;) {
+      --s;
+      for (int i = std::min(s->end, k) - 1; i >= s->begin; --i) {
+        const double l = Hk[i] * inverse;
+        double* Hi = LD_.row(i);
+        for (const Segment* t = first; t != s; ++t)
+          for (int j = t->begin; j < t->end; ++j) Hi[j] -= l * Hk[j];
+        for (int j = s->begin; j <= i; ++j) Hi[j] -= l * Hk[j];
+        Hk[i] = l;
+      }
+    }
+  }
+  return true;
+}
+
+void TreeFactor::solveTransposed(VectorX& x) const {
+  const TreeSparsity& pattern = LD_.sparsity();
+  for (int k = size() - 1; k > 0; --k) {
+    const double* L = LD_.row(k);
+    const double xk = x[k];
+    for (const Segment* s = pattern.begin(k); s != pattern.end(k); ++s) {
+      const int end = std::min(s->end, k);
+      for (int j = s->begin; j < end; ++j) x[j] -= L[j] * xk;
+    }
+  }
+}
+
+void TreeFactor::solveLower(VectorX& x) const {
+  const TreeSparsity& pattern = LD_.sparsity();
+  const int n = size();
+  for (int k = 1; k < n; ++k) {
+    const double* L = LD_.row(k);
+    double sum = x[k];
+    for (const Segment* s = pattern.begin(k); s != pattern.end(k); ++s) {
+      const int end = std::min(s->end, k);
+      for (int j = s->begin; j < end; ++j) sum -= L[j] * x[j];
+    }
+    x[k] = sum;
+  }
+}
+
+void TreeFactor::solve(VectorX& x) const {
+  solveTransposed(x);
+  for (int k = 0; k < size(); ++k) x[k] *= inversePivot_[k];
+  solveLower(x);
+}
+
+}  // namespace softgauss

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Symmetric matrices with the sparsity of kinematic trees, and their factorisation  A = LᵀDL.
+///
+/// Row i of the lower triangle is non-zero only at dofs that move together with dof i: its
+/// ancestors, and dofs that a constraint couples to it (T.9). In depth-first order these are a few
+/// contiguous ranges of columns (segments), so all inner loops run over contiguous memory.
+/// Eliminating from the leaves to the root fills nothing in beyond the pattern
+/// (Featherstone 2008, section 6.5; George and Liu for the coupled case).
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "engine/model/model.hpp"
+
+namespace softgauss {
+
+/// Columns [begin, end).
+struct Segment {
+  int begin = 0;
+  int end = 0;
+};
+
+/// Which columns of each row of the lower triangle (diagonal included) may be non-zero. Closed
+/// under elimination: if j < i are both in row k then j is in row i.
+class TreeSparsity {
+ public:
+  TreeSparsity() = default;
+  /// Ancestor dofs of every dof: the pattern of the mass matrix.
+  explicit TreeSparsity(const Model& model);
+
+  int size() const { return static_cast<int>(rowBegin_.size()) - 1; }
+  const Segment* begin(int row) const { return segments_.data() + rowBegin_[row]; }
+  const Segment* end(int row) const { return segments_.data() + rowBegin_[row + 1]; }
+  /// Position of entry (row, 0) in the value array; entries exist for columns in the segments.
+  std::ptrdiff_t offset(int row) const { return offset_[row]; }
+  std::size_t storage() const { return storage_; }
+
+  /// This pattern plus all products of the given dof sets, closed under elimination. `couplings`
+  /// lists sets of dofs, each as segments ascending; sets are separated by `setEnd`.
+  void couple(const TreeSparsity& tree, const std::vector<Segment>& couplings,
+              const std::vector<int>& setEnd);
+
+ private:
+  void finishRow(int row, int firstColumn);
+
+  std::vector<Segment> segments_;
+  std::vector<int> rowBegin_;
+  std::vector<std::ptrdiff_t> offset_;
+  std::size_t storage_ = 0;
+  std::vector<std::uint64_t> bits_;  ///< scratch of couple(): one bitset per row
+};
+
+/// A symmetric matrix on a TreeSparsity; row() points at column 0 of a row.
+class TreeMatrix {
+ public:
+  void resize(const TreeSparsity& sparsity) {
+    sparsity_ = &sparsity;
+    if (values_.size() < sparsity.storage()) values_.resize(sparsity.storage());
+  }
+  const TreeSparsity& sparsity() const { return *sparsity_; }
+  int size() const { return sparsity_->size(); }
+  double* row(int i) { return values_.data() + sparsity_->offset(i); }
+  const double* row(int i) const { return values_.data() + sparsity_->offset(i); }
+  void setZero();
+  /// This ← other; the pattern of other is contained in this one.
+  void assign(const TreeMatrix& other);
+  /// y ← A x.
+  void multiply(const VectorX& x, VectorX& y) const;
+  MatrixX dense() const;
+
+ private:
+  const TreeSparsity* sparsity_ = nullptr;
+  std::vector<double> values_;
+};
+
+/// A = LᵀDL with unit lower triangular L, in the place of A. Returns false when a pivot is not
+/// positive (A is not positive definite up to rounding, or not finite).
+class TreeFactor {
+ public:
+  /// Factors a copy of A, with `diagonal` added (may be null).
+  bool compute(const TreeMatrix& A, const double* diagonal = nullptr);
+  /// x ← A⁻¹ x.
+  void solve(VectorX& x) const;
+  /// x ← L⁻ᵀ x, the first half of solve(): xᵀ A⁻¹ x = Σ x_k²/D_k afterwards.
+  void solveTransposed(VectorX& x) const;
+  /// x ← L⁻¹ x, the last half.
+  void solveLower(VectorX& x) const;
+  double inversePivot(int k) const { return inversePivot_[k]; }
+  int size() const { return LD_.size(); }
+
+ private:
+  TreeMatrix LD_;  ///< L below the diagonal, D on it
+  std::vector<double> inversePivot_;
+};
+
+}  // namespace softgauss

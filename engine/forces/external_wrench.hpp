@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// A wrench F applied to a body adds Jᵀ F to the generalised force, so c loses it.
+
+#include "engine/dynamics/kinematics.hpp"
+
+namespace softgauss {
+
+inline void addExternalWrench(const Model& model, const Kinematics& k, const ExternalWrench& wrench,
+                              VectorX& c) {
+  const Body& body = model.bodies[wrench.body];
+  if (body.dofs == 0) return;
+  // Moved from the body's origin to the tree's reference point O.
+  const Vector3 r = k.X_WB[wrench.body].p - k.p_WO[body.tree];
+  const Force F_O{wrench.F_Bo_W.moment + r.cross(wrench.F_Bo_W.force), wrench.F_Bo_W.force};
+  for (int i = body.v + body.dofs - 1; i >= 0; i = model.dofs[i].parent) c[i] -= dot(k.S[i], F_O);
+}
+
+}  // namespace softgauss

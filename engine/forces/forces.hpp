@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Smooth forces: everything in  M a + c = τ + Jᵀ f  that no constraint makes (T.7).
+///
+///   c = b(q, v) + D v − Σ J_Bᵀ F_B,   τ = applied generalised force
+///
+/// b: gravity, Coriolis and centripetal terms (rnea.hpp); D: joint damping; F_B: external wrenches.
+/// c is the paper's c(q, v): all that does not depend on the control or the acceleration.
+
+#include "engine/dynamics/rnea.hpp"
+
+namespace softgauss {
+
+/// Stage written by computeSmoothForces().
+struct SmoothForces {
+  VectorX bias;  ///< b (nv)
+  VectorX c;     ///< (nv)
+  VectorX tau;   ///< applied, as Input::tau (nv)
+  VectorX net;   ///< τ − c: M a_s
+  RneaWorkspace work;
+
+  SmoothForces() = default;
+  explicit SmoothForces(const Model& model)
+      : bias(VectorX::Zero(model.nv)),
+        c(VectorX::Zero(model.nv)),
+        tau(VectorX::Zero(model.nv)),
+        net(VectorX::Zero(model.nv)),
+        work(model) {}
+};
+
+void computeSmoothForces(const Model& model, const State& state, const Input& input,
+                         const Kinematics& kinematics, const MassMatrix& inertia,
+                         SmoothForces& stage);
+
+/// Replaces the applied force, e.g. by a control that was found after the other forces.
+void setAppliedForce(const VectorX& tau, SmoothForces& stage);
+
+}  // namespace softgauss

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Newton's method with exact line search for a strictly convex, piecewise quadratic objective.
+///
+/// Inside a cell (no row of s changes its piece) the objective is a quadratic with one curvature,
+/// so a full step that stays in its cell is the solution up to rounding; the gradient says so. The
+/// factorisation is reused as long as the cell does not change. The solver knows no physics.
+///
+/// Stops when the scaled gradient  max_i |g_i| / scale_i  is at most the tolerance; the scales are
+/// the objective's, so that all entries share their unit.
+
+#include <cmath>
+#include <concepts>
+
+#include "engine/core/types.hpp"
+#include "engine/solver/line_search.hpp"
+
+namespace softgauss {
+
+enum class SolveStatus {
+  converged,       ///< the gradient is within tolerance
+  stalled,         ///< no further decrease was possible; residual says how far off
+  iterationLimit,  ///< residual says how far off
+  notFinite        ///< the input or the result has a NaN or an infinity
+};
+
+inline const char* statusName(SolveStatus status) {
+  switch (status) {
+    case SolveStatus::converged: return "converged";
+    case SolveStatus::stalled: return "stalled";
+    case SolveStatus::iterationLimit: return "iteration limit";
+    case SolveStatus::notFinite: return "not finite";
+  }
+  return "unknown";
+}
+
+struct NewtonReport {
+  SolveStatus status = SolveStatus::converged;
+  int iterations = 0;
+  int factorizations = 0;
+  int lineSearchEvaluations = 0;
+  double residual = 0.0;  ///< scaled gradient at the result
+};
+
+/// What is minimised. It holds the present point.
+template <class O>
+concept NewtonObjective = requires(O o, VectorX& g, VectorX& d, double alpha) {
+  { o.gradient(g) } -> std::convertible_to<double>;     // g ← ∇; returns its scaled norm
+  { o.cellChanged() } -> std::convertible_to<bool>;     // since the last factorize()
+  { o.factorize() } -> std::convertible_to<bool>;       // curvature of this cell
+  o.direction(g, d);                                    // d ← −(∇²)⁻¹ g, and readies the ray
+  { o.along(alpha) } -> std::convertible_to<Jet>;       // along point + α d
+  o.advance(d, alpha);
+};
+
+template <NewtonObjective Objective>
+NewtonReport minimize(Objective& objective, double tolerance, int maxIterations, VectorX& g,
+                      VectorX& d) {
+  /// Where rounding ends progress before the tolerance: this much is still called converged.
+  constexpr double kRoundingFloor = 1e3;
+  NewtonReport report;
+  bool factored = false;
+  double previous = INFINITY;
+  for (;;) {
+    report.residual = objective.gradient(g);
+    if (!std::isfinite(report.residual)) {
+      report.status = SolveStatus::notFinite;
+      return report;
+    }
+    if (report.residual <= tolerance) return report;
+    // In an unchanged cell a step that gains less than half has reached rounding.
+    const bool stuck = factored && !objective.cellChanged() && report.residual > 0.5 * previous;
+    if (stuck || report.iterations == maxIterations) {
+      if (report.residual <= kRoundingFloor * tolerance) return report;
+      report.status = stuck ? SolveStatus::stalled : SolveStatus::iterationLimit;
+      return report;
+    }
+    if (!factored || objective.cellChanged()) {
+      ++report.factorizations;
+      if (!objective.factorize()) {
+        report.status = SolveStatus::notFinite;
+        return report;
+      }
+      factored = true;
+    }
+    objective.direction(g, d);
+    const LineSearchResult search =
+        exactLineSearch([&](double alpha) { return objective.along(alpha); }, g.dot(d));
+    report.lineSearchEvaluations += search.evaluations;
+    ++report.iterations;
+    if (search.alpha == 0.0) {
+      if (report.residual > kRoundingFloor * tolerance) report.status = SolveStatus::stalled;
+      return report;
+    }
+    objective.advance(d, search.alpha);
+    previous = report.residual;
+  }
+}
+
+}  // namespace softgauss

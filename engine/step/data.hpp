@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Everything a step computes, as stages. Each stage is written by exactly one function, and
+/// algorithms take the stages they need, so a signature is the data flow (docs/the_step.md).
+
+#include <cstdint>
+
+#include "engine/constraints/constraints.hpp"
+#include "engine/forces/forces.hpp"
+#include "engine/solver/newton.hpp"
+
+namespace softgauss {
+
+/// Stage written by forwardDynamics().
+struct ForwardSolution {
+  VectorX a;             ///< continuous-time acceleration of (T.1) (nv)
+  VectorX Ma;            ///< M a
+  VectorX gradient;      ///< M a + c − τ − Jᵀf, the residual force [N, N m]
+  TreeFactor factor;     ///< of P = M + Jᵀ∇²s J in the last cell, or of M
+  TreeFactor massFactor;  ///< of M, or of M + h D where damping is implicit
+  NewtonReport report;
+
+  VectorX direction, Md, scale, start;  ///< scratch
+  TreeMatrix P;
+};
+
+/// Wall time of the stages of the last step [s].
+struct StepTimes {
+  double kinematics = 0.0;  ///< poses, velocities, mass matrix, smooth forces
+  double collision = 0.0;
+  double rows = 0.0;        ///< making J, a_ref, D
+  double solve = 0.0;       ///< forward dynamics
+  double integrate = 0.0;
+};
+
+/// What happened in the last step.
+struct StepStats {
+  SolveStatus status = SolveStatus::converged;
+  int contacts = 0;
+  int rows = 0;
+  int iterations = 0;
+  int factorizations = 0;
+  double residual = 0.0;        ///< of the forward solve, scaled
+  double maxPenetration = 0.0;  ///< deepest overlap of a contact [m], ≥ 0
+  std::int64_t pairsSkipped = 0;
+  int badDof = -1;              ///< with SolveStatus::notFinite: the first dof that is not finite
+  StepTimes times;
+};
+
+/// Owns all memory of a simulation thread. Copies of the model share nothing.
+struct Data {
+  explicit Data(const Model& model);
+  Data(const Data&) = delete;
+  Data& operator=(const Data&) = delete;
+
+  InverseWeights weights;  ///< constants
+  Kinematics kinematics;
+  MassMatrix inertia;
+  SmoothForces forces;
+  ContactSet contacts;
+  Constraints constraints;
+  ForwardSolution forward;
+  VectorX acceleration;    ///< discrete, (v⁺ − v)/h (nv)
+  StepStats stats;
+};
+
+}  // namespace softgauss

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Forward dynamics by the extended Gauss principle, equation (13) of the paper:
+///
+///   a = argmin  ½ aᵀM a + aᵀ(c − τ) + s(J a − a_ref)                                 (T.1)
+///
+/// The objective is strictly convex and piecewise quadratic; its gradient is the inverse dynamics
+/// minus τ (T.2) and its curvature is P = M + Jᵀ∇²s J (T.3).
+
+#include "engine/step/data.hpp"
+
+namespace softgauss {
+
+/// Acceleration for data.forces.net. Reads the stages up to constraints, writes data.forward.
+/// Starts from state.warmstart or the unconstrained acceleration, whichever costs less.
+SolveStatus forwardDynamics(const Model& model, const State& state, Data& data) noexcept;
+
+}  // namespace softgauss

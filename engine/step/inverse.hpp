@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Analytical inverse dynamics, equations (14) and (15) of the paper:
+///
+///   g(a) = M a + c + Jᵀ∇s(J a − a_ref)      explicit: no iteration                     (T.2)
+///   P    = ∂g/∂a = M + Jᵀ∇²s J               symmetric positive definite                (T.3)
+
+#include "engine/step/data.hpp"
+
+namespace softgauss {
+
+/// tau ← g(a) at the state of the stages in `data` (kinematics … constraints). Leaves the rows
+/// evaluated at a.
+void inverseDynamics(const Model& model, const VectorX& a, Data& data, VectorX& tau);
+
+/// P ← curvature of the cell that the rows were last evaluated in.
+void inverseDynamicsJacobian(Data& data, TreeMatrix& P);
+
+}  // namespace softgauss

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/step/step.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include "engine/step/forward.hpp"
+#include "engine/step/integrators/semi_implicit_euler.hpp"
+
+namespace softgauss {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Seconds since `last`, which becomes now.
+double lap(Clock::time_point& last) {
+  const Clock::time_point now = Clock::now();
+  const double seconds = std::chrono::duration<double>(now - last).count();
+  last = now;
+  return seconds;
+}
+
+bool finite(const Model& model, const Input& input, const State& state) {
+  if (state.q.size() != model.nq || state.v.size() != model.nv) return false;
+  if (!state.q.allFinite() || !state.v.allFinite() || !input.tau.allFinite()) return false;
+  return std::all_of(input.wrenches.begin(), input.wrenches.end(), [](const ExternalWrench& w) {
+    return w.F_Bo_W.force.allFinite() && w.F_Bo_W.moment.allFinite();
+  });
+}
+
+}  // namespace
+
+Data::Data(const Model& model)
+    : weights(model),
+      kinematics(model),
+      inertia(model),
+      forces(model),
+      acceleration(VectorX::Zero(model.nv)) {
+  ForwardSolution& s = forward;
+  for (VectorX* x : {&s.a, &s.Ma, &s.gradient, &s.direction, &s.Md, &s.scale, &s.start})
+    *x = VectorX::Zero(model.nv);
+  // Rows exist before the first step, so that stages may be read in any state.
+  constraints.assemble({model, State(model), kinematics, contacts, weights, inertia.sparsity});
+}
+
+SolveStatus computeStages(const Model& model, const Input& input, const State& state, Data& data,
+                          ContactSource* contacts) noexcept {
+  data.stats = {};
+  if (!finite(model, input, state)) {
+    data.stats.status = SolveStatus::notFinite;
+    return data.stats.status;
+  }
+  Clock::time_point clock = Clock::now();
+  computeKinematics(model, state, data.kinematics);
+  computeMassMatrix(model, data.kinematics, data.inertia);
+  computeSmoothForces(model, state, input, data.kinematics, data.inertia, data.forces);
+  data.stats.times.kinematics = lap(clock);
+
+  if (contacts) {
+    contacts->detect(model, data.kinematics, data.contacts);
+    data.stats.contacts = data.contacts.size();
+    data.stats.pairsSkipped = data.contacts.pairsSkipped;
+    for (const Contact& c : data.contacts.contacts)
+      data.stats.maxPenetration = std::max(data.stats.maxPenetration, -c.distance);
+  } else {
+    data.contacts.clear();
+  }
+  data.stats.times.collision = lap(clock);
+
+  data.constraints.assemble({model, state, data.kinematics, data.contacts, data.weights,
+                             data.inertia.sparsity});
+  data.stats.rows = data.constraints.rowCount();
+  data.stats.times.rows = lap(clock);
+  return SolveStatus::converged;
+}
+
+SolveStatus integrate(const Model& model, Data& data, State& state) noexcept {
+  if (!semiImplicitEuler(model, data, state)) {
+    data.stats.status = SolveStatus::notFinite;
+    return data.stats.status;
+  }
+  state.warmstart.a = data.forward.a;
+  state.warmstart.valid = true;
+  return data.stats.status;
+}
+
+SolveStatus step(const Model& model, const Input& input, State& state, Data& data,
+                 ContactSource* contacts) noexcept {
+  if (computeStages(model, input, state, data, contacts) == SolveStatus::notFinite)
+    return SolveStatus::notFinite;
+
+  Clock::time_point clock = Clock::now();
+  data.stats.status = forwardDynamics(model, state, data);
+  data.stats.iterations = data.forward.report.iterations;
+  data.stats.factorizations = data.forward.report.factorizations;
+  data.stats.residual = data.forward.report.residual;
+  data.stats.times.solve = lap(clock);
+  if (data.stats.status == SolveStatus::notFinite) return data.stats.status;
+
+  integrate(model, data, state);
+  data.stats.times.integrate = lap(clock);
+  return data.stats.status;
+}
+
+}  // namespace softgauss

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// One step of the simulation.
+
+#include "engine/step/contact_source.hpp"
+#include "engine/step/data.hpp"
+
+namespace softgauss {
+
+/// Everything that a solve needs at (q, v): kinematics, M, smooth forces, contacts, rows.
+/// Returns notFinite when the state or the input is not finite.
+SolveStatus computeStages(const Model& model, const Input& input, const State& state, Data& data,
+                          ContactSource* contacts) noexcept;
+
+/// Advances the state by options.timestep with the acceleration in data.forward, and keeps that
+/// for the next warm start.
+SolveStatus integrate(const Model& model, Data& data, State& state) noexcept;
+
+/// computeStages, forwardDynamics, integrate. `contacts` may be null: nothing collides. On
+/// SolveStatus::notFinite the state is left as it was, data.stats tells the dof. Other statuses
+/// advance the state; data.stats.residual tells how accurate the solve was.
+SolveStatus step(const Model& model, const Input& input, State& state, Data& data,
+                 ContactSource* contacts) noexcept;
+
+}  // namespace softgauss
