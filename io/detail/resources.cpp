@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/detail/resources.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <system_error>
+
+namespace softgauss::io::detail {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool isFile(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_regular_file(path, ignored);
+}
+
+/// Notes the path as searched; true if the file is there.
+bool lookAt(const fs::path& path, FoundFile& found) {
+  found.searched.push_back(path.string());
+  if (!isFile(path)) return false;
+  found.path = path;
+  return true;
+}
+
+std::vector<fs::path> rosPackagePath() {
+  std::vector<fs::path> folders;
+  const char* variable = std::getenv("ROS_PACKAGE_PATH");
+  std::string rest = variable ? variable : "";
+  while (!rest.empty()) {
+    const std::size_t end = std::min(rest.find(':'), rest.size());
+    if (end > 0) folders.emplace_back(rest.substr(0, end));
+    rest.erase(0, end + 1);
+  }
+  return folders;
+}
+
+}  // namespace
+
+ResourceFinder::ResourceFinder(const fs::path& urdf, const std::vector<fs::path>& packagePaths)
+    : packagePaths_(packagePaths) {
+  std::error_code failed;
+  folder_ = fs::absolute(urdf, failed).lexically_normal().parent_path();
+  const std::vector<fs::path> ros = rosPackagePath();
+  packagePaths_.insert(packagePaths_.end(), ros.begin(), ros.end());
+  for (fs::path folder = folder_; !folder.empty(); folder = folder.parent_path()) {
+    packagePaths_.push_back(folder);
+    if (folder == folder.root_path()) break;
+  }
+}
+
+FoundFile ResourceFinder::find(const std::string& uri) const {
+  const std::string package = "package://", file = "file://";
+  if (uri.starts_with(package)) {
+    const std::string rest = uri.substr(package.size());
+    const std::size_t slash = std::min(rest.find('/'), rest.size());
+    return findInPackage(rest.substr(0, slash), rest.substr(std::min(slash + 1, rest.size())));
+  }
+  FoundFile found;
+  const fs::path path = uri.starts_with(file) ? uri.substr(file.size()) : uri;
+  lookAt(path.is_absolute() ? path : (folder_ / path).lexically_normal(), found);
+  return found;
+}
+
+FoundFile ResourceFinder::findInPackage(const std::string& package, const std::string& path) const {
+  FoundFile found;
+  for (const fs::path& entry : packagePaths_) {
+    const fs::path folder = entry.has_filename() ? entry : entry.parent_path();
+    if (folder.filename() == package && lookAt(folder / path, found)) return found;
+    if (lookAt(folder / package / path, found)) return found;
+  }
+  return found;
+}
+
+}  // namespace softgauss::io::detail

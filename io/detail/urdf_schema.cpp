@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/detail/urdf_schema.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+namespace softgauss::io::detail {
+namespace {
+
+struct KnownElement {
+  std::string_view tag;
+  std::vector<std::string_view> children;
+  std::vector<std::string_view> attributes;
+};
+
+const std::vector<KnownElement>& knownElements() {
+  static const std::vector<KnownElement> known = {
+      {"robot", {"link", "joint", "material"}, {"name", "version"}},
+      {"link", {"inertial", "collision", "visual"}, {"name"}},
+      {"inertial", {"origin", "mass", "inertia"}, {}},
+      {"mass", {}, {"value"}},
+      {"inertia", {}, {"ixx", "ixy", "ixz", "iyy", "iyz", "izz"}},
+      {"origin", {}, {"xyz", "rpy"}},
+      {"collision", {"origin", "geometry"}, {"name"}},
+      {"visual", {"origin", "geometry", "material"}, {"name"}},
+      {"geometry", {"box", "sphere", "cylinder", "mesh"}, {}},
+      {"box", {}, {"size"}},
+      {"sphere", {}, {"radius"}},
+      {"cylinder", {}, {"radius", "length"}},
+      {"mesh", {}, {"filename", "scale"}},
+      {"material", {"color", "texture"}, {"name"}},
+      {"color", {}, {"rgba"}},
+      {"texture", {}, {"filename"}},
+      {"joint",
+       {"parent", "child", "origin", "axis", "limit", "dynamics", "mimic"},
+       {"name", "type"}},
+      {"parent", {}, {"link"}},
+      {"child", {}, {"link"}},
+      {"axis", {}, {"xyz"}},
+      {"limit", {}, {"lower", "upper", "effort", "velocity"}},
+      {"dynamics", {}, {"damping", "friction"}},
+      {"mimic", {}, {"joint", "multiplier", "offset"}},
+  };
+  return known;
+}
+
+const KnownElement* findElement(std::string_view tag) {
+  for (const KnownElement& known : knownElements())
+    if (known.tag == tag) return &known;
+  return nullptr;
+}
+
+bool contains(const std::vector<std::string_view>& list, std::string_view item) {
+  return std::find(list.begin(), list.end(), item) != list.end();
+}
+
+void collect(const XmlElement& element, std::map<std::string, int>& counts) {
+  const KnownElement* known = findElement(element.tag());
+  // A name or a colour in an unusual place changes nothing worth a warning.
+  for (const std::string& name : element.attributes())
+    if (!contains(known->attributes, name) && name != "name" && !name.starts_with("xmlns"))
+      ++counts[fmt::format("attribute '{}' of <{}>", name, element.tag())];
+  for (const XmlElement& child : element.children()) {
+    if (contains(known->children, child.tag()))
+      collect(child, counts);
+    else if (child.tag() != "material")
+      ++counts[fmt::format("<{}>", child.tag())];
+  }
+}
+
+}  // namespace
+
+bool isReadElement(std::string_view parent, std::string_view child) {
+  const KnownElement* known = findElement(parent);
+  return known && contains(known->children, child);
+}
+
+std::vector<std::string> ignoredParts(const XmlElement& robot) {
+  std::map<std::string, int> counts;
+  collect(robot, counts);
+  std::vector<std::string> parts;
+  for (const auto& [part, count] : counts) parts.push_back(fmt::format("{} {}", count, part));
+  return parts;
+}
+
+}  // namespace softgauss::io::detail

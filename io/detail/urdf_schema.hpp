@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Which elements and attributes of a URDF are read, and a list of those that are not.
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/detail/urdf_xml.hpp"
+
+namespace softgauss::io::detail {
+
+/// Is <child> below <parent> read?
+bool isReadElement(std::string_view parent, std::string_view child);
+
+/// What is in the file but not read, with counts, e.g. "3 <gazebo>", "1 attribute 'x' of <joint>".
+std::vector<std::string> ignoredParts(const XmlElement& robot);
+
+}  // namespace softgauss::io::detail

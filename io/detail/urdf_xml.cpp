@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/detail/urdf_xml.hpp"
+
+#include <fmt/format.h>
+#include <tinyxml2.h>
+
+#include <algorithm>
+
+#include "engine/core/rotation.hpp"
+#include "io/detail/text.hpp"
+
+namespace softgauss::io::detail {
+namespace {
+
+/// What a reader of the message should look for.
+std::string problemOf(const tinyxml2::XMLDocument& document) {
+  switch (document.ErrorID()) {
+    case tinyxml2::XML_ERROR_EMPTY_DOCUMENT:
+      return "is empty, expected a <robot>";
+    case tinyxml2::XML_ERROR_MISMATCHED_ELEMENT:
+      return "an element is closed by another name than it was opened with";
+    case tinyxml2::XML_ERROR_PARSING_ATTRIBUTE:
+      return "broken attribute, expected name=\"value\"";
+    case tinyxml2::XML_ERROR_PARSING_ELEMENT:
+      return "broken element, expected <name …>";
+    case tinyxml2::XML_ERROR_PARSING_COMMENT:
+      return "a comment is not closed by -->";
+    case tinyxml2::XML_ERROR_PARSING:
+      return "an element is not closed, or is closed without having been opened";
+    default:
+      return fmt::format("cannot be read as XML ({})", document.ErrorName());
+  }
+}
+
+/// A hint where the value seems to come from a template that was not expanded.
+std::string hintFor(const std::string& value) {
+  return value.find("${") == std::string::npos ? "" : " (a xacro expression: run xacro first)";
+}
+
+}  // namespace
+
+std::string XmlElement::tag() const { return element_->Name(); }
+
+SourceLocation XmlElement::where() const { return {*file_, element_->GetLineNum()}; }
+
+void XmlElement::fail(const std::string& problem) const {
+  throw ModelError(where(), label_, problem);
+}
+
+XmlElement XmlElement::child(const char* tag) const {
+  const tinyxml2::XMLElement* first = element_->FirstChildElement(tag);
+  if (!first) return {};
+  const XmlElement found(file_, first, fmt::format("{}: {}", label_, tag));
+  if (const tinyxml2::XMLElement* second = first->NextSiblingElement(tag))
+    throw ModelError(
+        {*file_, second->GetLineNum()}, found.label(),
+        fmt::format("is written twice, first in line {}; expected once", first->GetLineNum()));
+  return found;
+}
+
+XmlElement XmlElement::requiredChild(const char* tag) const {
+  const XmlElement found = child(tag);
+  if (!found) fail(fmt::format("has no <{}>", tag));
+  return found;
+}
+
+std::vector<XmlElement> XmlElement::children(const char* tag) const {
+  std::vector<XmlElement> found;
+  for (const tinyxml2::XMLElement* e = element_->FirstChildElement(tag); e;
+       e = e->NextSiblingElement(tag))
+    found.emplace_back(file_, e, fmt::format("{}: {}", label_, e->Name()));
+  return found;
+}
+
+std::vector<std::string> XmlElement::attributes() const {
+  std::vector<std::string> names;
+  for (const tinyxml2::XMLAttribute* a = element_->FirstAttribute(); a; a = a->Next())
+    names.emplace_back(a->Name());
+  return names;
+}
+
+std::optional<std::string> XmlElement::text(const char* attribute) const {
+  // Written twice, XML is not well formed and readers differ in which one they take.
+  int count = 0;
+  for (const tinyxml2::XMLAttribute* a = element_->FirstAttribute(); a; a = a->Next())
+    count += std::string_view(a->Name()) == attribute ? 1 : 0;
+  if (count == 0) return std::nullopt;
+  if (count > 1) fail(fmt::format("attribute {} is written {} times", attribute, count));
+  return element_->Attribute(attribute);
+}
+
+std::string XmlElement::requiredText(const char* attribute) const {
+  const std::optional<std::string> value = text(attribute);
+  if (!value) fail(fmt::format("has no attribute '{}'", attribute));
+  if (value->empty()) fail(fmt::format("attribute '{}' is empty", attribute));
+  return *value;
+}
+
+std::optional<double> XmlElement::number(const char* attribute) const {
+  const std::optional<std::string> value = text(attribute);
+  if (!value) return std::nullopt;
+  const std::optional<double> x = parseNumber(*value);
+  if (!x)
+    fail(fmt::format("{} is '{}', expected one finite number{}", attribute, *value,
+                     hintFor(*value)));
+  return x;
+}
+
+double XmlElement::requiredNumber(const char* attribute) const {
+  const std::optional<double> x = number(attribute);
+  if (!x) fail(fmt::format("has no attribute '{}', expected a number", attribute));
+  return *x;
+}
+
+std::optional<Vector3> XmlElement::vector3(const char* attribute) const {
+  const std::optional<std::string> value = text(attribute);
+  if (!value) return std::nullopt;
+  const std::optional<std::vector<double>> x = parseNumbers(*value);
+  if (!x || x->size() != 3)
+    fail(fmt::format("{} is '{}', expected three finite numbers{}", attribute, *value,
+                     hintFor(*value)));
+  return Vector3((*x)[0], (*x)[1], (*x)[2]);
+}
+
+Vector3 XmlElement::requiredVector3(const char* attribute) const {
+  const std::optional<Vector3> x = vector3(attribute);
+  if (!x) fail(fmt::format("has no attribute '{}', expected three numbers", attribute));
+  return *x;
+}
+
+Transform XmlElement::origin() const {
+  const XmlElement origin = child("origin");
+  if (!origin) return {};
+  Transform X;
+  X.p = origin.vector3("xyz").value_or(Vector3::Zero());
+  if (const std::optional<Vector3> rpy = origin.vector3("rpy")) X.R = rpyRotation(*rpy);
+  return X;
+}
+
+XmlFile::XmlFile(const std::string& path, const std::string& text)
+    : path_(path), document_(std::make_unique<tinyxml2::XMLDocument>()) {
+  if (const std::size_t zero = text.find('\0'); zero != std::string::npos) {
+    const auto line =
+        1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(zero), '\n');
+    throw ModelError({path_, static_cast<int>(line)}, "XML", "holds a zero byte, expected text");
+  }
+  if (document_->Parse(text.c_str(), text.size()) != tinyxml2::XML_SUCCESS)
+    throw ModelError({path_, std::max(1, document_->ErrorLineNum())}, "XML", problemOf(*document_));
+
+  const tinyxml2::XMLElement* root = document_->RootElement();
+  if (!root) throw ModelError({path_, 1}, "XML", "has no element, expected <robot>");
+  if (std::string_view(root->Name()) != "robot")
+    throw ModelError({path_, root->GetLineNum()}, fmt::format("<{}>", root->Name()),
+                     "is the outermost element, expected <robot> (a URDF)");
+  if (const tinyxml2::XMLElement* second = root->NextSiblingElement())
+    throw ModelError({path_, second->GetLineNum()}, fmt::format("<{}>", second->Name()),
+                     "follows </robot>, expected the end of the file");
+}
+
+XmlFile::~XmlFile() = default;
+
+XmlElement XmlFile::robot() const { return {&path_, document_->RootElement(), "robot"}; }
+
+std::string XmlFile::edited(const std::function<void(tinyxml2::XMLElement& robot)>& edit) const {
+  tinyxml2::XMLDocument copy;
+  document_->DeepCopy(&copy);
+  edit(*copy.RootElement());
+  tinyxml2::XMLPrinter printer;
+  copy.RootElement()->Accept(&printer);
+  return printer.CStr();
+}
+
+}  // namespace softgauss::io::detail

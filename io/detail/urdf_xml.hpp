@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Strict access to the raw XML of a URDF: every attribute is read whole or refused, with its line.
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/core/check.hpp"
+#include "engine/core/spatial.hpp"
+
+namespace tinyxml2 {
+class XMLDocument;
+class XMLElement;
+}  // namespace tinyxml2
+
+namespace softgauss::io::detail {
+
+/// An element of the file with what messages need to name it. Cheap to copy; valid as long as its
+/// XmlFile. A null element stands for an absent optional one.
+class XmlElement {
+ public:
+  XmlElement() = default;
+  XmlElement(const std::string* file, const tinyxml2::XMLElement* element, std::string label)
+      : file_(file), element_(element), label_(std::move(label)) {}
+
+  explicit operator bool() const { return element_ != nullptr; }
+  std::string tag() const;
+  SourceLocation where() const;
+  const std::string& label() const { return label_; }
+
+  /// Throws a ModelError at this element.
+  [[noreturn]] void fail(const std::string& problem) const;
+
+  /// The only child of that name, or a null element. Throws if there are two.
+  XmlElement child(const char* tag) const;
+  /// The only child of that name. Throws if there is none or two.
+  XmlElement requiredChild(const char* tag) const;
+  /// All children, or all of that name, in the order of the file.
+  std::vector<XmlElement> children(const char* tag = nullptr) const;
+
+  /// Names of all attributes.
+  std::vector<std::string> attributes() const;
+
+  std::optional<std::string> text(const char* attribute) const;
+  std::string requiredText(const char* attribute) const;  ///< not empty
+  std::optional<double> number(const char* attribute) const;
+  double requiredNumber(const char* attribute) const;
+  std::optional<Vector3> vector3(const char* attribute) const;
+  Vector3 requiredVector3(const char* attribute) const;
+
+  /// The child `origin` with its xyz [m] and rpy [rad]; identity where absent.
+  Transform origin() const;
+
+  /// The same element, called `label` in messages.
+  XmlElement named(std::string label) const { return {file_, element_, std::move(label)}; }
+
+ private:
+  const std::string* file_ = nullptr;
+  const tinyxml2::XMLElement* element_ = nullptr;
+  std::string label_;
+};
+
+/// A URDF file in memory. Throws ModelError if it is not there, not XML, or has no <robot>.
+class XmlFile {
+ public:
+  XmlFile(const std::string& path, const std::string& text);
+  ~XmlFile();
+
+  XmlElement robot() const;
+
+  /// A copy of the XML for another parser, after `edit` has been applied to its <robot>.
+  std::string edited(const std::function<void(tinyxml2::XMLElement& robot)>& edit) const;
+
+ private:
+  std::string path_;
+  std::unique_ptr<tinyxml2::XMLDocument> document_;
+};
+
+}  // namespace softgauss::io::detail

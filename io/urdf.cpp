@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/urdf.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "io/detail/resources.hpp"
+#include "io/detail/text.hpp"
+#include "io/detail/urdf_check.hpp"
+#include "io/detail/urdf_description.hpp"
+#include "io/mesh.hpp"
+
+namespace softgauss::io {
+namespace {
+
+using detail::UrdfDescription;
+using detail::UrdfShape;
+
+/// Turns shapes into the specs of a builder, meshes read.
+class ShapeReader {
+ public:
+  ShapeReader(const std::filesystem::path& urdf, const UrdfOptions& options)
+      : finder_(urdf, options.packagePaths), readsVisualMeshes_(options.visualMeshes) {}
+
+  /// Throws where the mesh is missing or cannot be read.
+  GeometrySpec collision(const UrdfShape& shape, const std::string& link, std::size_t index) {
+    GeometrySpec spec;
+    spec.name = fmt::format("{}/{}", link, index);
+    spec.link = link;
+    spec.X_LG = shape.X_LG;
+    spec.shape = shape.shape;
+    spec.where = shape.element.where();
+    if (shape.shape.kind == ShapeKind::mesh) spec.shape.mesh = mesh(shape);
+    return spec;
+  }
+
+  /// Nothing, and a note, where a visual cannot be shown: that never stops a simulation.
+  std::optional<VisualSpec> visual(const UrdfShape& shape, const std::string& link,
+                                   const UrdfDescription& urdf) {
+    VisualSpec spec;
+    spec.link = link;
+    spec.X_LG = shape.X_LG;
+    spec.shape = shape.shape;
+    try {
+      if (shape.defect) throw *shape.defect;
+      if (shape.shape.kind == ShapeKind::mesh) spec.shape.mesh = visualMesh(shape);
+    } catch (const ModelError& error) {
+      notShown_.emplace_back(error.what());
+      return std::nullopt;
+    }
+    if (!spec.shape.mesh && shape.shape.kind == ShapeKind::mesh) return std::nullopt;
+    const auto named = urdf.colours.find(shape.material);
+    if (shape.rgba)
+      spec.rgba = *shape.rgba;
+    else if (named != urdf.colours.end())
+      spec.rgba = named->second;
+    return spec;
+  }
+
+  void appendWarnings(ModelBuilder& builder) const {
+    if (!missing_.empty())
+      builder.warning(fmt::format("{} not found, not shown: {}",
+                                  detail::counted(missing_.size(), "visual mesh file"),
+                                  detail::listed(missing_, 3)));
+    for (const std::string& text : notShown_) builder.warning("not shown: " + text);
+  }
+
+ private:
+  std::shared_ptr<const Mesh> mesh(const UrdfShape& shape) {
+    const detail::FoundFile found = finder_.find(shape.meshUri);
+    if (found.path.empty())
+      shape.element.fail(fmt::format("mesh '{}' not found, expected it as one of: {}",
+                                     shape.meshUri, detail::listed(found.searched, 20)));
+    return readMesh(found.path, shape);
+  }
+
+  std::shared_ptr<const Mesh> visualMesh(const UrdfShape& shape) {
+    const detail::FoundFile found = finder_.find(shape.meshUri);
+    if (found.path.empty()) {
+      missing_.push_back(shape.meshUri);
+      return nullptr;
+    }
+    if (readsVisualMeshes_) return readMesh(found.path, shape);
+    Mesh unread;
+    unread.file = found.path.string();
+    return std::make_shared<const Mesh>(std::move(unread));
+  }
+
+  std::shared_ptr<const Mesh> readMesh(const std::filesystem::path& path, const UrdfShape& shape) {
+    try {
+      return meshes_.get(path, shape.scale);
+    } catch (const ModelError& error) {
+      shape.element.fail(error.what());
+    }
+  }
+
+  detail::ResourceFinder finder_;
+  MeshCache meshes_;
+  bool readsVisualMeshes_;
+  std::vector<std::string> missing_, notShown_;
+};
+
+}  // namespace
+
+ModelBuilder readUrdf(const std::filesystem::path& file, const UrdfOptions& options,
+                      UrdfContents* contents) {
+  const std::optional<std::string> text = detail::readFile(file.string());
+  if (!text) throw ModelError({file.string(), 0}, "file", "cannot be read, expected a URDF file");
+  const detail::XmlFile xml(file.string(), *text);
+  const UrdfDescription urdf = detail::describeUrdf(xml.robot());
+
+  ModelBuilder builder(urdf.name);
+  builder.base = options.base;
+  builder.zeroEffortIsUnlimited = options.zeroEffortIsUnlimited;
+  for (const detail::UrdfLink& link : urdf.links) builder.link(link.spec);
+  for (const JointSpec& joint : urdf.joints) builder.joint(joint);
+  if (const std::string refusal = detail::compareWithUrdfdom(xml, urdf); !refusal.empty()) {
+    // The builder names the line of most things that urdfdom refuses.
+    builder.build();
+    xml.robot().fail("urdfdom refuses the file: " + refusal);
+  }
+
+  ShapeReader shapes(file, options);
+  for (const detail::UrdfLink& link : urdf.links) {
+    for (std::size_t i = 0; i < link.collisions.size(); ++i)
+      builder.geometry(shapes.collision(link.collisions[i], link.spec.name, i));
+    for (const UrdfShape& shape : link.visuals)
+      if (std::optional<VisualSpec> visual = shapes.visual(shape, link.spec.name, urdf))
+        builder.visual(std::move(*visual));
+  }
+  for (const std::string& warning : urdf.warnings) builder.warning(warning);
+  shapes.appendWarnings(builder);
+
+  if (contents) {
+    contents->links = static_cast<int>(urdf.links.size());
+    contents->joints = static_cast<int>(urdf.joints.size());
+    contents->mass = 0.0;
+    for (const detail::UrdfLink& link : urdf.links) contents->mass += link.spec.mass;
+  }
+  return builder;
+}
+
+Model loadUrdf(const std::filesystem::path& file, const UrdfOptions& options) {
+  return readUrdf(file, options).build();
+}
+
+}  // namespace softgauss::io

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Reads URDF files.
+///
+/// Everything that carries physics is read strictly: a number that is no number, a missing part, an
+/// unknown link or type, a mesh that is not there end in a ModelError `file:line: element: what was
+/// found, what was expected`. What is not read (transmissions, sensors, …), and what a user should
+/// know, is in Model::warnings. Angles [rad], SI units throughout.
+///
+/// effort is the box of the control, |u| ≤ effort; 0 means not actuated (ModelBuilder says which);
+/// none means no box. Followers of a mimic are free, passive joints until mimic is simulated.
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "engine/model/model_builder.hpp"
+
+namespace softgauss::io {
+
+struct UrdfOptions {
+  /// Where package://NAME/… is sought first: folders that hold NAME, or are called NAME. Then
+  /// ROS_PACKAGE_PATH, then the folders above the URDF.
+  std::vector<std::filesystem::path> packagePaths;
+  /// Read the meshes of visuals too. If not, a visual's Mesh has its file and no vertices.
+  bool visualMeshes = false;
+  BaseKind base = BaseKind::automatic;
+  bool zeroEffortIsUnlimited = false;
+};
+
+/// What the file holds, before links are merged; for --explain and the summary.
+struct UrdfContents {
+  int links = 0;
+  int joints = 0;
+  double mass = 0.0;  ///< [kg] of all links, those fixed to the world too
+};
+
+/// Throws ModelError. Options may still be set on the builder; its build() checks the rest.
+ModelBuilder readUrdf(const std::filesystem::path& file, const UrdfOptions& options = {},
+                      UrdfContents* contents = nullptr);
+
+/// readUrdf(...).build().
+Model loadUrdf(const std::filesystem::path& file, const UrdfOptions& options = {});
+
+}  // namespace softgauss::io
