@@ -18,11 +18,13 @@ constexpr std::size_t kMaxLines = 400;
 const Names kLongFiles = {};
 
 const Names kFolders = {"engine", "gdd", "collision", "io", "apps", "tests", "data", "docs"};
-const Names kRootFiles = {"CMakeLists.txt", "README.md",   "LICENSE",    "CMakePresets.json",
-                          ".clang-format",  ".clang-tidy", ".gitignore", ".ci", "dev"};
+const Names kRootFiles = {"CMakeLists.txt",    "README.md",     "LICENSE",
+                          "CMakePresets.json", ".clang-format", ".clang-tidy",
+                          ".gitignore",        ".ci",           "dev"};
 // Not part of the project: git's, the build's and the editor's own, and what .gitignore names.
-const Names kLocal = {".git",  "build",   "compile_commands.json", "CMakeUserPresets.json",
-                      ".cache", ".vscode", ".idea"};
+const Names kLocal = {
+    ".git",    "build", "compile_commands.json", "CMakeUserPresets.json", ".cache",
+    ".vscode", ".idea"};
 
 // Layers: which folders the files of a folder may include, besides their own.
 const std::map<std::string, Names> kMayInclude = {

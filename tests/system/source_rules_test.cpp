@@ -109,7 +109,15 @@ TEST(SourceRules, MissingLicencesAreFound) {
 
 TEST(SourceRules, MachinePathsAndLeftOversAreFound) {
   // In pieces, so that this file passes its own test.
-  const std::string home = "/ho" "me/anna/robot.urdf", left = "TO" "DO", fix = "FIX" "ME";
+  const std::string home =
+                        "/ho"
+                        "me/anna/robot.urdf",
+                    left =
+                        "TO"
+                        "DO",
+                    fix =
+                        "FIX"
+                        "ME";
   EXPECT_EQ(count(checkWords, "docs/a.md", "see " + home), 1u);
   EXPECT_EQ(count(checkWords, "dev", home), 1u);
   EXPECT_EQ(count(checkWords, "gdd/goal.hpp", "// " + left + ": later"), 1u);
