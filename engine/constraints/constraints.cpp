@@ -71,14 +71,30 @@ void Constraints::addCurvature(TreeMatrix& P) {
   visit([&](auto& c) { c.addCurvature(P); });
 }
 
+void Constraints::findCrossings(std::vector<Crossing>& crossings) const {
+  int kind = 0;
+  visit([&](const auto& c) {
+    c.findCrossings(kind, crossings);
+    ++kind;
+  });
+}
+
+void Constraints::addRow(const Crossing& crossing, double scale, VectorX& y) const {
+  int kind = 0;
+  visit([&](const auto& c) {
+    if (kind++ == crossing.kind) c.addRow(crossing.row, scale, y);
+  });
+}
+
 MatrixX Constraints::denseJacobian() const {
   MatrixX J(rowCount(), sparsity_->size());
-  Eigen::RowVectorXd row(J.cols());
+  VectorX row(J.cols());
   int first = 0;
   visit([&](const auto& c) {
     for (int i = 0; i < c.rowCount(); ++i) {
-      c.jacobianRow(i, row);
-      J.row(first + i) = row;
+      row.setZero();
+      c.addRow(i, 1.0, row);
+      J.row(first + i) = row.transpose();
     }
     first += c.rowCount();
   });

@@ -17,8 +17,7 @@ namespace softgauss {
 
 template <class C>
 concept SoftConstraint = requires(C c, const Assembly& in, const VectorX& a, VectorX& tau,
-                                  std::vector<double>& y, TreeMatrix& P, bool& changed, Jet& jet,
-                                  Eigen::Ref<Eigen::RowVectorXd> J) {
+                                  std::vector<double>& y, TreeMatrix& P, bool& changed, Jet& jet) {
   { c.rowCount() } -> std::convertible_to<int>;
   c.assemble(in);                                         // rows, a_ref, D
   c.multiply(a, y);                                       // y = J a
@@ -27,7 +26,7 @@ concept SoftConstraint = requires(C c, const Assembly& in, const VectorX& a, Vec
   c.advance(0.0);                                         // x += α dx
   c.addForce(tau);                                        // tau += Jᵀ f
   c.addCurvature(P);                                      // P += Jᵀ ∇²s J
-  c.jacobianRow(0, J);
+  c.addRow(0, 1.0, tau);                                  // tau += scale · (row of J)ᵀ
 };
 
 class Constraints {
@@ -62,6 +61,10 @@ class Constraints {
   void advance(double alpha);
   void addForce(VectorX& tau) const;
   void addCurvature(TreeMatrix& P);
+  /// All knots ahead on the ray, α ≥ 0, unordered.
+  void findCrossings(std::vector<Crossing>& crossings) const;
+  /// y ← y + scale · (row)ᵀ of the row that crosses.
+  void addRow(const Crossing& crossing, double scale, VectorX& y) const;
   /// (rows × nv) J, dense; allocates.
   MatrixX denseJacobian() const;
 

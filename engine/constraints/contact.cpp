@@ -2,7 +2,6 @@
 #include "engine/constraints/contact.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "engine/constraints/impedance.hpp"
 #include "engine/core/rotation.hpp"
@@ -89,6 +88,11 @@ void PyramidalContact::assemble(const Assembly& in) {
     }
   }
   resizeRows(reference.size());
+  contactOfRow_.resize(reference.size());
+  for (std::size_t i = 0; i < made_.size(); ++i) {
+    const std::size_t end = i + 1 < made_.size() ? made_[i + 1].row : reference.size();
+    for (std::size_t row = made_[i].row; row < end; ++row) contactOfRow_[row] = static_cast<int>(i);
+  }
 }
 
 void PyramidalContact::multiply(const VectorX& a, std::vector<double>& y) const {
@@ -132,16 +136,11 @@ void PyramidalContact::addCurvature(TreeMatrix& P) {
   }
 }
 
-void PyramidalContact::jacobianRow(int row, Eigen::Ref<Eigen::RowVectorXd> J) const {
-  const auto after = std::upper_bound(made_.begin(), made_.end(), row,
-                                      [](int r, const ContactRows& m) { return r < m.row; });
-  const int i = static_cast<int>(after - made_.begin()) - 1;
-  jacobian_.denseRow(i, 0, J);
-  if (made_[i].friction == 0.0) return;
-  const int edge = row - made_[i].row;
-  Eigen::RowVectorXd tangent(J.size());
-  jacobian_.denseRow(i, 1 + edge / 2, tangent);
-  J += (edge % 2 == 0 ? made_[i].friction : -made_[i].friction) * tangent;
+void PyramidalContact::addRow(int row, double scale, VectorX& y) const {
+  const int i = contactOfRow_[row], edge = row - made_[i].row;
+  const double mu = edge % 2 == 0 ? made_[i].friction : -made_[i].friction;
+  const double frame[3] = {scale, edge < 2 ? scale * mu : 0.0, edge < 2 ? 0.0 : scale * mu};
+  jacobian_.addTransposed(i, frame, y);
 }
 
 Vector3 PyramidalContact::force(int i) const {

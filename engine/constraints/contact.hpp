@@ -38,7 +38,8 @@ class PyramidalContact : public ScalarRows<HalfQuadratic> {
   void multiply(const VectorX& a, std::vector<double>& y) const;
   void addForce(VectorX& tau) const;
   void addCurvature(TreeMatrix& P);
-  void jacobianRow(int i, Eigen::Ref<Eigen::RowVectorXd> J) const;
+  /// y ← y + scale · (row i of J)ᵀ.
+  void addRow(int i, double scale, VectorX& y) const;
   void appendCouplings(std::vector<Segment>& segments, std::vector<int>& setEnd) const {
     jacobian_.appendCouplings(segments, setEnd);
   }
@@ -51,6 +52,7 @@ class PyramidalContact : public ScalarRows<HalfQuadratic> {
  private:
   BlockJacobian jacobian_;  ///< block i: (n, t₁, t₂) of contact i, or n alone
   std::vector<ContactRows> made_;
+  std::vector<int> contactOfRow_;
 };
 
 }  // namespace softgauss

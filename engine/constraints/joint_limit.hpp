@@ -26,11 +26,8 @@ class JointLimit : public ScalarRows<HalfQuadratic> {
   void addCurvature(TreeMatrix& P) {
     for (std::size_t i = 0; i < dof_.size(); ++i) P.row(dof_[i])[dof_[i]] += h[i];
   }
-  /// Row i of J, dense.
-  void jacobianRow(int i, Eigen::Ref<Eigen::RowVectorXd> J) const {
-    J.setZero();
-    J[dof_[i]] = sign_[i];
-  }
+  /// y ← y + scale · (row i of J)ᵀ.
+  void addRow(int i, double scale, VectorX& y) const { y[dof_[i]] += sign_[i] * scale; }
   int dof(int row) const { return dof_[row]; }
   double sign(int row) const { return sign_[row]; }
 

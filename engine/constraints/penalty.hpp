@@ -7,6 +7,8 @@
 
 #include <concepts>
 
+#include "engine/core/check.hpp"
+
 namespace softgauss {
 
 /// Value, first and second derivative of a scalar function.
@@ -29,11 +31,20 @@ struct HalfQuadratic {
     const double overshoot = x < 0.0 ? x : 0.0;
     return {0.5 * D * overshoot * overshoot, D * overshoot, x < 0.0 ? D : 0.0};
   }
+  /// The α ≥ 0 at which x + α dx changes its piece; infinite when it never does.
+  static double knotAhead(double x, double dx) {
+    const bool leaves = x < 0.0 && dx > 0.0, enters = x >= 0.0 && dx < 0.0;
+    return leaves || enters ? -x / dx : kInfinity;
+  }
+  /// Change of the curvature there, going along dx.
+  static double curvatureJump(double dx, double D) { return dx > 0.0 ? -D : D; }
 };
 
 template <class P>
-concept ScalarPenalty = requires(double x, double D) {
+concept ScalarPenalty = requires(double x, double dx, double D) {
   { P::at(x, D) } -> std::same_as<Jet>;
+  { P::knotAhead(x, dx) } -> std::same_as<double>;
+  { P::curvatureJump(dx, D) } -> std::same_as<double>;
 };
 static_assert(ScalarPenalty<HalfQuadratic>);
 

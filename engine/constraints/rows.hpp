@@ -11,8 +11,18 @@
 #include <vector>
 
 #include "engine/constraints/penalty.hpp"
+#include "engine/core/check.hpp"
 
 namespace softgauss {
+
+/// A row that reaches a knot of its penalty at α = alpha along the ray a + α d.
+struct Crossing {
+  double alpha = 0.0;
+  double curvatureJump = 0.0;  ///< s″ after − before
+  double rate = 0.0;           ///< dx of the row
+  int kind = 0;                ///< place of its effect in Constraints::visit()
+  int row = 0;
+};
 
 template <ScalarPenalty Penalty>
 class ScalarRows {
@@ -52,6 +62,16 @@ class ScalarRows {
       sum.value += s.value;
       sum.slope += s.slope * dx[i];
       sum.curvature += s.curvature * dx[i] * dx[i];
+    }
+  }
+
+  /// Appends the knots that x + α dx meets at α ≥ 0.
+  void findCrossings(int kind, std::vector<Crossing>& crossings) const {
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      const double alpha = Penalty::knotAhead(x[i], dx[i]);
+      if (!(alpha < kInfinity)) continue;
+      const double jump = Penalty::curvatureJump(dx[i], D[i]);
+      crossings.push_back({alpha, jump, dx[i], kind, static_cast<int>(i)});
     }
   }
 

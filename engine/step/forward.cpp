@@ -104,17 +104,22 @@ SolveStatus forwardDynamics(const Model& model, const State& state, Data& data) 
   };
   if (!data.forces.net.allFinite()) return notFinite();
 
+  GaussObjective objective(data);
+  // A warm start that solves the problem already (after GDD, at rest) ends it here.
+  const bool warm = data.constraints.rowCount() > 0 && state.warmstart.valid &&
+                    state.warmstart.a.allFinite();
+  double warmCost = kInfinity;
+  if (warm) {
+    warmCost = objective.moveTo(state.warmstart.a);
+    s.report.residual = objective.gradient(s.gradient);
+    if (s.report.residual <= model.options.tolerance) return s.report.status;
+  }
   // Without rows the minimiser is M⁻¹(τ − c).
   if (!s.massFactor.compute(data.inertia.M)) return notFinite();
   s.start = data.forces.net;
   s.massFactor.solve(s.start);
-
-  GaussObjective objective(data);
   const double smoothCost = objective.moveTo(s.start);
-  if (data.constraints.rowCount() > 0 && state.warmstart.valid) {
-    const double warmCost = objective.moveTo(state.warmstart.a);
-    if (!(warmCost <= smoothCost)) objective.moveTo(s.start);
-  }
+  if (warmCost <= smoothCost) objective.moveTo(state.warmstart.a);
   s.report = minimize(objective, model.options.tolerance, model.options.maxIterations, s.gradient,
                       s.direction);
   if (s.report.status == SolveStatus::notFinite) data.stats.badDof = firstNotFinite(s.a);
