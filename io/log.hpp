@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// The log of a run: comma-separated values, a header, then one row a step.
+///
+/// Columns: time_s; q:, v:, a:, u: of every joint [rad, m, N m, N and rates]; a floating joint as
+/// q:<joint>.x .y .z .qw .qx .qy .qz and v:, a:<joint>.vx .vy .vz .wx .wy .wz, without u:; then
+/// contacts, constraints, iterations, dual_updates, physics_violation, gdd_violation, stationarity,
+/// forward_us, gdd_us, step_us, energy_J, max_penetration_m.
+/// Numbers are the shortest that read back bit for bit (at most 17 significant digits). A joint
+/// whose name holds a comma, a quote or a line break is quoted as RFC 4180 has it.
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/model/model.hpp"
+
+namespace softgauss::io {
+
+/// One row: the state at `time` and what was computed from it.
+struct StepRecord {
+  double time = 0.0;  ///< [s]
+  VectorX q;          ///< (nq)
+  VectorX v;          ///< (nv)
+  VectorX a;          ///< (nv) continuous-time acceleration
+  VectorX u;          ///< (nv) control as applied, 0 where a dof has none [N m or N]
+  int contacts = 0;
+  int constraints = 0;            ///< rows
+  int iterations = 0;             ///< Newton iterations of the forward solve
+  int dualUpdates = 0;            ///< of the GDD solve
+  double physicsViolation = 0.0;  ///< largest |g(q,v,a) − (u,0)| [N m or N]
+  double gddViolation = 0.0;      ///< the same at the GDD solver's own acceleration
+  double stationarity = 0.0;      ///< certificate of the GDD solver
+  double forwardUs = 0.0;         ///< time of the forward step [µs]
+  double gddUs = 0.0;             ///< time of the GDD solve [µs]
+  double stepUs = 0.0;            ///< time of the whole step [µs]
+  double energy = 0.0;            ///< kinetic and potential [J]
+  double maxPenetration = 0.0;    ///< [m], ≥ 0
+};
+
+/// Names of the columns, unquoted, in order.
+std::vector<std::string> logColumns(const Model& model);
+
+/// Writes a log. Rows are buffered; what was written is on disk after flush(), close() or the end
+/// of the writer's life.
+class LogWriter {
+ public:
+  /// Throws ModelError if the file cannot be made.
+  LogWriter(const std::filesystem::path& file, const Model& model);
+  ~LogWriter();
+  LogWriter(LogWriter&&) noexcept = default;
+  LogWriter& operator=(LogWriter&&) = delete;
+
+  /// These throw std::runtime_error if the disk is full or gone.
+  void write(const StepRecord& record);
+  void flush();
+  void close();
+
+ private:
+  struct Closer {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+  };
+  [[noreturn]] void failed() const;
+  bool send() noexcept;
+
+  std::string path_;
+  std::unique_ptr<std::FILE, Closer> file_;
+  std::string buffer_;
+  std::vector<int> controls_;  ///< dofs of scalar joints
+  Eigen::Index nq_, nv_;
+};
+
+}  // namespace softgauss::io

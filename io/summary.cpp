@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/summary.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <numeric>
+
+#include "engine/core/check.hpp"
+
+namespace softgauss::io {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json timeOf(const Series& series) {
+  return {
+      {"mean", series.mean()}, {"p50", series.percentile(0.5)}, {"p95", series.percentile(0.95)}};
+}
+
+ordered_json spreadOf(const Series& series) {
+  return {{"p50", series.percentile(0.5)}, {"p95", series.percentile(0.95)}, {"max", series.max()}};
+}
+
+ordered_json countsOf(const Series& series) {
+  return {{"p50", std::llround(series.percentile(0.5))},
+          {"p95", std::llround(series.percentile(0.95))},
+          {"max", std::llround(series.max())}};
+}
+
+}  // namespace
+
+double Series::percentile(double share) const {
+  if (values.empty()) return 0.0;
+  const double rank = std::ceil(share * static_cast<double>(values.size()));
+  const auto index = static_cast<std::ptrdiff_t>(std::max(rank, 1.0)) - 1;
+  std::vector<double> sorted = values;
+  std::nth_element(sorted.begin(), sorted.begin() + index, sorted.end());
+  return sorted[static_cast<std::size_t>(index)];
+}
+
+double Series::max() const {
+  return values.empty() ? 0.0 : *std::max_element(values.begin(), values.end());
+}
+
+double Series::mean() const {
+  if (values.empty()) return 0.0;
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+Summary::Summary(const Model& model)
+    : massKg(model.totalMass()),
+      warnings(model.warnings),
+      modelName_(model.name),
+      links_(static_cast<int>(model.frames.size())),
+      dofs_(model.nv),
+      timestep_(model.options.timestep) {
+  for (int i = 0; i < model.nv; ++i) {
+    const Dof& dof = model.dofs[static_cast<std::size_t>(i)];
+    if (!dof.actuated) continue;
+    ++actuated_;
+    const double effort = std::max(-dof.effortLower, dof.effortUpper);
+    if (std::isfinite(effort) && effort > 0.0) bounded_.push_back({i, effort});
+  }
+}
+
+void Summary::addStep(const StepRecord& r) {
+  if (steps_ == 0) {
+    startTime_ = r.time;
+    initialEnergy_ = r.energy;
+  }
+  finish(r);
+  ++steps_;
+  forwardUs_.values.push_back(r.forwardUs);
+  gddUs_.values.push_back(r.gddUs);
+  stepUs_.values.push_back(r.stepUs);
+  constraints_.values.push_back(r.constraints);
+  iterations_.values.push_back(r.iterations);
+  dualUpdates_.values.push_back(r.dualUpdates);
+  physicsViolation_.values.push_back(r.physicsViolation);
+  gddViolation_.values.push_back(r.gddViolation);
+  stationarity_.values.push_back(r.stationarity);
+  for (const Bounded& control : bounded_)
+    maxControlRatio_ = std::max(maxControlRatio_, std::abs(r.u[control.dof]) / control.effort);
+}
+
+void Summary::finish(const StepRecord& finalState) {
+  endTime_ = finalState.time;
+  finalEnergy_ = finalState.energy;
+  maxPenetration_ = std::max(maxPenetration_, finalState.maxPenetration);
+}
+
+double Summary::realTimeFactor() const {
+  return wallSeconds > 0.0 ? simulatedSeconds() / wallSeconds : 0.0;
+}
+
+std::string Summary::json() const {
+  ordered_json goalList = ordered_json::array();
+  for (const GoalOutcome& goal : goals)
+    goalList.push_back({{"name", goal.name},
+                        {"initial_error_m", goal.initialError},
+                        {"final_error_m", goal.finalError}});
+  const ordered_json summary = {
+      {"version", version},
+      {"model",
+       {{"name", modelName_},
+        {"links", links_},
+        {"dof", dofs_},
+        {"actuated", actuated_},
+        {"mass_kg", massKg}}},
+      {"options",
+       {{"timestep_s", timestep_},
+        {"integrator", integrator},
+        {"cone", cone},
+        {"gdd_solver", gddSolver}}},
+      {"outcome", outcome},
+      {"steps", steps_},
+      {"simulated_s", simulatedSeconds()},
+      {"wall_s", wallSeconds},
+      {"real_time_factor", realTimeFactor()},
+      {"effects", effects},
+      {"time_us",
+       {{"forward", timeOf(forwardUs_)}, {"gdd", timeOf(gddUs_)}, {"step", timeOf(stepUs_)}}},
+      {"constraints", countsOf(constraints_)},
+      {"iterations", countsOf(iterations_)},
+      {"dual_updates", countsOf(dualUpdates_)},
+      {"physics_violation", spreadOf(physicsViolation_)},
+      {"gdd_violation", spreadOf(gddViolation_)},
+      {"stationarity", spreadOf(stationarity_)},
+      {"goals", goalList},
+      {"energy_J", {{"initial", initialEnergy_}, {"final", finalEnergy_}}},
+      {"max_penetration_m", maxPenetration_},
+      {"max_control_ratio", maxControlRatio_},
+      {"warnings", warnings}};
+  // Names come from files: bytes that are no UTF-8 are replaced, not refused.
+  return summary.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
+
+void Summary::write(const std::filesystem::path& file) const {
+  const std::string text = json();
+  std::FILE* out = std::fopen(file.string().c_str(), "wb");
+  const bool written = out && std::fwrite(text.data(), 1, text.size(), out) == text.size();
+  const bool closed = out && std::fclose(out) == 0;
+  if (!written || !closed) throw ModelError({file.string(), 0}, "summary", "cannot be written");
+}
+
+}  // namespace softgauss::io

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// What a run came to: statistics over its steps, as JSON for programs and as a table for people.
+///
+/// Percentiles are by nearest rank: p95 is the smallest value that at least 95 % of the steps do
+/// not exceed. Numbers that are not finite are null in JSON.
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "engine/model/model.hpp"
+#include "io/log.hpp"
+
+namespace softgauss::io {
+
+/// A goal's distance from being met, at the start and at the end of the run.
+struct GoalOutcome {
+  std::string name;           ///< e.g. "reach right_hand"
+  double initialError = 0.0;  ///< [m]
+  double finalError = 0.0;    ///< [m]
+};
+
+/// Values of one quantity over the steps.
+struct Series {
+  std::vector<double> values;
+
+  double percentile(double share) const;  ///< nearest rank; 0 without values
+  double max() const;
+  double mean() const;
+};
+
+class Summary {
+ public:
+  explicit Summary(const Model& model);
+
+  /// Every step's record, in order; then the final state's, of which time, energy and penetration
+  /// are read.
+  void addStep(const StepRecord& record);
+  void finish(const StepRecord& finalState);
+
+  std::string json() const;
+  /// Throws ModelError if the file cannot be written.
+  void write(const std::filesystem::path& file) const;
+  /// Compact, aligned, with units, ending in a line that says how the run went.
+  std::string table() const;
+
+  // What only the caller knows.
+  std::string version;
+  std::string integrator = "semi-implicit-euler";
+  std::string cone = "pyramidal";
+  std::string gddSolver = "augmented-lagrangian";
+  std::string outcome = "completed";
+  double wallSeconds = 0.0;
+  double massKg = 0.0;  ///< of all links; preset to that of the moving bodies
+  std::vector<std::string> effects;
+  std::vector<GoalOutcome> goals;
+  std::vector<std::string> warnings;  ///< preset to the model's
+
+  double simulatedSeconds() const { return endTime_ - startTime_; }
+  double realTimeFactor() const;  ///< simulated over wall time
+
+ private:
+  struct Bounded {
+    int dof;
+    double effort;
+  };
+
+  std::string modelName_;
+  int links_ = 0, dofs_ = 0, actuated_ = 0;
+  double timestep_ = 0.0;
+  std::vector<Bounded> bounded_;  ///< controls with a box
+  std::size_t steps_ = 0;
+  double startTime_ = 0.0, endTime_ = 0.0;
+  double initialEnergy_ = 0.0, finalEnergy_ = 0.0;
+  double maxPenetration_ = 0.0, maxControlRatio_ = 0.0;
+  Series forwardUs_, gddUs_, stepUs_, constraints_, iterations_, dualUpdates_;
+  Series physicsViolation_, gddViolation_, stationarity_;
+};
+
+}  // namespace softgauss::io

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "io/summary.hpp"
+
+namespace softgauss::io {
+namespace {
+
+/// A column's number: counts whole, others with three or four significant digits.
+std::string cell(double x) {
+  if (!std::isfinite(x)) return fmt::format("{}", x);
+  const double size = std::abs(x);
+  if (size == 0.0) return "0";
+  if (size < 1e-3 || size >= 1e6) return fmt::format("{:.1e}", x);
+  if (size < 10.0) return fmt::format("{:.2f}", x);
+  return fmt::format("{:.0f}", x);
+}
+
+void addRow(std::string& out, const char* what, const char* unit, const Series& series) {
+  const std::string name = *unit ? fmt::format("{} [{}]", what, unit) : std::string(what);
+  fmt::format_to(std::back_inserter(out), "  {:<26}{:>10}{:>10}{:>10}{:>10}\n", name,
+                 cell(series.percentile(0.5)), cell(series.percentile(0.95)), cell(series.max()),
+                 cell(series.mean()));
+}
+
+std::string millimetres(double metres) { return fmt::format("{:.1f} mm", 1e3 * metres); }
+
+/// Share of the way to the goal that was covered [%]; negative when it moved away.
+double percentNearer(const GoalOutcome& goal) {
+  if (goal.initialError <= 0.0) return goal.finalError <= 0.0 ? 100.0 : 0.0;
+  return 100.0 * (1.0 - goal.finalError / goal.initialError);
+}
+
+std::string verdict(const std::string& outcome, const std::vector<GoalOutcome>& goals) {
+  if (goals.empty()) return outcome;
+  const auto worst =
+      std::min_element(goals.begin(), goals.end(), [](const GoalOutcome& a, const GoalOutcome& b) {
+        return percentNearer(a) < percentNearer(b);
+      });
+  const double percent = percentNearer(*worst);
+  const std::string name = goals.size() == 1 ? worst->name : "worst goal, " + worst->name;
+  if (percent >= 0.0)
+    return fmt::format("{}: {}: {:.0f} % of the way, {} left", outcome, name, percent,
+                       millimetres(worst->finalError));
+  return fmt::format("{}: {}: moved away, {} from {}", outcome, name,
+                     millimetres(worst->finalError), millimetres(worst->initialError));
+}
+
+}  // namespace
+
+std::string Summary::table() const {
+  std::string out;
+  const auto add = [&](const std::string& line) { out += line + "\n"; };
+  add(fmt::format("{}: {} links, {} dof, {} actuated, {:.4g} kg", modelName_, links_, dofs_,
+                  actuated_, massKg));
+  add(fmt::format("  {:.4g} s simulated in {:.3g} s, {:.3g} x real time; {} steps of {:.4g} ms, {}",
+                  simulatedSeconds(), wallSeconds, realTimeFactor(), steps_, 1e3 * timestep_,
+                  integrator));
+  add(fmt::format("  effects: {}", fmt::join(effects, " ")));
+  add("");
+  add(fmt::format("  {:<26}{:>10}{:>10}{:>10}{:>10}", "", "p50", "p95", "max", "mean"));
+  addRow(out, "step", "µs", stepUs_);
+  addRow(out, "  forward", "µs", forwardUs_);
+  if (gddUs_.max() > 0.0) addRow(out, "  goal directed", "µs", gddUs_);
+  addRow(out, "constraint rows", "", constraints_);
+  addRow(out, "iterations", "", iterations_);
+  if (gddUs_.max() > 0.0) addRow(out, "dual updates", "", dualUpdates_);
+  addRow(out, "physics violation", "N, N m", physicsViolation_);
+  if (gddUs_.max() > 0.0) {
+    addRow(out, "GDD violation", "N, N m", gddViolation_);
+    addRow(out, "stationarity", "", stationarity_);
+  }
+  add("");
+  add(fmt::format("  energy {:.4g} J to {:.4g} J; deepest penetration {}; largest control {}",
+                  initialEnergy_, finalEnergy_, millimetres(maxPenetration_),
+                  bounded_.empty() ? std::string("without a box")
+                                   : fmt::format("{:.0f} % of its box", 100.0 * maxControlRatio_)));
+  for (const GoalOutcome& goal : goals)
+    add(fmt::format("  {:<26}{:>12} -> {:>10} {:>8.0f} %", goal.name,
+                    millimetres(goal.initialError), millimetres(goal.finalError),
+                    percentNearer(goal)));
+  for (const std::string& warning : warnings) add("  warning: " + warning);
+  add("");
+  add(verdict(outcome, goals));
+  return out;
+}
+
+}  // namespace softgauss::io
