@@ -25,6 +25,16 @@ TreeSparsity::TreeSparsity(const Model& model) {
   }
 }
 
+TreeSparsity TreeSparsity::dense(int size) {
+  TreeSparsity pattern;
+  pattern.rowBegin_.push_back(0);
+  for (int row = 0; row < size; ++row) {
+    pattern.segments_.push_back({0, row + 1});
+    pattern.finishRow(row, 0);
+  }
+  return pattern;
+}
+
 void TreeSparsity::finishRow(int row, int firstColumn) {
   rowBegin_.push_back(static_cast<int>(segments_.size()));
   offset_.push_back(static_cast<std::ptrdiff_t>(storage_) - firstColumn);
@@ -99,6 +109,15 @@ void TreeMatrix::assign(const TreeMatrix& other) {
     double* to = row(i);
     for (const Segment* s = other.sparsity().begin(i); s != other.sparsity().end(i); ++s)
       std::copy(from + s->begin, from + s->end, to + s->begin);
+  }
+}
+
+void TreeMatrix::add(const TreeMatrix& other, double scale) {
+  for (int i = 0; i < size(); ++i) {
+    const double* from = other.row(i);
+    double* to = row(i);
+    for (const Segment* s = other.sparsity().begin(i); s != other.sparsity().end(i); ++s)
+      for (int j = s->begin; j < s->end; ++j) to[j] += scale * from[j];
   }
 }
 

@@ -31,6 +31,9 @@ class TreeSparsity {
   /// Ancestor dofs of every dof: the pattern of the mass matrix.
   explicit TreeSparsity(const Model& model);
 
+  /// Every dof coupled to every other.
+  static TreeSparsity dense(int size);
+
   int size() const { return static_cast<int>(rowBegin_.size()) - 1; }
   const Segment* begin(int row) const { return segments_.data() + rowBegin_[row]; }
   const Segment* end(int row) const { return segments_.data() + rowBegin_[row + 1]; }
@@ -67,6 +70,8 @@ class TreeMatrix {
   void setZero();
   /// This ← other; the pattern of other is contained in this one.
   void assign(const TreeMatrix& other);
+  /// This ← this + scale · other; the pattern of other is contained in this one.
+  void add(const TreeMatrix& other, double scale = 1.0);
   /// y ← A x.
   void multiply(const VectorX& x, VectorX& y) const;
   MatrixX dense() const;
@@ -89,6 +94,9 @@ class TreeFactor {
   /// x ← L⁻¹ x, the last half.
   void solveLower(VectorX& x) const;
   double inversePivot(int k) const { return inversePivot_[k]; }
+  /// Row k of L, entries left of the diagonal, on the sparsity of A.
+  const double* lowerRow(int k) const { return LD_.row(k); }
+  const TreeSparsity& sparsity() const { return LD_.sparsity(); }
   int size() const { return LD_.size(); }
 
  private:

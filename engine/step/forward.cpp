@@ -93,7 +93,7 @@ int firstNotFinite(const VectorX& x) {
 
 }  // namespace
 
-SolveStatus forwardDynamics(const Model& model, const State& state, Data& data) noexcept {
+SolveStatus forwardDynamics(const Model& model, const VectorX* guess, Data& data) noexcept {
   ForwardSolution& s = data.forward;
   s.report = {};
   if (model.nv == 0) return SolveStatus::converged;
@@ -106,11 +106,10 @@ SolveStatus forwardDynamics(const Model& model, const State& state, Data& data) 
 
   GaussObjective objective(data);
   // A warm start that solves the problem already (after GDD, at rest) ends it here.
-  const bool warm = data.constraints.rowCount() > 0 && state.warmstart.valid &&
-                    state.warmstart.a.allFinite();
+  const bool warm = data.constraints.rowCount() > 0 && guess && guess->allFinite();
   double warmCost = kInfinity;
   if (warm) {
-    warmCost = objective.moveTo(state.warmstart.a);
+    warmCost = objective.moveTo(*guess);
     s.report.residual = objective.gradient(s.gradient);
     if (s.report.residual <= model.options.tolerance) return s.report.status;
   }
@@ -119,7 +118,7 @@ SolveStatus forwardDynamics(const Model& model, const State& state, Data& data) 
   s.start = data.forces.net;
   s.massFactor.solve(s.start);
   const double smoothCost = objective.moveTo(s.start);
-  if (warmCost <= smoothCost) objective.moveTo(state.warmstart.a);
+  if (warmCost <= smoothCost) objective.moveTo(*guess);
   s.report = minimize(objective, model.options.tolerance, model.options.maxIterations, s.gradient,
                       s.direction);
   if (s.report.status == SolveStatus::notFinite) data.stats.badDof = firstNotFinite(s.a);

@@ -13,7 +13,12 @@
 namespace softgauss {
 
 /// Acceleration for data.forces.net. Reads the stages up to constraints, writes data.forward.
-/// Starts from state.warmstart or the unconstrained acceleration, whichever costs less.
-SolveStatus forwardDynamics(const Model& model, const State& state, Data& data) noexcept;
+/// Starts from `guess` (null: none) or the unconstrained acceleration, whichever costs less.
+SolveStatus forwardDynamics(const Model& model, const VectorX* guess, Data& data) noexcept;
+
+/// The same from the warm start of a state.
+inline SolveStatus forwardDynamics(const Model& model, const State& state, Data& data) noexcept {
+  return forwardDynamics(model, state.warmstart.valid ? &state.warmstart.a : nullptr, data);
+}
 
 }  // namespace softgauss

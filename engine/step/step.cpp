@@ -74,32 +74,31 @@ SolveStatus computeStages(const Model& model, const Input& input, const State& s
   return SolveStatus::converged;
 }
 
-SolveStatus integrate(const Model& model, Data& data, State& state) noexcept {
+SolveStatus advance(const Model& model, const VectorX* guess, Data& data, State& state) noexcept {
+  Clock::time_point clock = Clock::now();
+  StepStats& stats = data.stats;
+  stats.status = forwardDynamics(model, guess, data);
+  stats.iterations = data.forward.report.iterations;
+  stats.factorizations = data.forward.report.factorizations;
+  stats.residual = data.forward.report.residual;
+  stats.times.solve = lap(clock);
+  if (stats.status == SolveStatus::notFinite) return stats.status;
+
   if (!semiImplicitEuler(model, data, state)) {
-    data.stats.status = SolveStatus::notFinite;
-    return data.stats.status;
+    stats.status = SolveStatus::notFinite;
+    return stats.status;
   }
   state.warmstart.a = data.forward.a;
   state.warmstart.valid = true;
-  return data.stats.status;
+  stats.times.integrate = lap(clock);
+  return stats.status;
 }
 
 SolveStatus step(const Model& model, const Input& input, State& state, Data& data,
                  ContactSource* contacts) noexcept {
   if (computeStages(model, input, state, data, contacts) == SolveStatus::notFinite)
     return SolveStatus::notFinite;
-
-  Clock::time_point clock = Clock::now();
-  data.stats.status = forwardDynamics(model, state, data);
-  data.stats.iterations = data.forward.report.iterations;
-  data.stats.factorizations = data.forward.report.factorizations;
-  data.stats.residual = data.forward.report.residual;
-  data.stats.times.solve = lap(clock);
-  if (data.stats.status == SolveStatus::notFinite) return data.stats.status;
-
-  integrate(model, data, state);
-  data.stats.times.integrate = lap(clock);
-  return data.stats.status;
+  return advance(model, state.warmstart.valid ? &state.warmstart.a : nullptr, data, state);
 }
 
 }  // namespace softgauss

@@ -13,11 +13,12 @@ namespace softgauss {
 SolveStatus computeStages(const Model& model, const Input& input, const State& state, Data& data,
                           ContactSource* contacts) noexcept;
 
-/// Advances the state by options.timestep with the acceleration in data.forward, and keeps that
-/// for the next warm start.
-SolveStatus integrate(const Model& model, Data& data, State& state) noexcept;
+/// forwardDynamics for data.forces.net, then the integrator, which advances the state by
+/// options.timestep. `guess` starts the solve (null: none); the result is the next warm start.
+/// On SolveStatus::notFinite the state is left as it was.
+SolveStatus advance(const Model& model, const VectorX* guess, Data& data, State& state) noexcept;
 
-/// computeStages, forwardDynamics, integrate. `contacts` may be null: nothing collides. On
+/// computeStages, then advance. `contacts` may be null: nothing collides. On
 /// SolveStatus::notFinite the state is left as it was, data.stats tells the dof. Other statuses
 /// advance the state; data.stats.residual tells how accurate the solve was.
 SolveStatus step(const Model& model, const Input& input, State& state, Data& data,

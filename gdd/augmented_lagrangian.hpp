@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Solver 1, the paper's: augmented Lagrangian, primal–dual, Gauss–Newton.
+///
+/// The constraints of (T.17) enter through multipliers λ and a quadratic penalty ρ (T.18):
+///   Φ(a) = ½ gᵀR g + ℓ(a) + Σᵢ ½ ρᵢ (tᵢ − clamp(tᵢ))²,   tᵢ = gᵢ + λᵢ/ρᵢ
+/// clamp is onto [lowerᵢ, upperᵢ]; with lower = upper = 0 the term is λ g + ½ ρ g² + const. With
+/// w = R g + ψ′(g), ψ′ᵢ = ρᵢ (tᵢ − clamp tᵢ), and P = ∂g/∂a (T.3), gradient and Gauss–Newton
+/// Hessian are those of (17) and (18) (T.19):
+///   ∇Φ = P w + ∇ℓ,   H = P (R + ψ″) P + ∇²ℓ
+/// Iterate: H d = −∇Φ; exact line search along d (ray.hpp); when the gradient has vanished, update
+/// λ ← ψ′(g) until the constraints hold. H is factored anew only where a row or a bound has
+/// changed its piece: a dual update in the same cell costs two triangular solves.
+///
+/// At a kink (a row exactly at its knot) the gradient does not vanish: the solver stops when the
+/// objective stops decreasing and reports `kink`.
+
+#include "gdd/cost.hpp"
+#include "gdd/hessian.hpp"
+#include "gdd/problem.hpp"
+#include "gdd/ray.hpp"
+
+namespace softgauss::gdd {
+
+struct AugmentedLagrangianOptions {
+  double penalty = 1e6;             ///< ρᵢ = penalty · (M⁻¹)ᵢᵢ [-]
+  double gradientTolerance = 1e-9;  ///< scaled ∇Φ, see Report::stationarity
+  double violationTolerance = 1e-8; ///< distance of g from its box [N or N m]
+  double decreaseTolerance = 1e-10; ///< relative decrease of Φ below which a kink is reached
+  int maxIterations = 50;
+  int maxDualUpdates = 20;
+};
+
+enum class GddStatus {
+  converged,
+  kink,            ///< a minimum with rows at their knots
+  iterationLimit,
+  notFinite
+};
+
+struct GddReport {
+  GddStatus status = GddStatus::converged;
+  int iterations = 0;        ///< Newton directions
+  int dualUpdates = 0;
+  int factorizations = 0;
+  double violation = 0.0;    ///< distance of g(a) from its box [N or N m]
+  double stationarity = 0.0; ///< max |∇Φᵢ|/√M_ii over max(1, max |∇ℓᵢ|/√M_ii)
+  double objective = 0.0;    ///< ½ gᵀR g + ℓ up to ℓ's constant
+};
+
+class AugmentedLagrangian {
+ public:
+  explicit AugmentedLagrangian(const Model& model);
+
+  AugmentedLagrangianOptions options;
+
+  /// Reads the stages of `data` up to the rows and leaves the rows evaluated at the result.
+  GddReport solve(const Model& model, GoalCost& cost, const ControlBox& box, Data& data,
+                  const WarmStart& warm);
+  /// Writes the solution where the next solve starts from.
+  void keepWarmStart(WarmStart& warm) const;
+
+  const VectorX& acceleration() const { return a_; }
+  const VectorX& force() const { return g_; }  ///< g(a): the control, before clamping
+
+ private:
+  void evaluate(Data& data);
+  double gradient(const GoalCost& cost, const ControlBox& box, Data& data);
+
+  VectorX a_, g_, Ma_, Rg_;
+  VectorX lambda_, rho_;
+  VectorX slope_, curvature_;  ///< ψ′, ψ″ (nv)
+  VectorX w_, gradient_, costGradient_, direction_, Md_, scratch_;
+  TreeFactor massFactor_;      ///< of M: R = M⁻¹
+  GaussNewtonHessian hessian_;
+  Ray ray_;
+  double penalty_ = 0.0;       ///< Σ ψ
+  bool rowsChanged_ = true;    ///< a row changed its piece: P is out of date
+  bool stale_ = true;          ///< P changed since H was factored
+  bool boundsChanged_ = true;  ///< a bound changed its piece since H was factored
+};
+
+}  // namespace softgauss::gdd

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gdd/cost.hpp"
+
+namespace softgauss::gdd {
+
+void GoalCost::clear() {
+  rows_.clear();
+  weight_.clear();
+  target_.clear();
+  metricWeight_ = 0.0;
+  metricOffset_.setZero();
+}
+
+void GoalCost::addPoint(const Model& model, const Kinematics& k, const TreeSparsity& tree, int body,
+                        const Vector3& p_WP, double weight, const Vector3& target) {
+  rows_.add(model, k, tree, 0, body, p_WP, Matrix3::Identity(), 3);
+  weight_.push_back(weight);
+  target_.push_back(target);
+}
+
+void GoalCost::addMetric(double weight, const VectorX& target) {
+  metricWeight_ += weight;
+  metricOffset_ -= weight * target;
+}
+
+double GoalCost::value(const TreeMatrix& M, const VectorX& a, const VectorX& Ma) const {
+  double sum = 0.0;
+  for (int i = 0; i < rows_.size(); ++i) {
+    Vector3 y;
+    rows_.multiply(i, a, y.data());
+    sum += 0.5 * weight_[i] * (y - target_[i]).squaredNorm();
+  }
+  if (metricWeight_ != 0.0) {
+    M.multiply(metricOffset_, scratch_);
+    sum += 0.5 * metricWeight_ * a.dot(Ma) + a.dot(scratch_);
+  }
+  return sum;
+}
+
+void GoalCost::gradient(const TreeMatrix& M, const VectorX& a, const VectorX& Ma,
+                        VectorX& g) const {
+  if (metricWeight_ != 0.0) {
+    M.multiply(metricOffset_, scratch_);
+    g = metricWeight_ * Ma + scratch_;
+  } else {
+    g.setZero();
+  }
+  for (int i = 0; i < rows_.size(); ++i) {
+    Vector3 y;
+    rows_.multiply(i, a, y.data());
+    const Vector3 slope = weight_[i] * (y - target_[i]);
+    rows_.addTransposed(i, slope.data(), g);
+  }
+}
+
+double GoalCost::curvatureAlong(const VectorX& d, const VectorX& Md) const {
+  double sum = metricWeight_ * d.dot(Md);
+  for (int i = 0; i < rows_.size(); ++i) {
+    Vector3 y;
+    rows_.multiply(i, d, y.data());
+    sum += weight_[i] * y.squaredNorm();
+  }
+  return sum;
+}
+
+void GoalCost::addRowCurvature(TreeMatrix& H) {
+  for (int i = 0; i < rows_.size(); ++i) {
+    const double w = weight_[i];
+    const double diagonal[9] = {w, 0, 0, 0, w, 0, 0, 0, w};
+    rows_.addCurvature(i, diagonal, H);
+  }
+}
+
+}  // namespace softgauss::gdd

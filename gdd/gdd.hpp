@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// softgauss::gdd on one screen.
+///
+///   gdd::GoalDirectedController controller(model);
+///   controller.goals.push_back(std::make_unique<gdd::Reach>(model, "right_hand", target));
+///   controller.goals.push_back(std::make_unique<gdd::VirtualDamping>());
+///   controller.step(model, Input{}, state, data, &contacts);
+
+#include "gdd/goal_directed_step.hpp"
+#include "gdd/goals/reach.hpp"
+#include "gdd/goals/virtual_damping.hpp"

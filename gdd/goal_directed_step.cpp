@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gdd/goal_directed_step.hpp"
+
+#include <chrono>
+
+namespace softgauss::gdd {
+
+GoalDirectedController::GoalDirectedController(const Model& model)
+    : box(model), solver(model), control(VectorX::Zero(model.nv)), cost_(model.nv) {}
+
+SolveStatus GoalDirectedController::step(const Model& model, const Input& input, State& state,
+                                         Data& data, ContactSource* contacts) noexcept {
+  using Clock = std::chrono::steady_clock;
+  if (computeStages(model, input, state, data, contacts) == SolveStatus::notFinite)
+    return SolveStatus::notFinite;
+
+  // A disturbance is not the control's: it belongs to what the control has to cope with.
+  const Clock::time_point start = Clock::now();
+  data.forces.c -= data.forces.tau;
+  cost_.clear();
+  for (const auto& goal : goals) goal->addCost({model, state, data}, cost_);
+  report = solver.solve(model, cost_, box, data, state.warmstart);
+  solveTime = std::chrono::duration<double>(Clock::now() - start).count();
+  if (report.status == GddStatus::notFinite) {
+    data.stats.status = SolveStatus::notFinite;
+    return data.stats.status;
+  }
+
+  control = solver.force().cwiseMax(box.lower).cwiseMin(box.upper);
+  data.forces.tau = control;
+  data.forces.net = control - data.forces.c;
+  const SolveStatus status = advance(model, &solver.acceleration(), data, state);
+  if (status != SolveStatus::notFinite) solver.keepWarmStart(state.warmstart);
+  return status;
+}
+
+}  // namespace softgauss::gdd

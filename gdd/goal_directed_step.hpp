@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Goal directed dynamics: a step whose control is found from goals (figure 1 of the paper).
+///
+/// Solve (T.17) for the acceleration that the goals want and the actuators can cause; clamp the
+/// control g_u(a) to its box; run forward dynamics from that acceleration; integrate.
+
+#include <memory>
+#include <vector>
+
+#include "engine/step/step.hpp"
+#include "gdd/augmented_lagrangian.hpp"
+#include "gdd/goal.hpp"
+
+namespace softgauss::gdd {
+
+/// Goals, solver and memory of a controlled simulation. One a thread.
+class GoalDirectedController {
+ public:
+  explicit GoalDirectedController(const Model& model);
+
+  std::vector<std::unique_ptr<Goal>> goals;
+  ControlBox box;               ///< of all dofs; change it to change what the actuators can do
+  AugmentedLagrangian solver;
+
+  VectorX control;              ///< u of the last step, 0 on unactuated dofs (nv) [N or N m]
+  GddReport report;             ///< of the last step
+  double solveTime = 0.0;       ///< wall time of the last GDD solve [s]
+
+  /// One step. `input` acts besides the control (disturbances). On SolveStatus::notFinite the
+  /// state is left as it was.
+  SolveStatus step(const Model& model, const Input& input, State& state, Data& data,
+                   ContactSource* contacts) noexcept;
+
+ private:
+  GoalCost cost_;
+};
+
+}  // namespace softgauss::gdd

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// The Gauss–Newton Hessian of (T.19) for R = M⁻¹, assembled without an n³ product:
+///
+///   H = P M⁻¹ P + P ψ″ P + ∇²ℓ,   P = M + G,   G = Jᵀ∇²s J
+///   P M⁻¹ P = M + 2 G + Cᵀ D⁻¹ C,   C = L⁻ᵀ G,   M = LᵀDL                              (T.20)
+///
+/// C is non-zero only at the dofs that active rows move, and P ψ″ P has one rank-one term for each
+/// bound that is in force.
+
+#include <vector>
+
+#include "engine/step/data.hpp"
+#include "gdd/cost.hpp"
+
+namespace softgauss::gdd {
+
+class GaussNewtonHessian {
+ public:
+  explicit GaussNewtonHessian(const Model& model);
+
+  /// G and P = M + G of the cell in which the rows were last evaluated.
+  void setCell(Data& data);
+  /// Factors H. `massFactor` is of M. Returns false when H is not positive definite.
+  bool factorize(const Data& data, const TreeFactor& massFactor, const VectorX& boundCurvature,
+                 GoalCost& cost);
+  /// x ← H⁻¹ x.
+  void solve(VectorX& x) const { factor_.solve(x); }
+  /// y ← P x.
+  void multiplyP(const VectorX& x, VectorX& y) const { P_.multiply(x, y); }
+
+ private:
+  void addReflectedContacts(const Data& data, const TreeFactor& massFactor);
+  void addBounds(const VectorX& boundCurvature);
+
+  TreeMatrix P_, G_;
+  TreeSparsity dense_;           ///< all dofs coupled
+  TreeMatrix H_;
+  TreeFactor factor_;
+  std::vector<int> touched_;     ///< dofs that active rows move, ascending
+  std::vector<int> compact_;     ///< dof → place in touched_, or −1
+  std::vector<double> C_;        ///< rows of length touched_.size()
+  std::vector<double> gram_;
+  std::vector<double> boundRows_;
+};
+
+}  // namespace softgauss::gdd

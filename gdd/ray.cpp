@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gdd/ray.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace softgauss::gdd {
+
+Jet Ray::slopeAt(const BoundPenalty& bounds, double tau) const {
+  Jet jet{0.0, smoothSlope_ + tau * smoothCurvature_, smoothCurvature_};
+  for (Eigen::Index i = 0; i < g_.size(); ++i) {
+    const Jet psi = bounds.at(i, g_[i] + tau * rate_[i]);
+    jet.slope += psi.slope * rate_[i];
+    jet.curvature += psi.curvature * rate_[i] * rate_[i];
+  }
+  return jet;
+}
+
+RayResult Ray::minimize(const Constraints& constraints, const TreeFactor& massFactor,
+                        const BoundPenalty& bounds, const VectorX& g, const VectorX& rate,
+                        double costSlope, double costCurvature) {
+  crossings_.clear();
+  constraints.findCrossings(crossings_);
+  const auto later = [](const Crossing& a, const Crossing& b) {
+    if (a.alpha != b.alpha) return a.alpha > b.alpha;
+    return a.kind != b.kind ? a.kind > b.kind : a.row > b.row;
+  };
+  std::make_heap(crossings_.begin(), crossings_.end(), later);
+
+  RayResult result;
+  g_ = g;
+  rate_ = rate;
+  for (;;) {
+    // The quadratic of this interval.
+    Rrate_ = rate_;
+    massFactor.solve(Rrate_);
+    smoothSlope_ = g_.dot(Rrate_) + costSlope + result.alpha * costCurvature;
+    smoothCurvature_ = rate_.dot(Rrate_) + costCurvature;
+    const double length =
+        crossings_.empty() ? kInfinity : crossings_.front().alpha - result.alpha;
+    const Jet start = slopeAt(bounds, 0.0);
+    if (!(start.slope < 0.0)) {
+      result.kink = result.crossings > 0;
+      return result;
+    }
+    if (!(std::isfinite(length) && slopeAt(bounds, length).slope < 0.0)) {
+      // The slope vanishes in this interval: Newton on it, inside a bracket.
+      double lower = 0.0, upper = length;
+      double tau = std::min(length, start.curvature > 0.0 ? -start.slope / start.curvature : 1.0);
+      for (int i = 0; i < 100; ++i) {
+        const Jet jet = slopeAt(bounds, tau);
+        if (std::abs(jet.slope) <= 1e-12 * -start.slope || !std::isfinite(jet.slope)) break;
+        (jet.slope < 0.0 ? lower : upper) = tau;
+        double next = jet.curvature > 0.0 ? tau - jet.slope / jet.curvature : kInfinity;
+        if (!(next > lower && next < upper))
+          next = std::isfinite(upper) ? 0.5 * (lower + upper) : 2.0 * tau;
+        if (next == tau) break;
+        tau = next;
+      }
+      result.alpha += tau;
+      return result;
+    }
+    // On to the next interval.
+    const Crossing crossing = crossings_.front();
+    std::pop_heap(crossings_.begin(), crossings_.end(), later);
+    crossings_.pop_back();
+    g_ += length * rate_;
+    constraints.addRow(crossing, crossing.curvatureJump * crossing.rate, rate_);
+    result.alpha = crossing.alpha;
+    ++result.crossings;
+  }
+}
+
+}  // namespace softgauss::gdd

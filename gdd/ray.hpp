@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Exact line search for the augmented Lagrangian Φ along a + α d (T.18).
+///
+/// Between two knots of the rows g is affine in α, so Φ is convex there and piecewise quadratic,
+/// its only pieces being those of the bounds. The search walks from knot to knot: the rate dg/dα
+/// gains s″-jump · ẋ · Jᵀ at each. It ends at the first local minimum: inside an interval, or at a
+/// knot past which the slope is not negative (a kink).
+
+#include <vector>
+
+#include "engine/step/data.hpp"
+#include "gdd/problem.hpp"
+
+namespace softgauss::gdd {
+
+/// The penalty ψ of the bounds (T.18).
+struct BoundPenalty {
+  const ControlBox& box;
+  const VectorX& lambda;  ///< multipliers
+  const VectorX& rho;
+
+  /// ½ ρ (t − clamp t)², its slope and curvature in g_i. A bound just met has curvature 0.
+  Jet at(Eigen::Index i, double g) const {
+    const double t = g + lambda[i] / rho[i];
+    const double lower = box.lower[i], upper = box.upper[i];
+    const double over = t > upper ? t - upper : (t < lower ? t - lower : 0.0);
+    const bool active = over != 0.0 || lower == upper;
+    return {0.5 * rho[i] * over * over, rho[i] * over, active ? rho[i] : 0.0};
+  }
+};
+
+struct RayResult {
+  double alpha = 0.0;
+  bool kink = false;   ///< ended at a knot of a row
+  int crossings = 0;   ///< knots passed
+};
+
+class Ray {
+ public:
+  explicit Ray(const Model& model)
+      : g_(VectorX::Zero(model.nv)), rate_(VectorX::Zero(model.nv)), Rrate_(VectorX::Zero(model.nv)) {}
+
+  /// g: inverse dynamics at α = 0; rate: P d; costSlope, costCurvature: of ℓ along d. The rows'
+  /// ray must be set (Constraints::setRay).
+  RayResult minimize(const Constraints& constraints, const TreeFactor& massFactor,
+                     const BoundPenalty& bounds, const VectorX& g, const VectorX& rate,
+                     double costSlope, double costCurvature);
+
+ private:
+  Jet slopeAt(const BoundPenalty& bounds, double tau) const;
+
+  VectorX g_, rate_, Rrate_;
+  double smoothSlope_ = 0.0, smoothCurvature_ = 0.0;  ///< of ½ gᵀR g + ℓ at the interval's start
+  std::vector<Crossing> crossings_;
+};
+
+}  // namespace softgauss::gdd
