@@ -9,11 +9,11 @@
 namespace softgauss::io {
 namespace {
 
-/// A column's number: counts whole, others with three or four significant digits.
+/// A column's number: what is whole stays whole, the rest has about three significant digits.
 std::string cell(double x) {
   if (!std::isfinite(x)) return fmt::format("{}", x);
+  if (x == std::round(x) && std::abs(x) < 1e6) return fmt::format("{:.0f}", x);
   const double size = std::abs(x);
-  if (size == 0.0) return "0";
   if (size < 1e-3 || size >= 1e6) return fmt::format("{:.1e}", x);
   if (size < 10.0) return fmt::format("{:.2f}", x);
   return fmt::format("{:.0f}", x);
@@ -26,7 +26,7 @@ void addRow(std::string& out, const char* what, const char* unit, const Series& 
                  cell(series.mean()));
 }
 
-std::string millimetres(double metres) { return fmt::format("{:.1f} mm", 1e3 * metres); }
+std::string millimetres(double metres) { return fmt::format("{:.3g} mm", 1e3 * metres); }
 
 /// Share of the way to the goal that was covered [%]; negative when it moved away.
 double percentNearer(const GoalOutcome& goal) {

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <set>
+
+#include "io/detail/text.hpp"
+#include "io/explain.hpp"
+
+namespace softgauss::io {
+namespace {
+
+using detail::counted;
+
+/// What in the scene calls for an effect: how many, and the first of them.
+struct Callers {
+  std::size_t count = 0;
+  std::string first;
+
+  void add(const std::string& name) {
+    if (count++ == 0) first = name;
+  }
+  std::string text(std::string_view noun) const {
+    return fmt::format("{}, {}'{}'", counted(count, noun), count > 1 ? "first " : "", first);
+  }
+};
+
+const std::string& jointOf(const Model& model, int body) {
+  return model.jointNames[static_cast<std::size_t>(body)];
+}
+
+template <class Predicate>
+Callers dofsWith(const Model& model, Predicate&& predicate) {
+  Callers callers;
+  for (const Dof& dof : model.dofs)
+    if (predicate(dof)) callers.add(jointOf(model, dof.body));
+  return callers;
+}
+
+/// Shapes by what carries them.
+struct ShapeCensus {
+  Callers world, moving;
+  std::set<int> trees;
+  Callers selfTouching;  ///< trees with shapes on more than one body
+
+  explicit ShapeCensus(const Model& model) {
+    std::vector<std::set<int>> bodies(model.trees.size());
+    for (const Geometry& geometry : model.geometries) {
+      const int tree = model.bodies[static_cast<std::size_t>(geometry.body)].tree;
+      (tree < 0 ? world : moving).add(geometry.name);
+      if (tree < 0) continue;
+      trees.insert(tree);
+      bodies[static_cast<std::size_t>(tree)].insert(geometry.body);
+    }
+    for (std::size_t t = 0; t < bodies.size(); ++t)
+      if (bodies[t].size() > 1)
+        selfTouching.add(model.bodyNames[static_cast<std::size_t>(model.trees[t].rootBody)]);
+  }
+};
+
+/// Collects the notes; knows which effects the engine has and which are switched on.
+class Notes {
+ public:
+  explicit Notes(const Model& model) : model_(model) {}
+
+  void add(const char* name, bool asked, const std::string& why, const std::string& whyNot) {
+    const std::optional<Effect> effect = effectFromName(name);
+    EffectNote note{name, false, asked ? why : whyNot, asked};
+    if (asked && !effect)
+      note.reason += "; not simulated yet";
+    else if (asked && !model_.options.effects.has(*effect))
+      note.reason += "; switched off by --effects";
+    else
+      note.on = asked;
+    list.push_back(note);
+  }
+  void add(const char* name, const Callers& callers, std::string_view noun,
+           const std::string& whyNot) {
+    add(name, callers.count > 0, callers.text(noun), whyNot);
+  }
+
+  std::vector<EffectNote> list;
+
+ private:
+  const Model& model_;
+};
+
+}  // namespace
+
+std::vector<EffectNote> effectNotes(const Model& model) {
+  const auto& g = model.options.gravity;
+  const bool moves = model.nv > 0;
+  const std::size_t moving = model.bodies.size() - 1;
+
+  Callers ranges, followers;
+  for (const JointRange& range : model.ranges) ranges.add(jointOf(model, range.body));
+  for (const Mimic& mimic : model.mimics) followers.add(jointOf(model, mimic.follower));
+  Callers torsional, rolling;
+  for (const Geometry& geometry : model.geometries) {
+    if (geometry.material.condim >= 4) torsional.add(geometry.name);
+    if (geometry.material.condim >= 6) rolling.add(geometry.name);
+  }
+  const ShapeCensus shapes(model);
+
+  Notes notes(model);
+  notes.add("gravity", moves && !g.isZero(0.0),
+            fmt::format("({:.6g}, {:.6g}, {:.6g}) m/s² on {:.4g} kg", g.x(), g.y(), g.z(),
+                        model.totalMass()),
+            moves ? "gravity is zero" : "nothing moves");
+  notes.add("coriolis", moves,
+            moving == 1 ? "1 moving body" : fmt::format("{} moving bodies", moving),
+            "nothing moves");
+  notes.add("damping", dofsWith(model, [](const Dof& d) { return d.damping > 0.0; }), "dof",
+            "no joint has damping");
+  notes.add("spring", false, "", "no joint has a spring");
+  notes.add("armature", dofsWith(model, [](const Dof& d) { return d.armature > 0.0; }), "dof",
+            "no joint has rotor inertia");
+  notes.add("actuation", dofsWith(model, [](const Dof& d) { return d.actuated; }), "actuated joint",
+            "no joint is actuated");
+  notes.add("joint_limit", ranges, "joint range", "no joint has a range");
+  notes.add("dry_friction", dofsWith(model, [](const Dof& d) { return d.dryFriction > 0.0; }),
+            "dof", "no joint has friction");
+  notes.add("equality", followers, "mimic", "no mimic, weld or connection");
+  notes.add("self_collision", shapes.selfTouching, "tree", "no tree has shapes on two bodies");
+  notes.add(
+      "ground_contact", shapes.world.count > 0 && shapes.moving.count > 0,
+      fmt::format("{} fixed to the world (first '{}') against {} that move",
+                  counted(shapes.world.count, "shape"), shapes.world.first, shapes.moving.count),
+      shapes.world.count == 0 ? "no ground or other shape is fixed to the world"
+                              : "no moving body has a shape");
+  notes.add("object_contact", shapes.trees.size() > 1,
+            fmt::format("{} trees with shapes", shapes.trees.size()),
+            "fewer than two trees have shapes");
+  notes.add("torsional_friction", torsional, "shape", "no shape has condim 4 or 6");
+  notes.add("rolling_friction", rolling, "shape", "no shape has condim 6");
+  return notes.list;
+}
+
+std::vector<std::string> effectsOn(const std::vector<EffectNote>& notes) {
+  std::vector<std::string> names;
+  for (const EffectNote& note : notes)
+    if (note.on) names.push_back(note.name);
+  return names;
+}
+
+}  // namespace softgauss::io

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/explain.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "io/detail/text.hpp"
+
+namespace softgauss::io {
+namespace {
+
+using detail::counted;
+using detail::listed;
+
+std::size_t idx(int i) { return static_cast<std::size_t>(i); }
+
+/// Lines of cells, each column as wide as its widest cell.
+class TextTable {
+ public:
+  void row(std::vector<std::string> cells) { rows_.push_back(std::move(cells)); }
+
+  std::string text() const {
+    std::vector<std::size_t> widths;
+    for (const auto& row : rows_)
+      for (std::size_t i = 0; i < row.size(); ++i) {
+        if (i == widths.size()) widths.push_back(0);
+        widths[i] = std::max(widths[i], row[i].size());
+      }
+    std::string out;
+    for (const auto& row : rows_) {
+      std::string line = " ";
+      for (std::size_t i = 0; i < row.size(); ++i)
+        line += fmt::format(" {:<{}}", row[i], widths[i]);
+      out += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
+    }
+    return out;
+  }
+
+ private:
+  std::vector<std::vector<std::string>> rows_;
+};
+
+const char* kindName(JointKind kind) {
+  switch (kind) {
+    case JointKind::world:
+      return "world";
+    case JointKind::revolute:
+      return "revolute";
+    case JointKind::prismatic:
+      return "prismatic";
+    case JointKind::floating:
+      return "floating";
+  }
+  return "";
+}
+
+std::string orDash(double x) { return x == 0.0 ? "-" : detail::shortNumber(x); }
+
+std::string headText(const Model& model, const ExplainContext& context) {
+  std::size_t actuated = 0;
+  for (const Dof& dof : model.dofs) actuated += dof.actuated ? 1 : 0;
+  const double moving = model.totalMass();
+  const double mass = context.contents ? context.contents->mass : moving;
+  const std::size_t links = context.contents ? idx(context.contents->links) : model.frames.size();
+
+  std::string out = fmt::format("{}\n", model.name);
+  out +=
+      fmt::format("  {}{}, {} moving bodies after merging fixed joints\n", counted(links, "link"),
+                  context.contents ? ", " + counted(idx(context.contents->joints), "joint") : "",
+                  model.bodies.size() - 1);
+  out += fmt::format("  {} degrees of freedom, {} actuated\n", model.nv, actuated);
+  out += fmt::format("  {:.6g} kg", mass);
+  if (std::abs(mass - moving) > 1e-9 * mass)
+    out += fmt::format(", of which {:.6g} kg move", moving);
+  out += "\n";
+  for (const Tree& tree : model.trees) {
+    const Body& root = model.bodies[idx(tree.rootBody)];
+    out += root.joint == JointKind::floating
+               ? fmt::format("  '{}' floats", model.bodyNames[idx(tree.rootBody)])
+               : fmt::format("  '{}' hangs from the world on {} '{}'",
+                             model.bodyNames[idx(tree.rootBody)], kindName(root.joint),
+                             model.jointNames[idx(tree.rootBody)]);
+    out += fmt::format(" ({} dof)\n", tree.dofEnd - tree.firstDof);
+  }
+  return out;
+}
+
+std::string jointsText(const Model& model) {
+  std::map<int, const JointRange*> ranges;
+  for (const JointRange& range : model.ranges) ranges[range.body] = &range;
+  TextTable table;
+  table.row({"joint", "kind", "moves", "range", "start", "effort", "damping", "friction"});
+  for (int b = 1; b < model.bodyCount(); ++b) {
+    const Body& body = model.bodies[idx(b)];
+    const std::string& joint = model.jointNames[idx(b)];
+    if (body.joint == JointKind::floating) {
+      table.row({joint, kindName(body.joint), model.bodyNames[idx(b)], "-", "-", "-", "-", "-"});
+      continue;
+    }
+    const Dof& dof = model.dofs[idx(body.v)];
+    const bool turns = body.joint == JointKind::revolute;
+    const auto range = ranges.find(b);
+    table.row({joint, kindName(body.joint), model.bodyNames[idx(b)],
+               range == ranges.end() ? "-"
+                                     : fmt::format("{:.4g} .. {:.4g} {}", range->second->lower,
+                                                   range->second->upper, turns ? "rad" : "m"),
+               detail::shortNumber(model.q0[body.q]),
+               !dof.actuated ? "not actuated"
+               : std::isinf(dof.effortUpper)
+                   ? "no box"
+                   : fmt::format("{:.4g} {}", dof.effortUpper, turns ? "N m" : "N"),
+               orDash(dof.damping), orDash(dof.dryFriction)});
+  }
+  return "joints\n" + table.text();
+}
+
+std::string framesText(const Model& model) {
+  std::vector<std::string> massless;
+  for (int b = 1; b < model.bodyCount(); ++b)
+    if (model.bodies[idx(b)].massless) massless.push_back(model.bodyNames[idx(b)]);
+  std::map<int, std::vector<std::string>> merged;
+  for (const Frame& frame : model.frames)
+    if (frame.name != model.bodyNames[idx(frame.body)]) merged[frame.body].push_back(frame.name);
+
+  std::string out;
+  if (!massless.empty())
+    out += fmt::format("moving links without mass, carried by what hangs from them\n  {}\n",
+                       listed(massless, massless.size()));
+  if (!merged.empty()) {
+    TextTable table;
+    for (const auto& [body, names] : merged)
+      table.row({model.bodyNames[idx(body)], "<- " + listed(names, names.size())});
+    out += "links on fixed joints, kept as frames of the body they are merged with\n";
+    out += table.text();
+  }
+  return out;
+}
+
+const char* shapeName(ShapeKind kind) {
+  switch (kind) {
+    case ShapeKind::plane:
+      return "plane";
+    case ShapeKind::sphere:
+      return "sphere";
+    case ShapeKind::capsule:
+      return "capsule";
+    case ShapeKind::cylinder:
+      return "cylinder";
+    case ShapeKind::box:
+      return "box";
+    case ShapeKind::mesh:
+      return "mesh";
+  }
+  return "";
+}
+
+std::string shapesText(const Model& model, const ExplainContext& context) {
+  std::map<ShapeKind, std::size_t> counts;
+  for (const Geometry& geometry : model.geometries) ++counts[geometry.shape.kind];
+  std::vector<std::string> kinds;
+  for (const auto& [kind, count] : counts)
+    kinds.push_back(fmt::format("{} {}", shapeName(kind), count));
+  std::string out = "collision shapes\n";
+  out += fmt::format("  {}\n", kinds.empty() ? "none" : listed(kinds));
+  if (context.testedPairs)
+    out += fmt::format("  {} may touch\n", counted(idx(*context.testedPairs), "pair"));
+  std::map<std::string, std::vector<std::string>> byReason;
+  for (const FilteredPair& pair : context.filtered)
+    byReason[pair.reason].push_back(fmt::format("{} - {}", pair.first, pair.second));
+  for (const auto& [reason, pairs] : byReason) {
+    out += fmt::format("  {} never tested: {}\n", counted(pairs.size(), "pair"), reason);
+    for (const std::string& pair : pairs) out += fmt::format("    {}\n", pair);
+  }
+  return out;
+}
+
+std::string effectsText(const Model& model) {
+  TextTable on, off;
+  for (const EffectNote& note : effectNotes(model))
+    (note.on ? on : off).row({note.name, note.reason});
+  return "effects that are simulated, and what calls them\n" + on.text() +
+         "effects that are off, and why\n" + off.text();
+}
+
+}  // namespace
+
+std::string explain(const Model& model, const ExplainContext& context) {
+  std::string out;
+  const auto section = [&](const std::string& text) {
+    if (!out.empty() && !text.empty()) out += "\n";
+    out += text;
+  };
+  section(headText(model, context));
+  section(jointsText(model));
+  section(framesText(model));
+  section(shapesText(model, context));
+  section(effectsText(model));
+  if (!model.warnings.empty()) {
+    std::string warnings = "warnings\n";
+    for (const std::string& warning : model.warnings) warnings += "  " + warning + "\n";
+    section(warnings);
+  }
+  return out;
+}
+
+}  // namespace softgauss::io

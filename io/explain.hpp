@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Tells in plain text what was loaded, which effects are simulated and which element of the scene
+/// called each, and what is off and why.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/model/model.hpp"
+#include "io/urdf.hpp"
+
+namespace softgauss::io {
+
+/// An effect, in the names of --effects, whether it is simulated, and why.
+struct EffectNote {
+  std::string name;
+  bool on = false;
+  std::string reason;  ///< e.g. "21 joints, first 'hip_x'"
+  bool asked = false;  ///< the scene asks for it: with `on` false, physics is left out
+};
+
+/// Every effect that interfaces name, in their order, for this model and its Options::effects.
+std::vector<EffectNote> effectNotes(const Model& model);
+
+/// Names of those that are on.
+std::vector<std::string> effectsOn(const std::vector<EffectNote>& notes);
+
+/// A pair of bodies or shapes that is never tested for contact.
+struct FilteredPair {
+  std::string first;
+  std::string second;
+  std::string reason;  ///< e.g. "adjacent"
+};
+
+/// What explain() is told besides the model.
+struct ExplainContext {
+  std::optional<UrdfContents> contents;  ///< of the file, before links were merged
+  std::vector<FilteredPair> filtered;    ///< grouped by reason in the text
+  std::optional<int> testedPairs;        ///< pairs of shapes that may touch
+};
+
+std::string explain(const Model& model, const ExplainContext& context = {});
+
+}  // namespace softgauss::io

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// softgauss::io: robots in, logs and summaries out.
+
+#include "io/explain.hpp"
+#include "io/log.hpp"
+#include "io/mesh.hpp"
+#include "io/summary.hpp"
+#include "io/torque_table.hpp"
+#include "io/urdf.hpp"
