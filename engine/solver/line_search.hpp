@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "engine/constraints/penalty.hpp"
+#include "engine/core/check.hpp"
 
 namespace softgauss {
 
@@ -25,13 +26,13 @@ LineSearchResult exactLineSearch(Along&& along, double slope0) {
   if (!(slope0 < 0.0)) return result;
   constexpr int kMaxEvaluations = 60;
   const double tolerance = 1e-10 * -slope0;
-  double lower = 0.0, upper = INFINITY, alpha = 1.0;
+  double lower = 0.0, upper = kInfinity, alpha = 1.0;
   while (result.evaluations < kMaxEvaluations) {
     const Jet jet = along(alpha);
     ++result.evaluations;
     if (std::abs(jet.slope) <= tolerance || !std::isfinite(jet.slope)) break;
     (jet.slope < 0.0 ? lower : upper) = alpha;
-    double next = jet.curvature > 0.0 ? alpha - jet.slope / jet.curvature : INFINITY;
+    double next = jet.curvature > 0.0 ? alpha - jet.slope / jet.curvature : kInfinity;
     if (!(next > lower && next < upper))
       next = std::isfinite(upper) ? 0.5 * (lower + upper) : 2.0 * alpha;
     if (next == alpha) break;  // the bracket has shrunk to rounding

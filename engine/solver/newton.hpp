@@ -61,7 +61,7 @@ NewtonReport minimize(Objective& objective, double tolerance, int maxIterations,
   constexpr double kRoundingFloor = 1e3;
   NewtonReport report;
   bool factored = false;
-  double previous = INFINITY;
+  double previous = kInfinity;
   for (;;) {
     report.residual = objective.gradient(g);
     if (!std::isfinite(report.residual)) {
