@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/mesh.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "engine/core/check.hpp"
+#include "temp_folder.hpp"
+
+namespace softgauss::io {
+namespace {
+
+/// Signed volume of the closed surface.
+double volume(const Mesh& mesh) {
+  double sum = 0.0;
+  for (const auto& t : mesh.triangles) {
+    const auto at = [&](int k) {
+      return mesh.vertices[static_cast<std::size_t>(t[static_cast<std::size_t>(k)])];
+    };
+    sum += at(0).dot(at(1).cross(at(2))) / 6.0;
+  }
+  return sum;
+}
+
+/// The corner tetrahedron (0, e_x, e_y, e_z), volume 1/6, facing outwards.
+const char* const kTetrahedronObj =
+    "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+
+std::string asciiStl() {
+  const int faces[4][3] = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+  const char* corners[] = {"0 0 0", "1 0 0", "0 1 0", "0 0 1"};
+  std::string text = "solid t\n";
+  for (const auto& face : faces) {
+    text += "facet normal 0 0 0\nouter loop\n";
+    for (const int corner : face) text += std::string("vertex ") + corners[corner] + "\n";
+    text += "endloop\nendfacet\n";
+  }
+  return text + "endsolid t\n";
+}
+
+std::string binaryStl() {
+  const int faces[4][3] = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+  const float corners[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  std::string bytes(80, ' ');
+  const auto append = [&](const void* data, std::size_t n) {
+    bytes.append(static_cast<const char*>(data), n);
+  };
+  const std::uint32_t count = 4;
+  append(&count, 4);
+  for (const auto& face : faces) {
+    const float normal[3] = {0, 0, 0};
+    append(normal, sizeof normal);
+    for (const int corner : face) append(corners[corner], sizeof corners[corner]);
+    bytes.append(2, '\0');
+  }
+  return bytes;
+}
+
+/// The tetrahedron in centimetres and a line, below a node that shifts by 100 cm along x.
+std::string collada(const std::string& upAxis) {
+  return R"(<?xml version="1.0" encoding="utf-8"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+  <asset><unit name="centimeter" meter="0.01"/><up_axis>)" +
+         upAxis + R"(</up_axis></asset>
+  <library_geometries><geometry id="g" name="g"><mesh>
+    <source id="p"><float_array id="pa" count="12">0 0 0 100 0 0 0 100 0 0 0 100</float_array>
+      <technique_common><accessor source="#pa" count="4" stride="3">
+        <param name="X" type="float"/><param name="Y" type="float"/><param name="Z" type="float"/>
+      </accessor></technique_common></source>
+    <vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+    <triangles count="4"><input semantic="VERTEX" source="#v" offset="0"/>
+      <p>0 2 1 0 1 3 0 3 2 1 2 3</p></triangles>
+    <lines count="1"><input semantic="VERTEX" source="#v" offset="0"/><p>0 1</p></lines>
+  </mesh></geometry></library_geometries>
+  <library_visual_scenes><visual_scene id="s"><node id="n">
+    <translate>100 0 0</translate><instance_geometry url="#g"/>
+  </node></visual_scene></library_visual_scenes>
+  <scene><instance_visual_scene url="#s"/></scene>
+</COLLADA>
+)";
+}
+
+std::string errorOf(const std::string& name, const std::string& text) {
+  const TempFolder folder;
+  try {
+    readMesh(folder.write(name, text));
+  } catch (const ModelError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(Mesh, ReadsEveryFormatAsTheSameSolid) {
+  const TempFolder folder;
+  for (const auto& file : {folder.write("a.stl", asciiStl()), folder.write("b.STL", binaryStl()),
+                           folder.write("c.obj", kTetrahedronObj)}) {
+    const Mesh mesh = readMesh(file);
+    EXPECT_EQ(mesh.vertices.size(), 4u) << file << ": equal corners are one vertex";
+    EXPECT_EQ(mesh.triangles.size(), 4u) << file;
+    EXPECT_NEAR(volume(mesh), 1.0 / 6.0, 1e-12) << file;
+    EXPECT_EQ(mesh.file, file.string());
+  }
+}
+
+TEST(Mesh, TriangulatesPolygons) {
+  const TempFolder folder;
+  const Mesh mesh =
+      readMesh(folder.write("q.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n"));
+  EXPECT_EQ(mesh.triangles.size(), 2u);
+}
+
+TEST(Mesh, ScaleIsAppliedAndAMirrorKeepsTheOutside) {
+  const TempFolder folder;
+  const auto file = folder.write("c.obj", kTetrahedronObj);
+  EXPECT_NEAR(volume(readMesh(file, Vector3(2, 3, 4))), 24.0 / 6.0, 1e-12);
+  EXPECT_NEAR(volume(readMesh(file, Vector3(-1, 1, 1))), 1.0 / 6.0, 1e-12);
+  EXPECT_EQ(readMesh(file, Vector3(-1, 1, 1)).vertices[1].x() +
+                readMesh(file, Vector3(-1, 1, 1)).vertices[2].x(),
+            -1.0);
+}
+
+TEST(Collada, UnitScalesUpAxisDoesNotTurnNodesMoveAndLinesAreLeftOut) {
+  const TempFolder folder;
+  for (const char* up : {"Z_UP", "Y_UP", "X_UP"}) {
+    const Mesh mesh = readMesh(folder.write(std::string(up) + ".dae", collada(up)));
+    ASSERT_EQ(mesh.vertices.size(), 4u) << up;
+    EXPECT_EQ(mesh.triangles.size(), 4u) << up;
+    EXPECT_NEAR(volume(mesh), 1.0 / 6.0, 1e-6) << up;
+    Vector3 low = mesh.vertices[0], high = low;
+    for (const Vector3& x : mesh.vertices) {
+      low = low.cwiseMin(x);
+      high = high.cwiseMax(x);
+    }
+    EXPECT_TRUE(low.isApprox(Vector3(1, 0, 0), 1e-6)) << up << " " << low.transpose();
+    EXPECT_TRUE(high.isApprox(Vector3(2, 1, 1), 1e-6)) << up << " " << high.transpose();
+  }
+}
+
+TEST(Mesh, ThatCannotBeUsedIsNamed) {
+  EXPECT_NE(errorOf("a.stl", "nonsense").find("a.stl: mesh: "), std::string::npos);
+  EXPECT_NE(errorOf("a.step", "").find("expected .stl, .obj or .dae"), std::string::npos);
+  EXPECT_NE(errorOf("a.obj", "v 0 0 0\nv 1 0 0\nl 1 2\n").find("a.obj: mesh: "), std::string::npos);
+  EXPECT_NE(errorOf("a.obj", "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n").find("a.obj: mesh: "),
+            std::string::npos);
+  EXPECT_NE(errorOf("a.dae", "<COLLADA/>").find("a.dae: mesh: "), std::string::npos);
+}
+
+TEST(MeshCache, ReadsAFileOncePerScale) {
+  const TempFolder folder;
+  const auto file = folder.write("c.obj", kTetrahedronObj);
+  MeshCache cache;
+  const auto first = cache.get(file, Vector3::Ones());
+  std::filesystem::remove(file);
+  EXPECT_EQ(cache.get(file, Vector3::Ones()), first);
+  const auto scaled = cache.get(file, Vector3(2, 2, 2));
+  EXPECT_EQ(cache.get(file, Vector3(2, 2, 2)), scaled);
+  EXPECT_NEAR(volume(*scaled), 8.0 / 6.0, 1e-12);
+}
+
+}  // namespace
+}  // namespace softgauss::io

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/summary.hpp"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "io/explain.hpp"
+#include "io/urdf.hpp"
+#include "sample_urdf.hpp"
+#include "temp_folder.hpp"
+
+namespace softgauss::io {
+namespace {
+
+using nlohmann::ordered_json;
+
+Model sampleModel() {
+  const TempFolder folder;
+  return loadUrdf(folder.write("r.urdf", kSampleUrdf));
+}
+
+/// 100 steps whose numbers are 1 to 100, and a final state.
+Summary sampleSummary(const Model& m) {
+  Summary summary(m);
+  StepRecord r;
+  r.q = m.q0;
+  r.v = r.a = r.u = VectorX::Zero(m.nv);
+  for (int i = 1; i <= 100; ++i) {
+    r.time = 0.002 * (i - 1);
+    r.forwardUs = r.gddUs = r.stepUs = i;
+    r.constraints = r.iterations = r.dualUpdates = i;
+    r.physicsViolation = r.gddViolation = r.stationarity = i;
+    r.energy = 10.0 - 0.01 * i;
+    r.maxPenetration = i == 50 ? 0.003 : 0.001;
+    r.u[6] = i == 20 ? -4.0 : 1.0;
+    summary.addStep(r);
+  }
+  r.time = 0.2;
+  r.energy = 3.0;
+  summary.finish(r);
+  summary.version = "1.2.3";
+  summary.wallSeconds = 0.05;
+  summary.effects = {"gravity"};
+  summary.goals = {{"reach arm", 0.5, 0.05}};
+  return summary;
+}
+
+std::vector<std::string> keysOf(const ordered_json& object) {
+  std::vector<std::string> keys;
+  for (const auto& [key, value] : object.items()) keys.push_back(key);
+  return keys;
+}
+
+TEST(Summary, HasTheKeysOfTheInterfaceInOrder) {
+  const ordered_json json = ordered_json::parse(sampleSummary(sampleModel()).json());
+  using Keys = std::vector<std::string>;
+  EXPECT_EQ(keysOf(json), (Keys{"version",
+                                "model",
+                                "options",
+                                "outcome",
+                                "steps",
+                                "simulated_s",
+                                "wall_s",
+                                "real_time_factor",
+                                "effects",
+                                "time_us",
+                                "constraints",
+                                "iterations",
+                                "dual_updates",
+                                "physics_violation",
+                                "gdd_violation",
+                                "stationarity",
+                                "goals",
+                                "energy_J",
+                                "max_penetration_m",
+                                "max_control_ratio",
+                                "warnings"}));
+  EXPECT_EQ(keysOf(json["model"]), (Keys{"name", "links", "dof", "actuated", "mass_kg"}));
+  EXPECT_EQ(keysOf(json["options"]), (Keys{"timestep_s", "integrator", "cone", "gdd_solver"}));
+  EXPECT_EQ(keysOf(json["time_us"]), (Keys{"forward", "gdd", "step"}));
+  for (const auto& [key, value] : json["time_us"].items())
+    EXPECT_EQ(keysOf(value), (Keys{"mean", "p50", "p95"})) << key;
+  for (const char* key : {"constraints", "iterations", "dual_updates", "physics_violation",
+                          "gdd_violation", "stationarity"})
+    EXPECT_EQ(keysOf(json[key]), (Keys{"p50", "p95", "max"})) << key;
+  EXPECT_EQ(keysOf(json["goals"][0]), (Keys{"name", "initial_error_m", "final_error_m"}));
+  EXPECT_EQ(keysOf(json["energy_J"]), (Keys{"initial", "final"}));
+}
+
+TEST(Summary, CountsAndMeasures) {
+  const ordered_json json = ordered_json::parse(sampleSummary(sampleModel()).json());
+  EXPECT_EQ(json["model"]["name"], "sample");
+  EXPECT_EQ(json["model"]["links"], 2);
+  EXPECT_EQ(json["model"]["dof"], 7);
+  EXPECT_EQ(json["model"]["actuated"], 1);
+  EXPECT_EQ(json["model"]["mass_kg"], 3.0);
+  EXPECT_EQ(json["steps"], 100);
+  EXPECT_DOUBLE_EQ(json["simulated_s"], 0.2);
+  EXPECT_DOUBLE_EQ(json["real_time_factor"], 4.0);
+  EXPECT_EQ(json["time_us"]["step"]["mean"], 50.5);
+  EXPECT_EQ(json["time_us"]["step"]["p50"], 50.0);
+  EXPECT_EQ(json["time_us"]["step"]["p95"], 95.0);
+  EXPECT_EQ(json["constraints"]["max"], 100);
+  EXPECT_TRUE(json["constraints"]["max"].is_number_integer());
+  EXPECT_EQ(json["max_penetration_m"], 0.003);
+  EXPECT_EQ(json["max_control_ratio"], 0.8);
+  EXPECT_EQ(json["energy_J"]["initial"], 9.99);
+  EXPECT_EQ(json["energy_J"]["final"], 3.0);
+}
+
+TEST(Summary, PercentilesAreByNearestRank) {
+  const Series series{{5, 1, 4, 2, 3}};
+  EXPECT_EQ(series.percentile(0.5), 3);
+  EXPECT_EQ(series.percentile(0.95), 5);
+  EXPECT_EQ(series.percentile(0.2), 1);
+  EXPECT_EQ(Series{}.percentile(0.5), 0);
+}
+
+TEST(Summary, OfNoStepsAndOddNamesIsStillJson) {
+  Model m = sampleModel();
+  m.name = "caf\xe9 \"x\"";
+  const ordered_json json = ordered_json::parse(Summary(m).json());
+  EXPECT_EQ(json["steps"], 0);
+  EXPECT_EQ(json["goals"], ordered_json::array());
+}
+
+TEST(Summary, IsWrittenOrRefused) {
+  const TempFolder folder;
+  const Summary summary = sampleSummary(sampleModel());
+  summary.write(folder.path() / "s.json");
+  EXPECT_GT(std::filesystem::file_size(folder.path() / "s.json"), 100u);
+  EXPECT_THROW(summary.write(folder.path() / "none" / "s.json"), ModelError);
+}
+
+TEST(SummaryTable, EndsInAVerdict) {
+  Summary summary = sampleSummary(sampleModel());
+  EXPECT_TRUE(summary.table().ends_with("completed: reach arm: 90 % of the way, 50 mm left\n"))
+      << summary.table();
+  summary.goals.push_back({"reach base", 0.1, 0.2});
+  EXPECT_TRUE(summary.table().ends_with(
+      "completed: worst goal, reach base: moved away, 200 mm from 100 mm\n"));
+  summary.goals.clear();
+  EXPECT_TRUE(summary.table().ends_with("\ncompleted\n"));
+}
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+TEST(Explain, TellsWhatWasLoadedAndWhatIsOff) {
+  const TempFolder folder;
+  ExplainContext context;
+  context.contents.emplace();
+  const Model m =
+      readUrdf(folder.write("r.urdf", with(kSampleUrdf, "</robot>", "<gazebo/></robot>")), {},
+               &*context.contents)
+          .build();
+  context.filtered = {{"base", "arm", "adjacent"}};
+  context.testedPairs = 0;
+  const std::string text = explain(m, context);
+  for (const char* part :
+       {"2 links, 1 joint, 2 moving bodies", "7 degrees of freedom, 1 actuated", "3 kg",
+        "'base' floats", "shoulder revolute arm", "-1 .. 1.5 rad", "5 N m", "box 1",
+        "1 pair never tested: adjacent", "base - arm", "0 pairs may touch",
+        "joint_limit    1 joint range, 'shoulder'", "ignored: 1 <gazebo>"})
+    EXPECT_TRUE(contains(text, part)) << part << "\n" << text;
+}
+
+TEST(EffectNotes, FollowTheSceneAndTheSwitches) {
+  Model m = sampleModel();
+  const auto note = [&](const std::string& name) {
+    for (const EffectNote& n : effectNotes(m))
+      if (n.name == name) return n;
+    ADD_FAILURE() << name;
+    return EffectNote{};
+  };
+  EXPECT_EQ(effectNotes(m).size(), 14u);
+  EXPECT_TRUE(note("gravity").on);
+  EXPECT_TRUE(note("self_collision").on);
+  EXPECT_FALSE(note("ground_contact").on);
+  EXPECT_FALSE(note("spring").asked);
+  EXPECT_TRUE(note("dry_friction").asked);
+  m.options.effects.remove(Effect::damping);
+  EXPECT_FALSE(note("damping").on);
+  EXPECT_TRUE(contains(note("damping").reason, "switched off"));
+  m.options.gravity.setZero();
+  EXPECT_EQ(note("gravity").reason, "gravity is zero");
+}
+
+}  // namespace
+}  // namespace softgauss::io

@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/urdf.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+
+#include "engine/core/rotation.hpp"
+#include "sample_urdf.hpp"
+#include "temp_folder.hpp"
+
+namespace softgauss::io {
+namespace {
+
+/// One triangle, as an STL file.
+const char* const kTriangle =
+    "solid t\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
+    "endloop\nendfacet\nendsolid t\n";
+
+Model load(const std::string& text, const UrdfOptions& options = {}) {
+  const TempFolder folder;
+  return loadUrdf(folder.write("robot.urdf", text), options);
+}
+
+bool hasWarning(const Model& model, const std::string& part) {
+  for (const std::string& warning : model.warnings)
+    if (warning.find(part) != std::string::npos) return true;
+  return false;
+}
+
+TEST(UrdfContent, EveryPhysicsElementArrives) {
+  const Model m = load(kSampleUrdf);
+  EXPECT_EQ(m.name, "sample");
+  EXPECT_TRUE(m.warnings.empty()) << m.warnings.front();
+  ASSERT_EQ(m.bodyCount(), 3);
+  ASSERT_EQ(m.nv, 7);
+
+  const Body& base = m.bodies[1];
+  EXPECT_EQ(base.joint, JointKind::floating);
+  EXPECT_EQ(base.mass, 2.0);
+  EXPECT_EQ(base.com, Vector3(0.1, 0.2, 0.3));
+  // A quarter turn about z exchanges the moments about x and y.
+  EXPECT_NEAR(base.I_Bcm.xx, 0.2, 1e-15);
+  EXPECT_NEAR(base.I_Bcm.yy, 0.1, 1e-15);
+  EXPECT_NEAR(base.I_Bcm.zz, 0.25, 1e-15);
+  EXPECT_NEAR(base.I_Bcm.xy, 0.0, 1e-15);
+
+  const Body& arm = m.bodies[2];
+  EXPECT_EQ(arm.joint, JointKind::revolute);
+  EXPECT_EQ(arm.axis, Vector3::UnitZ());
+  EXPECT_EQ(arm.X_PB.p, Vector3(0, 0, 0.5));
+  EXPECT_TRUE(arm.X_PB.R.isApprox(rpyRotation({0.1, 0.2, 0.3}), 1e-15));
+  const Dof& dof = m.dofs[6];
+  EXPECT_TRUE(dof.actuated);
+  EXPECT_EQ(dof.effortLower, -5.0);
+  EXPECT_EQ(dof.effortUpper, 5.0);
+  EXPECT_EQ(dof.velocityLimit, 3.0);
+  EXPECT_EQ(dof.damping, 0.5);
+  EXPECT_EQ(dof.dryFriction, 0.25);
+  ASSERT_EQ(m.ranges.size(), 1u);
+  EXPECT_EQ(m.ranges[0].lower, -1.0);
+  EXPECT_EQ(m.ranges[0].upper, 1.5);
+
+  ASSERT_EQ(m.geometries.size(), 2u);
+  EXPECT_EQ(m.geometries[0].name, "base/0");
+  EXPECT_EQ(m.geometries[0].X_BG.p, Vector3(1, 2, 3));
+  EXPECT_EQ(m.geometries[0].shape.kind, ShapeKind::box);
+  EXPECT_EQ(m.geometries[0].shape.halfExtents, Vector3(0.1, 0.2, 0.3));
+  EXPECT_EQ(m.geometries[1].shape.kind, ShapeKind::cylinder);
+  EXPECT_EQ(m.geometries[1].shape.halfLength, 0.25);
+  ASSERT_EQ(m.visuals.size(), 1u);
+  EXPECT_EQ(m.visuals[0].shape.kind, ShapeKind::sphere);
+  EXPECT_EQ(m.visuals[0].rgba, Eigen::Vector4d(1, 0, 0, 0.5));
+}
+
+TEST(UrdfContent, ContentsCountTheFile) {
+  const TempFolder folder;
+  UrdfContents contents;
+  readUrdf(folder.write("robot.urdf", kSampleUrdf), {}, &contents);
+  EXPECT_EQ(contents.links, 2);
+  EXPECT_EQ(contents.joints, 1);
+  EXPECT_EQ(contents.mass, 3.0);
+}
+
+TEST(UrdfContent, RootCalledWorldIsFixedAndAFloatingJointIsNotDoubled) {
+  EXPECT_EQ(load(with(with(kSampleUrdf, "name=\"base\"", "name=\"world\""), "parent link=\"base\"",
+                      "parent link=\"world\""))
+                .nv,
+            1);
+  const Model m = load(
+      with(kSampleUrdf, "</robot>",
+           "<link name=\"world\"/><joint name=\"free\" type=\"floating\"><parent link=\"world\"/>"
+           "<child link=\"base\"/></joint></robot>"));
+  EXPECT_EQ(m.nv, 7);
+  EXPECT_EQ(m.jointNames[1], "free");
+}
+
+TEST(UrdfLimit, WithoutEffortHasNoBox) {
+  for (const char* limit : {"lower=\"-1\" upper=\"1.5\"", "velocity=\"1\"", ""}) {
+    const Model m =
+        load(with(kSampleUrdf, "lower=\"-1\" upper=\"1.5\" effort=\"5\" velocity=\"3\"", limit));
+    EXPECT_TRUE(m.dofs[6].actuated);
+    EXPECT_EQ(m.dofs[6].effortUpper, kInfinity);
+  }
+  const Model m = load(
+      with(kSampleUrdf, "<limit lower=\"-1\" upper=\"1.5\" effort=\"5\" velocity=\"3\"/>", ""));
+  EXPECT_TRUE(m.dofs[6].actuated);
+  EXPECT_TRUE(m.ranges.empty());
+  EXPECT_TRUE(hasWarning(m, "no lower and upper limit")) << "a revolute joint turns freely";
+}
+
+TEST(UrdfLimit, OfEffortZeroIsNotActuatedUnlessAskedFor) {
+  const std::string text = with(kSampleUrdf, "effort=\"5\"", "effort=\"0\"");
+  const Model m = load(text);
+  EXPECT_FALSE(m.dofs[6].actuated);
+  EXPECT_TRUE(hasWarning(m, "shoulder"));
+  UrdfOptions options;
+  options.zeroEffortIsUnlimited = true;
+  const Model unlimited = load(text, options);
+  EXPECT_TRUE(unlimited.dofs[6].actuated);
+  EXPECT_EQ(unlimited.dofs[6].effortUpper, kInfinity);
+}
+
+TEST(UrdfLimit, WithOneEndTakesZeroForTheOtherAndSaysSo) {
+  const Model m = load(with(kSampleUrdf, " upper=\"1.5\"", ""));
+  ASSERT_EQ(m.ranges.size(), 1u);
+  EXPECT_EQ(m.ranges[0].upper, 0.0);
+  EXPECT_TRUE(hasWarning(m, "shoulder"));
+}
+
+TEST(UrdfLimit, OfAContinuousJointIsNoRange) {
+  const Model m = load(with(kSampleUrdf, "type=\"revolute\"", "type=\"continuous\""));
+  EXPECT_TRUE(m.ranges.empty());
+  EXPECT_EQ(m.dofs[6].effortUpper, 5.0);
+  EXPECT_TRUE(hasWarning(m, "shoulder"));
+}
+
+TEST(UrdfJoint, FixedOnesMayCarryAZeroAxisAndAnEmptyLimit) {
+  const Model m =
+      load(with(kSampleUrdf, "</robot>",
+                "<link name=\"tip\"/><joint name=\"end\" type=\"fixed\"><parent link=\"arm\"/>"
+                "<child link=\"tip\"/><axis xyz=\"0 0 0\"/><limit lower=\"0\" "
+                "upper=\"0\"/></joint></robot>"));
+  EXPECT_EQ(m.nv, 7);
+  EXPECT_GE(m.findFrame("tip"), 0);
+}
+
+TEST(UrdfJoint, MimicFollowerIsAPassiveJointWithAWarning) {
+  const Model m = load(with(
+      kSampleUrdf, "</robot>",
+      "<link name=\"tip\"><inertial><mass value=\"1\"/><inertia ixx=\"1\" ixy=\"0\" ixz=\"0\" "
+      "iyy=\"1\" iyz=\"0\" izz=\"1\"/></inertial></link><joint name=\"end\" type=\"continuous\">"
+      "<parent link=\"arm\"/><child link=\"tip\"/>"
+      "<mimic joint=\"shoulder\" multiplier=\"-2\" offset=\"0.5\"/></joint></robot>"));
+  ASSERT_EQ(m.mimics.size(), 1u);
+  EXPECT_EQ(m.mimics[0].leader, m.findJoint("shoulder"));
+  EXPECT_EQ(m.mimics[0].multiplier, -2.0);
+  EXPECT_EQ(m.mimics[0].offset, 0.5);
+  EXPECT_FALSE(m.dofs[7].actuated);
+  EXPECT_TRUE(hasWarning(m, "mimic"));
+}
+
+TEST(UrdfWarning, CountsWhatIsNotRead) {
+  const Model m = load(with(kSampleUrdf, "</robot>",
+                            "<gazebo/><gazebo/><transmission><joint name=\"x\"/></transmission>"
+                            "</robot>"));
+  ASSERT_EQ(m.warnings.size(), 1u);
+  EXPECT_EQ(m.warnings[0], "ignored: 2 <gazebo>, 1 <transmission>");
+}
+
+TEST(UrdfWarning, ForInertiaThatNoBodyCanHave) {
+  EXPECT_TRUE(hasWarning(load(with(kSampleUrdf, "izz=\"0.25\"", "izz=\"0.31\"")), "base"));
+}
+
+TEST(UrdfMesh, IsFoundRelativeToTheFileByFileAndByPackage) {
+  const TempFolder folder;
+  folder.write("robots/pkg/meshes/t.stl", kTriangle);
+  folder.write("elsewhere/other/t.stl", kTriangle);
+  const std::string absolute = "file://" + (folder.path() / "robots/pkg/meshes/t.stl").string();
+  const auto loadMesh = [&](const std::string& uri) {
+    UrdfOptions options;
+    options.packagePaths.push_back(folder.path() / "elsewhere");
+    return loadUrdf(folder.write("robots/pkg/urdf/r.urdf",
+                                 with(kSampleUrdf, "<box size=\"0.2 0.4 0.6\"/>",
+                                      "<mesh filename=\"" + uri + "\" scale=\"2 3 4\"/>")),
+                    options);
+  };
+  for (const std::string& uri :
+       {std::string("../meshes/t.stl"), absolute, std::string("package://pkg/meshes/t.stl"),
+        std::string("package://other/t.stl")}) {
+    const Model m = loadMesh(uri);
+    ASSERT_EQ(m.geometries[0].shape.kind, ShapeKind::mesh) << uri;
+    EXPECT_EQ(m.geometries[0].shape.mesh->vertices.size(), 3u);
+    EXPECT_EQ(m.geometries[0].shape.mesh->vertices[1], Vector3(2, 0, 0));
+  }
+  EXPECT_THROW(loadMesh("package://missing/t.stl"), ModelError);
+}
+
+TEST(UrdfMesh, PackagePathsAreSoughtInOrder) {
+  const TempFolder folder;
+  folder.write("a/pkg/t.stl", kTriangle);
+  folder.write("b/pkg/t.stl", kTriangle);
+  folder.write("pkg/t.stl", kTriangle);
+  const auto file = folder.write("r.urdf", with(kSampleUrdf, "<box size=\"0.2 0.4 0.6\"/>",
+                                                "<mesh filename=\"package://pkg/t.stl\"/>"));
+  UrdfOptions options;
+  const auto found = [&] { return loadUrdf(file, options).geometries[0].shape.mesh->file; };
+  EXPECT_EQ(found(), (folder.path() / "pkg/t.stl").string());
+  setenv("ROS_PACKAGE_PATH", ("/nowhere::" + (folder.path() / "b").string()).c_str(), 1);
+  EXPECT_EQ(found(), (folder.path() / "b/pkg/t.stl").string());
+  options.packagePaths = {folder.path() / "a/pkg/"};  // the package itself, with a slash
+  EXPECT_EQ(found(), (folder.path() / "a/pkg/t.stl").string());
+  unsetenv("ROS_PACKAGE_PATH");
+}
+
+TEST(UrdfMesh, OfAVisualMayBeMissing) {
+  const Model m = load(
+      with(kSampleUrdf, "<sphere radius=\"0.3\"/>", "<mesh filename=\"package://none/t.stl\"/>"));
+  EXPECT_TRUE(m.visuals.empty());
+  ASSERT_EQ(m.warnings.size(), 1u);
+  EXPECT_EQ(m.warnings[0], "1 visual mesh file not found, not shown: package://none/t.stl");
+}
+
+TEST(UrdfMesh, OfAVisualIsReadOnlyWhenAskedFor) {
+  const TempFolder folder;
+  folder.write("t.stl", kTriangle);
+  folder.write("broken.stl", "nonsense");
+  const auto visual = [&](const std::string& mesh, bool read) {
+    UrdfOptions options;
+    options.visualMeshes = read;
+    return loadUrdf(folder.write("r.urdf", with(kSampleUrdf, "<sphere radius=\"0.3\"/>",
+                                                "<mesh filename=\"" + mesh + "\"/>")),
+                    options);
+  };
+  EXPECT_TRUE(visual("t.stl", false).visuals[0].shape.mesh->vertices.empty());
+  EXPECT_EQ(visual("t.stl", true).visuals[0].shape.mesh->vertices.size(), 3u);
+  const Model broken = visual("broken.stl", true);
+  EXPECT_TRUE(broken.visuals.empty());
+  EXPECT_TRUE(hasWarning(broken, "broken.stl"));
+}
+
+}  // namespace
+}  // namespace softgauss::io
