@@ -13,4 +13,4 @@ run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR} -B ${consumer} -G ${generator}
     -D CMAKE_PREFIX_PATH=${prefix} -D CMAKE_CXX_COMPILER=${compiler}
     -D CMAKE_BUILD_TYPE=${build_type})
 run(${CMAKE_COMMAND} --build ${consumer})
-run(${consumer}/consume)
+run(${consumer}/consume ${prefix}/share/softgauss/robots/arm.urdf)

@@ -77,6 +77,7 @@ TEST(SourceRules, LayersIncludeDownwards) {
   EXPECT_EQ(ours("collision/manifold.cpp", "io/urdf.hpp"), 1u);
   EXPECT_EQ(ours("io/urdf.cpp", "collision/manifold.hpp"), 1u);
   EXPECT_EQ(ours("io/urdf.cpp", "urdf.hpp"), 1u);
+  EXPECT_EQ(ours("tests/io/urdf_test.cpp", "sample_urdf.hpp"), 0u);
 }
 
 TEST(SourceRules, LibrariesStayInTheirSources) {
