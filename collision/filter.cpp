@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "collision/filter.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <map>
+#include <utility>
+
+namespace softgauss::collision {
+namespace {
+
+/// The link name that scenes give to what stands in the world by itself.
+constexpr std::string_view kSceneLink = "world";
+
+bool isPlane(const Geometry& g) { return g.shape.kind == ShapeKind::plane; }
+
+/// Part of a robot, as opposed to the ground and other scenery.
+bool isRobotPart(const Geometry& g) { return g.body != 0 || (!isPlane(g) && g.link != kSceneLink); }
+
+bool hasGeometry(const Model& model, int body) {
+  return std::any_of(model.geometries.begin(), model.geometries.end(),
+                     [&](const Geometry& g) { return g.body == body; });
+}
+
+/// The nearest ancestor with mass or shapes; −1 above a floating base, which hangs from nothing.
+int solidParent(const Model& model, int body) {
+  const auto at = [&](int b) -> const Body& { return model.bodies[static_cast<std::size_t>(b)]; };
+  while (body != 0) {
+    if (at(body).joint == JointKind::floating) return -1;
+    body = at(body).parent;
+    if (body == 0 || !at(body).massless || hasGeometry(model, body)) return body;
+  }
+  return -1;
+}
+
+GeometryPair inOrder(const Model& model, int i, int j) {
+  const auto kind = [&](int g) { return model.geometries[static_cast<std::size_t>(g)].shape.kind; };
+  return kind(j) < kind(i) ? GeometryPair{j, i} : GeometryPair{i, j};
+}
+
+/// Two links of two bodies, in a fixed order. The tree tells apart robots with equal names.
+using LinkPair = std::array<std::pair<int, std::string>, 2>;
+
+LinkPair linkPair(const Model& model, const Geometry& a, const Geometry& b) {
+  const auto tree = [&](const Geometry& g) {
+    return model.bodies[static_cast<std::size_t>(g.body)].tree;
+  };
+  LinkPair links{std::pair{tree(a), a.link}, std::pair{tree(b), b.link}};
+  if (links[1] < links[0]) std::swap(links[0], links[1]);
+  return links;
+}
+
+bool adjacentThroughParents(const std::vector<int>& parents, int a, int b) {
+  return parents[static_cast<std::size_t>(a)] == b || parents[static_cast<std::size_t>(b)] == a;
+}
+
+}  // namespace
+
+bool areAdjacent(const Model& model, int bodyA, int bodyB) {
+  return solidParent(model, bodyA) == bodyB || solidParent(model, bodyB) == bodyA;
+}
+
+Effect contactEffect(const Model& model, int bodyA, int bodyB) {
+  if (bodyA == 0 || bodyB == 0) return Effect::groundContact;
+  const bool oneTree = model.bodies[static_cast<std::size_t>(bodyA)].tree ==
+                       model.bodies[static_cast<std::size_t>(bodyB)].tree;
+  return oneTree ? Effect::selfCollision : Effect::objectContact;
+}
+
+PairFilter makePairFilter(const Model& model, const InitialDistance& initialDistance) {
+  PairFilter filter;
+  std::vector<int> parents;
+  for (int b = 0; b < model.bodyCount(); ++b) parents.push_back(solidParent(model, b));
+
+  std::map<LinkPair, ExcludedPair> excluded;
+  const auto entry = [&](const Geometry& a, const Geometry& b) -> ExcludedPair& {
+    const LinkPair links = linkPair(model, a, b);
+    ExcludedPair& pair = excluded[links];
+    pair.linkA = links[0].second;
+    pair.linkB = links[1].second;
+    return pair;
+  };
+
+  const auto mayOverlapByDesign = [&](const Geometry& a, const Geometry& b) {
+    return isRobotPart(a) && isRobotPart(b) &&
+           contactEffect(model, a.body, b.body) != Effect::objectContact;
+  };
+
+  // First pass: what no configuration can change, and the overlaps in the initial one.
+  std::vector<GeometryPair> candidates;
+  const int count = static_cast<int>(model.geometries.size());
+  for (int i = 0; i < count; ++i) {
+    for (int j = i + 1; j < count; ++j) {
+      const Geometry& a = model.geometries[static_cast<std::size_t>(i)];
+      const Geometry& b = model.geometries[static_cast<std::size_t>(j)];
+      if (a.body == b.body) {
+        ++filter.rigidPairs;
+        continue;
+      }
+      if (isRobotPart(a) && isRobotPart(b) && adjacentThroughParents(parents, a.body, b.body)) {
+        ExcludedPair& pair = entry(a, b);
+        pair.reason = ExclusionReason::adjacent;
+        ++pair.geometryPairs;
+        continue;
+      }
+      if (!model.options.effects.has(contactEffect(model, a.body, b.body))) {
+        ++filter.effectOffPairs;
+        continue;
+      }
+      const GeometryPair pair = inOrder(model, i, j);
+      candidates.push_back(pair);
+      if (!mayOverlapByDesign(a, b)) continue;
+      const double depth = -initialDistance(pair);
+      if (depth <= kInitialOverlap) continue;
+      ExcludedPair& overlap = entry(a, b);
+      overlap.reason = ExclusionReason::overlapsInitially;
+      overlap.depth = std::max(overlap.depth, depth);
+    }
+  }
+
+  // Second pass: the other geometries of overlapping links go with them.
+  for (const GeometryPair& pair : candidates) {
+    const Geometry& a = model.geometries[static_cast<std::size_t>(pair.a)];
+    const Geometry& b = model.geometries[static_cast<std::size_t>(pair.b)];
+    if (mayOverlapByDesign(a, b)) {
+      const auto found = excluded.find(linkPair(model, a, b));
+      if (found != excluded.end() && found->second.reason == ExclusionReason::overlapsInitially) {
+        ++found->second.geometryPairs;
+        continue;
+      }
+    }
+    filter.pairs.push_back(pair);
+  }
+  const auto rank = [&](const GeometryPair& p) {
+    return std::make_pair(!isPlane(model.geometries[static_cast<std::size_t>(p.a)]),
+                          std::make_pair(p.a, p.b));
+  };
+  std::sort(filter.pairs.begin(), filter.pairs.end(),
+            [&](const GeometryPair& x, const GeometryPair& y) { return rank(x) < rank(y); });
+  for (auto& [names, pair] : excluded) filter.excluded.push_back(std::move(pair));
+  return filter;
+}
+
+std::string describe(const ExcludedPair& pair) {
+  std::string text = pair.linkA + " – " + pair.linkB + ": ";
+  if (pair.reason == ExclusionReason::adjacent) {
+    text += "joined by a joint";
+  } else {
+    char depth[48];
+    std::snprintf(depth, sizeof depth, "overlap by %.3g mm at the start", 1e3 * pair.depth);
+    text += depth;
+  }
+  return text + " (" + std::to_string(pair.geometryPairs) +
+         (pair.geometryPairs == 1 ? " pair)" : " pairs)");
+}
+
+}  // namespace softgauss::collision

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Which pairs of geometries may collide, and which may not, with the reason.
+///
+/// A pair is left out when
+///   rigid      both geometries are on one body, or both are fixed to the world;
+///   adjacent   a joint connects their bodies. Intermediate bodies without mass and shapes are
+///              looked through: a hip of three hinges still joins thigh and pelvis. The static base
+///              of a robot is adjacent to the first body that moves on it; a ground plane and a
+///              floating base are adjacent to nothing;
+///   overlap    they belong to two links of one robot that overlap in the initial configuration.
+///              Designers let the shapes of neighbouring links run into each other; a contact there
+///              would push the robot apart from the first step on. All geometries of two such links
+///              are left out, since the ones beside the overlap mean as little;
+///   effect     the effect that the pair belongs to is switched off: self_collision (one tree),
+///              ground_contact (one side fixed to the world), object_contact (two trees).
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/model/model.hpp"
+
+namespace softgauss::collision {
+
+/// Indices into Model::geometries; kind(a) ≤ kind(b), and a < b when they are equal.
+struct GeometryPair {
+  int a = 0;
+  int b = 0;
+  bool operator==(const GeometryPair&) const = default;
+};
+
+enum class ExclusionReason : std::uint8_t { adjacent, overlapsInitially };
+
+/// Two links whose geometries never collide.
+struct ExcludedPair {
+  std::string linkA;
+  std::string linkB;
+  ExclusionReason reason = ExclusionReason::adjacent;
+  int geometryPairs = 0;  ///< how many pairs of geometries this concerns
+  double depth = 0.0;     ///< deepest overlap in the initial configuration [m], ≥ 0
+};
+
+struct PairFilter {
+  std::vector<GeometryPair> pairs;     ///< to be tested: those with a plane first, then by (a, b)
+  std::vector<ExcludedPair> excluded;  ///< adjacent and overlapping links, by link names
+  std::int64_t rigidPairs = 0;         ///< left out as rigid
+  std::int64_t effectOffPairs = 0;     ///< left out because their effect is off
+};
+
+/// Overlap deeper than this [m] in the initial configuration counts: rounding is no design.
+inline constexpr double kInitialOverlap = 1e-6;
+
+/// Signed distance [m] of the two geometries in the initial configuration, if it is negative;
+/// anything ≥ 0 otherwise.
+using InitialDistance = std::function<double(const GeometryPair&)>;
+
+PairFilter makePairFilter(const Model& model, const InitialDistance& initialDistance);
+
+/// Whether a joint connects the bodies, looking through empty bodies; symmetric.
+bool areAdjacent(const Model& model, int bodyA, int bodyB);
+
+/// The effect that makes contacts between two bodies, of which at least one moves.
+Effect contactEffect(const Model& model, int bodyA, int bodyB);
+
+/// One line such as "thigh – pelvis: joined by a joint (3 pairs)".
+std::string describe(const ExcludedPair& pair);
+
+}  // namespace softgauss::collision

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// The contacts of a scene: the engine's ContactSource.
+///
+/// Once per model: hulls of meshes, the pair filter, bounding spheres. Once per step: poses of the
+/// geometries, then every pair of the filter is rejected by its bounding spheres (or plane) or
+/// tested exactly. Scenes with more than kBroadphasePairs pairs ask FCL's dynamic tree of
+/// axis-aligned boxes which pairs are near instead of looping over all.
+///
+/// Contacts appear in the order of the filter's pairs, A and B as there. Pairs in closed form
+/// allocate nothing; the others go through FCL, which does, and which may fail: a failed pair is
+/// counted in ContactSet::pairsSkipped.
+
+#include <memory>
+
+#include "collision/filter.hpp"
+#include "collision/pair_contact.hpp"
+#include "engine/step/contact_source.hpp"
+
+namespace softgauss::collision {
+
+class SceneContacts final : public ContactSource {
+ public:
+  /// More pairs than this go through the broadphase.
+  static constexpr int kBroadphasePairs = 4000;
+
+  /// Throws ModelError when a mesh has no surface. The model must outlive this object.
+  explicit SceneContacts(const Model& model, int broadphasePairs = kBroadphasePairs);
+  ~SceneContacts() override;
+  SceneContacts(const SceneContacts&) = delete;
+  SceneContacts& operator=(const SceneContacts&) = delete;
+
+  /// `model` must be the one given to the constructor.
+  void detect(const Model& model, const Kinematics& kinematics,
+              ContactSet& contacts) noexcept override;
+
+  const PairFilter& filter() const { return filter_; }
+
+ private:
+  struct Scene;
+  std::unique_ptr<Scene> scene_;
+  PairFilter filter_;
+};
+
+}  // namespace softgauss::collision
