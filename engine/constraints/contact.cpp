@@ -59,7 +59,7 @@ void PyramidalContact::assemble(const Assembly& in) {
     const Material material = mixMaterials(model.geometries[c.geometryA].material,
                                            model.geometries[c.geometryB].material);
     const double r = c.distance - material.margin;
-    if (!(r < 0.0)) continue;
+    if (r >= 0.0) continue;  // NaN makes rows, so that the solve reports it
 
     const bool frictional = material.condim > 1 && material.slidingFriction >= kSmallestFriction;
     const double mu = frictional ? material.slidingFriction : 0.0;

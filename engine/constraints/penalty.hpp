@@ -28,8 +28,8 @@ struct Jet {
 /// A row is active where x < 0. At the knot x = 0 the curvature is that of the free side.
 struct HalfQuadratic {
   static Jet at(double x, double D) {
-    const double overshoot = x < 0.0 ? x : 0.0;
-    return {0.5 * D * overshoot * overshoot, D * overshoot, x < 0.0 ? D : 0.0};
+    const double overshoot = x >= 0.0 ? 0.0 : x;  // NaN stays NaN
+    return {0.5 * D * overshoot * overshoot, D * overshoot, x >= 0.0 ? 0.0 : D};
   }
   /// The α ≥ 0 at which x + α dx changes its piece; infinite when it never does.
   static double knotAhead(double x, double dx) {

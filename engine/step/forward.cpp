@@ -39,7 +39,7 @@ class GaussObjective {
     g = net_ - s_.Ma;
     constraints_.addForce(g);
     g = -g;
-    return g.cwiseProduct(s_.scale).cwiseAbs().maxCoeff();
+    return g.cwiseProduct(s_.scale).cwiseAbs().maxCoeff<Eigen::PropagateNaN>();
   }
 
   bool cellChanged() const { return changed_; }
