@@ -11,7 +11,7 @@ namespace {
 constexpr int kSeeds = 40;
 
 // Central differences with ε = 1e-6 of energies and momenta of O(100): rounding 1e-16·100/1e-6.
-constexpr double kDifferenceTolerance = 5e-8;
+constexpr double kDifferenceTolerance = 1e-8;
 
 /// Rate of f(kinematics, v) when the scene moves with acceleration a.
 template <class F>

@@ -14,7 +14,7 @@ namespace {
 constexpr int kSeeds = 40;
 
 // Condition numbers of these mass matrices reach 1e5; an inverse loses that many of 16 digits.
-constexpr double kTreeTolerance = 1e-10;
+constexpr double kTreeTolerance = 1e-11;
 
 VectorX treeTorque(const Scene& s, const VectorX& vdot) {
   RneaWorkspace work(s.model);
