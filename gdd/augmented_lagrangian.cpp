@@ -6,7 +6,8 @@
 
 namespace softgauss::gdd {
 
-AugmentedLagrangian::AugmentedLagrangian(const Model& model) : hessian_(model), ray_(model) {
+AugmentedLagrangian::AugmentedLagrangian(const Model& model)
+    : hessian_(model), held_(model.nv), ray_(model) {
   for (VectorX* x : {&a_, &g_, &Ma_, &Rg_, &lambda_, &rho_, &slope_, &curvature_, &w_, &gradient_,
                      &costGradient_, &direction_, &Md_, &scratch_})
     *x = VectorX::Zero(model.nv);
@@ -15,6 +16,7 @@ AugmentedLagrangian::AugmentedLagrangian(const Model& model) : hessian_(model), 
 void AugmentedLagrangian::evaluate(Data& data) {
   data.inertia.M.multiply(a_, Ma_);
   data.constraints.setResidual(a_);
+  held_.place(data.constraints);
   data.constraints.evaluate(rowsChanged_);
   // −g = Jᵀf − M a − c, as addForce() adds.
   g_ = -Ma_ - data.forces.c;
@@ -22,8 +24,8 @@ void AugmentedLagrangian::evaluate(Data& data) {
   g_ = -g_;
 }
 
-/// w, ∇Φ and the objective at the present point; returns the stationarity.
-double AugmentedLagrangian::gradient(const GoalCost& cost, const ControlBox& box, Data& data) {
+/// w and ∇Φ at the present point; false when not finite.
+bool AugmentedLagrangian::gradient(const GoalCost& cost, const ControlBox& box, Data& data) {
   const BoundPenalty bounds{box, lambda_, rho_};
   Rg_ = g_;
   massFactor_.solve(Rg_);
@@ -44,20 +46,48 @@ double AugmentedLagrangian::gradient(const GoalCost& cost, const ControlBox& box
   hessian_.multiplyP(w_, gradient_);
   cost.gradient(data.inertia.M, a_, Ma_, costGradient_);
   gradient_ += costGradient_;
+  return gradient_.allFinite();
+}
 
-  double scale = 1.0, largest = 0.0;
-  for (int i = 0; i < g_.size(); ++i) {
-    const double root = 1.0 / std::sqrt(data.inertia.M.row(i)[i]);
-    largest = std::max(largest, std::abs(gradient_[i]) * root);
+/// The Gauss–Newton direction, within the kink where rows are held; returns −∇Φ·d = dᵀH d.
+double AugmentedLagrangian::direction() {
+  direction_ = -gradient_;
+  hessian_.solve(direction_);
+  if (!held_.empty()) held_.project(direction_, [&](VectorX& x) { hessian_.solve(x); });
+  return -gradient_.dot(direction_);
+}
+
+/// ∇Φ + J_Kᵀ μ, entries scaled to one unit.
+double AugmentedLagrangian::stationarity(const TreeMatrix& M) {
+  scratch_ = gradient_;
+  for (int i = 0; i < held_.size(); ++i) scratch_ += held_[i].multiplier * held_[i].J;
+  double largest = 0.0, scale = 1.0;
+  for (int i = 0; i < scratch_.size(); ++i) {
+    const double root = 1.0 / std::sqrt(M.row(i)[i]);
+    largest = std::max(largest, std::abs(scratch_[i]) * root);
     scale = std::max(scale, std::abs(costGradient_[i]) * root);
-    if (!std::isfinite(gradient_[i])) return kNaN;
   }
   return largest / scale;
 }
 
+void AugmentedLagrangian::start(const Model& model, Data& data, const WarmStart& warm) {
+  for (int i = 0; i < model.nv; ++i) rho_[i] = options.penalty * data.weights.dof[i];
+  if (warm.gddValid && warm.gddA.allFinite() && warm.multipliers.allFinite()) {
+    a_ = warm.gddA;
+    lambda_ = warm.multipliers;
+  } else {
+    lambda_.setZero();
+    a_ = -data.forces.c;
+    massFactor_.solve(a_);
+  }
+  held_.clear();
+  rowsChanged_ = boundsChanged_ = stale_ = true;
+  curvature_.setConstant(-1.0);
+  evaluate(data);
+}
+
 GddReport AugmentedLagrangian::solve(const Model& model, GoalCost& cost, const ControlBox& box,
-                                     Data& data,
-                                     const WarmStart& warm) {
+                                     Data& data, const WarmStart& warm) {
   GddReport report;
   const auto end = [&](GddStatus status) {
     report.status = status;
@@ -66,66 +96,72 @@ GddReport AugmentedLagrangian::solve(const Model& model, GoalCost& cost, const C
   if (model.nv == 0) return report;
   const TreeMatrix& M = data.inertia.M;
   if (!data.forces.c.allFinite() || !massFactor_.compute(M)) return end(GddStatus::notFinite);
-
-  const bool isWarm = warm.gddValid && warm.gddA.allFinite() && warm.multipliers.allFinite();
-  for (int i = 0; i < model.nv; ++i) rho_[i] = options.penalty * data.weights.dof[i];
-  if (isWarm) {
-    a_ = warm.gddA;
-    lambda_ = warm.multipliers;
-  } else {
-    lambda_.setZero();
-    a_ = -data.forces.c;
-    massFactor_.solve(a_);
-  }
-  rowsChanged_ = boundsChanged_ = stale_ = true;
-  curvature_.setConstant(-1.0);
-  evaluate(data);
+  start(model, data, warm);
   const BoundPenalty bounds{box, lambda_, rho_};
+  const double forceScale = std::max(1.0, data.forces.c.cwiseAbs().maxCoeff());
+  double promised = kInfinity, lastViolation = kInfinity;
+  bool wholeStep = false;  // the last step met no knot
 
-  double previous = kInfinity;  // Φ before the last step, for the same multipliers
-  bool atKink = false;
   for (;;) {
-    report.stationarity = gradient(cost, box, data);
-    if (!std::isfinite(report.stationarity)) return end(GddStatus::notFinite);
+    if (!gradient(cost, box, data)) return end(GddStatus::notFinite);
     report.violation = box.violation(g_);
     report.objective = 0.5 * g_.dot(Rg_) + cost.value(M, a_, Ma_);
-    const double merit = report.objective + penalty_;
-    const double gain = previous - merit;
-    const bool stalled = gain <= options.decreaseTolerance * std::max(1.0, std::abs(merit));
-    const bool stationary = report.stationarity <= options.gradientTolerance;
+    if (report.iterations == options.maxIterations) return end(GddStatus::iterationLimit);
 
-    if (stationary || (stalled && previous < kInfinity)) {
-      atKink = !stationary;
-      if (report.violation <= options.violationTolerance) break;
-      if (report.dualUpdates == options.maxDualUpdates) break;
-      lambda_ = slope_;
-      ++report.dualUpdates;
-      previous = kInfinity;
-      continue;
-    }
-    if (report.iterations == options.maxIterations) break;
-
+    // Direction in this cell.
+    const bool sameCell = !stale_ && !boundsChanged_ && wholeStep;
+    wholeStep = false;
     if (stale_ || boundsChanged_) {
       ++report.factorizations;
-      if (!hessian_.factorize(data, massFactor_, curvature_, cost)) return end(GddStatus::notFinite);
+      if (!hessian_.factorize(data, massFactor_, curvature_, cost))
+        return end(GddStatus::notFinite);
       stale_ = boundsChanged_ = false;
     }
-    direction_ = -gradient_;
-    hessian_.solve(direction_);
+    const double decrement = direction();
+    report.stationarity = stationarity(M);
+
+    // Stationary: leave a kink, or update the multipliers, or done. A second full step in one cell
+    // that promises no less than the first has reached rounding.
+    const double merit = std::abs(report.objective) + penalty_;
+    const bool rounding = decrement <= 1e-14 * merit || (sameCell && decrement > 0.01 * promised);
+    if (report.stationarity <= options.gradientTolerance || rounding) {
+      bool towardsStiff = false;
+      const int leaving = held_.leaving(data.constraints, w_, towardsStiff);
+      if (leaving >= 0) {
+        if (towardsStiff) {
+          data.constraints.placeAtKnot(held_[leaving].id, true);
+          data.constraints.evaluate(rowsChanged_);
+        }
+        held_.release(leaving);
+        ++report.iterations;
+        continue;
+      }
+      const bool feasible = report.violation <= options.violationTolerance * forceScale;
+      const bool noBetter = report.violation > 0.5 * lastViolation &&
+                            report.violation <= 1e2 * options.violationTolerance * forceScale;
+      if (feasible || noBetter) return end(held_.empty() ? GddStatus::converged : GddStatus::kink);
+      if (report.dualUpdates == options.maxDualUpdates) return end(GddStatus::iterationLimit);
+      lambda_ = slope_;
+      lastViolation = report.violation;
+      ++report.dualUpdates;
+      continue;
+    }
+
+    // Exact line search; a minimum at a knot holds its row there.
     data.constraints.setRay(direction_);
+    held_.holdOnRay(data.constraints);
     hessian_.multiplyP(direction_, scratch_);
     M.multiply(direction_, Md_);
     const RayResult ray =
         ray_.minimize(data.constraints, massFactor_, bounds, g_, scratch_,
                       costGradient_.dot(direction_), cost.curvatureAlong(direction_, Md_));
     ++report.iterations;
-    previous = merit;
     a_ += ray.alpha * direction_;
+    if (ray.kink) held_.hold(ray.last, data.constraints);
     evaluate(data);
+    wholeStep = ray.crossings == 0;
+    promised = decrement;
   }
-  if (report.violation > options.violationTolerance || report.iterations == options.maxIterations)
-    return end(GddStatus::iterationLimit);
-  return end(atKink ? GddStatus::kink : GddStatus::converged);
 }
 
 void AugmentedLagrangian::keepWarmStart(WarmStart& warm) const {

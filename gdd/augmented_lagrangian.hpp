@@ -13,10 +13,11 @@
 /// λ ← ψ′(g) until the constraints hold. H is factored anew only where a row or a bound has
 /// changed its piece: a dual update in the same cell costs two triangular solves.
 ///
-/// At a kink (a row exactly at its knot) the gradient does not vanish: the solver stops when the
-/// objective stops decreasing and reports `kink`.
+/// Where the minimum along a ray is the knot of a row (a kink), the gradient never vanishes: that
+/// row is held at its knot and the iteration goes on within the kink (held_rows.hpp).
 
 #include "gdd/cost.hpp"
+#include "gdd/held_rows.hpp"
 #include "gdd/hessian.hpp"
 #include "gdd/problem.hpp"
 #include "gdd/ray.hpp"
@@ -24,29 +25,28 @@
 namespace softgauss::gdd {
 
 struct AugmentedLagrangianOptions {
-  double penalty = 1e6;             ///< ρᵢ = penalty · (M⁻¹)ᵢᵢ [-]
-  double gradientTolerance = 1e-9;  ///< scaled ∇Φ, see Report::stationarity
-  double violationTolerance = 1e-8; ///< distance of g from its box [N or N m]
-  double decreaseTolerance = 1e-10; ///< relative decrease of Φ below which a kink is reached
+  double penalty = 1e5;               ///< ρᵢ = penalty · (M⁻¹)ᵢᵢ [-]
+  double gradientTolerance = 1e-8;    ///< scaled ∇Φ, see Report::stationarity
+  double violationTolerance = 1e-10;  ///< distance of g from its box, over max(1, |c|)
   int maxIterations = 50;
   int maxDualUpdates = 20;
 };
 
 enum class GddStatus {
   converged,
-  kink,            ///< a minimum with rows at their knots
+  kink,  ///< converged, with rows held at their knots
   iterationLimit,
   notFinite
 };
 
 struct GddReport {
   GddStatus status = GddStatus::converged;
-  int iterations = 0;        ///< Newton directions
+  int iterations = 0;  ///< Newton directions
   int dualUpdates = 0;
   int factorizations = 0;
-  double violation = 0.0;    ///< distance of g(a) from its box [N or N m]
-  double stationarity = 0.0; ///< max |∇Φᵢ|/√M_ii over max(1, max |∇ℓᵢ|/√M_ii)
-  double objective = 0.0;    ///< ½ gᵀR g + ℓ up to ℓ's constant
+  double violation = 0.0;  ///< distance of g(a) from its box [N or N m]
+  double stationarity = 0.0;  ///< max |∇Φ + J_Kᵀμ|ᵢ/√M_ii over max(1, max |∇ℓᵢ|/√M_ii)
+  double objective = 0.0;  ///< ½ gᵀR g + ℓ up to ℓ's constant
 };
 
 class AugmentedLagrangian {
@@ -65,15 +65,19 @@ class AugmentedLagrangian {
   const VectorX& force() const { return g_; }  ///< g(a): the control, before clamping
 
  private:
+  void start(const Model& model, Data& data, const WarmStart& warm);
   void evaluate(Data& data);
-  double gradient(const GoalCost& cost, const ControlBox& box, Data& data);
+  bool gradient(const GoalCost& cost, const ControlBox& box, Data& data);
+  double direction();
+  double stationarity(const TreeMatrix& M);
 
   VectorX a_, g_, Ma_, Rg_;
   VectorX lambda_, rho_;
   VectorX slope_, curvature_;  ///< ψ′, ψ″ (nv)
   VectorX w_, gradient_, costGradient_, direction_, Md_, scratch_;
-  TreeFactor massFactor_;      ///< of M: R = M⁻¹
+  TreeFactor massFactor_;  ///< of M: R = M⁻¹
   GaussNewtonHessian hessian_;
+  HeldRows held_;
   Ray ray_;
   double penalty_ = 0.0;       ///< Σ ψ
   bool rowsChanged_ = true;    ///< a row changed its piece: P is out of date

@@ -39,10 +39,10 @@ class GoalCost {
 
  private:
   BlockJacobian rows_;
-  std::vector<double> weight_;   ///< one a block
+  std::vector<double> weight_;  ///< one a block
   std::vector<Vector3> target_;
-  double metricWeight_ = 0.0;    ///< m
-  VectorX metricOffset_;         ///< o
+  double metricWeight_ = 0.0;  ///< m
+  VectorX metricOffset_;       ///< o
   mutable VectorX scratch_;
 };
 

@@ -21,12 +21,12 @@ class GoalDirectedController {
   explicit GoalDirectedController(const Model& model);
 
   std::vector<std::unique_ptr<Goal>> goals;
-  ControlBox box;               ///< of all dofs; change it to change what the actuators can do
+  ControlBox box;  ///< of all dofs; change it to change what the actuators can do
   AugmentedLagrangian solver;
 
-  VectorX control;              ///< u of the last step, 0 on unactuated dofs (nv) [N or N m]
-  GddReport report;             ///< of the last step
-  double solveTime = 0.0;       ///< wall time of the last GDD solve [s]
+  VectorX control;         ///< u of the last step, 0 on unactuated dofs (nv) [N or N m]
+  GddReport report;        ///< of the last step
+  double solveTime = 0.0;  ///< wall time of the last GDD solve [s]
 
   /// One step. `input` acts besides the control (disturbances). On SolveStatus::notFinite the
   /// state is left as it was.

@@ -35,12 +35,12 @@ class GaussNewtonHessian {
   void addBounds(const VectorX& boundCurvature);
 
   TreeMatrix P_, G_;
-  TreeSparsity dense_;           ///< all dofs coupled
+  TreeSparsity dense_;  ///< all dofs coupled
   TreeMatrix H_;
   TreeFactor factor_;
-  std::vector<int> touched_;     ///< dofs that active rows move, ascending
-  std::vector<int> compact_;     ///< dof → place in touched_, or −1
-  std::vector<double> C_;        ///< rows of length touched_.size()
+  std::vector<int> touched_;  ///< dofs that active rows move, ascending
+  std::vector<int> compact_;  ///< dof → place in touched_, or −1
+  std::vector<double> C_;     ///< rows of length touched_.size()
   std::vector<double> gram_;
   std::vector<double> boundRows_;
 };

@@ -28,9 +28,7 @@ struct ControlBox {
     }
   }
   /// Distance of g from the box, largest component [N or N m].
-  double violation(const VectorX& g) const {
-    return (g - clamp(g)).cwiseAbs().maxCoeff();
-  }
+  double violation(const VectorX& g) const { return (g - clamp(g)).cwiseAbs().maxCoeff(); }
   VectorX clamp(const VectorX& g) const { return g.cwiseMax(lower).cwiseMin(upper); }
 };
 

@@ -23,7 +23,7 @@ RayResult Ray::minimize(const Constraints& constraints, const TreeFactor& massFa
   constraints.findCrossings(crossings_);
   const auto later = [](const Crossing& a, const Crossing& b) {
     if (a.alpha != b.alpha) return a.alpha > b.alpha;
-    return a.kind != b.kind ? a.kind > b.kind : a.row > b.row;
+    return a.id > b.id;
   };
   std::make_heap(crossings_.begin(), crossings_.end(), later);
 
@@ -36,8 +36,7 @@ RayResult Ray::minimize(const Constraints& constraints, const TreeFactor& massFa
     massFactor.solve(Rrate_);
     smoothSlope_ = g_.dot(Rrate_) + costSlope + result.alpha * costCurvature;
     smoothCurvature_ = rate_.dot(Rrate_) + costCurvature;
-    const double length =
-        crossings_.empty() ? kInfinity : crossings_.front().alpha - result.alpha;
+    const double length = crossings_.empty() ? kInfinity : crossings_.front().alpha - result.alpha;
     const Jet start = slopeAt(bounds, 0.0);
     if (!(start.slope < 0.0)) {
       result.kink = result.crossings > 0;
@@ -65,8 +64,9 @@ RayResult Ray::minimize(const Constraints& constraints, const TreeFactor& massFa
     std::pop_heap(crossings_.begin(), crossings_.end(), later);
     crossings_.pop_back();
     g_ += length * rate_;
-    constraints.addRow(crossing, crossing.curvatureJump * crossing.rate, rate_);
+    constraints.addRow(crossing.id, crossing.curvatureJump * crossing.rate, rate_);
     result.alpha = crossing.alpha;
+    result.last = crossing.id;
     ++result.crossings;
   }
 }

@@ -33,14 +33,17 @@ struct BoundPenalty {
 
 struct RayResult {
   double alpha = 0.0;
-  bool kink = false;   ///< ended at a knot of a row
-  int crossings = 0;   ///< knots passed
+  bool kink = false;  ///< ended at a knot of a row
+  int crossings = 0;  ///< knots passed
+  RowId last;         ///< row of the last knot
 };
 
 class Ray {
  public:
   explicit Ray(const Model& model)
-      : g_(VectorX::Zero(model.nv)), rate_(VectorX::Zero(model.nv)), Rrate_(VectorX::Zero(model.nv)) {}
+      : g_(VectorX::Zero(model.nv)),
+        rate_(VectorX::Zero(model.nv)),
+        Rrate_(VectorX::Zero(model.nv)) {}
 
   /// g: inverse dynamics at α = 0; rate: P d; costSlope, costCurvature: of ℓ along d. The rows'
   /// ray must be set (Constraints::setRay).

@@ -16,10 +16,10 @@
 namespace softgauss {
 
 struct JacobianBlock {
-  int dim = 0;           ///< rows
-  int columns = 0;       ///< entries of a row
-  int value = 0;         ///< first coefficient
-  int segment = 0;       ///< first segment
+  int dim = 0;      ///< rows
+  int columns = 0;  ///< entries of a row
+  int value = 0;    ///< first coefficient
+  int segment = 0;  ///< first segment
   int segmentEnd = 0;
   bool couples = false;  ///< both branches have dofs
 };

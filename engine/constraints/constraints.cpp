@@ -7,9 +7,8 @@ namespace softgauss {
 namespace {
 
 bool same(const std::vector<Segment>& a, const std::vector<Segment>& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](Segment s, Segment t) {
-    return s.begin == t.begin && s.end == t.end;
-  });
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](Segment s, Segment t) { return s.begin == t.begin && s.end == t.end; });
 }
 
 }  // namespace
@@ -79,11 +78,22 @@ void Constraints::findCrossings(std::vector<Crossing>& crossings) const {
   });
 }
 
-void Constraints::addRow(const Crossing& crossing, double scale, VectorX& y) const {
-  int kind = 0;
-  visit([&](const auto& c) {
-    if (kind++ == crossing.kind) c.addRow(crossing.row, scale, y);
-  });
+void Constraints::addRow(RowId id, double scale, VectorX& y) const {
+  visitOne(*this, id.kind, [&](const auto& c) { c.addRow(id.row, scale, y); });
+}
+
+double Constraints::stiffness(RowId id) const {
+  double D = 0.0;
+  visitOne(*this, id.kind, [&](const auto& c) { D = c.D[id.row]; });
+  return D;
+}
+
+void Constraints::placeAtKnot(RowId id, bool stiffSide) {
+  visitOne(*this, id.kind, [&](auto& c) { c.placeAtKnot(id.row, stiffSide); });
+}
+
+void Constraints::holdOnRay(RowId id) {
+  visitOne(*this, id.kind, [&](auto& c) { c.dx[id.row] = 0.0; });
 }
 
 MatrixX Constraints::denseJacobian() const {

@@ -19,14 +19,14 @@ template <class C>
 concept SoftConstraint = requires(C c, const Assembly& in, const VectorX& a, VectorX& tau,
                                   std::vector<double>& y, TreeMatrix& P, bool& changed, Jet& jet) {
   { c.rowCount() } -> std::convertible_to<int>;
-  c.assemble(in);                                         // rows, a_ref, D
-  c.multiply(a, y);                                       // y = J a
+  c.assemble(in);                                          // rows, a_ref, D
+  c.multiply(a, y);                                        // y = J a
   { c.evaluate(changed) } -> std::convertible_to<double>;  // cost; force, curvature
-  c.along(0.0, jet);                                      // derivatives along a ray
-  c.advance(0.0);                                         // x += α dx
-  c.addForce(tau);                                        // tau += Jᵀ f
-  c.addCurvature(P);                                      // P += Jᵀ ∇²s J
-  c.addRow(0, 1.0, tau);                                  // tau += scale · (row of J)ᵀ
+  c.along(0.0, jet);                                       // derivatives along a ray
+  c.advance(0.0);                                          // x += α dx
+  c.addForce(tau);                                         // tau += Jᵀ f
+  c.addCurvature(P);                                       // P += Jᵀ ∇²s J
+  c.addRow(0, 1.0, tau);                                   // tau += scale · (row of J)ᵀ
 };
 
 class Constraints {
@@ -63,12 +63,27 @@ class Constraints {
   void addCurvature(TreeMatrix& P);
   /// All knots ahead on the ray, α ≥ 0, unordered.
   void findCrossings(std::vector<Crossing>& crossings) const;
-  /// y ← y + scale · (row)ᵀ of the row that crosses.
-  void addRow(const Crossing& crossing, double scale, VectorX& y) const;
+  /// y ← y + scale · (row of J)ᵀ.
+  void addRow(RowId id, double scale, VectorX& y) const;
+  /// Stiffness D of a row.
+  double stiffness(RowId id) const;
+  /// Puts a row exactly at its knot, on its stiff or its free side.
+  void placeAtKnot(RowId id, bool stiffSide);
+  /// Takes a row off the ray: dx ← 0.
+  void holdOnRay(RowId id);
   /// (rows × nv) J, dense; allocates.
   MatrixX denseJacobian() const;
 
  private:
+  /// Calls f with the effect of a row.
+  template <class Self, class F>
+  static void visitOne(Self& self, int kind, F&& f) {
+    int i = 0;
+    self.visit([&](auto& c) {
+      if (i++ == kind) f(c);
+    });
+  }
+
   const TreeSparsity* sparsity_ = nullptr;
   TreeSparsity coupled_;
   std::vector<Segment> couplings_, lastCouplings_;

@@ -40,9 +40,12 @@ Material mixMaterials(const Material& a, const Material& b) {
   m.condim = std::max(a.condim, b.condim);
   m.margin = a.margin + b.margin;
   const Impedance &p = a.impedance, &q = b.impedance;
-  m.impedance = {0.5 * (p.timeConstant + q.timeConstant), 0.5 * (p.dampingRatio + q.dampingRatio),
-                 0.5 * (p.dMin + q.dMin),                 0.5 * (p.dMax + q.dMax),
-                 0.5 * (p.width + q.width),               0.5 * (p.midpoint + q.midpoint),
+  m.impedance = {0.5 * (p.timeConstant + q.timeConstant),
+                 0.5 * (p.dampingRatio + q.dampingRatio),
+                 0.5 * (p.dMin + q.dMin),
+                 0.5 * (p.dMax + q.dMax),
+                 0.5 * (p.width + q.width),
+                 0.5 * (p.midpoint + q.midpoint),
                  0.5 * (p.power + q.power)};
   return m;
 }
@@ -147,8 +150,7 @@ Vector3 PyramidalContact::force(int i) const {
   const double* e = f.data() + made_[i].row;
   const double mu = made_[i].friction;
   if (mu == 0.0) return e[0] * made_[i].R_WC.col(0);
-  return made_[i].R_WC *
-         Vector3(e[0] + e[1] + e[2] + e[3], mu * (e[0] - e[1]), mu * (e[2] - e[3]));
+  return made_[i].R_WC * Vector3(e[0] + e[1] + e[2] + e[3], mu * (e[0] - e[1]), mu * (e[2] - e[3]));
 }
 
 }  // namespace softgauss

@@ -26,10 +26,10 @@ Material mixMaterials(const Material& a, const Material& b);
 
 /// A contact that made rows.
 struct ContactRows {
-  int contact = 0;       ///< index into ContactSet::contacts
-  int row = 0;           ///< first row
-  double friction = 0;   ///< μ, 0 when frictionless
-  Matrix3 R_WC;          ///< columns n, t₁, t₂
+  int contact = 0;      ///< index into ContactSet::contacts
+  int row = 0;          ///< first row
+  double friction = 0;  ///< μ, 0 when frictionless
+  Matrix3 R_WC;         ///< columns n, t₁, t₂
 };
 
 class PyramidalContact : public ScalarRows<HalfQuadratic> {

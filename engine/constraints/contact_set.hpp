@@ -26,9 +26,9 @@ struct Contact {
 /// All contacts of a step; keeps its memory from step to step.
 struct ContactSet {
   std::vector<Contact> contacts;
-  std::int64_t growths = 0;        ///< times the capacity had to grow since construction
-  std::int64_t pairsTested = 0;    ///< exact pair tests of this step
-  std::int64_t pairsSkipped = 0;   ///< pairs whose query failed in this step, see ContactSource
+  std::int64_t growths = 0;       ///< times the capacity had to grow since construction
+  std::int64_t pairsTested = 0;   ///< exact pair tests of this step
+  std::int64_t pairsSkipped = 0;  ///< pairs whose query failed in this step, see ContactSource
 
   void clear() {
     contacts.clear();

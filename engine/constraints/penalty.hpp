@@ -6,6 +6,7 @@
 /// inverse, the line search and goal directed dynamics cannot disagree.
 
 #include <concepts>
+#include <limits>
 
 #include "engine/core/check.hpp"
 
@@ -35,6 +36,10 @@ struct HalfQuadratic {
   static double knotAhead(double x, double dx) {
     const bool leaves = x < 0.0 && dx > 0.0, enters = x >= 0.0 && dx < 0.0;
     return leaves || enters ? -x / dx : kInfinity;
+  }
+  /// The knot, seen from its stiff side (the smallest x < 0) or its free side.
+  static double knot(bool stiffSide) {
+    return stiffSide ? -std::numeric_limits<double>::min() : 0.0;
   }
   /// Change of the curvature there, going along dx.
   static double curvatureJump(double dx, double D) { return dx > 0.0 ? -D : D; }

@@ -7,6 +7,7 @@
 ///
 /// An effect fills `reference` and D, and maps between rows and dofs; everything else is here.
 
+#include <compare>
 #include <cstddef>
 #include <vector>
 
@@ -15,13 +16,19 @@
 
 namespace softgauss {
 
+/// A row among all effects.
+struct RowId {
+  int kind = 0;  ///< place of its effect in Constraints::visit()
+  int row = 0;
+  auto operator<=>(const RowId&) const = default;
+};
+
 /// A row that reaches a knot of its penalty at α = alpha along the ray a + α d.
 struct Crossing {
   double alpha = 0.0;
   double curvatureJump = 0.0;  ///< s″ after − before
   double rate = 0.0;           ///< dx of the row
-  int kind = 0;                ///< place of its effect in Constraints::visit()
-  int row = 0;
+  RowId id;
 };
 
 template <ScalarPenalty Penalty>
@@ -71,9 +78,12 @@ class ScalarRows {
       const double alpha = Penalty::knotAhead(x[i], dx[i]);
       if (!(alpha < kInfinity)) continue;
       const double jump = Penalty::curvatureJump(dx[i], D[i]);
-      crossings.push_back({alpha, jump, dx[i], kind, static_cast<int>(i)});
+      crossings.push_back({alpha, jump, dx[i], {kind, static_cast<int>(i)}});
     }
   }
+
+  /// Puts a row exactly at its knot, on the side of the larger or of the smaller curvature.
+  void placeAtKnot(int row, bool stiffSide) { x[row] = Penalty::knot(stiffSide); }
 
   void advance(double alpha) {
     for (std::size_t i = 0; i < x.size(); ++i) x[i] += alpha * dx[i];

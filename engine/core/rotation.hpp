@@ -24,8 +24,8 @@ inline Quaternion quaternionExp(const Vector3& phi) {
   const double angle2 = phi.squaredNorm();
   const double angle = std::sqrt(angle2);
   // sin(θ/2)/θ = 1/2 − θ²/48 + θ⁴/3840; below 1e-3 rad the next term is under 1e-22.
-  const double scale = angle < 1e-3 ? 0.5 - angle2 / 48.0 + angle2 * angle2 / 3840.0
-                                    : std::sin(0.5 * angle) / angle;
+  const double scale =
+      angle < 1e-3 ? 0.5 - angle2 / 48.0 + angle2 * angle2 / 3840.0 : std::sin(0.5 * angle) / angle;
   return {std::cos(0.5 * angle), scale * phi.x(), scale * phi.y(), scale * phi.z()};
 }
 
@@ -36,7 +36,8 @@ inline Vector3 quaternionLog(const Quaternion& q) {
   const double s = v.norm();
   const double w = sign * q.w();
   // 2 atan2(s, w)/s → 2/w (1 − s²/(3 w²)) for small s.
-  const double scale = s < 1e-5 ? 2.0 / w * (1.0 - s * s / (3.0 * w * w)) : 2.0 * std::atan2(s, w) / s;
+  const double scale =
+      s < 1e-5 ? 2.0 / w * (1.0 - s * s / (3.0 * w * w)) : 2.0 * std::atan2(s, w) / s;
   return scale * v;
 }
 

@@ -42,7 +42,8 @@ VectorX articulatedBodyAcceleration(const Model& model, const Kinematics& k,
   }
   // Velocity-product acceleration of joint b alone.
   const auto c = [&](int b) {
-    return coriolis ? Vector6(vec(k.A_bias[b] - k.A_bias[model.bodies[b].parent])) : Vector6::Zero();
+    return coriolis ? Vector6(vec(k.A_bias[b] - k.A_bias[model.bodies[b].parent]))
+                    : Vector6::Zero();
   };
   for (int b = bodies - 1; b > 0; --b) {
     const Body& body = model.bodies[b];

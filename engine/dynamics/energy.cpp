@@ -5,10 +5,10 @@ namespace softgauss {
 namespace {
 
 struct BodyMotion {
-  Vector3 p_WC;   ///< centre of mass
+  Vector3 p_WC;  ///< centre of mass
   Vector3 v_WC;
   Vector3 omega;
-  Vector3 H_C;    ///< angular momentum about the centre of mass
+  Vector3 H_C;  ///< angular momentum about the centre of mass
 };
 
 BodyMotion bodyMotion(const Model& model, const Kinematics& k, int b) {

@@ -3,7 +3,8 @@
 
 /// Mass matrix by the composite-rigid-body algorithm (Featherstone 2008, section 6.2).
 ///
-///   M_ij = S_iᵀ I^c_b(i) S_j  for j an ancestor of i (or i itself),  + armature on the diagonal (T.6)
+///   M_ij = S_iᵀ I^c_b(i) S_j  for j an ancestor of i (or i itself),  + armature on the diagonal
+///   (T.6)
 ///
 /// I^c_b is the inertia of body b and everything that hangs from it, in world axes about O.
 
@@ -19,7 +20,7 @@ struct MassMatrix {
   std::vector<Inertia> body;       ///< (bodies) inertia of each body alone, about O
   std::vector<Inertia> composite;  ///< (bodies) of its subtree
   TreeSparsity sparsity;
-  TreeMatrix M;                    ///< (nv × nv)
+  TreeMatrix M;  ///< (nv × nv)
 
   MassMatrix() = default;
   explicit MassMatrix(const Model& model);

@@ -17,7 +17,7 @@ struct Kinematics {
   std::vector<Vector3> p_WO;    ///< (trees) reference point O of each tree [m]
   std::vector<Motion> S;        ///< (nv) motion subspace of each dof, about O
   std::vector<Motion> V;        ///< (bodies) spatial velocity about O
-  std::vector<Motion> A_bias;   ///< (bodies) spatial acceleration at v̇ = 0, without gravity: J̇ v
+  std::vector<Motion> A_bias;  ///< (bodies) spatial acceleration at v̇ = 0, without gravity: J̇ v
 
   Kinematics() = default;
   explicit Kinematics(const Model& model);

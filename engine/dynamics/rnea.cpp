@@ -33,10 +33,10 @@ void computeBias(const Model& model, const Kinematics& k, const MassMatrix& iner
   const Vector3 g = gravityOf(model);
   const bool coriolis = model.options.effects.has(Effect::coriolis);
   for (int b = 1; b < model.bodyCount(); ++b)
-    work.F[b] = model.bodies[b].massless
-                    ? Force{}
-                    : bodyForce(inertia.body[b], k.V[b], coriolis ? k.A_bias[b] : Motion{}, g,
-                                coriolis);
+    work.F[b] =
+        model.bodies[b].massless
+            ? Force{}
+            : bodyForce(inertia.body[b], k.V[b], coriolis ? k.A_bias[b] : Motion{}, g, coriolis);
   project(model, k, work, bias);
 }
 
@@ -51,8 +51,8 @@ void inverseDynamicsTree(const Model& model, const Kinematics& k, const MassMatr
     A = work.A[body.parent];
     for (int i = body.v; i < body.v + body.dofs; ++i) A += k.S[i] * vdot[i];
     work.F[b] = body.massless ? Force{}
-                              : bodyForce(inertia.body[b], k.V[b],
-                                          coriolis ? A + k.A_bias[b] : A, g, coriolis);
+                              : bodyForce(inertia.body[b], k.V[b], coriolis ? A + k.A_bias[b] : A,
+                                          g, coriolis);
   }
   project(model, k, work, tau);
   if (model.options.effects.has(Effect::armature))

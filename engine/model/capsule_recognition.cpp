@@ -11,9 +11,8 @@ bool sameMaterial(const Material& a, const Material& b) {
   const Impedance &p = a.impedance, &q = b.impedance;
   return a.slidingFriction == b.slidingFriction && a.torsionalFriction == b.torsionalFriction &&
          a.rollingFriction == b.rollingFriction && a.condim == b.condim && a.margin == b.margin &&
-         p.timeConstant == q.timeConstant && p.dampingRatio == q.dampingRatio &&
-         p.dMin == q.dMin && p.dMax == q.dMax && p.width == q.width &&
-         p.midpoint == q.midpoint && p.power == q.power;
+         p.timeConstant == q.timeConstant && p.dampingRatio == q.dampingRatio && p.dMin == q.dMin &&
+         p.dMax == q.dMax && p.width == q.width && p.midpoint == q.midpoint && p.power == q.power;
 }
 
 /// Whether `sphere` caps the end of `cylinder` towards +z (side = 1) or −z (side = −1).

@@ -4,8 +4,8 @@
 /// URDF has no capsule: robots write a cylinder and two spheres of its radius at its ends.
 ///
 /// Such a triple is one capsule, and simulates as one: three shapes would make three contacts where
-/// there is one. A sphere may cap several cylinders of its link (a bent tube); it goes as soon as one
-/// of them has become a capsule, which contains it.
+/// there is one. A sphere may cap several cylinders of its link (a bent tube); it goes as soon as
+/// one of them has become a capsule, which contains it.
 
 #include <vector>
 

@@ -39,27 +39,27 @@ struct Body {
   Transform X_PB;        ///< pose in the parent body at q = 0 (floating: unused)
   Vector3 axis = Vector3::UnitZ();  ///< joint axis in B, unit (revolute, prismatic)
 
-  double mass = 0.0;                  ///< [kg]
-  Vector3 com = Vector3::Zero();      ///< p_BoBcm_B [m]
-  Symmetric3 I_Bcm;                   ///< central rotational inertia in B axes [kg m²]
+  double mass = 0.0;              ///< [kg]
+  Vector3 com = Vector3::Zero();  ///< p_BoBcm_B [m]
+  Symmetric3 I_Bcm;               ///< central rotational inertia in B axes [kg m²]
 };
 
 /// A kinematic tree: everything that hangs from one child of the world.
 struct Tree {
   int rootBody = 0;
-  int bodyEnd = 0;   ///< bodies [rootBody, bodyEnd)
+  int bodyEnd = 0;  ///< bodies [rootBody, bodyEnd)
   int firstDof = 0;
-  int dofEnd = 0;    ///< dofs [firstDof, dofEnd)
+  int dofEnd = 0;  ///< dofs [firstDof, dofEnd)
 };
 
 /// One entry of the velocity vector v.
 struct Dof {
   int body = 0;
-  int parent = -1;        ///< the next dof towards the root, −1 at the root
-  double damping = 0.0;   ///< [N m s/rad or N s/m], force −damping·v
-  double armature = 0.0;  ///< rotor inertia added to the diagonal of M [kg m² or kg]
-  double dryFriction = 0.0;  ///< [N m or N], read; simulated by a later effect
-  bool actuated = false;     ///< has a control u
+  int parent = -1;                  ///< the next dof towards the root, −1 at the root
+  double damping = 0.0;             ///< [N m s/rad or N s/m], force −damping·v
+  double armature = 0.0;            ///< rotor inertia added to the diagonal of M [kg m² or kg]
+  double dryFriction = 0.0;         ///< [N m or N], read; simulated by a later effect
+  bool actuated = false;            ///< has a control u
   double effortLower = -kInfinity;  ///< control box [N m or N]
   double effortUpper = kInfinity;
   double velocityLimit = kInfinity;  ///< [rad/s or m/s], read, not enforced
@@ -70,7 +70,7 @@ struct JointRange {
   int body = 0;
   double lower = -kInfinity;  ///< [rad or m]
   double upper = kInfinity;
-  double margin = 0.0;        ///< a limit makes a row where its distance < margin
+  double margin = 0.0;  ///< a limit makes a row where its distance < margin
   Impedance impedance;
 };
 
@@ -91,36 +91,36 @@ struct Frame {
 
 /// Choices that hold for the whole simulation.
 struct Options {
-  double timestep = 0.002;                      ///< h [s]
-  Vector3 gravity = Vector3(0.0, 0.0, -9.81);   ///< [m/s²], world
-  EffectSet effects = EffectSet::all();         ///< which effects may be simulated
-  double impedanceRatio = 1.0;                  ///< impratio: friction against normal impedance
-  int maxIterations = 100;                      ///< Newton
-  double tolerance = 1e-12;                     ///< Newton: scaled gradient, see solver/newton.hpp
+  double timestep = 0.002;                     ///< h [s]
+  Vector3 gravity = Vector3(0.0, 0.0, -9.81);  ///< [m/s²], world
+  EffectSet effects = EffectSet::all();        ///< which effects may be simulated
+  double impedanceRatio = 1.0;                 ///< impratio: friction against normal impedance
+  int maxIterations = 100;                     ///< Newton
+  double tolerance = 1e-12;                    ///< Newton: scaled gradient, see solver/newton.hpp
 };
 
 struct Model {
   std::string name;
   Options options;
 
-  std::vector<Body> bodies;             ///< [0] is the world
+  std::vector<Body> bodies;  ///< [0] is the world
   std::vector<std::string> bodyNames;
   std::vector<std::string> jointNames;  ///< of the joint that carries body i; "" for the world
   std::vector<Tree> trees;
   std::vector<Dof> dofs;
-  std::vector<JointRange> ranges;       ///< ordered by body
+  std::vector<JointRange> ranges;  ///< ordered by body
   std::vector<Mimic> mimics;
   std::vector<Frame> frames;
   std::vector<Geometry> geometries;
   std::vector<Visual> visuals;
-  std::vector<std::string> warnings;    ///< what a user should know about how it was read
+  std::vector<std::string> warnings;  ///< what a user should know about how it was read
 
-  int nq = 0;   ///< size of State::q
-  int nv = 0;   ///< size of State::v
-  VectorX q0;   ///< initial configuration (floating bases at their initial pose)
+  int nq = 0;  ///< size of State::q
+  int nv = 0;  ///< size of State::v
+  VectorX q0;  ///< initial configuration (floating bases at their initial pose)
 
   int bodyCount() const { return static_cast<int>(bodies.size()); }
-  double totalMass() const;             ///< of all moving bodies [kg]
+  double totalMass() const;                      ///< of all moving bodies [kg]
   int findFrame(const std::string& name) const;  ///< index or −1
   int findJoint(const std::string& name) const;  ///< body that the joint carries, or −1
 };

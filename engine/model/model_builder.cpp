@@ -80,13 +80,15 @@ class Assembler {
           throw ModelError(joint.where, "joint '" + joint.name + "'",
                            "a floating joint hangs from '" + joint.parent +
                                "', which moves; expected the world or a link fixed to it");
-        place(edge.child, {addBody(JointKind::floating, 0, X_BC, axis, joint.name, edge.child), {}});
+        place(edge.child,
+              {addBody(JointKind::floating, 0, X_BC, axis, joint.name, edge.child), {}});
         return;
       }
       case JointType::planar: {
         // Two slides along the plane, then a hinge about its normal, as three bodies.
         const Matrix3 R = Quaternion::FromTwoVectors(Vector3::UnitZ(), axis).toRotationMatrix();
-        int body = addBody(JointKind::prismatic, parent.body, X_BC, R.col(0), joint.name + ".x", -1);
+        int body =
+            addBody(JointKind::prismatic, parent.body, X_BC, R.col(0), joint.name + ".x", -1);
         addDofData(body, joint, false);
         body = addBody(JointKind::prismatic, body, {}, R.col(1), joint.name + ".y", -1);
         addDofData(body, joint, false);

@@ -17,9 +17,9 @@ namespace softgauss {
 
 struct LinkSpec {
   std::string name;
-  double mass = 0.0;                          ///< [kg]
-  Vector3 com = Vector3::Zero();              ///< p_LoLcm_L [m]
-  Matrix3 I_Lcm = Matrix3::Zero();            ///< central inertia in link axes [kg m²]
+  double mass = 0.0;                ///< [kg]
+  Vector3 com = Vector3::Zero();    ///< p_LoLcm_L [m]
+  Matrix3 I_Lcm = Matrix3::Zero();  ///< central inertia in link axes [kg m²]
   SourceLocation where;
 };
 
@@ -34,13 +34,13 @@ struct MimicSpec {
 struct JointSpec {
   std::string name;
   JointType type = JointType::fixed;
-  std::string parent;                     ///< link names
+  std::string parent;  ///< link names
   std::string child;
-  Transform X_PC;                         ///< pose of the child link in the parent link at q = 0
-  Vector3 axis = Vector3::UnitX();        ///< in the child link; normal of the plane for planar
-  std::optional<double> lower, upper;     ///< range [rad or m]; both or neither
-  std::optional<double> effort;           ///< |u| ≤ effort; absent: no box; 0: not actuated
-  std::optional<double> velocity;         ///< [rad/s or m/s]
+  Transform X_PC;                      ///< pose of the child link in the parent link at q = 0
+  Vector3 axis = Vector3::UnitX();     ///< in the child link; normal of the plane for planar
+  std::optional<double> lower, upper;  ///< range [rad or m]; both or neither
+  std::optional<double> effort;        ///< |u| ≤ effort; absent: no box; 0: not actuated
+  std::optional<double> velocity;      ///< [rad/s or m/s]
   double damping = 0.0;
   double dryFriction = 0.0;
   double armature = 0.0;

@@ -33,10 +33,10 @@ enum class ShapeKind : std::uint8_t {
 
 struct Shape {
   ShapeKind kind = ShapeKind::sphere;
-  double radius = 0.0;                          ///< [m] sphere, capsule, cylinder
-  double halfLength = 0.0;                      ///< [m] capsule, cylinder
-  Vector3 halfExtents = Vector3::Zero();        ///< [m] box
-  std::shared_ptr<const Mesh> mesh = nullptr;   ///< mesh
+  double radius = 0.0;                         ///< [m] sphere, capsule, cylinder
+  double halfLength = 0.0;                     ///< [m] capsule, cylinder
+  Vector3 halfExtents = Vector3::Zero();       ///< [m] box
+  std::shared_ptr<const Mesh> mesh = nullptr;  ///< mesh
 
   static Shape plane() { return make(ShapeKind::plane, 0.0, 0.0); }
   static Shape sphere(double radius) { return make(ShapeKind::sphere, radius, 0.0); }
@@ -69,10 +69,10 @@ struct Shape {
 
 /// A collision shape fixed to a body.
 struct Geometry {
-  std::string name;     ///< e.g. "left_foot/0"
-  std::string link;     ///< the URDF link that it was written in (also after merging)
-  int body = 0;         ///< index into Model::bodies; 0 is the world
-  Transform X_BG;       ///< pose in the body
+  std::string name;  ///< e.g. "left_foot/0"
+  std::string link;  ///< the URDF link that it was written in (also after merging)
+  int body = 0;      ///< index into Model::bodies; 0 is the world
+  Transform X_BG;    ///< pose in the body
   Shape shape;
   Material material;
 };

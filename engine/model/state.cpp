@@ -47,8 +47,8 @@ void integratePosition(const Model& model, const VectorX& v, double h, VectorX& 
   for (const Body& body : model.bodies) {
     if (body.joint == JointKind::floating) {
       q.segment<3>(body.q) += h * v.segment<3>(body.v);
-      const Quaternion r = readQuaternion(q, body.q + 3) *
-                           quaternionExp(h * Vector3(v.segment<3>(body.v + 3)));
+      const Quaternion r =
+          readQuaternion(q, body.q + 3) * quaternionExp(h * Vector3(v.segment<3>(body.v + 3)));
       q.segment<4>(body.q + 3) = Eigen::Vector4d(r.w(), r.x(), r.y(), r.z()) / r.norm();
     } else if (body.joint != JointKind::world) {
       q[body.q] += h * v[body.v];

@@ -15,7 +15,7 @@
 namespace softgauss {
 
 struct LineSearchResult {
-  double alpha = 0.0;   ///< 0: no descent was possible
+  double alpha = 0.0;  ///< 0: no descent was possible
   int evaluations = 0;
 };
 

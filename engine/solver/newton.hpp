@@ -27,10 +27,14 @@ enum class SolveStatus {
 
 inline const char* statusName(SolveStatus status) {
   switch (status) {
-    case SolveStatus::converged: return "converged";
-    case SolveStatus::stalled: return "stalled";
-    case SolveStatus::iterationLimit: return "iteration limit";
-    case SolveStatus::notFinite: return "not finite";
+    case SolveStatus::converged:
+      return "converged";
+    case SolveStatus::stalled:
+      return "stalled";
+    case SolveStatus::iterationLimit:
+      return "iteration limit";
+    case SolveStatus::notFinite:
+      return "not finite";
   }
   return "unknown";
 }
@@ -46,11 +50,11 @@ struct NewtonReport {
 /// What is minimised. It holds the present point.
 template <class O>
 concept NewtonObjective = requires(O o, VectorX& g, VectorX& d, double alpha) {
-  { o.gradient(g) } -> std::convertible_to<double>;     // g ← ∇; returns its scaled norm
-  { o.cellChanged() } -> std::convertible_to<bool>;     // since the last factorize()
-  { o.factorize() } -> std::convertible_to<bool>;       // curvature of this cell
-  o.direction(g, d);                                    // d ← −(∇²)⁻¹ g, and readies the ray
-  { o.along(alpha) } -> std::convertible_to<Jet>;       // along point + α d
+  { o.gradient(g) } -> std::convertible_to<double>;  // g ← ∇; returns its scaled norm
+  { o.cellChanged() } -> std::convertible_to<bool>;  // since the last factorize()
+  { o.factorize() } -> std::convertible_to<bool>;    // curvature of this cell
+  o.direction(g, d);                                 // d ← −(∇²)⁻¹ g, and readies the ray
+  { o.along(alpha) } -> std::convertible_to<Jet>;    // along point + α d
   o.advance(d, alpha);
 };
 

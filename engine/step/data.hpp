@@ -14,10 +14,10 @@ namespace softgauss {
 
 /// Stage written by forwardDynamics().
 struct ForwardSolution {
-  VectorX a;             ///< continuous-time acceleration of (T.1) (nv)
-  VectorX Ma;            ///< M a
-  VectorX gradient;      ///< M a + c − τ − Jᵀf, the residual force [N, N m]
-  TreeFactor factor;     ///< of P = M + Jᵀ∇²s J in the last cell, or of M
+  VectorX a;              ///< continuous-time acceleration of (T.1) (nv)
+  VectorX Ma;             ///< M a
+  VectorX gradient;       ///< M a + c − τ − Jᵀf, the residual force [N, N m]
+  TreeFactor factor;      ///< of P = M + Jᵀ∇²s J in the last cell, or of M
   TreeFactor massFactor;  ///< of M, or of M + h D where damping is implicit
   NewtonReport report;
 
@@ -29,8 +29,8 @@ struct ForwardSolution {
 struct StepTimes {
   double kinematics = 0.0;  ///< poses, velocities, mass matrix, smooth forces
   double collision = 0.0;
-  double rows = 0.0;        ///< making J, a_ref, D
-  double solve = 0.0;       ///< forward dynamics
+  double rows = 0.0;   ///< making J, a_ref, D
+  double solve = 0.0;  ///< forward dynamics
   double integrate = 0.0;
 };
 
@@ -44,7 +44,7 @@ struct StepStats {
   double residual = 0.0;        ///< of the forward solve, scaled
   double maxPenetration = 0.0;  ///< deepest overlap of a contact [m], ≥ 0
   std::int64_t pairsSkipped = 0;
-  int badDof = -1;              ///< with SolveStatus::notFinite: the first dof that is not finite
+  int badDof = -1;  ///< with SolveStatus::notFinite: the first dof that is not finite
   StepTimes times;
 };
 
@@ -61,7 +61,7 @@ struct Data {
   ContactSet contacts;
   Constraints constraints;
   ForwardSolution forward;
-  VectorX acceleration;    ///< discrete, (v⁺ − v)/h (nv)
+  VectorX acceleration;  ///< discrete, (v⁺ − v)/h (nv)
   StepStats stats;
 };
 

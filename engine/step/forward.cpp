@@ -11,7 +11,10 @@ namespace {
 class GaussObjective {
  public:
   explicit GaussObjective(Data& data)
-      : M_(data.inertia.M), net_(data.forces.net), constraints_(data.constraints), s_(data.forward) {
+      : M_(data.inertia.M),
+        net_(data.forces.net),
+        constraints_(data.constraints),
+        s_(data.forward) {
     // Forces share a unit once divided by √M_ii; the largest of them sets the scale.
     const Eigen::Index n = net_.size();
     double largest = 1.0;

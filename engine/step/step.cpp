@@ -67,8 +67,8 @@ SolveStatus computeStages(const Model& model, const Input& input, const State& s
   }
   data.stats.times.collision = lap(clock);
 
-  data.constraints.assemble({model, state, data.kinematics, data.contacts, data.weights,
-                             data.inertia.sparsity});
+  data.constraints.assemble(
+      {model, state, data.kinematics, data.contacts, data.weights, data.inertia.sparsity});
   data.stats.rows = data.constraints.rowCount();
   data.stats.times.rows = lap(clock);
   return SolveStatus::converged;

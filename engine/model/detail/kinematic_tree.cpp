@@ -69,9 +69,9 @@ LinkOrder orderLinks(const std::string& modelName, const std::vector<LinkSpec>& 
   for (std::size_t i = 0; i < links.size(); ++i) {
     if (seen[i]) continue;
     const JointSpec& joint = joints[idx(parentJoint[i])];
-    throw ModelError(joint.where, "joint '" + joint.name + "'",
-                     "link '" + links[i].name +
-                         "' is part of a cycle; expected a tree of links with a root");
+    throw ModelError(
+        joint.where, "joint '" + joint.name + "'",
+        "link '" + links[i].name + "' is part of a cycle; expected a tree of links with a root");
   }
   return order;
 }

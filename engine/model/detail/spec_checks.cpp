@@ -64,7 +64,8 @@ void checkJoint(const JointSpec& joint) {
   notNegative(joint.armature, "armature");
   if (joint.effort) notNegative(*joint.effort, "effort");
   if (joint.velocity) notNegative(*joint.velocity, "velocity");
-  if (joint.mimic && !(std::isfinite(joint.mimic->multiplier) && std::isfinite(joint.mimic->offset)))
+  if (joint.mimic &&
+      !(std::isfinite(joint.mimic->multiplier) && std::isfinite(joint.mimic->offset)))
     fail("mimic multiplier or offset is not finite");
 }
 
@@ -118,7 +119,8 @@ void checkMovingInertias(const Model& model, const std::vector<const SourceLocat
   for (int b = 1; b < model.bodyCount(); ++b) {
     const Body& body = model.bodies[static_cast<std::size_t>(b)];
     double carried = 0.0;
-    for (int i = b; i < body.subtreeEnd; ++i) carried += model.bodies[static_cast<std::size_t>(i)].mass;
+    for (int i = b; i < body.subtreeEnd; ++i)
+      carried += model.bodies[static_cast<std::size_t>(i)].mass;
     if (carried == 0.0)
       fail(b, "moves on joint '" + model.jointNames[static_cast<std::size_t>(b)] +
                   "' but neither it nor anything that hangs from it has mass; "

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Rows held at their knots: how a Newton method moves along a kink.
+///
+/// Where the objective's minimum along a ray is the knot of a row r, its gradient jumps there: with
+/// the row counted as free it is ∇Φ, with the row stiff ∇Φ + D_r (J_r w) J_rᵀ, w as in (T.19).
+/// Steps are then taken within the kink (T.25):
+///   H d + J_Kᵀ μ = −∇Φ,   J_K d = 0
+/// and the kink is left towards the free side where μ_r > 0, towards the stiff side where
+/// μ_r < D_r (J_r w). A point with d = 0 and D_r (J_r w) ≤ μ_r ≤ 0 for every held row is a local
+/// minimum as far as single rows go.
+
+#include <vector>
+
+#include "engine/constraints/constraints.hpp"
+
+namespace softgauss::gdd {
+
+class HeldRows {
+ public:
+  struct Row {
+    RowId id;
+    VectorX J;                ///< (nv)
+    VectorX HinvJ;            ///< H⁻¹ Jᵀ
+    double multiplier = 0.0;  ///< μ
+    bool dependent = false;   ///< on rows before it
+  };
+
+  explicit HeldRows(int dofs) : dofs_(dofs) {}
+
+  bool empty() const { return count_ == 0; }
+  int size() const { return count_; }
+  const Row& operator[](int i) const { return rows_[i]; }
+  void clear() { count_ = 0; }
+  void hold(RowId id, const Constraints& constraints);
+  void release(int i);
+
+  /// Puts every held row at the free side of its knot.
+  void place(Constraints& constraints) const;
+  /// Takes every held row off the ray.
+  void holdOnRay(Constraints& constraints) const;
+
+  /// d ← the direction within the kink, from d = −H⁻¹∇Φ. `solve` applies H⁻¹ in place.
+  template <class Solve>
+  void project(VectorX& d, Solve&& solve) {
+    for (int i = 0; i < count_; ++i) {
+      rows_[i].HinvJ = rows_[i].J;
+      solve(rows_[i].HinvJ);
+    }
+    projectPrepared(d);
+  }
+
+  /// The row that most wants to leave, or −1; `towardsStiff` tells to which side.
+  int leaving(const Constraints& constraints, const VectorX& w, bool& towardsStiff) const;
+
+ private:
+  void projectPrepared(VectorX& d);
+
+  int dofs_;
+  int count_ = 0;
+  std::vector<Row> rows_;  ///< the first count_ are in use, the rest keep their memory
+  MatrixX S_;              ///< Cholesky factor of J_K H⁻¹ J_Kᵀ
+};
+
+}  // namespace softgauss::gdd
