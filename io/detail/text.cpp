@@ -51,14 +51,21 @@ std::optional<double> parseNumber(std::string_view text) {
   return x;
 }
 
+std::vector<std::string_view> words(std::string_view text) {
+  std::vector<std::string_view> parts;
+  for (text = trimmed(text); !text.empty(); text = trimmed(text)) {
+    parts.push_back(text.substr(0, text.find_first_of(kBlanks)));
+    text.remove_prefix(parts.back().size());
+  }
+  return parts;
+}
+
 std::optional<std::vector<double>> parseNumbers(std::string_view text) {
   std::vector<double> numbers;
-  for (text = trimmed(text); !text.empty(); text = trimmed(text)) {
-    const std::string_view word = text.substr(0, text.find_first_of(kBlanks));
+  for (const std::string_view word : words(text)) {
     const std::optional<double> x = parseNumber(word);
     if (!x) return std::nullopt;
     numbers.push_back(*x);
-    text.remove_prefix(word.size());
   }
   return numbers;
 }

@@ -14,6 +14,9 @@ namespace softgauss::io::detail {
 /// for "1e", "1,5", "0x1", "nan", "inf", an empty text or a number beyond double's range.
 std::optional<double> parseNumber(std::string_view text);
 
+/// The parts of a text between blanks.
+std::vector<std::string_view> words(std::string_view text);
+
 /// Numbers separated by blanks; nothing if one of them is not a number.
 std::optional<std::vector<double>> parseNumbers(std::string_view text);
 

@@ -9,7 +9,11 @@
 
 #include <cmath>
 #include <exception>
+#include <map>
 #include <mutex>
+#include <optional>
+#include <set>
+#include <string_view>
 
 #include "io/detail/text.hpp"
 #include "io/detail/urdf_schema.hpp"
@@ -46,6 +50,12 @@ void setDefault(tinyxml2::XMLElement& element, const char* attribute) {
   if (!element.Attribute(attribute)) element.SetAttribute(attribute, "0");
 }
 
+/// A text that may look like numbers and is none.
+bool isName(std::string_view attribute) {
+  return attribute == "name" || attribute == "link" || attribute == "joint" ||
+         attribute == "filename" || attribute == "version";
+}
+
 void removeUnread(tinyxml2::XMLElement& element) {
   for (tinyxml2::XMLNode *child = element.FirstChild(), *next = nullptr; child; child = next) {
     next = child->NextSibling();
@@ -56,6 +66,24 @@ void removeUnread(tinyxml2::XMLElement& element) {
     else
       removeUnread(*e);
   }
+}
+
+/// urdfdom takes a single space between numbers and nothing else, neither a tab nor a last blank.
+void separateBySingleSpaces(tinyxml2::XMLElement& element) {
+  for (const tinyxml2::XMLAttribute* a = element.FirstAttribute(); a; a = a->Next()) {
+    std::string value = a->Value();
+    const std::optional<std::vector<double>> numbers = parseNumbers(value);
+    if (!numbers || numbers->empty() || isName(a->Name())) continue;
+    std::string single;
+    for (const std::string_view word : words(value)) {
+      if (!single.empty()) single += ' ';
+      single += word;
+    }
+    element.SetAttribute(a->Name(), single.c_str());
+  }
+  for (tinyxml2::XMLElement* child = element.FirstChildElement(); child;
+       child = child->NextSiblingElement())
+    separateBySingleSpaces(*child);
 }
 
 void addWhatUrdfdomDemands(tinyxml2::XMLElement& robot) {
@@ -194,11 +222,34 @@ void compare(const JointSpec& ours, const urdf::Joint* theirs) {
   }
 }
 
+/// All links hang from one root, by one joint each.
+bool isTree(const UrdfDescription& urdf) {
+  std::multimap<std::string_view, std::string_view> children;
+  std::set<std::string_view> roots;
+  for (const UrdfLink& link : urdf.links) roots.insert(link.spec.name);
+  for (const JointSpec& joint : urdf.joints) {
+    children.emplace(joint.parent, joint.child);
+    roots.erase(joint.child);
+  }
+  std::set<std::string_view> reached = roots;
+  std::vector<std::string_view> stack(roots.begin(), roots.end());
+  while (!stack.empty()) {
+    const auto [begin, end] = children.equal_range(stack.back());
+    stack.pop_back();
+    for (auto it = begin; it != end; ++it)
+      if (reached.insert(it->second).second) stack.push_back(it->second);
+  }
+  return reached.size() == urdf.links.size() && urdf.joints.size() + 1 == urdf.links.size();
+}
+
 }  // namespace
 
 std::string compareWithUrdfdom(const XmlFile& file, const UrdfDescription& urdf) {
+  // urdfdom never frees links that are their own ancestors, so it is shown trees only.
+  if (!isTree(urdf)) return "its links form no tree";
   const std::string text = file.edited([](tinyxml2::XMLElement& robot) {
     removeUnread(robot);
+    separateBySingleSpaces(robot);
     addWhatUrdfdomDemands(robot);
   });
   Listener listener;

@@ -20,7 +20,7 @@ namespace softgauss::io::detail {
 ///
 /// urdfdom sees a copy without the parts that softgauss does not read, and with the attributes
 /// that urdfdom demands and softgauss does not (effort, velocity; a limit on every revolute and
-/// prismatic joint).
+/// prismatic joint), and single spaces between numbers, as urdfdom knows no other blank.
 std::string compareWithUrdfdom(const XmlFile& file, const UrdfDescription& urdf);
 
 }  // namespace softgauss::io::detail

@@ -30,6 +30,7 @@ class TempFolder {
   std::filesystem::path write(const std::string& name, const std::string& text) const {
     const std::filesystem::path file = path_ / name;
     std::filesystem::create_directories(file.parent_path());
+    std::filesystem::remove(file);  // writing over a file makes some file systems wait
     std::FILE* out = std::fopen(file.c_str(), "wb");
     EXPECT_NE(out, nullptr);
     EXPECT_EQ(std::fwrite(text.data(), 1, text.size(), out), text.size());

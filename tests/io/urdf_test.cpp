@@ -74,6 +74,13 @@ TEST(UrdfContent, EveryPhysicsElementArrives) {
   EXPECT_EQ(m.visuals[0].rgba, Eigen::Vector4d(1, 0, 0, 0.5));
 }
 
+TEST(UrdfContent, NumbersMayBeSeparatedByAnyBlanks) {
+  const Model m = load(with(with(kSampleUrdf, "\"0.2 0.4 0.6\"", "\" 0.2\t0.4\n  0.6 \""),
+                            "length=\"0.5\"", "length=\"0.5 \""));
+  EXPECT_EQ(m.geometries[0].shape.halfExtents, Vector3(0.1, 0.2, 0.3));
+  EXPECT_EQ(m.geometries[1].shape.halfLength, 0.25);
+}
+
 TEST(UrdfContent, ContentsCountTheFile) {
   const TempFolder folder;
   UrdfContents contents;
