@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "engine/model/capsule_recognition.hpp"
 #include "engine/model/detail/kinematic_tree.hpp"
 #include "engine/model/detail/spec_checks.hpp"
 
@@ -263,8 +264,8 @@ Model ModelBuilder::build() const {
     if (link == "world") return Placement{};
     throw ModelError(where, element, "is on link '" + link + "', which does not exist");
   };
-  for (const GeometrySpec& spec : geometries_) {
-    detail::checkGeometry(spec);
+  for (const GeometrySpec& spec : geometries_) detail::checkGeometry(spec);
+  for (const GeometrySpec& spec : recogniseCapsules(geometries_)) {
     const Placement at = placementOf(spec.link, spec.where, "geometry '" + spec.name + "'");
     model.geometries.push_back(
         {spec.name, spec.link, at.body, at.X_BL * spec.X_LG, spec.shape, spec.material});

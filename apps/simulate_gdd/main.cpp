@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+/// simulate_gdd: moves a URDF robot to its goals. Options and exit codes: simulate_gdd --help.
+
+#include <fmt/format.h>
+
+#include <csignal>
+#include <exception>
+
+#include "apps/simulate_gdd/run.hpp"
+
+int main(int argc, char** argv) {
+  using namespace softgauss;
+  std::signal(SIGINT, [](int) { app::requestInterrupt(); });
+  std::signal(SIGTERM, [](int) { app::requestInterrupt(); });
+  try {
+    const auto options = app::parseCommandLine(argc, argv);
+    if (!options) return app::kDone;
+    const auto scene = app::loadScene(*options);
+    if (options->explain) {
+      fmt::print("{}", app::explainScene(*scene));
+      return app::kDone;
+    }
+    return app::run(*options, *scene);
+  } catch (const app::UsageError& error) {
+    fmt::print(stderr, "simulate_gdd: {}\nsimulate_gdd --help lists the options\n", error.what());
+    return app::kBadInput;
+  } catch (const ModelError& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return app::kBadInput;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "simulate_gdd: internal error: {}\n", error.what());
+    return app::kInternalError;
+  }
+}

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/simulate_gdd/options.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <cmath>
+
+namespace softgauss::app {
+namespace {
+
+std::vector<std::string> split(const std::string& text, char separator) {
+  std::vector<std::string> parts(1);
+  for (const char c : text) {
+    if (c == separator)
+      parts.emplace_back();
+    else
+      parts.back() += c;
+  }
+  return parts;
+}
+
+double parseNumber(const std::string& text, const std::string& context) {
+  double value = 0.0;
+  const char* end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc() || rest != end || !std::isfinite(value))
+    throw UsageError(fmt::format("{}: '{}' is not a number", context, text));
+  return value;
+}
+
+Vector3 parsePoint(const std::string& text, const std::string& context) {
+  const std::vector<std::string> parts = split(text, ',');
+  if (parts.size() != 3)
+    throw UsageError(fmt::format("{}: '{}' is not three numbers x,y,z", context, text));
+  return {parseNumber(parts[0], context), parseNumber(parts[1], context),
+          parseNumber(parts[2], context)};
+}
+
+ReachArgument parseReach(const std::string& text) {
+  const std::string context = "--reach " + text;
+  const std::size_t equals = text.rfind('=');
+  if (equals == std::string::npos)
+    throw UsageError(context + ": expected LINK=x,y,z or LINK:ox,oy,oz=x,y,z");
+  ReachArgument reach;
+  reach.link = text.substr(0, equals);
+  reach.p_WTarget = parsePoint(text.substr(equals + 1), context);
+  if (const std::size_t colon = reach.link.rfind(':'); colon != std::string::npos) {
+    reach.p_FP = parsePoint(reach.link.substr(colon + 1), context);
+    reach.link.resize(colon);
+  }
+  return reach;
+}
+
+EffectSet parseEffects(const std::string& text) {
+  if (text == "auto") return EffectSet::all();
+  EffectSet effects = EffectSet::none();
+  for (const std::string& name : split(text, ',')) {
+    const std::optional<Effect> effect = effectFromName(name);
+    if (!effect) {
+      std::string known;
+      for (const EffectName& e : kEffectNames) known += fmt::format(" {}", e.name);
+      throw UsageError(fmt::format("--effects: no effect '{}'; there are:{}", name, known));
+    }
+    effects.insert(*effect);
+  }
+  return effects;
+}
+
+}  // namespace
+
+std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
+  SimulateOptions options;
+  CLI::App app(
+      "Simulates a robot under goal directed dynamics: at every step the controls are found that\n"
+      "bring it nearer its goals, with the contact forces that then act.");
+  app.set_version_flag("--version", std::string("softgauss ") + SOFTGAUSS_VERSION);
+  std::string base = "automatic", ground, effects = "auto", zeroEffort = "passive", integrator,
+              cone, solver, compatibility;
+  std::vector<std::string> reach, q0;
+
+  app.add_option("MODEL", options.model, "a .urdf file")->required();
+  const char* const scene = "Scene";
+  app.add_option("--base", base,
+                 "fixed or floating; default: floating, or fixed when the root link is 'world'")
+      ->check(CLI::IsMember({"fixed", "floating"}))
+      ->group(scene);
+  app.add_option("--base-height", options.baseHeight,
+                 "initial height of a floating root [m]; default: its lowest point touches the ground")
+      ->group(scene);
+  app.add_option("--ground", ground,
+                 "height of the ground plane [m] or none; default: 0 for a floating base")
+      ->group(scene);
+  app.add_option("--q0", q0, "initial joint positions NAME=VALUE,… [rad or m]")
+      ->delimiter(',')
+      ->group(scene);
+  app.add_option("--effects", effects, "auto, or a list of the effects to simulate")->group(scene);
+  app.add_option("--zero-effort", zeroEffort,
+                 "what effort=\"0\" means: passive (not actuated) or unlimited")
+      ->check(CLI::IsMember({"passive", "unlimited"}))
+      ->group(scene);
+  app.add_option("--package-path", options.packagePaths,
+                 "where package://NAME/… is looked for first; repeatable")
+      ->group(scene);
+
+  const char* const goals = "Goals";
+  app.add_option("--reach", reach,
+                 "LINK=x,y,z: the link's origin seeks a place in the world [m]; LINK:ox,oy,oz=x,y,z: "
+                 "a point of the link; repeatable")
+      ->group(goals);
+  app.add_option("--torques", options.torques,
+                 "a .csv file of controls (columns time_s, u:<joint>) instead of goals")
+      ->group(goals);
+  app.add_flag("--passive", options.passive, "no goals, no controls")->group(goals);
+
+  const char* const simulation = "Simulation";
+  app.add_option("--duration", options.duration, "simulated time [s], default 2")
+      ->check(CLI::PositiveNumber)
+      ->group(simulation);
+  app.add_option("--timestep", options.timestep, "step [s], default 0.002")
+      ->check(CLI::PositiveNumber)
+      ->group(simulation);
+  app.add_option("--integrator", integrator,
+                 "semi-implicit-euler (default): order 1, one solve a step, implicit joint damping")
+      ->check(CLI::IsMember({"semi-implicit-euler"}))
+      ->group(simulation);
+  app.add_option("--cone", cone, "pyramidal (default): friction pyramids of four edges")
+      ->check(CLI::IsMember({"pyramidal"}))
+      ->group(simulation);
+  app.add_option("--gdd-solver", solver,
+                 "augmented-lagrangian (default): the paper's primal-dual Gauss-Newton solver")
+      ->check(CLI::IsMember({"augmented-lagrangian"}))
+      ->group(simulation);
+  app.add_option("--compatibility", compatibility,
+                 "none (default) or mujoco: defaults as MuJoCo has them; at present the two agree")
+      ->check(CLI::IsMember({"none", "mujoco"}))
+      ->group(simulation);
+
+  const char* const output = "Output";
+  app.add_flag("--explain", options.explain, "tell what was loaded and simulate nothing")
+      ->group(output);
+  app.add_option("--log", options.log, "write every step to a .csv file")->group(output);
+  app.add_option("--summary", options.summary, "write the summary to a .json file")->group(output);
+  app.add_flag("--quiet", options.quiet, "print errors only")->group(output);
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& success) {  // --help, --version
+    app.exit(success);
+    return std::nullopt;
+  } catch (const CLI::ParseError& error) {
+    throw UsageError(error.what());
+  }
+
+  options.base = base == "fixed"      ? BaseKind::fixed
+                 : base == "floating" ? BaseKind::floating
+                                      : BaseKind::automatic;
+  options.groundIsDefault = ground.empty();
+  if (!ground.empty() && ground != "none") options.ground = parseNumber(ground, "--ground");
+  options.zeroEffortIsUnlimited = zeroEffort == "unlimited";
+  options.effects = parseEffects(effects);
+  for (const std::string& text : reach) options.reach.push_back(parseReach(text));
+  for (const std::string& text : q0) {
+    const std::size_t equals = text.rfind('=');
+    if (equals == std::string::npos)
+      throw UsageError("--q0 " + text + ": expected NAME=VALUE");
+    options.q0.emplace_back(text.substr(0, equals), parseNumber(text.substr(equals + 1), "--q0"));
+  }
+  const bool hasGoals = !options.reach.empty();
+  if (options.passive + !options.torques.empty() + hasGoals > 1)
+    throw UsageError("choose one of goals (--reach), --torques and --passive");
+  if (!options.passive && options.torques.empty() && !hasGoals && !options.explain)
+    throw UsageError("nothing to do: give a goal (--reach LINK=x,y,z), --torques or --passive");
+  return options;
+}
+
+}  // namespace softgauss::app

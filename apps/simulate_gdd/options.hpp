@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// The command line of simulate_gdd.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/model/model_builder.hpp"
+
+namespace softgauss::app {
+
+/// `--reach LINK[:ox,oy,oz]=x,y,z`
+struct ReachArgument {
+  std::string link;
+  Vector3 p_FP = Vector3::Zero();  ///< point in the link's frame [m]
+  Vector3 p_WTarget = Vector3::Zero();
+};
+
+struct SimulateOptions {
+  std::filesystem::path model;
+  BaseKind base = BaseKind::automatic;
+  std::optional<double> baseHeight;
+  std::optional<double> ground;   ///< height of the ground plane [m]
+  bool groundIsDefault = true;    ///< 0 for a floating base, none for a fixed one
+  double duration = 2.0;
+  double timestep = 0.002;
+  std::vector<ReachArgument> reach;
+  bool passive = false;
+  std::filesystem::path torques;
+  std::vector<std::pair<std::string, double>> q0;
+  EffectSet effects = EffectSet::all();
+  bool zeroEffortIsUnlimited = false;
+  bool explain = false;
+  bool quiet = false;
+  std::filesystem::path log, summary;
+  std::vector<std::filesystem::path> packagePaths;
+};
+
+/// A command line that cannot be run: exit code 2.
+class UsageError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Parses argv. Returns nothing when the program is done already (--help, --version), which it
+/// has printed. Throws UsageError.
+std::optional<SimulateOptions> parseCommandLine(int argc, char** argv);
+
+}  // namespace softgauss::app

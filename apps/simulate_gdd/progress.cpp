@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/simulate_gdd/progress.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <string>
+
+namespace softgauss::app {
+
+Progress::Progress(double duration, bool quiet)
+    : duration_(duration), visible_(!quiet && isatty(fileno(stderr))) {}
+
+void Progress::show(double simulated, double elapsed) {
+  if (!visible_ || elapsed - lastShown_ < 0.1) return;
+  lastShown_ = elapsed;
+  constexpr int kWidth = 32;
+  const double share = std::clamp(simulated / duration_, 0.0, 1.0);
+  const int filled = static_cast<int>(share * kWidth);
+  std::string bar;
+  for (int i = 0; i < kWidth; ++i) bar += i < filled ? "█" : "░";
+  const double speed = elapsed > 0.0 ? simulated / elapsed : 0.0;
+  const double left = speed > 0.0 ? (duration_ - simulated) / speed : 0.0;
+  fmt::print(stderr, "\r{} {:6.2f} / {:.4g} s   {:5.1f} × real time   {:.0f} s left \033[K", bar,
+             simulated, duration_, speed, left);
+  std::fflush(stderr);
+}
+
+void Progress::clear() {
+  if (!visible_ || lastShown_ < 0.0) return;
+  fmt::print(stderr, "\r\033[K");
+  std::fflush(stderr);
+}
+
+}  // namespace softgauss::app

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// A progress bar on a terminal; nothing elsewhere.
+
+namespace softgauss::app {
+
+class Progress {
+ public:
+  Progress(double duration, bool quiet);
+  /// Simulated time, speed against real time and remaining time; redraws ten times a second.
+  void show(double simulated, double elapsed);
+  void clear();
+
+ private:
+  double duration_;
+  bool visible_;
+  double lastShown_ = -1.0;
+};
+
+}  // namespace softgauss::app

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/simulate_gdd/run.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <optional>
+
+#include "apps/simulate_gdd/progress.hpp"
+#include "apps/simulate_gdd/verdict.hpp"
+#include "engine/engine.hpp"
+#include "io/explain.hpp"
+#include "io/log.hpp"
+#include "io/summary.hpp"
+#include "io/torque_table.hpp"
+
+namespace softgauss::app {
+namespace {
+
+volatile std::sig_atomic_t interruptRequested = 0;
+
+using Clock = std::chrono::steady_clock;
+
+double secondsSince(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// Largest |g(q, v, a) − (u, 0)|: recomputed by inverse dynamics, not taken from the solver.
+double physicsViolation(const Model& model, Data& data, VectorX& scratch) {
+  inverseDynamics(model, data.forward.a, data, scratch);
+  return model.nv == 0 ? 0.0 : (scratch - data.forces.tau).cwiseAbs().maxCoeff();
+}
+
+/// What went wrong, where, and what to try.
+std::string failureMessage(const Model& model, const State& state, const Data& data) {
+  std::string where = "the state";
+  if (data.stats.badDof >= 0)
+    where = fmt::format("joint '{}'", model.jointNames[model.dofs[data.stats.badDof].body]);
+  std::string deepest;
+  double depth = 0.0;
+  for (const Contact& c : data.contacts.contacts) {
+    if (!(-c.distance > depth)) continue;
+    depth = -c.distance;
+    deepest = fmt::format("; deepest contact: {} on {}, {:.3g} m", model.geometries[c.geometryA].name,
+                          model.geometries[c.geometryB].name, depth);
+  }
+  return fmt::format(
+      "the simulation became non-finite at t = {:.6g} s at {}{}. Try a smaller --timestep, more joint "
+      "damping, or goals that ask for less",
+      state.time, where, deepest);
+}
+
+/// The loop and all that it writes.
+class Runner {
+ public:
+  Runner(const SimulateOptions& options, Scene& scene)
+      : options_(options),
+        model_(scene.model),
+        contacts_(*scene.contacts),
+        state_(scene.initial),
+        data_(model_),
+        controller_(model_),
+        summary_(model_) {
+    if (!options.passive && options.torques.empty()) controller_.goals = makeGoals(options, model_);
+    if (!options.torques.empty()) torques_ = io::TorqueTable::read(options.torques, model_);
+    if (!options.log.empty()) log_.emplace(options.log, model_);
+    summary_.version = SOFTGAUSS_VERSION;
+    summary_.massKg = scene.contents.mass;
+    summary_.effects = io::effectsOn(io::effectNotes(model_));
+  }
+
+  ExitCode run() {
+    const auto steps = static_cast<long>(std::ceil(options_.duration / options_.timestep - 1e-9));
+    Progress progress(options_.duration, options_.quiet);
+    Verdict verdict(model_);
+    ExitCode code = kDone;
+    const Clock::time_point start = Clock::now();
+    for (long i = 0; i < steps && code == kDone; ++i) {
+      if (interruptRequested) {
+        code = kInterrupted;
+      } else if (!step()) {
+        code = kCannotContinue;
+      } else {
+        record();
+        verdict.observe(record_.u, state_);
+        progress.show(state_.time, secondsSince(start));
+      }
+    }
+    progress.clear();
+    summary_.wallSeconds = secondsSince(start);
+    if (code == kCannotContinue) {
+      fmt::print(stderr, "simulate_gdd: {}\n", failureMessage(model_, state_, data_));
+      summary_.outcome = "non-finite";
+    } else if (code == kInterrupted) {
+      summary_.outcome = "interrupted";
+    }
+    finish(verdict);
+    return code;
+  }
+
+ private:
+  /// One step; false when it could not be taken, the state then being the last good one.
+  bool step() {
+    record_.time = state_.time;
+    record_.q = state_.q;
+    record_.v = state_.v;
+    if (torques_) torques_->controlAt(state_.time, input_.tau);
+    const Clock::time_point start = Clock::now();
+    const SolveStatus status = controller_.goals.empty()
+                                   ? softgauss::step(model_, input_, state_, data_, &contacts_)
+                                   : controller_.step(model_, input_, state_, data_, &contacts_);
+    record_.stepUs = 1e6 * secondsSince(start);
+    return status != SolveStatus::notFinite;
+  }
+
+  void record() {
+    const bool gdd = !controller_.goals.empty();
+    const StepStats& stats = data_.stats;
+    record_.a = data_.forward.a;
+    record_.u = data_.forces.tau;
+    record_.contacts = stats.contacts;
+    record_.constraints = stats.rows;
+    record_.iterations = gdd ? controller_.report.iterations : stats.iterations;
+    record_.dualUpdates = gdd ? controller_.report.dualUpdates : 0;
+    record_.gddViolation = gdd ? controller_.report.violation : 0.0;
+    record_.stationarity = gdd ? controller_.report.stationarity : 0.0;
+    record_.gddUs = gdd ? 1e6 * controller_.solveTime : 0.0;
+    record_.forwardUs = record_.stepUs - record_.gddUs;
+    record_.physicsViolation = physicsViolation(model_, data_, scratch_);
+    record_.energy = computeEnergy(model_, data_.kinematics, record_.v).total();
+    record_.maxPenetration = stats.maxPenetration;
+    if (log_) log_->write(record_);
+    summary_.addStep(record_);
+    if (summary_.goals.empty()) {
+      for (const auto& goal : controller_.goals) {
+        const double error = goal->error({model_, state_, data_});
+        summary_.goals.push_back({goal->name(), error, error});
+      }
+    }
+  }
+
+  /// The final state, in the log's last row and the summary.
+  void finish(const Verdict& verdict) {
+    computeStages(model_, input_, state_, data_, &contacts_);
+    io::StepRecord last;
+    last.time = state_.time;
+    last.q = state_.q;
+    last.v = state_.v;
+    last.a = last.u = VectorX::Zero(model_.nv);
+    last.contacts = data_.stats.contacts;
+    last.constraints = data_.stats.rows;
+    last.energy = computeEnergy(model_, data_.kinematics, state_.v).total();
+    last.maxPenetration = data_.stats.maxPenetration;
+    if (log_) {
+      log_->write(last);
+      log_->close();
+    }
+    for (std::size_t i = 0; i < summary_.goals.size(); ++i)
+      summary_.goals[i].finalError = controller_.goals[i]->error({model_, state_, data_});
+    std::erase_if(summary_.goals, [](const io::GoalOutcome& g) { return g.name == "damping"; });
+    for (std::string& reason : verdict.unreached(summary_.goals))
+      summary_.warnings.push_back(std::move(reason));
+    summary_.finish(last);
+    if (!options_.summary.empty()) summary_.write(options_.summary);
+    if (!options_.quiet) fmt::print("{}", summary_.table());
+  }
+
+  const SimulateOptions& options_;
+  const Model& model_;
+  ContactSource& contacts_;
+  State state_;
+  Data data_;
+  gdd::GoalDirectedController controller_;
+  Input input_;
+  std::optional<io::TorqueTable> torques_;
+  std::optional<io::LogWriter> log_;
+  io::Summary summary_;
+  io::StepRecord record_;
+  VectorX scratch_;
+};
+
+}  // namespace
+
+void requestInterrupt() { interruptRequested = 1; }
+
+ExitCode run(const SimulateOptions& options, Scene& scene) { return Runner(options, scene).run(); }
+
+}  // namespace softgauss::app

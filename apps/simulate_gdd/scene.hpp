@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// From the command line to a model, its contacts, its initial state and its goals.
+
+#include <memory>
+#include <vector>
+
+#include "apps/simulate_gdd/options.hpp"
+#include "collision/scene_contacts.hpp"
+#include "gdd/gdd.hpp"
+#include "io/urdf.hpp"
+
+namespace softgauss::app {
+
+struct Scene {
+  Model model;
+  io::UrdfContents contents;
+  std::unique_ptr<collision::SceneContacts> contacts;
+  State initial;
+};
+
+/// Throws ModelError.
+std::unique_ptr<Scene> loadScene(const SimulateOptions& options);
+
+/// The goals of --reach, plus virtual damping (26). Throws ModelError.
+std::vector<std::unique_ptr<gdd::Goal>> makeGoals(const SimulateOptions& options,
+                                                  const Model& model);
+
+/// The text of --explain.
+std::string explainScene(const Scene& scene);
+
+}  // namespace softgauss::app
