@@ -169,7 +169,8 @@ std::string shapesText(const Model& model, const ExplainContext& context) {
     out += fmt::format("  {} may touch\n", counted(idx(*context.testedPairs), "pair"));
   std::map<std::string, std::vector<std::string>> byReason;
   for (const FilteredPair& pair : context.filtered)
-    byReason[pair.reason].push_back(fmt::format("{} - {}", pair.first, pair.second));
+    byReason[pair.reason].push_back(fmt::format("{} - {}{}{}", pair.first, pair.second,
+                                                pair.detail.empty() ? "" : " ", pair.detail));
   for (const auto& [reason, pairs] : byReason) {
     out += fmt::format("  {} never tested: {}\n", counted(pairs.size(), "pair"), reason);
     for (const std::string& pair : pairs) out += fmt::format("    {}\n", pair);

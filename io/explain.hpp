@@ -27,11 +27,12 @@ std::vector<EffectNote> effectNotes(const Model& model);
 /// Names of those that are on.
 std::vector<std::string> effectsOn(const std::vector<EffectNote>& notes);
 
-/// A pair of bodies or shapes that is never tested for contact.
+/// A pair of links or shapes that is never tested for contact.
 struct FilteredPair {
   std::string first;
   std::string second;
-  std::string reason;  ///< e.g. "adjacent"
+  std::string reason;  ///< what pairs are grouped by, e.g. "joined by a joint"
+  std::string detail;  ///< of this pair, e.g. "by 3 mm"
 };
 
 /// What explain() is told besides the model.

@@ -2,6 +2,7 @@
 #include "io/detail/text.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <sys/stat.h>
 
 #include <algorithm>

@@ -156,13 +156,13 @@ TEST(Explain, TellsWhatWasLoadedAndWhatIsOff) {
       readUrdf(folder.write("r.urdf", with(kSampleUrdf, "</robot>", "<gazebo/></robot>")), {},
                &*context.contents)
           .build();
-  context.filtered = {{"base", "arm", "adjacent"}};
+  context.filtered = {{"base", "arm", "overlap at the start", "by 3 mm"}};
   context.testedPairs = 0;
   const std::string text = explain(m, context);
   for (const char* part :
        {"2 links, 1 joint, 2 moving bodies", "7 degrees of freedom, 1 actuated", "3 kg",
         "'base' floats", "shoulder revolute arm", "-1 .. 1.5 rad", "5 N m", "box 1",
-        "1 pair never tested: adjacent", "base - arm", "0 pairs may touch",
+        "1 pair never tested: overlap at the start", "base - arm by 3 mm", "0 pairs may touch",
         "joint_limit    1 joint range, 'shoulder'", "ignored: 1 <gazebo>"})
     EXPECT_TRUE(contains(text, part)) << part << "\n" << text;
 }
