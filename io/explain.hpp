@@ -32,7 +32,7 @@ struct FilteredPair {
   std::string first;
   std::string second;
   std::string reason;  ///< what pairs are grouped by, e.g. "joined by a joint"
-  std::string detail;  ///< of this pair, e.g. "by 3 mm"
+  std::string detail = {};  ///< of this pair, e.g. "by 3 mm"
 };
 
 /// What explain() is told besides the model.
