@@ -9,5 +9,6 @@
 ///   controller.step(model, Input{}, state, data, &contacts);
 
 #include "gdd/goal_directed_step.hpp"
+#include "gdd/goals/posture.hpp"
 #include "gdd/goals/reach.hpp"
 #include "gdd/goals/virtual_damping.hpp"

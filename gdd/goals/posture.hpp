@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Posture: every joint and floating base seeks a reference configuration, as a spring-damper.
+///
+///   ℓ(a) = ½ w (a − a*)ᵀ M (a − a*),   a* = k_p (q* ⊖ q) − k_d v                        (T.26)
+/// in the metric M, so that one weight serves heavy and light joints. ⊖ is the difference on the
+/// configuration manifold. With R = M⁻¹ torques at light links are dear: a weight of 10³ makes a
+/// standing humanoid stay up.
+
+#include <utility>
+
+#include "gdd/goal.hpp"
+
+namespace softgauss::gdd {
+
+class Posture final : public Goal {
+ public:
+  VectorX q;                ///< q* (nq)
+  double weight = 1000.0;   ///< w [-]
+  double stiffness = 50.0;  ///< k_p [1/s²]
+  double damping = 15.0;    ///< k_d [1/s]
+
+  explicit Posture(VectorX reference) : q(std::move(reference)) {}
+
+  std::string name() const override { return "posture"; }
+  void addCost(const GoalContext& context, GoalCost& cost) const override {
+    const VectorX away = positionDifference(context.model, context.state.q, q);
+    cost.addMetric(weight, stiffness * away - damping * context.state.v);
+  }
+  /// Largest deviation of a coordinate [rad or m].
+  double error(const GoalContext& context) const override {
+    return positionDifference(context.model, context.state.q, q).cwiseAbs().maxCoeff();
+  }
+};
+
+}  // namespace softgauss::gdd
