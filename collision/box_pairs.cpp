@@ -26,8 +26,8 @@ Vector3 betweenEdges(const Vector3& pA, const Vector3& u, const Vector3& pB, con
 
 }  // namespace
 
-void sphereBox(const Shape& sphere, const Transform& X_WA, const Shape& box,
-               const Transform& X_WB, double margin, PairContacts& out) {
+void sphereBox(const Shape& sphere, const Transform& X_WA, const Shape& box, const Transform& X_WB,
+               double margin, PairContacts& out) {
   const Vector3& h = box.halfExtents;
   const Vector3 c = X_WB.R.transpose() * (X_WA.p - X_WB.p);
   const Vector3 excess = c - c.cwiseMax(-h).cwiseMin(h);

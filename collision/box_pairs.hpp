@@ -24,8 +24,8 @@
 
 namespace softgauss::collision {
 
-void sphereBox(const Shape& sphere, const Transform& X_WA, const Shape& box,
-               const Transform& X_WB, double margin, PairContacts& out);
+void sphereBox(const Shape& sphere, const Transform& X_WA, const Shape& box, const Transform& X_WB,
+               double margin, PairContacts& out);
 void capsuleBox(const Shape& capsule, const Transform& X_WA, const Shape& box,
                 const Transform& X_WB, double margin, PairContacts& out);
 void boxBox(const Shape& a, const Transform& X_WA, const Shape& b, const Transform& X_WB,

@@ -176,8 +176,7 @@ void capsuleBox(const Shape& capsule, const Transform& X_WA, const Shape& box,
   }
   const double tilt = s.u.dot(outward);
   const double shortest = std::max(0.5 * r, 1e-15);
-  const double lambda =
-      alongside(tilt * tilt) * std::clamp((high - low) / shortest, 0.0, 1.0);
+  const double lambda = alongside(tilt * tilt) * std::clamp((high - low) / shortest, 0.0, 1.0);
   if (lambda == 0.0) {
     out.add(nearest);
     return;

@@ -73,9 +73,9 @@ void addReduced(const Vector3& n, int count, double margin, ContactAt&& contact,
   PairContact d = a;
   double gain = negligible;
   forTouching([&](const PairContact& x) {
-    const double s = std::max({side * area(a.p_WC, b.p_WC, x.p_WC),
-                               side * area(b.p_WC, c.p_WC, x.p_WC),
-                               side * area(c.p_WC, a.p_WC, x.p_WC)});
+    const double s =
+        std::max({side * area(a.p_WC, b.p_WC, x.p_WC), side * area(b.p_WC, c.p_WC, x.p_WC),
+                  side * area(c.p_WC, a.p_WC, x.p_WC)});
     if (s > gain * kClearly) gain = s, d = x;
   });
   if (gain > negligible) out.add(d);

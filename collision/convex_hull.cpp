@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <map>
+#include <set>
 #include <string>
 
 #include "engine/core/check.hpp"
@@ -33,9 +34,9 @@ struct Extent {
 
 template <class Distance>
 const Vector3& farthest(const std::vector<Vector3>& points, Distance&& distance) {
-  return *std::max_element(
-      points.begin(), points.end(),
-      [&](const Vector3& a, const Vector3& b) { return distance(a) < distance(b); });
+  return *std::max_element(points.begin(), points.end(), [&](const Vector3& a, const Vector3& b) {
+    return distance(a) < distance(b);
+  });
 }
 
 Extent extentOf(const std::vector<Vector3>& points) {
@@ -59,8 +60,8 @@ Extent extentOf(const std::vector<Vector3>& points) {
 
   e.y = wide / e.width;
   e.normal = e.x.cross(e.y);
-  const Vector3 thick = farthest(
-      points, [&](const Vector3& v) { return std::abs(e.normal.dot(v - e.origin)); });
+  const Vector3 thick =
+      farthest(points, [&](const Vector3& v) { return std::abs(e.normal.dot(v - e.origin)); });
   e.thickness = std::abs(e.normal.dot(thick - e.origin));
   return e;
 }
@@ -69,8 +70,7 @@ Extent extentOf(const std::vector<Vector3>& points) {
 ConvexHull flatHull(const std::vector<Vector3>& points, const Extent& e) {
   std::vector<Eigen::Vector2d> flat;
   flat.reserve(points.size());
-  for (const Vector3& v : points)
-    flat.emplace_back(e.x.dot(v - e.origin), e.y.dot(v - e.origin));
+  for (const Vector3& v : points) flat.emplace_back(e.x.dot(v - e.origin), e.y.dot(v - e.origin));
   std::sort(flat.begin(), flat.end(), [](const auto& a, const auto& b) {
     return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y());
   });
@@ -112,9 +112,9 @@ class Qhull {
       : coordinates_(std::move(coordinates)), sink_(std::tmpfile()) {
     qh_zero(&state_, sink_);
     char command[] = "qhull";
-    failed_ = sink_ == nullptr ||
-              qh_new_qhull(&state_, 3, static_cast<int>(coordinates_.size() / 3),
-                           coordinates_.data(), False, command, nullptr, sink_) != 0;
+    failed_ =
+        sink_ == nullptr || qh_new_qhull(&state_, 3, static_cast<int>(coordinates_.size() / 3),
+                                         coordinates_.data(), False, command, nullptr, sink_) != 0;
   }
   ~Qhull() {
     int kept = 0, blocks = 0;
@@ -152,7 +152,8 @@ class Qhull {
 ConvexHull solidHull(const Mesh& mesh) {
   std::vector<double> coordinates;
   coordinates.reserve(3 * mesh.vertices.size());
-  for (const Vector3& v : mesh.vertices) coordinates.insert(coordinates.end(), v.data(), v.data() + 3);
+  for (const Vector3& v : mesh.vertices)
+    coordinates.insert(coordinates.end(), v.data(), v.data() + 3);
   Qhull qhull(std::move(coordinates));
   if (qhull.failed()) throw meshError(mesh, "its convex hull cannot be computed");
 
@@ -180,23 +181,60 @@ ConvexHull solidHull(const Mesh& mesh) {
   return hull;
 }
 
-}  // namespace
-
-const Vector3& ConvexHull::support(const Vector3& d_G) const {
-  std::size_t best = 0;
-  double farthest = vertices[0].dot(d_G);
-  for (std::size_t i = 1; i < vertices.size(); ++i) {
-    const double reach = vertices[i].dot(d_G);
-    if (reach > farthest) farthest = reach, best = i;
+IndexLists flatten(const std::vector<std::set<int>>& lists) {
+  IndexLists flat;
+  flat.start.push_back(0);
+  for (const std::set<int>& list : lists) {
+    flat.indices.insert(flat.indices.end(), list.begin(), list.end());
+    flat.start.push_back(static_cast<int>(flat.indices.size()));
   }
-  return vertices[best];
+  return flat;
 }
 
-int ConvexHull::faceAlong(const Vector3& d_G) const {
-  std::size_t best = 0;
-  for (std::size_t i = 1; i < faces.size(); ++i)
-    if (faces[i].normal.dot(d_G) > faces[best].normal.dot(d_G)) best = i;
-  return static_cast<int>(best);
+/// Neighbours along the rims of the faces, and starting points for the climb.
+void connect(ConvexHull& hull) {
+  std::vector<std::set<int>> neighbours(hull.vertices.size()), around(hull.vertices.size());
+  for (std::size_t f = 0; f < hull.faces.size(); ++f) {
+    const std::vector<int>& ring = hull.faces[f].vertices;
+    for (std::size_t k = 0; k < ring.size(); ++k) {
+      const int a = ring[k], b = ring[(k + 1) % ring.size()];
+      neighbours[static_cast<std::size_t>(a)].insert(b);
+      neighbours[static_cast<std::size_t>(b)].insert(a);
+      around[static_cast<std::size_t>(a)].insert(static_cast<int>(f));
+    }
+  }
+  hull.neighbours = flatten(neighbours);
+  hull.facesAround = flatten(around);
+  for (int i = 0; i < 8; ++i) {
+    const Vector3 d((i & 1) ? 1.0 : -1.0, (i & 2) ? 1.0 : -1.0, (i & 4) ? 1.0 : -1.0);
+    const auto top =
+        std::max_element(hull.vertices.begin(), hull.vertices.end(),
+                         [&](const Vector3& a, const Vector3& b) { return a.dot(d) < b.dot(d); });
+    hull.octants[static_cast<std::size_t>(i)] = static_cast<int>(top - hull.vertices.begin());
+  }
+}
+
+}  // namespace
+
+int ConvexHull::supportVertex(const Vector3& d_G) const {
+  int best = octants[static_cast<std::size_t>((d_G.x() > 0.0) + 2 * (d_G.y() > 0.0) +
+                                              4 * (d_G.z() > 0.0))];
+  double farthest = vertices[static_cast<std::size_t>(best)].dot(d_G);
+  for (int from = -1; from != best;) {
+    from = best;
+    for (int i : neighbours.of(from)) {
+      const double reach = vertices[static_cast<std::size_t>(i)].dot(d_G);
+      if (reach > farthest) farthest = reach, best = i;
+    }
+  }
+  return best;
+}
+
+int ConvexHull::supportFace(const Vector3& d_G) const {
+  const std::span<const int> around = facesAround.of(supportVertex(d_G));
+  const auto along = [&](int f) { return faces[static_cast<std::size_t>(f)].normal.dot(d_G); };
+  return *std::max_element(around.begin(), around.end(),
+                           [&](int f, int g) { return along(f) < along(g); });
 }
 
 ConvexHull makeConvexHull(const Mesh& mesh) {
@@ -211,6 +249,8 @@ ConvexHull makeConvexHull(const Mesh& mesh) {
     throw meshError(mesh, "all its vertices lie on one line, a surface was expected");
   ConvexHull hull =
       extent.thickness <= tolerance ? flatHull(mesh.vertices, extent) : solidHull(mesh);
+
+  connect(hull);
 
   Vector3 lower = hull.vertices[0], upper = hull.vertices[0];
   for (const Vector3& v : hull.vertices) {

@@ -7,7 +7,8 @@
 /// plane to one part in a million of its size, becomes a convex polygon: the same vertices in two
 /// faces, one for each side. Frame G is that of the mesh.
 
-#include <memory>
+#include <array>
+#include <span>
 #include <vector>
 
 #include "engine/core/types.hpp"
@@ -20,18 +21,36 @@ struct HullFace {
   std::vector<int> vertices;         ///< indices, counter-clockwise seen from outside
 };
 
-struct ConvexHull {
-  std::vector<Vector3> vertices;  ///< in G [m], each an extreme point
-  std::vector<HullFace> faces;    ///< at least 4, or 2 when flat
-  bool flat = false;              ///< a convex polygon without thickness
-  Vector3 centre = Vector3::Zero();      ///< of the axis-aligned box of the vertices, in G
-  Vector3 halfExtents = Vector3::Zero(); ///< of that box [m]
-  double boundingRadius = 0.0;           ///< about `centre` [m]
+/// Lists of indices of different lengths, one for each vertex, in one array.
+struct IndexLists {
+  std::vector<int> start;  ///< list of vertex v: indices[start[v]] … indices[start[v + 1] − 1]
+  std::vector<int> indices;
 
-  /// The vertex farthest along d_G (any length); the lowest index on ties.
-  const Vector3& support(const Vector3& d_G) const;
-  /// Index of the face whose normal is most along d_G.
-  int faceAlong(const Vector3& d_G) const;
+  std::span<const int> of(int v) const {
+    const auto i = static_cast<std::size_t>(v);
+    return {indices.data() + start[i], indices.data() + start[i + 1]};
+  }
+};
+
+struct ConvexHull {
+  std::vector<Vector3> vertices;          ///< in G [m], each an extreme point
+  std::vector<HullFace> faces;            ///< at least 4, or 2 when flat
+  IndexLists neighbours;                  ///< of each vertex, along the edges
+  IndexLists facesAround;                 ///< of each vertex
+  std::array<int, 8> octants{};           ///< support vertex of (±1, ±1, ±1); bit 0 set means +x
+  bool flat = false;                      ///< a convex polygon without thickness
+  Vector3 centre = Vector3::Zero();       ///< of the axis-aligned box of the vertices, in G
+  Vector3 halfExtents = Vector3::Zero();  ///< of that box [m]
+  double boundingRadius = 0.0;            ///< about `centre` [m]
+
+  /// Index of the vertex farthest along d_G (any length). Climbs from neighbour to neighbour, which
+  /// on a convex body ends at the top.
+  int supportVertex(const Vector3& d_G) const;
+  const Vector3& support(const Vector3& d_G) const {
+    return vertices[static_cast<std::size_t>(supportVertex(d_G))];
+  }
+  /// Index of the face at that vertex whose normal is most along d_G.
+  int supportFace(const Vector3& d_G) const;
 };
 
 /// Throws ModelError, naming the mesh's file, when there are fewer than three vertices or all lie

@@ -51,8 +51,9 @@ struct PairFilter {
   std::int64_t effectOffPairs = 0;     ///< left out because their effect is off
 };
 
-/// Overlap deeper than this [m] in the initial configuration counts: rounding is no design.
-inline constexpr double kInitialOverlap = 1e-6;
+/// Overlap deeper than this [m] in the initial configuration counts. Fingers that are drawn closed
+/// touch by less, and shall go on touching.
+inline constexpr double kInitialOverlap = 1e-4;
 
 /// Signed distance [m] of the two geometries in the initial configuration, if it is negative;
 /// anything ≥ 0 otherwise.

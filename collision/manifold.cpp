@@ -137,8 +137,8 @@ Polygon clipSegments(const Polygon& subject, const Polygon& window) {
 
 }  // namespace
 
-void addFaceContacts(const SupportFace& faceA, const SupportFace& faceB,
-                     const PairContact& deepest, double margin, PairContacts& out) {
+void addFaceContacts(const SupportFace& faceA, const SupportFace& faceB, const PairContact& deepest,
+                     double margin, PairContacts& out) {
   if (deepest.distance >= margin) return;
   if (faceA.count < 2 || faceB.count < 2) {
     out.add(deepest);

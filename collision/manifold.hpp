@@ -18,7 +18,7 @@ namespace softgauss::collision {
 /// Adds at most four contacts with distance < margin. `deepest` is the contact at the support
 /// points; it is used where the faces have no common area or where no corner is nearly as deep
 /// (round shapes).
-void addFaceContacts(const SupportFace& faceA, const SupportFace& faceB,
-                     const PairContact& deepest, double margin, PairContacts& out);
+void addFaceContacts(const SupportFace& faceA, const SupportFace& faceB, const PairContact& deepest,
+                     double margin, PairContacts& out);
 
 }  // namespace softgauss::collision

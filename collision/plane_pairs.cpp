@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "collision/plane_pairs.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "collision/contact_reduction.hpp"
@@ -29,8 +31,8 @@ void planeSphere(const Transform& X_WA, const Shape& sphere, const Transform& X_
   addSphere(X_WA.R.col(2), X_WA.p, X_WB.p, sphere.radius, margin, out);
 }
 
-void planeCapsule(const Transform& X_WA, const Shape& capsule, const Transform& X_WB,
-                  double margin, PairContacts& out) {
+void planeCapsule(const Transform& X_WA, const Shape& capsule, const Transform& X_WB, double margin,
+                  PairContacts& out) {
   const Vector3 n = X_WA.R.col(2);
   const Vector3 axis = X_WB.R.col(2);
   const Vector3 reach = axis * capsule.halfLength;
@@ -82,20 +84,42 @@ void planeCylinder(const Transform& X_WA, const Shape& cylinder, const Transform
   addPoint(n, p, lowerDisc - u * (0.5 * r) - side, margin, out);
 }
 
-void planeHull(const Transform& X_WA, const ConvexHull& hull, const Transform& X_WB,
-               double margin, PairContacts& out) {
+void planeHull(const Transform& X_WA, const ConvexHull& hull, const Transform& X_WB, double margin,
+               PairContacts& out) {
   const Vector3 n = X_WA.R.col(2);
   const Vector3 n_B = X_WB.R.transpose() * n;
   const double offset = n.dot(X_WB.p - X_WA.p);
+  const auto distanceOf = [&](int v) {
+    return n_B.dot(hull.vertices[static_cast<std::size_t>(v)]) + offset;
+  };
+  const int lowest = hull.supportVertex(-n_B);
+  if (distanceOf(lowest) >= margin) return;
+
+  // On a convex body the vertices below the margin are connected: they are collected from the
+  // lowest one outwards. A body sunk too deep for that has all its vertices tried.
+  std::array<int, 64> below;
+  std::size_t count = 0;
+  bool complete = true;
+  const auto collect = [&](int v) {
+    const auto end = below.begin() + static_cast<std::ptrdiff_t>(count);
+    if (distanceOf(v) >= margin || std::find(below.begin(), end, v) != end) return;
+    complete = count < below.size();
+    if (complete) below[count++] = v;
+  };
+  collect(lowest);
+  for (std::size_t k = 0; k < count && complete; ++k)
+    for (int v : hull.neighbours.of(below[k]))
+      if (complete) collect(v);
+  std::sort(below.begin(), below.begin() + static_cast<std::ptrdiff_t>(count));
 
   const auto contact = [&](int i) -> PairContact {
-    const Vector3& v = hull.vertices[static_cast<std::size_t>(i)];
-    const double distance = n_B.dot(v) + offset;
+    const int v = complete ? below[static_cast<std::size_t>(i)] : i;
+    const double distance = distanceOf(v);
     // Points out of reach are dropped by their distance alone.
     if (distance >= margin) return {Vector3::Zero(), n, distance};
-    return {X_WB * v - n * (0.5 * distance), n, distance};
+    return {X_WB * hull.vertices[static_cast<std::size_t>(v)] - n * (0.5 * distance), n, distance};
   };
-  addReduced(n, static_cast<int>(hull.vertices.size()), margin, contact, out);
+  addReduced(n, static_cast<int>(complete ? count : hull.vertices.size()), margin, contact, out);
 }
 
 }  // namespace softgauss::collision

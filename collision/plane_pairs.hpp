@@ -23,13 +23,13 @@ namespace softgauss::collision {
 
 void planeSphere(const Transform& X_WA, const Shape& sphere, const Transform& X_WB, double margin,
                  PairContacts& out);
-void planeCapsule(const Transform& X_WA, const Shape& capsule, const Transform& X_WB,
-                  double margin, PairContacts& out);
+void planeCapsule(const Transform& X_WA, const Shape& capsule, const Transform& X_WB, double margin,
+                  PairContacts& out);
 void planeBox(const Transform& X_WA, const Shape& box, const Transform& X_WB, double margin,
               PairContacts& out);
 void planeCylinder(const Transform& X_WA, const Shape& cylinder, const Transform& X_WB,
                    double margin, PairContacts& out);
-void planeHull(const Transform& X_WA, const ConvexHull& hull, const Transform& X_WB,
-               double margin, PairContacts& out);
+void planeHull(const Transform& X_WA, const ConvexHull& hull, const Transform& X_WB, double margin,
+               PairContacts& out);
 
 }  // namespace softgauss::collision

@@ -65,8 +65,8 @@ void collideInOrder(const Shape& a, const Transform& X_WA, const Shape& b, const
   SOFTGAUSS_ASSERT(hasClosedForm(a.kind, b.kind) && a.kind <= b.kind);
 }
 
-void collidePrimitives(const Shape& a, const Transform& X_WA, const Shape& b,
-                       const Transform& X_WB, double margin, PairContacts& out) {
+void collidePrimitives(const Shape& a, const Transform& X_WA, const Shape& b, const Transform& X_WB,
+                       double margin, PairContacts& out) {
   if (a.kind <= b.kind) return collideInOrder(a, X_WA, b, X_WB, nullptr, margin, out);
   collideInOrder(b, X_WB, a, X_WA, nullptr, margin, out);
   out.flip();

@@ -27,7 +27,7 @@ void collideInOrder(const Shape& a, const Transform& X_WA, const Shape& b, const
                     const ConvexHull* hullB, double margin, PairContacts& out);
 
 /// The same for kinds in any order, without meshes: the normal points from a to b.
-void collidePrimitives(const Shape& a, const Transform& X_WA, const Shape& b,
-                       const Transform& X_WB, double margin, PairContacts& out);
+void collidePrimitives(const Shape& a, const Transform& X_WA, const Shape& b, const Transform& X_WB,
+                       double margin, PairContacts& out);
 
 }  // namespace softgauss::collision

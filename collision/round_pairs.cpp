@@ -43,20 +43,18 @@ void sphereSphere(const Shape& a, const Transform& X_WA, const Shape& b, const T
                   double margin, PairContacts& out) {
   const double reach = a.radius + b.radius + margin;
   if ((X_WB.p - X_WA.p).squaredNorm() >= reach * reach) return;
-  addIfNear(spheres(X_WA.p, a.radius, X_WB.p, b.radius,
-                    commonNormal(X_WA.R.col(2), X_WB.R.col(2))),
+  addIfNear(spheres(X_WA.p, a.radius, X_WB.p, b.radius, commonNormal(X_WA.R.col(2), X_WB.R.col(2))),
             margin, out);
 }
 
 void sphereCapsule(const Shape& sphere, const Transform& X_WA, const Shape& capsule,
                    const Transform& X_WB, double margin, PairContacts& out) {
-  const Vector3 y =
-      nearestOnSegment(X_WA.p, X_WB.p, X_WB.R.col(2), capsule.halfLength);
+  const Vector3 y = nearestOnSegment(X_WA.p, X_WB.p, X_WB.R.col(2), capsule.halfLength);
   const double reach = sphere.radius + capsule.radius + margin;
   if ((y - X_WA.p).squaredNorm() >= reach * reach) return;
-  addIfNear(spheres(X_WA.p, sphere.radius, y, capsule.radius,
-                    commonNormal(X_WA.R.col(2), X_WB.R.col(2))),
-            margin, out);
+  addIfNear(
+      spheres(X_WA.p, sphere.radius, y, capsule.radius, commonNormal(X_WA.R.col(2), X_WB.R.col(2))),
+      margin, out);
 }
 
 void sphereCylinder(const Shape& sphere, const Transform& X_WA, const Shape& cylinder,

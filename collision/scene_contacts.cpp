@@ -112,7 +112,8 @@ void SceneContacts::Scene::setPairs(const std::vector<GeometryPair>& pairs, int 
     const double margin = mixMaterials(a.material, b.material).margin;
     const double reach = radius[static_cast<std::size_t>(pair.a)] +
                          radius[static_cast<std::size_t>(pair.b)] + margin;
-    (a.shape.kind == ShapeKind::plane ? planeRows : rows).push_back({pair.a, pair.b, reach, margin});
+    (a.shape.kind == ShapeKind::plane ? planeRows : rows)
+        .push_back({pair.a, pair.b, reach, margin});
     if (hasClosedForm(a.shape.kind, b.shape.kind)) continue;
     for (int g : {pair.a, pair.b})
       if (turn[static_cast<std::size_t>(g)] == Turn::axis)
@@ -187,8 +188,7 @@ void SceneContacts::Scene::report(const Row& row, ContactSet& contacts) {
 void SceneContacts::Scene::testPlanes(ContactSet& contacts) {
   for (const Row& row : planeRows) {
     const Transform& X_WP = X_WG[static_cast<std::size_t>(row.a)];
-    const double height =
-        X_WP.R.col(2).dot(centre[static_cast<std::size_t>(row.b)] - X_WP.p);
+    const double height = X_WP.R.col(2).dot(centre[static_cast<std::size_t>(row.b)] - X_WP.p);
     if (height < row.reach) report(row, contacts);
   }
 }
@@ -211,7 +211,9 @@ void SceneContacts::Scene::testNear(ContactSet& contacts) {
   nearRows.clear();
   for (const auto& [i, j] : near) {
     int a = movable[static_cast<std::size_t>(i)], b = movable[static_cast<std::size_t>(j)];
-    const auto kind = [&](int g) { return model.geometries[static_cast<std::size_t>(g)].shape.kind; };
+    const auto kind = [&](int g) {
+      return model.geometries[static_cast<std::size_t>(g)].shape.kind;
+    };
     if (kind(b) < kind(a)) std::swap(a, b);
     const auto first = rows.begin() + firstRow[static_cast<std::size_t>(a)];
     const auto last = rows.begin() + firstRow[static_cast<std::size_t>(a) + 1];

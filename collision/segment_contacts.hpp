@@ -11,10 +11,10 @@
 ///   nearest   m + max(min(1, 2 − 2 λ α), β) (g_min − m)
 /// α ∈ [0, 1] falls to 0 where the normal at an end differs from the nearest one (by 8° to 18°; for
 /// the nearest contact α is interpolated between the ends): there the end touches something else.
-/// β ∈ [0, 1] says how far the minimum dips below the line between the ends, 1 from a tenth of its
-/// depth on. So λ = 0 gives the nearest contact alone; a capsule lying flat (λ = 1, no dip) rests
-/// on both ends; where capsules cross at a small angle, all three count; and one contact at least
-/// shows 90 % of the depth. Everything is continuous in the poses.
+/// β ∈ [0, 1] says how far the minimum dips below the line between the ends: 0 up to 1 % of its
+/// depth, 1 from 11 % on. So λ = 0 gives the nearest contact alone; a capsule lying flat (λ = 1, no
+/// dip) rests on both ends; where capsules cross at a small angle, all three count; and one contact
+/// at least shows 89 % of the depth. Everything is continuous in the poses.
 
 #include <algorithm>
 
@@ -36,7 +36,7 @@ inline void addSegmentContacts(const PairContact& nearest, const PairContact& fi
                                double margin, PairContacts& out) {
   const double line = first.distance + fraction * (last.distance - first.distance);
   const double depth = margin - nearest.distance;
-  const double dip = std::clamp(10.0 * (line - nearest.distance) / depth, 0.0, 1.0);
+  const double dip = std::clamp(10.0 * (line - nearest.distance) / depth - 0.1, 0.0, 1.0);
   const auto alignment = [&](const PairContact& end) {
     return std::clamp((end.n_W.dot(nearest.n_W) - 0.95) / 0.04, 0.0, 1.0);
   };

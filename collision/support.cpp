@@ -75,7 +75,7 @@ SupportFace capsuleFace(const Shape& shape, const Transform& X_WG, const Vector3
 }
 
 SupportFace hullFace(const ConvexHull& hull, const Transform& X_WG, const Vector3& d_G) {
-  const HullFace& best = hull.faces[static_cast<std::size_t>(hull.faceAlong(d_G))];
+  const HullFace& best = hull.faces[static_cast<std::size_t>(hull.supportFace(d_G))];
   SupportFace face;
   if (best.normal.dot(d_G) < kFacing) {
     face.add(X_WG * hull.support(d_G));
@@ -102,8 +102,7 @@ Vector3 supportPoint(const Convex& convex, const Transform& X_WG, const Vector3&
              axis * std::copysign(shape.halfLength, axis.dot(d_W));
     case ShapeKind::cylinder: {
       const Vector3 radial = radialDirection(d_W, axis, Vector3::Zero());
-      return X_WG.p + radial * shape.radius +
-             axis * std::copysign(shape.halfLength, axis.dot(d_W));
+      return X_WG.p + radial * shape.radius + axis * std::copysign(shape.halfLength, axis.dot(d_W));
     }
     case ShapeKind::box: {
       const Vector3 d_G = X_WG.R.transpose() * d_W;
@@ -153,7 +152,7 @@ Vector3 supportFaceNormal(const Convex& convex, const Transform& X_WG, const Vec
     }
     case ShapeKind::mesh: {
       const HullFace& face =
-          convex.hull->faces[static_cast<std::size_t>(convex.hull->faceAlong(d_G))];
+          convex.hull->faces[static_cast<std::size_t>(convex.hull->supportFace(d_G))];
       if (face.normal.dot(d_G) < kFacing) break;
       return X_WG.R * face.normal;
     }

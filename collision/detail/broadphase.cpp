@@ -5,6 +5,7 @@
 #include <fcl/geometry/shape/sphere.h>
 #include <fcl/narrowphase/collision_object.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <utility>
 
@@ -18,7 +19,7 @@ int indexOf(const fcl::CollisionObjectd* object) {
 }
 
 bool collect(fcl::CollisionObjectd* a, fcl::CollisionObjectd* b, void* data) {
-  const auto [low, high] = std::minmax(indexOf(a), indexOf(b));
+  const auto [low, high] = std::minmax({indexOf(a), indexOf(b)});
   static_cast<NearPairs*>(data)->emplace_back(low, high);
   return false;  // go on
 }

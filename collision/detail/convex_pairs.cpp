@@ -9,7 +9,8 @@
 namespace softgauss::collision::detail {
 namespace {
 
-/// A face normal is preferred to the free direction up to this loss of separation, relative to size.
+/// A face normal is preferred to the free direction up to this loss of separation, relative to
+/// size.
 constexpr double kFacePreference = 1e-6;
 /// How far touching cores are pushed into each other, relative to the smaller one.
 constexpr double kPush = 1e-2;
@@ -30,7 +31,7 @@ Vector3 localHalfExtents(const Shape& s, const ConvexHull* hull) {
 }
 
 std::optional<CoreDirection> proposeDirection(const Collider& a, const Transform& X_WA,
-                                                      const Collider& b, const Transform& X_WB) {
+                                              const Collider& b, const Transform& X_WB) {
   const double size = std::min(a.boxHalfExtents.maxCoeff(), b.boxHalfExtents.maxCoeff());
   if (const auto direct = coreDirection(a.fcl, X_WA, b.fcl, X_WB, size)) return direct;
   Vector3 apart = X_WB * b.boxCentre - X_WA * a.boxCentre;

@@ -20,7 +20,7 @@ namespace softgauss::collision::detail {
 /// A convex shape ready for any query.
 struct Collider {
   Convex convex;
-  FclShape fcl;       ///< set where a pair without closed form may need it
+  FclShape fcl;                              ///< set where a pair without closed form may need it
   Vector3 boxCentre = Vector3::Zero();       ///< of a box around the shape, in G [m]
   Vector3 boxHalfExtents = Vector3::Zero();  ///< of that box
 };

@@ -35,8 +35,8 @@ std::shared_ptr<fcl::CollisionGeometryd> convert(const Convex& convex) {
         faces->push_back(static_cast<int>(face.vertices.size()));
         faces->insert(faces->end(), face.vertices.begin(), face.vertices.end());
       }
-      return std::make_shared<fcl::Convexd>(
-          vertices, static_cast<int>(convex.hull->faces.size()), faces);
+      return std::make_shared<fcl::Convexd>(vertices, static_cast<int>(convex.hull->faces.size()),
+                                            faces);
     }
     case ShapeKind::plane:
       break;

@@ -33,9 +33,9 @@ std::vector<Kinds> closedForms() {
 double nearestTo(const PairContact& contact, const PairContacts& set) {
   double nearest = kInfinity;
   for (int j = 0; j < set.count; ++j)
-    nearest = std::min(nearest, (set[j].p_WC - contact.p_WC).norm() +
-                                    (set[j].n_W - contact.n_W).norm() +
-                                    std::abs(set[j].distance - contact.distance));
+    nearest =
+        std::min(nearest, (set[j].p_WC - contact.p_WC).norm() + (set[j].n_W - contact.n_W).norm() +
+                              std::abs(set[j].distance - contact.distance));
   return nearest;
 }
 
@@ -73,111 +73,124 @@ TEST(Pairs, ContactsAreFiniteAndNormalsUnit) {
 }
 
 TEST(Pairs, DeepestDistanceIsSeparationAlongItsNormal) {
-  forTouching(2, 0.0, [](const Shape& a, const Transform& X_WA, const Shape& b,
-                         const Transform& X_WB, const PairContacts& contacts) {
-    if (a.kind == ShapeKind::plane) return;
-    for (int i = 0; i < contacts.count; ++i) {
-      if (contacts[i].distance != deepest(contacts)) continue;
-      const double sigma =
-          separationAlong({&a, nullptr}, X_WA, {&b, nullptr}, X_WB, contacts[i].n_W);
-      // Of a capsule lying along something, each end has a normal of its own; one that pierces a
-      // box leaves over the face that it is cut by.
-      if (a.kind == ShapeKind::capsule && (contacts.count > 1 || -contacts[i].distance > a.radius))
-        continue;
-      EXPECT_NEAR(contacts[i].distance, sigma, 1e-2);
-    }
-  });
+  forTouching(2, 0.0,
+              [](const Shape& a, const Transform& X_WA, const Shape& b, const Transform& X_WB,
+                 const PairContacts& contacts) {
+                if (a.kind == ShapeKind::plane) return;
+                for (int i = 0; i < contacts.count; ++i) {
+                  if (contacts[i].distance != deepest(contacts)) continue;
+                  const double sigma =
+                      separationAlong({&a, nullptr}, X_WA, {&b, nullptr}, X_WB, contacts[i].n_W);
+                  // Of a capsule lying along something, each end has a normal of its own; one that
+                  // pierces a box leaves over the face that it is cut by.
+                  if (a.kind == ShapeKind::capsule &&
+                      (contacts.count > 1 || -contacts[i].distance > a.radius))
+                    continue;
+                  EXPECT_NEAR(contacts[i].distance, sigma, 1e-2);
+                }
+              });
 }
 
 TEST(Pairs, SwappingShapesFlipsTheNormal) {
-  forTouching(3, 0.0, [](const Shape& a, const Transform& X_WA, const Shape& b,
-                         const Transform& X_WB, const PairContacts& contacts) {
-    const PairContacts swapped = contactsOf(b, X_WB, a, X_WA);
-    // The thinning of more than four points depends on their order, the deepest point does not.
-    if (contacts.count == 4) {
-      EXPECT_NEAR(deepest(swapped), deepest(contacts), 1e-9);
-      return;
-    }
-    ASSERT_EQ(swapped.count, contacts.count);
-    for (int i = 0; i < contacts.count; ++i) {
-      PairContact mirrored = contacts[i];
-      mirrored.n_W *= -1.0;
-      EXPECT_LT(nearestTo(mirrored, swapped), 1e-6);
-    }
-  });
+  forTouching(3, 0.0,
+              [](const Shape& a, const Transform& X_WA, const Shape& b, const Transform& X_WB,
+                 const PairContacts& contacts) {
+                const PairContacts swapped = contactsOf(b, X_WB, a, X_WA);
+                // The thinning of more than four points depends on their order, the deepest point
+                // does not.
+                if (contacts.count == 4) {
+                  EXPECT_NEAR(deepest(swapped), deepest(contacts), 1e-9);
+                  return;
+                }
+                ASSERT_EQ(swapped.count, contacts.count);
+                for (int i = 0; i < contacts.count; ++i) {
+                  PairContact mirrored = contacts[i];
+                  mirrored.n_W *= -1.0;
+                  EXPECT_LT(nearestTo(mirrored, swapped), 1e-6);
+                }
+              });
 }
 
 TEST(Pairs, RigidMotionMovesContactsAlong) {
   RandomPairs motions(40);
-  forTouching(4, 0.0, [&](const Shape& a, const Transform& X_WA, const Shape& b,
-                          const Transform& X_WB, const PairContacts& contacts) {
-    const Transform X = motions.pose(3.0);
-    const PairContacts moved = contactsOf(a, X * X_WA, b, X * X_WB);
-    ASSERT_EQ(moved.count, contacts.count);
-    for (int i = 0; i < contacts.count; ++i) {
-      const PairContact carried{X * contacts[i].p_WC, X.R * contacts[i].n_W, contacts[i].distance};
-      EXPECT_LT(nearestTo(carried, moved), 1e-9);
-    }
-  });
+  forTouching(4, 0.0,
+              [&](const Shape& a, const Transform& X_WA, const Shape& b, const Transform& X_WB,
+                  const PairContacts& contacts) {
+                const Transform X = motions.pose(3.0);
+                const PairContacts moved = contactsOf(a, X * X_WA, b, X * X_WB);
+                ASSERT_EQ(moved.count, contacts.count);
+                for (int i = 0; i < contacts.count; ++i) {
+                  const PairContact carried{X * contacts[i].p_WC, X.R * contacts[i].n_W,
+                                            contacts[i].distance};
+                  EXPECT_LT(nearestTo(carried, moved), 1e-9);
+                }
+              });
 }
 
 TEST(Pairs, MovingApartAlongTheNormalOpensTheGap) {
-  forTouching(5, 0.0, [](const Shape& a, const Transform& X_WA, const Shape& b,
-                         const Transform& X_WB, const PairContacts& contacts) {
-    for (int i = 0; i < contacts.count; ++i) {
-      if (contacts[i].distance != deepest(contacts)) continue;
-      Transform away = X_WB;
-      away.p += contacts[i].n_W * (1e-9 - contacts[i].distance);
-      const double left = deepest(contactsOf(a, X_WA, b, away));
-      EXPECT_GT(left, a.kind == ShapeKind::capsule ? -5e-2 : -1e-8);
-      // Halfway there they still touch: the motion asked for is not longer than it must be.
-      Transform half = X_WB;
-      half.p -= contacts[i].n_W * (0.5 * contacts[i].distance);
-      EXPECT_LT(deepest(contactsOf(a, X_WA, b, half)), 0.0);
-    }
-  });
+  forTouching(5, 0.0,
+              [](const Shape& a, const Transform& X_WA, const Shape& b, const Transform& X_WB,
+                 const PairContacts& contacts) {
+                for (int i = 0; i < contacts.count; ++i) {
+                  if (contacts[i].distance != deepest(contacts)) continue;
+                  Transform away = X_WB;
+                  away.p += contacts[i].n_W * (1e-9 - contacts[i].distance);
+                  const double left = deepest(contactsOf(a, X_WA, b, away));
+                  EXPECT_GT(left, a.kind == ShapeKind::capsule ? -5e-2 : -1e-8);
+                  // Halfway there they still touch: the motion asked for is not longer than it must
+                  // be.
+                  Transform half = X_WB;
+                  half.p -= contacts[i].n_W * (0.5 * contacts[i].distance);
+                  EXPECT_LT(deepest(contactsOf(a, X_WA, b, half)), 0.0);
+                }
+              });
 }
 
 TEST(Pairs, NormalIsGradientOfDistance) {
   constexpr double kStep = 1e-6;
   RandomPairs directions(60);
   int differing = 0, total = 0;
-  forTouching(6, 0.0, [&](const Shape& a, const Transform& X_WA, const Shape& b,
-                          const Transform& X_WB, const PairContacts& contacts) {
-    const Vector3 d = directions.vector(1.0);
-    Transform forth = X_WB, back = X_WB;
-    forth.p += kStep * d;
-    back.p -= kStep * d;
-    const double slope = (deepest(contactsOf(a, X_WA, b, forth)) -
-                          deepest(contactsOf(a, X_WA, b, back))) / (2 * kStep);
-    double nearest = kInfinity;
-    for (int i = 0; i < contacts.count; ++i)
-      if (contacts[i].distance == deepest(contacts))
-        nearest = std::min(nearest, std::abs(slope - contacts[i].n_W.dot(d)));
-    ++total;
-    if (!(nearest < 1e-3)) ++differing;
-  });
+  forTouching(6, 0.0,
+              [&](const Shape& a, const Transform& X_WA, const Shape& b, const Transform& X_WB,
+                  const PairContacts& contacts) {
+                const Vector3 d = directions.vector(1.0);
+                Transform forth = X_WB, back = X_WB;
+                forth.p += kStep * d;
+                back.p -= kStep * d;
+                const double slope = (deepest(contactsOf(a, X_WA, b, forth)) -
+                                      deepest(contactsOf(a, X_WA, b, back))) /
+                                     (2 * kStep);
+                double nearest = kInfinity;
+                for (int i = 0; i < contacts.count; ++i)
+                  if (contacts[i].distance == deepest(contacts))
+                    nearest = std::min(nearest, std::abs(slope - contacts[i].n_W.dot(d)));
+                ++total;
+                if (!(nearest < 1e-3)) ++differing;
+              });
   // Exceptions are poses within a step of a kink and the fading of nearly parallel capsules.
   EXPECT_LT(differing, total / 50);
 }
 
 TEST(Pairs, PointsLieMidwayBetweenSurfaces) {
-  forTouching(7, 0.0, [](const Shape& a, const Transform& X_WA, const Shape& b,
-                         const Transform& X_WB, const PairContacts& contacts) {
-    // A sphere of radius zero measures how far a point is from a surface.
-    const auto height = [](const Shape& shape, const Transform& X, const Vector3& x) {
-      return deepest(contactsOf(Shape::sphere(0.0), {Matrix3::Identity(), x}, shape, X, 10.0));
-    };
-    for (int i = 0; i < contacts.count; ++i) {
-      if (contacts[i].distance != deepest(contacts)) continue;
-      const Vector3 half = contacts[i].n_W * (0.5 * contacts[i].distance);
-      // Capsules blend two contacts into one, and leave a box that they pierce as a whole.
-      if (a.kind == ShapeKind::capsule && (contacts.count > 1 || -contacts[i].distance > a.radius))
-        continue;
-      EXPECT_NEAR(height(a, X_WA, contacts[i].p_WC - half), 0.0, 2e-3);
-      EXPECT_NEAR(height(b, X_WB, contacts[i].p_WC + half), 0.0, 2e-3);
-    }
-  });
+  forTouching(
+      7, 0.0,
+      [](const Shape& a, const Transform& X_WA, const Shape& b, const Transform& X_WB,
+         const PairContacts& contacts) {
+        // A sphere of radius zero measures how far a point is from a surface.
+        const auto height = [](const Shape& shape, const Transform& X, const Vector3& x) {
+          return deepest(contactsOf(Shape::sphere(0.0), {Matrix3::Identity(), x}, shape, X, 10.0));
+        };
+        for (int i = 0; i < contacts.count; ++i) {
+          if (contacts[i].distance != deepest(contacts)) continue;
+          const Vector3 half = contacts[i].n_W * (0.5 * contacts[i].distance);
+          // Capsules blend two contacts into one, and leave a box that they pierce as a whole.
+          if (a.kind == ShapeKind::capsule &&
+              (contacts.count > 1 || -contacts[i].distance > a.radius))
+            continue;
+          EXPECT_NEAR(height(a, X_WA, contacts[i].p_WC - half), 0.0, 2e-3);
+          EXPECT_NEAR(height(b, X_WB, contacts[i].p_WC + half), 0.0, 2e-3);
+        }
+      });
 }
 
 TEST(Pairs, MarginIsStrict) {
