@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/constraints/impedance.hpp"
+
+#include "tests/support/matchers.hpp"
+
+namespace softgauss::test {
+namespace {
+
+constexpr double kRounding = 1e-15;
+
+TEST(Impedance, ClosedFormPoints) {
+  const Impedance p;  // 0.9 → 0.95 over 1 mm, parabolas that meet in the middle
+  EXPECT_SMALL(impedanceAt(p, 0.0) - 0.9, kRounding);
+  EXPECT_SMALL(impedanceAt(p, -0.25e-3) - (0.9 + 0.05 * 0.125), kRounding);
+  EXPECT_SMALL(impedanceAt(p, -0.5e-3) - 0.925, kRounding);
+  EXPECT_SMALL(impedanceAt(p, -0.75e-3) - (0.9 + 0.05 * 0.875), kRounding);
+  EXPECT_SMALL(impedanceAt(p, -1e-3) - 0.95, kRounding);
+  EXPECT_SMALL(impedanceAt(p, -1.0) - 0.95, kRounding);
+}
+
+// Powers 1, 2 and 3 about other midpoints: y = xᵖ/mᵖ⁻¹ below m, mirrored above.
+TEST(Impedance, FollowsThePowerCurve) {
+  Impedance p;
+  p.dMin = 0.2;
+  p.dMax = 0.8;
+  p.width = 2.0;
+  p.midpoint = 0.3;
+  for (const double power : {1.0, 2.0, 3.0, 2.5}) {
+    p.power = power;
+    const double low = std::pow(0.2, power) / std::pow(0.3, power - 1);
+    const double high = 1 - std::pow(0.4, power) / std::pow(0.7, power - 1);
+    EXPECT_SMALL(impedanceAt(p, -0.4) - (0.2 + 0.6 * low), kRounding) << power;
+    EXPECT_SMALL(impedanceAt(p, -1.2) - (0.2 + 0.6 * high), kRounding) << power;
+  }
+}
+
+TEST(Impedance, RisesMonotonicallyAndIsEven) {
+  for (const double power : {1.0, 2.0, 3.5})
+    for (const double midpoint : {0.1, 0.5, 0.9}) {
+      Impedance p;
+      p.power = power;
+      p.midpoint = midpoint;
+      double previous = 0.0;
+      for (int i = 0; i <= 120; ++i) {
+        const double d = impedanceAt(p, -1e-5 * i);
+        EXPECT_GE(d, previous);
+        EXPECT_GE(d, p.dMin);
+        EXPECT_LE(d, p.dMax);
+        EXPECT_EQ(d, impedanceAt(p, 1e-5 * i));
+        previous = d;
+      }
+    }
+}
+
+TEST(Impedance, IsContinuousAtItsMidpoint) {
+  Impedance p;
+  p.midpoint = 0.3;
+  for (const double power : {2.0, 3.0}) {
+    p.power = power;
+    EXPECT_SMALL(impedanceAt(p, 0.3e-3 * (1 - 1e-12)) - impedanceAt(p, 0.3e-3 * (1 + 1e-12)),
+                 1e-12);
+  }
+}
+
+TEST(Impedance, IsClampedAwayFromZeroAndOne) {
+  Impedance p;
+  p.dMin = 0.0;
+  p.dMax = 1.0;
+  EXPECT_EQ(impedanceAt(p, 0.0), 1e-4);
+  EXPECT_EQ(impedanceAt(p, 1.0), 0.9999);
+}
+
+TEST(Impedance, WithoutWidthIsTheMean) {
+  Impedance p;
+  p.width = 0.0;
+  EXPECT_SMALL(impedanceAt(p, -0.1) - 0.925, kRounding);
+  p.width = 0.001;
+  p.dMax = p.dMin;
+  EXPECT_EQ(impedanceAt(p, -0.1), 0.9);
+}
+
+TEST(Softness, IsTheReferenceSpringDamper) {
+  Impedance p;
+  p.timeConstant = 0.05;
+  p.dampingRatio = 0.7;
+  const double r = -0.5e-3, d = 0.925, A = 3.0;
+  const Softness s = softnessAt(p, r, A, 0.002);
+  EXPECT_SMALL(s.R - (1 - d) / d * A, kRounding);
+  EXPECT_SMALL(s.stiffness / (d / std::pow(0.95 * 0.05 * 0.7, 2)) - 1.0, kRounding);
+  EXPECT_SMALL(s.damping / (2 / (0.95 * 0.05)) - 1.0, kRounding);
+  EXPECT_EQ(s.referenceAcceleration(0.3, r), -s.damping * 0.3 - s.stiffness * r);
+}
+
+TEST(Softness, TimeConstantIsAtLeastTwoSteps) {
+  Impedance fast, slow;
+  fast.timeConstant = 0.003;
+  slow.timeConstant = 0.02;
+  const double h = 0.01;
+  const Softness a = softnessAt(fast, -0.001, 1.0, h), b = softnessAt(slow, -0.001, 1.0, h);
+  EXPECT_EQ(a.stiffness, b.stiffness);
+  EXPECT_EQ(a.damping, b.damping);
+}
+
+TEST(Softness, RegulariserHasAFloor) {
+  EXPECT_EQ(softnessAt(Impedance{}, -0.001, 0.0, 0.002).R, 1e-15);
+}
+
+}  // namespace
+}  // namespace softgauss::test
