@@ -31,7 +31,7 @@ std::vector<std::string> effectsOn(const std::vector<EffectNote>& notes);
 struct FilteredPair {
   std::string first;
   std::string second;
-  std::string reason;  ///< what pairs are grouped by, e.g. "joined by a joint"
+  std::string reason;       ///< what pairs are grouped by, e.g. "joined by a joint"
   std::string detail = {};  ///< of this pair, e.g. "by 3 mm"
 };
 
