@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+/// In steady state the engine's step allocates nothing: proved by counting every allocation of the
+/// thread, in whatever build type this is.
+
+#include <gtest/gtest.h>
+
+#include "tests/support/allocation_guard.hpp"
+#include "tests/support/scene.hpp"
+
+namespace softgauss::test {
+namespace {
+
+#define SKIP_WITHOUT_HOOK() \
+  if (!kAllocationHook) GTEST_SKIP() << "a sanitizer owns the allocator"
+
+/// Runs `count` steps once, so that every buffer has its size, then the same steps again; returns
+/// the allocations of the second run.
+std::int64_t allocationsOfSteadySteps(Scene& s, int count) {
+  const State start = s.state;
+  s.steps(count);
+  s.state = start;
+  const AllocationGuard guard;
+  s.steps(count);
+  return guard.count();
+}
+
+TEST(AllocationGuard, CatchesEveryKindOfAllocation) {
+  SKIP_WITHOUT_HOOK();
+  const auto count = [](auto&& allocate) {
+    const AllocationGuard guard;
+    allocate();
+    return guard.count();
+  };
+  // Volatile, or the optimiser would leave the allocations out.
+  void* volatile memory = nullptr;
+  volatile std::size_t size = 100;
+  EXPECT_EQ(count([] {}), 0);
+  EXPECT_EQ(count([&] { memory = std::malloc(size); }), 1);
+  EXPECT_EQ(count([&] { std::free(memory); }), 0);
+  EXPECT_EQ(count([&] { memory = ::operator new(size); }), 1);
+  ::operator delete(memory);
+  EXPECT_GE(count([&] { memory = std::calloc(size, 2); }), 1);
+  EXPECT_GE(count([&] { memory = std::realloc(memory, 1000 * size); }), 1);
+  std::free(memory);
+  EXPECT_GE(count([&] { memory = std::aligned_alloc(64, 64 * size); }), 1);
+  std::free(memory);
+  EXPECT_GE(count([&] {
+              const VectorX x = VectorX::Zero(static_cast<Eigen::Index>(size));
+              memory = const_cast<double*>(x.data());
+            }),
+            1);
+}
+
+TEST(AllocationGuard, CatchesAGrowingStep) {
+  SKIP_WITHOUT_HOOK();
+  Scene s(boxOnPlane({0.1, 0.1, 0.1}, 1.0, 1.0).build(), std::make_shared<SampleContacts>());
+  s.state.q[2] = 0.0999;
+  const AllocationGuard guard;
+  s.step();  // the first step with contacts makes room for them
+  EXPECT_GT(guard.count(), 0);
+}
+
+/// A humanoid thrown on the ground, arms against its sides.
+Scene thrownHumanoid() {
+  ModelBuilder builder = humanoid();
+  // The hands touch the thighs.
+  for (const char* side : {"left_", "right_"}) {
+    GeometrySpec g = geometrySpec(side + std::string("thigh"), Shape::sphere(0.09), 1.0,
+                                  {Matrix3::Identity(), Vector3(0, 0, -0.15)});
+    builder.geometry(g);
+  }
+  Scene s(builder.build(), std::make_shared<SampleContacts>());
+  s.state.v = Random(2).vector(s.model.nv, 0.3);
+  s.state.v[4] = 2.0;  // topples
+  return s;
+}
+
+TEST(Allocation, NoneInTheStepOfAHumanoidWithContactsBetweenBranches) {
+  SKIP_WITHOUT_HOOK();
+  Scene s = thrownHumanoid();
+  int coupled = 0, contacts = 0, limits = 0;
+  const State start = s.state;
+  for (int i = 0; i < 600; ++i) {
+    s.step();
+    coupled += &s.data->constraints.sparsity() != &s.data->inertia.sparsity;
+    contacts = std::max(contacts, s.data->stats.contacts);
+    limits += s.data->constraints.jointLimit.rowCount() > 0;
+  }
+  // The scene does what its name says.
+  EXPECT_GT(coupled, 20);
+  EXPECT_GT(contacts, 5);
+  EXPECT_GT(limits, 20);
+  s.state = start;
+  EXPECT_EQ(allocationsOfSteadySteps(s, 600), 0);
+}
+
+/// 100 links that fall on the ground and on themselves.
+Scene longChain() {
+  ModelBuilder builder = chain(100);
+  const Matrix3 R = Eigen::AngleAxisd(M_PI / 2, Vector3::UnitY()).toRotationMatrix();
+  builder.geometry(geometrySpec("world", Shape::plane(), 0.8, {Matrix3::Identity(), {0, 0, -0.3}}));
+  for (int i = 0; i < 100; ++i)
+    builder.geometry(geometrySpec("link" + std::to_string(i), Shape::sphere(0.105), 0.8,
+                                  {R, Vector3(0, 0, -0.1)}));
+  Scene s(builder.build(), std::make_shared<SampleContacts>());
+  // Stretched out and curled up, so that distant links meet.
+  for (int i = 0; i < 100; ++i) s.state.q[i] = i == 0 ? M_PI / 2 : (i % 2 == 0 ? 0.05 : 0.15);
+  return s;
+}
+
+TEST(Allocation, NoneInTheStepOfAHundredLinkChainWithContacts) {
+  SKIP_WITHOUT_HOOK();
+  Scene s = longChain();
+  int contacts = 0, rows = 0;
+  const State start = s.state;
+  for (int i = 0; i < 100; ++i) {
+    s.step();
+    contacts = std::max(contacts, s.data->stats.contacts);
+    rows = std::max(rows, s.data->stats.rows);
+  }
+  EXPECT_GT(contacts, 30);
+  EXPECT_GT(rows, 120);
+  s.state = start;
+  EXPECT_EQ(allocationsOfSteadySteps(s, 100), 0);
+}
+
+TEST(Allocation, NoneInInverseDynamics) {
+  SKIP_WITHOUT_HOOK();
+  Scene s = thrownHumanoid();
+  s.steps(300);
+  VectorX tau(s.model.nv);
+  const VectorX a = s.data->forward.a;
+  TreeMatrix P;
+  inverseDynamics(s.model, a, *s.data, tau);
+  inverseDynamicsJacobian(*s.data, P);
+  const AllocationGuard guard;
+  inverseDynamics(s.model, a, *s.data, tau);
+  inverseDynamicsJacobian(*s.data, P);
+  EXPECT_EQ(guard.count(), 0);
+}
+
+}  // namespace
+}  // namespace softgauss::test
