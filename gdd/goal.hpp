@@ -5,6 +5,7 @@
 ///
 /// To add a kind of goal: write a file in goals/ with a class that adds its terms to the cost.
 
+#include <optional>
 #include <string>
 
 #include "engine/step/data.hpp"
@@ -26,8 +27,8 @@ class Goal {
   virtual std::string name() const = 0;
   /// Adds the cost of this goal at the present state.
   virtual void addCost(const GoalContext& context, GoalCost& cost) const = 0;
-  /// Distance from the goal [m or rad], 0 when it has none.
-  virtual double error(const GoalContext& context) const = 0;
+  /// Distance from the goal [m]; nothing for a goal that is no place.
+  virtual std::optional<double> error(const GoalContext&) const { return std::nullopt; }
 };
 
 }  // namespace softgauss::gdd

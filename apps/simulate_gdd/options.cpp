@@ -109,6 +109,7 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
                  "LINK=x,y,z: the link's origin seeks a place in the world [m]; LINK:ox,oy,oz=x,y,z: "
                  "a point of the link; repeatable")
       ->group(goals);
+  app.add_option("--goals", options.goals, "a .yaml file of goals, see docs/goals.md")->group(goals);
   app.add_option("--torques", options.torques,
                  "a .csv file of controls (columns time_s, u:<joint>) instead of goals")
       ->group(goals);
@@ -167,11 +168,11 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
       throw UsageError("--q0 " + text + ": expected NAME=VALUE");
     options.q0.emplace_back(text.substr(0, equals), parseNumber(text.substr(equals + 1), "--q0"));
   }
-  const bool hasGoals = !options.reach.empty();
-  if (options.passive + !options.torques.empty() + hasGoals > 1)
-    throw UsageError("choose one of goals (--reach), --torques and --passive");
+  const bool hasGoals = !options.reach.empty() || !options.goals.empty();
+  if (int{options.passive} + int{!options.torques.empty()} + int{hasGoals} > 1)
+    throw UsageError("choose one of goals (--reach, --goals), --torques and --passive");
   if (!options.passive && options.torques.empty() && !hasGoals && !options.explain)
-    throw UsageError("nothing to do: give a goal (--reach LINK=x,y,z), --torques or --passive");
+    throw UsageError("nothing to do: give a goal (--reach LINK=x,y,z or --goals FILE), --torques or --passive");
   return options;
 }
 

@@ -29,7 +29,7 @@ struct SimulateOptions {
   double timestep = 0.002;
   std::vector<ReachArgument> reach;
   bool passive = false;
-  std::filesystem::path torques;
+  std::filesystem::path goals, torques;
   std::vector<std::pair<std::string, double>> q0;
   EffectSet effects = EffectSet::all();
   bool zeroEffortIsUnlimited = false;

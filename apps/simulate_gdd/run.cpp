@@ -63,12 +63,20 @@ class Runner {
         data_(model_),
         controller_(model_),
         summary_(model_) {
-    if (!options.passive && options.torques.empty()) controller_.goals = makeGoals(options, model_);
+    if (!options.passive && options.torques.empty()) controller_.goals = makeGoals(options, scene);
     if (!options.torques.empty()) torques_ = io::TorqueTable::read(options.torques, model_);
     if (!options.log.empty()) log_.emplace(options.log, model_);
     summary_.version = SOFTGAUSS_VERSION;
     summary_.massKg = scene.contents.mass;
-    summary_.effects = io::effectsOn(io::effectNotes(model_));
+    const std::vector<io::EffectNote> notes = io::effectNotes(model_);
+    summary_.effects = io::effectsOn(notes);
+    for (const io::EffectNote& note : notes)
+      if (note.asked && !note.on)
+        summary_.warnings.push_back(fmt::format("{} is not simulated: {}", note.name, note.reason));
+    computeStages(model_, input_, state_, data_, &contacts_);
+    for (const auto& goal : controller_.goals)
+      if (const std::optional<double> error = goal->error({model_, state_, data_}))
+        summary_.goals.push_back({goal->name(), *error, *error});
   }
 
   ExitCode run() {
@@ -133,12 +141,6 @@ class Runner {
     record_.maxPenetration = stats.maxPenetration;
     if (log_) log_->write(record_);
     summary_.addStep(record_);
-    if (summary_.goals.empty()) {
-      for (const auto& goal : controller_.goals) {
-        const double error = goal->error({model_, state_, data_});
-        summary_.goals.push_back({goal->name(), error, error});
-      }
-    }
   }
 
   /// The final state, in the log's last row and the summary.
@@ -157,9 +159,10 @@ class Runner {
       log_->write(last);
       log_->close();
     }
-    for (std::size_t i = 0; i < summary_.goals.size(); ++i)
-      summary_.goals[i].finalError = controller_.goals[i]->error({model_, state_, data_});
-    std::erase_if(summary_.goals, [](const io::GoalOutcome& g) { return g.name == "damping"; });
+    std::size_t place = 0;
+    for (const auto& goal : controller_.goals)
+      if (const std::optional<double> error = goal->error({model_, state_, data_}))
+        summary_.goals[place++].finalError = *error;
     for (std::string& reason : verdict.unreached(summary_.goals))
       summary_.warnings.push_back(std::move(reason));
     summary_.finish(last);

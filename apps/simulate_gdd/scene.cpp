@@ -7,6 +7,7 @@
 
 #include "collision/lowest_point.hpp"
 #include "io/explain.hpp"
+#include "io/goals.hpp"
 
 namespace softgauss::app {
 namespace {
@@ -77,11 +78,12 @@ std::unique_ptr<Scene> loadScene(const SimulateOptions& options) {
 }
 
 std::vector<std::unique_ptr<gdd::Goal>> makeGoals(const SimulateOptions& options,
-                                                  const Model& model) {
+                                                  const Scene& scene) {
   std::vector<std::unique_ptr<gdd::Goal>> goals;
+  if (!options.goals.empty()) goals = io::readGoals(options.goals, scene.model, scene.initial);
   for (const ReachArgument& r : options.reach)
-    goals.push_back(std::make_unique<gdd::Reach>(model, r.link, r.p_WTarget, r.p_FP));
-  goals.push_back(std::make_unique<gdd::VirtualDamping>());
+    goals.push_back(std::make_unique<gdd::Reach>(scene.model, r.link, r.p_WTarget, r.p_FP));
+  if (!options.reach.empty()) goals.push_back(std::make_unique<gdd::VirtualDamping>());
   return goals;
 }
 
@@ -91,7 +93,12 @@ std::string explainScene(const Scene& scene) {
   const collision::PairFilter& filter = scene.contacts->filter();
   context.testedPairs = static_cast<int>(filter.pairs.size());
   for (const collision::ExcludedPair& pair : filter.excluded)
-    context.filtered.push_back({pair.linkA, pair.linkB, collision::describe(pair)});
+  {
+    const bool adjacent = pair.reason == collision::ExclusionReason::adjacent;
+    context.filtered.push_back(
+        {pair.linkA, pair.linkB, adjacent ? "joined by a joint" : "overlap at the start",
+         adjacent ? std::string() : fmt::format("by {:.2g} mm", 1e3 * pair.depth)});
+  }
   return io::explain(scene.model, context);
 }
 

@@ -23,9 +23,9 @@ struct Scene {
 /// Throws ModelError.
 std::unique_ptr<Scene> loadScene(const SimulateOptions& options);
 
-/// The goals of --reach, plus virtual damping (26). Throws ModelError.
+/// The goals of --goals and --reach, the latter with virtual damping (26). Throws ModelError.
 std::vector<std::unique_ptr<gdd::Goal>> makeGoals(const SimulateOptions& options,
-                                                  const Model& model);
+                                                  const Scene& scene);
 
 /// The text of --explain.
 std::string explainScene(const Scene& scene);

@@ -28,10 +28,6 @@ class Posture final : public Goal {
     const VectorX away = positionDifference(context.model, context.state.q, q);
     cost.addMetric(weight, stiffness * away - damping * context.state.v);
   }
-  /// Largest deviation of a coordinate [rad or m].
-  double error(const GoalContext& context) const override {
-    return positionDifference(context.model, context.state.q, q).cwiseAbs().maxCoeff();
-  }
 };
 
 }  // namespace softgauss::gdd

@@ -18,7 +18,7 @@ Vector3 Reach::position(const GoalContext& context) const {
   return framePose(context.model, context.data.kinematics, frame) * p_FP;
 }
 
-double Reach::error(const GoalContext& context) const {
+std::optional<double> Reach::error(const GoalContext& context) const {
   return (p_WTarget - position(context)).norm();
 }
 

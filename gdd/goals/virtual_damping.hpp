@@ -19,7 +19,6 @@ class VirtualDamping final : public Goal {
   void addCost(const GoalContext& context, GoalCost& cost) const override {
     cost.addMetric(weight, -rate * context.state.v);
   }
-  double error(const GoalContext&) const override { return 0.0; }
 };
 
 }  // namespace softgauss::gdd

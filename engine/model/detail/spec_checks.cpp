@@ -127,7 +127,9 @@ void checkMovingInertias(const Model& model, const std::vector<const SourceLocat
                   "the mass matrix would be singular");
     if (body.massless) continue;
     const Vector3 moments = principalMoments(body.I_Bcm.matrix());
-    if (moments.minCoeff() <= kZeroMoment * moments.cwiseAbs().maxCoeff())
+    if (!std::isfinite(body.mass) || !body.com.allFinite() || !moments.allFinite())
+      fail(b, "moves, and its mass or inertia with all links fixed to it overflows");
+    if (!(moments.minCoeff() > kZeroMoment * moments.cwiseAbs().maxCoeff()))
       fail(b, "moves, and its inertia with all links fixed to it has principal moments " +
                   momentsText(moments) + ", expected all positive");
   }

@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: Apache-2.0
+/// step_benchmark: µs per step and per stage, one flat `scene.stage.us value` line per figure.
+///
+/// Every scene is warmed up for 500 steps and its state saved; each repetition restores it and
+/// times 50 steps. The figures are medians over the repetitions.
+
+#include <benchmark/benchmark.h>
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <functional>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "collision/lowest_point.hpp"
+#include "collision/scene_contacts.hpp"
+#include "engine/engine.hpp"
+#include "gdd/gdd.hpp"
+#include "io/urdf.hpp"
+
+namespace {
+
+using namespace softgauss;
+
+constexpr int kWarmUpSteps = 500;
+constexpr int kTimedSteps = 50;
+constexpr int kRepetitions = 21;
+
+/// A model with all that steps it.
+struct Scene {
+  Model model;
+  std::unique_ptr<collision::SceneContacts> contacts;
+  State state;
+  std::unique_ptr<Data> data;
+  std::unique_ptr<gdd::GoalDirectedController> controller;  ///< null: passive
+
+  void step() {
+    const SolveStatus status = controller
+                                   ? controller->step(model, {}, state, *data, contacts.get())
+                                   : softgauss::step(model, {}, state, *data, contacts.get());
+    if (status == SolveStatus::notFinite) throw std::runtime_error("the scene became non-finite");
+  }
+};
+
+std::unique_ptr<Scene> makeScene(ModelBuilder builder, bool ground) {
+  auto scene = std::make_unique<Scene>();
+  if (ground) {
+    GeometrySpec plane;
+    plane.name = "ground";
+    plane.link = "world";
+    plane.shape = Shape::plane();
+    builder.geometry(plane);
+  }
+  scene->model = builder.build();
+  scene->contacts = std::make_unique<collision::SceneContacts>(scene->model);
+  scene->data = std::make_unique<Data>(scene->model);
+  scene->state = State(scene->model);
+  const Body& root = scene->model.bodies[scene->model.trees.front().rootBody];
+  if (ground && root.joint == JointKind::floating) {
+    computeKinematics(scene->model, scene->state, scene->data->kinematics);
+    scene->state.q[root.q + 2] -=
+        collision::lowestPoint(scene->model, scene->data->kinematics, 0);
+  }
+  return scene;
+}
+
+std::unique_ptr<Scene> makeRobot(const std::string& folder, const std::string& name, bool ground) {
+  return makeScene(io::readUrdf(folder + "/" + name + ".urdf"), ground);
+}
+
+/// A chain of n links of 0.1 m and 0.1 kg on hinges of alternating axes, hanging sideways.
+std::unique_ptr<Scene> makeChain(int links) {
+  ModelBuilder builder("chain");
+  LinkSpec link;
+  link.name = "world";
+  builder.link(link);
+  for (int i = 0; i < links; ++i) {
+    LinkSpec next;
+    next.name = fmt::format("link{}", i);
+    next.mass = 0.1;
+    next.com = Vector3(0.05, 0.0, 0.0);
+    next.I_Lcm = Vector3(2e-5, 1e-4, 1e-4).asDiagonal();
+    builder.link(next);
+    JointSpec joint;
+    joint.name = fmt::format("joint{}", i);
+    joint.type = JointType::revolute;
+    joint.parent = link.name;
+    joint.child = next.name;
+    joint.axis = i % 2 == 0 ? Vector3::UnitY() : Vector3::UnitZ();
+    if (i > 0) joint.X_PC.p = Vector3(0.1, 0.0, 0.0);
+    joint.damping = 0.01;
+    builder.joint(joint);
+    link = next;
+  }
+  return makeScene(std::move(builder), false);
+}
+
+void addReach(Scene& scene, const std::string& link, const Vector3& target) {
+  scene.controller = std::make_unique<gdd::GoalDirectedController>(scene.model);
+  scene.controller->goals.push_back(std::make_unique<gdd::Reach>(scene.model, link, target));
+  scene.controller->goals.push_back(std::make_unique<gdd::VirtualDamping>());
+}
+
+/// Times the scene; the figures become the counters of the benchmark.
+void timeScene(benchmark::State& state, const std::function<std::unique_ptr<Scene>()>& make,
+               int warmUp) {
+  const std::unique_ptr<Scene> scene = make();
+  for (int i = 0; i < warmUp; ++i) scene->step();
+  const State saved = scene->state;
+  std::map<std::string, double> sum;
+  double steps = 0.0;
+  for (auto _ : state) {
+    scene->state = saved;
+    const auto start = std::chrono::steady_clock::now();
+    for (int i = 0; i < kTimedSteps; ++i) {
+      scene->step();
+      const StepStats& stats = scene->data->stats;
+      sum["kinematics.us"] += 1e6 * stats.times.kinematics;
+      sum["collision.us"] += 1e6 * stats.times.collision;
+      sum["rows.us"] += 1e6 * stats.times.rows;
+      sum["forward.us"] += 1e6 * stats.times.solve;
+      sum["integrate.us"] += 1e6 * stats.times.integrate;
+      sum["contacts"] += stats.contacts;
+      sum["constraints"] += stats.rows;
+      sum["iterations"] += stats.iterations;
+      if (scene->controller) {
+        sum["gdd.us"] += 1e6 * scene->controller->solveTime;
+        sum["gdd_iterations"] += scene->controller->report.iterations;
+      }
+    }
+    const double seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    state.SetIterationTime(seconds);
+    sum["step.us"] += 1e6 * seconds;
+    steps += kTimedSteps;
+  }
+  sum["growths"] = steps * static_cast<double>(scene->data->contacts.growths);
+  for (const auto& [name, total] : sum) state.counters[name] = total / steps;
+}
+
+/// Collects the repetitions' counters and prints their medians.
+class FlatReporter final : public benchmark::BenchmarkReporter {
+ public:
+  explicit FlatReporter(nlohmann::ordered_json& json) : json_(json) {}
+  bool ReportContext(const Context&) override { return true; }
+  void ReportRuns(const std::vector<Run>& runs) override {
+    std::map<std::string, std::vector<double>> values;
+    for (const Run& run : runs) {
+      if (run.run_type != Run::RT_Iteration) continue;
+      for (const auto& [name, counter] : run.counters) values[name].push_back(counter.value);
+    }
+    const std::string scene = runs.front().run_name.function_name;
+    for (auto& [name, column] : values) {
+      std::sort(column.begin(), column.end());
+      const double median = column[column.size() / 2];
+      json_[scene + "." + name] = median;
+      fmt::print("{}.{} {:.4g}\n", scene, name, median);
+    }
+    std::fflush(stdout);
+  }
+
+ private:
+  nlohmann::ordered_json& json_;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("µs per step and stage; one line per figure");
+  std::string filter = ".", file, robots = "data/robots";
+  app.add_option("--filter", filter, "regular expression of scene names");
+  app.add_option("--json", file, "write the figures to this file too");
+  app.add_option("--robots", robots, "folder of humanoid.urdf, hand.urdf, arm.urdf")
+      ->check(CLI::ExistingDirectory);
+  CLI11_PARSE(app, argc, argv);
+
+  const auto add = [&](const char* name, int warmUp, std::function<std::unique_ptr<Scene>()> make) {
+    benchmark::RegisterBenchmark(name, [=](benchmark::State& s) { timeScene(s, make, warmUp); })
+        ->Iterations(1)
+        ->UseManualTime()
+        ->Repetitions(kRepetitions);
+  };
+  add("humanoid_moving", 250, [&] { return makeRobot(robots, "humanoid", true); });
+  add("humanoid_rest", 2000, [&] { return makeRobot(robots, "humanoid", true); });
+  add("humanoid_gdd", 100, [&] {
+    auto scene = makeRobot(robots, "humanoid", true);
+    addReach(*scene, "right_hand", Vector3(0.45, -0.25, 1.10));
+    return scene;
+  });
+  add("hand", kWarmUpSteps, [&] { return makeRobot(robots, "hand", true); });
+  add("hand_gdd", 100, [&] {
+    auto scene = makeRobot(robots, "hand", true);
+    addReach(*scene, "index_tip", Vector3(0.25, 0.08, 0.06));
+    return scene;
+  });
+  add("arm", kWarmUpSteps, [&] { return makeRobot(robots, "arm", false); });
+  add("arm_gdd", 100, [&] {
+    auto scene = makeRobot(robots, "arm", false);
+    addReach(*scene, "hand", Vector3(0.5, 0.3, 0.5));
+    return scene;
+  });
+  add("chain100", kWarmUpSteps, [] { return makeChain(100); });
+
+  try {
+    nlohmann::ordered_json json;
+    FlatReporter reporter(json);
+    benchmark::RunSpecifiedBenchmarks(&reporter, filter);
+    if (!file.empty()) std::ofstream(file) << json.dump(2) << '\n';
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "step_benchmark: {}\n", error.what());
+    return 2;
+  }
+  return 0;
+}
