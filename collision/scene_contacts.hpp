@@ -8,9 +8,9 @@
 /// tested exactly. Scenes with more than kBroadphasePairs pairs ask FCL's dynamic tree of
 /// axis-aligned boxes which pairs are near instead of looping over all.
 ///
-/// Contacts appear in the order of the filter's pairs, A and B as there. Pairs in closed form
-/// allocate nothing; the others go through FCL, which does, and which may fail: a failed pair is
-/// counted in ContactSet::pairsSkipped.
+/// Contacts appear in the order of the filter's pairs, A and B as there, and depend on the poses
+/// alone. Once its buffers have grown, detect() allocates nothing; only FCL's broadphase does. A
+/// pair whose poses are not finite is counted in ContactSet::pairsSkipped.
 
 #include <memory>
 

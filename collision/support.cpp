@@ -3,8 +3,6 @@
 
 #include <cmath>
 
-#include "engine/core/check.hpp"
-
 namespace softgauss::collision {
 namespace {
 
@@ -91,15 +89,18 @@ SupportFace hullFace(const ConvexHull& hull, const Transform& X_WG, const Vector
 
 }  // namespace
 
-Vector3 supportPoint(const Convex& convex, const Transform& X_WG, const Vector3& d_W) {
+double coreRadius(const Shape& shape) {
+  return shape.kind == ShapeKind::sphere || shape.kind == ShapeKind::capsule ? shape.radius : 0.0;
+}
+
+Vector3 corePoint(const Convex& convex, const Transform& X_WG, const Vector3& d_W) {
   const Shape& shape = *convex.shape;
   const Vector3 axis = X_WG.R.col(2);
   switch (shape.kind) {
     case ShapeKind::sphere:
-      return X_WG.p + d_W.normalized() * shape.radius;
+      return X_WG.p;
     case ShapeKind::capsule:
-      return X_WG.p + d_W.normalized() * shape.radius +
-             axis * std::copysign(shape.halfLength, axis.dot(d_W));
+      return X_WG.p + axis * std::copysign(shape.halfLength, axis.dot(d_W));
     case ShapeKind::cylinder: {
       const Vector3 radial = radialDirection(d_W, axis, Vector3::Zero());
       return X_WG.p + radial * shape.radius + axis * std::copysign(shape.halfLength, axis.dot(d_W));
@@ -117,6 +118,12 @@ Vector3 supportPoint(const Convex& convex, const Transform& X_WG, const Vector3&
   }
   SOFTGAUSS_ASSERT(shape.kind != ShapeKind::plane);
   return X_WG.p;
+}
+
+Vector3 supportPoint(const Convex& convex, const Transform& X_WG, const Vector3& d_W) {
+  const Vector3 x = corePoint(convex, X_WG, d_W);
+  const double radius = coreRadius(*convex.shape);
+  return radius > 0.0 ? Vector3(x + d_W.normalized() * radius) : x;
 }
 
 SupportFace supportFace(const Convex& convex, const Transform& X_WG, const Vector3& d_W) {

@@ -13,6 +13,7 @@
 #include <array>
 
 #include "collision/convex_hull.hpp"
+#include "engine/core/check.hpp"
 #include "engine/core/spatial.hpp"
 #include "engine/model/shape.hpp"
 
@@ -34,7 +35,14 @@ struct SupportFace {
   const Vector3& operator[](int i) const { return points[static_cast<std::size_t>(i)]; }
 };
 
-/// The point of the shape at pose X_WG farthest along d_W (need not be unit), in the world.
+/// Radius by which a shape surrounds its core: a point for the sphere, a segment for the capsule,
+/// the shape itself for the others, with radius 0.
+double coreRadius(const Shape& shape);
+
+/// The point of the core of a shape at pose X_WG farthest along d_W (any length), in the world.
+Vector3 corePoint(const Convex& convex, const Transform& X_WG, const Vector3& d_W);
+
+/// The same of the shape itself.
 Vector3 supportPoint(const Convex& convex, const Transform& X_WG, const Vector3& d_W);
 
 /// The flat piece of surface that faces d_W (unit).

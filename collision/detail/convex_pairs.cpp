@@ -2,8 +2,10 @@
 #include "collision/detail/convex_pairs.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "collision/box_pairs.hpp"
+#include "collision/detail/separating_direction.hpp"
 #include "collision/manifold.hpp"
 
 namespace softgauss::collision::detail {
@@ -12,8 +14,6 @@ namespace {
 /// A face normal is preferred to the free direction up to this loss of separation, relative to
 /// size.
 constexpr double kFacePreference = 1e-6;
-/// How far touching cores are pushed into each other, relative to the smaller one.
-constexpr double kPush = 1e-2;
 
 Vector3 localHalfExtents(const Shape& s, const ConvexHull* hull) {
   switch (s.kind) {
@@ -30,15 +30,32 @@ Vector3 localHalfExtents(const Shape& s, const ConvexHull* hull) {
   }
 }
 
-std::optional<CoreDirection> proposeDirection(const Collider& a, const Transform& X_WA,
-                                              const Collider& b, const Transform& X_WB) {
-  const double size = std::min(a.boxHalfExtents.maxCoeff(), b.boxHalfExtents.maxCoeff());
-  if (const auto direct = coreDirection(a.fcl, X_WA, b.fcl, X_WB, size)) return direct;
-  Vector3 apart = X_WB * b.boxCentre - X_WA * a.boxCentre;
-  if (apart.norm() < 1e-12) apart = X_WA.R.col(2);
-  Transform pushed = X_WB;
-  pushed.p -= apart.normalized() * (kPush * size);
-  return coreDirection(a.fcl, X_WA, b.fcl, pushed, size);
+/// Midway between the nearest points of two straight lines of contact.
+Vector3 betweenLines(const SupportFace& a, const SupportFace& b) {
+  const Vector3 u = a[1] - a[0], w = b[1] - b[0], r = a[0] - b[0];
+  const double uu = u.squaredNorm(), ww = w.squaredNorm(), uw = u.dot(w);
+  const double determinant = uu * ww - uw * uw;
+  double s = 0.5;
+  if (determinant > 1e-9 * uu * ww)
+    s = std::clamp((uw * w.dot(r) - ww * u.dot(r)) / determinant, 0.0, 1.0);
+  const double t = std::clamp((w.dot(r) + s * uw) / ww, 0.0, 1.0);
+  return 0.5 * (a[0] + s * u + b[0] + t * w);
+}
+
+/// Where shapes touch whose support faces have no common area.
+Vector3 deepestPoint(const SupportFace& a, const SupportFace& b, const Vector3& n,
+                     double distance) {
+  if (b.count == 1) return b[0] - n * (0.5 * distance);
+  if (a.count == 1) return a[0] + n * (0.5 * distance);
+  if (a.count == 2 && b.count == 2) return betweenLines(a, b);
+  // The corner that reaches farthest, of either face.
+  const auto extreme = [&](const SupportFace& face, double sign) {
+    return *std::max_element(
+        face.points.begin(), face.points.begin() + face.count,
+        [&](const Vector3& x, const Vector3& y) { return sign * n.dot(x) < sign * n.dot(y); });
+  };
+  return a.count > b.count ? Vector3(extreme(b, -1.0) - n * (0.5 * distance))
+                           : Vector3(extreme(a, 1.0) + n * (0.5 * distance));
 }
 
 }  // namespace
@@ -48,7 +65,6 @@ Collider makeCollider(const Shape& shape, const ConvexHull* hull) {
   c.convex = {&shape, hull};
   c.boxHalfExtents = localHalfExtents(shape, hull);
   if (hull != nullptr) c.boxCentre = hull->centre;
-  c.fcl = FclShape(c.convex);
   return c;
 }
 
@@ -59,16 +75,19 @@ bool convexConvex(const Collider& a, const Transform& X_WA, const Collider& b,
   if (separateBoxes(a.boxHalfExtents, boxA, b.boxHalfExtents, boxB, margin).distance >= margin)
     return true;
 
-  const auto proposal = proposeDirection(a, X_WA, b, X_WB);
-  if (!proposal) return false;
-
-  // The best of the proposed direction and the normals of the faces that it meets.
-  Vector3 n = proposal->n_W;
-  double distance = separationAlong(a.convex, X_WA, b.convex, X_WB, n);
   const double size = std::min(a.boxHalfExtents.maxCoeff(), b.boxHalfExtents.maxCoeff());
+  const double radii = coreRadius(*a.convex.shape) + coreRadius(*b.convex.shape);
+  const SeparatingDirection found =
+      separatingDirection(a.convex, X_WA, b.convex, X_WB, size, margin + radii);
+
+  // The best of the direction found and the normals of the faces that it meets.
+  Vector3 n = found.n_W;
+  double distance = found.separation - radii;
+  if (!std::isfinite(distance)) return false;
+  if (distance >= margin) return true;
   double preference = kFacePreference * size;
-  const Vector3 faceA = supportFaceNormal(a.convex, X_WA, proposal->n_W);
-  const Vector3 faceB = -supportFaceNormal(b.convex, X_WB, -proposal->n_W);
+  const Vector3 faceA = supportFaceNormal(a.convex, X_WA, found.n_W);
+  const Vector3 faceB = -supportFaceNormal(b.convex, X_WB, -found.n_W);
   for (const Vector3& face : {faceA, faceB}) {
     if (face.isZero(0.0)) continue;
     const double separation = separationAlong(a.convex, X_WA, b.convex, X_WB, face);
@@ -81,11 +100,7 @@ bool convexConvex(const Collider& a, const Transform& X_WA, const Collider& b,
 
   const SupportFace supportA = supportFace(a.convex, X_WA, n);
   const SupportFace supportB = supportFace(b.convex, X_WB, -n);
-  PairContact deepest{proposal->p_W, n, distance};
-  if (supportB.count == 1)
-    deepest.p_WC = supportB[0] - n * (0.5 * distance);
-  else if (supportA.count == 1)
-    deepest.p_WC = supportA[0] + n * (0.5 * distance);
+  const PairContact deepest{deepestPoint(supportA, supportB, n, distance), n, distance};
   addFaceContacts(supportA, supportB, deepest, margin, out);
   return true;
 }
