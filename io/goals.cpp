@@ -2,10 +2,12 @@
 #include "io/goals.hpp"
 
 #include <fmt/format.h>
+#include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <utility>
 
@@ -156,6 +158,25 @@ class YamlMap {
   std::vector<Entry> entries_;
 };
 
+/// Notes where the document begins that a parser reads.
+class DocumentStart final : public YAML::EventHandler {
+ public:
+  int line = 0;
+
+  void OnDocumentStart(const YAML::Mark& mark) override { line = mark.line + 1; }
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                const std::string&) override {}
+  void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                       YAML::EmitterStyle::value) override {}
+  void OnSequenceEnd() override {}
+  void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                  YAML::EmitterStyle::value) override {}
+  void OnMapEnd() override {}
+};
+
 /// The only document of the file.
 YAML::Node parseYaml(const std::string& file, const std::string& text) {
   // yaml-cpp takes some control characters for the end of the file.
@@ -165,20 +186,23 @@ YAML::Node parseYaml(const std::string& file, const std::string& text) {
   if (control != text.end())
     throw ModelError({file, 1 + static_cast<int>(std::count(text.begin(), control, '\n'))}, "YAML",
                      "found a control character, expected text in UTF-8");
-  std::vector<YAML::Node> documents;
   try {
-    documents = YAML::LoadAll(text);
+    const YAML::Node document = YAML::Load(text);
+    // Not YAML::LoadAll: what it cannot read it may meet again and again, for ever.
+    std::istringstream stream(text);
+    YAML::Parser parser(stream);
+    DocumentStart start;
+    const bool hasMore = parser.HandleNextDocument(start) && parser.HandleNextDocument(start);
+    if (hasMore)
+      throw ModelError({file, start.line}, "YAML",
+                       "found more behind the end of the document, expected the end of the file");
+    if (document.IsNull()) throw ModelError({file, 1}, "file", "is empty, expected goals: [...]");
+    return document;
   } catch (const YAML::Exception& error) {
     throw ModelError(
         {file, error.mark.line + 1}, "YAML",
         fmt::format("cannot be read: {} (column {})", error.msg, error.mark.column + 1));
   }
-  if (documents.empty() || documents.front().IsNull())
-    throw ModelError({file, 1}, "file", "is empty, expected goals: [...]");
-  if (documents.size() > 1)
-    throw ModelError({file, documents[1].Mark().line + 1}, "YAML",
-                     fmt::format("found {} documents, expected one", documents.size()));
-  return documents.front();
 }
 
 // ---- One function for each kind of goal ---------------------------------------------------------
