@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 /// step_benchmark: µs per step and per stage, one flat `scene.stage.us value` line per figure.
 ///
-/// Every scene is warmed up for 500 steps and its state saved; each repetition restores it and
-/// times 50 steps. The figures are medians over the repetitions.
+/// Every scene is warmed up and its state saved; it is restored every 50 steps. The figures are
+/// medians over the steps, and over five repetitions.
 
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cmath>
+#include <chrono>
 #include <fstream>
 #include <functional>
 #include <map>
@@ -28,7 +28,8 @@ using namespace softgauss;
 
 constexpr int kWarmUpSteps = 500;
 constexpr int kTimedSteps = 50;
-constexpr int kRepetitions = 21;
+constexpr int kPieces = 20;
+constexpr int kRepetitions = 5;
 
 /// A model with all that steps it.
 struct Scene {
@@ -62,8 +63,7 @@ std::unique_ptr<Scene> makeScene(ModelBuilder builder, bool ground) {
   const Body& root = scene->model.bodies[scene->model.trees.front().rootBody];
   if (ground && root.joint == JointKind::floating) {
     computeKinematics(scene->model, scene->state, scene->data->kinematics);
-    scene->state.q[root.q + 2] -=
-        collision::lowestPoint(scene->model, scene->data->kinematics, 0);
+    scene->state.q[root.q + 2] -= collision::lowestPoint(scene->model, scene->data->kinematics, 0);
   }
   return scene;
 }
@@ -105,41 +105,46 @@ void addReach(Scene& scene, const std::string& link, const Vector3& target) {
   scene.controller->goals.push_back(std::make_unique<gdd::VirtualDamping>());
 }
 
-/// Times the scene; the figures become the counters of the benchmark.
+double median(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Medians over the steps become the counters of the benchmark: a step that another program has
+/// interrupted does not count.
 void timeScene(benchmark::State& state, const std::function<std::unique_ptr<Scene>()>& make,
                int warmUp) {
   const std::unique_ptr<Scene> scene = make();
   for (int i = 0; i < warmUp; ++i) scene->step();
   const State saved = scene->state;
-  std::map<std::string, double> sum;
-  double steps = 0.0;
+  std::map<std::string, std::vector<double>> values;
   for (auto _ : state) {
-    scene->state = saved;
-    const auto start = std::chrono::steady_clock::now();
-    for (int i = 0; i < kTimedSteps; ++i) {
+    for (int i = 0; i < kPieces * kTimedSteps; ++i) {
+      if (i % kTimedSteps == 0) scene->state = saved;
+      const auto start = std::chrono::steady_clock::now();
       scene->step();
+      const double seconds =
+          std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
       const StepStats& stats = scene->data->stats;
-      sum["kinematics.us"] += 1e6 * stats.times.kinematics;
-      sum["collision.us"] += 1e6 * stats.times.collision;
-      sum["rows.us"] += 1e6 * stats.times.rows;
-      sum["forward.us"] += 1e6 * stats.times.solve;
-      sum["integrate.us"] += 1e6 * stats.times.integrate;
-      sum["contacts"] += stats.contacts;
-      sum["constraints"] += stats.rows;
-      sum["iterations"] += stats.iterations;
+      values["step.us"].push_back(1e6 * seconds);
+      values["kinematics.us"].push_back(1e6 * stats.times.kinematics);
+      values["collision.us"].push_back(1e6 * stats.times.collision);
+      values["rows.us"].push_back(1e6 * stats.times.rows);
+      values["forward.us"].push_back(1e6 * stats.times.solve);
+      values["integrate.us"].push_back(1e6 * stats.times.integrate);
+      values["contacts"].push_back(stats.contacts);
+      values["constraints"].push_back(stats.rows);
+      values["iterations"].push_back(stats.iterations);
+      values["growths"].push_back(static_cast<double>(scene->data->contacts.growths));
       if (scene->controller) {
-        sum["gdd.us"] += 1e6 * scene->controller->solveTime;
-        sum["gdd_iterations"] += scene->controller->report.iterations;
+        values["gdd.us"].push_back(1e6 * scene->controller->solveTime);
+        values["gdd_iterations"].push_back(scene->controller->report.iterations);
       }
     }
-    const double seconds =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    state.SetIterationTime(seconds);
-    sum["step.us"] += 1e6 * seconds;
-    steps += kTimedSteps;
+    state.SetIterationTime(1e-6 * median(values["step.us"]));
   }
-  sum["growths"] = steps * static_cast<double>(scene->data->contacts.growths);
-  for (const auto& [name, total] : sum) state.counters[name] = total / steps;
+  for (auto& [name, column] : values) state.counters[name] = median(column);
 }
 
 /// Collects the repetitions' counters and prints their medians.
@@ -155,10 +160,9 @@ class FlatReporter final : public benchmark::BenchmarkReporter {
     }
     const std::string scene = runs.front().run_name.function_name;
     for (auto& [name, column] : values) {
-      std::sort(column.begin(), column.end());
-      const double median = column[column.size() / 2];
-      json_[scene + "." + name] = median;
-      fmt::print("{}.{} {:.4g}\n", scene, name, median);
+      const double value = median(column);
+      json_[scene + "." + name] = value;
+      fmt::print("{}.{} {:.4g}\n", scene, name, value);
     }
     std::fflush(stdout);
   }

@@ -86,8 +86,9 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
                  "fixed or floating; default: floating, or fixed when the root link is 'world'")
       ->check(CLI::IsMember({"fixed", "floating"}))
       ->group(scene);
-  app.add_option("--base-height", options.baseHeight,
-                 "initial height of a floating root [m]; default: its lowest point touches the ground")
+  app.add_option(
+         "--base-height", options.baseHeight,
+         "initial height of a floating root [m]; default: its lowest point touches the ground")
       ->group(scene);
   app.add_option("--ground", ground,
                  "height of the ground plane [m] or none; default: 0 for a floating base")
@@ -105,11 +106,13 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
       ->group(scene);
 
   const char* const goals = "Goals";
-  app.add_option("--reach", reach,
-                 "LINK=x,y,z: the link's origin seeks a place in the world [m]; LINK:ox,oy,oz=x,y,z: "
-                 "a point of the link; repeatable")
+  app.add_option(
+         "--reach", reach,
+         "LINK=x,y,z: the link's origin seeks a place in the world [m]; LINK:ox,oy,oz=x,y,z: "
+         "a point of the link; repeatable")
       ->group(goals);
-  app.add_option("--goals", options.goals, "a .yaml file of goals, see docs/goals.md")->group(goals);
+  app.add_option("--goals", options.goals, "a .yaml file of goals, see docs/goals.md")
+      ->group(goals);
   app.add_option("--torques", options.torques,
                  "a .csv file of controls (columns time_s, u:<joint>) instead of goals")
       ->group(goals);
@@ -164,15 +167,15 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
   for (const std::string& text : reach) options.reach.push_back(parseReach(text));
   for (const std::string& text : q0) {
     const std::size_t equals = text.rfind('=');
-    if (equals == std::string::npos)
-      throw UsageError("--q0 " + text + ": expected NAME=VALUE");
+    if (equals == std::string::npos) throw UsageError("--q0 " + text + ": expected NAME=VALUE");
     options.q0.emplace_back(text.substr(0, equals), parseNumber(text.substr(equals + 1), "--q0"));
   }
   const bool hasGoals = !options.reach.empty() || !options.goals.empty();
   if (int{options.passive} + int{!options.torques.empty()} + int{hasGoals} > 1)
     throw UsageError("choose one of goals (--reach, --goals), --torques and --passive");
   if (!options.passive && options.torques.empty() && !hasGoals && !options.explain)
-    throw UsageError("nothing to do: give a goal (--reach LINK=x,y,z or --goals FILE), --torques or --passive");
+    throw UsageError(
+        "nothing to do: give a goal (--reach LINK=x,y,z or --goals FILE), --torques or --passive");
   return options;
 }
 

@@ -23,8 +23,8 @@ struct SimulateOptions {
   std::filesystem::path model;
   BaseKind base = BaseKind::automatic;
   std::optional<double> baseHeight;
-  std::optional<double> ground;   ///< height of the ground plane [m]
-  bool groundIsDefault = true;    ///< 0 for a floating base, none for a fixed one
+  std::optional<double> ground;  ///< height of the ground plane [m]
+  bool groundIsDefault = true;   ///< 0 for a floating base, none for a fixed one
   double duration = 2.0;
   double timestep = 0.002;
   std::vector<ReachArgument> reach;

@@ -43,11 +43,13 @@ std::string failureMessage(const Model& model, const State& state, const Data& d
   for (const Contact& c : data.contacts.contacts) {
     if (!(-c.distance > depth)) continue;
     depth = -c.distance;
-    deepest = fmt::format("; deepest contact: {} on {}, {:.3g} m", model.geometries[c.geometryA].name,
-                          model.geometries[c.geometryB].name, depth);
+    deepest =
+        fmt::format("; deepest contact: {} on {}, {:.3g} m", model.geometries[c.geometryA].name,
+                    model.geometries[c.geometryB].name, depth);
   }
   return fmt::format(
-      "the simulation became non-finite at t = {:.6g} s at {}{}. Try a smaller --timestep, more joint "
+      "the simulation became non-finite at t = {:.6g} s at {}{}. Try a smaller --timestep, more "
+      "joint "
       "damping, or goals that ask for less",
       state.time, where, deepest);
 }

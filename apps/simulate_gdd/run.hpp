@@ -8,10 +8,17 @@
 namespace softgauss::app {
 
 /// Exit codes of simulate_gdd.
-enum ExitCode { kDone = 0, kInternalError = 1, kBadInput = 2, kCannotContinue = 3, kInterrupted = 130 };
+enum ExitCode {
+  kDone = 0,
+  kInternalError = 1,
+  kBadInput = 2,
+  kCannotContinue = 3,
+  kInterrupted = 130
+};
 
 /// Runs the scene for options.duration and writes the outputs that were asked for, also when the
-/// run ends early. Throws ModelError on bad input, std::runtime_error when a file cannot be written.
+/// run ends early. Throws ModelError on bad input, std::runtime_error when a file cannot be
+/// written.
 ExitCode run(const SimulateOptions& options, Scene& scene);
 
 /// Asks run() to end after the present step; safe in a signal handler.

@@ -22,7 +22,8 @@ void setJointPositions(const SimulateOptions& options, const Model& model, State
   for (const auto& [name, value] : options.q0) {
     const int body = model.findJoint(name);
     if (body < 0 || model.bodies[body].dofs != 1)
-      throw ModelError({}, "--q0 " + name, "the model has no joint of one degree of freedom of that name");
+      throw ModelError({}, "--q0 " + name,
+                       "the model has no joint of one degree of freedom of that name");
     state.q[model.bodies[body].q] = value;
   }
 }
@@ -92,8 +93,7 @@ std::string explainScene(const Scene& scene) {
   context.contents = scene.contents;
   const collision::PairFilter& filter = scene.contacts->filter();
   context.testedPairs = static_cast<int>(filter.pairs.size());
-  for (const collision::ExcludedPair& pair : filter.excluded)
-  {
+  for (const collision::ExcludedPair& pair : filter.excluded) {
     const bool adjacent = pair.reason == collision::ExclusionReason::adjacent;
     context.filtered.push_back(
         {pair.linkA, pair.linkB, adjacent ? "joined by a joint" : "overlap at the start",

@@ -9,9 +9,9 @@ namespace softgauss::app {
 namespace {
 
 constexpr double kReachedShare = 0.8;
-constexpr double kMemory = 0.5;       // [s] over which saturation is remembered
-constexpr double kMoving = 0.05;      // [m/s or rad/s] faster is still on its way
-constexpr double kAtLimit = 0.01;     // [rad or m] nearer is at the end of the range
+constexpr double kMemory = 0.5;    // [s] over which saturation is remembered
+constexpr double kMoving = 0.05;   // [m/s or rad/s] faster is still on its way
+constexpr double kAtLimit = 0.01;  // [rad or m] nearer is at the end of the range
 constexpr std::size_t kMostNames = 6;
 
 /// "a, b, c and 3 more"
@@ -55,7 +55,8 @@ std::string Verdict::heldBack() const {
   const auto add = [&](const std::string& reason) { text += (text.empty() ? "" : "; ") + reason; };
   if (!weak.empty()) add("at their torque limit: " + list(weak));
   if (!ended.empty()) add("at the end of their range: " + list(ended));
-  if (speed_.cwiseAbs().maxCoeff() > kMoving) add("the robot was still moving when the time was up");
+  if (speed_.cwiseAbs().maxCoeff() > kMoving)
+    add("the robot was still moving when the time was up");
   if (text.empty()) text = "out of reach, or other goals and the cost of torques outweigh it";
   return text;
 }
@@ -65,8 +66,8 @@ std::vector<std::string> Verdict::unreached(const std::vector<io::GoalOutcome>& 
   if (q_.size() == 0) return sentences;
   for (const io::GoalOutcome& goal : goals) {
     if (goal.finalError <= (1.0 - kReachedShare) * goal.initialError) continue;
-    sentences.push_back(fmt::format("goal '{}' not reached ({:.3g} m left of {:.3g} m): {}", goal.name,
-                                    goal.finalError, goal.initialError, heldBack()));
+    sentences.push_back(fmt::format("goal '{}' not reached ({:.3g} m left of {:.3g} m): {}",
+                                    goal.name, goal.finalError, goal.initialError, heldBack()));
   }
   return sentences;
 }

@@ -9,20 +9,9 @@
 #include <limits>
 
 #include "engine/core/check.hpp"
+#include "engine/core/jet.hpp"
 
 namespace softgauss {
-
-/// Value, first and second derivative of a scalar function.
-struct Jet {
-  double value = 0.0;
-  double slope = 0.0;
-  double curvature = 0.0;
-
-  Jet& operator+=(const Jet& o) {
-    value += o.value, slope += o.slope, curvature += o.curvature;
-    return *this;
-  }
-};
 
 /// Unilateral constraint: limits, contact normals, edges of a friction pyramid.
 ///   s(x) = ½ D min(x, 0)²,   force f = −s′(x) = −D min(x, 0) ≥ 0

@@ -23,6 +23,7 @@ TreeSparsity::TreeSparsity(const Model& model) {
     }
     finishRow(row, columns.front());
   }
+  finish();
 }
 
 TreeSparsity TreeSparsity::dense(int size) {
@@ -32,6 +33,7 @@ TreeSparsity TreeSparsity::dense(int size) {
     pattern.segments_.push_back({0, row + 1});
     pattern.finishRow(row, 0);
   }
+  pattern.finish();
   return pattern;
 }
 
@@ -39,6 +41,30 @@ void TreeSparsity::finishRow(int row, int firstColumn) {
   rowBegin_.push_back(static_cast<int>(segments_.size()));
   offset_.push_back(static_cast<std::ptrdiff_t>(storage_) - firstColumn);
   storage_ += static_cast<std::size_t>(row - firstColumn + 1);
+}
+
+void TreeSparsity::finish() {
+  // Transpose: for every column the rows below the diagonal, as ranges.
+  const int n = size();
+  columns_.clear();
+  columnBegin_.assign(1, 0);
+  cursor_.assign(static_cast<std::size_t>(n), 0);
+  for (int column = 0; column < n; ++column) {
+    const std::size_t before = columns_.size();
+    for (int row = column + 1; row < n; ++row) {
+      // Rows are visited with rising columns, so each keeps its place in its segments.
+      const Segment* s = begin(row) + cursor_[row];
+      while (s != end(row) && s->end <= column) ++s, ++cursor_[row];
+      if (s == end(row) || s->begin > column) continue;
+      const bool joins = columns_.size() > before && columns_.back().end == row &&
+                         first(columns_.back().begin) == first(row);
+      if (joins)
+        columns_.back().end = row + 1;
+      else
+        columns_.push_back({row, row + 1});
+    }
+    columnBegin_.push_back(static_cast<int>(columns_.size()));
+  }
 }
 
 void TreeSparsity::couple(const TreeSparsity& tree, const std::vector<Segment>& couplings,
@@ -93,6 +119,7 @@ void TreeSparsity::couple(const TreeSparsity& tree, const std::vector<Segment>& 
     }
     finishRow(i, segments_[before].begin);
   }
+  finish();
 }
 
 void TreeMatrix::setZero() { std::fill(values_.begin(), values_.end(), 0.0); }
@@ -151,28 +178,43 @@ bool TreeFactor::compute(const TreeMatrix& A, const double* diagonal) {
   LD_.resize(pattern);
   LD_.assign(A);
   const int n = A.size();
+  pivot_.resize(static_cast<std::size_t>(n));
   inversePivot_.resize(static_cast<std::size_t>(n));
   if (diagonal)
     for (int i = 0; i < n; ++i) LD_.row(i)[i] += diagonal[i];
 
-  for (int k = n - 1; k >= 0; --k) {
-    double* Hk = LD_.row(k);
-    const double pivot = Hk[k];
-    if (!(pivot > 0.0) || !std::isfinite(pivot)) return false;
-    const double inverse = 1.0 / pivot;
-    inversePivot_[k] = inverse;
-    // Rank-one update of every row i that dof k touches, from the nearest to the root.
-    const Segment* const first = pattern.begin(k);
-    for (const Segment* s = pattern.end(k); s != first;) {
-      --s;
-      for (int i = std::min(s->end, k) - 1; i >= s->begin; --i) {
-        const double l = Hk[i] * inverse;
-        double* Hi = LD_.row(i);
-        for (const Segment* t = first; t != s; ++t)
-          for (int j = t->begin; j < t->end; ++j) Hi[j] -= l * Hk[j];
-        for (int j = s->begin; j <= i; ++j) Hi[j] -= l * Hk[j];
-        Hk[i] = l;
+  // Row i of D L from the rows below it that contain i:  A_ij − Σ_k (L_ki D_k) L_kj, four rows at
+  // a time so that each entry of row i is loaded and stored once for four products.
+  for (int i = n - 1; i >= 0; --i) {
+    double* Hi = LD_.row(i);
+    for (const Segment* s = pattern.columnBegin(i); s != pattern.columnEnd(i); ++s) {
+      const int from = pattern.first(s->begin);
+      int k = s->begin;
+      for (; k + 4 <= s->end; k += 4) {
+        const double *L0 = LD_.row(k), *L1 = LD_.row(k + 1), *L2 = LD_.row(k + 2),
+                     *L3 = LD_.row(k + 3);
+        const double c0 = L0[i] * pivot_[k], c1 = L1[i] * pivot_[k + 1], c2 = L2[i] * pivot_[k + 2],
+                     c3 = L3[i] * pivot_[k + 3];
+        for (const Segment* t = pattern.begin(i); t != pattern.end(i); ++t)
+          for (int j = std::max(t->begin, from); j < t->end; ++j)
+            Hi[j] -= c0 * L0[j] + c1 * L1[j] + c2 * L2[j] + c3 * L3[j];
       }
+      for (; k < s->end; ++k) {
+        const double* L = LD_.row(k);
+        const double c = L[i] * pivot_[k];
+        for (const Segment* t = pattern.begin(k); t != pattern.end(k); ++t) {
+          const int end = std::min(t->end, i + 1);
+          for (int j = t->begin; j < end; ++j) Hi[j] -= c * L[j];
+        }
+      }
+    }
+    const double pivot = Hi[i];
+    if (!(pivot > 0.0) || !std::isfinite(pivot)) return false;
+    pivot_[i] = pivot;
+    inversePivot_[i] = 1.0 / pivot;
+    for (const Segment* t = pattern.begin(i); t != pattern.end(i); ++t) {
+      const int end = std::min(t->end, i);
+      for (int j = t->begin; j < end; ++j) Hi[j] *= inversePivot_[i];
     }
   }
   return true;

@@ -37,6 +37,11 @@ class TreeSparsity {
   int size() const { return static_cast<int>(rowBegin_.size()) - 1; }
   const Segment* begin(int row) const { return segments_.data() + rowBegin_[row]; }
   const Segment* end(int row) const { return segments_.data() + rowBegin_[row + 1]; }
+  /// Rows below `column` that have it in their pattern (in a tree its descendants), as ranges of
+  /// rows that begin at the same column.
+  const Segment* columnBegin(int column) const { return columns_.data() + columnBegin_[column]; }
+  const Segment* columnEnd(int column) const { return columns_.data() + columnBegin_[column + 1]; }
+  int first(int row) const { return begin(row)->begin; }
   /// Position of entry (row, 0) in the value array; entries exist for columns in the segments.
   std::ptrdiff_t offset(int row) const { return offset_[row]; }
   std::size_t storage() const { return storage_; }
@@ -48,12 +53,16 @@ class TreeSparsity {
 
  private:
   void finishRow(int row, int firstColumn);
+  void finish();
 
   std::vector<Segment> segments_;
   std::vector<int> rowBegin_;
   std::vector<std::ptrdiff_t> offset_;
+  std::vector<Segment> columns_;  ///< the pattern by columns, diagonal excluded
+  std::vector<int> columnBegin_;
   std::size_t storage_ = 0;
   std::vector<std::uint64_t> bits_;  ///< scratch of couple(): one bitset per row
+  std::vector<std::size_t> cursor_;  ///< scratch of finish()
 };
 
 /// A symmetric matrix on a TreeSparsity; row() points at column 0 of a row.
@@ -101,7 +110,7 @@ class TreeFactor {
 
  private:
   TreeMatrix LD_;  ///< L below the diagonal, D on it
-  std::vector<double> inversePivot_;
+  std::vector<double> pivot_, inversePivot_;
 };
 
 }  // namespace softgauss

@@ -9,8 +9,8 @@
 
 #include <cmath>
 
-#include "engine/constraints/penalty.hpp"
 #include "engine/core/check.hpp"
+#include "engine/core/jet.hpp"
 
 namespace softgauss {
 
