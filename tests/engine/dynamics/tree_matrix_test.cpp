@@ -92,6 +92,31 @@ TEST(TreeFactor, SolvesOnCoupledPatterns) {
   }
 }
 
+// A step keeps its memory while contacts come and go: what an earlier pattern left between the
+// entries of a row must not matter.
+TEST(TreeFactor, ForgetsThePatternsBefore) {
+  const Model model = randomForest(12).build();
+  Random random(12);
+  const TreeSparsity tree(model);
+  TreeSparsity coupled;
+  TreeMatrix P;
+  TreeFactor factor;
+  for (int trial = 0; trial < 40; ++trial) {
+    const Couplings c = randomCouplings(tree, random, trial % 5);
+    coupled.couple(tree, c.segments, c.setEnd);
+    const TreeMatrix A = randomMatrix(coupled, random), M = randomMatrix(tree, random);
+    P.resize(coupled);
+    P.assign(A);
+    P.add(M);
+    ASSERT_TRUE(factor.compute(trial % 2 == 0 ? P : M));
+    const VectorX b = random.vector(model.nv, 1.0);
+    VectorX x = b;
+    factor.solve(x);
+    const MatrixX dense = M.dense() + (trial % 2 == 0 ? A.dense() : MatrixX(0.0 * A.dense()));
+    EXPECT_APPROX(x, dense.llt().solve(b), 1e-14) << trial;
+  }
+}
+
 TEST(TreeFactor, IsLTransposeDL) {
   const Model model = randomForest(7).build();
   Random random(7);
