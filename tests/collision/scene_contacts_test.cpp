@@ -6,6 +6,7 @@
 #include "collision/lowest_point.hpp"
 #include "collision/support.hpp"
 #include "engine/model/state.hpp"
+#include "engine/step/step.hpp"
 #include "tests/collision/random_pairs.hpp"
 #include "tests/support/allocation_guard.hpp"
 #include "tests/support/sample_models.hpp"
@@ -157,4 +158,27 @@ TEST(LowestPoint, IsTheSupportPointDownwards) {
   const Shape box = Shape::box({0.1, 0.2, 0.3}), mesh = Shape::hull(boxMesh({0.1, 0.2, 0.3}));
   const Transform X = random.pose(1.0);
   EXPECT_NEAR(lowestPoint(box, X), lowestPoint(mesh, X), 1e-12);
+}
+
+// A free block of each shape on a static box: it settles and stays.
+TEST(SceneContacts, WhatLiesFlatOnABoxRests) {
+  const Shape shapes[] = {Shape::hull(boxMesh({0.1, 0.1, 0.1})), Shape::box({0.1, 0.1, 0.1}),
+                          Shape::cylinder(0.1, 0.1)};
+  for (const Shape& shape : shapes) {
+    ModelBuilder builder("block");
+    builder.link(test::boxLink("block", 1.0, {0.1, 0.1, 0.1}));
+    builder.geometry(geometrySpec("block", shape));
+    builder.geometry(geometrySpec("world", Shape::box({1, 1, 0.5})));
+    builder.X_WRoot = turned({0, 0, 1}, 0.3, {0.2, 0.1, 0.6});
+    const Model model = builder.build();
+    SceneContacts scene(model);
+    State state(model);
+    Data data(model);
+    for (int i = 0; i < 1000; ++i)
+      ASSERT_EQ(step(model, {}, state, data, &scene), SolveStatus::converged);
+    EXPECT_LT(state.v.norm(), 1e-6);
+    EXPECT_LT((state.q.head<2>() - Eigen::Vector2d(0.2, 0.1)).norm(), 1e-4);
+    EXPECT_NEAR(state.q[2], 0.6, 1e-3);
+    EXPECT_GE(data.contacts.size(), 4);
+  }
 }
