@@ -4,6 +4,7 @@
 /// softgauss::io: robots in, logs and summaries out.
 
 #include "io/explain.hpp"
+#include "io/goals.hpp"
 #include "io/log.hpp"
 #include "io/mesh.hpp"
 #include "io/summary.hpp"

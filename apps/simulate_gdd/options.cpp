@@ -137,7 +137,7 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
       ->check(CLI::IsMember({"augmented-lagrangian"}))
       ->group(simulation);
   app.add_option("--compatibility", compatibility,
-                 "none (default) or mujoco: defaults as MuJoCo has them; at present the two agree")
+                 "none (default) or mujoco: as MuJoCo has it, Coriolis forces of the step's start")
       ->check(CLI::IsMember({"none", "mujoco"}))
       ->group(simulation);
 
@@ -162,6 +162,7 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
                                       : BaseKind::automatic;
   options.groundIsDefault = ground.empty();
   if (!ground.empty() && ground != "none") options.ground = parseNumber(ground, "--ground");
+  options.likeMujoco = compatibility == "mujoco";
   options.zeroEffortIsUnlimited = zeroEffort == "unlimited";
   options.effects = parseEffects(effects);
   for (const std::string& text : reach) options.reach.push_back(parseReach(text));

@@ -57,6 +57,7 @@ std::unique_ptr<Scene> loadScene(const SimulateOptions& options) {
   ModelBuilder builder = io::readUrdf(options.model, urdf, &scene->contents);
   builder.options.timestep = options.timestep;
   builder.options.effects = options.effects;
+  builder.options.midpointCoriolis = !options.likeMujoco;
   scene->model = builder.build();
 
   // Whether there is ground by default is known only once the base is.

@@ -29,11 +29,6 @@ void floatingJoint(const Body& body, const State& state, int b, Kinematics& k) {
     k.S[body.v + i] = {Vector3::Zero(), Vector3::Unit(i)};
     k.S[body.v + 3 + i] = {X.R.col(i), Vector3::Zero()};
   }
-  const Vector3 pdot = state.v.segment<3>(body.v);
-  const Vector3 omega = X.R * state.v.segment<3>(body.v + 3);
-  k.V[b] = {omega, pdot};
-  // Ṡ v: the rotation axes are carried along with the body's origin.
-  k.A_bias[b] = {Vector3::Zero(), pdot.cross(omega)};
 }
 
 }  // namespace
@@ -68,12 +63,26 @@ void computeKinematics(const Model& model, const State& state, Kinematics& k) {
       X.p += q * axis_W;
       S = {Vector3::Zero(), axis_W};
     }
+  }
+  computeVelocities(model, k, state.v, k.V, k.A_bias);
+}
 
-    // Velocity and bias acceleration: Ṡ = V_P × S, as S × S = 0.
-    const double qdot = state.v[body.v];
-    const Motion Sv = S * qdot;
-    k.V[b] = k.V[body.parent] + Sv;
-    k.A_bias[b] = k.A_bias[body.parent] + cross(k.V[body.parent], Sv);
+void computeVelocities(const Model& model, const Kinematics& k, const VectorX& v,
+                       std::vector<Motion>& V, std::vector<Motion>& A_bias) {
+  for (int b = 1; b < model.bodyCount(); ++b) {
+    const Body& body = model.bodies[b];
+    if (body.joint == JointKind::floating) {
+      const Vector3 pdot = v.segment<3>(body.v);
+      const Vector3 omega = k.X_WB[b].R * v.segment<3>(body.v + 3);
+      V[b] = {omega, pdot};
+      // Ṡ v: the rotation axes are carried along with the body's origin.
+      A_bias[b] = {Vector3::Zero(), pdot.cross(omega)};
+      continue;
+    }
+    // Ṡ = V_P × S, as S × S = 0.
+    const Motion Sv = k.S[body.v] * v[body.v];
+    V[b] = V[body.parent] + Sv;
+    A_bias[b] = A_bias[body.parent] + cross(V[body.parent], Sv);
   }
 }
 

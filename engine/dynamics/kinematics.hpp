@@ -26,6 +26,10 @@ struct Kinematics {
 /// Poses and axes from q, velocities from v.
 void computeKinematics(const Model& model, const State& state, Kinematics& kinematics);
 
+/// Velocities and bias accelerations of all bodies for the joint velocity v, at the poses of k.
+void computeVelocities(const Model& model, const Kinematics& k, const VectorX& v,
+                       std::vector<Motion>& V, std::vector<Motion>& A_bias);
+
 /// Pose of a named frame in the world.
 inline Transform framePose(const Model& model, const Kinematics& k, int frame) {
   const Frame& f = model.frames[static_cast<std::size_t>(frame)];

@@ -26,18 +26,29 @@ Vector3 gravityOf(const Model& model) {
   return model.options.effects.has(Effect::gravity) ? model.options.gravity : Vector3::Zero();
 }
 
+void biasFrom(const Model& model, const Kinematics& k, const std::vector<Motion>& V,
+              const std::vector<Motion>& A_bias, const MassMatrix& inertia, RneaWorkspace& work,
+              VectorX& bias) {
+  const Vector3 g = gravityOf(model);
+  const bool coriolis = model.options.effects.has(Effect::coriolis);
+  for (int b = 1; b < model.bodyCount(); ++b)
+    work.F[b] = model.bodies[b].massless ? Force{}
+                                         : bodyForce(inertia.body[b], V[b],
+                                                     coriolis ? A_bias[b] : Motion{}, g, coriolis);
+  project(model, k, work, bias);
+}
+
 }  // namespace
 
 void computeBias(const Model& model, const Kinematics& k, const MassMatrix& inertia,
                  RneaWorkspace& work, VectorX& bias) {
-  const Vector3 g = gravityOf(model);
-  const bool coriolis = model.options.effects.has(Effect::coriolis);
-  for (int b = 1; b < model.bodyCount(); ++b)
-    work.F[b] =
-        model.bodies[b].massless
-            ? Force{}
-            : bodyForce(inertia.body[b], k.V[b], coriolis ? k.A_bias[b] : Motion{}, g, coriolis);
-  project(model, k, work, bias);
+  biasFrom(model, k, k.V, k.A_bias, inertia, work, bias);
+}
+
+void computeBiasAt(const Model& model, const Kinematics& k, const MassMatrix& inertia,
+                   const VectorX& v, RneaWorkspace& work, VectorX& bias) {
+  computeVelocities(model, k, v, work.V, work.A);
+  biasFrom(model, k, work.V, work.A, inertia, work, bias);
 }
 
 void inverseDynamicsTree(const Model& model, const Kinematics& k, const MassMatrix& inertia,
@@ -48,7 +59,7 @@ void inverseDynamicsTree(const Model& model, const Kinematics& k, const MassMatr
     const Body& body = model.bodies[b];
     // Acceleration without the bias part, which the kinematics already hold.
     Motion& A = work.A[b];
-    A = work.A[body.parent];
+    A = body.parent == 0 ? Motion{} : work.A[body.parent];
     for (int i = body.v; i < body.v + body.dofs; ++i) A += k.S[i] * vdot[i];
     work.F[b] = body.massless ? Force{}
                               : bodyForce(inertia.body[b], k.V[b], coriolis ? A + k.A_bias[b] : A,

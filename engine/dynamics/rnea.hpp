@@ -12,16 +12,22 @@ namespace softgauss {
 
 /// Scratch of the recursion.
 struct RneaWorkspace {
+  std::vector<Motion> V;  ///< (bodies)
   std::vector<Motion> A;  ///< (bodies)
   std::vector<Force> F;   ///< (bodies) force transmitted by the joint
   RneaWorkspace() = default;
-  explicit RneaWorkspace(const Model& model) : A(model.bodies.size()), F(model.bodies.size()) {}
+  explicit RneaWorkspace(const Model& model)
+      : V(model.bodies.size()), A(model.bodies.size()), F(model.bodies.size()) {}
 };
 
 /// Bias force b(q, v): gravity, Coriolis and centripetal terms, as options.effects has them.
 /// M v̇ + b = τ.
 void computeBias(const Model& model, const Kinematics& kinematics, const MassMatrix& inertia,
                  RneaWorkspace& work, VectorX& bias);
+
+/// The same for another velocity v in the same configuration.
+void computeBiasAt(const Model& model, const Kinematics& kinematics, const MassMatrix& inertia,
+                   const VectorX& v, RneaWorkspace& work, VectorX& bias);
 
 /// τ = M v̇ + b by the recursion, never forming M (armature included).
 void inverseDynamicsTree(const Model& model, const Kinematics& kinematics,

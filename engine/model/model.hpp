@@ -94,6 +94,7 @@ struct Options {
   double timestep = 0.002;                     ///< h [s]
   Vector3 gravity = Vector3(0.0, 0.0, -9.81);  ///< [m/s²], world
   EffectSet effects = EffectSet::all();        ///< which effects may be simulated
+  bool midpointCoriolis = true;                ///< see integrators/semi_implicit_euler.hpp
   double impedanceRatio = 1.0;                 ///< impratio: friction against normal impedance
   int maxIterations = 100;                     ///< Newton
   double tolerance = 1e-12;                    ///< Newton: scaled gradient, see solver/newton.hpp

@@ -7,7 +7,11 @@ namespace softgauss::gdd {
 
 Reach::Reach(const Model& model, const std::string& linkName, const Vector3& target,
              const Vector3& point)
-    : link(linkName), frame(model.findFrame(linkName)), p_FP(point), p_WTarget(target) {
+    : link(linkName),
+      frame(model.findFrame(linkName)),
+      p_FP(point),
+      p_WTarget(target),
+      weight(kReachWeightPerMass * model.totalMass()) {
   const std::string element = "goal 'reach " + linkName + "'";
   if (frame < 0) throw ModelError({}, element, "the model has no link of that name");
   if (!target.allFinite() || !point.allFinite())

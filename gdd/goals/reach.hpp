@@ -22,13 +22,17 @@ struct MinimumJerk {
   double duration = 1.0;              ///< T [s]
 };
 
+/// w over the mass of all moving bodies, by default: 100 kg for a humanoid of 40 kg. A fixed weight
+/// would ask a robot of 1 kg for accelerations that no time step can carry.
+inline constexpr double kReachWeightPerMass = 2.5;
+
 class Reach final : public Goal {
  public:
   std::string link;                        ///< for the name
   int frame = 0;                           ///< index into Model::frames
   Vector3 p_FP = Vector3::Zero();          ///< the point in the link's frame [m]
   Vector3 p_WTarget = Vector3::Zero();     ///< p* [m]
-  double weight = 100.0;                   ///< w [kg]
+  double weight;                           ///< w [kg]; default 2.5 × the robot's mass
   double stiffness = 100.0;                ///< k_p [1/s²]
   double damping = 20.0;                   ///< k_d [1/s]
   std::optional<MinimumJerk> minimumJerk;  ///< absent: spring-damper
