@@ -5,12 +5,12 @@
 ///
 /// Once per model: hulls of meshes, the pair filter, bounding spheres. Once per step: poses of the
 /// geometries, then every pair of the filter is rejected by its bounding spheres (or plane) or
-/// tested exactly. Scenes with more than kBroadphasePairs pairs ask FCL's dynamic tree of
-/// axis-aligned boxes which pairs are near instead of looping over all.
+/// tested exactly. Scenes with more than kBroadphasePairs pairs first sweep for near ones instead
+/// of looping over all.
 ///
 /// Contacts appear in the order of the filter's pairs, A and B as there, and depend on the poses
-/// alone. Once its buffers have grown, detect() allocates nothing; only FCL's broadphase does. A
-/// pair whose poses are not finite is counted in ContactSet::pairsSkipped.
+/// alone. Once its buffers have grown, detect() allocates nothing. A pair whose poses are not
+/// finite is counted in ContactSet::pairsSkipped.
 
 #include <memory>
 
@@ -23,7 +23,7 @@ namespace softgauss::collision {
 class SceneContacts final : public ContactSource {
  public:
   /// More pairs than this go through the broadphase.
-  static constexpr int kBroadphasePairs = 4000;
+  static constexpr int kBroadphasePairs = 2000;
 
   /// Throws ModelError when a mesh has no surface. The model must outlive this object.
   explicit SceneContacts(const Model& model, int broadphasePairs = kBroadphasePairs);

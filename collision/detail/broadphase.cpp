@@ -1,55 +1,43 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "collision/detail/broadphase.hpp"
 
-#include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
-#include <fcl/geometry/shape/sphere.h>
-#include <fcl/narrowphase/collision_object.h>
-
 #include <algorithm>
-#include <cstdint>
-#include <utility>
 
 namespace softgauss::collision::detail {
-namespace {
 
-using NearPairs = std::vector<std::pair<int, int>>;
-
-int indexOf(const fcl::CollisionObjectd* object) {
-  return static_cast<int>(reinterpret_cast<std::intptr_t>(object->getUserData()));
+Broadphase::Broadphase(std::vector<double> radii) : radii_(std::move(radii)) {
+  sorted_.reserve(radii_.size());
 }
 
-bool collect(fcl::CollisionObjectd* a, fcl::CollisionObjectd* b, void* data) {
-  const auto [low, high] = std::minmax({indexOf(a), indexOf(b)});
-  static_cast<NearPairs*>(data)->emplace_back(low, high);
-  return false;  // go on
-}
-
-}  // namespace
-
-struct Broadphase::Tree {
-  std::vector<std::unique_ptr<fcl::CollisionObjectd>> objects;
-  fcl::DynamicAABBTreeCollisionManagerd manager;
-};
-
-Broadphase::Broadphase(const std::vector<double>& radii) : tree_(std::make_unique<Tree>()) {
-  for (std::size_t i = 0; i < radii.size(); ++i) {
-    auto object = std::make_unique<fcl::CollisionObjectd>(std::make_shared<fcl::Sphered>(radii[i]));
-    object->setUserData(reinterpret_cast<void*>(static_cast<std::intptr_t>(i)));
-    tree_->manager.registerObject(object.get());
-    tree_->objects.push_back(std::move(object));
+void Broadphase::findNear(const std::vector<Vector3>& centres,
+                          std::vector<std::pair<int, int>>& near) {
+  Vector3 sum = Vector3::Zero(), squares = Vector3::Zero();
+  for (const Vector3& c : centres) {
+    sum += c;
+    squares += c.cwiseProduct(c);
   }
-  tree_->manager.setup();
-}
+  int axis = 0;
+  const double count = static_cast<double>(centres.size());
+  (squares - sum.cwiseProduct(sum) / count).maxCoeff(&axis);
 
-Broadphase::~Broadphase() = default;
+  sorted_.clear();
+  for (std::size_t i = 0; i < centres.size(); ++i)
+    sorted_.push_back({centres[i][axis] - radii_[i], radii_[i], centres[i], static_cast<int>(i)});
+  // A centre that is not finite goes to the end, where it is near nothing.
+  std::sort(sorted_.begin(), sorted_.end(), [](const Sphere& a, const Sphere& b) {
+    return a.begin < b.begin || (b.begin != b.begin && a.begin == a.begin);
+  });
 
-void Broadphase::findNear(const std::vector<Vector3>& centres, NearPairs& near) {
-  for (std::size_t i = 0; i < centres.size(); ++i) {
-    tree_->objects[i]->setTranslation(centres[i]);
-    tree_->objects[i]->computeAABB();
+  for (std::size_t i = 0; i < sorted_.size(); ++i) {
+    const Sphere& a = sorted_[i];
+    const double end = a.begin + 2.0 * a.radius;
+    for (std::size_t j = i + 1; j < sorted_.size() && sorted_[j].begin < end; ++j) {
+      const Sphere& b = sorted_[j];
+      const double reach = a.radius + b.radius;
+      if ((b.centre - a.centre).squaredNorm() < reach * reach)
+        near.push_back(std::minmax({a.index, b.index}));
+    }
   }
-  tree_->manager.update();
-  tree_->manager.collide(&near, &collect);
 }
 
 }  // namespace softgauss::collision::detail

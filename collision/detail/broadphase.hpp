@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// Which geometries of a large scene are near each other: FCL's dynamic tree of boxes.
+/// Which geometries of a large scene are near each other: sort and sweep.
+///
+/// Bounding spheres are sorted by where they begin along the axis on which the centres spread most.
+/// Walking along it, a sphere can only touch those that begin before it ends, and of these only the
+/// ones whose distance is below the sum of the radii.
 
-#include <memory>
+#include <utility>
 #include <vector>
 
 #include "engine/core/types.hpp"
@@ -12,17 +16,22 @@ namespace softgauss::collision::detail {
 
 class Broadphase {
  public:
-  /// One box per radius, for bounding spheres of these radii [m].
-  explicit Broadphase(const std::vector<double>& radii);
-  ~Broadphase();
+  /// Radii of the bounding spheres [m], margins included.
+  explicit Broadphase(std::vector<double> radii);
 
-  /// Moves the spheres to `centres` and appends to `near` every pair (i < j) whose boxes touch, in
-  /// no particular order. May throw std::bad_alloc.
+  /// Appends to `near` every pair (i < j) of spheres about `centres` that touch, in no particular
+  /// order.
   void findNear(const std::vector<Vector3>& centres, std::vector<std::pair<int, int>>& near);
 
  private:
-  struct Tree;
-  std::unique_ptr<Tree> tree_;
+  struct Sphere {
+    double begin;  ///< along the axis [m]
+    double radius;
+    Vector3 centre;
+    int index;
+  };
+  std::vector<double> radii_;
+  std::vector<Sphere> sorted_;
 };
 
 }  // namespace softgauss::collision::detail
