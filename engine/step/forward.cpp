@@ -121,7 +121,7 @@ SolveStatus forwardDynamics(const Model& model, const VectorX* guess, Data& data
   s.start = data.forces.net;
   s.massFactor.solve(s.start);
   const double smoothCost = objective.moveTo(s.start);
-  if (warmCost <= smoothCost) objective.moveTo(*guess);
+  if (warm && warmCost <= smoothCost) objective.moveTo(*guess);
   s.report = minimize(objective, model.options.tolerance, model.options.maxIterations, s.gradient,
                       s.direction);
   if (s.report.status == SolveStatus::notFinite) data.stats.badDof = firstNotFinite(s.a);
