@@ -205,6 +205,36 @@ TEST(Step, OverflowLeavesStateIntact) {
   EXPECT_GE(s.data->stats.badDof, 0);
 }
 
+/// A slider along x without any effect but its range.
+Scene slider() {
+  ModelBuilder builder("slider");
+  builder.link(emptyLink("world")).link(boxLink("body", 1.0, {0.1, 0.1, 0.1}));
+  JointSpec rail = jointSpec("rail", JointType::prismatic, "world", "body");
+  rail.lower = 0.0;
+  rail.upper = 1.0;
+  builder.joint(rail);
+  builder.options.effects = EffectSet::none();
+  builder.options.effects.insert(Effect::jointLimit);
+  return Scene(builder.build());
+}
+
+// The cost of the start is infinite and there is no warm start to prefer to it.
+TEST(Step, InfiniteCostWithoutAWarmStartIsSolved) {
+  Scene s = slider();
+  s.state.q[0] = -0.001;
+  s.state.v[0] = -1e160;
+  EXPECT_EQ(s.step(), SolveStatus::converged);
+  EXPECT_TRUE(s.state.v.allFinite());
+}
+
+// v and a are finite, v + h a is not.
+TEST(Step, OverflowOfTheResultLeavesStateIntact) {
+  Scene s = slider();
+  s.state.v[0] = 1.797e308;
+  s.input.tau[0] = 1.7e308;
+  expectRefused(s, "sum");
+}
+
 TEST(Step, NotFiniteContactLeavesStateIntact) {
   Scene s = fallingHumanoid();
   auto contacts = std::make_shared<FixedContacts>();
