@@ -164,6 +164,13 @@ GddReport AugmentedLagrangian::solve(const Model& model, GoalCost& cost, const C
   }
 }
 
+int AugmentedLagrangian::badDof() const {
+  if (massFactor_.failedRow() >= 0) return massFactor_.failedRow();
+  for (int i = 0; i < gradient_.size(); ++i)
+    if (!std::isfinite(gradient_[i])) return i;
+  return -1;
+}
+
 void AugmentedLagrangian::keepWarmStart(WarmStart& warm) const {
   warm.gddA = a_;
   warm.multipliers = lambda_;

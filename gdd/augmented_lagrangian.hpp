@@ -25,7 +25,7 @@
 namespace softgauss::gdd {
 
 struct AugmentedLagrangianOptions {
-  double penalty = 1e5;               ///< ρᵢ = penalty · (M⁻¹)ᵢᵢ [-]
+  double penalty = 1e5;               ///< ρᵢ = penalty · (M⁻¹)ᵢᵢ at q0 [-]
   double gradientTolerance = 1e-8;    ///< scaled ∇Φ, see Report::stationarity
   double violationTolerance = 1e-10;  ///< distance of g from its box, over max(1, |c|)
   int maxIterations = 50;
@@ -61,6 +61,8 @@ class AugmentedLagrangian {
   /// Writes the solution where the next solve starts from.
   void keepWarmStart(WarmStart& warm) const;
 
+  /// After GddStatus::notFinite: the first dof whose gradient is not finite, or −1.
+  int badDof() const;
   const VectorX& acceleration() const { return a_; }
   const VectorX& force() const { return g_; }  ///< g(a): the control, before clamping
 

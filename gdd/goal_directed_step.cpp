@@ -23,6 +23,7 @@ SolveStatus GoalDirectedController::step(const Model& model, const Input& input,
   solveTime = std::chrono::duration<double>(Clock::now() - start).count();
   if (report.status == GddStatus::notFinite) {
     data.stats.status = SolveStatus::notFinite;
+    data.stats.badDof = solver.badDof();
     return data.stats.status;
   }
 

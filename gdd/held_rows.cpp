@@ -17,6 +17,7 @@ void HeldRows::hold(RowId id, const Constraints& constraints) {
   }
   Row& row = rows_[count_++];
   row.id = id;
+  row.drift = 0.0;
   row.J.setZero();
   constraints.addRow(id, 1.0, row.J);
 }
@@ -26,8 +27,11 @@ void HeldRows::release(int i) {
   --count_;
 }
 
-void HeldRows::place(Constraints& constraints) const {
-  for (int i = 0; i < count_; ++i) constraints.placeAtKnot(rows_[i].id, false);
+void HeldRows::place(Constraints& constraints) {
+  for (int i = 0; i < count_; ++i) {
+    rows_[i].drift = constraints.residual(rows_[i].id);
+    constraints.placeAtKnot(rows_[i].id, false);
+  }
 }
 
 void HeldRows::holdOnRay(Constraints& constraints) const {
@@ -40,7 +44,7 @@ void HeldRows::projectPrepared(VectorX& d) {
   constexpr double kDependent = 1e-9;
   for (int i = 0; i < count_; ++i) {
     Row& row = rows_[i];
-    row.multiplier = row.J.dot(d);
+    row.multiplier = row.J.dot(d) + row.drift;
     for (int k = 0; k < i; ++k) {
       S_(i, k) = 0.0;
       if (rows_[k].dependent) continue;
@@ -54,7 +58,7 @@ void HeldRows::projectPrepared(VectorX& d) {
     row.dependent = !(pivot > kDependent * diagonal);
     S_(i, i) = row.dependent ? 1.0 : std::sqrt(pivot);
   }
-  // μ = S⁻¹ J d
+  // μ = S⁻¹ (J d + x)
   for (int i = 0; i < count_; ++i) {
     double m = rows_[i].multiplier;
     for (int k = 0; k < i; ++k) m -= S_(i, k) * rows_[k].multiplier;

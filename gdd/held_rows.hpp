@@ -6,10 +6,11 @@
 /// Where the objective's minimum along a ray is the knot of a row r, its gradient jumps there: with
 /// the row counted as free it is ∇Φ, with the row stiff ∇Φ + D_r (J_r w) J_rᵀ, w as in (T.19).
 /// Steps are then taken within the kink (T.25):
-///   H d + J_Kᵀ μ = −∇Φ,   J_K d = 0
+///   H d + J_Kᵀ μ = −∇Φ,   J_K d = −x_K
+/// (x_K: what rounding has left of the held residuals, so that it does not build up)
 /// and the kink is left towards the free side where μ_r > 0, towards the stiff side where
-/// μ_r < D_r (J_r w). A point with d = 0 and D_r (J_r w) ≤ μ_r ≤ 0 for every held row is a local
-/// minimum as far as single rows go.
+/// μ_r < D_r (J_r w). A point with d = 0 and D_r (J_r w) ≤ μ_r ≤ 0 for every row at its knot is a
+/// local minimum: no direction descends.
 
 #include <vector>
 
@@ -23,6 +24,7 @@ class HeldRows {
     RowId id;
     VectorX J;                ///< (nv)
     VectorX HinvJ;            ///< H⁻¹ Jᵀ
+    double drift = 0.0;       ///< x, zero up to rounding
     double multiplier = 0.0;  ///< μ
     bool dependent = false;   ///< on rows before it
   };
@@ -36,8 +38,8 @@ class HeldRows {
   void hold(RowId id, const Constraints& constraints);
   void release(int i);
 
-  /// Puts every held row at the free side of its knot.
-  void place(Constraints& constraints) const;
+  /// Puts every held row at the free side of its knot, and notes how far off it was.
+  void place(Constraints& constraints);
   /// Takes every held row off the ray.
   void holdOnRay(Constraints& constraints) const;
 

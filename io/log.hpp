@@ -29,7 +29,7 @@ struct StepRecord {
   VectorX u;          ///< (nv) control as applied, 0 where a dof has none [N m or N]
   int contacts = 0;
   int constraints = 0;            ///< rows
-  int iterations = 0;             ///< Newton iterations of the forward solve
+  int iterations = 0;             ///< of the GDD solver, or of the forward solve without goals
   int dualUpdates = 0;            ///< of the GDD solve
   double physicsViolation = 0.0;  ///< largest |g(q,v,a) − (u,0)| [N m or N]
   double gddViolation = 0.0;      ///< the same at the GDD solver's own acceleration

@@ -82,6 +82,12 @@ void Constraints::addRow(RowId id, double scale, VectorX& y) const {
   visitOne(*this, id.kind, [&](const auto& c) { c.addRow(id.row, scale, y); });
 }
 
+double Constraints::residual(RowId id) const {
+  double x = 0.0;
+  visitOne(*this, id.kind, [&](const auto& c) { x = c.x[id.row]; });
+  return x;
+}
+
 double Constraints::stiffness(RowId id) const {
   double D = 0.0;
   visitOne(*this, id.kind, [&](const auto& c) { D = c.D[id.row]; });

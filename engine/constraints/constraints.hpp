@@ -17,7 +17,8 @@ namespace softgauss {
 
 template <class C>
 concept SoftConstraint = requires(C c, const Assembly& in, const VectorX& a, VectorX& tau,
-                                  std::vector<double>& y, TreeMatrix& P, bool& changed, Jet& jet) {
+                                  std::vector<double>& y, TreeMatrix& P, bool& changed, Jet& jet,
+                                  std::vector<Crossing>& crossings) {
   { c.rowCount() } -> std::convertible_to<int>;
   c.assemble(in);                                          // rows, a_ref, D
   c.multiply(a, y);                                        // y = J a
@@ -25,8 +26,10 @@ concept SoftConstraint = requires(C c, const Assembly& in, const VectorX& a, Vec
   c.along(0.0, jet);                                       // derivatives along a ray
   c.advance(0.0);                                          // x += α dx
   c.addForce(tau);                                         // tau += Jᵀ f
-  c.addCurvature(P);                                       // P += Jᵀ ∇²s J
-  c.addRow(0, 1.0, tau);                                   // tau += scale · (row of J)ᵀ
+  c.findCrossings(0, crossings);                           // knots along a ray
+  c.placeAtKnot(0, true);
+  c.addCurvature(P);      // P += Jᵀ ∇²s J
+  c.addRow(0, 1.0, tau);  // tau += scale · (row of J)ᵀ
 };
 
 class Constraints {
@@ -65,6 +68,8 @@ class Constraints {
   void findCrossings(std::vector<Crossing>& crossings) const;
   /// y ← y + scale · (row of J)ᵀ.
   void addRow(RowId id, double scale, VectorX& y) const;
+  /// Residual x of a row.
+  double residual(RowId id) const;
   /// Stiffness D of a row.
   double stiffness(RowId id) const;
   /// Puts a row exactly at its knot, on its stiff or its free side.

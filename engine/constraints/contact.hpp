@@ -4,10 +4,10 @@
 /// Frictional contact with a pyramidal cone, and frictionless contact.
 ///
 /// At a contact of distance r with normal n (from A to B) and tangents t₁, t₂, let
-/// y = [n t₁ t₂]ᵀ(a_B − a_A) be the relative acceleration of the touching points. The rows are the
-/// edges of the friction pyramid (T.14):
+/// y = [n t₁ t₂]ᵀ(J_B − J_A) a be the relative acceleration of the touching points less its bias
+/// J̇ v. The rows are the edges of the friction pyramid (T.14):
 ///   x = (y_n ± μ y_k) − a_ref,   a_ref = −b (ẏ_n ± μ ẏ_k) − k d (r − margin),   k = 1, 2
-///   s(x) = ½ D min(x, 0)²,       D = 1/(2 μ² R₀),   R₀ = (1 − d)/d (w_A + w_B)(1 + μ²)
+///   s(x) = ½ D min(x, 0)²,       D = impratio/(2 μ² R₀),   R₀ = (1 − d)/d (w_A + w_B)(1 + μ²)
 /// with w the bodies' translational inverse weights. Edge forces f ≥ 0 add up to
 ///   f_n = Σ f,   f_k = μ (f₊ − f₋),   so |f₁| + |f₂| ≤ μ f_n whatever the acceleration.
 /// condim 1, or μ below 10⁻⁵: the one row x = y_n − a_ref with R = (1 − d)/d (w_A + w_B).

@@ -39,6 +39,7 @@ concept ScalarPenalty = requires(double x, double dx, double D) {
   { P::at(x, D) } -> std::same_as<Jet>;
   { P::knotAhead(x, dx) } -> std::same_as<double>;
   { P::curvatureJump(dx, D) } -> std::same_as<double>;
+  { P::knot(true) } -> std::same_as<double>;
 };
 static_assert(ScalarPenalty<HalfQuadratic>);
 

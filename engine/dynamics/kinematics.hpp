@@ -3,7 +3,8 @@
 
 /// Forward kinematics: poses, joint axes and velocities of all bodies.
 ///
-/// Spatial vectors of a tree are in world axes about O, the origin of the tree's root body (T.4).
+/// Spatial vectors of a tree are in world axes about O (T.4): the origin of the tree's root body,
+/// at q = 0 when that body slides.
 
 #include <vector>
 

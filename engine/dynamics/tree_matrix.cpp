@@ -180,6 +180,7 @@ bool TreeFactor::compute(const TreeMatrix& A, const double* diagonal) {
   const int n = A.size();
   pivot_.resize(static_cast<std::size_t>(n));
   inversePivot_.resize(static_cast<std::size_t>(n));
+  failedRow_ = -1;
   if (diagonal)
     for (int i = 0; i < n; ++i) LD_.row(i)[i] += diagonal[i];
 
@@ -209,7 +210,10 @@ bool TreeFactor::compute(const TreeMatrix& A, const double* diagonal) {
       }
     }
     const double pivot = Hi[i];
-    if (!(pivot > 0.0) || !std::isfinite(pivot)) return false;
+    if (!(pivot > 0.0) || !std::isfinite(pivot)) {
+      failedRow_ = i;
+      return false;
+    }
     pivot_[i] = pivot;
     inversePivot_[i] = 1.0 / pivot;
     for (const Segment* t = pattern.begin(i); t != pattern.end(i); ++t) {

@@ -65,7 +65,8 @@ class TreeSparsity {
   std::vector<std::size_t> cursor_;  ///< scratch of finish()
 };
 
-/// A symmetric matrix on a TreeSparsity; row() points at column 0 of a row.
+/// A symmetric matrix on a TreeSparsity; row() points at column 0 of a row. What lies between the
+/// segments of a row is stored and stays zero: algorithms may run over it.
 class TreeMatrix {
  public:
   void resize(const TreeSparsity& sparsity) {
@@ -107,9 +108,12 @@ class TreeFactor {
   const double* lowerRow(int k) const { return LD_.row(k); }
   const TreeSparsity& sparsity() const { return LD_.sparsity(); }
   int size() const { return LD_.size(); }
+  /// The row whose pivot was not positive, −1 after success.
+  int failedRow() const { return failedRow_; }
 
  private:
   TreeMatrix LD_;  ///< L below the diagonal, D on it
+  int failedRow_ = -1;
   std::vector<double> pivot_, inversePivot_;
 };
 

@@ -117,7 +117,11 @@ SolveStatus forwardDynamics(const Model& model, const VectorX* guess, Data& data
     if (s.report.residual <= model.options.tolerance) return s.report.status;
   }
   // Without rows the minimiser is M⁻¹(τ − c).
-  if (!s.massFactor.compute(data.inertia.M)) return notFinite();
+  if (!s.massFactor.compute(data.inertia.M)) {
+    notFinite();
+    data.stats.badDof = s.massFactor.failedRow();
+    return s.report.status;
+  }
   s.start = data.forces.net;
   s.massFactor.solve(s.start);
   const double smoothCost = objective.moveTo(s.start);
