@@ -91,6 +91,16 @@ TEST(Step, WarmStartChangesTheResultWithinTolerance) {
   }
 }
 
+// Damping and mid-step Coriolis forces make the step's acceleration another than the solver's; the
+// next solve starts from the solver's.
+TEST(Step, KeepsTheSolversAccelerationForTheWarmStart) {
+  Scene s = fallingHumanoid();
+  s.step();
+  EXPECT_TRUE(s.state.warmstart.valid);
+  EXPECT_EQ(s.state.warmstart.a, s.data->forward.a);
+  EXPECT_NE(s.data->acceleration, s.data->forward.a);
+}
+
 // ---- Effects
 // -------------------------------------------------------------------------------------
 
@@ -227,6 +237,13 @@ TEST(Step, InfiniteCostWithoutAWarmStartIsSolved) {
   EXPECT_TRUE(s.state.v.allFinite());
 }
 
+// Nothing that the solve computes depends on where a slider is.
+TEST(Step, NotFinitePositionIsSeenEvenWhereForcesDoNotDependOnIt) {
+  Scene s = slider();
+  s.state.q[0] = kNaN;
+  expectRefused(s, "q");
+}
+
 // v and a are finite, v + h a is not.
 TEST(Step, OverflowOfTheResultLeavesStateIntact) {
   Scene s = slider();
@@ -246,6 +263,8 @@ TEST(Step, NotFiniteContactLeavesStateIntact) {
   contacts->points = {good};
   contacts->points[0].n_W.y() = kNaN;
   expectRefused(s, "normal");
+  s.stages();
+  EXPECT_EQ(s.forward(), SolveStatus::notFinite);  // by itself, although most dofs do not feel it
   contacts->points = {good};
   contacts->points[0].p_WC.x() = kNaN;
   expectRefused(s, "point");
