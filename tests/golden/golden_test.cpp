@@ -22,6 +22,7 @@ struct GoldenScene {
   int steps;
   std::function<Scene()> make;
 };
+void PrintTo(const GoldenScene& scene, std::ostream* out) { *out << scene.name; }
 
 const GoldenScene kScenes[] = {
     {"chain", 400,

@@ -45,7 +45,10 @@ class TreeGrower {
 
  private:
   void massiveLink(const std::string& parent, JointType type) {
-    massiveLink(parent, type, {random_.rotation(), random_.vector3(0.3)}, random_.direction());
+    // One draw after another: the order in which arguments are evaluated is the compiler's.
+    const Vector3 axis = random_.direction();
+    const Transform X_PC{random_.rotation(), random_.vector3(0.3)};
+    massiveLink(parent, type, X_PC, axis);
   }
 
   void massiveLink(const std::string& parent, JointType type, const Transform& X_PC,

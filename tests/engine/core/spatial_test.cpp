@@ -75,8 +75,9 @@ TEST(Inertia, GivesMomentumAboutTheOrigin) {
 
 TEST(Inertia, OfTwoBodiesIsTheSum) {
   Random r(6);
-  const Inertia a = Inertia::fromCentral(1.5, r.vector3(1.0), randomInertia(r));
-  const Inertia b = Inertia::fromCentral(0.5, r.vector3(1.0), randomInertia(r));
+  const Vector3 ca = r.vector3(1.0), cb = r.vector3(1.0);
+  const Inertia a = Inertia::fromCentral(1.5, ca, randomInertia(r));
+  const Inertia b = Inertia::fromCentral(0.5, cb, randomInertia(r));
   const Motion V = randomMotion(r);
   Inertia sum = a;
   sum += b;
@@ -86,7 +87,8 @@ TEST(Inertia, OfTwoBodiesIsTheSum) {
 
 TEST(Inertia, IsSymmetric) {
   Random r(7);
-  const Inertia I = Inertia::fromCentral(1.5, r.vector3(1.0), randomInertia(r));
+  const Vector3 c = r.vector3(1.0);
+  const Inertia I = Inertia::fromCentral(1.5, c, randomInertia(r));
   const Motion U = randomMotion(r), V = randomMotion(r);
   EXPECT_SMALL(dot(U, I * V) - dot(V, I * U), kRounding);
   EXPECT_GT(dot(V, I * V), 0.0);

@@ -48,6 +48,7 @@ struct Mistake {
   std::function<void(Description&)> make;
   std::vector<const char*> words;  ///< the message contains each
 };
+void PrintTo(const Mistake& mistake, std::ostream* out) { *out << mistake.name; }
 
 JointSpec another(const std::string& name, const std::string& parent, const std::string& child) {
   JointSpec joint = jointSpec(name, JointType::revolute, parent, child);
