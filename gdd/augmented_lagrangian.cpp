@@ -58,16 +58,11 @@ double AugmentedLagrangian::direction() {
 }
 
 /// ∇Φ + J_Kᵀ μ, entries scaled to one unit.
-double AugmentedLagrangian::stationarity(const TreeMatrix& M) {
+double AugmentedLagrangian::stationarity(const VectorX& forceScale) {
   scratch_ = gradient_;
   for (int i = 0; i < held_.size(); ++i) scratch_ += held_[i].multiplier * held_[i].J;
-  double largest = 0.0, scale = 1.0;
-  for (int i = 0; i < scratch_.size(); ++i) {
-    const double root = 1.0 / std::sqrt(M.row(i)[i]);
-    largest = std::max(largest, std::abs(scratch_[i]) * root);
-    scale = std::max(scale, std::abs(costGradient_[i]) * root);
-  }
-  return largest / scale;
+  const double scale = costGradient_.cwiseProduct(forceScale).cwiseAbs().maxCoeff();
+  return scratch_.cwiseProduct(forceScale).cwiseAbs().maxCoeff() / std::max(1.0, scale);
 }
 
 void AugmentedLagrangian::start(const Model& model, Data& data, const WarmStart& warm) {
@@ -118,7 +113,7 @@ GddReport AugmentedLagrangian::solve(const Model& model, GoalCost& cost, const C
       stale_ = boundsChanged_ = false;
     }
     const double decrement = direction();
-    report.stationarity = stationarity(M);
+    report.stationarity = stationarity(data.inertia.forceScale);
 
     // Stationary: leave a kink, or update the multipliers, or done. A second full step in one cell
     // that promises no less than the first has reached rounding.

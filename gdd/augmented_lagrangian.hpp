@@ -71,7 +71,7 @@ class AugmentedLagrangian {
   void evaluate(Data& data);
   bool gradient(const GoalCost& cost, const ControlBox& box, Data& data);
   double direction();
-  double stationarity(const TreeMatrix& M);
+  double stationarity(const VectorX& forceScale);
 
   VectorX a_, g_, Ma_, Rg_;
   VectorX lambda_, rho_;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/dynamics/inertia.hpp"
 
-#include <algorithm>
+#include <cmath>
 
 namespace softgauss {
 
@@ -9,6 +9,7 @@ MassMatrix::MassMatrix(const Model& model)
     : body(model.bodies.size()), composite(model.bodies.size()), sparsity(model) {
   M.resize(sparsity);
   M.setZero();
+  forceScale = VectorX::Zero(model.nv);
 }
 
 void computeMassMatrix(const Model& model, const Kinematics& k, MassMatrix& stage) {
@@ -35,6 +36,7 @@ void computeMassMatrix(const Model& model, const Kinematics& k, MassMatrix& stag
     for (const Segment* s = stage.sparsity.begin(i); s != stage.sparsity.end(i); ++s)
       for (int j = s->begin; j < s->end; ++j) row[j] = dot(k.S[j], F);
     if (armature) row[i] += dof.armature;
+    stage.forceScale[i] = 1.0 / std::sqrt(row[i]);
   }
 }
 

@@ -20,7 +20,8 @@ struct MassMatrix {
   std::vector<Inertia> body;       ///< (bodies) inertia of each body alone, about O
   std::vector<Inertia> composite;  ///< (bodies) of its subtree
   TreeSparsity sparsity;
-  TreeMatrix M;  ///< (nv × nv)
+  TreeMatrix M;        ///< (nv × nv)
+  VectorX forceScale;  ///< (nv) 1/√M_ii: forces so scaled share one unit
 
   MassMatrix() = default;
   explicit MassMatrix(const Model& model);

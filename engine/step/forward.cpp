@@ -15,13 +15,9 @@ class GaussObjective {
         net_(data.forces.net),
         constraints_(data.constraints),
         s_(data.forward) {
-    // Forces share a unit once divided by √M_ii; the largest of them sets the scale.
-    const Eigen::Index n = net_.size();
-    double largest = 1.0;
-    for (Eigen::Index i = 0; i < n; ++i) {
-      s_.scale[i] = 1.0 / std::sqrt(M_.row(static_cast<int>(i))[i]);
-      largest = std::max(largest, std::abs(net_[i]) * s_.scale[i]);
-    }
+    // The largest of the smooth forces, in their common unit, sets the scale.
+    s_.scale = data.inertia.forceScale;
+    const double largest = std::max(1.0, net_.cwiseProduct(s_.scale).cwiseAbs().maxCoeff());
     s_.scale /= largest;
   }
 
