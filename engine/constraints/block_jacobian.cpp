@@ -8,11 +8,6 @@
 namespace softgauss {
 namespace {
 
-int lastDof(const Model& model, int body) {
-  const Body& b = model.bodies[body];
-  return b.dofs > 0 ? b.v + b.dofs - 1 : -1;
-}
-
 /// The last dof that moves both, −1 if none does.
 int commonDof(const Model& model, int i, int j) {
   while (i != j) {
@@ -40,7 +35,7 @@ void BlockJacobian::add(const Model& model, const Kinematics& k, const TreeSpars
   block.value = static_cast<int>(values_.size());
   block.segment = static_cast<int>(segments_.size());
 
-  const int lastA = lastDof(model, bodyA), lastB = lastDof(model, bodyB);
+  const int lastA = model.lastDof(bodyA), lastB = model.lastDof(bodyB);
   const int common = commonDof(model, lastA, lastB);
   block.couples = lastA > common && lastB > common;
 

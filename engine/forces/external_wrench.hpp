@@ -14,7 +14,8 @@ inline void addExternalWrench(const Model& model, const Kinematics& k, const Ext
   // Moved from the body's origin to the tree's reference point O.
   const Vector3 r = k.X_WB[wrench.body].p - k.p_WO[body.tree];
   const Force F_O{wrench.F_Bo_W.moment + r.cross(wrench.F_Bo_W.force), wrench.F_Bo_W.force};
-  for (int i = body.v + body.dofs - 1; i >= 0; i = model.dofs[i].parent) c[i] -= dot(k.S[i], F_O);
+  for (int i = model.lastDof(wrench.body); i >= 0; i = model.dofs[i].parent)
+    c[i] -= dot(k.S[i], F_O);
 }
 
 }  // namespace softgauss
