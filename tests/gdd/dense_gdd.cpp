@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/gdd/dense_gdd.hpp"
+
+#include <algorithm>
+
+namespace softgauss::test {
+
+VectorX DenseGdd::g(const VectorX& a) const {
+  VectorX force(rows());
+  for (int i = 0; i < rows(); ++i) force[i] = D[i] * std::max(aRef[i] - J.row(i).dot(a), 0.0);
+  return M * a + c - J.transpose() * force;
+}
+
+MatrixX DenseGdd::P(const VectorX& a) const {
+  MatrixX sum = M;
+  for (int i = 0; i < rows(); ++i)
+    if (J.row(i).dot(a) < aRef[i]) sum += D[i] * J.row(i).transpose() * J.row(i);
+  return sum;
+}
+
+double DenseGdd::goalCost(const VectorX& a) const {
+  const VectorX error = A * a - y;
+  return 0.5 * error.dot(w.cwiseProduct(error)) + 0.5 * metric * a.dot(M * a) + a.dot(M * offset);
+}
+
+VectorX DenseGdd::goalGradient(const VectorX& a) const {
+  return A.transpose() * w.cwiseProduct(A * a - y) + M * (metric * a + offset);
+}
+
+MatrixX DenseGdd::goalHessian() const { return A.transpose() * w.asDiagonal() * A + metric * M; }
+
+double DenseGdd::objective(const VectorX& a) const {
+  const VectorX force = g(a);
+  return 0.5 * force.dot(Minv * force) + goalCost(a);
+}
+
+VectorX DenseGdd::objectiveGradient(const VectorX& a) const {
+  return P(a) * (Minv * g(a)) + goalGradient(a);
+}
+
+VectorX DenseGdd::penaltySlope(const VectorX& g) const {
+  VectorX slope(g.size());
+  for (Eigen::Index i = 0; i < g.size(); ++i) {
+    const double t = g[i] + lambda[i] / rho[i];
+    slope[i] = rho[i] * (t - std::clamp(t, lower[i], upper[i]));
+  }
+  return slope;
+}
+
+VectorX DenseGdd::penaltyCurvature(const VectorX& g) const {
+  VectorX curvature(g.size());
+  for (Eigen::Index i = 0; i < g.size(); ++i) {
+    const double t = g[i] + lambda[i] / rho[i];
+    const bool inside = lower[i] < upper[i] && t >= lower[i] && t <= upper[i];
+    curvature[i] = inside ? 0.0 : rho[i];
+  }
+  return curvature;
+}
+
+double DenseGdd::augmented(const VectorX& a) const {
+  const VectorX slope = penaltySlope(g(a));
+  return objective(a) + 0.5 * slope.dot(slope.cwiseQuotient(rho));
+}
+
+VectorX DenseGdd::augmentedGradient(const VectorX& a) const {
+  const VectorX force = g(a);
+  return P(a) * (Minv * force + penaltySlope(force)) + goalGradient(a);
+}
+
+MatrixX DenseGdd::gaussNewtonHessian(const VectorX& a) const {
+  const MatrixX slope = P(a);
+  MatrixX weight = Minv;
+  weight.diagonal() += penaltyCurvature(g(a));
+  return slope * weight * slope + goalHessian();
+}
+
+double DenseGdd::violation(const VectorX& a) const {
+  const VectorX force = g(a);
+  return (force - force.cwiseMax(lower).cwiseMin(upper)).cwiseAbs().maxCoeff();
+}
+
+}  // namespace softgauss::test

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// The problem of goal directed dynamics in dense matrices, coded anew from its formulae: the
+/// oracle for everything in gdd/.
+///
+///   g(a) = M a + c − Jᵀf,  f = D max(a_ref − J a, 0)                                    (T.2)
+///   F(a) = ½ gᵀM⁻¹g + ℓ(a),  ℓ(a) = ½ Σ w (A a − y)² + ½ m aᵀM a + aᵀM o                (T.17)
+///   Φ(a) = F(a) + Σ ½ ρ (t − clamp t)²,  t = g + λ/ρ                                    (T.18)
+
+#include "engine/core/types.hpp"
+
+namespace softgauss::test {
+
+struct DenseGdd {
+  MatrixX M;
+  MatrixX Minv;
+  VectorX c;
+  MatrixX J;  ///< rows of contacts and limits
+  VectorX aRef, D;
+  MatrixX A;  ///< rows of goals
+  VectorX y, w;
+  double metric = 0.0;  ///< m
+  VectorX offset;       ///< o
+  VectorX lower, upper, lambda, rho;
+
+  int dofs() const { return static_cast<int>(M.rows()); }
+  int rows() const { return static_cast<int>(J.rows()); }
+
+  VectorX residual(const VectorX& a) const { return J * a - aRef; }
+  VectorX g(const VectorX& a) const;
+  /// M + Jᵀ D J over the rows with a negative residual.
+  MatrixX P(const VectorX& a) const;
+
+  double goalCost(const VectorX& a) const;
+  VectorX goalGradient(const VectorX& a) const;
+  MatrixX goalHessian() const;
+
+  /// F: what the solver's report calls the objective.
+  double objective(const VectorX& a) const;
+  VectorX objectiveGradient(const VectorX& a) const;
+  /// Φ with the present λ and ρ.
+  double augmented(const VectorX& a) const;
+  VectorX augmentedGradient(const VectorX& a) const;
+  /// P (M⁻¹ + ψ″) P + ∇²ℓ.
+  MatrixX gaussNewtonHessian(const VectorX& a) const;
+
+  VectorX penaltySlope(const VectorX& g) const;
+  VectorX penaltyCurvature(const VectorX& g) const;
+  /// Distance of g(a) from the box.
+  double violation(const VectorX& a) const;
+};
+
+}  // namespace softgauss::test

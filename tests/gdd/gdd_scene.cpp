@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/gdd/gdd_scene.hpp"
+
+#include <Eigen/Cholesky>
+
+#include "tests/support/reference_solver.hpp"
+
+namespace softgauss::test {
+
+GddScene::GddScene(Scene s)
+    : scene(std::move(s)),
+      cost(scene.model.nv),
+      box(scene.model),
+      solver(std::make_unique<gdd::AugmentedLagrangian>(scene.model)) {
+  const int n = scene.model.nv;
+  const ConvexProblem physics = denseProblem(data());
+  dense.M = physics.M;
+  dense.Minv = physics.M.llt().solve(MatrixX::Identity(n, n));
+  dense.c = data().forces.c;
+  dense.J = physics.J;
+  dense.aRef = physics.aRef;
+  dense.D = physics.D;
+  dense.A.resize(0, n);
+  dense.offset = VectorX::Zero(n);
+  dense.lambda = VectorX::Zero(n);
+  dense.rho.resize(n);
+  for (int i = 0; i < n; ++i) dense.rho[i] = solver->options.penalty * data().weights.dof[i];
+  matchBox();
+}
+
+void GddScene::matchBox() {
+  dense.lower = box.lower;
+  dense.upper = box.upper;
+}
+
+void GddScene::addPoint(int body, const Vector3& p_WP, double weight, const Vector3& target) {
+  cost.addPoint(model(), data().kinematics, data().inertia.sparsity, body, p_WP, weight, target);
+  Eigen::Matrix<double, 3, Eigen::Dynamic> J(3, dofs());
+  pointJacobian(model(), data().kinematics, body, p_WP, J);
+  const Eigen::Index before = dense.A.rows();
+  dense.A.conservativeResize(before + 3, Eigen::NoChange);
+  dense.A.bottomRows(3) = J;
+  dense.y.conservativeResize(before + 3);
+  dense.y.tail(3) = target;
+  dense.w.conservativeResize(before + 3);
+  dense.w.tail(3).setConstant(weight);
+}
+
+void GddScene::addMetric(double weight, const VectorX& target) {
+  cost.addMetric(weight, target);
+  dense.metric += weight;
+  dense.offset -= weight * target;
+}
+
+void GddScene::addRandomGoals(Random& random) {
+  constexpr double kWeights[] = {1.0, 30.0, 1000.0};
+  for (int i = 0; i < 2; ++i) {
+    const int body = 1 + random.index(model().bodyCount() - 1);
+    const Vector3 p = data().kinematics.X_WB[body].p + random.vector3(0.2);
+    addPoint(body, p, kWeights[random.index(3)], random.vector3(20.0));
+  }
+  if (random.chance(0.5)) addMetric(0.1, -10.0 * scene.state.v);
+}
+
+void GddScene::addRandomBox(Random& random, double share, double largest) {
+  for (int i = 0; i < dofs(); ++i) {
+    if (!model().dofs[i].actuated || !random.chance(share)) continue;
+    box.upper[i] = random.uniform(0.1, 1.0) * largest;
+    box.lower[i] = -random.uniform(0.1, 1.0) * largest;
+  }
+  matchBox();
+}
+
+void GddScene::randomMultipliers(Random& random, double scale) {
+  dense.lambda = random.vector(dofs(), scale);
+}
+
+const VectorX& GddScene::solve() {
+  report = solver->solve(model(), cost, box, data(), scene.state.warmstart);
+  WarmStart end;
+  solver->keepWarmStart(end);
+  dense.lambda = end.multipliers;
+  for (int i = 0; i < dofs(); ++i) dense.rho[i] = solver->options.penalty * data().weights.dof[i];
+  matchBox();
+  return solver->acceleration();
+}
+
+GddScene randomGddScene(std::uint64_t seed, int contacts, double boxShare,
+                        const RandomTreeOptions& options) {
+  Random random(seed * 7919 + 17);
+  GddScene s(randomScene(seed, contacts, options));
+  s.addRandomGoals(random);
+  s.addRandomBox(random, boxShare);
+  return s;
+}
+
+}  // namespace softgauss::test

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Scenes with goals, once as gdd/ sees them and once in dense matrices.
+
+#include <memory>
+
+#include "gdd/gdd.hpp"
+#include "tests/gdd/dense_gdd.hpp"
+#include "tests/support/scene.hpp"
+
+namespace softgauss::test {
+
+class GddScene {
+ public:
+  Scene scene;
+  gdd::GoalCost cost;
+  gdd::ControlBox box;
+  std::unique_ptr<gdd::AugmentedLagrangian> solver;
+  gdd::GddReport report;
+  DenseGdd dense;
+
+  /// The scene's stages must be computed.
+  explicit GddScene(Scene s);
+
+  /// ½ weight |J a − target|² for the point p_WP of a body, in both forms.
+  void addPoint(int body, const Vector3& p_WP, double weight, const Vector3& target);
+  /// ½ weight (a − target)ᵀM(a − target), in both forms.
+  void addMetric(double weight, const VectorX& target);
+  /// A few random points, and virtual damping as often as not.
+  void addRandomGoals(Random& random);
+  /// Gives actuated dofs a box about 0, with probability `share`.
+  void addRandomBox(Random& random, double share, double largest = 10.0);
+  /// Multipliers and penalties such as the solver has them.
+  void randomMultipliers(Random& random, double scale);
+
+  /// Solves from the scene's warm start, cold unless a test has set one; takes the multipliers
+  /// and penalties at the end over into `dense`.
+  const VectorX& solve();
+
+  Data& data() { return *scene.data; }
+  const Model& model() const { return scene.model; }
+  int dofs() const { return scene.model.nv; }
+
+ private:
+  void matchBox();
+};
+
+/// randomScene(seed, contacts) with random goals and boxes.
+GddScene randomGddScene(std::uint64_t seed, int contacts, double boxShare = 0.5,
+                        const RandomTreeOptions& options = {});
+
+}  // namespace softgauss::test

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Gradient and Gauss–Newton Hessian of Φ (T.19), (T.20) against dense formulae and differences.
+
+#include <Eigen/Cholesky>
+
+#include "tests/gdd/gdd_scene.hpp"
+#include "tests/support/matchers.hpp"
+
+namespace softgauss::test {
+namespace {
+
+/// A random scene at a random acceleration near the unconstrained one, rows evaluated there.
+struct AtPoint {
+  GddScene s;
+  VectorX a;
+  gdd::GaussNewtonHessian hessian;
+  TreeFactor massFactor;
+
+  explicit AtPoint(std::uint64_t seed) : s(randomGddScene(seed, 5)), hessian(s.model()) {
+    Random random(seed + 5000);
+    s.randomMultipliers(random, 5.0);
+    // Penalties of the size of R, so that no term drowns the others.
+    s.dense.rho *= 1e-5;
+    a = s.dense.Minv * -s.dense.c + random.vector(s.dofs(), 20.0);
+    VectorX unused(s.dofs());
+    inverseDynamics(s.model(), a, s.data(), unused);
+    massFactor.compute(s.data().inertia.M);
+    hessian.setCell(s.data());
+  }
+
+  /// ∇Φ as the solver composes it.
+  VectorX gradient() {
+    VectorX g(s.dofs());
+    inverseDynamics(s.model(), a, s.data(), g);
+    const gdd::BoundPenalty bounds{s.box, s.dense.lambda, s.dense.rho};
+    VectorX w = g;
+    massFactor.solve(w);
+    for (int i = 0; i < s.dofs(); ++i) w[i] += bounds.at(i, g[i]).slope;
+    VectorX result(s.dofs()), Ma(s.dofs()), cost(s.dofs());
+    hessian.multiplyP(w, result);
+    s.data().inertia.M.multiply(a, Ma);
+    s.cost.gradient(s.data().inertia.M, a, Ma, cost);
+    return result + cost;
+  }
+};
+
+/// Half the way along ±e_i to the nearest knot of a row or of a bound.
+double safeStep(const DenseGdd& d, const VectorX& a, int i) {
+  const VectorX x = d.residual(a), t = d.g(a) + d.lambda.cwiseQuotient(d.rho);
+  const VectorX rate = d.P(a).col(i);
+  double nearest = 2.0;
+  const auto meet = [&](double distance, double speed) {
+    if (speed != 0.0) nearest = std::min(nearest, std::abs(distance / speed));
+  };
+  for (int r = 0; r < d.rows(); ++r) meet(x[r], d.J(r, i));
+  for (int k = 0; k < d.dofs(); ++k) {
+    if (d.lower[k] == d.upper[k]) continue;
+    meet(t[k] - d.lower[k], rate[k]);
+    meet(t[k] - d.upper[k], rate[k]);
+  }
+  return 0.5 * nearest;
+}
+
+// In a cell Φ is a quadratic, so that central differences are exact but for rounding.
+TEST(GddGradient, IsTheDifferenceOfTheDenseObjective) {
+  double worst = 0.0;
+  for (int seed = 0; seed < 60; ++seed) {
+    AtPoint at(seed);
+    const DenseGdd& d = at.s.dense;
+    const VectorX gradient = at.gradient();
+    EXPECT_APPROX(gradient, d.augmentedGradient(at.a), 1e-11) << "seed " << seed;
+    for (int i = 0; i < at.s.dofs(); ++i) {
+      const double step = safeStep(d, at.a, i);
+      if (step < 1e-5) continue;  // too near to a knot to tell
+      VectorX ahead = at.a, behind = at.a;
+      ahead[i] += step;
+      behind[i] -= step;
+      const double plus = d.augmented(ahead), minus = d.augmented(behind);
+      const double difference = (plus - minus) / (ahead[i] - behind[i]);
+      const double rounding = 1e-15 * std::max(std::abs(plus), std::abs(minus)) / step;
+      const double scale = gradient.cwiseAbs().maxCoeff();
+      const double error = std::max(0.0, std::abs(difference - gradient[i]) - 100.0 * rounding);
+      worst = std::max(worst, error / scale);
+    }
+  }
+  // P w sums terms that are 1e3 times their sum.
+  EXPECT_SMALL(worst, 1e-9);
+}
+
+TEST(GddGradient, PenaltyHasTheDenseValueSlopeAndCurvature) {
+  for (int seed = 0; seed < 20; ++seed) {
+    AtPoint at(seed);
+    const DenseGdd& d = at.s.dense;
+    const gdd::BoundPenalty bounds{at.s.box, d.lambda, d.rho};
+    const VectorX g = d.g(at.a), slope = d.penaltySlope(g), curvature = d.penaltyCurvature(g);
+    for (int i = 0; i < at.s.dofs(); ++i) {
+      const Jet psi = bounds.at(i, g[i]);
+      EXPECT_NEAR(psi.slope, slope[i], 1e-12 * std::abs(slope[i]));
+      EXPECT_EQ(psi.curvature, curvature[i]);
+      EXPECT_NEAR(psi.value, 0.5 * slope[i] * slope[i] / d.rho[i], 1e-12 * psi.value);
+    }
+  }
+}
+
+TEST(GddHessian, SolveInvertsTheDenseFormula) {
+  double worst = 0.0;
+  int bounded = 0, active = 0;
+  for (int seed = 0; seed < 100; ++seed) {
+    AtPoint at(seed);
+    const DenseGdd& d = at.s.dense;
+    const VectorX curvature = d.penaltyCurvature(d.g(at.a));
+    ASSERT_TRUE(at.hessian.factorize(at.s.data(), at.massFactor, curvature, at.s.cost));
+    const MatrixX H = d.gaussNewtonHessian(at.a);
+    Random random(seed);
+    const VectorX b = H * random.vector(at.s.dofs(), 1.0);
+    VectorX x = b;
+    at.hessian.solve(x);
+    // Backward error: what a stable factorisation of this matrix promises.
+    const double backward = (H * x - b).norm() / (H.norm() * x.norm());
+    worst = std::max(worst, backward);
+    for (int i = 0; i < at.s.dofs(); ++i) bounded += curvature[i] != 0.0 && d.lower[i] < d.upper[i];
+    active += (d.residual(at.a).array() < 0.0).count();
+  }
+  EXPECT_SMALL(worst, 1e-14);
+  EXPECT_GT(bounded, 100);
+  EXPECT_GT(active, 100);
+}
+
+TEST(GddHessian, MultipliesByTheJacobianOfInverseDynamics) {
+  double worst = 0.0;
+  for (int seed = 0; seed < 60; ++seed) {
+    AtPoint at(seed);
+    Random random(seed);
+    const VectorX x = random.vector(at.s.dofs(), 1.0);
+    VectorX y(at.s.dofs());
+    at.hessian.multiplyP(x, y);
+    const VectorX expected = at.s.dense.P(at.a) * x;
+    worst = std::max(worst, (y - expected).norm() / expected.norm());
+  }
+  EXPECT_SMALL(worst, 1e-13);
+}
+
+TEST(GoalCost, ValueAndCurvatureAreThoseOfTheDenseFormula) {
+  double worst = 0.0;
+  for (int seed = 0; seed < 60; ++seed) {
+    AtPoint at(seed);
+    const DenseGdd& d = at.s.dense;
+    Random random(seed);
+    const VectorX x = random.vector(at.s.dofs(), 10.0);
+    const TreeMatrix& M = at.s.data().inertia.M;
+    VectorX Mx(at.s.dofs());
+    M.multiply(x, Mx);
+    const double scale = d.goalCost(at.a) + 1.0;
+    worst = std::max(worst, std::abs(at.s.cost.value(M, x, Mx) - d.goalCost(x)) /
+                                (std::abs(d.goalCost(x)) + scale));
+    const double curvature = x.dot(d.goalHessian() * x);
+    worst = std::max(worst, std::abs(at.s.cost.curvatureAlong(x, Mx) - curvature) / curvature);
+  }
+  EXPECT_SMALL(worst, 1e-13);
+}
+
+}  // namespace
+}  // namespace softgauss::test

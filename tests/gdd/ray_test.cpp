@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The exact line search against brute force, and what it promises the solver: descent.
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+
+#include "tests/gdd/gdd_scene.hpp"
+#include "tests/support/matchers.hpp"
+
+namespace softgauss::test {
+namespace {
+
+/// First local minimum of Φ(a + α d), α ≥ 0: a fine scan between the knots of the rows, where Φ is
+/// convex, then golden section.
+class BruteForce {
+ public:
+  BruteForce(const DenseGdd& d, const VectorX& a, const VectorX& direction)
+      : d_(d), a_(a), direction_(direction) {}
+
+  double phi(double alpha) const { return d_.augmented(a_ + alpha * direction_); }
+
+  double firstMinimum() const {
+    const VectorX x = d_.residual(a_), dx = d_.J * direction_;
+    std::vector<double> knots{0.0};
+    for (int i = 0; i < d_.rows(); ++i)
+      if (dx[i] != 0.0 && -x[i] / dx[i] > 0.0) knots.push_back(-x[i] / dx[i]);
+    std::sort(knots.begin(), knots.end());
+    for (std::size_t k = 0; k < knots.size(); ++k) {
+      const double from = knots[k];
+      double to = k + 1 < knots.size() ? knots[k + 1] : std::max(1.0, 2.0 * from);
+      // Beyond the last knot Φ rises at last.
+      while (k + 1 == knots.size() && phi(to) <= phi(from + 0.5 * (to - from)))
+        to = from + 2.0 * (to - from);
+      const double best = convexMinimum(from, to);
+      const bool inside = best < to - 1e-7 * (to - from);
+      if (inside || k + 1 == knots.size()) return best;
+      // At the knot: does Φ fall further?
+      const double next = k + 2 < knots.size() ? knots[k + 2] : 2.0 * to;
+      if (phi(to + 1e-6 * (next - to)) >= phi(to)) return to;
+    }
+    return 0.0;
+  }
+
+ private:
+  double convexMinimum(double from, double to) const {
+    constexpr int kScan = 200;
+    int best = 0;
+    double least = phi(from);
+    for (int i = 1; i <= kScan; ++i) {
+      const double value = phi(from + (to - from) * i / kScan);
+      if (value < least) least = value, best = i;
+    }
+    double lower = from + (to - from) * std::max(best - 1, 0) / kScan;
+    double upper = from + (to - from) * std::min(best + 1, kScan) / kScan;
+    constexpr double kGolden = 0.6180339887498949;
+    for (int i = 0; i < 60; ++i) {
+      const double p = upper - kGolden * (upper - lower), q = lower + kGolden * (upper - lower);
+      (phi(p) <= phi(q) ? upper : lower) = phi(p) <= phi(q) ? q : p;
+    }
+    return 0.5 * (lower + upper);
+  }
+
+  const DenseGdd& d_;
+  const VectorX &a_, &direction_;
+};
+
+struct RayCase {
+  GddScene s;
+  VectorX a, direction;
+  gdd::RayResult result;
+
+  /// A random ray of descent; every third is the Gauss–Newton direction.
+  explicit RayCase(std::uint64_t seed) : s(randomGddScene(seed, 5)) {
+    Random random(seed + 9000);
+    s.randomMultipliers(random, 3.0);
+    // With the solver's penalties these dominate Φ; with small ones all terms count.
+    if (seed % 2 == 0) s.dense.rho *= 1e-5;
+    a = s.dense.Minv * -s.dense.c + random.vector(s.dofs(), 10.0);
+    const VectorX slope = s.dense.augmentedGradient(a);
+    direction = random.vector(s.dofs(), 1.0);
+    if (direction.dot(slope) > 0.0) direction = -direction;
+    if (seed % 3 == 0) direction = -s.dense.gaussNewtonHessian(a).ldlt().solve(slope);
+
+    VectorX g(s.dofs()), rate(s.dofs()), Ma(s.dofs()), cost(s.dofs()), Md(s.dofs());
+    inverseDynamics(s.model(), a, s.data(), g);
+    TreeMatrix P;
+    inverseDynamicsJacobian(s.data(), P);
+    P.multiply(direction, rate);
+    const TreeMatrix& M = s.data().inertia.M;
+    M.multiply(a, Ma);
+    M.multiply(direction, Md);
+    s.cost.gradient(M, a, Ma, cost);
+    TreeFactor massFactor;
+    massFactor.compute(M);
+    s.data().constraints.setRay(direction);
+    gdd::Ray ray(s.model());
+    result = ray.minimize(s.data().constraints, massFactor, {s.box, s.dense.lambda, s.dense.rho}, g,
+                          rate, cost.dot(direction), s.cost.curvatureAlong(direction, Md));
+  }
+};
+
+TEST(Ray, EndsAtTheFirstLocalMinimum) {
+  double worst = 0.0, worstValue = 0.0;
+  int kinks = 0, crossed = 0;
+  for (int seed = 0; seed < 150; ++seed) {
+    const RayCase ray(seed);
+    const BruteForce brute(ray.s.dense, ray.a, ray.direction);
+    const double expected = brute.firstMinimum();
+    const double best = brute.phi(expected), start = brute.phi(0.0);
+    worst = std::max(worst, std::abs(ray.result.alpha - expected) / expected);
+    worstValue =
+        std::max(worstValue, (brute.phi(ray.result.alpha) - best) / std::abs(start - best));
+    EXPECT_LT(brute.phi(ray.result.alpha), start) << "seed " << seed;
+    kinks += ray.result.kink;
+    crossed += ray.result.crossings;
+  }
+  // Golden section finds a minimum to the root of the rounding of Φ, of which 1e-10 may be left.
+  EXPECT_SMALL(worst, 1e-5);
+  EXPECT_SMALL(worstValue, 1e-9);
+  EXPECT_GT(kinks, 5);
+  EXPECT_GT(crossed, 100);
+}
+
+TEST(Ray, NeitherSideOfTheMinimumIsLower) {
+  for (int seed = 200; seed < 400; ++seed) {
+    const RayCase ray(seed);
+    const BruteForce brute(ray.s.dense, ray.a, ray.direction);
+    const double alpha = ray.result.alpha, best = brute.phi(alpha);
+    const double rounding = 1e-14 * (std::abs(best) + std::abs(brute.phi(0.0)));
+    EXPECT_LE(best, brute.phi(alpha * (1.0 + 1e-6)) + rounding) << "seed " << seed;
+    EXPECT_LE(best, brute.phi(alpha * (1.0 - 1e-6)) + rounding) << "seed " << seed;
+  }
+}
+
+// A minimum at a knot names the row that is there.
+TEST(Ray, KinkIsTheKnotOfTheRowItNames) {
+  int kinks = 0;
+  for (int seed = 0; seed < 400; ++seed) {
+    RayCase ray(seed);
+    if (!ray.result.kink) continue;
+    ++kinks;
+    VectorX row = VectorX::Zero(ray.s.dofs());
+    ray.s.data().constraints.addRow(ray.result.last, 1.0, row);
+    int at = -1;
+    for (int i = 0; i < ray.s.dense.rows(); ++i)
+      if ((ray.s.dense.J.row(i).transpose() - row).norm() == 0.0) at = i;
+    ASSERT_GE(at, 0);
+    const VectorX x = ray.s.dense.residual(ray.a + ray.result.alpha * ray.direction);
+    EXPECT_LE(std::abs(x[at]), 1e-9 * (1.0 + std::abs(ray.s.dense.aRef[at]) + row.norm() * 10.0));
+  }
+  EXPECT_GT(kinks, 10);
+}
+
+// Φ falls at every iteration, with whatever multipliers the iteration has. A step that takes held
+// rows back to the knots from which rounding moved them may raise it, and is rare.
+TEST(GddSolver, ObjectiveFallsAtEveryIteration) {
+  int iterations = 0, rises = 0;
+  for (int seed = 0; seed < 60; ++seed) {
+    GddScene s = randomGddScene(seed, 5);
+    s.solver->options.maxIterations = 0;
+    VectorX before = s.solve();
+    for (int k = 1; k <= 40; ++k) {
+      s.solver->options.maxIterations = k;
+      const VectorX a = s.solve();
+      const double was = s.dense.augmented(before), is = s.dense.augmented(a);
+      rises += !(is <= was + 1e-12 * std::abs(was));
+      if (s.report.status != gdd::GddStatus::iterationLimit) break;
+      before = a;
+      ++iterations;
+    }
+  }
+  EXPECT_GT(iterations, 200);
+  EXPECT_SMALL(static_cast<double>(rises) / iterations, 0.01);
+}
+
+TEST(GddSolver, ReportsTheDenseObjectiveAndViolation) {
+  for (int seed = 0; seed < 60; ++seed) {
+    GddScene s = randomGddScene(seed, 5);
+    const VectorX& a = s.solve();
+    const VectorX g = s.dense.g(a);
+    const double scale = 0.5 * g.dot(s.dense.Minv * g) + std::abs(s.dense.goalCost(a));
+    EXPECT_NEAR(s.report.objective, s.dense.objective(a), 1e-11 * scale) << "seed " << seed;
+    EXPECT_APPROX(s.solver->force(), g, 1e-10);
+    EXPECT_NEAR(s.report.violation, s.dense.violation(a), 1e-10 * g.cwiseAbs().maxCoeff());
+  }
+}
+
+}  // namespace
+}  // namespace softgauss::test

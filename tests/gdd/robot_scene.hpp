@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// The robots of data/robots with a controller, as simulate_gdd sets them up.
+
+#include <cmath>
+
+#include "collision/lowest_point.hpp"
+#include "collision/scene_contacts.hpp"
+#include "engine/engine.hpp"
+#include "gdd/gdd.hpp"
+#include "io/urdf.hpp"
+
+namespace softgauss::test {
+
+struct RobotScene {
+  Model model;
+  State state;
+  Data data;
+  collision::SceneContacts contacts;
+  gdd::GoalDirectedController controller;
+  Input input;
+
+  /// A floating robot stands or lies on the ground.
+  explicit RobotScene(const std::string& robot)
+      : model(load(robot)), state(model), data(model), contacts(model), controller(model) {
+    Kinematics k(model);
+    computeKinematics(model, state, k);
+    const Body& root = model.bodies[model.trees[0].rootBody];
+    if (root.joint == JointKind::floating)
+      state.q[root.q + 2] -= collision::lowestPoint(model, k, 0);
+  }
+
+  gdd::Reach& addReach(const std::string& link, const Vector3& target) {
+    auto goal = std::make_unique<gdd::Reach>(model, link, target);
+    gdd::Reach& reach = *goal;
+    controller.goals.push_back(std::move(goal));
+    return reach;
+  }
+  gdd::VirtualDamping& addDamping() {
+    auto goal = std::make_unique<gdd::VirtualDamping>();
+    gdd::VirtualDamping& damping = *goal;
+    controller.goals.push_back(std::move(goal));
+    return damping;
+  }
+  gdd::Posture& addPosture() {
+    auto goal = std::make_unique<gdd::Posture>(state.q);
+    gdd::Posture& posture = *goal;
+    controller.goals.push_back(std::move(goal));
+    return posture;
+  }
+
+  SolveStatus step() { return controller.step(model, input, state, data, &contacts); }
+
+  Vector3 position(const std::string& link) {
+    Kinematics k(model);
+    computeKinematics(model, state, k);
+    return framePose(model, k, model.findFrame(link)).p;
+  }
+
+  /// Every control inside its box, exactly, and none on a dof that has no actuator.
+  bool controlsAllowed() const {
+    bool allowed = true;
+    for (int i = 0; i < model.nv; ++i) {
+      const Dof& dof = model.dofs[i];
+      const double u = controller.control[i];
+      allowed &= dof.actuated ? u >= dof.effortLower && u <= dof.effortUpper : u == 0.0;
+      allowed &= u == data.forces.tau[i];
+    }
+    return allowed;
+  }
+
+ private:
+  static Model load(const std::string& robot) {
+    ModelBuilder builder =
+        io::readUrdf(std::string(SOFTGAUSS_SOURCE_DIR) + "/data/robots/" + robot + ".urdf");
+    if (robot == "arm") return builder.build();
+    GeometrySpec plane;
+    plane.name = "ground";
+    plane.link = "world";
+    plane.shape = Shape::plane();
+    return builder.geometry(plane).build();
+  }
+};
+
+}  // namespace softgauss::test
