@@ -19,6 +19,8 @@ namespace softgauss::gdd {
 class GaussNewtonHessian {
  public:
   explicit GaussNewtonHessian(const Model& model);
+  GaussNewtonHessian(const GaussNewtonHessian&) = delete;  // H points at dense_
+  GaussNewtonHessian& operator=(const GaussNewtonHessian&) = delete;
 
   /// G and P = M + G of the cell in which the rows were last evaluated.
   void setCell(Data& data);
