@@ -120,11 +120,8 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
 
   const char* const simulation = "Simulation";
   app.add_option("--duration", options.duration, "simulated time [s], default 2")
-      ->check(CLI::PositiveNumber)
       ->group(simulation);
-  app.add_option("--timestep", options.timestep, "step [s], default 0.002")
-      ->check(CLI::PositiveNumber)
-      ->group(simulation);
+  app.add_option("--timestep", options.timestep, "step [s], default 0.002")->group(simulation);
   app.add_option("--integrator", integrator,
                  "semi-implicit-euler (default): order 1, one solve a step, implicit joint damping")
       ->check(CLI::IsMember({"semi-implicit-euler"}))
@@ -162,6 +159,12 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
                                       : BaseKind::automatic;
   options.groundIsDefault = ground.empty();
   if (!ground.empty() && ground != "none") options.ground = parseNumber(ground, "--ground");
+  for (const auto& [option, value] :
+       {std::pair{"--duration", options.duration}, std::pair{"--timestep", options.timestep}})
+    if (!(value > 0.0) || !std::isfinite(value))
+      throw UsageError(fmt::format("{} {}: expected a number of seconds above 0", option, value));
+  if (options.baseHeight && !std::isfinite(*options.baseHeight))
+    throw UsageError("--base-height: expected a finite number of metres");
   options.likeMujoco = compatibility == "mujoco";
   options.zeroEffortIsUnlimited = zeroEffort == "unlimited";
   options.effects = parseEffects(effects);

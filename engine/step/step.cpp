@@ -22,10 +22,25 @@ double lap(Clock::time_point& last) {
 
 bool finite(const Model& model, const Input& input, const State& state) {
   if (state.q.size() != model.nq || state.v.size() != model.nv) return false;
+  if (input.tau.size() != 0 && input.tau.size() != model.nv) return false;
   if (!state.q.allFinite() || !state.v.allFinite() || !input.tau.allFinite()) return false;
-  return std::all_of(input.wrenches.begin(), input.wrenches.end(), [](const ExternalWrench& w) {
-    return w.F_Bo_W.force.allFinite() && w.F_Bo_W.moment.allFinite();
+  return std::all_of(input.wrenches.begin(), input.wrenches.end(), [&](const ExternalWrench& w) {
+    return w.body >= 0 && w.body < model.bodyCount() && w.F_Bo_W.force.allFinite() &&
+           w.F_Bo_W.moment.allFinite();
   });
+}
+
+/// The first dof whose position, velocity or applied force is not finite, −1 if none is.
+int firstBadDof(const Model& model, const Input& input, const State& state) {
+  for (const Body& body : model.bodies) {
+    const int coordinates = body.dofs == 6 ? 7 : body.dofs;
+    const bool bad =
+        (state.q.size() == model.nq && !state.q.segment(body.q, coordinates).allFinite()) ||
+        (state.v.size() == model.nv && !state.v.segment(body.v, body.dofs).allFinite()) ||
+        (input.tau.size() == model.nv && !input.tau.segment(body.v, body.dofs).allFinite());
+    if (bad) return body.v;
+  }
+  return -1;
 }
 
 }  // namespace
@@ -48,6 +63,7 @@ SolveStatus computeStages(const Model& model, const Input& input, const State& s
   data.stats = {};
   if (!finite(model, input, state)) {
     data.stats.status = SolveStatus::notFinite;
+    data.stats.badDof = firstBadDof(model, input, state);
     return data.stats.status;
   }
   Clock::time_point clock = Clock::now();

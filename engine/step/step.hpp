@@ -9,7 +9,7 @@
 namespace softgauss {
 
 /// Everything that a solve needs at (q, v): kinematics, M, smooth forces, contacts, rows.
-/// Returns notFinite when the state or the input is not finite.
+/// Returns notFinite when the state or the input is not finite, or does not fit the model.
 SolveStatus computeStages(const Model& model, const Input& input, const State& state, Data& data,
                           ContactSource* contacts) noexcept;
 
