@@ -39,14 +39,14 @@ GeometryPair inOrder(const Model& model, int i, int j) {
   return kind(j) < kind(i) ? GeometryPair{j, i} : GeometryPair{i, j};
 }
 
-/// Two links of two bodies, in a fixed order. The tree tells apart robots with equal names.
+/// Two links of two bodies, in a fixed order. The number tells apart robots with equal names.
 using LinkPair = std::array<std::pair<int, std::string>, 2>;
 
 LinkPair linkPair(const Model& model, const Geometry& a, const Geometry& b) {
-  const auto tree = [&](const Geometry& g) {
-    return model.bodies[static_cast<std::size_t>(g.body)].tree;
+  const auto robot = [&](const Geometry& g) {
+    return model.bodies[static_cast<std::size_t>(g.body)].robot;
   };
-  LinkPair links{std::pair{tree(a), a.link}, std::pair{tree(b), b.link}};
+  LinkPair links{std::pair{robot(a), a.link}, std::pair{robot(b), b.link}};
   if (links[1] < links[0]) std::swap(links[0], links[1]);
   return links;
 }
@@ -63,9 +63,9 @@ bool areAdjacent(const Model& model, int bodyA, int bodyB) {
 
 Effect contactEffect(const Model& model, int bodyA, int bodyB) {
   if (bodyA == 0 || bodyB == 0) return Effect::groundContact;
-  const bool oneTree = model.bodies[static_cast<std::size_t>(bodyA)].tree ==
-                       model.bodies[static_cast<std::size_t>(bodyB)].tree;
-  return oneTree ? Effect::selfCollision : Effect::objectContact;
+  const bool oneRobot = model.bodies[static_cast<std::size_t>(bodyA)].robot ==
+                        model.bodies[static_cast<std::size_t>(bodyB)].robot;
+  return oneRobot ? Effect::selfCollision : Effect::objectContact;
 }
 
 PairFilter makePairFilter(const Model& model, const InitialDistance& initialDistance) {

@@ -13,8 +13,8 @@
 ///              Designers let the shapes of neighbouring links run into each other; a contact there
 ///              would push the robot apart from the first step on. All geometries of two such links
 ///              are left out, since the ones beside the overlap mean as little;
-///   effect     the effect that the pair belongs to is switched off: self_collision (one tree),
-///              ground_contact (one side fixed to the world), object_contact (two trees).
+///   effect     the effect that the pair belongs to is switched off: self_collision (one robot),
+///              ground_contact (one side fixed to the world), object_contact (two robots).
 
 #include <cstdint>
 #include <functional>

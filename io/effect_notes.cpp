@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <map>
 #include <set>
 
 #include "io/detail/text.hpp"
@@ -39,21 +40,21 @@ Callers dofsWith(const Model& model, Predicate&& predicate) {
 /// Shapes by what carries them.
 struct ShapeCensus {
   Callers world, moving;
-  std::set<int> trees;
-  Callers selfTouching;  ///< trees with shapes on more than one body
+  std::set<int> robots;
+  Callers selfTouching;  ///< robots with shapes on more than one body
 
   explicit ShapeCensus(const Model& model) {
-    std::vector<std::set<int>> bodies(model.trees.size());
+    std::map<int, std::set<int>> bodies;  // by robot
     for (const Geometry& geometry : model.geometries) {
-      const int tree = model.bodies[static_cast<std::size_t>(geometry.body)].tree;
-      (tree < 0 ? world : moving).add(geometry.name);
-      if (tree < 0) continue;
-      trees.insert(tree);
-      bodies[static_cast<std::size_t>(tree)].insert(geometry.body);
+      const int robot = model.bodies[static_cast<std::size_t>(geometry.body)].robot;
+      (robot < 0 ? world : moving).add(geometry.name);
+      if (robot < 0) continue;
+      robots.insert(robot);
+      bodies[robot].insert(geometry.body);
     }
-    for (std::size_t t = 0; t < bodies.size(); ++t)
-      if (bodies[t].size() > 1)
-        selfTouching.add(model.bodyNames[static_cast<std::size_t>(model.trees[t].rootBody)]);
+    for (const auto& [robot, touching] : bodies)
+      if (touching.size() > 1)
+        selfTouching.add(model.bodyNames[static_cast<std::size_t>(*touching.begin())]);
   }
 };
 
@@ -120,16 +121,16 @@ std::vector<EffectNote> effectNotes(const Model& model) {
   notes.add("dry_friction", dofsWith(model, [](const Dof& d) { return d.dryFriction > 0.0; }),
             "dof", "no joint has friction");
   notes.add("equality", followers, "mimic", "no mimic, weld or connection");
-  notes.add("self_collision", shapes.selfTouching, "tree", "no tree has shapes on two bodies");
+  notes.add("self_collision", shapes.selfTouching, "robot", "no robot has shapes on two bodies");
   notes.add(
       "ground_contact", shapes.world.count > 0 && shapes.moving.count > 0,
       fmt::format("{} fixed to the world (first '{}') against {} that move",
                   counted(shapes.world.count, "shape"), shapes.world.first, shapes.moving.count),
       shapes.world.count == 0 ? "no ground or other shape is fixed to the world"
                               : "no moving body has a shape");
-  notes.add("object_contact", shapes.trees.size() > 1,
-            fmt::format("{} trees with shapes", shapes.trees.size()),
-            "fewer than two trees have shapes");
+  notes.add("object_contact", shapes.robots.size() > 1,
+            fmt::format("{} robots with shapes", shapes.robots.size()),
+            "fewer than two robots have shapes");
   notes.add("torsional_friction", torsional, "shape", "no shape has condim 4 or 6");
   notes.add("rolling_friction", rolling, "shape", "no shape has condim 6");
   return notes.list;

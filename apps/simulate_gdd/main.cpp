@@ -3,15 +3,12 @@
 
 #include <fmt/format.h>
 
-#include <csignal>
 #include <exception>
 
 #include "apps/simulate_gdd/run.hpp"
 
 int main(int argc, char** argv) {
   using namespace softgauss;
-  std::signal(SIGINT, [](int) { app::requestInterrupt(); });
-  std::signal(SIGTERM, [](int) { app::requestInterrupt(); });
   try {
     const auto options = app::parseCommandLine(argc, argv);
     if (!options) return app::kDone;

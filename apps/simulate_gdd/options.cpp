@@ -10,6 +10,31 @@
 namespace softgauss::app {
 namespace {
 
+constexpr double kLongestStep = 1.0;  // [s]
+constexpr double kMostSteps = 1e9;
+constexpr double kFarthest = 1e6;  // [m] farther out, doubles no longer resolve a contact
+
+/// An output may not overwrite an input or another output.
+void checkOutputs(const SimulateOptions& options) {
+  const std::pair<const char*, std::filesystem::path> files[] = {{"MODEL", options.model},
+                                                                 {"--goals", options.goals},
+                                                                 {"--torques", options.torques},
+                                                                 {"--log", options.log},
+                                                                 {"--summary", options.summary}};
+  const auto same = [](const std::filesystem::path& a, const std::filesystem::path& b) {
+    std::error_code error;
+    return !a.empty() && !b.empty() &&
+           (std::filesystem::weakly_canonical(a, error) ==
+                std::filesystem::weakly_canonical(b, error) ||
+            std::filesystem::equivalent(a, b, error));
+  };
+  for (std::size_t out = 3; out < std::size(files); ++out)
+    for (std::size_t other = 0; other < out; ++other)
+      if (same(files[out].second, files[other].second))
+        throw UsageError(
+            fmt::format("{} would overwrite {}", files[out].first, files[other].first));
+}
+
 std::vector<std::string> split(const std::string& text, char separator) {
   std::vector<std::string> parts(1);
   for (const char c : text) {
@@ -163,17 +188,37 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
        {std::pair{"--duration", options.duration}, std::pair{"--timestep", options.timestep}})
     if (!(value > 0.0) || !std::isfinite(value))
       throw UsageError(fmt::format("{} {}: expected a number of seconds above 0", option, value));
-  if (options.baseHeight && !std::isfinite(*options.baseHeight))
-    throw UsageError("--base-height: expected a finite number of metres");
+  if (options.timestep > kLongestStep)
+    throw UsageError(
+        fmt::format("--timestep {}: expected at most {} s", options.timestep, kLongestStep));
+  if (options.duration / options.timestep > kMostSteps)
+    throw UsageError(fmt::format("--duration {} is more than {:g} steps of {} s", options.duration,
+                                 kMostSteps, options.timestep));
+  const auto mustBeNear = [](double metres, const std::string& option) {
+    if (!(std::abs(metres) <= kFarthest))
+      throw UsageError(
+          fmt::format("{}: {} m is not within {:g} m of the origin", option, metres, kFarthest));
+  };
+  if (options.baseHeight) {
+    mustBeNear(*options.baseHeight, "--base-height");
+    if (base == "fixed")
+      throw UsageError("--base-height is for a floating base, and --base is fixed");
+  }
   options.likeMujoco = compatibility == "mujoco";
   options.zeroEffortIsUnlimited = zeroEffort == "unlimited";
   options.effects = parseEffects(effects);
-  for (const std::string& text : reach) options.reach.push_back(parseReach(text));
+  if (options.ground) mustBeNear(*options.ground, "--ground");
+  for (const std::string& text : reach) {
+    options.reach.push_back(parseReach(text));
+    mustBeNear(options.reach.back().p_WTarget.cwiseAbs().maxCoeff(), "--reach " + text);
+    mustBeNear(options.reach.back().p_FP.cwiseAbs().maxCoeff(), "--reach " + text);
+  }
   for (const std::string& text : q0) {
     const std::size_t equals = text.rfind('=');
     if (equals == std::string::npos) throw UsageError("--q0 " + text + ": expected NAME=VALUE");
     options.q0.emplace_back(text.substr(0, equals), parseNumber(text.substr(equals + 1), "--q0"));
   }
+  checkOutputs(options);
   const bool hasGoals = !options.reach.empty() || !options.goals.empty();
   if (int{options.passive} + int{!options.torques.empty()} + int{hasGoals} > 1)
     throw UsageError("choose one of goals (--reach, --goals), --torques and --passive");

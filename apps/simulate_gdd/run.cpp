@@ -2,10 +2,10 @@
 #include "apps/simulate_gdd/run.hpp"
 
 #include <fmt/format.h>
+#include <signal.h>
 
 #include <chrono>
 #include <cmath>
-#include <csignal>
 #include <optional>
 
 #include "apps/simulate_gdd/progress.hpp"
@@ -19,7 +19,7 @@
 namespace softgauss::app {
 namespace {
 
-volatile std::sig_atomic_t interruptRequested = 0;
+volatile sig_atomic_t interruptRequested = 0;
 
 using Clock = std::chrono::steady_clock;
 
@@ -86,6 +86,12 @@ class Runner {
     Progress progress(options_.duration, options_.quiet);
     Verdict verdict(model_);
     ExitCode code = kDone;
+    // From here on an interrupt ends the run in order; a second one ends it at once.
+    struct sigaction action = {};
+    action.sa_handler = [](int) { interruptRequested = 1; };
+    action.sa_flags = SA_RESETHAND;
+    sigaction(SIGINT, &action, nullptr);
+    sigaction(SIGTERM, &action, nullptr);
     const Clock::time_point start = Clock::now();
     for (long i = 0; i < steps && code == kDone; ++i) {
       if (interruptRequested) {
@@ -107,6 +113,7 @@ class Runner {
       summary_.outcome = "interrupted";
     }
     finish(verdict);
+    if (!logError_.empty()) throw UsageError(logError_);
     return code;
   }
 
@@ -141,8 +148,25 @@ class Runner {
     record_.physicsViolation = physicsViolation(model_, data_, scratch_);
     record_.energy = computeEnergy(model_, data_.kinematics, record_.v).total();
     record_.maxPenetration = stats.maxPenetration;
-    if (log_) log_->write(record_);
+    writeLog(record_);
     summary_.addStep(record_);
+  }
+
+  /// A log that cannot be written does not keep the rest of the run from being reported.
+  void writeLog(const io::StepRecord& row) {
+    guardLog([&] { log_->write(row); });
+  }
+  void closeLog() {
+    guardLog([&] { log_->close(); });
+  }
+  template <class F>
+  void guardLog(F&& f) {
+    if (!log_ || !logError_.empty()) return;
+    try {
+      f();
+    } catch (const std::exception& error) {
+      logError_ = error.what();
+    }
   }
 
   /// The final state, in the log's last row and the summary.
@@ -157,10 +181,8 @@ class Runner {
     last.constraints = data_.stats.rows;
     last.energy = computeEnergy(model_, data_.kinematics, state_.v).total();
     last.maxPenetration = data_.stats.maxPenetration;
-    if (log_) {
-      log_->write(last);
-      log_->close();
-    }
+    writeLog(last);
+    closeLog();
     std::size_t place = 0;
     for (const auto& goal : controller_.goals)
       if (const std::optional<double> error = goal->error({model_, state_, data_}))
@@ -181,14 +203,13 @@ class Runner {
   Input input_;
   std::optional<io::TorqueTable> torques_;
   std::optional<io::LogWriter> log_;
+  std::string logError_;
   io::Summary summary_;
   io::StepRecord record_;
   VectorX scratch_;
 };
 
 }  // namespace
-
-void requestInterrupt() { interruptRequested = 1; }
 
 ExitCode run(const SimulateOptions& options, Scene& scene) { return Runner(options, scene).run(); }
 

@@ -21,7 +21,4 @@ enum ExitCode {
 /// written.
 ExitCode run(const SimulateOptions& options, Scene& scene);
 
-/// Asks run() to end after the present step; safe in a signal handler.
-void requestInterrupt();
-
 }  // namespace softgauss::app

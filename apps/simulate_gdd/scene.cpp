@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <set>
 
 #include "collision/lowest_point.hpp"
 #include "io/explain.hpp"
@@ -12,6 +13,9 @@
 namespace softgauss::app {
 namespace {
 
+/// More would take minutes to load and gigabytes to hold.
+constexpr int kMostDofs = 2000;
+
 bool hasFloatingBase(const Model& model) {
   for (const Body& body : model.bodies)
     if (body.joint == JointKind::floating) return true;
@@ -19,11 +23,18 @@ bool hasFloatingBase(const Model& model) {
 }
 
 void setJointPositions(const SimulateOptions& options, const Model& model, State& state) {
+  std::set<std::string> seen;
   for (const auto& [name, value] : options.q0) {
     const int body = model.findJoint(name);
     if (body < 0 || model.bodies[body].dofs != 1)
       throw ModelError({}, "--q0 " + name,
                        "the model has no joint of one degree of freedom of that name");
+    if (!seen.insert(name).second) throw ModelError({}, "--q0 " + name, "is given twice");
+    for (const JointRange& range : model.ranges)
+      if (range.body == body && (value < range.lower || value > range.upper))
+        throw ModelError({}, "--q0 " + name,
+                         fmt::format("{} lies outside the joint's range {} .. {}", value,
+                                     range.lower, range.upper));
     state.q[model.bodies[body].q] = value;
   }
 }
@@ -72,6 +83,10 @@ std::unique_ptr<Scene> loadScene(const SimulateOptions& options) {
     builder.geometry(plane);
     scene->model = builder.build();
   }
+  if (scene->model.nv > kMostDofs)
+    throw ModelError(
+        {options.model.string(), 0}, "model '" + scene->model.name + "'",
+        fmt::format("has {} degrees of freedom, expected at most {}", scene->model.nv, kMostDofs));
   scene->contacts = std::make_unique<collision::SceneContacts>(scene->model);
   scene->initial = State(scene->model);
   setJointPositions(options, scene->model, scene->initial);

@@ -18,9 +18,9 @@ InverseWeights::InverseWeights(const Model& model)
   computeMassMatrix(model, k, inertia);
   TreeFactor factor;
   if (!factor.compute(inertia.M))
-    throw ModelError({}, "model '" + model.name + "'",
-                     "the mass matrix is singular in the initial configuration; a joint moves "
-                     "nothing that resists it");
+    throw ModelError({}, "joint '" + model.jointNames[model.dofs[factor.failedRow()].body] + "'",
+                     "the mass matrix is singular in the initial configuration; this joint moves "
+                     "nothing that resists it, or its numbers overflow");
 
   VectorX column(model.nv);
   for (int i = 0; i < model.nv; ++i) {

@@ -35,9 +35,9 @@ inline constexpr EffectName kEffectNames[] = {
     {Effect::armature, "armature", "rotor inertia on the diagonal of M"},
     {Effect::actuation, "actuation", "controls on actuated joints"},
     {Effect::jointLimit, "joint_limit", "soft joint limits"},
-    {Effect::selfCollision, "self_collision", "contacts between bodies of one tree"},
+    {Effect::selfCollision, "self_collision", "contacts between bodies of one robot"},
     {Effect::groundContact, "ground_contact", "contacts with shapes fixed to the world"},
-    {Effect::objectContact, "object_contact", "contacts between different trees"},
+    {Effect::objectContact, "object_contact", "contacts between different robots"},
 };
 
 /// A set of effects.

@@ -35,6 +35,7 @@ struct Body {
   int v = 0;             ///< first entry in State::v (its first dof)
   int dofs = 0;          ///< 0, 1 or 6
   int tree = -1;         ///< kinematic tree it belongs to; −1 for the world
+  int robot = -1;        ///< root link it descends from, or free body it is; −1 for the world
   int subtreeEnd = 0;    ///< bodies [this, subtreeEnd) are its subtree
   Transform X_PB;        ///< pose in the parent body at q = 0 (floating: unused)
   Vector3 axis = Vector3::UnitZ();  ///< joint axis in B, unit (revolute, prismatic)

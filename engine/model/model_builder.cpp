@@ -56,6 +56,7 @@ class Assembler {
   void addRoot(int link, BaseKind base, const Transform& X_WRoot) {
     const LinkSpec& spec = links_[static_cast<std::size_t>(link)];
     const bool isWorld = spec.name == "world";
+    robot_ = robots_++;
     const bool floats = base == BaseKind::floating || (base == BaseKind::automatic && !isWorld);
     if (isWorld) {
       place(link, {0, Transform{}});
@@ -152,6 +153,11 @@ class Assembler {
     Body body;
     body.joint = kind;
     body.parent = parent;
+    // The limbs of a fixed base are one robot, though each is a tree; what floats is one of its
+    // own.
+    body.robot = parent != 0                   ? model_.bodies[idx(parent)].robot
+                 : kind == JointKind::floating ? robots_++
+                                               : robot_;
     body.q = model_.nq;
     body.v = model_.nv;
     body.dofs = kind == JointKind::floating ? 6 : 1;
@@ -219,7 +225,29 @@ class Assembler {
   std::vector<Placement> placement_;
   std::vector<const SourceLocation*> where_;  ///< of each body's link, or null
   std::vector<std::string> powerless_;
+  int robots_ = 0;  ///< so far
+  int robot_ = -1;  ///< of the present root
 };
+
+/// A follower may lead another, but not, by some detour, itself.
+void checkMimicChains(const Model& model, const std::vector<JointSpec>& joints) {
+  for (const Mimic& mimic : model.mimics) {
+    int body = mimic.leader;
+    for (std::size_t steps = 0; steps <= model.mimics.size(); ++steps) {
+      const auto next = std::find_if(model.mimics.begin(), model.mimics.end(),
+                                     [&](const Mimic& m) { return m.follower == body; });
+      if (next == model.mimics.end()) break;
+      body = next->leader;
+      if (body != mimic.follower) continue;
+      const std::string& name = model.jointNames[static_cast<std::size_t>(mimic.follower)];
+      const auto spec = std::find_if(joints.begin(), joints.end(),
+                                     [&](const JointSpec& j) { return j.name == name; });
+      throw ModelError(spec->where, "joint '" + name + "'",
+                       "mimics itself by way of other joints; expected a leader that follows none "
+                       "of its followers");
+    }
+  }
+}
 
 /// Configuration at zero, or at the middle of the range where zero lies outside it.
 VectorX initialConfiguration(const Model& model) {
@@ -282,6 +310,7 @@ Model ModelBuilder::build() const {
                        "mimics '" + joint.mimic->leader + "', which is not a moving joint");
     model.mimics.push_back({follower, leader, joint.mimic->multiplier, joint.mimic->offset});
   }
+  checkMimicChains(model, joints_);
   assembler.finish();
   model.q0 = initialConfiguration(model);
   return model;
