@@ -28,8 +28,7 @@ SolveStatus GoalDirectedController::step(const Model& model, const Input& input,
   }
 
   control = solver.force().cwiseMax(box.lower).cwiseMin(box.upper);
-  data.forces.tau = control;
-  data.forces.net = control - data.forces.c;
+  setAppliedForce(control, data.forces);
   const SolveStatus status = advance(model, &solver.acceleration(), data, state);
   if (status != SolveStatus::notFinite) solver.keepWarmStart(state.warmstart);
   return status;

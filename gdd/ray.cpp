@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/solver/line_search.hpp"
+
 namespace softgauss::gdd {
 
 Jet Ray::slopeAt(const BoundPenalty& bounds, double tau) const {
@@ -43,20 +45,11 @@ RayResult Ray::minimize(const Constraints& constraints, const TreeFactor& massFa
       return result;
     }
     if (!(std::isfinite(length) && slopeAt(bounds, length).slope < 0.0)) {
-      // The slope vanishes in this interval: Newton on it, inside a bracket.
-      double lower = 0.0, upper = length;
-      double tau = std::min(length, start.curvature > 0.0 ? -start.slope / start.curvature : 1.0);
-      for (int i = 0; i < 100; ++i) {
-        const Jet jet = slopeAt(bounds, tau);
-        if (std::abs(jet.slope) <= 1e-12 * -start.slope || !std::isfinite(jet.slope)) break;
-        (jet.slope < 0.0 ? lower : upper) = tau;
-        double next = jet.curvature > 0.0 ? tau - jet.slope / jet.curvature : kInfinity;
-        if (!(next > lower && next < upper))
-          next = std::isfinite(upper) ? 0.5 * (lower + upper) : 2.0 * tau;
-        if (next == tau) break;
-        tau = next;
-      }
-      result.alpha += tau;
+      // The slope vanishes in this interval.
+      const double newton = start.curvature > 0.0 ? -start.slope / start.curvature : 1.0;
+      result.alpha += exactLineSearch([&](double tau) { return slopeAt(bounds, tau); }, start.slope,
+                                      {std::min(length, newton), length, 1e-12, 100})
+                          .alpha;
       return result;
     }
     // On to the next interval.

@@ -19,15 +19,23 @@ struct LineSearchResult {
   int evaluations = 0;
 };
 
-/// `along(α)` returns a Jet; `slope0` < 0 is the slope at α = 0. Starts at α = 1.
+/// Where to look, and how closely.
+struct LineSearchOptions {
+  double start = 1.0;        ///< first α
+  double upper = kInfinity;  ///< α beyond which there is nothing to look for
+  double tolerance = 1e-10;  ///< slope at the result over the slope at α = 0
+  int maxEvaluations = 60;
+};
+
+/// `along(α)` returns a Jet; `slope0` < 0 is the slope at α = 0.
 template <class Along>
-LineSearchResult exactLineSearch(Along&& along, double slope0) {
+LineSearchResult exactLineSearch(Along&& along, double slope0,
+                                 const LineSearchOptions& options = {}) {
   LineSearchResult result;
   if (!(slope0 < 0.0)) return result;
-  constexpr int kMaxEvaluations = 60;
-  const double tolerance = 1e-10 * -slope0;
-  double lower = 0.0, upper = kInfinity, alpha = 1.0;
-  while (result.evaluations < kMaxEvaluations) {
+  const double tolerance = options.tolerance * -slope0;
+  double lower = 0.0, upper = options.upper, alpha = options.start;
+  while (result.evaluations < options.maxEvaluations) {
     const Jet jet = along(alpha);
     ++result.evaluations;
     if (std::abs(jet.slope) <= tolerance || !std::isfinite(jet.slope)) break;

@@ -172,34 +172,32 @@ TEST(Filter, PlanesComeFirstAndKindsAreOrdered) {
 
 // The limbs of a fixed base are trees of their own, and yet one robot.
 TEST(Filter, LimbsOfAFixedBaseAreOneRobot) {
-  for (const softgauss::BaseKind base :
-       {softgauss::BaseKind::fixed, softgauss::BaseKind::floating}) {
-    softgauss::ModelBuilder builder;
+  for (const BaseKind base : {BaseKind::fixed, BaseKind::floating}) {
+    ModelBuilder builder;
     builder.base = base;
     for (const char* name : {"base", "left", "right"}) {
-      softgauss::LinkSpec link;
+      LinkSpec link;
       link.name = name;
       link.mass = 1.0;
-      link.I_Lcm = softgauss::Matrix3::Identity();
+      link.I_Lcm = Matrix3::Identity();
       builder.link(link);
-      softgauss::GeometrySpec shape;
+      GeometrySpec shape;
       shape.name = shape.link = name;
-      shape.shape = softgauss::Shape::sphere(0.1);
+      shape.shape = Shape::sphere(0.1);
       builder.geometry(shape);
       if (link.name == "base") continue;
-      softgauss::JointSpec joint;
+      JointSpec joint;
       joint.name = link.name + "_joint";
-      joint.type = softgauss::JointType::revolute;
+      joint.type = JointType::revolute;
       joint.parent = "base";
       joint.child = name;
       joint.X_PC.p.x() = link.name == "left" ? 0.45 : 0.55;  // the limbs overlap by 0.1 m
       builder.joint(joint);
     }
-    const softgauss::Model model = builder.build();
+    const Model model = builder.build();
     const int left = model.findJoint("left_joint"), right = model.findJoint("right_joint");
-    EXPECT_EQ(softgauss::collision::contactEffect(model, left, right),
-              softgauss::Effect::selfCollision);
-    const auto distance = [](const softgauss::collision::GeometryPair&) { return -0.1; };
-    EXPECT_TRUE(softgauss::collision::makePairFilter(model, distance).pairs.empty());
+    EXPECT_EQ(contactEffect(model, left, right), Effect::selfCollision);
+    const auto distance = [](const GeometryPair&) { return -0.1; };
+    EXPECT_TRUE(makePairFilter(model, distance).pairs.empty());
   }
 }
