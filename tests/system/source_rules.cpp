@@ -91,9 +91,11 @@ bool mayUse(const SourceFile& file, const std::string& layer, const std::string&
 }  // namespace
 
 bool SourceFile::isCpp() const { return path.ends_with(".cpp") || path.ends_with(".hpp"); }
+bool SourceFile::isCode() const { return isCpp() || path.ends_with(".mjs"); }
 
 std::vector<SourceFile> readTree(const std::string& root) {
-  const Names kinds = {".cpp", ".hpp", ".txt", ".cmake", ".in", ".md", ".json", ".yaml", ".urdf"};
+  const Names kinds = {".cpp", ".hpp",  ".mjs",  ".sh",   ".txt", ".cmake",
+                       ".in",  ".json", ".yaml", ".urdf", ".md"};
   std::vector<SourceFile> files;
   const auto read = [&](const fs::path& path) {
     SourceFile& file = files.emplace_back();
@@ -107,7 +109,8 @@ std::vector<SourceFile> readTree(const std::string& root) {
     if (!entry.is_directory() || (kFolders.count(name) == 0 && name != ".ci")) continue;
     for (const fs::directory_entry& inner : fs::recursive_directory_iterator(entry)) {
       const bool isText = name == ".ci" || kinds.count(inner.path().extension().string()) > 0;
-      if (inner.is_regular_file() && isText) read(inner.path());
+      const bool isLog = inner.path().parent_path() == fs::path(root) / "data" / "reference";
+      if (inner.is_regular_file() && isText && !isLog) read(inner.path());
     }
   }
   return files;
@@ -130,15 +133,16 @@ Complaints checkIncludes(const SourceFile& file) {
 }
 
 Complaints checkLength(const SourceFile& file) {
-  if (!file.isCpp() || file.lines.size() <= kMaxLines || kLongFiles.count(file.path) > 0) return {};
+  if (!file.isCode() || file.lines.size() <= kMaxLines || kLongFiles.count(file.path) > 0)
+    return {};
   return {complaint(file, kMaxLines, "longer than " + std::to_string(kMaxLines) + " lines")};
 }
 
 Complaints checkLicence(const SourceFile& file) {
   const bool isCMake = file.path.ends_with("CMakeLists.txt") || file.path.ends_with(".cmake");
-  if (!file.isCpp() && !isCMake) return {};
+  if (!file.isCode() && !isCMake) return {};
   const std::string licence =
-      std::string(file.isCpp() ? "//" : "#") + " SPDX-License-Identifier: Apache-2.0";
+      std::string(file.isCode() ? "//" : "#") + " SPDX-License-Identifier: Apache-2.0";
   if (!file.lines.empty() && file.lines.front() == licence) return {};
   return {complaint(file, 0, "the first line must be " + licence)};
 }

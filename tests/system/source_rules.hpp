@@ -18,12 +18,14 @@ struct SourceFile {
   std::string path;
   std::vector<std::string> lines;
 
-  bool isCpp() const;  ///< .cpp or .hpp
+  bool isCpp() const;   ///< .cpp or .hpp
+  bool isCode() const;  ///< C++ or JavaScript
 };
 
 using Complaints = std::vector<std::string>;  ///< `path:line: what is wrong`
 
-/// Every text file of the project: sources, build files, documents, scripts and scenes.
+/// Every text file of the project: sources, build files, documents, scripts and scenes, but not
+/// the recorded logs.
 std::vector<SourceFile> readTree(const std::string& root);
 
 /// The directions of inclusion, and which libraries a folder may see.
@@ -32,7 +34,7 @@ Complaints checkIncludes(const SourceFile& file);
 /// At most 400 lines, for what fits into one head is one file.
 Complaints checkLength(const SourceFile& file);
 
-/// First line of C++ and CMake files: the licence.
+/// First line of C++, JavaScript and CMake files: the licence.
 Complaints checkLicence(const SourceFile& file);
 
 /// No path of somebody's machine, and no note of work left over.

@@ -99,12 +99,14 @@ TEST(SourceRules, LibrariesStayInTheirSources) {
 TEST(SourceRules, LongFilesAreFound) {
   EXPECT_TRUE(checkLength({"engine/a.cpp", std::vector<std::string>(400)}).empty());
   EXPECT_FALSE(checkLength({"engine/a.cpp", std::vector<std::string>(401)}).empty());
+  EXPECT_FALSE(checkLength({"tests/a/a.mjs", std::vector<std::string>(401)}).empty());
 }
 
 TEST(SourceRules, MissingLicencesAreFound) {
   EXPECT_EQ(count(checkLicence, "gdd/goal.hpp", "// SPDX-License-Identifier: Apache-2.0"), 0u);
   EXPECT_EQ(count(checkLicence, "gdd/goal.hpp", "#pragma once"), 1u);
   EXPECT_EQ(count(checkLicence, "gdd/CMakeLists.txt", "project(x)"), 1u);
+  EXPECT_EQ(count(checkLicence, "tests/a/a.mjs", "import x;"), 1u);
   EXPECT_FALSE(checkLicence({"gdd/goal.hpp", {}}).empty());
 }
 

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/parity/comparison.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "engine/model/state.hpp"
+
+namespace softgauss::test {
+namespace {
+
+/// |a − b| relative to b, or absolute where b is below 1.
+double relative(double a, double b) { return std::abs(a - b) / std::max(1.0, std::abs(b)); }
+
+/// The index of the nearest item that is not taken; npos when all are.
+template <class Distance>
+std::size_t takeNearest(std::vector<bool>& taken, const Distance& distance) {
+  std::size_t nearest = taken.size();
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < taken.size(); ++i)
+    if (const double d = taken[i] ? least : distance(i); d < least) nearest = i, least = d;
+  if (nearest < taken.size()) taken[nearest] = true;
+  return nearest;
+}
+
+std::string counts(const char* what, std::size_t ours, std::size_t theirs) {
+  return std::to_string(ours) + " " + what + ", the log has " + std::to_string(theirs);
+}
+
+}  // namespace
+
+double relativeDifference(const MatrixX& a, const MatrixX& b) {
+  if (a.rows() != b.rows() || a.cols() != b.cols()) return kInfinity;
+  if (a.size() == 0) return 0.0;
+  return (a - b).cwiseAbs().maxCoeff<Eigen::PropagateNaN>() /
+         std::max(1.0, b.cwiseAbs().maxCoeff());
+}
+
+std::vector<Row> rowsOf(const Model& model, const Data& data) {
+  std::vector<Row> rows;
+  data.constraints.visit([&](const auto& effect) {
+    for (int i = 0; i < effect.rowCount(); ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      Row row{VectorX::Zero(model.nv), effect.D[at], effect.reference[at], effect.f[at]};
+      effect.addRow(i, 1.0, row.J);
+      rows.push_back(std::move(row));
+    }
+  });
+  return rows;
+}
+
+ContactDifference compareContacts(const Model& model, const ContactSet& contacts,
+                                  const std::vector<ReferenceContact>& reference) {
+  ContactDifference worst;
+  if (contacts.contacts.size() != reference.size()) {
+    worst.unmatched = counts("contacts", contacts.contacts.size(), reference.size());
+    return worst;
+  }
+  std::vector<bool> taken(reference.size(), false);
+  for (const ReferenceContact& theirs : reference) {
+    // Which of the two geometries comes first is the engine's choice; the normal turns with it.
+    const auto turned = [&](const Contact& ours) {
+      return model.geometries[static_cast<std::size_t>(ours.geometryA)].name !=
+             theirs.geometries[0];
+    };
+    const auto otherPair = [&](const Contact& ours) {
+      const bool t = turned(ours);
+      const auto name = [&](int g) { return model.geometries[static_cast<std::size_t>(g)].name; };
+      return name(ours.geometryA) != theirs.geometries[t ? 1 : 0] ||
+             name(ours.geometryB) != theirs.geometries[t ? 0 : 1];
+    };
+    const std::size_t nearest = takeNearest(taken, [&](std::size_t i) {
+      const Contact& ours = contacts.contacts[i];
+      return otherPair(ours) ? kInfinity : (ours.p_WC - theirs.position).norm();
+    });
+    if (nearest == taken.size()) {
+      worst.unmatched = "no contact of " + theirs.geometries[0] + " and " + theirs.geometries[1];
+      return worst;
+    }
+    const Contact& ours = contacts.contacts[nearest];
+    const double sign = turned(ours) ? -1.0 : 1.0;
+    worst.position = std::max(worst.position, (ours.p_WC - theirs.position).cwiseAbs().maxCoeff());
+    worst.normal = std::max(worst.normal, (sign * ours.n_W - theirs.normal).cwiseAbs().maxCoeff());
+    worst.distance = std::max(worst.distance, std::abs(ours.distance - theirs.distance));
+  }
+  return worst;
+}
+
+RowDifference compareRows(const std::vector<Row>& rows, const std::vector<Row>& reference) {
+  RowDifference worst;
+  if (rows.size() != reference.size()) {
+    worst.unmatched = counts("rows", rows.size(), reference.size());
+    return worst;
+  }
+  double largestForce = 1.0;
+  for (const Row& row : reference) largestForce = std::max(largestForce, std::abs(row.force));
+
+  std::vector<bool> taken(rows.size(), false);
+  for (const Row& theirs : reference) {
+    const auto differenceOf = [&](std::size_t i) {
+      const Row& ours = rows[i];
+      return std::array{relativeDifference(ours.J, theirs.J),
+                        relative(ours.reference, theirs.reference),
+                        std::abs(ours.D - theirs.D) / theirs.D};
+    };
+    const std::size_t nearest = takeNearest(taken, [&](std::size_t i) {
+      const auto d = differenceOf(i);
+      return d[0] + d[1] + d[2];
+    });
+    if (nearest == taken.size()) {
+      worst.unmatched = "a row is not finite";
+      return worst;
+    }
+    const auto d = differenceOf(nearest);
+    worst.J = std::max(worst.J, d[0]);
+    worst.reference = std::max(worst.reference, d[1]);
+    worst.D = std::max(worst.D, d[2]);
+    worst.force =
+        std::max(worst.force, std::abs(rows[nearest].force - theirs.force) / largestForce);
+  }
+  return worst;
+}
+
+double stateDifference(const Model& model, const VectorX& q, const VectorX& v, const VectorX& qRef,
+                       const VectorX& vRef) {
+  return std::max(positionDifference(model, qRef, q).cwiseAbs().maxCoeff<Eigen::PropagateNaN>(),
+                  (v - vRef).cwiseAbs().maxCoeff<Eigen::PropagateNaN>());
+}
+
+}  // namespace softgauss::test

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Differences between what this engine computes and what a log says, and what they are relative
+/// to. Contacts and rows are matched first: their order means nothing.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/step/data.hpp"
+#include "tests/parity/reference_log.hpp"
+
+namespace softgauss::test {
+
+/// max |a − b| / max |b|, where b is compared with 1 if it is all small: a vector of forces near 0
+/// has no relative error.
+double relativeDifference(const MatrixX& a, const MatrixX& b);
+
+/// The rows of the last assembled constraints, forces at the present residual.
+std::vector<Row> rowsOf(const Model& model, const Data& data);
+
+/// The largest differences of matched contacts or rows; or why they cannot be matched.
+struct ContactDifference {
+  std::optional<std::string> unmatched;
+  double position = 0.0;  ///< [m]
+  double normal = 0.0;
+  double distance = 0.0;  ///< [m]
+};
+ContactDifference compareContacts(const Model& model, const ContactSet& contacts,
+                                  const std::vector<ReferenceContact>& reference);
+
+struct RowDifference {
+  std::optional<std::string> unmatched;
+  double J = 0.0;          ///< relative
+  double D = 0.0;          ///< relative
+  double reference = 0.0;  ///< relative
+  double force = 0.0;      ///< relative to the largest force
+};
+RowDifference compareRows(const std::vector<Row>& rows, const std::vector<Row>& reference);
+
+/// max |q ⊖ q_ref| and max |v − v_ref| of two states, positions of floating bases in m and rad.
+double stateDifference(const Model& model, const VectorX& q, const VectorX& v, const VectorX& qRef,
+                       const VectorX& vRef);
+
+}  // namespace softgauss::test

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/parity/reference_log.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <memory>
+
+#include "tests/parity/reference_scene.hpp"
+
+namespace softgauss::test {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+fs::path folder() { return fs::path(SOFTGAUSS_SOURCE_DIR) / "data" / "reference"; }
+
+VectorX vectorOf(const Json& list) {
+  VectorX x(static_cast<Eigen::Index>(list.size()));
+  for (std::size_t i = 0; i < list.size(); ++i) x[static_cast<Eigen::Index>(i)] = list[i];
+  return x;
+}
+
+std::vector<VectorX> samplesOf(const Json& lists) {
+  std::vector<VectorX> samples;
+  for (const Json& list : lists) samples.push_back(vectorOf(list));
+  return samples;
+}
+
+ReferenceContact contactOf(const Json& item) {
+  ReferenceContact contact;
+  contact.geometries[0] = item.at("geometries").at(0);
+  contact.geometries[1] = item.at("geometries").at(1);
+  contact.position = vectorOf(item.at("position"));
+  contact.normal = vectorOf(item.at("frame")).head<3>();
+  contact.distance = item.at("distance");
+  return contact;
+}
+
+Row rowOf(const Json& item) {
+  return {vectorOf(item.at("J")), item.at("D"), item.at("reference"), item.at("force")};
+}
+
+ReferenceState stateOf(const Json& item) {
+  ReferenceState s;
+  s.q = vectorOf(item.at("q"));
+  s.v = vectorOf(item.at("v"));
+  s.force = vectorOf(item.at("force"));
+  const Eigen::Index nv = s.v.size();
+  s.M.resize(nv, nv);
+  for (Eigen::Index i = 0; i < nv; ++i)
+    s.M.row(i) = vectorOf(item.at("mass_matrix").at(static_cast<std::size_t>(i))).transpose();
+  s.bias = vectorOf(item.at("bias"));
+  s.smoothAcceleration = vectorOf(item.at("smooth_acceleration"));
+  s.acceleration = vectorOf(item.at("acceleration"));
+  for (const Json& contact : item.at("contacts")) s.contacts.push_back(contactOf(contact));
+  for (const Json& row : item.at("rows")) s.rows.push_back(rowOf(row));
+  s.inverseAcceleration = vectorOf(item.at("inverse").at("acceleration"));
+  s.inverseForce = vectorOf(item.at("inverse").at("force"));
+  return s;
+}
+
+/// Both engines number the degrees of freedom depth first.
+void checkDofs(const Model& model, const Json& dofs) {
+  if (dofs.size() != model.dofs.size()) throw std::runtime_error("another number of dofs");
+  for (std::size_t i = 0; i < dofs.size(); ++i) {
+    const std::string& ours = model.jointNames[static_cast<std::size_t>(model.dofs[i].body)];
+    if (dofs[i] != ours)
+      throw std::runtime_error("dof " + std::to_string(i) + " is of joint " + ours +
+                               ", the log has " + dofs[i].dump());
+  }
+}
+
+ReferenceLog read(const std::string& name) {
+  std::ifstream file(folder() / (name + ".json"));
+  const Json json = Json::parse(file);
+  ReferenceLog log;
+  log.name = json.at("name");
+  log.model = referenceModel(log.name, json.at("scene"), json.at("options"));
+  checkDofs(log.model, json.at("dofs"));
+  log.force = vectorOf(json.at("applied_force"));
+  for (const Json& state : json.at("states")) log.states.push_back(stateOf(state));
+  for (const Json& run : json.at("trajectories"))
+    log.trajectories.push_back({run.at("integrator"), run.at("timestep"), run.at("every"),
+                                samplesOf(run.at("q")), samplesOf(run.at("v"))});
+  return log;
+}
+
+}  // namespace
+
+const ReferenceTrajectory& ReferenceLog::trajectory(const std::string& integrator,
+                                                    bool halfStep) const {
+  const double h = model.options.timestep * (halfStep ? 0.5 : 1.0);
+  for (const ReferenceTrajectory& run : trajectories)
+    if (run.integrator == integrator && run.timestep == h) return run;
+  throw std::runtime_error(name + " has no trajectory by " + integrator);
+}
+
+std::vector<std::string> referenceLogNames() {
+  std::vector<std::string> names;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder()))
+    names.push_back(entry.path().stem().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+const ReferenceLog& referenceLog(const std::string& name) {
+  static std::map<std::string, std::unique_ptr<ReferenceLog>> logs;
+  std::unique_ptr<ReferenceLog>& log = logs[name];
+  if (!log) log = std::make_unique<ReferenceLog>(read(name));
+  return *log;
+}
+
+}  // namespace softgauss::test
