@@ -264,4 +264,13 @@ ConvexHull makeConvexHull(const Mesh& mesh) {
   return hull;
 }
 
+Mesh triangulated(const ConvexHull& hull) {
+  Mesh mesh;
+  mesh.vertices = hull.vertices;
+  for (const HullFace& face : hull.faces)
+    for (std::size_t i = 2; i < face.vertices.size(); ++i)
+      mesh.triangles.push_back({face.vertices[0], face.vertices[i - 1], face.vertices[i]});
+  return mesh;
+}
+
 }  // namespace softgauss::collision

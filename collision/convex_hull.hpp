@@ -57,4 +57,7 @@ struct ConvexHull {
 /// on one line: such a mesh has no surface.
 ConvexHull makeConvexHull(const Mesh& mesh);
 
+/// The surface of a hull as triangles, for viewers.
+Mesh triangulated(const ConvexHull& hull);
+
 }  // namespace softgauss::collision

@@ -259,4 +259,8 @@ void SceneContacts::detect(const Model&, const Kinematics& kinematics,
     scene_->testAll(contacts);
 }
 
+const ConvexHull* SceneContacts::hull(int geometry) const {
+  return scene_->hullOf[static_cast<std::size_t>(geometry)];
+}
+
 }  // namespace softgauss::collision

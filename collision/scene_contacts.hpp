@@ -14,6 +14,7 @@
 
 #include <memory>
 
+#include "collision/convex_hull.hpp"
 #include "collision/filter.hpp"
 #include "collision/pair_contact.hpp"
 #include "engine/step/contact_source.hpp"
@@ -36,6 +37,8 @@ class SceneContacts final : public ContactSource {
               ContactSet& contacts) noexcept override;
 
   const PairFilter& filter() const { return filter_; }
+  /// The hull that collides for a geometry that is a mesh; null for other shapes.
+  const ConvexHull* hull(int geometry) const;
 
  private:
   struct Scene;

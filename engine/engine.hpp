@@ -17,4 +17,5 @@
 #include "engine/model/state.hpp"
 #include "engine/step/forward.hpp"  // (13)
 #include "engine/step/inverse.hpp"  // (14), (15)
+#include "engine/step/snapshot.hpp"
 #include "engine/step/step.hpp"

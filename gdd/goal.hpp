@@ -20,6 +20,13 @@ struct GoalContext {
   const Data& data;
 };
 
+/// What a viewer draws of a goal that is a place: who seeks what, at this instant.
+struct GoalMark {
+  int frame = 0;                        ///< index into Model::frames of the link that seeks
+  Vector3 p_WPoint = Vector3::Zero();   ///< the point of that link which seeks [m]
+  Vector3 p_WTarget = Vector3::Zero();  ///< the place it seeks [m]
+};
+
 class Goal {
  public:
   virtual ~Goal() = default;
@@ -27,8 +34,14 @@ class Goal {
   virtual std::string name() const = 0;
   /// Adds the cost of this goal at the present state.
   virtual void addCost(const GoalContext& context, GoalCost& cost) const = 0;
+  /// Nothing for a goal that is no place.
+  virtual std::optional<GoalMark> mark(const GoalContext&) const { return std::nullopt; }
   /// Distance from the goal [m]; nothing for a goal that is no place.
-  virtual std::optional<double> error(const GoalContext&) const { return std::nullopt; }
+  std::optional<double> error(const GoalContext& context) const {
+    const std::optional<GoalMark> m = mark(context);
+    if (!m) return std::nullopt;
+    return (m->p_WTarget - m->p_WPoint).norm();
+  }
 };
 
 }  // namespace softgauss::gdd

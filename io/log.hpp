@@ -38,6 +38,7 @@ struct StepRecord {
   double gddUs = 0.0;             ///< time of the GDD solve [µs]
   double stepUs = 0.0;            ///< time of the whole step [µs]
   double energy = 0.0;            ///< kinetic and potential [J]
+  double kineticEnergy = 0.0;     ///< the kinetic part [J]; not logged
   double maxPenetration = 0.0;    ///< [m], ≥ 0
 };
 

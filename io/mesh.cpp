@@ -2,12 +2,15 @@
 #include "io/mesh.hpp"
 
 #include <assimp/config.h>
+#include <assimp/material.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <assimp/Importer.hpp>
+#include <optional>
+#include <string_view>
 #include <unordered_map>
 #include <utility>
 
@@ -38,6 +41,7 @@ class Collector {
 
  private:
   void add(const aiMesh& part, const aiMatrix4x4& X_FileNode) {
+    const std::size_t first = mesh_.triangles.size();
     for (unsigned f = 0; f < part.mNumFaces; ++f) {
       const aiFace& face = part.mFaces[f];
       if (face.mNumIndices != 3) continue;
@@ -46,6 +50,23 @@ class Collector {
         triangle[k] = vertex(X_FileNode * part.mVertices[face.mIndices[k]]);
       mesh_.triangles.push_back(triangle);
     }
+    const std::optional<Eigen::Vector4d> rgba = colour(*scene_.mMaterials[part.mMaterialIndex]);
+    if (rgba && mesh_.triangles.size() > first)
+      mesh_.parts.push_back(
+          {static_cast<int>(first), static_cast<int>(mesh_.triangles.size() - first), *rgba});
+  }
+
+  /// The diffuse colour that the file gives; nothing where assimp made the material up.
+  static std::optional<Eigen::Vector4d> colour(const aiMaterial& material) {
+    aiString name;
+    if (material.Get(AI_MATKEY_NAME, name) == AI_SUCCESS &&
+        std::string_view(name.C_Str()) == AI_DEFAULT_MATERIAL_NAME)
+      return std::nullopt;
+    aiColor4D diffuse;
+    if (material.Get(AI_MATKEY_COLOR_DIFFUSE, diffuse) != AI_SUCCESS) return std::nullopt;
+    float opacity = 1.0f;
+    material.Get(AI_MATKEY_OPACITY, opacity);
+    return Eigen::Vector4d(diffuse.r, diffuse.g, diffuse.b, opacity);
   }
 
   int vertex(const aiVector3D& corner) {

@@ -8,6 +8,7 @@
 
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/model/model.hpp"
@@ -45,6 +46,8 @@ class Summary {
   void write(const std::filesystem::path& file) const;
   /// Compact, aligned, with units, ending in a line that says how the run went.
   std::string table() const;
+  /// The same in a few pairs of a name and a value, the verdict first.
+  std::vector<std::pair<std::string, std::string>> facts() const;
 
   // What only the caller knows.
   std::string version;

@@ -89,4 +89,23 @@ std::string Summary::table() const {
   return out;
 }
 
+std::vector<std::pair<std::string, std::string>> Summary::facts() const {
+  std::vector<std::pair<std::string, std::string>> facts = {
+      {"verdict", verdict(outcome, goals)},
+      {"robot",
+       fmt::format("{} links, {} dof, {} actuated, {:.4g} kg", links_, dofs_, actuated_, massKg)},
+      {"run", fmt::format("{:.4g} s in {:.3g} s, {:.3g} x real time", simulatedSeconds(),
+                          wallSeconds, realTimeFactor())},
+      {"steps", fmt::format("{} of {:.4g} ms, {}", steps_, 1e3 * timestep_, integrator)},
+      {"effects", fmt::format("{}", fmt::join(effects, " "))},
+      {"step", fmt::format("{:.3g} µs, 95 % below {:.3g} µs", stepUs_.percentile(0.5),
+                           stepUs_.percentile(0.95))},
+      {"physics violation", fmt::format("95 % below {:.2g}", physicsViolation_.percentile(0.95))},
+      {"deepest penetration", millimetres(maxPenetration_)}};
+  for (const GoalOutcome& goal : goals)
+    facts.emplace_back(goal.name, fmt::format("{} to {}", millimetres(goal.initialError),
+                                              millimetres(goal.finalError)));
+  return facts;
+}
+
 }  // namespace softgauss::io

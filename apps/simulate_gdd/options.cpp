@@ -16,11 +16,10 @@ constexpr double kFarthest = 1e6;  // [m] farther out, doubles no longer resolve
 
 /// An output may not overwrite an input or another output.
 void checkOutputs(const SimulateOptions& options) {
-  const std::pair<const char*, std::filesystem::path> files[] = {{"MODEL", options.model},
-                                                                 {"--goals", options.goals},
-                                                                 {"--torques", options.torques},
-                                                                 {"--log", options.log},
-                                                                 {"--summary", options.summary}};
+  const std::pair<const char*, std::filesystem::path> files[] = {
+      {"MODEL", options.model}, {"--goals", options.goals},     {"--torques", options.torques},
+      {"--log", options.log},   {"--summary", options.summary}, {"--view", options.view},
+      {"--plot", options.plot}};
   const auto same = [](const std::filesystem::path& a, const std::filesystem::path& b) {
     std::error_code error;
     return !a.empty() && !b.empty() &&
@@ -104,6 +103,9 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
   std::string base = "automatic", ground, effects = "auto", zeroEffort = "passive", integrator,
               cone, solver, compatibility;
   std::vector<std::string> reach, q0;
+  for (int i = 0; i < argc; ++i)
+    options.commandLine +=
+        i == 0 ? std::filesystem::path(argv[0]).filename().string() : fmt::format(" {}", argv[i]);
 
   app.add_option("MODEL", options.model, "a .urdf file")->required();
   const char* const scene = "Scene";
@@ -168,6 +170,11 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
       ->group(output);
   app.add_option("--log", options.log, "write every step to a .csv file")->group(output);
   app.add_option("--summary", options.summary, "write the summary to a .json file")->group(output);
+  app.add_option("--view", options.view, "write a page that replays the run in any browser (.html)")
+      ->group(output);
+  app.add_option("--plot", options.plot,
+                 "draw the run's curves with gnuplot: an .svg file, or a folder for one file each")
+      ->group(output);
   app.add_flag("--quiet", options.quiet, "print errors only")->group(output);
 
   try {

@@ -36,7 +36,8 @@ struct SimulateOptions {
   bool likeMujoco = false;  ///< --compatibility mujoco
   bool explain = false;
   bool quiet = false;
-  std::filesystem::path log, summary;
+  std::filesystem::path log, summary, view, plot;
+  std::string commandLine;  ///< as it was typed
   std::vector<std::filesystem::path> packagePaths;
 };
 

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "apps/simulate_gdd/progress.hpp"
+#include "apps/simulate_gdd/replay.hpp"
 #include "apps/simulate_gdd/verdict.hpp"
 #include "engine/engine.hpp"
 #include "io/explain.hpp"
@@ -79,6 +80,7 @@ class Runner {
     for (const auto& goal : controller_.goals)
       if (const std::optional<double> error = goal->error({model_, state_, data_}))
         summary_.goals.push_back({goal->name(), *error, *error});
+    replay_.emplace(options, scene, controller_.goals, gdd::GoalContext{model_, state_, data_});
   }
 
   ExitCode run() {
@@ -106,14 +108,17 @@ class Runner {
     }
     progress.clear();
     summary_.wallSeconds = secondsSince(start);
+    std::string reason;
     if (code == kCannotContinue) {
-      fmt::print(stderr, "simulate_gdd: {}\n", failureMessage(model_, state_, data_));
+      reason = failureMessage(model_, state_, data_);
+      fmt::print(stderr, "simulate_gdd: {}\n", reason);
       summary_.outcome = "non-finite";
     } else if (code == kInterrupted) {
+      reason = fmt::format("interrupted at t = {:.6g} s", state_.time);
       summary_.outcome = "interrupted";
     }
-    finish(verdict);
-    if (!logError_.empty()) throw UsageError(logError_);
+    finish(verdict, reason);
+    if (!outputError_.empty()) throw UsageError(outputError_);
     return code;
   }
 
@@ -146,10 +151,13 @@ class Runner {
     record_.gddUs = gdd ? 1e6 * controller_.solveTime : 0.0;
     record_.forwardUs = record_.stepUs - record_.gddUs;
     record_.physicsViolation = physicsViolation(model_, data_, scratch_);
-    record_.energy = computeEnergy(model_, data_.kinematics, record_.v).total();
+    const Energy energy = computeEnergy(model_, data_.kinematics, record_.v);
+    record_.energy = energy.total();
+    record_.kineticEnergy = energy.kinetic;
     record_.maxPenetration = stats.maxPenetration;
     writeLog(record_);
     summary_.addStep(record_);
+    replay_->addStep(record_, data_);
   }
 
   /// A log that cannot be written does not keep the rest of the run from being reported.
@@ -161,16 +169,16 @@ class Runner {
   }
   template <class F>
   void guardLog(F&& f) {
-    if (!log_ || !logError_.empty()) return;
+    if (!log_ || !outputError_.empty()) return;
     try {
       f();
     } catch (const std::exception& error) {
-      logError_ = error.what();
+      outputError_ = error.what();
     }
   }
 
   /// The final state, in the log's last row and the summary.
-  void finish(const Verdict& verdict) {
+  void finish(const Verdict& verdict, const std::string& reason) {
     computeStages(model_, input_, state_, data_, &contacts_);
     io::StepRecord last;
     last.time = state_.time;
@@ -187,10 +195,12 @@ class Runner {
     for (const auto& goal : controller_.goals)
       if (const std::optional<double> error = goal->error({model_, state_, data_}))
         summary_.goals[place++].finalError = *error;
-    for (std::string& reason : verdict.unreached(summary_.goals))
-      summary_.warnings.push_back(std::move(reason));
+    for (std::string& unreached : verdict.unreached(summary_.goals))
+      summary_.warnings.push_back(std::move(unreached));
     summary_.finish(last);
     if (!options_.summary.empty()) summary_.write(options_.summary);
+    const std::string error = replay_->finish(data_, state_, summary_, reason);
+    if (outputError_.empty()) outputError_ = error;
     if (!options_.quiet) fmt::print("{}", summary_.table());
   }
 
@@ -203,7 +213,8 @@ class Runner {
   Input input_;
   std::optional<io::TorqueTable> torques_;
   std::optional<io::LogWriter> log_;
-  std::string logError_;
+  std::optional<Replay> replay_;
+  std::string outputError_;
   io::Summary summary_;
   io::StepRecord record_;
   VectorX scratch_;

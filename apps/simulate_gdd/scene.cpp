@@ -63,6 +63,7 @@ std::unique_ptr<Scene> loadScene(const SimulateOptions& options) {
   auto scene = std::make_unique<Scene>();
   io::UrdfOptions urdf;
   urdf.packagePaths = options.packagePaths;
+  urdf.visualMeshes = !options.view.empty();
   urdf.base = options.base;
   urdf.zeroEffortIsUnlimited = options.zeroEffortIsUnlimited;
   ModelBuilder builder = io::readUrdf(options.model, urdf, &scene->contents);

@@ -15,11 +15,19 @@
 
 namespace softgauss {
 
+/// Triangles of one colour in a mesh.
+struct MeshPart {
+  int firstTriangle = 0;
+  int triangles = 0;
+  Eigen::Vector4d rgba = Eigen::Vector4d::Ones();
+};
+
 /// Triangle mesh in the geometry's own frame G [m], scale already applied.
 struct Mesh {
   std::vector<Vector3> vertices;
   std::vector<std::array<int, 3>> triangles;
-  std::string file;  ///< where it was read from, for messages and viewers
+  std::vector<MeshPart> parts;  ///< where its file gives colours, for viewers
+  std::string file;             ///< where it was read from, for messages and viewers
 };
 
 enum class ShapeKind : std::uint8_t {

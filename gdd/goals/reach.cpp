@@ -22,8 +22,8 @@ Vector3 Reach::position(const GoalContext& context) const {
   return framePose(context.model, context.data.kinematics, frame) * p_FP;
 }
 
-std::optional<double> Reach::error(const GoalContext& context) const {
-  return (p_WTarget - position(context)).norm();
+std::optional<GoalMark> Reach::mark(const GoalContext& context) const {
+  return GoalMark{frame, position(context), p_WTarget};
 }
 
 void Reach::addCost(const GoalContext& context, GoalCost& cost) const {

@@ -43,7 +43,7 @@ class Reach final : public Goal {
 
   std::string name() const override { return "reach " + link; }
   void addCost(const GoalContext& context, GoalCost& cost) const override;
-  std::optional<double> error(const GoalContext& context) const override;
+  std::optional<GoalMark> mark(const GoalContext& context) const override;
   Vector3 position(const GoalContext& context) const;
 };
 

@@ -22,7 +22,7 @@ TEST(Run, HelpAndVersionAreDone) {
         "--integrator",    "--cone",        "--gdd-solver", "--reach",        "--goals",
         "--compatibility", "--passive",     "--torques",    "--q0",           "--effects",
         "--explain",       "--log",         "--summary",    "--package-path", "--quiet",
-        "--version"})
+        "--view",          "--plot",        "--version"})
     EXPECT_NE(help.find(option), std::string::npos) << option;
 }
 

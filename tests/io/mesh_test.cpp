@@ -158,5 +158,27 @@ TEST(MeshCache, ReadsAFileOncePerScale) {
   EXPECT_NEAR(volume(*scaled), 8.0 / 6.0, 1e-12);
 }
 
+// An OBJ of two colours: each part has its triangles; an STL has none.
+TEST(Mesh, PartsHaveTheColoursOfTheFile) {
+  const TempFolder folder;
+  folder.write("two.mtl", "newmtl red\nKd 0.8 0.1 0.2\nnewmtl glass\nKd 0 0 1\nd 0.5\n");
+  const Mesh mesh = readMesh(folder.write(
+      "two.obj",
+      "mtllib two.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nusemtl red\nf 1 2 3\nf 1 2 4\n"
+      "usemtl glass\nf 2 3 4\n"));
+  ASSERT_EQ(mesh.parts.size(), 2u);
+  int triangles = 0;
+  for (const MeshPart& part : mesh.parts) {
+    EXPECT_EQ(part.firstTriangle, triangles);
+    triangles += part.triangles;
+    const bool red = part.triangles == 2;
+    const Eigen::Vector4d expected =
+        red ? Eigen::Vector4d(0.8, 0.1, 0.2, 1.0) : Eigen::Vector4d(0.0, 0.0, 1.0, 0.5);
+    EXPECT_LT((part.rgba - expected).norm(), 1e-6) << part.rgba.transpose();
+  }
+  EXPECT_EQ(triangles, 3);
+  EXPECT_TRUE(readMesh(folder.write("plain.obj", kTetrahedronObj)).parts.empty());
+}
+
 }  // namespace
 }  // namespace softgauss::io

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// --view and --plot: the run, recorded as it goes, written as a page and as drawings at its end.
+
+#include <optional>
+
+#include "apps/simulate_gdd/scene.hpp"
+#include "io/replay/page.hpp"
+#include "io/replay/plot.hpp"
+#include "io/summary.hpp"
+
+namespace softgauss::app {
+
+class Replay {
+ public:
+  /// The stages of the initial state are in `start`. Throws ModelError when an output cannot be
+  /// made.
+  Replay(const SimulateOptions& options, const Scene& scene,
+         const std::vector<std::unique_ptr<gdd::Goal>>& goals, const gdd::GoalContext& start);
+
+  void addStep(const io::StepRecord& record, const Data& data) {
+    if (recording_) recording_->addStep(record, data);
+  }
+  /// The final state, whose stages are in `data`; `message` says why the run ended early. Returns
+  /// what could not be written, or nothing.
+  std::string finish(const Data& data, const State& last, const io::Summary& summary,
+                     const std::string& message);
+
+ private:
+  std::optional<io::Recording> recording_;
+  std::optional<io::ReplayPage> page_;
+  std::optional<io::Plot> plot_;
+};
+
+}  // namespace softgauss::app

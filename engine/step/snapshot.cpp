@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/step/snapshot.hpp"
+
+#include "engine/dynamics/energy.hpp"
+
+namespace softgauss {
+namespace {
+
+constexpr double kCarriesAbove = 0.70710678118654752;  // cos 45°
+
+std::optional<Vector3> centerOfPressure(const Model& model,
+                                        const std::vector<Snapshot::ContactForce>& contacts) {
+  const double gravity = model.options.gravity.norm();
+  if (gravity == 0.0) return std::nullopt;
+  const Vector3 up = -model.options.gravity / gravity;
+  Vector3 moment = Vector3::Zero();
+  double load = 0.0;
+  for (const Snapshot::ContactForce& c : contacts) {
+    const bool worldIsA = model.geometries[c.geometryA].body == 0;
+    if (!worldIsA && model.geometries[c.geometryB].body != 0) continue;
+    const double upward = worldIsA ? c.n_W.dot(up) : -c.n_W.dot(up);
+    if (upward < kCarriesAbove) continue;
+    moment += c.normalForce() * c.p_WC;
+    load += c.normalForce();
+  }
+  if (!(load > 0.0)) return std::nullopt;
+  return moment / load;
+}
+
+}  // namespace
+
+void contactForces(const Data& data, std::vector<Snapshot::ContactForce>& contacts) {
+  contacts.clear();
+  const PyramidalContact& rows = data.constraints.contact;
+  int i = 0;
+  for (const ContactRows& made : rows.made()) {
+    const Contact& c = data.contacts.contacts[made.contact];
+    contacts.push_back({c.geometryA, c.geometryB, c.p_WC, c.n_W, rows.force(i++)});
+  }
+}
+
+void takeSnapshot(const Model& model, const Data& data, double time, Snapshot& snapshot) {
+  const Kinematics& k = data.kinematics;
+  snapshot.time = time;
+  snapshot.X_WB = k.X_WB;
+  snapshot.velocity.assign(model.bodies.size(), Vector3::Zero());
+  snapshot.angularVelocity.assign(model.bodies.size(), Vector3::Zero());
+  for (int b = 1; b < model.bodyCount(); ++b) {
+    snapshot.velocity[b] = pointVelocity(model, k, b, k.X_WB[b].p);
+    snapshot.angularVelocity[b] = k.V[b].angular;
+  }
+  contactForces(data, snapshot.contacts);
+  snapshot.centerOfMass = centerOfMass(model, k);
+  snapshot.centerOfPressure = centerOfPressure(model, snapshot.contacts);
+}
+
+}  // namespace softgauss

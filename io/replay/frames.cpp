@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/replay/frames.hpp"
+
+#include <cmath>
+#include <limits>
+
+namespace softgauss::io {
+namespace {
+
+constexpr double kFar = 100.0;  // [m] a scene nearer than this keeps the world's origin
+
+void append(std::vector<float>& track, const Vector3& x) {
+  for (int i = 0; i < 3; ++i) track.push_back(static_cast<float>(x[i]));
+}
+
+/// Keeps the records of even frames; a frame has `size` entries.
+void keepEven(std::vector<float>& track, std::size_t frames, std::size_t size) {
+  for (std::size_t i = 0; i < frames; i += 2)
+    std::copy_n(track.begin() + static_cast<std::ptrdiff_t>(i * size), size,
+                track.begin() + static_cast<std::ptrdiff_t>(i / 2 * size));
+  track.resize((frames + 1) / 2 * size);
+}
+
+}  // namespace
+
+FrameTrack::FrameTrack(int bodies, int goals, std::size_t mostBytes)
+    : contactStart{0}, bodies_(bodies), goals_(goals), mostBytes_(mostBytes) {}
+
+void FrameTrack::appendPoint(std::vector<float>& track, const Vector3& p_W) const {
+  append(track, p_W - origin);
+}
+
+void FrameTrack::add(const Snapshot& s, std::span<const std::optional<gdd::GoalMark>> marks) {
+  if (time.empty())
+    for (int i = 0; i < 3; ++i)
+      origin[i] =
+          std::abs(s.centerOfMass[i]) > kFar ? 10.0 * std::round(s.centerOfMass[i] / 10.0) : 0.0;
+  const Vector3 nowhere = Vector3::Constant(std::numeric_limits<double>::quiet_NaN());
+
+  time.push_back(s.time);
+  for (int b = 0; b < bodies_; ++b) {
+    appendPoint(pose, s.X_WB[b].p);
+    const Quaternion q(s.X_WB[b].R);
+    for (const double part : {q.w(), q.x(), q.y(), q.z()}) pose.push_back(static_cast<float>(part));
+    append(velocity, s.velocity[b]);
+    append(velocity, s.angularVelocity[b]);
+  }
+  appendPoint(centerOfMass, s.centerOfMass);
+  appendPoint(centerOfPressure, s.centerOfPressure.value_or(nowhere));
+  for (const std::optional<gdd::GoalMark>& mark : marks) {
+    appendPoint(goalPoint, mark ? mark->p_WPoint : nowhere);
+    appendPoint(goalTarget, mark ? mark->p_WTarget : nowhere);
+  }
+  for (const Snapshot::ContactForce& c : s.contacts) {
+    appendPoint(contactPoint, c.p_WC);
+    append(contactNormal, c.n_W);
+    append(contactForce, c.force);
+    contactGeometry.push_back(static_cast<std::uint32_t>(c.geometryA));
+    contactGeometry.push_back(static_cast<std::uint32_t>(c.geometryB));
+  }
+  contactStart.push_back(static_cast<std::uint32_t>(contactPoint.size() / 3));
+
+  // The next frame is due on the grid of the interval, however long the steps are.
+  next_ = (std::floor(s.time / interval_ * (1.0 + 1e-12)) + 1.0) * interval_ - 1e-9;
+  if (bytes() > mostBytes_) dropEverySecond();
+}
+
+std::size_t FrameTrack::bytes() const {
+  return 4 * (pose.size() + velocity.size() + goalPoint.size() + goalTarget.size() +
+              contactPoint.size() + contactNormal.size() + contactForce.size());
+}
+
+void FrameTrack::dropEverySecond() {
+  const auto frames = static_cast<std::size_t>(count());
+  const auto bodies = static_cast<std::size_t>(bodies_), goals = static_cast<std::size_t>(goals_);
+  keepEven(pose, frames, 7 * bodies);
+  keepEven(velocity, frames, 6 * bodies);
+  keepEven(centerOfMass, frames, 3);
+  keepEven(centerOfPressure, frames, 3);
+  keepEven(goalPoint, frames, 3 * goals);
+  keepEven(goalTarget, frames, 3 * goals);
+
+  std::vector<std::uint32_t> start = {0};
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < frames; i += 2) {
+    time[i / 2] = time[i];
+    for (std::size_t c = contactStart[i]; c < contactStart[i + 1]; ++c, ++kept) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        contactPoint[3 * kept + k] = contactPoint[3 * c + k];
+        contactNormal[3 * kept + k] = contactNormal[3 * c + k];
+        contactForce[3 * kept + k] = contactForce[3 * c + k];
+      }
+      for (std::size_t k = 0; k < 2; ++k)
+        contactGeometry[2 * kept + k] = contactGeometry[2 * c + k];
+    }
+    start.push_back(static_cast<std::uint32_t>(kept));
+  }
+  time.resize((frames + 1) / 2);
+  contactStart = std::move(start);
+  contactPoint.resize(3 * kept);
+  contactNormal.resize(3 * kept);
+  contactForce.resize(3 * kept);
+  contactGeometry.resize(2 * kept);
+  interval_ *= 2.0;
+}
+
+}  // namespace softgauss::io

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// The curves of a run drawn by gnuplot, for print: axes with units, limits dashed.
+///
+/// A file `.svg` holds all groups of curves, a folder one file a group. Groups whose curves have
+/// limits, or that are many, are drawn as a grid with a small drawing for each curve.
+
+#include <filesystem>
+
+#include "io/replay/recording.hpp"
+
+namespace softgauss::io {
+
+class Plot {
+ public:
+  /// Makes the file or the folder. Throws ModelError when it cannot, when the name has another
+  /// extension than .svg, or when there is no gnuplot.
+  explicit Plot(const std::filesystem::path& target);
+
+  /// Throws std::runtime_error when gnuplot fails or the disk is full.
+  void write(const Recording& recording) const;
+
+ private:
+  std::filesystem::path target_;
+  bool isFolder_;
+};
+
+/// The script that gnuplot is given for one file, data included.
+std::string plotScript(const Recording& recording, const std::vector<CurveGroup>& groups,
+                       const std::filesystem::path& file);
+
+}  // namespace softgauss::io

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// A run as it is looked at: what the replay page and the plots are made of.
+///
+/// The recorder turns steps into frames (poses, contacts, goals) and series (curves over time). It
+/// reads the engine's Snapshot and the goals' marks; engine and gdd know nothing of it.
+
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "engine/model/state.hpp"
+#include "io/log.hpp"
+#include "io/replay/frames.hpp"
+#include "io/replay/series.hpp"
+
+namespace softgauss::io {
+
+/// One quantity over time: a column of the series, and its limits where it has some.
+struct Curve {
+  std::string name;
+  int column = 0;
+  double lower = -kInfinity;
+  double upper = kInfinity;
+};
+
+/// Curves of one unit that belong together, a plot.
+struct CurveGroup {
+  std::string name;
+  std::string unit;
+  bool logarithmic = false;
+  std::vector<Curve> curves;
+};
+
+/// How the run ended.
+struct Outcome {
+  std::string kind = "completed";  ///< or "non-finite", "interrupted"
+  std::string message;             ///< the reason, when it did not complete
+};
+
+class Recording {
+ public:
+  /// A goal as it was when the recording began.
+  struct GoalLabel {
+    std::string name;  ///< e.g. "reach right_hand"
+    std::string link;
+  };
+
+  /// The model must outlive the recording. `goals`: those of the controller; may be empty.
+  Recording(const Model& model, const std::vector<std::unique_ptr<gdd::Goal>>& goals,
+            const gdd::GoalContext& start);
+
+  /// A step that was taken: its record, and the stages that it was taken from.
+  void addStep(const StepRecord& record, const Data& data);
+  /// The state that the run ended with, whose stages are in `data`. Its contact forces are those
+  /// of the last step, which led there.
+  void finish(const Data& data, const State& last);
+
+  const Model& model() const { return model_; }
+  const FrameTrack& frames() const { return frames_; }
+  const SeriesTable& series() const { return series_; }
+  const std::vector<GoalLabel>& goalLabels() const { return labels_; }
+  /// The plots, without those that are zero throughout, and without curves that are, such as the
+  /// force on a link that nothing touched; joints at rest beside others that move are kept.
+  std::vector<CurveGroup> plots() const;
+
+  // What only the caller knows.
+  std::string command;  ///< how the run was started
+  Outcome outcome;
+  std::vector<std::pair<std::string, std::string>> facts;  ///< shown as they are
+  std::vector<std::string> warnings;
+  /// What collides in place of a mesh, by geometry; null where the shape itself does.
+  std::vector<std::shared_ptr<const Mesh>> hulls;
+
+ private:
+  CurveGroup& addGroup(std::string name, std::string unit, bool logarithmic = false);
+  void addCurve(CurveGroup& group, std::string name, double lower = -kInfinity,
+                double upper = kInfinity);
+  void addJointGroups();
+  void addOtherGroups();
+  void readMarks(const gdd::GoalContext& context);
+  void writeSample(const StepRecord& record);
+
+  const Model& model_;
+  std::vector<const gdd::Goal*> goals_;  ///< those that are a place
+  std::vector<GoalLabel> labels_;
+  std::vector<CurveGroup> groups_;
+  std::size_t jointGroups_ = 0;  ///< how many of them, the first, are of joints
+  int columns_ = 0;
+  // What a sample is read from, in the order of the columns.
+  std::vector<int> q_, u_, v_, base_;  ///< entries of q, of u, of v, of q again
+  std::vector<int> forceColumn_;       ///< (bodies) of the normal force on a body, −1: none
+  int forceColumns_ = 0;               ///< how many, that of all contacts included
+
+  SeriesTable series_;
+  FrameTrack frames_;
+  State state_;  ///< of the step that is added, without its warm start
+  Snapshot snapshot_;
+  std::vector<std::optional<gdd::GoalMark>> marks_;
+  std::vector<Snapshot::ContactForce> contacts_;  ///< of the last step
+  std::vector<double> sample_;
+};
+
+}  // namespace softgauss::io

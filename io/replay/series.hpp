@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Many quantities over one time axis, in bounded memory.
+///
+/// Short runs keep every sample. When the table is full, neighbouring samples become buckets, and a
+/// bucket is kept as two entries: the least and the greatest value of each column, as an
+/// oscilloscope does. So however long the run, a spike of one step is still seen.
+
+#include <span>
+#include <vector>
+
+namespace softgauss::io {
+
+class SeriesTable {
+ public:
+  explicit SeriesTable(int columns, int mostEntries = 20000);
+
+  /// Appends a sample of every column at `time` [s]; NaN is a gap.
+  void add(double time, std::span<const double> values);
+  /// Ends the bucket that is open. To be called once, after the last sample.
+  void finish();
+
+  int size() const { return static_cast<int>(times_.size()); }  ///< entries
+  int columns() const { return columns_; }
+  const std::vector<double>& times() const { return times_; }
+  std::vector<float> column(int c) const;
+  /// Samples in a bucket; 1 while every sample is kept.
+  int samplesPerBucket() const { return width_; }
+
+  /// The same with at most `most` entries (a multiple of 4).
+  SeriesTable thinned(int most) const;
+
+ private:
+  void coarsen();
+  void appendBucket(std::span<const double> times, std::span<const float> rows);
+
+  int columns_;
+  std::size_t most_;
+  int width_ = 1;
+  std::vector<double> times_;
+  std::vector<float> rows_;  ///< entry by entry
+  std::vector<double> openTimes_;
+  std::vector<float> openRows_;  ///< samples of the bucket that is being filled
+};
+
+}  // namespace softgauss::io

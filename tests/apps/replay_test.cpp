@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+/// --view and --plot: a page and drawings from every run, however it ends.
+
+#include <cmath>
+#include <filesystem>
+
+#include "tests/apps/process.hpp"
+#include "tests/io/replay/payload_reader.hpp"
+
+namespace softgauss::test {
+namespace {
+
+TEST(View, ShowsTheRunOfTheLog) {
+  const io::TempFolder folder;
+  const std::string log = folder.path() / "log.csv", page = folder.path() / "run.html",
+                    plot = folder.path() / "run.svg";
+  const Outcome outcome =
+      simulate({dataFile("robots/humanoid.urdf"), "--reach", "right_hand=0.45,-0.25,1.1",
+                "--duration", "0.2", "--log", log, "--view", page, "--plot", plot, "--quiet"});
+  ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  const Csv csv((readFile(log)));
+  const PayloadReader run(payloadOfPage(readFile(page)));
+  EXPECT_EQ(run.header["outcome"]["kind"], "completed");
+  EXPECT_EQ(run.header["model"], "humanoid");
+  EXPECT_FALSE(run.header["visuals"].empty());
+  const auto series = run.array<double>("series_time");
+  ASSERT_EQ(series.size() + 1, csv.rows.size()) << "the log has the final state too";
+  for (const auto& group : run.header["series"]["groups"])
+    for (const auto& curve : group["curves"]) {
+      const int column = csv.find("q:" + curve["name"].get<std::string>());
+      if (group["name"] != "Joint positions" || column < 0) continue;
+      const auto values = run.array<float>(curve["values"]);
+      for (std::size_t i = 0; i < values.size(); ++i)
+        EXPECT_EQ(values[i], static_cast<float>(std::stod(csv.rows[i][column])));
+    }
+  EXPECT_NE(readFile(plot).find("right_elbow"), std::string::npos);
+}
+
+TEST(View, ARunThatEndsBadlyShowsItsLastGoodStepAndWhy) {
+  const io::TempFolder folder;
+  const std::string page = folder.path() / "run.html", plots = folder.path() / "plots";
+  const std::string torques =
+      folder.write("torques.csv", "time_s,u:shoulder_yaw,u:elbow_pitch\n0,0,0\n0.1,1e300,-1e300\n");
+  const Outcome outcome = simulate({dataFile("robots/arm.urdf"), "--torques", torques, "--duration",
+                                    "1", "--view", page, "--plot", plots, "--quiet"});
+  EXPECT_EQ(outcome.exitCode, 3);
+  const PayloadReader run(payloadOfPage(readFile(page)));
+  EXPECT_EQ(run.header["outcome"]["kind"], "non-finite");
+  const std::string message = run.header["outcome"]["message"];
+  EXPECT_NE(message.find("t = "), std::string::npos) << message;
+  EXPECT_NE(outcome.err.find(message), std::string::npos) << "the same words as on stderr";
+  for (const float x : run.array<float>("pose")) ASSERT_TRUE(std::isfinite(x));
+  EXPECT_NEAR(run.array<double>("frame_time").back(), 0.1, 0.01);
+  EXPECT_FALSE(std::filesystem::is_empty(plots));
+}
+
+TEST(View, AnInterruptedRunShowsWhatWasSimulated) {
+  const io::TempFolder folder;
+  const std::string page = folder.path() / "run.html", log = folder.path() / "log.csv";
+  const Outcome outcome = simulate({dataFile("robots/humanoid.urdf"), "--passive", "--duration",
+                                    "10000", "--view", page, "--log", log, "--quiet"},
+                                   0.5, log);
+  EXPECT_EQ(outcome.exitCode, 130);
+  const PayloadReader run(payloadOfPage(readFile(page)));
+  EXPECT_EQ(run.header["outcome"]["kind"], "interrupted");
+  EXPECT_GT(run.header["frames"]["count"], 2);
+}
+
+TEST(View, OutputsThatCannotBeMadeAreToldBeforeTheRun) {
+  const io::TempFolder folder;
+  const std::string arm = dataFile("robots/arm.urdf"), missing = folder.path() / "no" / "run";
+  for (const auto& [option, file] :
+       {std::pair<std::string, std::string>{"--view", missing + ".html"},
+        {"--plot", missing + ".svg"},
+        {"--plot", folder.path() / "run.png"}}) {
+    const Outcome outcome = simulate({arm, "--passive", "--duration", "1e6", option, file});
+    EXPECT_EQ(outcome.exitCode, 2) << option << ' ' << file;
+    EXPECT_NE(outcome.err.find(file), std::string::npos) << outcome.err;
+  }
+  const std::string same = folder.path() / "run.svg";
+  EXPECT_EQ(simulate({arm, "--passive", "--view", same, "--plot", same}).exitCode, 2);
+}
+
+}  // namespace
+}  // namespace softgauss::test
