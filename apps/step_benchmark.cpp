@@ -20,6 +20,7 @@
 #include "collision/scene_contacts.hpp"
 #include "engine/engine.hpp"
 #include "gdd/gdd.hpp"
+#include "io/replay/recording.hpp"
 #include "io/urdf.hpp"
 
 namespace {
@@ -38,6 +39,7 @@ struct Scene {
   State state;
   std::unique_ptr<Data> data;
   std::unique_ptr<gdd::GoalDirectedController> controller;  ///< null: passive
+  std::unique_ptr<io::Recording> recording;                 ///< of --view; null: none
 
   void step() {
     const SolveStatus status = controller
@@ -111,6 +113,37 @@ double median(std::vector<double>& values) {
   return *middle;
 }
 
+/// As --view does it.
+void record(Scene& scene) {
+  computeStages(scene.model, {}, scene.state, *scene.data, scene.contacts.get());
+  scene.recording =
+      std::make_unique<io::Recording>(scene.model, scene.controller->goals,
+                                      gdd::GoalContext{scene.model, scene.state, *scene.data});
+  const int steps = kPieces * kTimedSteps;
+  scene.recording->reserve(steps, steps * scene.model.options.timestep);
+}
+
+/// Records steps that were taken from `before` and says how long one takes [µs].
+class Recorder {
+ public:
+  void addStep(Scene& scene, const State& before) {
+    row_.time = time_ += scene.model.options.timestep;
+    row_.q = before.q;
+    row_.v = before.v;
+    row_.u = scene.data->forces.tau;
+    const auto start = std::chrono::steady_clock::now();
+    scene.recording->addStep(row_, *scene.data);
+    seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    ++steps_;
+  }
+  double mean() const { return 1e6 * seconds_ / steps_; }
+
+ private:
+  io::StepRecord row_;
+  double time_ = 0.0, seconds_ = 0.0;
+  int steps_ = 0;
+};
+
 /// Medians over the steps become the counters of the benchmark: a step that another program has
 /// interrupted does not count.
 void timeScene(benchmark::State& state, const std::function<std::unique_ptr<Scene>()>& make,
@@ -119,13 +152,17 @@ void timeScene(benchmark::State& state, const std::function<std::unique_ptr<Scen
   for (int i = 0; i < warmUp; ++i) scene->step();
   const State saved = scene->state;
   std::map<std::string, std::vector<double>> values;
+  Recorder recorder;
+  State before;
   for (auto _ : state) {
     for (int i = 0; i < kPieces * kTimedSteps; ++i) {
       if (i % kTimedSteps == 0) scene->state = saved;
+      if (scene->recording) before = scene->state;
       const auto start = std::chrono::steady_clock::now();
       scene->step();
       const double seconds =
           std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+      if (scene->recording) recorder.addStep(*scene, before);
       const StepStats& stats = scene->data->stats;
       values["step.us"].push_back(1e6 * seconds);
       values["kinematics.us"].push_back(1e6 * stats.times.kinematics);
@@ -144,6 +181,8 @@ void timeScene(benchmark::State& state, const std::function<std::unique_ptr<Scen
     }
     state.SetIterationTime(1e-6 * median(values["step.us"]));
   }
+  // One step in eight makes a frame too, so here the mean counts.
+  if (scene->recording) values["record.us"] = {recorder.mean()};
   for (auto& [name, column] : values) state.counters[name] = median(column);
 }
 
@@ -182,31 +221,33 @@ int main(int argc, char** argv) {
       ->check(CLI::ExistingDirectory);
   CLI11_PARSE(app, argc, argv);
 
-  const auto add = [&](const char* name, int warmUp, std::function<std::unique_ptr<Scene>()> make) {
-    benchmark::RegisterBenchmark(name, [=](benchmark::State& s) { timeScene(s, make, warmUp); })
+  const auto add = [&](const std::string& name, int warmUp,
+                       std::function<std::unique_ptr<Scene>()> make) {
+    benchmark::RegisterBenchmark(name.c_str(),
+                                 [=](benchmark::State& s) { timeScene(s, make, warmUp); })
         ->Iterations(1)
         ->UseManualTime()
         ->Repetitions(kRepetitions);
   };
   add("humanoid_moving", 250, [&] { return makeRobot(robots, "humanoid", true); });
   add("humanoid_rest", 2000, [&] { return makeRobot(robots, "humanoid", true); });
-  add("humanoid_gdd", 100, [&] {
-    auto scene = makeRobot(robots, "humanoid", true);
-    addReach(*scene, "right_hand", Vector3(0.45, -0.25, 1.10));
-    return scene;
-  });
   add("hand", kWarmUpSteps, [&] { return makeRobot(robots, "hand", true); });
-  add("hand_gdd", 100, [&] {
-    auto scene = makeRobot(robots, "hand", true);
-    addReach(*scene, "index_tip", Vector3(0.25, 0.08, 0.06));
-    return scene;
-  });
   add("arm", kWarmUpSteps, [&] { return makeRobot(robots, "arm", false); });
-  add("arm_gdd", 100, [&] {
-    auto scene = makeRobot(robots, "arm", false);
-    addReach(*scene, "hand", Vector3(0.5, 0.3, 0.5));
-    return scene;
-  });
+  struct Reaching {
+    const char *robot, *link;
+    Vector3 target;
+  };
+  for (const auto& [robot, link, target] : {Reaching{"humanoid", "right_hand", {0.45, -0.25, 1.10}},
+                                            Reaching{"hand", "index_tip", {0.25, 0.08, 0.06}},
+                                            Reaching{"arm", "hand", {0.5, 0.3, 0.5}}})
+    for (const bool recorded : {false, true})
+      add(fmt::format("{}_gdd{}", robot, recorded ? "_recorded" : ""), 100, [=] {
+        const std::string name = robot;
+        auto scene = makeRobot(robots, name, name != "arm");
+        addReach(*scene, link, target);
+        if (recorded) record(*scene);
+        return scene;
+      });
   add("chain100", kWarmUpSteps, [] { return makeChain(100); });
 
   try {

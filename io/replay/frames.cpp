@@ -1,17 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/replay/frames.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "io/replay/detail/fetch.hpp"
 
 namespace softgauss::io {
 namespace {
 
 constexpr double kFar = 100.0;  // [m] a scene nearer than this keeps the world's origin
 
-void append(std::vector<float>& track, const Vector3& x) {
-  for (int i = 0; i < 3; ++i) track.push_back(static_cast<float>(x[i]));
+void write(const Vector3& x, float* out) {
+  for (int i = 0; i < 3; ++i) out[i] = static_cast<float>(x[i]);
 }
+
+/// Room for `count` more numbers.
+float* extended(std::vector<float>& track, int count) {
+  const std::size_t size = track.size();
+  track.resize(size + static_cast<std::size_t>(count));
+  return track.data() + size;
+}
+
+void append(std::vector<float>& track, const Vector3& x) { write(x, extended(track, 3)); }
 
 /// Keeps the records of even frames; a frame has `size` entries.
 void keepEven(std::vector<float>& track, std::size_t frames, std::size_t size) {
@@ -26,6 +38,16 @@ void keepEven(std::vector<float>& track, std::size_t frames, std::size_t size) {
 FrameTrack::FrameTrack(int bodies, int goals, std::size_t mostBytes)
     : contactStart{0}, bodies_(bodies), goals_(goals), mostBytes_(mostBytes) {}
 
+void FrameTrack::reserve(double duration) {
+  const auto numbers = static_cast<std::size_t>(13 * bodies_ + 6 * goals_);
+  const auto frames = static_cast<std::size_t>(
+      std::min(kFramesPerSecond * duration, static_cast<double>(mostBytes_ / 4 / numbers)) + 2);
+  detail::fetch(pose, frames * static_cast<std::size_t>(7 * bodies_));
+  detail::fetch(velocity, frames * static_cast<std::size_t>(6 * bodies_));
+  for (std::vector<float>* track : {&goalPoint, &goalTarget})
+    detail::fetch(*track, frames * static_cast<std::size_t>(3 * goals_));
+}
+
 void FrameTrack::appendPoint(std::vector<float>& track, const Vector3& p_W) const {
   append(track, p_W - origin);
 }
@@ -38,12 +60,14 @@ void FrameTrack::add(const Snapshot& s, std::span<const std::optional<gdd::GoalM
   const Vector3 nowhere = Vector3::Constant(std::numeric_limits<double>::quiet_NaN());
 
   time.push_back(s.time);
-  for (int b = 0; b < bodies_; ++b) {
-    appendPoint(pose, s.X_WB[b].p);
+  float* X = extended(pose, 7 * bodies_);
+  float* V = extended(velocity, 6 * bodies_);
+  for (int b = 0; b < bodies_; ++b, X += 7, V += 6) {
     const Quaternion q(s.X_WB[b].R);
-    for (const double part : {q.w(), q.x(), q.y(), q.z()}) pose.push_back(static_cast<float>(part));
-    append(velocity, s.velocity[b]);
-    append(velocity, s.angularVelocity[b]);
+    write(s.X_WB[b].p - origin, X);
+    for (int i = 0; i < 4; ++i) X[3 + i] = static_cast<float>(q.coeffs()[(i + 3) % 4]);
+    write(s.velocity[b], V);
+    write(s.angularVelocity[b], V + 3);
   }
   appendPoint(centerOfMass, s.centerOfMass);
   appendPoint(centerOfPressure, s.centerOfPressure.value_or(nowhere));

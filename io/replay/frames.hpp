@@ -21,6 +21,8 @@ class FrameTrack {
 
   FrameTrack(int bodies, int goals, std::size_t mostBytes = std::size_t{48} << 20);
 
+  /// Fetches the memory of a run of that duration [s] now, so that adding frames is cheap.
+  void reserve(double duration);
   /// Whether the next frame is due `now` [s].
   bool due(double now) const { return count() == 0 || now >= next_; }
   /// Appends a frame, whether due or not. `marks`: one a goal, nothing where it is no place now.

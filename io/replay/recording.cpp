@@ -8,7 +8,7 @@
 namespace softgauss::io {
 namespace {
 
-constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
+constexpr float kNoValue = std::numeric_limits<float>::quiet_NaN();
 
 /// Entries of a series however many columns: 64 MB of samples at most.
 int mostEntries(int columns) { return std::min(20000, (16 << 20) / std::max(1, columns)); }
@@ -91,12 +91,14 @@ void Recording::addOtherGroups() {
   const int firstForce = columns_;
   CurveGroup& forces = addGroup("Contact normal forces", "N");
   addCurve(forces, "all");
-  forceColumn_.assign(model_.bodies.size(), -1);
+  std::vector<int> columnOfBody(model_.bodies.size(), -1);
   for (const Geometry& geometry : model_.geometries) {
-    int& column = forceColumn_[static_cast<std::size_t>(geometry.body)];
-    if (geometry.body == 0 || column >= 0) continue;
-    column = columns_;
-    addCurve(forces, model_.bodyNames[static_cast<std::size_t>(geometry.body)]);
+    int& column = columnOfBody[static_cast<std::size_t>(geometry.body)];
+    if (geometry.body != 0 && column < 0) {
+      column = columns_;
+      addCurve(forces, model_.bodyNames[static_cast<std::size_t>(geometry.body)]);
+    }
+    forceColumn_.push_back(column);
   }
   forceColumns_ = columns_ - firstForce;
   CurveGroup& errors = addGroup("Goal errors", "m");
@@ -125,8 +127,7 @@ void Recording::addStep(const StepRecord& r, const Data& data) {
   state_.time = r.time;
   readMarks({model_, state_, data});
   contactForces(data, contacts_);
-  writeSample(r);
-  series_.add(r.time, sample_);
+  writeSample(r, series_.add(r.time));
   if (frames_.due(r.time)) {
     takeSnapshot(model_, data, r.time, snapshot_);
     frames_.add(snapshot_, marks_);
@@ -134,40 +135,34 @@ void Recording::addStep(const StepRecord& r, const Data& data) {
 }
 
 /// In the order of the columns.
-void Recording::writeSample(const StepRecord& r) {
-  sample_.assign(static_cast<std::size_t>(columns_), 0.0);
-  double* next = sample_.data();
-  for (const int i : q_) *next++ = r.q[i];
-  for (const int i : u_) *next++ = r.u[i];
-  for (const int i : v_) *next++ = r.v[i];
-  for (const int i : base_) *next++ = r.q[i];
+void Recording::writeSample(const StepRecord& r, float* sample) {
+  float* next = sample;
+  for (const int i : q_) *next++ = static_cast<float>(r.q[i]);
+  for (const int i : u_) *next++ = static_cast<float>(r.u[i]);
+  for (const int i : v_) *next++ = static_cast<float>(r.v[i]);
+  for (const int i : base_) *next++ = static_cast<float>(r.q[i]);
   // A contact of two bodies is felt by both, and is one of all.
+  float& all = *next;
+  std::fill_n(next, forceColumns_, 0.0f);
   for (const Snapshot::ContactForce& c : contacts_) {
-    *next += c.normalForce();
+    const auto force = static_cast<float>(c.normalForce());
+    all += force;
     for (const int geometry : {c.geometryA, c.geometryB}) {
-      const Geometry& g = model_.geometries[static_cast<std::size_t>(geometry)];
-      const int column = forceColumn_[static_cast<std::size_t>(g.body)];
-      if (column >= 0) sample_[static_cast<std::size_t>(column)] += c.normalForce();
+      const int column = forceColumn_[static_cast<std::size_t>(geometry)];
+      if (column >= 0) sample[column] += force;
     }
   }
   next += forceColumns_;
   for (const std::optional<gdd::GoalMark>& mark : marks_)
-    *next++ = mark ? (mark->p_WTarget - mark->p_WPoint).norm() : kNoValue;
-  const double rest[] = {r.kineticEnergy,
-                         r.energy - r.kineticEnergy,
-                         r.energy,
-                         static_cast<double>(r.contacts),
-                         static_cast<double>(r.constraints),
-                         static_cast<double>(r.iterations),
-                         static_cast<double>(r.dualUpdates),
-                         r.forwardUs,
-                         r.gddUs,
-                         r.stepUs,
-                         r.maxPenetration,
-                         r.physicsViolation,
-                         r.gddViolation};
-  next = std::copy(std::begin(rest), std::end(rest), next);
-  SOFTGAUSS_ASSERT(next == sample_.data() + columns_);
+    *next++ = mark ? static_cast<float>((mark->p_WTarget - mark->p_WPoint).norm()) : kNoValue;
+  for (const double x : {r.kineticEnergy, r.energy - r.kineticEnergy, r.energy})
+    *next++ = static_cast<float>(x);
+  for (const int count : {r.contacts, r.constraints, r.iterations, r.dualUpdates})
+    *next++ = static_cast<float>(count);
+  for (const double x :
+       {r.forwardUs, r.gddUs, r.stepUs, r.maxPenetration, r.physicsViolation, r.gddViolation})
+    *next++ = static_cast<float>(x);
+  SOFTGAUSS_ASSERT(next == sample + columns_);
 }
 
 void Recording::finish(const Data& data, const State& last) {

@@ -51,6 +51,11 @@ class Recording {
   Recording(const Model& model, const std::vector<std::unique_ptr<gdd::Goal>>& goals,
             const gdd::GoalContext& start);
 
+  /// What is to come, so that memory is fetched before the run.
+  void reserve(std::size_t steps, double duration) {
+    series_.reserve(steps);
+    frames_.reserve(duration);
+  }
   /// A step that was taken: its record, and the stages that it was taken from.
   void addStep(const StepRecord& record, const Data& data);
   /// The state that the run ended with, whose stages are in `data`. Its contact forces are those
@@ -80,7 +85,7 @@ class Recording {
   void addJointGroups();
   void addOtherGroups();
   void readMarks(const gdd::GoalContext& context);
-  void writeSample(const StepRecord& record);
+  void writeSample(const StepRecord& record, float* sample);
 
   const Model& model_;
   std::vector<const gdd::Goal*> goals_;  ///< those that are a place
@@ -90,7 +95,7 @@ class Recording {
   int columns_ = 0;
   // What a sample is read from, in the order of the columns.
   std::vector<int> q_, u_, v_, base_;  ///< entries of q, of u, of v, of q again
-  std::vector<int> forceColumn_;       ///< (bodies) of the normal force on a body, −1: none
+  std::vector<int> forceColumn_;       ///< (geometries) of the force on its body, −1: none
   int forceColumns_ = 0;               ///< how many, that of all contacts included
 
   SeriesTable series_;
@@ -99,7 +104,6 @@ class Recording {
   Snapshot snapshot_;
   std::vector<std::optional<gdd::GoalMark>> marks_;
   std::vector<Snapshot::ContactForce> contacts_;  ///< of the last step
-  std::vector<double> sample_;
 };
 
 }  // namespace softgauss::io

@@ -6,7 +6,12 @@
 #include <limits>
 #include <utility>
 
+#include "io/replay/detail/fetch.hpp"
+
 namespace softgauss::io {
+
+using detail::fetch;
+
 namespace {
 
 /// Four entries become two: two pairs of minimum and maximum, or at first four samples.
@@ -18,15 +23,24 @@ SeriesTable::SeriesTable(int columns, int mostEntries)
     : columns_(columns),
       most_(std::max<std::size_t>(static_cast<std::size_t>(mostEntries) / kMerged, 1) * kMerged) {}
 
-void SeriesTable::add(double time, std::span<const double> values) {
+void SeriesTable::reserve(std::size_t samples) {
+  const std::size_t entries = std::min(samples, most_) + 2;
+  fetch(times_, entries);
+  fetch(rows_, entries * static_cast<std::size_t>(columns_));
+}
+
+float* SeriesTable::add(double time) {
+  makeRoom();
   std::vector<float>& rows = width_ == 1 ? rows_ : openRows_;
-  std::vector<double>& times = width_ == 1 ? times_ : openTimes_;
-  times.push_back(time);
+  (width_ == 1 ? times_ : openTimes_).push_back(time);
   const std::size_t first = rows.size();
-  rows.resize(first + values.size());
-  std::transform(values.begin(), values.end(), rows.begin() + static_cast<std::ptrdiff_t>(first),
-                 [](double value) { return static_cast<float>(value); });
-  if (width_ > 1 && times.size() == static_cast<std::size_t>(width_)) finish();
+  rows.resize(first + static_cast<std::size_t>(columns_));
+  return rows.data() + first;
+}
+
+/// Closes the bucket or the table that the last sample has filled.
+void SeriesTable::makeRoom() {
+  if (width_ > 1 && openTimes_.size() == static_cast<std::size_t>(width_)) finish();
   if (times_.size() >= most_) coarsen();
 }
 
@@ -46,9 +60,11 @@ void SeriesTable::appendBucket(std::span<const double> times, std::span<const fl
   float* least = rows_.data() + first;
   float* greatest = least + n;
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    // fmin and fmax pass over NaN.
-    least[i % n] = std::fmin(least[i % n], rows[i]);
-    greatest[i % n] = std::fmax(greatest[i % n], rows[i]);
+    const float value = rows[i];
+    if (std::isnan(value)) continue;
+    // Also true while they are NaN.
+    if (!(least[i % n] <= value)) least[i % n] = value;
+    if (!(greatest[i % n] >= value)) greatest[i % n] = value;
   }
 }
 

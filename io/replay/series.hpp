@@ -16,9 +16,12 @@ class SeriesTable {
  public:
   explicit SeriesTable(int columns, int mostEntries = 20000);
 
-  /// Appends a sample of every column at `time` [s]; NaN is a gap.
-  void add(double time, std::span<const double> values);
-  /// Ends the bucket that is open. To be called once, after the last sample.
+  /// Fetches the memory of so many samples now, so that adding them is cheap.
+  void reserve(std::size_t samples);
+  /// Appends a sample at `time` [s]: its values, one a column, are to be written where the returned
+  /// pointer says, before the next call. NaN is a gap.
+  float* add(double time);
+  /// Ends the bucket that is open. To be called after the last sample.
   void finish();
 
   int size() const { return static_cast<int>(times_.size()); }  ///< entries
@@ -32,6 +35,7 @@ class SeriesTable {
   SeriesTable thinned(int most) const;
 
  private:
+  void makeRoom();
   void coarsen();
   void appendBucket(std::span<const double> times, std::span<const float> rows);
 
