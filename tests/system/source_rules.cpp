@@ -47,7 +47,8 @@ const std::map<std::string, Names> kMayInclude = {
 const std::map<std::string, std::regex> kLibraries = {
     {"collision", std::regex("(fcl|ccd|libqhull_r)/.*")},
     {"io",
-     std::regex("(urdf_\\w+|console_bridge|assimp|yaml-cpp|nlohmann|fmt|sys)/.*|(tinyxml2|zlib)\\.h")},
+     std::regex(
+         "(urdf_\\w+|console_bridge|assimp|yaml-cpp|nlohmann|fmt|sys)/.*|(tinyxml2|zlib)\\.h")},
 };
 const std::regex kStandardOrEigen("[a-z_]+|Eigen/.*");
 
@@ -91,11 +92,13 @@ bool mayUse(const SourceFile& file, const std::string& layer, const std::string&
 }  // namespace
 
 bool SourceFile::isCpp() const { return path.ends_with(".cpp") || path.ends_with(".hpp"); }
-bool SourceFile::isCode() const { return isCpp() || path.ends_with(".mjs"); }
+bool SourceFile::isCode() const {
+  return isCpp() || path.ends_with(".mjs") || path.ends_with(".js");
+}
 
 std::vector<SourceFile> readTree(const std::string& root) {
-  const Names kinds = {".cpp", ".hpp",  ".mjs",  ".sh",   ".txt", ".cmake",
-                       ".in",  ".json", ".yaml", ".urdf", ".md"};
+  const Names kinds = {".cpp",   ".hpp", ".mjs",  ".js",   ".sh",   ".css", ".txt",
+                       ".cmake", ".in",  ".json", ".yaml", ".urdf", ".md"};
   std::vector<SourceFile> files;
   const auto read = [&](const fs::path& path) {
     SourceFile& file = files.emplace_back();

@@ -107,6 +107,7 @@ TEST(SourceRules, MissingLicencesAreFound) {
   EXPECT_EQ(count(checkLicence, "gdd/goal.hpp", "#pragma once"), 1u);
   EXPECT_EQ(count(checkLicence, "gdd/CMakeLists.txt", "project(x)"), 1u);
   EXPECT_EQ(count(checkLicence, "tests/a/a.mjs", "import x;"), 1u);
+  EXPECT_EQ(count(checkLicence, "io/a/a.js", "import x;"), 1u);
   EXPECT_FALSE(checkLicence({"gdd/goal.hpp", {}}).empty());
 }
 

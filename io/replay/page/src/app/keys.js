@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every key of the page. Keys typed into a field, and those a focused widget needs, are left alone.
+
+import { byId } from './dom.js';
+import { toggleDialog } from '../panels/dialogs.js';
+
+export function listenToKeys({ clock, settings, selection, layout, plots, stage, run }) {
+  const actions = {
+    ' ': () => clock.toggle(),
+    ArrowLeft: (event) => clock.step(event.shiftKey ? -10 : -1),
+    ArrowRight: (event) => clock.step(event.shiftKey ? 10 : 1),
+    Home: () => clock.seek(run.start),
+    End: () => clock.seek(run.end),
+    '[': () => clock.faster(-1),
+    ']': () => clock.faster(1),
+    l: () => clock.setLoop(!clock.loop),
+    f: () => settings.set('follow', settings.get('follow') ? null : selection.name ?? 'com'),
+    a: () => stage?.frameAll(),
+    F: () => stage?.frameAll('front'),
+    S: () => stage?.frameAll('side'),
+    T: () => stage?.frameAll('top'),
+    c: () => settings.nextMode(),
+    g: () => settings.set('forces', !settings.get('forces')),
+    m: () => settings.set('limits', !settings.get('limits')),
+    z: () => plots.setZoom(plots.full),
+    k: () => layout.toggle('links'),
+    p: () => layout.toggle('plots'),
+    t: () => settings.toggleTheme(),
+    i: () => toggleDialog('info'),
+    '?': () => toggleDialog('help'),
+    '/': () => {
+      layout.open('links', true);
+      byId('search').focus();
+    },
+    Escape: () => selection.select(null),
+  };
+  for (let digit = 1; digit <= 9; ++digit) actions[digit] = () => plots.toggle(digit - 1);
+
+  document.addEventListener('keydown', (event) => {
+    if (event.ctrlKey || event.metaKey || event.altKey || event.defaultPrevented) return;
+    const { target } = event;
+    const open = document.querySelector('dialog[open]');
+    if (open && !['?', 'i'].includes(event.key)) return;
+    if (target.matches('input:not([type=range], [type=checkbox]), textarea')) return;
+    // The space bar presses a focused button, arrows move in a list.
+    if (event.key === ' ' && target.matches('button, summary, [type=checkbox], select')) return;
+    if (target.matches('select') && !['[', ']', '?'].includes(event.key)) return;
+    if (target.matches('[type=range]:not(.timeline)') && /^(Arrow|Home|End)/.test(event.key)) return;
+    const action = actions[event.key];
+    if (!action) return;
+    event.preventDefault();
+    action(event);
+  });
+}

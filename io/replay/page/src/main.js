@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+// The page: reads the run, makes the panels, and keeps them in step.
+
+import { makeApi } from './app/api.js';
+import { Clock } from './app/clock.js';
+import { byId, icon } from './app/dom.js';
+import { listenToKeys } from './app/keys.js';
+import { Layout } from './app/layout.js';
+import { Selection } from './app/selection.js';
+import { MARKS, Settings } from './app/settings.js';
+import { readPayload } from './data/payload.js';
+import { Run } from './data/run.js';
+import { dialogs, toggleDialog } from './panels/dialogs.js';
+import { Inspector } from './panels/inspector.js';
+import { Plots } from './panels/plots.js';
+import { toolbar } from './panels/toolbar.js';
+import { transport } from './panels/transport.js';
+import { Tree } from './panels/tree.js';
+import { Stage } from './view/stage.js';
+
+function complain(id, text) {
+  const place = byId(id);
+  place.hidden = false;
+  place.textContent = text;
+}
+
+/** The view, or null where there is no WebGL. */
+function makeStage(run) {
+  try {
+    return new Stage(run, byId('canvas'));
+  } catch (error) {
+    console.warn(error.message);
+    byId('view').classList.add('without-view');
+    complain('no-view', 'There is no 3D view: this browser offers no WebGL 2. The plots and the links’ numbers work without.');
+    return null;
+  }
+}
+
+function showHeader(run) {
+  const { header } = run;
+  byId('model').textContent = header.model;
+  byId('summary').textContent = header.facts[0]?.[1] ?? '';
+  if (header.outcome.kind !== 'completed') {
+    const what = { 'non-finite': 'The simulation became non-finite', interrupted: 'The run was interrupted' };
+    complain('banner', [what[header.outcome.kind] ?? header.outcome.kind, header.outcome.message].filter(Boolean).join(': '));
+  }
+}
+
+function start(run, begun) {
+  const settings = new Settings(run);
+  const theme = () => (document.documentElement.dataset.theme = settings.get('theme'));
+  theme();
+  settings.on('theme', theme);
+  const clock = new Clock(run);
+  const selection = new Selection(run);
+  const layout = new Layout();
+  showHeader(run);
+  dialogs(run);
+  const stage = makeStage(run);
+  const poses = stage?.poses ?? run.posesAt(run.start, new Float64Array(7 * run.bodies.length));
+
+  new Tree(byId('tree'), run, selection);
+  const inspector = new Inspector(byId('inspector'), run, selection);
+  transport(byId('transport'), run, clock);
+  if (stage) toolbar(byId('toolbar'), run, stage, settings, selection);
+  const plots = new Plots(byId('plots'), run, clock, settings, selection);
+  const inspect = () => inspector.update(clock.time, poses);
+  selection.on('change', inspect);
+  clock.on('time', (time) => {
+    if (stage) stage.moveTo(time);
+    else run.posesAt(time, poses);
+    inspect();
+  });
+  inspect();
+
+  for (const button of document.querySelectorAll('[data-icon]')) button.append(icon(button.dataset.icon));
+  const themeButton = byId('toggle-theme');
+  const showTheme = () => themeButton.replaceChildren(icon(settings.get('theme') === 'dark' ? 'sun' : 'moon'));
+  themeButton.addEventListener('click', () => settings.toggleTheme());
+  settings.on('theme', showTheme);
+  showTheme();
+  for (const id of ['info', 'help']) byId(`show-${id}`).addEventListener('click', () => toggleDialog(id));
+
+  if (stage) connectStage(stage, settings, selection);
+  listenToKeys({ clock, settings, selection, layout, plots, stage, run });
+
+  let firstFrame = null;
+  const tick = (now) => {
+    clock.tick(now);
+    const drawn = stage ? stage.draw() : true;
+    if (drawn && firstFrame === null) {
+      firstFrame = performance.now();
+      begun();
+      if (!window.matchMedia('(prefers-reduced-motion: reduce)').matches) clock.play();
+    }
+    requestAnimationFrame(tick);
+  };
+  requestAnimationFrame(tick);
+  return { run, clock, settings, selection, layout, plots, stage, poses: () => poses, firstFrame: () => firstFrame };
+}
+
+function connectStage(stage, settings, selection) {
+  const label = byId('hover');
+  stage.on('picked', (name) => selection.select(name));
+  stage.on('hovered', (name, place) => {
+    label.hidden = name === null;
+    stage.canvas.style.cursor = name === null ? '' : 'pointer';
+    if (name === null) return;
+    label.textContent = name;
+    const { left, top, width } = stage.canvas.getBoundingClientRect();
+    const x = Math.min(place[0] - left + 14, width - label.offsetWidth - 6);
+    label.style.transform = `translate(${x}px, ${place[1] - top + 16}px)`;
+  });
+  selection.on('change', (link) => stage.select(link?.name ?? null));
+  settings.on('mode', (mode) => stage.setMode(mode));
+  settings.on('theme', (theme) => stage.setTheme(theme));
+  settings.on('follow', (what) => stage.follow(what));
+  const redraw = () => (stage.changed = true);
+  settings.on('forceScale', (scale) => {
+    stage.contacts.scale = scale;
+    stage.moveTo(stage.time);
+  });
+  for (const [key] of MARKS)
+    settings.on(key, (shown) => {
+      if (key === 'forces') stage.contacts.forces.group.visible = shown;
+      else if (key === 'contacts') stage.contacts.points.visible = shown;
+      else stage.marks.show({ [key]: shown });
+      redraw();
+    });
+  stage.setTheme(settings.get('theme'));
+  stage.setMode(settings.get('mode'));
+  stage.resize();
+  stage.frameAll('home');
+  new ResizeObserver(() => stage.resize()).observe(byId('view'));
+}
+
+let begun;
+const ready = new Promise((resolve) => (begun = resolve));
+readPayload(byId('softgauss-run').textContent.trim())
+  .then((payload) => {
+    byId('softgauss-run').textContent = '';
+    window.softgauss = makeApi({ ...start(new Run(payload), begun), ready });
+  })
+  .catch((error) => {
+    complain('banner', error.message);
+    console.error(error);
+  });

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: Apache-2.0
+// The 3D view: renderer, lights, and everything that is drawn; picking. Emits `picked`, `hovered`.
+//
+// It draws only when something has changed.
+
+import { AmbientLight, DirectionalLight, HemisphereLight, NeutralToneMapping, PCFShadowMap, Raycaster, Scene,
+         Vector2, Vector3, WebGLRenderer } from 'three';
+import { Emitter } from '../app/emitter.js';
+import { placed } from '../data/transform.js';
+import { Camera } from './camera.js';
+import { Contacts } from './contacts.js';
+import { Ground, gridCell } from './ground.js';
+import { Marks } from './marks.js';
+import { Robot } from './robot.js';
+
+const THEMES = {
+  light: { ground: '#f4f2ee', line: '#c6c2ba', shadow: 0.3, sky: 2.1, key: 2.5, rim: 0.7, bounce: '#d9d2c6' },
+  dark: { ground: '#24282e', line: '#464d57', shadow: 0.55, sky: 1.35, key: 2.3, rim: 1.0, bounce: '#3a3f48' },
+};
+
+export class Stage extends Emitter {
+  constructor(run, canvas) {
+    super();
+    this.run = run;
+    this.canvas = canvas;
+    this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
+    this.renderer.toneMapping = NeutralToneMapping;
+    this.renderer.shadowMap.enabled = true;
+    this.renderer.shadowMap.type = PCFShadowMap;
+    this.scene = new Scene();
+    this.poses = run.posesAt(run.start, new Float64Array(7 * run.bodies.length));
+    this.time = run.start;
+
+    this.robot = new Robot(run);
+    this.robot.place(this.poses);
+    const { radius } = this.robot.boundingSphere();
+    this.size = 2 * radius;
+    this.planes = planesOf(run);
+    this.cell = gridCell(this.size);
+    // Without a ground a grid under the robot tells up from down.
+    this.grounds = (this.planes.length > 0 ? this.planes : [this.#orientation()])
+      .map((plane) => new Ground(plane, this.cell));
+    this.contacts = new Contacts(run, this.size);
+    this.marks = new Marks(run, this.size, this.planes);
+    for (const part of [this.robot.group, this.contacts.group, this.marks.group, ...this.grounds.map((g) => g.mesh)])
+      this.scene.add(part);
+    this.#addLights();
+    this.camera = new Camera(canvas, this.size);
+    this.raycaster = new Raycaster();
+    this.following = null;
+    this.changed = true;
+    this.#listen();
+    this.moveTo(run.start);
+  }
+
+  #orientation() {
+    const lowest = this.robot.bounds(this.robot.layers.flatMap((layer) => layer.items)).min.z;
+    const [x, y, z] = this.poses;
+    return { body: 0, p: [-x, -y, lowest - z], q: [1, 0, 0, 0] };
+  }
+
+  #addLights() {
+    this.sky = new HemisphereLight('#ffffff', '#d9d2c6', 2);
+    this.key = new DirectionalLight('#fff6ea', 2.5);
+    this.rim = new DirectionalLight('#dfeaff', 0.8);
+    this.ambient = new AmbientLight('#ffffff', 0.15);
+    this.key.castShadow = true;
+    this.key.shadow.mapSize.set(2048, 2048);
+    this.key.shadow.radius = 5;
+    this.key.shadow.bias = -0.0004;
+    this.key.shadow.normalBias = 0.006 * this.size;
+    const reach = 1.25 * this.size;
+    const { camera } = this.key.shadow;
+    [camera.left, camera.right, camera.bottom, camera.top] = [-reach, reach, -reach, reach];
+    [camera.near, camera.far] = [0.1 * this.size, 8 * this.size];
+    this.scene.add(this.sky, this.ambient, this.key, this.key.target, this.rim, this.rim.target);
+  }
+
+  #listen() {
+    this.camera.controls.addEventListener('change', () => (this.changed = true));
+    let down = null;
+    this.canvas.addEventListener('pointerdown', (event) => (down = [event.clientX, event.clientY]));
+    this.canvas.addEventListener('pointerup', (event) => {
+      const still = down && Math.hypot(event.clientX - down[0], event.clientY - down[1]) < 4;
+      if (still && event.button === 0) this.emit('picked', this.pick(event.clientX, event.clientY));
+      down = null;
+    });
+    this.canvas.addEventListener('pointermove', (event) => {
+      if (event.buttons === 0) this.hover = [event.clientX, event.clientY];
+    });
+    this.canvas.addEventListener('pointerleave', () => this.emit('hovered', null));
+    this.canvas.addEventListener('webglcontextrestored', () => (this.changed = true));
+  }
+
+  /** The name of the link at a place of the window, or null. */
+  pick(x, y) {
+    const { left, top, width, height } = this.canvas.getBoundingClientRect();
+    const place = new Vector2(((x - left) / width) * 2 - 1, 1 - ((y - top) / height) * 2);
+    this.raycaster.setFromCamera(place, this.camera.camera);
+    return this.robot.hit(this.raycaster)?.item.link ?? null;
+  }
+
+  moveTo(time) {
+    this.time = time;
+    this.run.posesAt(time, this.poses);
+    this.robot.place(this.poses);
+    this.contacts.update(time, this.poses);
+    this.camera?.carry(this.#followedPoint());
+    this.changed = true;
+  }
+
+  #followedPoint() {
+    if (!this.following) return null;
+    if (this.following === 'com') {
+      const com = this.run.vectorAt(this.run.com, this.time);
+      return com && new Vector3(...com);
+    }
+    const link = this.run.linkByName.get(this.following);
+    return new Vector3(...placed(this.poses, link.body, link).p);
+  }
+
+  /** `what`: 'com', the name of a link, or null. */
+  follow(what) {
+    this.following = what;
+    this.camera.follow(this.#followedPoint());
+  }
+
+  select(name) {
+    const link = name ? this.run.linkByName.get(name) ?? null : null;
+    this.robot.select(link?.name ?? null);
+    this.marks.select(link);
+    this.changed = true;
+  }
+
+  frameAll(preset = null) {
+    this.camera.frame(this.robot.boundingSphere(), preset);
+    this.changed = true;
+  }
+
+  setMode(mode) {
+    this.robot.setMode(mode);
+    this.changed = true;
+  }
+
+  setTheme(name) {
+    const theme = THEMES[name];
+    for (const ground of this.grounds) ground.setTheme(theme);
+    this.sky.intensity = theme.sky;
+    this.sky.groundColor.set(theme.bounce);
+    this.key.intensity = theme.key;
+    this.rim.intensity = theme.rim;
+    this.changed = true;
+  }
+
+  resize() {
+    const { clientWidth: width, clientHeight: height } = this.canvas.parentElement;
+    if (width === 0 || height === 0) return;
+    this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio));
+    this.renderer.setSize(width, height);
+    this.camera.resize(width, height);
+    this.changed = true;
+  }
+
+  /** Where a link is seen: window coordinates of the middle of its nearest shape that is shown. */
+  screenPosition(name) {
+    const items = this.robot.itemsOf(name);
+    const { camera } = this.camera;
+    let nearest = null;
+    for (const item of items) {
+      const middle = this.robot.bounds([item]).getCenter(new Vector3());
+      const distance = middle.distanceTo(camera.position);
+      if (!nearest || distance < nearest.distance) nearest = { middle, distance };
+    }
+    const link = this.run.linkByName.get(name);
+    if (!nearest && !link) return null;
+    const point = nearest?.middle ?? new Vector3(...placed(this.poses, link.body, link).p);
+    point.project(camera);
+    const { left, top, width, height } = this.canvas.getBoundingClientRect();
+    return [left + ((point.x + 1) / 2) * width, top + ((1 - point.y) / 2) * height];
+  }
+
+  /** Draws if something has changed; says whether it did. */
+  draw() {
+    this.camera.update();
+    if (this.hover) {
+      this.emit('hovered', this.pick(...this.hover), this.hover);
+      this.hover = null;
+    }
+    if (!this.changed) return false;
+    this.changed = false;
+    const { target } = this.camera.controls;
+    const distance = this.camera.camera.position.distanceTo(target);
+    const center = this.robot.boundingSphere().center;
+    this.key.target.position.copy(center);
+    this.key.position.copy(center).add(new Vector3(1.5, -1.1, 3.2).multiplyScalar(this.size));
+    this.rim.target.position.copy(center);
+    this.rim.position.copy(center).add(new Vector3(-2.5, 2, 1.2).multiplyScalar(this.size));
+    this.grounds.forEach((ground) => ground.update(
+      this.robot.matrices.of[ground.plane.body], target, Math.max(7 * this.size, 2.2 * distance)));
+    this.marks.update(this.time, this.poses, this.camera.camera);
+    this.renderer.render(this.scene, this.camera.camera);
+    return true;
+  }
+}
+
+/** The planes of the run; drawn ones only where no plane collides. */
+function planesOf(run) {
+  const isPlane = (item) => item.shape.kind === 'plane';
+  const colliding = run.header.geometries.filter(isPlane);
+  return colliding.length > 0 ? colliding : run.header.visuals.filter(isPlane);
+}
