@@ -12,10 +12,14 @@ namespace {
 /// Below this coefficient the pyramid degenerates: the contact is frictionless.
 constexpr double kSmallestFriction = 1e-5;
 
+/// A wished tangent is followed as long as rounding does not decide where it points: this sine of
+/// the angle between it and the normal.
+constexpr double kSmallestSine = 1e-6;
+
 Matrix3 contactFrame(const Contact& c) {
   Vector3 t = c.tangent_W - c.n_W * c.n_W.dot(c.tangent_W);
   const double length = t.norm();
-  if (length < 0.5 * c.tangent_W.norm() || length == 0.0) return frameFromNormal(c.n_W);
+  if (!(length > kSmallestSine * c.tangent_W.norm())) return frameFromNormal(c.n_W);
   t /= length;
   Matrix3 R;
   R << c.n_W, t, c.n_W.cross(t);

@@ -18,7 +18,7 @@ struct Contact {
   int bodyB = 0;
   Vector3 p_WC = Vector3::Zero();  ///< midway between the two surfaces along the normal [m]
   Vector3 n_W = Vector3::UnitZ();  ///< unit normal from A to B: a force along +n pushes B away
-  /// Wished first tangent, any length; zero: chosen by frameFromNormal().
+  /// Wished first tangent, any length; zero or along n: chosen by frameFromNormal().
   Vector3 tangent_W = Vector3::Zero();
   double distance = 0.0;  ///< signed [m], negative when the shapes overlap
 };

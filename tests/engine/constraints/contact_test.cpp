@@ -151,7 +151,10 @@ TEST(Contact, FollowsTheWishedTangent) {
   const Vector3 n = R.col(0);
   EXPECT_APPROX(R.col(1), (wish - n * n.dot(wish)).normalized(), 1e-14);
   EXPECT_APPROX(R.col(2), n.cross(R.col(1)), 1e-14);
-  // A wish along the normal cannot be followed.
+  // A wish near the normal is followed too, as by a capsule that stands on its end.
+  const Scene steep = oneContact(5, [&](Model&, Contact& c) { c.tangent_W = c.n_W + 1e-3 * wish; });
+  EXPECT_APPROX(steep.data->constraints.contact.made()[0].R_WC.col(1), R.col(1), 1e-12);
+  // A wish along the normal cannot be.
   const Scene along = oneContact(5, [&](Model&, Contact& c) { c.tangent_W = c.n_W; });
   EXPECT_EQ(along.data->constraints.contact.made()[0].R_WC,
             frameFromNormal(along.data->contacts.contacts[0].n_W));
