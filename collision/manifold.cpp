@@ -135,6 +135,29 @@ Polygon clipSegments(const Polygon& subject, const Polygon& window) {
   return stretch;
 }
 
+/// Midway between the nearest points, seen along n, of two polygons side by side.
+Corner betweenPolygons(const Polygon& p, const Polygon& q) {
+  Corner middle{};
+  double nearest = kInfinity;
+  const auto cornersAgainstEdges = [&](const Polygon& corners, const Polygon& rim) {
+    for (int i = 0; i < corners.count; ++i)
+      for (int e = 0; e < rim.count; ++e) {
+        const Corner &c = corners[i], &a = rim[e], &b = rim[(e + 1) % rim.count];
+        const double ux = b.x - a.x, uy = b.y - a.y, uu = ux * ux + uy * uy;
+        double s = uu > 0.0 ? ((c.x - a.x) * ux + (c.y - a.y) * uy) / uu : 0.0;
+        s = std::clamp(s, 0.0, 1.0);
+        const Corner on{a.x + s * ux, a.y + s * uy, a.height + s * (b.height - a.height)};
+        const double distance = std::hypot(c.x - on.x, c.y - on.y);
+        if (distance >= nearest) continue;
+        nearest = distance;
+        middle = {0.5 * (c.x + on.x), 0.5 * (c.y + on.y), 0.5 * (c.height + on.height)};
+      }
+  };
+  cornersAgainstEdges(p, q);
+  cornersAgainstEdges(q, p);
+  return middle;
+}
+
 }  // namespace
 
 void addFaceContacts(const SupportFace& faceA, const SupportFace& faceB, const PairContact& deepest,
@@ -155,6 +178,16 @@ void addFaceContacts(const SupportFace& faceA, const SupportFace& faceB, const P
   const bool clipA = a.count == 2 && b.count > 2;
   const Polygon &subject = clipA ? a : b, &window = clipA ? b : a;
   const Polygon common = window.count == 2 ? clipSegments(subject, window) : clip(subject, window);
+  if (common.count == 0) {
+    // Segments cross at the deepest point. Faces that meet at their rims alone touch there.
+    PairContact contact = deepest;
+    if (window.count > 2) {
+      const Corner c = betweenPolygons(a, b);
+      contact.p_WC = o + R * Vector3(c.height, c.x, c.y);
+    }
+    out.add(contact);
+    return;
+  }
   const Plane plane = planeOf(window);
   const double sign = clipA ? -1.0 : 1.0;
 

@@ -16,8 +16,9 @@
 namespace softgauss::collision {
 
 /// Adds at most four contacts with distance < margin. `deepest` is the contact at the support
-/// points; it is used where the faces have no common area or where no corner is nearly as deep
-/// (round shapes).
+/// points; it is used where a face is a point, where segments cross, or where no corner is nearly
+/// as deep (round shapes). Where polygons have no common area, the contact is between their nearest
+/// rims.
 void addFaceContacts(const SupportFace& faceA, const SupportFace& faceB, const PairContact& deepest,
                      double margin, PairContacts& out);
 

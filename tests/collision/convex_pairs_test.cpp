@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "collision/box_pairs.hpp"
 #include "engine/core/check.hpp"
 #include "tests/collision/random_pairs.hpp"
@@ -199,4 +201,28 @@ TEST(ConvexPairs, PosesThatAreNotFiniteAreReported) {
   PairContacts out;
   EXPECT_FALSE(convexConvex(a.collider, at(0, kNaN, 0), b.collider, at(0, 0, 0), 0.0, out));
   EXPECT_EQ(out.count, 0);
+}
+
+TEST(ConvexPairs, EdgeBelowTheRimOfACylinderTouchesThere) {
+  // A long edge along y meets the cap near its rim, over a chord that is short against the edge.
+  const double r = 0.045, depth = 5e-4;
+  const Owned cylinder(Shape::cylinder(r, 0.012)), box(Shape::box({0.05, 0.1, 0.05}));
+  const double toEdge = 0.05 * std::sqrt(2.0);
+  // The octagon that stands for the cap has no corner towards the edge, and misses it.
+  const Transform X_cylinder = turned({0, 0, 1}, std::numbers::pi / 8, {0, 0, 0});
+  for (double inward : {6e-4, 2e-3})
+    for (double turn : {0.0, 1e-3, -1e-3}) {
+      Transform X =
+          turned({0, 1, 0}, std::numbers::pi / 4, {r - inward, 0, -0.012 + depth - toEdge});
+      X.R = turned({0, 0, 1}, turn, {0, 0, 0}).R * X.R;
+      const PairContacts c = contacts(box, X, cylinder, X_cylinder);
+      ASSERT_GE(c.count, 1);
+      for (int i = 0; i < c.count; ++i) {
+        EXPECT_LT((c[i].n_W - Vector3::UnitZ()).norm(), 1e-6);
+        EXPECT_NEAR(c[i].distance, -depth, 1e-6);
+        EXPECT_NEAR(c[i].p_WC.x(), r - inward, 2e-3);
+        EXPECT_LT(c[i].p_WC.head<2>().norm(), 1.05 * r);
+        EXPECT_NEAR(c[i].p_WC.z(), -0.012 + 0.5 * depth, 1e-6);
+      }
+    }
 }
