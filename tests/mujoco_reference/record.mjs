@@ -27,6 +27,7 @@ const kDefaults = {
   duration: 1,
   every: 0.05, // samples of a trajectory [s]
   integrators: ['Euler'],
+  settle: 0, // free run before the start [s]
   states: [], // to be evaluated, besides
   stateTimes: [0], // those on the trajectory, multiples of `every`
 };
@@ -47,7 +48,12 @@ function record(mujoco, given) {
     v: v ?? zero,
     force: force ?? zero,
   });
-  const start = complete(scenario.start);
+  let start = complete(scenario.start);
+  if (scenario.start?.hold) start.force = simulation.holdingForce(start);
+  if (scenario.settle > 0) {
+    const end = simulation.trajectory(start, 'Euler', timestep, scenario.settle, scenario.settle);
+    start = { ...start, q: end.q.at(-1), v: end.v.at(-1) };
+  }
 
   // Half the step shows how far a run is from its own limit.
   const run = (integrator, h) => simulation.trajectory(start, integrator, h, duration, every);

@@ -3,10 +3,16 @@
 // All scenarios. Each has
 //   name, about      file name of its log, and one sentence
 //   scene            see scene.mjs
-//   start            {q, v, force} of its trajectories; what is left out is qpos0 or 0
+//   start            {q, v, force} of its trajectories; what is left out is qpos0 or 0. With
+//                    hold: true, force also balances the bias of the start at scalar joints.
 //   states           further states to be evaluated
 // and what else record.mjs lists as defaults.
 
+import { contacts } from './scenarios/contacts.mjs';
+import { joints } from './scenarios/joints.mjs';
+import { loops } from './scenarios/loops.mjs';
+import { pairings } from './scenarios/pairs.mjs';
+import { robots } from './scenarios/robots.mjs';
 import { trees } from './scenarios/trees.mjs';
 
-export const scenarios = [...trees];
+export const scenarios = [...trees, ...joints, ...loops, ...contacts, ...pairings, ...robots];

@@ -54,6 +54,15 @@ export class Simulation {
     data.qfrc_applied.set(force);
   }
 
+  // Applied force with which the bias of that state does nothing at scalar joints.
+  holdingForce(state) {
+    this.set(state);
+    this.mujoco.mj_forward(this.model, this.data);
+    const free = this.mujoco.mjtJoint.mjJNT_FREE.value;
+    const isFree = list(this.model.dof_jntid).map((joint) => this.model.jnt_type[joint] === free);
+    return state.force.map((f, i) => (isFree[i] ? f : f + this.data.qfrc_bias[i]));
+  }
+
   massMatrix() {
     const buffer = new this.mujoco.DoubleBuffer(this.model.nv * this.model.nv);
     this.mujoco.mj_fullM(this.model, this.data, buffer);

@@ -4,14 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-
-#include "engine/model/state.hpp"
+#include <stdexcept>
 
 namespace softgauss::test {
 namespace {
-
-/// |a − b| relative to b, or absolute where b is below 1.
-double relative(double a, double b) { return std::abs(a - b) / std::max(1.0, std::abs(b)); }
 
 /// The index of the nearest item that is not taken; npos when all are.
 template <class Distance>
@@ -30,11 +26,37 @@ std::string counts(const char* what, std::size_t ours, std::size_t theirs) {
 
 }  // namespace
 
-double relativeDifference(const MatrixX& a, const MatrixX& b) {
+double relativeDifference(const MatrixX& a, const MatrixX& b, double floor) {
   if (a.rows() != b.rows() || a.cols() != b.cols()) return kInfinity;
   if (a.size() == 0) return 0.0;
   return (a - b).cwiseAbs().maxCoeff<Eigen::PropagateNaN>() /
-         std::max(1.0, b.cwiseAbs().maxCoeff());
+         std::max(floor, b.cwiseAbs().maxCoeff());
+}
+
+double smallForce(const ReferenceState& state) {
+  return state.M.cwiseAbs().maxCoeff() * kSmallAcceleration;
+}
+
+std::vector<Contact> loggedContacts(const Model& model, const std::vector<ReferenceContact>& log) {
+  const auto geometry = [&](const std::string& name) {
+    const auto found = std::find_if(model.geometries.begin(), model.geometries.end(),
+                                    [&](const Geometry& g) { return g.name == name; });
+    if (found == model.geometries.end()) throw std::runtime_error("no geometry " + name);
+    return static_cast<int>(found - model.geometries.begin());
+  };
+  std::vector<Contact> contacts;
+  for (const ReferenceContact& theirs : log) {
+    Contact& c = contacts.emplace_back();
+    c.geometryA = geometry(theirs.geometries[0]);
+    c.geometryB = geometry(theirs.geometries[1]);
+    c.bodyA = model.geometries[static_cast<std::size_t>(c.geometryA)].body;
+    c.bodyB = model.geometries[static_cast<std::size_t>(c.geometryB)].body;
+    c.p_WC = theirs.position;
+    c.n_W = theirs.normal;
+    c.tangent_W = theirs.tangent;
+    c.distance = theirs.distance;
+  }
+  return contacts;
 }
 
 std::vector<Row> rowsOf(const Model& model, const Data& data) {
@@ -87,21 +109,23 @@ ContactDifference compareContacts(const Model& model, const ContactSet& contacts
   return worst;
 }
 
-RowDifference compareRows(const std::vector<Row>& rows, const std::vector<Row>& reference) {
+RowDifference compareRows(const std::vector<Row>& rows, const std::vector<Row>& reference,
+                          double smallForce) {
   RowDifference worst;
   if (rows.size() != reference.size()) {
     worst.unmatched = counts("rows", rows.size(), reference.size());
     return worst;
   }
-  double largestForce = 1.0;
+  double largestForce = smallForce;
   for (const Row& row : reference) largestForce = std::max(largestForce, std::abs(row.force));
 
   std::vector<bool> taken(rows.size(), false);
   for (const Row& theirs : reference) {
     const auto differenceOf = [&](std::size_t i) {
       const Row& ours = rows[i];
-      return std::array{relativeDifference(ours.J, theirs.J),
-                        relative(ours.reference, theirs.reference),
+      return std::array{relativeDifference(ours.J, theirs.J, 0.0),
+                        std::abs(ours.reference - theirs.reference) /
+                            std::max(kSmallAcceleration, std::abs(theirs.reference)),
                         std::abs(ours.D - theirs.D) / theirs.D};
     };
     const std::size_t nearest = takeNearest(taken, [&](std::size_t i) {

@@ -13,9 +13,17 @@
 
 namespace softgauss::test {
 
-/// max |a − b| / max |b|, where b is compared with 1 if it is all small: a vector of forces near 0
-/// has no relative error.
-double relativeDifference(const MatrixX& a, const MatrixX& b);
+/// max |a − b| / max(max |b|, floor). The floor, in the unit of b, is what counts as 0: a vector of
+/// forces near 0 has no relative error.
+double relativeDifference(const MatrixX& a, const MatrixX& b, double floor);
+
+/// Accelerations below this count as 0 [m/s² or rad/s²].
+inline constexpr double kSmallAcceleration = 1.0;
+/// Forces below what gives such an acceleration count as 0.
+double smallForce(const ReferenceState& state);
+
+/// The contacts of a log as a source of contacts: same points, same frames.
+std::vector<Contact> loggedContacts(const Model& model, const std::vector<ReferenceContact>& log);
 
 /// The rows of the last assembled constraints, forces at the present residual.
 std::vector<Row> rowsOf(const Model& model, const Data& data);
@@ -35,9 +43,10 @@ struct RowDifference {
   double J = 0.0;          ///< relative
   double D = 0.0;          ///< relative
   double reference = 0.0;  ///< relative
-  double force = 0.0;      ///< relative to the largest force
+  double force = 0.0;      ///< relative to the largest force, or to `smallForce`
 };
-RowDifference compareRows(const std::vector<Row>& rows, const std::vector<Row>& reference);
+RowDifference compareRows(const std::vector<Row>& rows, const std::vector<Row>& reference,
+                          double smallForce);
 
 /// max |q ⊖ q_ref| and max |v − v_ref| of two states, positions of floating bases in m and rad.
 double stateDifference(const Model& model, const VectorX& q, const VectorX& v, const VectorX& qRef,

@@ -21,19 +21,19 @@ Row row(double j, double D, double reference, double force) {
 
 TEST(Comparison, RowsInAnotherOrderAreTheSame) {
   const std::vector<Row> reference = {row(1, 2, 3, 4), row(1, 2, -3, 5), row(-1, 2, 3, 6)};
-  const RowDifference d = compareRows({reference[2], reference[0], reference[1]}, reference);
+  const RowDifference d = compareRows({reference[2], reference[0], reference[1]}, reference, 0);
   EXPECT_FALSE(d.unmatched);
   EXPECT_EQ(d.J + d.D + d.reference + d.force, 0.0);
 }
 
 TEST(Comparison, FindsEveryDifferenceOfARow) {
   const std::vector<Row> reference = {row(1, 2, 30, 4)};
-  EXPECT_NEAR(compareRows({row(1.1, 2, 30, 4)}, reference).J, 0.1 / 1.0, 1e-15);
-  EXPECT_NEAR(compareRows({row(1, 2.2, 30, 4)}, reference).D, 0.1, 1e-15);
-  EXPECT_NEAR(compareRows({row(1, 2, 33, 4)}, reference).reference, 0.1, 1e-15);
-  EXPECT_NEAR(compareRows({row(1, 2, 30, 5)}, reference).force, 0.25, 1e-15);
-  EXPECT_TRUE(compareRows({}, reference).unmatched);
-  EXPECT_TRUE(compareRows({row(kNaN, 2, 30, 4)}, reference).unmatched);
+  EXPECT_NEAR(compareRows({row(1.1, 2, 30, 4)}, reference, 1).J, 0.1 / 1.0, 1e-15);
+  EXPECT_NEAR(compareRows({row(1, 2.2, 30, 4)}, reference, 1).D, 0.1, 1e-15);
+  EXPECT_NEAR(compareRows({row(1, 2, 33, 4)}, reference, 1).reference, 0.1, 1e-15);
+  EXPECT_NEAR(compareRows({row(1, 2, 30, 5)}, reference, 1).force, 0.25, 1e-15);
+  EXPECT_TRUE(compareRows({}, reference, 1).unmatched);
+  EXPECT_TRUE(compareRows({row(kNaN, 2, 30, 4)}, reference, 1).unmatched);
 }
 
 TEST(Comparison, ContactsMayNameTheirGeometriesInEitherOrder) {
@@ -59,16 +59,23 @@ TEST(Comparison, ContactsMayNameTheirGeometriesInEitherOrder) {
   EXPECT_EQ(d.normal, 0.0);
   EXPECT_EQ(d.distance, 0.25);
 
+  // The same as a source of contacts.
+  ours.contacts = loggedContacts(model, {theirs});
+  const ContactDifference same = compareContacts(model, ours, {theirs});
+  EXPECT_FALSE(same.unmatched);
+  EXPECT_EQ(same.position + same.normal + same.distance, 0.0);
+
   theirs.geometries[0] = "another";
+  EXPECT_THROW(loggedContacts(model, {theirs}), std::runtime_error);
   EXPECT_TRUE(compareContacts(model, ours, {theirs}).unmatched);
   EXPECT_TRUE(compareContacts(model, ours, {}).unmatched);
 }
 
 TEST(Comparison, OfVectorsSeesSizesAndNaN) {
-  EXPECT_EQ(relativeDifference(Eigen::Vector2d(1, 20), Eigen::Vector2d(1, 10)), 1.0);
-  EXPECT_EQ(relativeDifference(Eigen::Vector2d(0, 0), Eigen::Vector2d(0, 0.1)), 0.1);
-  EXPECT_EQ(relativeDifference(Eigen::Vector2d(0, 0), Vector3(0, 0, 0)), kInfinity);
-  EXPECT_TRUE(std::isnan(relativeDifference(Eigen::Vector2d(kNaN, 0), Eigen::Vector2d(0, 0))));
+  EXPECT_EQ(relativeDifference(Eigen::Vector2d(1, 20), Eigen::Vector2d(1, 10), 0), 1.0);
+  EXPECT_EQ(relativeDifference(Eigen::Vector2d(1, 20), Eigen::Vector2d(1, 10), 20), 0.5);
+  EXPECT_EQ(relativeDifference(Eigen::Vector2d(0, 0), Vector3(0, 0, 0), 1), kInfinity);
+  EXPECT_TRUE(std::isnan(relativeDifference(Eigen::Vector2d(kNaN, 0), Eigen::Vector2d(0, 0), 1)));
 }
 
 TEST(ReferenceScene, RefusesWhatItDoesNotKnow) {

@@ -34,7 +34,9 @@ ReferenceContact contactOf(const Json& item) {
   contact.geometries[0] = item.at("geometries").at(0);
   contact.geometries[1] = item.at("geometries").at(1);
   contact.position = vectorOf(item.at("position"));
-  contact.normal = vectorOf(item.at("frame")).head<3>();
+  const VectorX frame = vectorOf(item.at("frame"));
+  contact.normal = frame.head<3>();
+  contact.tangent = frame.segment<3>(3);
   contact.distance = item.at("distance");
   return contact;
 }

@@ -13,7 +13,7 @@ namespace softgauss::test {
 /// A contact as MuJoCo lists it; the normal points from the first geometry to the second.
 struct ReferenceContact {
   std::string geometries[2];
-  Vector3 position, normal;
+  Vector3 position, normal, tangent;
   double distance = 0.0;
 };
 

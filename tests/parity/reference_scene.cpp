@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/parity/reference_scene.hpp"
 
+#include <algorithm>
 #include <initializer_list>
 #include <map>
+#include <stdexcept>
 #include <string_view>
 
 #include "engine/model/model_builder.hpp"
@@ -41,6 +43,7 @@ Impedance impedanceOf(const Json& item) {
   Impedance p;
   if (item.contains("solref")) {
     const Eigen::Vector2d solref = vectorOf<2>(item["solref"]);
+    if (solref.minCoeff() <= 0.0) throw std::runtime_error("solref not above 0");
     p.timeConstant = solref[0];
     p.dampingRatio = solref[1];
   }
