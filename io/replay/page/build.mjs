@@ -5,7 +5,7 @@
 //
 // MODULES is the node_modules folder that `npm ci` filled from package-lock.json. The same sources
 // give the same bytes. The first comment of the page holds the SHA-256 over the sources: of the
-// lines "<sha256>  <path>", one a file, in the order of the paths; check_page.cmake computes it anew.
+// lines "<sha256>  <path>", one a file, in the order of the paths, as check_page.cmake has it.
 
 import { createHash } from 'node:crypto';
 import { readdirSync, readFileSync, writeFileSync } from 'node:fs';
@@ -20,25 +20,39 @@ const esbuild = createRequire(pathToFileURL(join(modules, 'x')))('esbuild');
 
 function sources(folder = here) {
   return readdirSync(folder, { withFileTypes: true }).flatMap((entry) =>
-    entry.isDirectory() ? sources(join(folder, entry.name)) : [join(folder, entry.name)]);
+    entry.isDirectory() ? sources(join(folder, entry.name)) : [join(folder, entry.name)],
+  );
 }
 
 function sourceHash() {
-  const paths = sources().map((file) => relative(here, file).split(sep).join('/')).sort();
+  const paths = sources()
+    .map((file) => relative(here, file).split(sep).join('/'))
+    .sort();
   const sha256 = (data) => createHash('sha256').update(data).digest('hex');
-  return sha256(paths.map((path) => `${sha256(readFileSync(join(here, path)))}  ${path}\n`).join(''));
+  return sha256(
+    paths.map((path) => `${sha256(readFileSync(join(here, path)))}  ${path}\n`).join(''),
+  );
 }
 
 function bundle(entry, options) {
   const { outputFiles } = esbuild.buildSync({
-    entryPoints: [join(here, entry)], nodePaths: [modules], bundle: true, minify: true, write: false,
-    legalComments: 'none', logLevel: 'warning', absWorkingDir: here, ...options,
+    entryPoints: [join(here, entry)],
+    nodePaths: [modules],
+    bundle: true,
+    minify: true,
+    write: false,
+    legalComments: 'none',
+    logLevel: 'warning',
+    absWorkingDir: here,
+    ...options,
   });
   return outputFiles[0].text.trim();
 }
 
 function libraries() {
-  const names = Object.keys(JSON.parse(readFileSync(join(here, 'package.json'), 'utf8')).dependencies);
+  const names = Object.keys(
+    JSON.parse(readFileSync(join(here, 'package.json'), 'utf8')).dependencies,
+  );
   return names.map((name) => {
     const folder = join(modules, name);
     const { version, license } = JSON.parse(readFileSync(join(folder, 'package.json'), 'utf8'));
@@ -50,10 +64,20 @@ const script = bundle('src/main.js', { format: 'iife', target: ['es2022'] });
 const style = bundle('style.css', { target: ['chrome111', 'firefox113', 'safari16.4'] });
 const hash = (text) => `'sha256-${createHash('sha256').update(text).digest('base64')}'`;
 const parts = {
-  CSP: `default-src 'none'; script-src ${hash(script)}; style-src ${hash(style)}; img-src data:; base-uri 'none'; form-action 'none'`,
+  // Nothing may be fetched; only this script and this style count.
+  CSP: [
+    "default-src 'none'",
+    `script-src ${hash(script)}`,
+    `style-src ${hash(style)}`,
+    'img-src data:',
+    "base-uri 'none'",
+    "form-action 'none'",
+  ].join('; '),
   STYLE: style,
   SCRIPT: script,
-  LICENCES: libraries().map(({ name, version, text }) => `${name} ${version}\n\n${text}`).join('\n\n\n'),
+  LICENCES: libraries()
+    .map(({ name, version, text }) => `${name} ${version}\n\n${text}`)
+    .join('\n\n\n'),
   TITLE: '@@SOFTGAUSS_TITLE@@',
   RUN: '@@SOFTGAUSS_RUN@@',
 };

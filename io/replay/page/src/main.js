@@ -26,14 +26,15 @@ function complain(id, text) {
 
 /** The view, or null where there is no WebGL. */
 function makeStage(run) {
-  try {
+  if (document.createElement('canvas').getContext('webgl2'))
     return new Stage(run, byId('canvas'));
-  } catch (error) {
-    console.warn(error.message);
-    byId('view').classList.add('without-view');
-    complain('no-view', 'There is no 3D view: this browser offers no WebGL 2. The plots and the links’ numbers work without.');
-    return null;
-  }
+  byId('canvas').hidden = true;
+  complain(
+    'no-view',
+    'There is no 3D view: this browser offers no WebGL 2. ' +
+      'The plots and the numbers of the links work without.',
+  );
+  return null;
 }
 
 function showHeader(run) {
@@ -41,8 +42,16 @@ function showHeader(run) {
   byId('model').textContent = header.model;
   byId('summary').textContent = header.facts[0]?.[1] ?? '';
   if (header.outcome.kind !== 'completed') {
-    const what = { 'non-finite': 'The simulation became non-finite', interrupted: 'The run was interrupted' };
-    complain('banner', [what[header.outcome.kind] ?? header.outcome.kind, header.outcome.message].filter(Boolean).join(': '));
+    const what = {
+      'non-finite': 'The simulation became non-finite',
+      interrupted: 'The run was interrupted',
+    };
+    complain(
+      'banner',
+      [what[header.outcome.kind] ?? header.outcome.kind, header.outcome.message]
+        .filter(Boolean)
+        .join(': '),
+    );
   }
 }
 
@@ -57,6 +66,7 @@ function start(run, begun) {
   showHeader(run);
   dialogs(run);
   const stage = makeStage(run);
+  clock.on('playing', () => stage?.pacing(null));
   const poses = stage?.poses ?? run.posesAt(run.start, new Float64Array(7 * run.bodies.length));
 
   new Tree(byId('tree'), run, selection);
@@ -73,22 +83,28 @@ function start(run, begun) {
   });
   inspect();
 
-  for (const button of document.querySelectorAll('[data-icon]')) button.append(icon(button.dataset.icon));
+  for (const button of document.querySelectorAll('[data-icon]'))
+    button.append(icon(button.dataset.icon));
   const themeButton = byId('toggle-theme');
-  const showTheme = () => themeButton.replaceChildren(icon(settings.get('theme') === 'dark' ? 'sun' : 'moon'));
+  const showTheme = () =>
+    themeButton.replaceChildren(icon(settings.get('theme') === 'dark' ? 'sun' : 'moon'));
   themeButton.addEventListener('click', () => settings.toggleTheme());
   settings.on('theme', showTheme);
   showTheme();
-  for (const id of ['info', 'help']) byId(`show-${id}`).addEventListener('click', () => toggleDialog(id));
+  for (const id of ['info', 'help'])
+    byId(`show-${id}`).addEventListener('click', () => toggleDialog(id));
 
   if (stage) connectStage(stage, settings, selection);
   listenToKeys({ clock, settings, selection, layout, plots, stage, run });
 
   let firstFrame = null;
+  let last = 0;
   const tick = (now) => {
+    if (clock.playing) stage?.pacing(now - last);
+    last = now;
     clock.tick(now);
-    const drawn = stage ? stage.draw() : true;
-    if (drawn && firstFrame === null) {
+    stage?.draw();
+    if (firstFrame === null && (stage === null || stage.pictures > 0)) {
       firstFrame = performance.now();
       begun();
       if (!window.matchMedia('(prefers-reduced-motion: reduce)').matches) clock.play();
@@ -96,7 +112,17 @@ function start(run, begun) {
     requestAnimationFrame(tick);
   };
   requestAnimationFrame(tick);
-  return { run, clock, settings, selection, layout, plots, stage, poses: () => poses, firstFrame: () => firstFrame };
+  return {
+    run,
+    clock,
+    settings,
+    selection,
+    layout,
+    plots,
+    stage,
+    poses: () => poses,
+    firstFrame: () => firstFrame,
+  };
 }
 
 function connectStage(stage, settings, selection) {
@@ -129,8 +155,6 @@ function connectStage(stage, settings, selection) {
     });
   stage.setTheme(settings.get('theme'));
   stage.setMode(settings.get('mode'));
-  stage.resize();
-  stage.frameAll('home');
   new ResizeObserver(() => stage.resize()).observe(byId('view'));
 }
 

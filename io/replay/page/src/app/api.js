@@ -1,7 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // window.softgauss: the page by script, for tests and for those who want pictures of a run.
 
-export function makeApi({ run, clock, settings, selection, layout, plots, stage, poses, ready, firstFrame }) {
+export function makeApi({
+  run,
+  clock,
+  settings,
+  selection,
+  layout,
+  plots,
+  stage,
+  poses,
+  ready,
+  firstFrame,
+}) {
   const link = (name) => {
     const found = run.linkByName.get(name);
     if (!found) throw new Error(`there is no link "${name}"`);
@@ -10,12 +21,22 @@ export function makeApi({ run, clock, settings, selection, layout, plots, stage,
   return {
     ready,
     header: run.header,
-    get time() { return clock.time; },
-    get playing() { return clock.playing; },
-    get selected() { return selection.name; },
-    get zoom() { return [...plots.zoom]; },
+    get time() {
+      return clock.time;
+    },
+    get playing() {
+      return clock.playing;
+    },
+    get selected() {
+      return selection.name;
+    },
+    get zoom() {
+      return [...plots.zoom];
+    },
     /** From the start of navigation to the first picture [ms]. */
-    get firstFrameMs() { return firstFrame(); },
+    get firstFrameMs() {
+      return firstFrame();
+    },
     seek: (time) => clock.seek(time),
     /** Frame number i, from 0. */
     frame: (i) => clock.frame(i),

@@ -45,8 +45,8 @@ export class Clock extends Emitter {
   /** To be called for every picture. */
   tick(now) {
     if (!this.playing) return;
-    // After a hidden tab, go on from where it was.
-    const elapsed = Math.min(0.1, Math.max(0, (now - this.last) / 1000));
+    // After a hidden tab, go on from about where it was.
+    const elapsed = Math.min(0.5, Math.max(0, (now - this.last) / 1000));
     this.last = now;
     const time = this.time + elapsed * this.speed;
     if (time < this.run.end) {
@@ -78,8 +78,13 @@ export class Clock extends Emitter {
 
   /** One notch faster or slower. */
   faster(notches) {
-    const nearest = SPEEDS.reduce((best, s, i) =>
-      Math.abs(Math.log(s / this.speed)) < Math.abs(Math.log(SPEEDS[best] / this.speed)) ? i : best, 0);
+    const nearest = SPEEDS.reduce(
+      (best, s, i) =>
+        Math.abs(Math.log(s / this.speed)) < Math.abs(Math.log(SPEEDS[best] / this.speed))
+          ? i
+          : best,
+      0,
+    );
     this.setSpeed(SPEEDS[Math.min(SPEEDS.length - 1, Math.max(0, nearest + notches))]);
   }
 

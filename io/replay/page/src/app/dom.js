@@ -38,7 +38,8 @@ const ICONS = {
   follow: 'M8 1v3M8 12v3M1 8h3M12 8h3M8 4.5a3.5 3.5 0 1 0 0 7 3.5 3.5 0 0 0 0-7z',
   close: 'M3.5 3.5l9 9M12.5 3.5l-9 9',
   chevron: 'M6 4l4 4-4 4',
-  limits: 'M1.5 4h2M5.5 4h2M9.5 4h2M13 4h1.5M1.5 12h2M5.5 12h2M9.5 12h2M13 12h1.5M2 9c3-4 5 3 8-1l4-1',
+  limits:
+    'M1.5 4h2M5.5 4h2M9.5 4h2M13 4h1.5M1.5 12h2M5.5 12h2M9.5 12h2M13 12h1.5M2 9c3-4 5 3 8-1l4-1',
   reset: 'M2 8h12M5 5L2 8l3 3M11 5l3 3-3 3',
 };
 const FILLED = new Set(['play', 'pause', 'first', 'last']);
@@ -57,16 +58,21 @@ export function icon(name) {
 
 /** A button with an icon; `label` is its tooltip and its name for screen readers. */
 export function iconButton(name, label, onclick, attributes = {}) {
-  return element('button', { type: 'button', class: 'tool', title: label, 'aria-label': label,
-                             onclick, ...attributes }, icon(name));
+  return element(
+    'button',
+    { type: 'button', class: 'tool', title: label, 'aria-label': label, onclick, ...attributes },
+    icon(name),
+  );
 }
 
 /** A number in at most `digits` significant digits, with a true minus. */
 export function number(value, digits = 4) {
   if (!Number.isFinite(value)) return '–';
   const size = Math.abs(value);
-  const text = size !== 0 && (size < 1e-3 || size >= 1e5) ? value.toExponential(digits - 2)
-                                                          : String(Number(value.toPrecision(digits)));
+  const text =
+    size !== 0 && (size < 1e-3 || size >= 1e5)
+      ? value.toExponential(digits - 2)
+      : String(Number(value.toPrecision(digits)));
   return text.replace('-', '−').replace('e-', 'e−').replace('e+', 'e');
 }
 

@@ -14,7 +14,7 @@ export function listenToKeys({ clock, settings, selection, layout, plots, stage,
     '[': () => clock.faster(-1),
     ']': () => clock.faster(1),
     l: () => clock.setLoop(!clock.loop),
-    f: () => settings.set('follow', settings.get('follow') ? null : selection.name ?? 'com'),
+    f: () => settings.set('follow', settings.get('follow') ? null : (selection.name ?? 'com')),
     a: () => stage?.frameAll(),
     F: () => stage?.frameAll('front'),
     S: () => stage?.frameAll('side'),
@@ -45,7 +45,8 @@ export function listenToKeys({ clock, settings, selection, layout, plots, stage,
     // The space bar presses a focused button, arrows move in a list.
     if (event.key === ' ' && target.matches('button, summary, [type=checkbox], select')) return;
     if (target.matches('select') && !['[', ']', '?'].includes(event.key)) return;
-    if (target.matches('[type=range]:not(.timeline)') && /^(Arrow|Home|End)/.test(event.key)) return;
+    if (target.matches('[type=range]:not(.timeline)') && /^(Arrow|Home|End)/.test(event.key))
+      return;
     const action = actions[event.key];
     if (!action) return;
     event.preventDefault();

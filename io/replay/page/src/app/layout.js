@@ -17,12 +17,17 @@ export class Layout {
     for (const name of ['links', 'plots'])
       this.buttons[name].addEventListener('click', () => this.toggle(name));
     this.#splitter(byId('split-links'), (event) => this.#setSize('links', event.clientX));
-    this.#splitter(byId('split-plots'), (event) => NARROW.matches
-      ? this.#setSize('plotsBelow', byId('transport').getBoundingClientRect().top - event.clientY)
-      : this.#setSize('plots', window.innerWidth - event.clientX));
+    this.#splitter(byId('split-plots'), (event) =>
+      NARROW.matches
+        ? this.#setSize('plotsBelow', byId('transport').getBoundingClientRect().top - event.clientY)
+        : this.#setSize('plots', window.innerWidth - event.clientX),
+    );
     const adapt = () => {
       this.open('links', !NARROW.matches);
-      byId('split-plots').setAttribute('aria-orientation', NARROW.matches ? 'horizontal' : 'vertical');
+      byId('split-plots').setAttribute(
+        'aria-orientation',
+        NARROW.matches ? 'horizontal' : 'vertical',
+      );
     };
     NARROW.addEventListener('change', adapt);
     adapt();
@@ -46,19 +51,31 @@ export class Layout {
   #setSize(name, pixels) {
     const [least, most] = LIMITS[name];
     const room = name === 'plotsBelow' ? window.innerHeight - 260 : window.innerWidth - 260;
-    this.root.style.setProperty(`--${name.toLowerCase()}`, `${Math.round(Math.max(least, Math.min(most, room, pixels)))}px`);
+    this.root.style.setProperty(
+      `--${name.toLowerCase()}`,
+      `${Math.round(Math.max(least, Math.min(most, room, pixels)))}px`,
+    );
   }
 
   #splitter(bar, place) {
     bar.addEventListener('pointerdown', (event) => {
       bar.setPointerCapture(event.pointerId);
       bar.addEventListener('pointermove', place);
-      bar.addEventListener('lostpointercapture', () => bar.removeEventListener('pointermove', place), { once: true });
+      bar.addEventListener(
+        'lostpointercapture',
+        () => bar.removeEventListener('pointermove', place),
+        { once: true },
+      );
       event.preventDefault();
       bar.focus();
     });
     bar.addEventListener('keydown', (event) => {
-      const step = { ArrowLeft: [-16, 0], ArrowRight: [16, 0], ArrowUp: [0, -16], ArrowDown: [0, 16] }[event.key];
+      const step = {
+        ArrowLeft: [-16, 0],
+        ArrowRight: [16, 0],
+        ArrowUp: [0, -16],
+        ArrowDown: [0, 16],
+      }[event.key];
       if (!step) return;
       const { left, top, width, height } = bar.getBoundingClientRect();
       place({ clientX: left + width / 2 + step[0], clientY: top + height / 2 + step[1] });

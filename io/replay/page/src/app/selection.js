@@ -12,7 +12,7 @@ export class Selection extends Emitter {
 
   /** By name; null for none. A shape of the world that is no link selects nothing. */
   select(name) {
-    const link = name == null ? null : this.run.linkByName.get(name) ?? null;
+    const link = name == null ? null : (this.run.linkByName.get(name) ?? null);
     if (link === this.link) return;
     this.link = link;
     this.emit('change', link);
@@ -31,7 +31,9 @@ export class Selection extends Emitter {
     if (!this.link) return false;
     const { joint, name } = this.body;
     const first = curve.name.replace(/\.[^.]*$/, '');
-    return [joint, name, this.link.name].some((own) =>
-      own !== '' && (curve.name === own || first === own || curve.name.endsWith(` ${own}`)));
+    return [joint, name, this.link.name].some(
+      (own) =>
+        own !== '' && (curve.name === own || first === own || curve.name.endsWith(` ${own}`)),
+    );
   }
 }

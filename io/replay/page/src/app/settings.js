@@ -21,7 +21,9 @@ export class Settings extends Emitter {
     super();
     const dark = window.matchMedia('(prefers-color-scheme: dark)');
     this.values = {
-      mode: run.header.visuals.some((visual) => visual.shape.kind !== 'plane') ? 'visual' : 'collision',
+      mode: run.header.visuals.some((visual) => visual.shape.kind !== 'plane')
+        ? 'visual'
+        : 'collision',
       theme: dark.matches ? 'dark' : 'light',
       follow: null,
       forceScale: 1,

@@ -21,8 +21,10 @@ function fromBase64(text) {
 
 async function inflate(bytes) {
   if (typeof DecompressionStream === 'undefined')
-    throw new Error('This browser is too old to unpack the run: it lacks DecompressionStream. ' +
-                    'Chromium 80, Firefox 113 and Safari 16.4 have it.');
+    throw new Error(
+      'This browser is too old to unpack the run: it lacks DecompressionStream. ' +
+        'Chromium 80, Firefox 113 and Safari 16.4 have it.',
+    );
   const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('deflate'));
   return new Response(stream).arrayBuffer();
 }

@@ -60,7 +60,7 @@ export class Run {
     return out;
   }
 
-  /** A vector that each frame has one of (of `count`), linearly interpolated; null where not given. */
+  /** One of the `count` vectors of each frame, linearly interpolated; null where not given. */
   vectorAt(array, time, count = 1, which = 0) {
     const { i, s } = this.bracket(time);
     const at = (frame, k) => array[3 * (frame * count + which) + k];

@@ -37,7 +37,10 @@ export const cross = (a, b) => [
 /** Position and rotation of pose number `i` of `poses`. */
 export const positionOf = (poses, i) => [poses[7 * i], poses[7 * i + 1], poses[7 * i + 2]];
 export const rotationOf = (poses, i) => [
-  poses[7 * i + 3], poses[7 * i + 4], poses[7 * i + 5], poses[7 * i + 6],
+  poses[7 * i + 3],
+  poses[7 * i + 4],
+  poses[7 * i + 5],
+  poses[7 * i + 6],
 ];
 
 /** A pose {p, q} in the frame number `i` of `poses`, seen from the world. */

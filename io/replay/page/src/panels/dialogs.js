@@ -4,37 +4,71 @@
 import { byId, element } from '../app/dom.js';
 
 const KEYS = [
-  ['space', 'play or pause'], ['← →', 'one frame back or on; with shift ten'], ['home end', 'to the start, to the end'],
-  ['[ ]', 'slower, faster'], ['l', 'loop'],
-  ['f', 'follow the selected link, else the centre of mass'], ['a', 'frame all'],
+  ['space', 'play or pause'],
+  ['← →', 'one frame back or on; with shift ten'],
+  ['home end', 'to the start, to the end'],
+  ['[ ]', 'slower, faster'],
+  ['l', 'loop'],
+  ['f', 'follow the selected link, else the centre of mass'],
+  ['a', 'frame all'],
   ['shift F S T', 'look from the front, the side, the top'],
-  ['c', 'visual shapes, collision shapes, both'], ['g', 'contact forces on or off'],
-  ['1 … 9', 'show or hide a group of plots'], ['m', 'limits of all curves'], ['z', 'plots over all time'],
-  ['/', 'search a link'], ['k', 'links on or off'], ['p', 'plots on or off'],
-  ['t', 'dark or light'], ['i', 'about this run'], ['?', 'this help'], ['esc', 'close, or select nothing'],
+  ['c', 'visual shapes, collision shapes, both'],
+  ['g', 'contact forces on or off'],
+  ['1 … 9', 'show or hide a group of plots'],
+  ['m', 'limits of all curves'],
+  ['z', 'plots over all time'],
+  ['/', 'search a link'],
+  ['k', 'links on or off'],
+  ['p', 'plots on or off'],
+  ['t', 'dark or light'],
+  ['i', 'about this run'],
+  ['?', 'this help'],
+  ['esc', 'close, or select nothing'],
 ];
 const POINTER = [
   ['drag in the view', 'turns the camera; the right button moves it, the wheel zooms'],
   ['click a link', 'selects it: its numbers, its frame, its path, its curves'],
+  ['double-click a link', 'brings it to the middle'],
   ['click or drag in a plot', 'goes to that time'],
   ['wheel in a plot', 'zooms in time; so does a drag with shift'],
   ['double-click a plot', 'shows all time'],
   ['click a curve’s name', 'hides or shows it; a double-click shows it alone'],
 ];
 
-const table = (rows) => element('dl', { class: 'keys' }, ...rows.flatMap(([key, text]) =>
-  [element('dt', {}, key), element('dd', {}, text)]));
+const table = (rows) =>
+  element(
+    'dl',
+    { class: 'keys' },
+    ...rows.flatMap(([key, text]) => [element('dt', {}, key), element('dd', {}, text)]),
+  );
 
 export function dialogs(run) {
   const { header } = run;
-  byId('help-body').append(element('h3', {}, 'Keys'), table(KEYS), element('h3', {}, 'Pointer'), table(POINTER));
+  byId('help-body').append(
+    element('h3', {}, 'Keys'),
+    table(KEYS),
+    element('h3', {}, 'Pointer'),
+    table(POINTER),
+  );
   byId('info-body').append(
-    element('dl', { class: 'facts' },
-            ...[...header.facts, ['frames', `${run.frames} over ${run.end.toFixed(3)} s`],
-                ['time step', `${header.timestep} s`], ['written by', header.generator], ['command', header.command]]
-              .flatMap(([name, value]) => [element('dt', {}, name), element('dd', {}, value)])),
+    element(
+      'dl',
+      { class: 'facts' },
+      ...[
+        ...header.facts,
+        ['frames', `${run.frames} over ${run.end.toFixed(3)} s`],
+        ['time step', `${header.timestep} s`],
+        ['written by', header.generator],
+        ['command', header.command],
+      ].flatMap(([name, value]) => [element('dt', {}, name), element('dd', {}, value)]),
+    ),
     ...(header.warnings.length > 0
-      ? [element('h3', {}, 'Warnings'), element('ul', {}, ...header.warnings.map((text) => element('li', {}, text)))] : []));
+      ? [
+          element('h3', {}, 'Warnings'),
+          element('ul', {}, ...header.warnings.map((text) => element('li', {}, text))),
+        ]
+      : []),
+  );
   for (const dialog of document.querySelectorAll('dialog'))
     dialog.addEventListener('click', (event) => {
       // The backdrop is the dialog itself.

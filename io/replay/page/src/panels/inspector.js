@@ -12,13 +12,23 @@ export class Inspector {
     this.selection = selection;
     this.title = element('h2', {}, '');
     this.list = element('dl', { class: 'numbers' });
-    this.hint = element('p', { class: 'quiet' }, 'Click a link, here or in the view, to read its pose and speed.');
+    this.hint = element(
+      'p',
+      { class: 'quiet' },
+      'Click a link, here or in the view, to read its pose and speed.',
+    );
     this.panel = element('div', { hidden: true }, this.title, this.list);
     host.append(this.hint, this.panel);
     this.cells = {};
-    for (const [key, name] of [['body', 'Body'], ['joint', 'Joint'], ['position', 'Position [m]'],
-                               ['quaternion', 'Quaternion wxyz'], ['rpy', 'Roll pitch yaw [°]'],
-                               ['speed', 'Speed [m/s]'], ['turn', 'Angular speed [rad/s]']]) {
+    for (const [key, name] of [
+      ['body', 'Body'],
+      ['joint', 'Joint'],
+      ['position', 'Position [m]'],
+      ['quaternion', 'Quaternion wxyz'],
+      ['rpy', 'Roll pitch yaw [°]'],
+      ['speed', 'Speed [m/s]'],
+      ['turn', 'Angular speed [rad/s]'],
+    ]) {
       this.cells[key] = element('dd');
       this.list.append(element('dt', {}, name), this.cells[key]);
     }
@@ -39,7 +49,13 @@ export class Inspector {
     show('joint', body.joint ? `${body.joint}, ${body.kind}` : 'fixed to the world');
     show('position', triple(position, 4));
     show('quaternion', triple(quaternion, 4));
-    show('rpy', triple(rollPitchYaw(quaternion).map((x) => (x * 180) / Math.PI), 2));
+    show(
+      'rpy',
+      triple(
+        rollPitchYaw(quaternion).map((x) => (x * 180) / Math.PI),
+        2,
+      ),
+    );
     show('speed', fixed(norm(linear), 3));
     show('turn', fixed(norm(angular), 3));
   }

@@ -20,14 +20,26 @@ export class Plot {
     this.group = group;
     this.logarithmic = group.scale === 'log';
     this.curves = group.curves.map((curve, i) => ({
-      ...curve, index: i, shown: true, values: panel.run.array(curve.values),
+      ...curve,
+      index: i,
+      shown: true,
+      values: panel.run.array(curve.values),
     }));
     this.hovered = null;
     this.chart = element('div', { class: 'chart' });
     this.legend = element('ul', { class: 'legend', 'aria-label': `Curves of ${group.name}` });
-    this.node = element('section', { class: 'plot', 'aria-label': group.name },
-                        element('h3', {}, group.name, group.unit ? element('span', { class: 'unit' }, ` [${group.unit}]`) : null),
-                        this.chart, this.legend);
+    this.node = element(
+      'section',
+      { class: 'plot', 'aria-label': group.name },
+      element(
+        'h3',
+        {},
+        group.name,
+        group.unit ? element('span', { class: 'unit' }, ` [${group.unit}]`) : null,
+      ),
+      this.chart,
+      this.legend,
+    );
     for (const curve of this.curves) this.#addLegend(curve);
     this.cursor = element('div', { class: 'time-cursor' });
   }
@@ -35,11 +47,21 @@ export class Plot {
   #addLegend(curve) {
     curve.value = element('span', { class: 'value' });
     curve.swatch = element('span', { class: 'swatch' });
-    curve.button = element('button', {
-      type: 'button', 'aria-pressed': 'true', title: `${curve.name}: click hides or shows, double-click shows it alone`,
-      onclick: () => this.#toggle(curve), ondblclick: () => this.#alone(curve),
-      onpointerenter: () => this.#hover(curve), onpointerleave: () => this.#hover(null),
-    }, curve.swatch, element('span', { class: 'name' }, curve.name), curve.value);
+    curve.button = element(
+      'button',
+      {
+        type: 'button',
+        'aria-pressed': 'true',
+        title: `${curve.name}: click hides or shows, double-click shows it alone`,
+        onclick: () => this.#toggle(curve),
+        ondblclick: () => this.#alone(curve),
+        onpointerenter: () => this.#hover(curve),
+        onpointerleave: () => this.#hover(null),
+      },
+      curve.swatch,
+      element('span', { class: 'name' }, curve.name),
+      curve.value,
+    );
     this.legend.append(element('li', {}, curve.button));
   }
 
@@ -57,7 +79,9 @@ export class Plot {
       curve.shown = accept(curve);
       curve.button.setAttribute('aria-pressed', curve.shown);
     }
-    this.plot?.batch(() => this.curves.forEach((curve, i) => this.plot.setSeries(i + 1, { show: curve.shown }, false)));
+    this.plot?.batch(() =>
+      this.curves.forEach((curve, i) => this.plot.setSeries(i + 1, { show: curve.shown }, false)),
+    );
   }
 
   #hover(curve) {
@@ -75,7 +99,13 @@ export class Plot {
   #limited() {
     const shown = this.curves.filter((curve) => curve.shown);
     const chosen = this.#emphasised();
-    const candidates = this.panel.limits ? shown : chosen.length > 0 ? chosen : shown.length === 1 ? shown : [];
+    const candidates = this.panel.limits
+      ? shown
+      : chosen.length > 0
+        ? chosen
+        : shown.length === 1
+          ? shown
+          : [];
     return candidates.filter((curve) => curve.lower !== undefined || curve.upper !== undefined);
   }
 
@@ -84,27 +114,55 @@ export class Plot {
     const { panel } = this;
     const style = (name) => () => getComputedStyle(document.documentElement).getPropertyValue(name);
     const axis = (options) => ({
-      stroke: style('--quiet'), grid: { stroke: style('--grid'), width: 1 }, ticks: { show: false },
-      font: '11px system-ui, sans-serif', ...options,
+      stroke: style('--quiet'),
+      grid: { stroke: style('--grid'), width: 1 },
+      ticks: { show: false },
+      font: '11px system-ui, sans-serif',
+      ...options,
     });
-    this.plot = new uPlot({
-      width: Math.max(100, this.chart.clientWidth), height: HEIGHT, padding: [8, 16, 0, 0],
-      legend: { show: false },
-      cursor: { show: false },
-      scales: {
-        x: { time: false },
-        y: this.logarithmic ? { distr: 3 } : { range: (u, low, high) => this.#range(low, high) },
+    this.plot = new uPlot(
+      {
+        width: Math.max(100, this.chart.clientWidth),
+        height: HEIGHT,
+        padding: [8, 16, 0, 0],
+        legend: { show: false },
+        cursor: { show: false },
+        scales: {
+          x: { time: false },
+          y: this.logarithmic ? { distr: 3 } : { range: (u, low, high) => this.#range(low, high) },
+        },
+        axes: [
+          axis({
+            size: 24,
+            gap: 3,
+            space: 70,
+            values: (u, ticks) =>
+              ticks.map((t, i) => `${number(t, 6)}${i === ticks.length - 1 ? ' s' : ''}`),
+          }),
+          axis({
+            size: 56,
+            gap: 4,
+            space: 26,
+            values: (u, ticks) => ticks.map((t) => (t == null ? '' : number(t, 4))),
+          }),
+        ],
+        series: [
+          {},
+          ...this.curves.map((curve) => ({
+            label: curve.name,
+            show: curve.shown,
+            width: 1.4,
+            points: { show: false },
+            spanGaps: false,
+            pxAlign: 0,
+            stroke: () => curveColor(curve.index, panel.theme),
+          })),
+        ],
+        hooks: { drawAxes: [() => this.#drawLimits()], setSize: [() => this.showTime()] },
       },
-      axes: [
-        axis({ size: 24, gap: 3, space: 70, values: (u, ticks) => ticks.map((t, i) => `${number(t, 6)}${i === ticks.length - 1 ? ' s' : ''}`) }),
-        axis({ size: 56, gap: 4, space: 26, values: (u, ticks) => ticks.map((t) => (t == null ? '' : number(t, 4))) }),
-      ],
-      series: [{}, ...this.curves.map((curve) => ({
-        label: curve.name, show: curve.shown, width: 1.4, points: { show: false }, spanGaps: false,
-        stroke: () => curveColor(curve.index, panel.theme),
-      }))],
-      hooks: { drawAxes: [() => this.#drawLimits()], setSize: [() => this.showTime()] },
-    }, [panel.seriesTime, ...this.curves.map((curve) => drawable(curve.values, this.logarithmic))], this.chart);
+      [panel.seriesTime, ...this.curves.map((curve) => drawable(curve.values, this.logarithmic))],
+      this.chart,
+    );
     this.plot.over.append(this.cursor);
     this.plot.over.classList.add('over');
     panel.listen(this.plot);
@@ -117,7 +175,8 @@ export class Plot {
     const span = high - low;
     for (const curve of this.#limited()) {
       // Limits far beyond the curve would flatten it, unless they were asked for.
-      const near = (limit) => limit !== undefined && (this.panel.limits || (limit > low - span && limit < high + span));
+      const near = (limit) =>
+        limit !== undefined && (this.panel.limits || (limit > low - span && limit < high + span));
       if (near(curve.lower)) low = Math.min(low, curve.lower);
       if (near(curve.upper)) high = Math.max(high, curve.upper);
     }
@@ -134,13 +193,21 @@ export class Plot {
     ctx.clip();
     for (const curve of curves) {
       const color = curveColor(curve.index, this.panel.theme);
-      for (const [limit, end] of [[curve.lower, bbox.top + bbox.height], [curve.upper, bbox.top]]) {
+      for (const [limit, end] of [
+        [curve.lower, bbox.top + bbox.height],
+        [curve.upper, bbox.top],
+      ]) {
         if (limit === undefined) continue;
         const y = this.plot.valToPos(limit, 'y', true);
         if (curves.length <= 2) {
           ctx.globalAlpha = 0.07;
           ctx.fillStyle = color;
-          ctx.fillRect(bbox.left, Math.min(y, end), bbox.width, end === bbox.top ? Math.max(0, y - end) : Math.max(0, end - y));
+          ctx.fillRect(
+            bbox.left,
+            Math.min(y, end),
+            bbox.width,
+            end === bbox.top ? Math.max(0, y - end) : Math.max(0, end - y),
+          );
         }
         ctx.globalAlpha = 0.75;
         ctx.strokeStyle = color;
@@ -177,7 +244,8 @@ export class Plot {
 
   resize() {
     const width = this.chart.clientWidth;
-    if (this.plot && width > 100 && width !== this.plot.width) this.plot.setSize({ width, height: HEIGHT });
+    if (this.plot && width > 100 && width !== this.plot.width)
+      this.plot.setSize({ width, height: HEIGHT });
   }
 
   showTime() {

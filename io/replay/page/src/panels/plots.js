@@ -19,21 +19,51 @@ export class Plots {
     this.zoom = this.full;
     this.plots = run.header.series.groups.map((group) => new Plot(this, group));
     this.shown = new Set();
-    this.chips = this.plots.map((plot, i) => element('button', {
-      type: 'button', class: 'chip', 'aria-pressed': 'false',
-      title: i < 9 ? `Show or hide (${i + 1})` : 'Show or hide', onclick: () => this.toggle(i),
-    }, i < 9 ? element('kbd', {}, String(i + 1)) : null, this.#title(i)));
-    this.limitsButton = iconButton('limits', 'Limits of all curves (m)', () => settings.set('limits', !settings.get('limits')),
-                                   { 'aria-pressed': 'false' });
+    this.chips = this.plots.map((plot, i) =>
+      element(
+        'button',
+        {
+          type: 'button',
+          class: 'chip',
+          'aria-pressed': 'false',
+          title: i < 9 ? `Show or hide (${i + 1})` : 'Show or hide',
+          onclick: () => this.toggle(i),
+        },
+        i < 9 ? element('kbd', {}, String(i + 1)) : null,
+        this.#title(i),
+      ),
+    );
+    this.limitsButton = iconButton(
+      'limits',
+      'Limits of all curves (m)',
+      () => settings.set('limits', !settings.get('limits')),
+      { 'aria-pressed': 'false' },
+    );
     this.list = element('div', { class: 'plot-list scroll' });
-    this.hint = element('p', { class: 'quiet none' },
-                        this.plots.length > 0 ? 'Choose what to plot above.' : 'This run has no curves.');
+    this.hint = element(
+      'p',
+      { class: 'quiet none' },
+      this.plots.length > 0 ? 'Choose what to plot above.' : 'This run has no curves.',
+    );
     this.list.append(this.hint);
-    host.append(element('div', { class: 'panel-head' },
-                        element('div', { class: 'chips', role: 'group', 'aria-label': 'Groups of plots' }, ...this.chips),
-                        element('div', { class: 'buttons' }, this.limitsButton,
-                                iconButton('reset', 'All time (double-click a plot)', () => this.setZoom(this.full)))),
-                this.list);
+    host.append(
+      element(
+        'div',
+        { class: 'panel-head' },
+        element(
+          'div',
+          { class: 'chips', role: 'group', 'aria-label': 'Groups of plots' },
+          ...this.chips,
+        ),
+        element(
+          'div',
+          { class: 'buttons' },
+          this.limitsButton,
+          iconButton('reset', 'All time (double-click a plot)', () => this.setZoom(this.full)),
+        ),
+      ),
+      this.list,
+    );
     new ResizeObserver(() => this.plots.forEach((plot) => plot.resize())).observe(this.list);
     for (const [i, plot] of this.plots.entries())
       if (SHOWN_AT_FIRST.includes(plot.group.name) && this.shown.size < 4) this.toggle(i);
@@ -138,18 +168,22 @@ export class Plots {
       else this.#drag(over, event, this.#seeking(timeAt, event));
     });
     over.addEventListener('dblclick', () => this.setZoom(this.full));
-    over.addEventListener('wheel', (event) => {
-      event.preventDefault();
-      const [min, max] = this.zoom;
-      if (Math.abs(event.deltaX) > Math.abs(event.deltaY)) {
-        const shift = (event.deltaX / over.clientWidth) * (max - min);
-        this.setZoom([min + shift, max + shift]);
-      } else {
-        const at = timeAt(event);
-        const factor = Math.exp(Math.max(-1, Math.min(1, event.deltaY * 0.002)));
-        this.setZoom([at - (at - min) * factor, at + (max - at) * factor]);
-      }
-    }, { passive: false });
+    over.addEventListener(
+      'wheel',
+      (event) => {
+        event.preventDefault();
+        const [min, max] = this.zoom;
+        if (Math.abs(event.deltaX) > Math.abs(event.deltaY)) {
+          const shift = (event.deltaX / over.clientWidth) * (max - min);
+          this.setZoom([min + shift, max + shift]);
+        } else {
+          const at = timeAt(event);
+          const factor = Math.exp(Math.max(-1, Math.min(1, event.deltaY * 0.002)));
+          this.setZoom([at - (at - min) * factor, at + (max - at) * factor]);
+        }
+      },
+      { passive: false },
+    );
   }
 
   #drag(over, event, { move, end }) {
@@ -173,16 +207,27 @@ export class Plots {
 
   #selecting(plot, event) {
     const { over } = plot;
-    const place = (e) => Math.min(over.clientWidth, Math.max(0, e.clientX - over.getBoundingClientRect().left));
+    const place = (e) =>
+      Math.min(over.clientWidth, Math.max(0, e.clientX - over.getBoundingClientRect().left));
     const from = place(event);
     let to = from;
     return {
       move: (e) => {
         to = place(e);
-        plot.setSelect({ left: Math.min(from, to), width: Math.abs(to - from), top: 0, height: over.clientHeight }, false);
+        plot.setSelect(
+          {
+            left: Math.min(from, to),
+            width: Math.abs(to - from),
+            top: 0,
+            height: over.clientHeight,
+          },
+          false,
+        );
       },
       end: () => {
-        const [low, high] = [Math.min(from, to), Math.max(from, to)].map((x) => plot.posToVal(x, 'x'));
+        const [low, high] = [Math.min(from, to), Math.max(from, to)].map((x) =>
+          plot.posToVal(x, 'x'),
+        );
         plot.setSelect({ left: 0, width: 0, top: 0, height: 0 }, false);
         if (Math.abs(to - from) > 3) this.setZoom([low, high]);
       },

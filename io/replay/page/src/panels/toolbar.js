@@ -6,31 +6,74 @@ import { element, icon, iconButton, number } from '../app/dom.js';
 import { CONTACT_COLOR } from '../view/contacts.js';
 import { COLORS } from '../view/marks.js';
 
-const MODE_NAMES = [['visual', 'Visual', 'Visual shapes'], ['collision', 'Collision', 'Collision shapes'],
-                    ['both', 'Both', 'Both, seen through']];
-const SWATCHES = { forces: CONTACT_COLOR, contacts: CONTACT_COLOR, com: COLORS.com, cop: COLORS.cop, goals: COLORS.goal,
-                   axes: COLORS.axes[0], path: COLORS.path };
-const SWATCH_CLASS = { forces: 'arrow', contacts: 'dot', com: 'ball', cop: 'dot', goals: 'ring', axes: 'axes', path: 'line' };
+const MODE_NAMES = [
+  ['visual', 'Visual', 'Visual shapes'],
+  ['collision', 'Collision', 'Collision shapes'],
+  ['both', 'Both', 'Both, seen through'],
+];
+const SWATCHES = {
+  forces: CONTACT_COLOR,
+  contacts: CONTACT_COLOR,
+  com: COLORS.com,
+  cop: COLORS.cop,
+  goals: COLORS.goal,
+  axes: COLORS.axes[0],
+  path: COLORS.path,
+};
+const SWATCH_CLASS = {
+  forces: 'arrow',
+  contacts: 'dot',
+  com: 'ball',
+  cop: 'dot',
+  goals: 'ring',
+  axes: 'axes',
+  path: 'line',
+};
 
 export function toolbar(host, run, stage, settings, selection) {
-  const modes = MODE_NAMES.map(([mode, name, title]) => element('button', {
-    type: 'button', title: `${title} (c)`, onclick: () => settings.set('mode', mode) }, name));
-  const showMode = () => modes.forEach((button, i) =>
-    button.setAttribute('aria-pressed', MODE_NAMES[i][0] === settings.get('mode')));
+  const modes = MODE_NAMES.map(([mode, name, title]) =>
+    element(
+      'button',
+      {
+        type: 'button',
+        title: `${title} (c)`,
+        onclick: () => settings.set('mode', mode),
+      },
+      name,
+    ),
+  );
+  const showMode = () =>
+    modes.forEach((button, i) =>
+      button.setAttribute('aria-pressed', MODE_NAMES[i][0] === settings.get('mode')),
+    );
   settings.on('mode', showMode);
   showMode();
 
-  const preset = (name, key) => element('button', {
-    type: 'button', title: `From the ${name}${name === 'side' ? ', the robot looks to the right' : ''} (${key})`,
-    onclick: () => stage.frameAll(name) }, name[0].toUpperCase() + name.slice(1));
+  const preset = (name, key) =>
+    element(
+      'button',
+      {
+        type: 'button',
+        title: `From the ${name}${name === 'side' ? ', the robot looks to the right' : ''} (${key})`,
+        onclick: () => stage.frameAll(name),
+      },
+      name[0].toUpperCase() + name.slice(1),
+    );
 
-  const follow = element('select', { 'aria-label': 'What the camera follows', title: 'What the camera follows (f)',
-                                     onchange: () => settings.set('follow', follow.value || null) });
+  const follow = element('select', {
+    'aria-label': 'What the camera follows',
+    title: 'What the camera follows (f)',
+    onchange: () => settings.set('follow', follow.value || null),
+  });
   const showFollow = () => {
-    const links = [...new Set([selection.name, settings.get('follow')])].filter((name) => name && name !== 'com');
+    const links = [...new Set([selection.name, settings.get('follow')])].filter(
+      (name) => name && name !== 'com',
+    );
     follow.replaceChildren(
-      element('option', { value: '' }, 'No follow'), element('option', { value: 'com' }, 'Follow mass centre'),
-      ...links.map((name) => element('option', { value: name }, `Follow ${name}`)));
+      element('option', { value: '' }, 'No follow'),
+      element('option', { value: 'com' }, 'Follow mass centre'),
+      ...links.map((name) => element('option', { value: name }, `Follow ${name}`)),
+    );
     follow.value = settings.get('follow') ?? '';
   };
   settings.on('follow', showFollow);
@@ -39,14 +82,21 @@ export function toolbar(host, run, stage, settings, selection) {
 
   host.append(
     element('div', { class: 'segments', role: 'group', 'aria-label': 'Shapes' }, ...modes),
-    element('div', { class: 'segments', role: 'group', 'aria-label': 'Camera' },
-            iconButton('frame', 'Frame all (a)', () => stage.frameAll()),
-            preset('front', 'shift f'), preset('side', 'shift s'), preset('top', 'shift t')),
-    follow, marksMenu(run, stage, settings));
+    element(
+      'div',
+      { class: 'segments', role: 'group', 'aria-label': 'Camera' },
+      iconButton('frame', 'Frame all (a)', () => stage.frameAll()),
+      preset('front', 'shift f'),
+      preset('side', 'shift s'),
+      preset('top', 'shift t'),
+    ),
+    follow,
+    marksMenu(host, run, stage, settings),
+  );
 }
 
 /** A button that opens a legend of the marks, each with its switch. */
-function marksMenu(run, stage, settings) {
+function marksMenu(host, run, stage, settings) {
   const has = {
     forces: run.mostContacts() > 0,
     contacts: run.mostContacts() > 0,
@@ -54,7 +104,10 @@ function marksMenu(run, stage, settings) {
     goals: run.header.goals.length > 0,
   };
   const rows = MARKS.filter(([key]) => has[key] ?? true).map(([key, name]) => {
-    const box = element('input', { type: 'checkbox', onchange: () => settings.set(key, box.checked) });
+    const box = element('input', {
+      type: 'checkbox',
+      onchange: () => settings.set(key, box.checked),
+    });
     box.checked = settings.get(key);
     settings.on(key, (shown) => (box.checked = shown));
     const swatch = element('span', { class: `mark ${SWATCH_CLASS[key]}` });
@@ -62,14 +115,33 @@ function marksMenu(run, stage, settings) {
     return element('label', {}, box, swatch, name);
   });
   if (has.forces) rows.splice(1, 0, forceScale(stage, settings));
-  const menu = element('div', { class: 'menu', hidden: true, id: 'marks' }, ...rows,
-    element('p', { class: 'quiet' }, `Grid: ${number(stage.cell)} m and ${number(10 * stage.cell)} m` +
-            (stage.planes.length > 0 ? '' : '. The run has no ground: the grid is for the eye.')));
-  const button = element('button', { type: 'button', class: 'labelled', 'aria-expanded': 'false', 'aria-controls': 'marks',
-                                     title: 'What the marks mean, and which to show', onclick: () => open(menu.hidden) },
-                         icon('eye'), 'Marks');
+  const menu = element(
+    'div',
+    { class: 'menu', hidden: true, id: 'marks' },
+    ...rows,
+    element(
+      'p',
+      { class: 'quiet' },
+      `Grid: ${number(stage.cell)} m and ${number(10 * stage.cell)} m` +
+        (stage.planes.length > 0 ? '' : '. The run has no ground: the grid is for the eye.'),
+    ),
+  );
+  const button = element(
+    'button',
+    {
+      type: 'button',
+      class: 'labelled',
+      'aria-expanded': 'false',
+      'aria-controls': 'marks',
+      title: 'What the marks mean, and which to show',
+      onclick: () => open(menu.hidden),
+    },
+    icon('eye'),
+    'Marks',
+  );
   const open = (show) => {
     menu.hidden = !show;
+    menu.classList.toggle('to-left', show && box.offsetLeft + menu.offsetWidth > host.clientWidth);
     button.setAttribute('aria-expanded', show);
   };
   const box = element('div', { class: 'with-menu' }, button, menu);
@@ -88,8 +160,14 @@ function marksMenu(run, stage, settings) {
 /** The length of force arrows, on a scale of decades. */
 function forceScale(stage, settings) {
   const text = element('output', { class: 'quiet' });
-  const slider = element('input', { type: 'range', min: -1, max: 1, step: 0.05, 'aria-label': 'Length of force arrows',
-                                    oninput: () => settings.set('forceScale', 10 ** slider.valueAsNumber) });
+  const slider = element('input', {
+    type: 'range',
+    min: -1,
+    max: 1,
+    step: 0.05,
+    'aria-label': 'Length of force arrows',
+    oninput: () => settings.set('forceScale', 10 ** slider.valueAsNumber),
+  });
   const show = () => {
     slider.value = Math.log10(settings.get('forceScale'));
     text.textContent = `${number(0.1 / stage.contacts.metresPerNewton, 2)} N / 10 cm`;

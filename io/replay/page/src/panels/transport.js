@@ -8,24 +8,49 @@ const speedName = (speed) => (speed < 1 ? `1/${1 / speed}×` : `${speed}×`);
 
 export function transport(host, run, clock) {
   const play = iconButton('play', 'Play (space)', () => clock.toggle(), { class: 'tool primary' });
-  const slider = element('input', { type: 'range', class: 'timeline', min: run.start, max: run.end, step: 'any',
-                                    'aria-label': 'Time', oninput: () => clock.seek(slider.valueAsNumber) });
+  const slider = element('input', {
+    type: 'range',
+    class: 'timeline',
+    min: run.start,
+    max: run.end,
+    step: 'any',
+    'aria-label': 'Time',
+    oninput: () => clock.seek(slider.valueAsNumber),
+  });
   const now = element('output', { class: 'now' });
   const frame = element('span', { class: 'frame-number' });
-  const speed = element('select', { title: 'Speed ([ and ])', 'aria-label': 'Speed',
-                                    onchange: () => clock.setSpeed(Number(speed.value)) },
-                        ...SPEEDS.map((s) => element('option', { value: s }, speedName(s))));
-  const loop = iconButton('loop', 'Loop (l)', () => clock.setLoop(!clock.loop), { 'aria-pressed': 'false' });
+  const speed = element(
+    'select',
+    {
+      title: 'Speed ([ and ])',
+      'aria-label': 'Speed',
+      onchange: () => clock.setSpeed(Number(speed.value)),
+    },
+    ...SPEEDS.map((s) => element('option', { value: s }, speedName(s))),
+  );
+  const loop = iconButton('loop', 'Loop (l)', () => clock.setLoop(!clock.loop), {
+    'aria-pressed': 'false',
+  });
   host.append(
-    element('div', { class: 'buttons' },
-            iconButton('first', 'To the start (home)', () => clock.seek(run.start)),
-            iconButton('back', 'One frame back (←)', () => clock.step(-1)),
-            play,
-            iconButton('next', 'One frame on (→)', () => clock.step(1)),
-            iconButton('last', 'To the end (end)', () => clock.seek(run.end))),
+    element(
+      'div',
+      { class: 'buttons' },
+      iconButton('first', 'To the start (home)', () => clock.seek(run.start)),
+      iconButton('back', 'One frame back (←)', () => clock.step(-1)),
+      play,
+      iconButton('next', 'One frame on (→)', () => clock.step(1)),
+      iconButton('last', 'To the end (end)', () => clock.seek(run.end)),
+    ),
     slider,
-    element('div', { class: 'clock' }, now, element('span', { class: 'of' }, ` / ${run.end.toFixed(2)} s`), frame),
-    element('div', { class: 'buttons' }, speed, loop));
+    element(
+      'div',
+      { class: 'clock' },
+      now,
+      element('span', { class: 'of' }, ` / ${run.end.toFixed(2)} s`),
+      frame,
+    ),
+    element('div', { class: 'buttons' }, speed, loop),
+  );
 
   const showTime = () => {
     slider.value = clock.time;

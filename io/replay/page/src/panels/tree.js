@@ -8,9 +8,18 @@ import { element, icon } from '../app/dom.js';
 /** The items below each: [{link, body, children}]. */
 function build(run) {
   const { bodies, links } = run;
-  const own = bodies.map((body, b) => links.find((l) => l.body === b && l.name === body.name) ??
-                                      links.find((l) => l.body === b) ?? null);
-  const nodes = bodies.map((body, b) => ({ link: own[b], body, name: own[b]?.name ?? body.name, children: [] }));
+  const own = bodies.map(
+    (body, b) =>
+      links.find((l) => l.body === b && l.name === body.name) ??
+      links.find((l) => l.body === b) ??
+      null,
+  );
+  const nodes = bodies.map((body, b) => ({
+    link: own[b],
+    body,
+    name: own[b]?.name ?? body.name,
+    children: [],
+  }));
   bodies.forEach((body, b) => {
     if (body.parent >= 0) nodes[body.parent].children.push(nodes[b]);
   });
@@ -24,16 +33,32 @@ export class Tree {
   constructor(host, run, selection) {
     this.selection = selection;
     this.rows = [];
-    this.search = element('input', { type: 'search', id: 'search', placeholder: 'Search links and joints',
-                                     'aria-label': 'Search links and joints', autocomplete: 'off',
-                                     spellcheck: 'false', title: 'Search (/)', oninput: () => this.#filter() });
-    this.list = element('ul', { role: 'tree', 'aria-label': 'Links', class: 'tree',
-                                onkeydown: (event) => this.#key(event) });
-    this.none = element('p', { class: 'quiet none', hidden: true }, 'No link or joint has this in its name.');
+    this.search = element('input', {
+      type: 'search',
+      id: 'search',
+      placeholder: 'Search links and joints',
+      'aria-label': 'Search links and joints',
+      autocomplete: 'off',
+      spellcheck: 'false',
+      title: 'Search (/)',
+      oninput: () => this.#filter(),
+    });
+    this.list = element('ul', {
+      role: 'tree',
+      'aria-label': 'Links',
+      class: 'tree',
+      onkeydown: (event) => this.#key(event),
+    });
+    this.none = element(
+      'p',
+      { class: 'quiet none', hidden: true },
+      'No link or joint has this in its name.',
+    );
     for (const node of build(run)) this.#add(node, null, 1, this.list);
     host.append(this.search, element('div', { class: 'scroll' }, this.list, this.none));
     this.search.addEventListener('keydown', (event) => {
-      if (event.key === 'Enter') selection.select(this.rows.find((row) => row.matches)?.name ?? null);
+      if (event.key === 'Enter')
+        selection.select(this.rows.find((row) => row.matches)?.name ?? null);
       if (event.key === 'ArrowDown') {
         this.#visible()[0]?.item.focus();
         event.preventDefault();
@@ -51,13 +76,34 @@ export class Tree {
   #add(node, parent, level, list) {
     const joint = node.body?.joint && node.body.kind !== 'floating' ? node.body.joint : '';
     const twist = element('span', { class: 'twist' }, icon('chevron'));
-    const label = element('span', { class: 'row' }, twist, element('span', { class: 'name' }, node.name),
-                          joint && joint !== node.name ? element('span', { class: 'joint' }, joint) : null);
-    const item = element('li', { role: 'treeitem', 'aria-level': level, tabindex: '-1',
-                                 'aria-label': joint ? `${node.name}, joint ${joint}` : node.name }, label);
-    const row = { item, parent, name: node.name, text: `${node.name} ${joint}`.toLowerCase(), children: [], matches: true };
+    const label = element(
+      'span',
+      { class: 'row' },
+      twist,
+      element('span', { class: 'name' }, node.name),
+      joint && joint !== node.name ? element('span', { class: 'joint' }, joint) : null,
+    );
+    const item = element(
+      'li',
+      {
+        role: 'treeitem',
+        'aria-level': level,
+        tabindex: '-1',
+        'aria-label': joint ? `${node.name}, joint ${joint}` : node.name,
+      },
+      label,
+    );
+    const row = {
+      item,
+      parent,
+      name: node.name,
+      text: `${node.name} ${joint}`.toLowerCase(),
+      children: [],
+      matches: true,
+    };
     label.addEventListener('click', (event) => {
-      if (twist.contains(event.target) && row.children.length > 0) this.#open(row, !this.#isOpen(row));
+      if (twist.contains(event.target) && row.children.length > 0)
+        this.#open(row, !this.#isOpen(row));
       else this.selection.select(node.link ? node.name : null);
       this.#focus(row);
     });
@@ -102,12 +148,16 @@ export class Tree {
     const at = rows.findIndex((row) => row.item === document.activeElement);
     const row = rows[at];
     if (!row) return;
-    const go = { ArrowDown: rows[at + 1], ArrowUp: rows[at - 1], Home: rows[0], End: rows.at(-1) }[event.key];
+    const go = { ArrowDown: rows[at + 1], ArrowUp: rows[at - 1], Home: rows[0], End: rows.at(-1) }[
+      event.key
+    ];
     if (go) this.#focus(go);
     else if (event.key === 'ArrowRight' && row.children.length > 0)
       this.#isOpen(row) ? this.#focus(row.children[0]) : this.#open(row, true);
     else if (event.key === 'ArrowLeft')
-      row.children.length > 0 && this.#isOpen(row) ? this.#open(row, false) : row.parent && this.#focus(row.parent);
+      row.children.length > 0 && this.#isOpen(row)
+        ? this.#open(row, false)
+        : row.parent && this.#focus(row.parent);
     else if (event.key === 'Enter' || event.key === ' ') this.selection.select(row.name);
     else if (!['ArrowDown', 'ArrowUp', 'Home', 'End', 'ArrowRight'].includes(event.key)) return;
     event.preventDefault();
@@ -125,7 +175,10 @@ export class Tree {
       if (below && words.length > 0) this.#open(row, true);
       return !row.item.hidden;
     };
-    const any = this.rows.filter((row) => row.parent === null).map(visit).some(Boolean);
+    const any = this.rows
+      .filter((row) => row.parent === null)
+      .map(visit)
+      .some(Boolean);
     this.none.hidden = any;
   }
 

@@ -21,10 +21,22 @@ class Instances {
   add(xx, xy, xz, yx, yy, yz, zx, zy, zz, px, py, pz) {
     const m = this.array;
     const o = 16 * this.count++;
-    m[o] = xx; m[o + 1] = xy; m[o + 2] = xz; m[o + 3] = 0;
-    m[o + 4] = yx; m[o + 5] = yy; m[o + 6] = yz; m[o + 7] = 0;
-    m[o + 8] = zx; m[o + 9] = zy; m[o + 10] = zz; m[o + 11] = 0;
-    m[o + 12] = px; m[o + 13] = py; m[o + 14] = pz; m[o + 15] = 1;
+    m[o] = xx;
+    m[o + 1] = xy;
+    m[o + 2] = xz;
+    m[o + 3] = 0;
+    m[o + 4] = yx;
+    m[o + 5] = yy;
+    m[o + 6] = yz;
+    m[o + 7] = 0;
+    m[o + 8] = zx;
+    m[o + 9] = zy;
+    m[o + 10] = zz;
+    m[o + 11] = 0;
+    m[o + 12] = px;
+    m[o + 13] = py;
+    m[o + 14] = pz;
+    m[o + 15] = 1;
   }
 
   end() {
@@ -62,17 +74,46 @@ export class Arrows {
     // Two directions across: the first is that of the world's axis which f has least of.
     let [ax, ay, az] = Math.abs(zx) < 0.6 ? [1, 0, 0] : [0, 1, 0];
     const dot = ax * zx + ay * zy + az * zz;
-    ax -= dot * zx; ay -= dot * zy; az -= dot * zz;
+    ax -= dot * zx;
+    ay -= dot * zy;
+    az -= dot * zz;
     const across = Math.hypot(ax, ay, az);
-    ax /= across; ay /= across; az /= across;
+    ax /= across;
+    ay /= across;
+    az /= across;
     const [bx, by, bz] = [zy * az - zz * ay, zz * ax - zx * az, zx * ay - zy * ax];
     const head = Math.min(7 * this.width, 0.5 * length);
     const w = Math.min(this.width, 0.14 * length);
     const h = 2.6 * w;
     const s = length - head;
-    this.shafts.add(w * ax, w * ay, w * az, w * bx, w * by, w * bz, s * zx, s * zy, s * zz, px, py, pz);
-    this.heads.add(h * ax, h * ay, h * az, h * bx, h * by, h * bz, head * zx, head * zy, head * zz,
-                   px + s * zx, py + s * zy, pz + s * zz);
+    this.shafts.add(
+      w * ax,
+      w * ay,
+      w * az,
+      w * bx,
+      w * by,
+      w * bz,
+      s * zx,
+      s * zy,
+      s * zz,
+      px,
+      py,
+      pz,
+    );
+    this.heads.add(
+      h * ax,
+      h * ay,
+      h * az,
+      h * bx,
+      h * by,
+      h * bz,
+      head * zx,
+      head * zy,
+      head * zz,
+      px + s * zx,
+      py + s * zy,
+      pz + s * zz,
+    );
   }
 
   end() {

@@ -12,12 +12,13 @@ export const PRESETS = {
   top: [0, -0.0015, 1],
 };
 
-const TOOLBAR = 46;  // height of what lies over the view [pixels]
+const TOOLBAR = 46; // height of what lies over the view [pixels]
 
 export class Camera {
   constructor(canvas, size) {
     this.camera = new PerspectiveCamera(35, 1, 0.01, 100);
     this.camera.up.set(0, 0, 1);
+    this.camera.position.set(...PRESETS.home);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.enableDamping = true;
     this.controls.dampingFactor = 0.14;
@@ -28,6 +29,8 @@ export class Camera {
     this.clear = 1;
     this.followed = null;
     this.shift = new Vector3();
+    this.chosen = false;
+    this.controls.addEventListener('start', () => (this.chosen = true));
   }
 
   /** The upper edge is under the toolbar, so the middle of the view is a little lower. */
@@ -39,9 +42,9 @@ export class Camera {
 
   /** Looks at a sphere so that it fills the view, from a preset or from where the camera is. */
   frame({ center, radius }, preset = null) {
-    const direction = preset ? new Vector3(...PRESETS[preset])
-                             : this.camera.position.clone().sub(this.controls.target);
-    if (direction.lengthSq() < 1e-12) direction.set(...PRESETS.home);
+    const direction = preset
+      ? new Vector3(...PRESETS[preset])
+      : this.camera.position.clone().sub(this.controls.target);
     const half = (this.camera.fov * Math.PI) / 360;
     const narrow = Math.atan(Math.tan(half) * Math.min(this.clear, this.camera.aspect));
     const distance = radius / Math.sin(narrow);
@@ -49,6 +52,13 @@ export class Camera {
     this.camera.position.copy(center).addScaledVector(direction.normalize(), distance);
     this.controls.update();
     this.followed?.copy(center);
+  }
+
+  /** Brings a point to the middle of the view. */
+  lookAt(point) {
+    this.chosen = true;
+    this.camera.position.add(point).sub(this.controls.target);
+    this.controls.target.copy(point);
   }
 
   /** From here on the camera moves with a point; null stops that. */

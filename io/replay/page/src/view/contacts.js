@@ -5,7 +5,15 @@
 // Between frames a contact moves with its body.
 
 import { Group } from 'three';
-import { add, conjugate, multiply, positionOf, rotate, rotationOf, subtract } from '../data/transform.js';
+import {
+  add,
+  conjugate,
+  multiply,
+  positionOf,
+  rotate,
+  rotationOf,
+  subtract,
+} from '../data/transform.js';
 import { Arrows, Dots } from './arrows.js';
 
 export const CONTACT_COLOR = '#f08c00';
@@ -39,8 +47,10 @@ export class Contacts {
     for (let i = 0; i < frames; ++i) {
       let most = 0;
       for (let c = contactStart[i]; c < contactStart[i + 1]; ++c)
-        most = Math.max(most, Math.hypot(contactForce[3 * c], contactForce[3 * c + 1],
-                                         contactForce[3 * c + 2]) || 0);
+        most = Math.max(
+          most,
+          Math.hypot(contactForce[3 * c], contactForce[3 * c + 1], contactForce[3 * c + 2]) || 0,
+        );
       if (most > 0) largest.push(most);
     }
     largest.sort((a, b) => a - b);
@@ -63,8 +73,10 @@ export class Contacts {
       if (moved) {
         const carrier = bodyB !== 0 ? bodyB : bodyA;
         const turn = multiply(rotationOf(poses, carrier), conjugate(rotationOf(then, carrier)));
-        point = add(positionOf(poses, carrier),
-                    rotate(turn, subtract(point, positionOf(then, carrier))));
+        point = add(
+          positionOf(poses, carrier),
+          rotate(turn, subtract(point, positionOf(then, carrier))),
+        );
       }
       const [x, y, z] = point;
       const isPressed = Math.hypot(...force) > 0;

@@ -86,8 +86,9 @@ export class Ground {
     this.center.copy(focus).applyMatrix4(matrix.clone().invert());
     this.uniforms.uCenter.value.set(this.center.x, this.center.y);
     this.uniforms.uRadius.value = radius;
-    matrix.multiply(localMatrix({ p: [this.center.x, this.center.y, 0], q: [1, 0, 0, 0] },
-                                [radius, radius, 1]));
+    matrix.multiply(
+      localMatrix({ p: [this.center.x, this.center.y, 0], q: [1, 0, 0, 0] }, [radius, radius, 1]),
+    );
     this.mesh.matrixWorldNeedsUpdate = true;
   }
 

@@ -10,9 +10,18 @@ export class Layer {
     this.items = items;
     const geometries = [...new Set(items.map((item) => item.geometry))];
     const total = (count) => geometries.reduce((sum, g) => sum + count(g), 0);
-    this.mesh = new BatchedMesh(Math.max(1, items.length),
-                                Math.max(1, total((g) => g.getAttribute('position').count)),
-                                Math.max(1, total((g) => g.index.count)), material);
+    this.mesh = new BatchedMesh(
+      Math.max(1, items.length),
+      Math.max(
+        1,
+        total((g) => g.getAttribute('position').count),
+      ),
+      Math.max(
+        1,
+        total((g) => g.index.count),
+      ),
+      material,
+    );
     this.mesh.perObjectFrustumCulled = false;
     this.mesh.sortObjects = false;
     this.mesh.frustumCulled = false;

@@ -2,8 +2,21 @@
 // Marks that are points: centre of mass and its projection, centre of pressure, goals, the frame
 // of the selected link and the path that it takes.
 
-import { BufferAttribute, BufferGeometry, Color, CylinderGeometry, Group, Line, LineBasicMaterial, Mesh,
-         MeshBasicMaterial, MeshLambertMaterial, RingGeometry, SphereGeometry, Vector3 } from 'three';
+import {
+  BufferAttribute,
+  BufferGeometry,
+  Color,
+  CylinderGeometry,
+  Group,
+  Line,
+  LineBasicMaterial,
+  Mesh,
+  MeshBasicMaterial,
+  MeshLambertMaterial,
+  RingGeometry,
+  SphereGeometry,
+  Vector3,
+} from 'three';
 import { placed, rotate } from '../data/transform.js';
 import { Arrows } from './arrows.js';
 import { Ground } from './ground.js';
@@ -34,7 +47,9 @@ function centerOfMassBall(radius) {
   const colors = new Float32Array(3 * at.count);
   const [bright, dark] = [new Color(COLORS.com), new Color('#20242a')];
   for (let v = 0; v < at.count; v += 3) {
-    const middle = [0, 1, 2].map((k) => at.getComponent(v, k) + at.getComponent(v + 1, k) + at.getComponent(v + 2, k));
+    const middle = [0, 1, 2].map(
+      (k) => at.getComponent(v, k) + at.getComponent(v + 1, k) + at.getComponent(v + 2, k),
+    );
     const color = middle[0] * middle[1] * middle[2] > 0 ? bright : dark;
     for (let c = v; c < v + 3; ++c) color.toArray(colors, 3 * c);
   }
@@ -60,9 +75,18 @@ class Goal {
     const radius = 0.035 * size;
     this.radius = radius;
     this.group = new Group();
-    this.ball = new Mesh(new SphereGeometry(radius, 32, 20), new MeshLambertMaterial(
-      { color: COLORS.goal, emissive: COLORS.goal, emissiveIntensity: 0.4, transparent: true, opacity: 0.38,
-        depthWrite: false, toneMapped: false }));
+    this.ball = new Mesh(
+      new SphereGeometry(radius, 32, 20),
+      new MeshLambertMaterial({
+        color: COLORS.goal,
+        emissive: COLORS.goal,
+        emissiveIntensity: 0.4,
+        transparent: true,
+        opacity: 0.38,
+        depthWrite: false,
+        toneMapped: false,
+      }),
+    );
     this.ring = marked(new RingGeometry(1.3 * radius, 1.5 * radius, 48), COLORS.goal, { side: 2 });
     this.dot = marked(new SphereGeometry(0.28 * radius, 16, 12), COLORS.goal);
     this.line = marked(across(1, 0.09 * radius), COLORS.goal);
@@ -103,8 +127,16 @@ export class Marks {
     this.axes = new Group();
     this.axisArrows = COLORS.axes.map((color) => new Arrows(1, color, 0.005 * size));
     this.axes.add(...this.axisArrows.map((arrow) => arrow.group));
-    this.path = new Line(new BufferGeometry(), new LineBasicMaterial(
-      { color: COLORS.path, transparent: true, opacity: 0.8, toneMapped: false, depthTest: false }));
+    this.path = new Line(
+      new BufferGeometry(),
+      new LineBasicMaterial({
+        color: COLORS.path,
+        transparent: true,
+        opacity: 0.8,
+        toneMapped: false,
+        depthTest: false,
+      }),
+    );
     this.path.frustumCulled = false;
     this.path.renderOrder = 2;
     this.group = new Group();
@@ -135,6 +167,15 @@ export class Marks {
     this.path.geometry.setAttribute('position', new BufferAttribute(points, 3));
   }
 
+  /** Where the goals want their points to be. */
+  targets(time) {
+    const count = this.goalMarks.length;
+    return this.goalMarks
+      .map((_, g) => this.run.vectorAt(this.run.goalTarget, time, count, g))
+      .filter((target) => target !== null)
+      .map((target) => new Vector3(...target));
+  }
+
   update(time, poses, camera) {
     const { run, shown } = this;
     const ground = Ground.levelHeight(this.planes, poses);
@@ -154,15 +195,22 @@ export class Marks {
     if (cop) this.cop.position.fromArray(cop);
     const count = this.goalMarks.length;
     this.goalMarks.forEach((goal, g) =>
-      goal.update(run.vectorAt(run.goalPoint, time, count, g),
-                  run.vectorAt(run.goalTarget, time, count, g), camera));
+      goal.update(
+        run.vectorAt(run.goalPoint, time, count, g),
+        run.vectorAt(run.goalTarget, time, count, g),
+        camera,
+      ),
+    );
     if (this.link) this.#placeAxes(poses);
   }
 
   #placeAxes(poses) {
     const { p, q } = placed(poses, this.link.body, this.link);
     this.axisArrows.forEach((arrow, k) => {
-      const axis = rotate(q, [0, 1, 2].map((i) => (i === k ? 0.16 * this.size : 0)));
+      const axis = rotate(
+        q,
+        [0, 1, 2].map((i) => (i === k ? 0.16 * this.size : 0)),
+      );
       arrow.begin();
       arrow.add(...p, ...axis);
       arrow.end();

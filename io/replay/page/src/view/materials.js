@@ -6,10 +6,13 @@ import { Color, FrontSide, GreaterDepth, MeshLambertMaterial, MeshBasicMaterial 
 /** Opacity from `opacity` where the surface faces the camera to `rim` where it turns away. */
 function withRim(material, rim, power) {
   material.onBeforeCompile = (shader) => {
-    shader.fragmentShader = shader.fragmentShader.replace('#include <opaque_fragment>',
+    shader.fragmentShader = shader.fragmentShader.replace(
+      '#include <opaque_fragment>',
       `float facing = abs(dot(normalize(vViewPosition), normalize(normal)));
-       diffuseColor.a = mix(${rim.toFixed(3)}, diffuseColor.a, 1.0 - pow(1.0 - facing, ${power.toFixed(1)}));
-       #include <opaque_fragment>`);
+       float turned = pow(1.0 - facing, ${power.toFixed(1)});
+       diffuseColor.a = mix(diffuseColor.a, ${rim.toFixed(3)}, turned);
+       #include <opaque_fragment>`,
+    );
   };
   material.customProgramCacheKey = () => `rim ${rim} ${power}`;
   return material;
@@ -25,9 +28,20 @@ export const collisionGhost = () =>
 
 /** Laid over the shapes of the selected link, seen through what is before them. */
 export const highlight = () =>
-  withRim(new MeshLambertMaterial({ ...seeThrough, color: '#000000', emissive: '#1e90ff',
-                                    emissiveIntensity: 1, opacity: 0.22, polygonOffset: true,
-                                    polygonOffsetFactor: -2, polygonOffsetUnits: -2 }), 0.95, 2);
+  withRim(
+    new MeshLambertMaterial({
+      ...seeThrough,
+      color: '#000000',
+      emissive: '#1e90ff',
+      emissiveIntensity: 1,
+      opacity: 0.22,
+      polygonOffset: true,
+      polygonOffsetFactor: -2,
+      polygonOffsetUnits: -2,
+    }),
+    0.95,
+    2,
+  );
 
 /**
  * The pair of materials of a mark: plain where nothing is before it, faint where something is, so
@@ -35,8 +49,17 @@ export const highlight = () =>
  */
 export function markMaterials(color, options = {}) {
   const common = { color: new Color(color), toneMapped: false, ...options };
-  const plain = new MeshLambertMaterial({ ...common, emissive: new Color(color), emissiveIntensity: 0.35 });
-  const hidden = new MeshBasicMaterial({ ...common, transparent: true, opacity: 0.33, depthWrite: false,
-                                         depthFunc: GreaterDepth });
+  const plain = new MeshLambertMaterial({
+    ...common,
+    emissive: new Color(color),
+    emissiveIntensity: 0.35,
+  });
+  const hidden = new MeshBasicMaterial({
+    ...common,
+    transparent: true,
+    opacity: 0.33,
+    depthWrite: false,
+    depthFunc: GreaterDepth,
+  });
   return { plain, hidden };
 }

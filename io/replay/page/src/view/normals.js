@@ -68,8 +68,11 @@ export function withNormals(vertices, triangles) {
     let [x, y, z] = [0, 0, 0];
     for (let k = start[place[v]]; k < start[place[v] + 1]; ++k) {
       const t = Math.floor(corners[k] / 3);
-      const cosine = (faces[3 * t] * faces[3 * own] + faces[3 * t + 1] * faces[3 * own + 1] +
-                      faces[3 * t + 2] * faces[3 * own + 2]) / (lengths[t] * lengths[own]);
+      const cosine =
+        (faces[3 * t] * faces[3 * own] +
+          faces[3 * t + 1] * faces[3 * own + 1] +
+          faces[3 * t + 2] * faces[3 * own + 2]) /
+        (lengths[t] * lengths[own]);
       if (cosine < CREASE && t !== own) continue;
       x += faces[3 * t];
       y += faces[3 * t + 1];

@@ -4,10 +4,20 @@
 // Three layers: opaque visuals, translucent visuals, collision shapes. `visual` shows collision
 // shapes of links that have no visual; `both` makes ghosts of the visuals.
 
-import { Box3, Color, DoubleSide, Group, Matrix4, Mesh, MeshStandardMaterial, Sphere } from 'three';
+import {
+  Box3,
+  Color,
+  DoubleSide,
+  Group,
+  Matrix4,
+  Mesh,
+  MeshStandardMaterial,
+  Sphere,
+  Vector3,
+} from 'three';
 import { BodyMatrices, Layer } from './layer.js';
 import { collisionGhost, highlight, visualGhost } from './materials.js';
-import { localMatrix, Shapes } from './shapes.js';
+import { localMatrix, Shapes, surfaceColor } from './shapes.js';
 
 const MOVING = ['#7f97ad', '#93a9bc', '#6d8aa5', '#a4b4c2'];
 const FIXED = '#b5aea2';
@@ -23,25 +33,41 @@ export class Robot {
     const visuals = [];
     for (const visual of run.header.visuals) {
       const pieces = this.#items(visual, (piece) =>
-        new Color().setRGB(...(piece.coloured ? [1, 1, 1] : visual.rgba.slice(0, 3)), 'srgb'));
+        piece.coloured ? new Color(1, 1, 1) : surfaceColor(visual.rgba),
+      );
       for (const item of pieces) item.opaque ??= visual.rgba[3] >= 1;
       if (pieces.length > 0) this.withVisual.add(visual.link);
       visuals.push(...pieces);
     }
     const collisions = run.header.geometries.flatMap((geometry) =>
-      this.#items(geometry, () =>
-        new Color(geometry.body === 0 ? FIXED : MOVING[geometry.body % MOVING.length])));
+      this.#items(
+        geometry,
+        () => new Color(geometry.body === 0 ? FIXED : MOVING[geometry.body % MOVING.length]),
+      ),
+    );
 
-    const standard = (options) => new MeshStandardMaterial(
-      { roughness: 0.62, metalness: 0.06, vertexColors: true, side: DoubleSide, ...options });
+    const standard = (options) =>
+      new MeshStandardMaterial({
+        roughness: 0.62,
+        metalness: 0.06,
+        vertexColors: true,
+        side: DoubleSide,
+        ...options,
+      });
     this.solid = standard({});
     this.clear = standard({ transparent: true, opacity: 0.45, depthWrite: false });
     this.visualGhost = visualGhost();
     this.collisionSolid = standard({ roughness: 0.75, metalness: 0 });
     this.collisionGhost = collisionGhost();
 
-    this.opaque = new Layer(visuals.filter((item) => item.opaque), this.solid);
-    this.translucent = new Layer(visuals.filter((item) => !item.opaque), this.clear);
+    this.opaque = new Layer(
+      visuals.filter((item) => item.opaque),
+      this.solid,
+    );
+    this.translucent = new Layer(
+      visuals.filter((item) => !item.opaque),
+      this.clear,
+    );
     this.collision = new Layer(collisions, this.collisionSolid);
     this.layers = [this.opaque, this.translucent, this.collision];
     this.group.add(...this.layers.map((layer) => layer.mesh));
@@ -104,7 +130,8 @@ export class Robot {
   /** The shapes of a link that can be seen. */
   itemsOf(link) {
     return this.layers.flatMap((layer) =>
-      layer.items.filter((item) => item.visible && item.link === link));
+      layer.items.filter((item) => item.visible && item.link === link),
+    );
   }
 
   /** The nearest shape that the ray meets. */
@@ -113,20 +140,29 @@ export class Robot {
     return hits.sort((a, b) => a.distance - b.distance)[0] ?? null;
   }
 
-  /** A box around the shapes of some items, or of all that move, where they are now. */
-  bounds(items = null) {
+  /** A box around all that moves, as it is now, and around its pedestal, but not a whole hall. */
+  bounds() {
     const all = this.layers.flatMap((layer) => layer.items);
-    const moving = all.filter((item) => item.body !== 0);
+    const moving = this.boundsOf(all.filter((item) => item.body !== 0));
+    const fixed = this.boundsOf(all.filter((item) => item.body === 0));
+    const size = (box) => box.getSize(new Vector3()).length();
+    if (moving.isEmpty() || (!fixed.isEmpty() && size(fixed) < 2 * size(moving)))
+      moving.union(fixed);
+    if (moving.isEmpty()) moving.set(new Vector3(-0.5, -0.5, 0), new Vector3(0.5, 0.5, 1));
+    return moving;
+  }
+
+  /** A box around some shapes. */
+  boundsOf(items) {
     const box = new Box3();
     const one = new Box3();
     const matrix = new Matrix4();
-    for (const item of items ?? (moving.length > 0 ? moving : all)) {
+    for (const item of items) {
       if (!item.geometry.boundingBox) item.geometry.computeBoundingBox();
       matrix.multiplyMatrices(this.matrices.of[item.body], item.local);
       one.copy(item.geometry.boundingBox).applyMatrix4(matrix);
       if (Number.isFinite(one.min.x)) box.union(one);
     }
-    if (box.isEmpty()) box.setFromCenterAndSize(box.min.set(0, 0, 0), box.max.set(1, 1, 1));
     return box;
   }
 

@@ -1,8 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // Shapes of the run as three.js geometries, each made once, with a scale for each use.
 
-import { BoxGeometry, BufferAttribute, BufferGeometry, CapsuleGeometry, Color, CylinderGeometry,
-         Matrix4, Quaternion, SphereGeometry, Vector3 } from 'three';
+import {
+  BoxGeometry,
+  BufferAttribute,
+  BufferGeometry,
+  CapsuleGeometry,
+  Color,
+  CylinderGeometry,
+  Matrix4,
+  Quaternion,
+  SphereGeometry,
+  SRGBColorSpace,
+  Vector3,
+} from 'three';
 import { withNormals } from './normals.js';
 
 // three.js lays cylinders along y, the run along z.
@@ -14,6 +25,12 @@ const PRIMITIVES = {
   box: () => new BoxGeometry(2, 2, 2),
 };
 
+/** A file's colour as a surface has it: even what is black shows its form in the light. */
+export function surfaceColor([r, g, b]) {
+  const lift = (x) => Math.sqrt((x * x + 0.026) / 1.026);
+  return new Color().setRGB(lift(r), lift(g), lift(b), SRGBColorSpace);
+}
+
 /** A BatchedMesh wants the same attributes everywhere: position, normal, colour and an index. */
 function complete(geometry) {
   geometry.deleteAttribute('uv');
@@ -21,7 +38,12 @@ function complete(geometry) {
   if (!geometry.getAttribute('color'))
     geometry.setAttribute('color', new BufferAttribute(new Float32Array(3 * count).fill(1), 3));
   if (!geometry.index)
-    geometry.setIndex(new BufferAttribute(Uint32Array.from({ length: count }, (_, i) => i), 1));
+    geometry.setIndex(
+      new BufferAttribute(
+        Uint32Array.from({ length: count }, (_, i) => i),
+        1,
+      ),
+    );
   return geometry;
 }
 
@@ -38,8 +60,8 @@ export class Shapes {
   }
 
   /**
-   * Of a shape: [{geometry, scale, opaque, coloured}]. A mesh with parts of which some are translucent gives two;
-   * `opaque` is null where the user of the shape says. Empty for planes, which have no size.
+   * Of a shape: [{geometry, scale, opaque, coloured}]. A mesh of which parts are translucent gives
+   * two; `opaque` is null where who uses the shape says. Empty for planes, which have no size.
    */
   pieces(shape) {
     switch (shape.kind) {
@@ -50,7 +72,9 @@ export class Shapes {
       case 'box':
         return [this.#primitive('box', shape.halfExtents)];
       case 'capsule':
-        return [{ geometry: this.#capsule(shape), scale: [1, 1, 1], opaque: null, coloured: false }];
+        return [
+          { geometry: this.#capsule(shape), scale: [1, 1, 1], opaque: null, coloured: false },
+        ];
       case 'mesh':
         return this.#once(`mesh ${shape.mesh}`, () => this.#mesh(shape.mesh));
       default:
@@ -65,7 +89,8 @@ export class Shapes {
 
   #capsule({ radius, halfLength }) {
     return this.#once(`capsule ${radius} ${halfLength}`, () =>
-      complete(upright(new CapsuleGeometry(radius, 2 * halfLength, 12, 36))));
+      complete(upright(new CapsuleGeometry(radius, 2 * halfLength, 12, 36))),
+    );
   }
 
   #mesh(index) {
@@ -73,24 +98,25 @@ export class Shapes {
     const vertices = this.run.array(mesh.vertices);
     const triangles = this.run.array(mesh.triangles);
     const { position, normal } = withNormals(vertices, triangles);
-    if (mesh.parts.length === 0)
-      return [this.#piece(position, normal, null, null)];
+    if (mesh.parts.length === 0) return [this.#piece(position, normal, null, null)];
     const color = new Float32Array(position.length);
-    const linear = new Color();
     const pieces = [];
     for (const opaque of [true, false]) {
       const parts = mesh.parts.filter((part) => part.rgba[3] >= 1 === opaque);
       if (parts.length === 0) continue;
       const corners = [];
       for (const part of parts) {
-        linear.setRGB(part.rgba[0], part.rgba[1], part.rgba[2], 'srgb');
+        const { r, g, b } = surfaceColor(part.rgba);
         for (let c = 3 * part.first; c < 3 * (part.first + part.count); ++c) {
           corners.push(c);
-          color.set([linear.r, linear.g, linear.b], 3 * c);
+          color.set([r, g, b], 3 * c);
         }
       }
-      const take = (from) => Float32Array.from({ length: 3 * corners.length }, (_, i) =>
-        from[3 * corners[Math.floor(i / 3)] + (i % 3)]);
+      const take = (from) =>
+        Float32Array.from(
+          { length: 3 * corners.length },
+          (_, i) => from[3 * corners[Math.floor(i / 3)] + (i % 3)],
+        );
       pieces.push(this.#piece(take(position), take(normal), take(color), opaque));
     }
     return pieces;
@@ -107,8 +133,11 @@ export class Shapes {
 
 /** Pose {p, q} in the body and scale, as a matrix. */
 export function localMatrix({ p, q }, scale = [1, 1, 1]) {
-  return new Matrix4().compose(new Vector3(...p), new Quaternion(q[1], q[2], q[3], q[0]),
-                               new Vector3(...scale));
+  return new Matrix4().compose(
+    new Vector3(...p),
+    new Quaternion(q[1], q[2], q[3], q[0]),
+    new Vector3(...scale),
+  );
 }
 
 /** Pose number `i` of `poses` as a matrix, into `out`. */

@@ -3,8 +3,19 @@
 //
 // It draws only when something has changed.
 
-import { AmbientLight, DirectionalLight, HemisphereLight, NeutralToneMapping, PCFShadowMap, Raycaster, Scene,
-         Vector2, Vector3, WebGLRenderer } from 'three';
+import {
+  AmbientLight,
+  DirectionalLight,
+  HemisphereLight,
+  NeutralToneMapping,
+  PCFShadowMap,
+  Raycaster,
+  Scene,
+  Sphere,
+  Vector2,
+  Vector3,
+  WebGLRenderer,
+} from 'three';
 import { Emitter } from '../app/emitter.js';
 import { placed } from '../data/transform.js';
 import { Camera } from './camera.js';
@@ -14,8 +25,24 @@ import { Marks } from './marks.js';
 import { Robot } from './robot.js';
 
 const THEMES = {
-  light: { ground: '#f4f2ee', line: '#c6c2ba', shadow: 0.3, sky: 2.1, key: 2.5, rim: 0.7, bounce: '#d9d2c6' },
-  dark: { ground: '#24282e', line: '#464d57', shadow: 0.55, sky: 1.35, key: 2.3, rim: 1.0, bounce: '#3a3f48' },
+  light: {
+    ground: '#f4f2ee',
+    line: '#c6c2ba',
+    shadow: 0.32,
+    sky: 1.75,
+    key: 2.7,
+    rim: 0.7,
+    bounce: '#d9d2c6',
+  },
+  dark: {
+    ground: '#24282e',
+    line: '#464d57',
+    shadow: 0.55,
+    sky: 1.35,
+    key: 2.3,
+    rim: 1.0,
+    bounce: '#3a3f48',
+  },
 };
 
 export class Stage extends Emitter {
@@ -38,23 +65,32 @@ export class Stage extends Emitter {
     this.planes = planesOf(run);
     this.cell = gridCell(this.size);
     // Without a ground a grid under the robot tells up from down.
-    this.grounds = (this.planes.length > 0 ? this.planes : [this.#orientation()])
-      .map((plane) => new Ground(plane, this.cell));
+    this.grounds = (this.planes.length > 0 ? this.planes : [this.#orientation()]).map(
+      (plane) => new Ground(plane, this.cell),
+    );
     this.contacts = new Contacts(run, this.size);
     this.marks = new Marks(run, this.size, this.planes);
-    for (const part of [this.robot.group, this.contacts.group, this.marks.group, ...this.grounds.map((g) => g.mesh)])
+    for (const part of [
+      this.robot.group,
+      this.contacts.group,
+      this.marks.group,
+      ...this.grounds.map((g) => g.mesh),
+    ])
       this.scene.add(part);
     this.#addLights();
     this.camera = new Camera(canvas, this.size);
     this.raycaster = new Raycaster();
     this.following = null;
+    this.pictures = 0;
+    this.coarse = false;
+    this.pace = 0;
     this.changed = true;
     this.#listen();
     this.moveTo(run.start);
   }
 
   #orientation() {
-    const lowest = this.robot.bounds(this.robot.layers.flatMap((layer) => layer.items)).min.z;
+    const lowest = this.robot.bounds().min.z;
     const [x, y, z] = this.poses;
     return { body: 0, p: [-x, -y, lowest - z], q: [1, 0, 0, 0] };
   }
@@ -85,6 +121,10 @@ export class Stage extends Emitter {
       if (still && event.button === 0) this.emit('picked', this.pick(event.clientX, event.clientY));
       down = null;
     });
+    this.canvas.addEventListener('dblclick', (event) => {
+      const hit = this.#hit(event.clientX, event.clientY);
+      if (hit) this.camera.lookAt(hit.point);
+    });
     this.canvas.addEventListener('pointermove', (event) => {
       if (event.buttons === 0) this.hover = [event.clientX, event.clientY];
     });
@@ -94,10 +134,14 @@ export class Stage extends Emitter {
 
   /** The name of the link at a place of the window, or null. */
   pick(x, y) {
+    return this.#hit(x, y)?.item.link ?? null;
+  }
+
+  #hit(x, y) {
     const { left, top, width, height } = this.canvas.getBoundingClientRect();
     const place = new Vector2(((x - left) / width) * 2 - 1, 1 - ((y - top) / height) * 2);
     this.raycaster.setFromCamera(place, this.camera.camera);
-    return this.robot.hit(this.raycaster)?.item.link ?? null;
+    return this.robot.hit(this.raycaster);
   }
 
   moveTo(time) {
@@ -126,14 +170,17 @@ export class Stage extends Emitter {
   }
 
   select(name) {
-    const link = name ? this.run.linkByName.get(name) ?? null : null;
+    const link = name ? (this.run.linkByName.get(name) ?? null) : null;
     this.robot.select(link?.name ?? null);
     this.marks.select(link);
     this.changed = true;
   }
 
   frameAll(preset = null) {
-    this.camera.frame(this.robot.boundingSphere(), preset);
+    const box = this.robot.bounds();
+    for (const target of this.marks.targets(this.time)) box.expandByPoint(target);
+    this.camera.frame(box.getBoundingSphere(new Sphere()), preset);
+    this.camera.chosen = false;
     this.changed = true;
   }
 
@@ -155,10 +202,25 @@ export class Stage extends Emitter {
   resize() {
     const { clientWidth: width, clientHeight: height } = this.canvas.parentElement;
     if (width === 0 || height === 0) return;
-    this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio));
-    this.renderer.setSize(width, height);
+    this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio) * (this.coarse ? 0.5 : 1));
+    this.renderer.setSize(width, height, false);
     this.camera.resize(width, height);
+    if (!this.camera.chosen) this.frameAll();
+    // The resized canvas is empty, and is shown before the next turn of the clock.
     this.changed = true;
+    this.draw();
+  }
+
+  /**
+   * While playing: how long the last picture took [ms]; null at rest. A slow machine gets coarser
+   * ones until it rests.
+   */
+  pacing(milliseconds) {
+    this.pace = milliseconds === null ? 0 : 0.7 * this.pace + 0.3 * Math.min(milliseconds, 500);
+    const coarse = milliseconds !== null && (this.coarse || this.pace > 80);
+    if (coarse === this.coarse) return;
+    this.coarse = coarse;
+    this.resize();
   }
 
   /** Where a link is seen: window coordinates of the middle of its nearest shape that is shown. */
@@ -167,7 +229,7 @@ export class Stage extends Emitter {
     const { camera } = this.camera;
     let nearest = null;
     for (const item of items) {
-      const middle = this.robot.bounds([item]).getCenter(new Vector3());
+      const middle = this.robot.boundsOf([item]).getCenter(new Vector3());
       const distance = middle.distanceTo(camera.position);
       if (!nearest || distance < nearest.distance) nearest = { middle, distance };
     }
@@ -179,14 +241,14 @@ export class Stage extends Emitter {
     return [left + ((point.x + 1) / 2) * width, top + ((1 - point.y) / 2) * height];
   }
 
-  /** Draws if something has changed; says whether it did. */
+  /** Draws if something has changed. */
   draw() {
     this.camera.update();
     if (this.hover) {
       this.emit('hovered', this.pick(...this.hover), this.hover);
       this.hover = null;
     }
-    if (!this.changed) return false;
+    if (!this.changed) return;
     this.changed = false;
     const { target } = this.camera.controls;
     const distance = this.camera.camera.position.distanceTo(target);
@@ -195,11 +257,16 @@ export class Stage extends Emitter {
     this.key.position.copy(center).add(new Vector3(1.5, -1.1, 3.2).multiplyScalar(this.size));
     this.rim.target.position.copy(center);
     this.rim.position.copy(center).add(new Vector3(-2.5, 2, 1.2).multiplyScalar(this.size));
-    this.grounds.forEach((ground) => ground.update(
-      this.robot.matrices.of[ground.plane.body], target, Math.max(7 * this.size, 2.2 * distance)));
+    this.grounds.forEach((ground) =>
+      ground.update(
+        this.robot.matrices.of[ground.plane.body],
+        target,
+        Math.max(7 * this.size, 2.2 * distance),
+      ),
+    );
     this.marks.update(this.time, this.poses, this.camera.camera);
     this.renderer.render(this.scene, this.camera.camera);
-    return true;
+    this.pictures += 1;
   }
 }
 

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// Replay pages opened in Chromium, watched for errors and for requests to any network.
+
+import { createRequire } from 'node:module';
+import { readFileSync, writeFileSync } from 'node:fs';
+import { join, resolve } from 'node:path';
+import { pathToFileURL } from 'node:url';
+import { deflateSync, inflateSync } from 'node:zlib';
+
+// WebGL in software, the same on every machine.
+const SOFTWARE = ['--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'];
+
+export class Browser {
+  static async launch(folder, executablePath, args = SOFTWARE) {
+    const { chromium } = createRequire(import.meta.url)(resolve(folder, 'package'));
+    return new Browser(folder, await chromium.launch({ executablePath, args }));
+  }
+
+  constructor(folder, browser) {
+    this.folder = folder;
+    this.browser = browser;
+    this.complaints = [];
+  }
+
+  close() {
+    return this.browser.close();
+  }
+
+  /** The page of a run, loaded and paused; what it complains of is kept. */
+  async open(name, { width = 1280, height = 800, scheme = 'light', motion = 'reduce' } = {}) {
+    const context = await this.browser.newContext({
+      viewport: { width, height },
+      colorScheme: scheme,
+      reducedMotion: motion,
+    });
+    const page = await context.newPage();
+    page.on('console', (message) => {
+      if (message.type() === 'error') this.complaints.push(`${name}: console: ${message.text()}`);
+    });
+    page.on('pageerror', (error) => this.complaints.push(`${name}: ${error.stack}`));
+    page.on('request', (request) => {
+      if (!/^(file|data|blob):/.test(request.url()))
+        this.complaints.push(`${name}: asked ${request.url()}`);
+    });
+    await page.goto(pathToFileURL(resolve(this.folder, `${name}.html`)).href);
+    await page.waitForFunction(() => window.softgauss);
+    await page.evaluate(() => window.softgauss.ready);
+    return page;
+  }
+
+  screenshot(page, name) {
+    return page.screenshot({ path: join(this.folder, `${name}.png`) });
+  }
+
+  /** A copy of a page whose header is changed. */
+  alter(name, copy, change) {
+    const text = readFileSync(join(this.folder, `${name}.html`), 'utf8');
+    const [, run] = text.match(/type="application\/octet-stream">([^<]*)</);
+    const bytes = inflateSync(Buffer.from(run, 'base64'));
+    const length = bytes.readUInt32LE(12);
+    const header = JSON.parse(bytes.subarray(16, 16 + length).toString());
+    change(header);
+    const json = Buffer.from(JSON.stringify(header));
+    const padded = Buffer.concat([json, Buffer.alloc((8 - (json.length % 8)) % 8, ' ')]);
+    const start = Buffer.from(bytes.subarray(0, 16));
+    start.writeUInt32LE(padded.length, 12);
+    const packed = deflateSync(Buffer.concat([start, padded, bytes.subarray(16 + length)]));
+    writeFileSync(
+      join(this.folder, `${copy}.html`),
+      text.replace(run, () => packed.toString('base64')),
+    );
+  }
+}

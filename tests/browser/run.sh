@@ -1,0 +1,22 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# Records runs and looks at their replay pages in Chromium.
+#
+#   run.sh SIMULATE_GDD ROOT FOLDER
+#
+# Runs, screenshots and playwright-core go to FOLDER. Exit code 77: skipped, for there is no Chromium.
+set -euo pipefail
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+simulator=$1 root=$2 folder=$3
+
+if ! said=$("$here/install.sh" "$folder"); then
+  printf '%s\n' "$said"
+  exit 77
+fi
+record() {  # NAME ARGUMENTS…
+  "$simulator" "${@:2}" --view "$folder/$1.html" --log "$folder/$1.csv" --quiet
+}
+record humanoid "$root/data/robots/humanoid.urdf" --goals "$root/data/goals/stand_and_reach.yaml" --duration 10
+record arm "$root/data/robots/arm.urdf" --goals "$root/data/goals/arm_reach.yaml" --duration 2
+record hand "$root/data/robots/hand.urdf" --passive --duration 1
+exec node "$here/replay_test.mjs" "$folder" "$(tail -n 1 <<<"$said")" "$root/data/robots"
