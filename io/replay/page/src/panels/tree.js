@@ -188,7 +188,8 @@ export class Tree {
       row.item.setAttribute('aria-selected', chosen);
       if (!chosen) continue;
       for (let p = row.parent; p; p = p.parent) this.#open(p, true);
-      row.item.firstChild.scrollIntoView({ block: 'nearest' });
+      // The numbers that open below take room from the tree first.
+      requestAnimationFrame(() => row.item.firstChild.scrollIntoView({ block: 'nearest' }));
     }
   }
 }
