@@ -215,6 +215,14 @@ await test('plots seek by click and drag, zoom by wheel, by shift and drag; all 
   const zoom = await api(page, 'zoom');
   near(zoom[0], 2.5, 0.05);
   near(zoom[1], 7.5, 0.05);
+  // The time cursor is at the same place in all plots.
+  await api(page, `seek(${(zoom[0] + zoom[1]) / 2})`);
+  const places = await page
+    .locator('.time-cursor')
+    .evaluateAll((cursors) => cursors.map((cursor) => cursor.getBoundingClientRect().left));
+  assert.ok(places.length >= 3);
+  near(Math.max(...places), Math.min(...places), 1);
+  near(places[0], (await plotPoint(page, group, 0.5))[0], 2);
   await page.keyboard.press('z');
   await page.keyboard.press('1');
   assert.equal(await page.locator(`section.plot[aria-label="${group}"]`).count(), 0);

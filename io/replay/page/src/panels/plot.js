@@ -253,7 +253,9 @@ export class Plot {
     const [min, max] = this.panel.zoom;
     const { time } = this.panel.clock;
     this.cursor.hidden = time < min || time > max;
-    this.cursor.style.transform = `translateX(${this.plot.valToPos(time, 'x').toFixed(1)}px)`;
+    // By the zoom and not by the plot's scale, which follows a little later.
+    const x = ((time - min) / (max - min)) * this.plot.over.clientWidth;
+    this.cursor.style.transform = `translateX(${x.toFixed(1)}px)`;
   }
 
   showValues(index) {
