@@ -43,10 +43,11 @@ function record(mujoco, given) {
   const random = new Random(seed);
   const dofs = simulation.dofs();
   const zero = dofs.map(() => 0);
-  const complete = ({ q, v, force } = {}) => ({
+  const complete = ({ q, v, force, wrenches } = {}) => ({
     q: q ?? simulation.initialPosition(),
     v: v ?? zero,
     force: force ?? zero,
+    wrenches,
   });
   let start = complete(scenario.start);
   if (scenario.start?.hold) start.force = simulation.holdingForce(start);

@@ -5,7 +5,8 @@
 //   scene            see scene.mjs
 //   start            {q, v, force} of its trajectories; what is left out is qpos0 or 0. With
 //                    hold: true, force also balances the bias of the start at scalar joints.
-//   states           further states to be evaluated
+//   states           further states to be evaluated; they may have wrenches besides, a list of
+//                    {link, force, moment} about origins of links, in world axes
 // and what else record.mjs lists as defaults.
 
 import { contacts } from './scenarios/contacts.mjs';

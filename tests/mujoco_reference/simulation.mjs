@@ -2,6 +2,8 @@
 
 // A scene in MuJoCo: states, trajectories, and all that one evaluation gives, as plain data.
 
+import { add, cross, scale } from './geometry.mjs';
+
 // Converged to rounding. Islands would only change the order of sums.
 export const kSolver = {
   solver: 'Newton',
@@ -124,11 +126,43 @@ export class Simulation {
     return worst / largest;
   }
 
+  // Wrenches about the origins of links; MuJoCo wants them about the centre of mass.
+  applyWrenches(wrenches) {
+    const { mujoco, model, data } = this;
+    for (const { link, force, moment } of wrenches) {
+      const body = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_BODY.value, link);
+      if (body < 0) throw new Error(`a wrench on ${link}`);
+      const arm = add(list(data.xpos, 3, 3 * body), scale(-1, list(data.xipos, 3, 3 * body)));
+      data.xfrc_applied.set([...force, ...add(moment, cross(arm, force))], 6 * body);
+    }
+  }
+
+  // Energy [J]; centre of mass and momentum of all that moves, angular about the centre of mass.
+  totals() {
+    const { mujoco, model, data } = this;
+    mujoco.mj_energyPos(model, data);
+    mujoco.mj_energyVel(model, data);
+    mujoco.mj_subtreeVel(model, data);
+    const [potential, kinetic] = list(data.energy);
+    return {
+      mass: model.body_subtreemass[0],
+      potential,
+      kinetic,
+      centre_of_mass: list(data.subtree_com, 3),
+      momentum: scale(model.body_subtreemass[0], list(data.subtree_linvel, 3)),
+      angular_momentum: list(data.subtree_angmom, 3),
+    };
+  }
+
   // Everything of one state; the inverse is taken at qacc + `offset`.
   evaluate(state, offset) {
     const { mujoco, model, data } = this;
     this.set(state);
     mujoco.mj_forward(model, data);
+    if (state.wrenches) {
+      this.applyWrenches(state.wrenches);
+      mujoco.mj_forward(model, data);
+    }
     const matrix = this.massMatrix();
     const imbalance = this.imbalance(matrix);
     if (!(imbalance < kBalance)) throw new Error(`forces balance to ${imbalance} only`);
@@ -136,6 +170,8 @@ export class Simulation {
       q: state.q,
       v: state.v,
       force: state.force,
+      wrenches: state.wrenches,
+      totals: this.totals(),
       mass_matrix: matrix,
       bias: list(data.qfrc_bias),
       smooth_acceleration: list(data.qacc_smooth),

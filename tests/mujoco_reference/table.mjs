@@ -6,8 +6,8 @@
 
 import { readFileSync } from 'node:fs';
 
-const columns = ['M', 'bias', 'points', 'rows', 'J', 'D', 'a_ref', 'f', 'a', 'a_elsewhere', 'inverse', 'run', 'half_step'];
-const heads = ['M', 'b', 'points', 'rows', 'J', 'D', 'a_ref', 'f', 'a', 'a, our points', 'inverse', 'run', 'h against h/2'];
+const columns = ['totals', 'M', 'bias', 'points', 'rows', 'J', 'D', 'a_ref', 'f', 'a', 'a_elsewhere', 'inverse', 'run', 'half_step'];
+const heads = ['totals', 'M', 'b', 'points', 'rows', 'J', 'D', 'a_ref', 'f', 'a', 'a, our points', 'inverse', 'run', 'h against h/2'];
 
 const figures = new Map();
 for (const suite of JSON.parse(readFileSync(process.argv[2], 'utf8')).testsuites)

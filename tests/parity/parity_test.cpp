@@ -15,6 +15,7 @@
 #include <string>
 
 #include "collision/scene_contacts.hpp"
+#include "engine/dynamics/energy.hpp"
 #include "engine/step/inverse.hpp"
 #include "tests/parity/comparison.hpp"
 #include "tests/parity/reference_log.hpp"
@@ -93,6 +94,7 @@ const ParityCase kCases[] = {
     {"humanoid_falling"},
     {"humanoid_lying"},
     {"hand_grasp", Points::logged, Run::halfStep},
+    {"hand_fingers"},
     {"arm_push", Points::logged, Run::apart, 0.5},
     {"arm_push_ball"},
 };
@@ -154,6 +156,7 @@ class Parity : public testing::TestWithParam<ParityCase> {
     scene_.state.q = reference.q;
     scene_.state.v = reference.v;
     scene_.input.tau = reference.force;
+    scene_.input.wrenches = reference.wrenches;
     logged_->points = loggedContacts(scene_.model, reference.contacts);
     scene_.contacts = ours_;
     if (points == Points::logged) scene_.contacts = logged_;
@@ -194,6 +197,30 @@ TEST_P(Parity, SmoothDynamics) {
   report("M", M);
   report("bias", bias);
   report("a_smooth", acceleration);
+}
+
+TEST_P(Parity, Totals) {
+  double energy = 0.0, centre = 0.0, momentum = 0.0;
+  for (const ReferenceState& reference : log_.states) {
+    moveTo(reference);
+    const Totals& totals = reference.totals;
+    const Energy ours = computeEnergy(scene_.model, scene_.data->kinematics, reference.v);
+    const Eigen::Vector2d energies(ours.potential, ours.kinetic);
+    energy = std::max(
+        energy,
+        relativeDifference(energies, Eigen::Vector2d(totals.potential, totals.kinetic), 1.0));
+    const Vector3 c = centerOfMass(scene_.model, scene_.data->kinematics);
+    centre = std::max(centre, relativeDifference(c, totals.centreOfMass, 1.0));
+    const Momentum m = computeMomentum(scene_.model, scene_.data->kinematics);
+    momentum = std::max(momentum, relativeDifference(m.linear, totals.momentum, totals.mass));
+    momentum = std::max(momentum, relativeDifference(m.angular - c.cross(m.linear),
+                                                     totals.angularMomentum, totals.mass));
+    EXPECT_SMALL(scene_.model.totalMass() / totals.mass - 1.0, kSmooth);
+  }
+  EXPECT_SMALL(energy, kSmooth);
+  EXPECT_SMALL(centre, kSmooth);
+  EXPECT_SMALL(momentum, kSmooth);
+  report("totals", std::max({energy, centre, momentum}));
 }
 
 TEST_P(Parity, ContactPoints) {
@@ -274,6 +301,9 @@ TEST_P(Parity, InverseDynamics) {
   VectorX tau;
   for (const ReferenceState& reference : log_.states) {
     moveTo(reference);
+    // MuJoCo's result is the whole force, ours what is needed besides the wrenches.
+    scene_.input.wrenches.clear();
+    ASSERT_EQ(scene_.stages(), SolveStatus::converged);
     inverseDynamics(scene_.model, reference.inverseAcceleration, *scene_.data, tau);
     worst = std::max(worst, relativeDifference(tau, reference.inverseForce, smallForce(reference)));
   }

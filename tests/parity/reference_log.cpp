@@ -6,6 +6,7 @@
 #include <fstream>
 #include <map>
 #include <memory>
+#include <stdexcept>
 
 #include "tests/parity/reference_scene.hpp"
 
@@ -45,11 +46,31 @@ Row rowOf(const Json& item) {
   return {vectorOf(item.at("J")), item.at("D"), item.at("reference"), item.at("force")};
 }
 
-ReferenceState stateOf(const Json& item) {
+ExternalWrench wrenchOf(const Model& model, const Json& item) {
+  const int frame = model.findFrame(item.at("link"));
+  if (frame < 0) throw std::runtime_error("a wrench on " + item.at("link").dump());
+  const Frame& link = model.frames[static_cast<std::size_t>(frame)];
+  if (!link.X_BF.p.isZero(0.0)) throw std::runtime_error("a wrench on a link that is merged");
+  return {link.body, {vectorOf(item.at("moment")), vectorOf(item.at("force"))}};
+}
+
+Totals totalsOf(const Json& item) {
+  return {item.at("mass"),
+          item.at("potential"),
+          item.at("kinetic"),
+          vectorOf(item.at("centre_of_mass")),
+          vectorOf(item.at("momentum")),
+          vectorOf(item.at("angular_momentum"))};
+}
+
+ReferenceState stateOf(const Model& model, const Json& item) {
   ReferenceState s;
   s.q = vectorOf(item.at("q"));
   s.v = vectorOf(item.at("v"));
   s.force = vectorOf(item.at("force"));
+  if (item.contains("wrenches"))
+    for (const Json& wrench : item["wrenches"]) s.wrenches.push_back(wrenchOf(model, wrench));
+  s.totals = totalsOf(item.at("totals"));
   const Eigen::Index nv = s.v.size();
   s.M.resize(nv, nv);
   for (Eigen::Index i = 0; i < nv; ++i)
@@ -83,7 +104,7 @@ ReferenceLog read(const std::string& name) {
   log.model = referenceModel(log.name, json.at("scene"), json.at("options"));
   checkDofs(log.model, json.at("dofs"));
   log.force = vectorOf(json.at("applied_force"));
-  for (const Json& state : json.at("states")) log.states.push_back(stateOf(state));
+  for (const Json& state : json.at("states")) log.states.push_back(stateOf(log.model, state));
   for (const Json& run : json.at("trajectories"))
     log.trajectories.push_back({run.at("integrator"), run.at("timestep"), run.at("every"),
                                 samplesOf(run.at("q")), samplesOf(run.at("v"))});

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/model/model.hpp"
+#include "engine/model/state.hpp"
 
 namespace softgauss::test {
 
@@ -25,9 +25,19 @@ struct Row {
   double force = 0.0;
 };
 
+/// Sums over all moving bodies.
+struct Totals {
+  double mass = 0.0;       ///< [kg]
+  double potential = 0.0;  ///< [J], as is kinetic
+  double kinetic = 0.0;
+  Vector3 centreOfMass, momentum, angularMomentum;  ///< the last one about the centre of mass
+};
+
 /// One state, and what follows from it.
 struct ReferenceState {
   VectorX q, v, force;
+  std::vector<ExternalWrench> wrenches;
+  Totals totals;
   MatrixX M;
   VectorX bias, smoothAcceleration, acceleration;
   std::vector<ReferenceContact> contacts;

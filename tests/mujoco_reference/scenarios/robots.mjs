@@ -26,11 +26,13 @@ const stepping = {
 };
 
 // Hand: every flexion closes.
-const hand = robotScene('hand', {
-  root: 'fixed',
-  pose: { quaternion: axisAngle([1, 0, 0], Math.PI) },
-  withoutShapes: ['forearm'],
-}).freeBody('ball', 0.1, sphere(0.035));
+const palmUp = (withoutShapes) =>
+  robotScene('hand', {
+    root: 'fixed',
+    pose: { quaternion: axisAngle([1, 0, 0], Math.PI) },
+    withoutShapes,
+  }).freeBody('ball', 0.1, sphere(0.035));
+const hand = palmUp(['forearm']);
 const closing = Object.fromEntries(
   scalarJoints(hand)
     .filter((name) => /flexion/.test(name) && !/wrist|metacarpal/.test(name))
@@ -94,6 +96,18 @@ export const robots = [
       hold: true,
     },
     stateTimes: [0.2, 1],
+    every: 0.1,
+  },
+  {
+    name: 'hand_fingers',
+    about: 'thumb and fingers close on a ball in weightlessness, without the palm',
+    options: { gravity: [0, 0, 0] },
+    scene: palmUp(['forearm', 'palm', 'little_metacarpal', 'thumb_metacarpal']),
+    start: {
+      q: [...zeros(24), 0.15, -0.005, 0.06, 1, 0, 0, 0],
+      force: [...values(hand, closing).map((f) => 0.4 * f), ...zeros(6)],
+    },
+    stateTimes: [0.3, 1],
     every: 0.1,
   },
   pushing(

@@ -58,7 +58,7 @@ function randomTrees(seed, links, floating) {
   return scene;
 }
 
-function randomTree(name, about, seed, links, floating) {
+function randomTree(name, about, seed, links, floating, options) {
   const scene = randomTrees(seed, links, floating);
   const random = new Random(seed + 100);
   const joints = scene.joints.filter((joint) => !['fixed', 'floating'].includes(joint.type)).length;
@@ -66,9 +66,14 @@ function randomTree(name, about, seed, links, floating) {
     q: [...(floating ? [...random.vector(3, 1), ...random.quaternion()] : []), ...random.vector(joints, 1)],
     v: random.vector(joints + (floating ? 6 : 0), 2),
     force: random.vector(joints + (floating ? 6 : 0), 3),
+    wrenches: [0, links - 2].map((i) => ({
+      link: `link_${i}`,
+      force: random.vector(3, 5),
+      moment: random.vector(3, 2),
+    })),
   });
-  const start = state();
-  return { name, about, seed, scene, start: { ...start, force: undefined }, states: [state(), state(), state()] };
+  const { q, v } = state();
+  return { name, about, seed, options, scene, start: { q, v }, states: [state(), state(), state()] };
 }
 
 // A chain of capsules that hangs from the world.
@@ -94,7 +99,9 @@ const kIntegrators = ['Euler', 'RK4', 'implicit', 'implicitfast'];
 export const trees = [
   randomTree('random_tree_fixed', 'a fixed base with hinges, slides, planar and fixed joints', 11, 12, false),
   randomTree('random_tree_floating', 'a floating base with hinges, slides, planar and fixed joints', 12, 12, true),
-  randomTree('random_tree_large', 'thirty links on a floating base', 13, 30, true),
+  randomTree('random_tree_large', 'thirty links on a floating base, gravity askew', 13, 30, true, {
+    gravity: [3, -2, -9],
+  }),
   {
     name: 'damped_chain',
     about: 'four hinges with damping and armature, by every integrator',
