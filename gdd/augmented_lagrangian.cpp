@@ -121,10 +121,10 @@ GddReport AugmentedLagrangian::solve(const Model& model, GoalCost& cost, const C
     const bool rounding = decrement <= 1e-14 * merit || (sameCell && decrement > 0.01 * promised);
     if (report.stationarity <= options.gradientTolerance || rounding) {
       bool towardsStiff = false;
-      const int leaving = held_.leaving(data.constraints, w_, towardsStiff);
+      const int leaving = held_.leaving(w_, towardsStiff);
       if (leaving >= 0) {
         if (towardsStiff) {
-          data.constraints.placeAtKnot(held_[leaving].id, true);
+          data.constraints.placeAtKnot(held_[leaving].knot, true);
           data.constraints.evaluate(rowsChanged_);
         }
         held_.release(leaving);

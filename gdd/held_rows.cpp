@@ -7,19 +7,20 @@
 
 namespace softgauss::gdd {
 
-void HeldRows::hold(RowId id, const Constraints& constraints) {
+void HeldRows::hold(Knot knot, const Constraints& constraints) {
   for (int i = 0; i < count_; ++i)
-    if (rows_[i].id == id) return;
+    if (rows_[i].knot == knot) return;
   if (count_ == static_cast<int>(rows_.size())) {
     rows_.emplace_back();
     rows_.back().J.resize(dofs_);
     S_.resize(count_ + 1, count_ + 1);
   }
   Row& row = rows_[count_++];
-  row.id = id;
+  row.knot = knot;
+  row.jump = constraints.curvatureJump(knot);
   row.drift = 0.0;
   row.J.setZero();
-  constraints.addRow(id, 1.0, row.J);
+  constraints.addRow(knot.row, 1.0, row.J);
 }
 
 void HeldRows::release(int i) {
@@ -29,13 +30,13 @@ void HeldRows::release(int i) {
 
 void HeldRows::place(Constraints& constraints) {
   for (int i = 0; i < count_; ++i) {
-    rows_[i].drift = constraints.residual(rows_[i].id);
-    constraints.placeAtKnot(rows_[i].id, false);
+    rows_[i].drift = constraints.aboveKnot(rows_[i].knot);
+    constraints.placeAtKnot(rows_[i].knot, false);
   }
 }
 
 void HeldRows::holdOnRay(Constraints& constraints) const {
-  for (int i = 0; i < count_; ++i) constraints.holdOnRay(rows_[i].id);
+  for (int i = 0; i < count_; ++i) constraints.holdOnRay(rows_[i].knot.row);
 }
 
 void HeldRows::projectPrepared(VectorX& d) {
@@ -72,15 +73,16 @@ void HeldRows::projectPrepared(VectorX& d) {
   }
 }
 
-int HeldRows::leaving(const Constraints& constraints, const VectorX& w, bool& towardsStiff) const {
+int HeldRows::leaving(const VectorX& w, bool& towardsStiff) const {
   // Descent per unit of the row's own residual, in units of the jump it would face.
   constexpr double kTolerance = 1e-9;
   int worst = -1;
   double most = 0.0;
   for (int i = 0; i < count_; ++i) {
     const Row& row = rows_[i];
-    const double jump = constraints.stiffness(row.id) * row.J.dot(w);
-    const double free = row.multiplier, stiff = jump - row.multiplier;
+    // Of the gradient, from the free to the stiff side, as if the free side were above.
+    const double jump = -row.jump * row.J.dot(w), sign = row.jump < 0.0 ? 1.0 : -1.0;
+    const double free = sign * row.multiplier, stiff = jump - free;
     const double tolerance = kTolerance * (std::abs(jump) + std::abs(row.multiplier));
     if (free > std::max(most, tolerance)) most = free, worst = i, towardsStiff = false;
     if (stiff > std::max(most, tolerance)) most = stiff, worst = i, towardsStiff = true;

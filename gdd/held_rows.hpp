@@ -3,14 +3,15 @@
 
 /// Rows held at their knots: how a Newton method moves along a kink.
 ///
-/// Where the objective's minimum along a ray is the knot of a row r, its gradient jumps there: with
+/// Where the objective's minimum along a ray is a knot of a row r, its gradient jumps there: with
 /// the row counted as free it is ∇Φ, with the row stiff ∇Φ + D_r (J_r w) J_rᵀ, w as in (T.19).
 /// Steps are then taken within the kink (T.25):
 ///   H d + J_Kᵀ μ = −∇Φ,   J_K d = −x_K
-/// (x_K: what rounding has left of the held residuals, so that it does not build up)
-/// and the kink is left towards the free side where μ_r > 0, towards the stiff side where
-/// μ_r < D_r (J_r w). A point with d = 0 and D_r (J_r w) ≤ μ_r ≤ 0 for every row at its knot is a
-/// local minimum: no direction descends.
+/// (x_K: how far rounding has moved the held rows off their knots, so that it does not build up).
+/// Where the free side is above the knot, σ_r = 1; where it is below, σ_r = −1. The kink is left
+/// towards the free side where σ_r μ_r > 0, towards the stiff side where σ_r μ_r < D_r σ_r (J_r w).
+/// A point with d = 0 where neither holds for any row at its knot is a local minimum: no direction
+/// descends.
 
 #include <vector>
 
@@ -21,10 +22,11 @@ namespace softgauss::gdd {
 class HeldRows {
  public:
   struct Row {
-    RowId id;
+    Knot knot;
+    double jump = 0.0;        ///< s″ above the knot less s″ below: −σ D
     VectorX J;                ///< (nv)
     VectorX HinvJ;            ///< H⁻¹ Jᵀ
-    double drift = 0.0;       ///< x, zero up to rounding
+    double drift = 0.0;       ///< x less the knot's, zero up to rounding
     double multiplier = 0.0;  ///< μ
     bool dependent = false;   ///< on rows before it
   };
@@ -35,7 +37,7 @@ class HeldRows {
   int size() const { return count_; }
   const Row& operator[](int i) const { return rows_[i]; }
   void clear() { count_ = 0; }
-  void hold(RowId id, const Constraints& constraints);
+  void hold(Knot knot, const Constraints& constraints);
   void release(int i);
 
   /// Puts every held row at the free side of its knot, and notes how far off it was.
@@ -54,7 +56,7 @@ class HeldRows {
   }
 
   /// The row that most wants to leave, or −1; `towardsStiff` tells to which side.
-  int leaving(const Constraints& constraints, const VectorX& w, bool& towardsStiff) const;
+  int leaving(const VectorX& w, bool& towardsStiff) const;
 
  private:
   void projectPrepared(VectorX& d);

@@ -25,7 +25,7 @@ RayResult Ray::minimize(const Constraints& constraints, const TreeFactor& massFa
   constraints.findCrossings(crossings_);
   const auto later = [](const Crossing& a, const Crossing& b) {
     if (a.alpha != b.alpha) return a.alpha > b.alpha;
-    return a.id > b.id;
+    return a.knot > b.knot;
   };
   std::make_heap(crossings_.begin(), crossings_.end(), later);
 
@@ -57,9 +57,9 @@ RayResult Ray::minimize(const Constraints& constraints, const TreeFactor& massFa
     std::pop_heap(crossings_.begin(), crossings_.end(), later);
     crossings_.pop_back();
     g_ += length * rate_;
-    constraints.addRow(crossing.id, crossing.curvatureJump * crossing.rate, rate_);
+    constraints.addRow(crossing.knot.row, crossing.curvatureJump * crossing.rate, rate_);
     result.alpha = crossing.alpha;
-    result.last = crossing.id;
+    result.last = crossing.knot;
     ++result.crossings;
   }
 }

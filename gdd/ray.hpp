@@ -35,7 +35,7 @@ struct RayResult {
   double alpha = 0.0;
   bool kink = false;  ///< ended at a knot of a row
   int crossings = 0;  ///< knots passed
-  RowId last;         ///< row of the last knot
+  Knot last;          ///< the last knot passed
 };
 
 class Ray {

@@ -82,20 +82,22 @@ void Constraints::addRow(RowId id, double scale, VectorX& y) const {
   visitOne(*this, id.kind, [&](const auto& c) { c.addRow(id.row, scale, y); });
 }
 
-double Constraints::residual(RowId id) const {
+double Constraints::aboveKnot(Knot knot) const {
   double x = 0.0;
-  visitOne(*this, id.kind, [&](const auto& c) { x = c.x[id.row]; });
+  visitOne(*this, knot.row.kind, [&](const auto& c) { x = c.aboveKnot(knot.row.row, knot.index); });
   return x;
 }
 
-double Constraints::stiffness(RowId id) const {
-  double D = 0.0;
-  visitOne(*this, id.kind, [&](const auto& c) { D = c.D[id.row]; });
-  return D;
+double Constraints::curvatureJump(Knot knot) const {
+  double jump = 0.0;
+  visitOne(*this, knot.row.kind,
+           [&](const auto& c) { jump = c.penalty(knot.row.row).curvatureJump(knot.index); });
+  return jump;
 }
 
-void Constraints::placeAtKnot(RowId id, bool stiffSide) {
-  visitOne(*this, id.kind, [&](auto& c) { c.placeAtKnot(id.row, stiffSide); });
+void Constraints::placeAtKnot(Knot knot, bool stiffSide) {
+  visitOne(*this, knot.row.kind,
+           [&](auto& c) { c.placeAtKnot(knot.row.row, knot.index, stiffSide); });
 }
 
 void Constraints::holdOnRay(RowId id) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "engine/constraints/contact.hpp"
+#include "engine/constraints/dry_friction.hpp"
 #include "engine/constraints/joint_limit.hpp"
 
 namespace softgauss {
@@ -27,23 +28,27 @@ concept SoftConstraint = requires(C c, const Assembly& in, const VectorX& a, Vec
   c.advance(0.0);                                          // x += α dx
   c.addForce(tau);                                         // tau += Jᵀ f
   c.findCrossings(0, crossings);                           // knots along a ray
-  c.placeAtKnot(0, true);
+  { c.aboveKnot(0, 0) } -> std::convertible_to<double>;
+  c.placeAtKnot(0, 0, true);
   c.addCurvature(P);      // P += Jᵀ ∇²s J
   c.addRow(0, 1.0, tau);  // tau += scale · (row of J)ᵀ
 };
 
 class Constraints {
  public:
+  DryFriction dryFriction;
   JointLimit jointLimit;
   PyramidalContact contact;
 
   template <class F>
   void visit(F&& f) {
+    f(dryFriction);
     f(jointLimit);
     f(contact);
   }
   template <class F>
   void visit(F&& f) const {
+    f(dryFriction);
     f(jointLimit);
     f(contact);
   }
@@ -68,12 +73,12 @@ class Constraints {
   void findCrossings(std::vector<Crossing>& crossings) const;
   /// y ← y + scale · (row of J)ᵀ.
   void addRow(RowId id, double scale, VectorX& y) const;
-  /// Residual x of a row.
-  double residual(RowId id) const;
-  /// Stiffness D of a row.
-  double stiffness(RowId id) const;
-  /// Puts a row exactly at its knot, on its stiff or its free side.
-  void placeAtKnot(RowId id, bool stiffSide);
+  /// x of the row less x at its knot.
+  double aboveKnot(Knot knot) const;
+  /// s″ above a knot less s″ below it.
+  double curvatureJump(Knot knot) const;
+  /// Puts the row exactly at its knot, where it is free, or next to it on the stiff side.
+  void placeAtKnot(Knot knot, bool stiffSide);
   /// Takes a row off the ray: dx ← 0.
   void holdOnRay(RowId id);
   /// (rows × nv) J, dense; allocates.
@@ -95,6 +100,7 @@ class Constraints {
   std::vector<int> couplingEnd_, lastCouplingEnd_;
 };
 
+static_assert(SoftConstraint<DryFriction>);
 static_assert(SoftConstraint<JointLimit>);
 static_assert(SoftConstraint<PyramidalContact>);
 

@@ -58,8 +58,7 @@ void PyramidalContact::assemble(const Assembly& in) {
   const Model& model = in.model;
   jacobian_.clear();
   made_.clear();
-  reference.clear();
-  D.clear();
+  clearRows();
   for (int i = 0; i < in.contacts.size(); ++i) {
     const Contact& c = in.contacts.contacts[i];
     if (model.bodies[c.bodyA].dofs == 0 && model.bodies[c.bodyB].dofs == 0) continue;

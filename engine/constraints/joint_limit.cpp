@@ -9,8 +9,7 @@ void JointLimit::assemble(const Assembly& in) {
   const Model& model = in.model;
   dof_.clear();
   sign_.clear();
-  reference.clear();
-  D.clear();
+  clearRows();
   if (model.options.effects.has(Effect::jointLimit)) {
     for (const JointRange& range : model.ranges) {
       const Body& body = model.bodies[range.body];

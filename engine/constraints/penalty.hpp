@@ -4,9 +4,12 @@
 /// Penalties s(x) on the residual x = J a − a_ref of a scalar row: convex, C¹, piecewise quadratic
 /// (T.8). Value, slope and curvature come from the one kernel `at`, so that forward dynamics, its
 /// inverse, the line search and goal directed dynamics cannot disagree.
+///
+/// A penalty's pieces are numbered upwards from x = −∞; knot k lies between the pieces k and k + 1.
+/// s″ is D in one piece, the stiff one, and 0 in the others, the free ones. At a knot a row counts
+/// as free.
 
 #include <concepts>
-#include <limits>
 
 #include "engine/core/check.hpp"
 #include "engine/core/jet.hpp"
@@ -15,32 +18,66 @@ namespace softgauss {
 
 /// Unilateral constraint: limits, contact normals, edges of a friction pyramid.
 ///   s(x) = ½ D min(x, 0)²,   force f = −s′(x) = −D min(x, 0) ≥ 0
-/// A row is active where x < 0. At the knot x = 0 the curvature is that of the free side.
+/// A row is active where x < 0; the knot is x = 0.
 struct HalfQuadratic {
-  static Jet at(double x, double D) {
+  static constexpr int kKnots = 1;
+  static constexpr bool kLimited = false;
+  double D;
+
+  Jet at(double x) const {
     const double overshoot = x >= 0.0 ? 0.0 : x;  // NaN stays NaN
     return {0.5 * D * overshoot * overshoot, D * overshoot, x >= 0.0 ? 0.0 : D};
   }
-  /// The α ≥ 0 at which x + α dx changes its piece; infinite when it never does.
-  static double knotAhead(double x, double dx) {
-    const bool leaves = x < 0.0 && dx > 0.0, enters = x >= 0.0 && dx < 0.0;
-    return leaves || enters ? -x / dx : kInfinity;
+  int piece(double x) const { return x >= 0.0 ? 1 : 0; }
+  double knot(int) const { return 0.0; }
+  /// s″ above a knot less s″ below it.
+  double curvatureJump(int) const { return -D; }
+};
+
+/// Bilateral constraint: equalities.   s(x) = ½ D x²,   f = −D x
+struct Quadratic {
+  static constexpr int kKnots = 0;
+  static constexpr bool kLimited = false;
+  double D;
+
+  Jet at(double x) const { return {0.5 * D * x * x, D * x, D}; }
+  int piece(double) const { return 0; }
+  double knot(int) const { return 0.0; }
+  double curvatureJump(int) const { return 0.0; }
+};
+
+/// Bilateral constraint whose force is limited: dry friction. With r = limit/D,
+///   s(x) = ½ D x² where |x| < r,   limit (|x| − ½ r) beyond;   f = −D x clamped to ± limit
+/// The knots are ∓ r; between them the row is stiff.
+struct Huber {
+  static constexpr int kKnots = 2;
+  static constexpr bool kLimited = true;
+  double D;
+  double limit;  ///< of the force, > 0
+
+  Jet at(double x) const {
+    const double r = limit / D;
+    if (x <= -r) return {limit * (-x - 0.5 * r), -limit, 0.0};
+    if (x >= r) return {limit * (x - 0.5 * r), limit, 0.0};
+    return {0.5 * D * x * x, D * x, D};
   }
-  /// The knot, seen from its stiff side (the smallest x < 0) or its free side.
-  static double knot(bool stiffSide) {
-    return stiffSide ? -std::numeric_limits<double>::min() : 0.0;
-  }
-  /// Change of the curvature there, going along dx.
-  static double curvatureJump(double dx, double D) { return dx > 0.0 ? -D : D; }
+  int piece(double x) const { return x <= knot(0) ? 0 : (x >= knot(1) ? 2 : 1); }
+  double knot(int k) const { return k == 0 ? -(limit / D) : limit / D; }
+  double curvatureJump(int k) const { return k == 0 ? D : -D; }
 };
 
 template <class P>
-concept ScalarPenalty = requires(double x, double dx, double D) {
-  { P::at(x, D) } -> std::same_as<Jet>;
-  { P::knotAhead(x, dx) } -> std::same_as<double>;
-  { P::curvatureJump(dx, D) } -> std::same_as<double>;
-  { P::knot(true) } -> std::same_as<double>;
+concept ScalarPenalty = requires(const P s, double x, int k) {
+  { s.D } -> std::convertible_to<double>;
+  { P::kKnots } -> std::convertible_to<int>;
+  { P::kLimited } -> std::convertible_to<bool>;
+  { s.at(x) } -> std::same_as<Jet>;
+  { s.piece(x) } -> std::same_as<int>;
+  { s.knot(k) } -> std::same_as<double>;
+  { s.curvatureJump(k) } -> std::same_as<double>;
 };
 static_assert(ScalarPenalty<HalfQuadratic>);
+static_assert(ScalarPenalty<Quadratic>);
+static_assert(ScalarPenalty<Huber>);
 
 }  // namespace softgauss

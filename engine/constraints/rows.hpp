@@ -5,10 +5,14 @@
 ///
 ///   residual x = J a − a_ref,  cost Σ s(x),  force f = −s′(x),  curvature h = s″(x)
 ///
-/// An effect fills `reference` and D, and maps between rows and dofs; everything else is here.
+/// An effect fills `reference`, D and what else its penalty takes, and maps between rows and dofs;
+/// everything else is here.
 
+#include <algorithm>
 #include <compare>
 #include <cstddef>
+#include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "engine/constraints/penalty.hpp"
@@ -23,12 +27,19 @@ struct RowId {
   auto operator<=>(const RowId&) const = default;
 };
 
+/// A knot of a row's penalty.
+struct Knot {
+  RowId row;
+  int index = 0;  ///< among the knots of the row, upwards
+  auto operator<=>(const Knot&) const = default;
+};
+
 /// A row that reaches a knot of its penalty at α = alpha along the ray a + α d.
 struct Crossing {
   double alpha = 0.0;
   double curvatureJump = 0.0;  ///< s″ after − before
   double rate = 0.0;           ///< dx of the row
-  RowId id;
+  Knot knot;
 };
 
 template <ScalarPenalty Penalty>
@@ -36,28 +47,45 @@ class ScalarRows {
  public:
   std::vector<double> reference;  ///< a_ref
   std::vector<double> D;          ///< stiffness 1/R
+  std::vector<double> limit;      ///< of the force, where the penalty has one; else unused
   std::vector<double> x;          ///< residual at the present acceleration
   std::vector<double> dx;         ///< J d, rate of x along the search direction d
   std::vector<double> f;          ///< force −s′(x)
   std::vector<double> h;          ///< curvature s″(x)
 
   int rowCount() const { return static_cast<int>(x.size()); }
+  Penalty penalty(std::size_t i) const {
+    if constexpr (Penalty::kLimited)
+      return {D[i], limit[i]};
+    else
+      return {D[i]};
+  }
 
-  /// Keeps the memory of earlier steps.
+  /// Drops all rows; keeps the memory.
+  void clearRows() {
+    reference.clear();
+    D.clear();
+    limit.clear();
+  }
+  /// Fits the arrays that the solver writes to `rows`.
   void resizeRows(std::size_t rows) {
     for (std::vector<double>* column : {&reference, &D, &x, &dx, &f, &h}) column->resize(rows);
+    piece_.resize(rows);
   }
 
   /// Force and curvature of every row at x; returns the cost. `cellChanged` becomes true where a
-  /// row's curvature is not what it was.
+  /// row is not in the piece of its penalty in which it was.
   double evaluate(bool& cellChanged) {
     double cost = 0.0;
     for (std::size_t i = 0; i < x.size(); ++i) {
-      const Jet s = Penalty::at(x[i], D[i]);
+      const Penalty p = penalty(i);
+      const Jet s = p.at(x[i]);
+      const auto piece = static_cast<std::int8_t>(p.piece(x[i]));
       cost += s.value;
       f[i] = -s.slope;
-      cellChanged |= h[i] != s.curvature;
       h[i] = s.curvature;
+      cellChanged |= piece_[i] != piece;
+      piece_[i] = piece;
     }
     return cost;
   }
@@ -65,7 +93,7 @@ class ScalarRows {
   /// Slope and curvature of Σ s(x + α dx) in α.
   void along(double alpha, Jet& sum) const {
     for (std::size_t i = 0; i < x.size(); ++i) {
-      const Jet s = Penalty::at(x[i] + alpha * dx[i], D[i]);
+      const Jet s = penalty(i).at(x[i] + alpha * dx[i]);
       sum.value += s.value;
       sum.slope += s.slope * dx[i];
       sum.curvature += s.curvature * dx[i] * dx[i];
@@ -74,20 +102,42 @@ class ScalarRows {
 
   /// Appends the knots that x + α dx meets at α ≥ 0.
   void findCrossings(int kind, std::vector<Crossing>& crossings) const {
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      const double alpha = Penalty::knotAhead(x[i], dx[i]);
-      if (!(alpha < kInfinity)) continue;
-      const double jump = Penalty::curvatureJump(dx[i], D[i]);
-      crossings.push_back({alpha, jump, dx[i], {kind, static_cast<int>(i)}});
+    if constexpr (Penalty::kKnots > 0) {
+      for (std::size_t i = 0; i < x.size(); ++i) {
+        if (dx[i] == 0.0) continue;
+        const Penalty s = penalty(i);
+        const bool up = dx[i] > 0.0;
+        for (int k = up ? s.piece(x[i]) : s.piece(x[i]) - 1; 0 <= k && k < Penalty::kKnots;
+             up ? ++k : --k) {
+          const double alpha = (s.knot(k) - x[i]) / dx[i];
+          if (!(alpha < kInfinity)) break;  // also NaN
+          const double jump = up ? s.curvatureJump(k) : -s.curvatureJump(k);
+          crossings.push_back({alpha, jump, dx[i], {{kind, static_cast<int>(i)}, k}});
+        }
+      }
     }
   }
 
-  /// Puts a row exactly at its knot, on the side of the larger or of the smaller curvature.
-  void placeAtKnot(int row, bool stiffSide) { x[row] = Penalty::knot(stiffSide); }
+  /// x of a row above one of its knots.
+  double aboveKnot(int row, int knot) const { return x[row] - penalty(row).knot(knot); }
+
+  /// Puts a row at a knot, where it counts as free, or next to it on the stiff side.
+  void placeAtKnot(int row, int knot, bool stiffSide) {
+    constexpr double kSmallest = std::numeric_limits<double>::min();
+    constexpr double kRelative = std::numeric_limits<double>::epsilon();
+    const Penalty s = penalty(row);
+    x[row] = s.knot(knot);
+    if (!stiffSide) return;
+    const double step = std::max(kSmallest, kRelative * std::abs(x[row]));
+    x[row] += s.curvatureJump(knot) > 0.0 ? step : -step;
+  }
 
   void advance(double alpha) {
     for (std::size_t i = 0; i < x.size(); ++i) x[i] += alpha * dx[i];
   }
+
+ private:
+  std::vector<std::int8_t> piece_;
 };
 
 }  // namespace softgauss

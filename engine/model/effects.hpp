@@ -17,6 +17,7 @@ enum class Effect : std::uint8_t {
   armature,
   actuation,
   jointLimit,
+  dryFriction,
   selfCollision,
   groundContact,
   objectContact
@@ -35,6 +36,7 @@ inline constexpr EffectName kEffectNames[] = {
     {Effect::armature, "armature", "rotor inertia on the diagonal of M"},
     {Effect::actuation, "actuation", "controls on actuated joints"},
     {Effect::jointLimit, "joint_limit", "soft joint limits"},
+    {Effect::dryFriction, "dry_friction", "Coulomb friction of joints"},
     {Effect::selfCollision, "self_collision", "contacts between bodies of one robot"},
     {Effect::groundContact, "ground_contact", "contacts with shapes fixed to the world"},
     {Effect::objectContact, "object_contact", "contacts between different robots"},

@@ -15,6 +15,7 @@
 #include "engine/core/check.hpp"
 #include "engine/core/spatial.hpp"
 #include "engine/model/effects.hpp"
+#include "engine/model/material.hpp"
 #include "engine/model/shape.hpp"
 
 namespace softgauss {
@@ -59,7 +60,8 @@ struct Dof {
   int parent = -1;                  ///< the next dof towards the root, −1 at the root
   double damping = 0.0;             ///< [N m s/rad or N s/m], force −damping·v
   double armature = 0.0;            ///< rotor inertia added to the diagonal of M [kg m² or kg]
-  double dryFriction = 0.0;         ///< [N m or N], read; simulated by a later effect
+  double dryFriction = 0.0;         ///< largest dry friction force [N m or N]
+  Impedance frictionImpedance;      ///< of the dry friction
   bool actuated = false;            ///< has a control u
   double effortLower = -kInfinity;  ///< control box [N m or N]
   double effortUpper = kInfinity;

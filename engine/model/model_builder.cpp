@@ -185,6 +185,7 @@ class Assembler {
     Dof& dof = model_.dofs[idx(model_.bodies[idx(body)].v)];
     dof.damping = joint.damping;
     dof.dryFriction = joint.dryFriction;
+    dof.frictionImpedance = joint.frictionImpedance;
     dof.armature = joint.armature;
     dof.actuated = actuated;
     if (joint.effort && *joint.effort > 0.0) {

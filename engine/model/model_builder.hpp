@@ -42,7 +42,8 @@ struct JointSpec {
   std::optional<double> effort;        ///< |u| ≤ effort; absent: no box; 0: not actuated
   std::optional<double> velocity;      ///< [rad/s or m/s]
   double damping = 0.0;
-  double dryFriction = 0.0;
+  double dryFriction = 0.0;  ///< largest force [N m or N]
+  Impedance frictionImpedance;
   double armature = 0.0;
   std::optional<MimicSpec> mimic;
   SourceLocation where;

@@ -37,6 +37,28 @@ TEST(GddBehaviour, ArmClosesMostOfTheDistance) {
   EXPECT_LT(after, 0.2 * before);
 }
 
+// Dry friction in every joint: each solve ends with its certificate, and nothing drives by
+// friction.
+TEST(GddBehaviour, ArmWithDryFrictionClosesMostOfTheDistance) {
+  RobotScene r("arm");
+  for (Dof& dof : r.model.dofs) dof.dryFriction = 1.0;
+  const Vector3 target(0.5, 0.3, 0.5);
+  r.addReach("hand", target);
+  r.addDamping();
+  const double before = (r.position("hand") - target).norm();
+  int kinks = 0;
+  for (int i = 0; i < 1000; ++i) {
+    ASSERT_EQ(r.step(), SolveStatus::converged);
+    const gdd::GddStatus status = r.controller.report.status;
+    kinks += status == gdd::GddStatus::kink;
+    EXPECT_TRUE(status == gdd::GddStatus::kink || status == gdd::GddStatus::converged) << i;
+    EXPECT_SMALL(r.controller.report.stationarity, 1e-6);
+    ASSERT_TRUE(r.controlsAllowed());
+  }
+  EXPECT_LT((r.position("hand") - target).norm(), 0.2 * before);
+  EXPECT_GT(kinks, 0) << "joints at the point of slipping";
+}
+
 // The heavier the goal, the less of it is left when the arm has come to rest.
 TEST(GddBehaviour, HeavierGoalsLeaveLess) {
   double last = kInfinity;

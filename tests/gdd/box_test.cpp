@@ -72,7 +72,7 @@ TEST(Box, ConditionsHoldBetweenContactsAndLimits) {
   double worstSign = 0.0, worstViolation = 0.0;
   int atBound = 0, smooth = 0, kinks = 0;
   for (int seed = 0; seed < 150; ++seed) {
-    GddScene s = randomGddScene(seed, 4, 0.8);
+    GddScene s = lawGddScene(seed, 4, 0.8);
     const VectorX& a = s.solve();
     kinks += s.report.status == gdd::GddStatus::kink;
     if (s.report.status != gdd::GddStatus::converged) continue;

@@ -7,15 +7,22 @@ namespace softgauss::test {
 
 VectorX DenseGdd::g(const VectorX& a) const {
   VectorX force(rows());
-  for (int i = 0; i < rows(); ++i) force[i] = D[i] * std::max(aRef[i] - J.row(i).dot(a), 0.0);
+  for (int i = 0; i < rows(); ++i)
+    force[i] = std::clamp(D[i] * (aRef[i] - J.row(i).dot(a)), forceLower[i], forceUpper[i]);
   return M * a + c - J.transpose() * force;
 }
 
 MatrixX DenseGdd::P(const VectorX& a) const {
   MatrixX sum = M;
   for (int i = 0; i < rows(); ++i)
-    if (J.row(i).dot(a) < aRef[i]) sum += D[i] * J.row(i).transpose() * J.row(i);
+    if (stiff(i, J.row(i).dot(a) - aRef[i])) sum += D[i] * J.row(i).transpose() * J.row(i);
   return sum;
+}
+
+bool DenseGdd::stiff(int i, double x, double dx, double width) const {
+  if (std::abs(x - upperKnot(i)) <= width) return dx < 0.0;
+  if (std::abs(x - lowerKnot(i)) <= width) return dx > 0.0;
+  return lowerKnot(i) < x && x < upperKnot(i);
 }
 
 double DenseGdd::goalCost(const VectorX& a) const {

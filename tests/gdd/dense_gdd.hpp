@@ -4,7 +4,7 @@
 /// The problem of goal directed dynamics in dense matrices, coded anew from its formulae: the
 /// oracle for everything in gdd/.
 ///
-///   g(a) = M a + c − Jᵀf,  f = D max(a_ref − J a, 0)                                    (T.2)
+///   g(a) = M a + c − Jᵀf,  f = D (a_ref − J a), bounded                                   (T.2)
 ///   F(a) = ½ gᵀM⁻¹g + ℓ(a),  ℓ(a) = ½ Σ w (A a − y)² + ½ m aᵀM a + aᵀM o                (T.17)
 ///   Φ(a) = F(a) + Σ ½ ρ (t − clamp t)²,  t = g + λ/ρ                                    (T.18)
 
@@ -18,7 +18,8 @@ struct DenseGdd {
   VectorX c;
   MatrixX J;  ///< rows of contacts and limits
   VectorX aRef, D;
-  MatrixX A;  ///< rows of goals
+  VectorX forceLower, forceUpper;  ///< bounds of f: they tell the penalties apart
+  MatrixX A;                       ///< rows of goals
   VectorX y, w;
   double metric = 0.0;  ///< m
   VectorX offset;       ///< o
@@ -29,8 +30,13 @@ struct DenseGdd {
 
   VectorX residual(const VectorX& a) const { return J * a - aRef; }
   VectorX g(const VectorX& a) const;
-  /// M + Jᵀ D J over the rows with a negative residual.
+  /// M + Jᵀ D J over the stiff rows: those with f within its bounds.
   MatrixX P(const VectorX& a) const;
+  /// The knots of a row, ascending, ± ∞ where it has none.
+  double lowerKnot(int i) const { return -forceUpper[i] / D[i]; }
+  double upperKnot(int i) const { return -forceLower[i] / D[i]; }
+  /// Whether row i is stiff at x, or, within `width` of a knot, just past it along dx.
+  bool stiff(int i, double x, double dx = 0.0, double width = 0.0) const;
 
   double goalCost(const VectorX& a) const;
   VectorX goalGradient(const VectorX& a) const;

@@ -20,6 +20,8 @@ GddScene::GddScene(Scene s)
   dense.J = physics.J;
   dense.aRef = physics.aRef;
   dense.D = physics.D;
+  dense.forceLower = physics.lower;
+  dense.forceUpper = physics.upper;
   dense.A.resize(0, n);
   dense.offset = VectorX::Zero(n);
   dense.lambda = VectorX::Zero(n);
@@ -85,6 +87,14 @@ const VectorX& GddScene::solve() {
   return solver->acceleration();
 }
 
+int GddScene::rowIndex(RowId id) const {
+  int kind = 0, first = 0;
+  scene.data->constraints.visit([&](const auto& c) {
+    if (kind++ < id.kind) first += c.rowCount();
+  });
+  return first + id.row;
+}
+
 GddScene randomGddScene(std::uint64_t seed, int contacts, double boxShare,
                         const RandomTreeOptions& options) {
   Random random(seed * 7919 + 17);
@@ -92,6 +102,12 @@ GddScene randomGddScene(std::uint64_t seed, int contacts, double boxShare,
   s.addRandomGoals(random);
   s.addRandomBox(random, boxShare);
   return s;
+}
+
+GddScene lawGddScene(std::uint64_t seed, int contacts, double boxShare) {
+  RandomTreeOptions options;
+  options.effects = seed % 2 == 1;
+  return randomGddScene(seed, contacts, boxShare, options);
 }
 
 }  // namespace softgauss::test

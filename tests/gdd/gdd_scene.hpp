@@ -38,6 +38,9 @@ class GddScene {
   /// and penalties at the end over into `dense`.
   const VectorX& solve();
 
+  /// Place of a row in `dense`.
+  int rowIndex(RowId id) const;
+
   Data& data() { return *scene.data; }
   const Model& model() const { return scene.model; }
   int dofs() const { return scene.model.nv; }
@@ -49,5 +52,8 @@ class GddScene {
 /// randomScene(seed, contacts) with random goals and boxes.
 GddScene randomGddScene(std::uint64_t seed, int contacts, double boxShare = 0.5,
                         const RandomTreeOptions& options = {});
+
+/// The same with the other soft effects for odd seeds.
+GddScene lawGddScene(std::uint64_t seed, int contacts, double boxShare = 0.5);
 
 }  // namespace softgauss::test

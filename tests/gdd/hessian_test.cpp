@@ -16,7 +16,7 @@ struct AtPoint {
   gdd::GaussNewtonHessian hessian;
   TreeFactor massFactor;
 
-  explicit AtPoint(std::uint64_t seed) : s(randomGddScene(seed, 5)), hessian(s.model()) {
+  explicit AtPoint(std::uint64_t seed) : s(lawGddScene(seed, 5)), hessian(s.model()) {
     Random random(seed + 5000);
     s.randomMultipliers(random, 5.0);
     // Penalties of the size of R, so that no term drowns the others.
@@ -52,7 +52,8 @@ double safeStep(const DenseGdd& d, const VectorX& a, int i) {
   const auto meet = [&](double distance, double speed) {
     if (speed != 0.0) nearest = std::min(nearest, std::abs(distance / speed));
   };
-  for (int r = 0; r < d.rows(); ++r) meet(x[r], d.J(r, i));
+  for (int r = 0; r < d.rows(); ++r)
+    for (const double knot : {d.lowerKnot(r), d.upperKnot(r)}) meet(x[r] - knot, d.J(r, i));
   for (int k = 0; k < d.dofs(); ++k) {
     if (d.lower[k] == d.upper[k]) continue;
     meet(t[k] - d.lower[k], rate[k]);

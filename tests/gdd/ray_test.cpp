@@ -23,7 +23,10 @@ class BruteForce {
     const VectorX x = d_.residual(a_), dx = d_.J * direction_;
     std::vector<double> knots{0.0};
     for (int i = 0; i < d_.rows(); ++i)
-      if (dx[i] != 0.0 && -x[i] / dx[i] > 0.0) knots.push_back(-x[i] / dx[i]);
+      for (const double knot : {d_.lowerKnot(i), d_.upperKnot(i)}) {
+        const double alpha = (knot - x[i]) / dx[i];
+        if (alpha > 0.0 && std::isfinite(alpha)) knots.push_back(alpha);
+      }
     std::sort(knots.begin(), knots.end());
     for (std::size_t k = 0; k < knots.size(); ++k) {
       const double from = knots[k];
@@ -69,8 +72,9 @@ struct RayCase {
   VectorX a, direction;
   gdd::RayResult result;
 
-  /// A random ray of descent; every third is the Gauss–Newton direction.
-  explicit RayCase(std::uint64_t seed) : s(randomGddScene(seed, 5)) {
+  /// A random ray of descent; every third is the Gauss–Newton direction. Odd scenes have rows with
+  /// two knots.
+  explicit RayCase(std::uint64_t seed, int contacts = 5) : s(lawGddScene(seed, contacts)) {
     Random random(seed + 9000);
     s.randomMultipliers(random, 3.0);
     // With the solver's penalties these dominate Φ; with small ones all terms count.
@@ -134,21 +138,59 @@ TEST(Ray, NeitherSideOfTheMinimumIsLower) {
 
 // A minimum at a knot names the row that is there.
 TEST(Ray, KinkIsTheKnotOfTheRowItNames) {
-  int kinks = 0;
-  for (int seed = 0; seed < 400; ++seed) {
-    RayCase ray(seed);
+  int kinks = 0, lowerKnots = 0, upperKnots = 0;  // those of rows with two
+  for (int seed = 0; seed < 1500; ++seed) {
+    RayCase ray(seed, seed % 2 == 0 ? 5 : 0);
     if (!ray.result.kink) continue;
     ++kinks;
-    VectorX row = VectorX::Zero(ray.s.dofs());
-    ray.s.data().constraints.addRow(ray.result.last, 1.0, row);
-    int at = -1;
-    for (int i = 0; i < ray.s.dense.rows(); ++i)
-      if ((ray.s.dense.J.row(i).transpose() - row).norm() == 0.0) at = i;
-    ASSERT_GE(at, 0);
-    const VectorX x = ray.s.dense.residual(ray.a + ray.result.alpha * ray.direction);
-    EXPECT_LE(std::abs(x[at]), 1e-9 * (1.0 + std::abs(ray.s.dense.aRef[at]) + row.norm() * 10.0));
+    const DenseGdd& d = ray.s.dense;
+    const int at = ray.s.rowIndex(ray.result.last.row);
+    const VectorX x = d.residual(ray.a + ray.result.alpha * ray.direction);
+    const bool lower = ray.result.last.index == 0 && std::isfinite(d.lowerKnot(at));
+    const double above = x[at] - (lower ? d.lowerKnot(at) : d.upperKnot(at));
+    EXPECT_LE(std::abs(above), 1e-9 * (1.0 + std::abs(d.aRef[at]) + d.J.row(at).norm() * 10.0));
+    (lower ? lowerKnots : upperKnots) += std::isfinite(d.lowerKnot(at));
   }
   EXPECT_GT(kinks, 10);
+  EXPECT_GT(lowerKnots, 2);
+  EXPECT_GT(upperKnots, 2);
+}
+
+// One joint with dry friction, from far below to a wish far above: the ray passes both knots, and
+// the minimum is that of the piece beyond, where the friction is −f_max.
+TEST(Ray, PassesBothKnotsOfDryFriction) {
+  const double m = 2.0, limit = 3.0, w = 7.0, wish = 40.0;
+  ModelBuilder builder("slide");
+  builder.base = BaseKind::fixed;
+  builder.options.gravity.setZero();
+  builder.link(emptyLink("world")).link(boxLink("box", m, {0.1, 0.1, 0.1}));
+  JointSpec joint = jointSpec("x", JointType::prismatic, "world", "box", {}, Vector3::UnitX());
+  joint.dryFriction = limit;
+  Scene scene(builder.joint(joint).build());
+  scene.stages();
+  const Constraints& constraints = scene.data->constraints;
+  const gdd::ControlBox box(scene.model);
+  const VectorX lambda = VectorX::Zero(1), rho = VectorX::Ones(1);
+  TreeFactor massFactor;
+  massFactor.compute(scene.data->inertia.M);
+  gdd::Ray ray(scene.model);
+  for (const double direction : {1.0, -1.0}) {
+    const VectorX a = VectorX::Constant(1, -50.0 * direction);
+    const VectorX d = VectorX::Constant(1, 10.0 * direction);
+    VectorX g(1);
+    inverseDynamics(scene.model, a, *scene.data, g);
+    EXPECT_EQ(g[0], m * a[0] - limit * direction);
+    scene.data->constraints.setRay(d);
+    const gdd::RayResult result =
+        ray.minimize(constraints, massFactor, {box, lambda, rho}, g, m * d,
+                     w * (a[0] - wish * direction) * d[0], w * d[0] * d[0]);
+    // ½ g²/m + ½ w (a − wish)² with g = m a + f_max.
+    const double best = direction * (w * wish - limit) / (m + w);
+    EXPECT_EQ(result.crossings, 2);
+    EXPECT_FALSE(result.kink);
+    EXPECT_EQ(result.last.index, direction > 0.0 ? 1 : 0);
+    EXPECT_SMALL((a[0] + result.alpha * d[0]) / best - 1.0, 1e-12);
+  }
 }
 
 // Φ falls at every iteration, with whatever multipliers the iteration has. A step that takes held
@@ -156,7 +198,7 @@ TEST(Ray, KinkIsTheKnotOfTheRowItNames) {
 TEST(GddSolver, ObjectiveFallsAtEveryIteration) {
   int iterations = 0, rises = 0;
   for (int seed = 0; seed < 60; ++seed) {
-    GddScene s = randomGddScene(seed, 5);
+    GddScene s = lawGddScene(seed, 5);
     s.solver->options.maxIterations = 0;
     VectorX before = s.solve();
     for (int k = 1; k <= 40; ++k) {
@@ -175,7 +217,7 @@ TEST(GddSolver, ObjectiveFallsAtEveryIteration) {
 
 TEST(GddSolver, ReportsTheDenseObjectiveAndViolation) {
   for (int seed = 0; seed < 60; ++seed) {
-    GddScene s = randomGddScene(seed, 5);
+    GddScene s = lawGddScene(seed, 5);
     const VectorX& a = s.solve();
     const VectorX g = s.dense.g(a);
     const double scale = 0.5 * g.dot(s.dense.Minv * g) + std::abs(s.dense.goalCost(a));

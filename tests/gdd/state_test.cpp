@@ -112,7 +112,7 @@ TEST(GddState, WarmStartThatIsNotFiniteIsAColdStart) {
 TEST(GddState, WarmStartsFromElsewhereChangeTheObjectiveOnlyUpToLocalMinima) {
   int same = 0, total = 0, unfinished = 0;
   for (int seed = 0; seed < 40; ++seed) {
-    GddScene s = randomGddScene(seed, 5);
+    GddScene s = lawGddScene(seed, 5);
     s.solve();
     const double reference = s.report.objective;
     const VectorX a = s.solver->acceleration();
@@ -143,7 +143,7 @@ TEST(GddState, WarmStartsFromElsewhereChangeTheObjectiveOnlyUpToLocalMinima) {
 TEST(GddState, ExactWarmStartTakesNoStep) {
   int checked = 0;
   for (int seed = 0; seed < 40; ++seed) {
-    GddScene s = randomGddScene(seed, 5);
+    GddScene s = lawGddScene(seed, 5);
     s.solve();
     if (s.report.status != gdd::GddStatus::converged) continue;
     ++checked;

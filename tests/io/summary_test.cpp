@@ -180,7 +180,7 @@ TEST(EffectNotes, FollowTheSceneAndTheSwitches) {
   EXPECT_TRUE(note("self_collision").on);
   EXPECT_FALSE(note("ground_contact").on);
   EXPECT_FALSE(note("spring").asked);
-  EXPECT_TRUE(note("dry_friction").asked);
+  EXPECT_TRUE(note("dry_friction").on);
   m.options.effects.remove(Effect::damping);
   EXPECT_FALSE(note("damping").on);
   EXPECT_TRUE(contains(note("damping").reason, "switched off"));

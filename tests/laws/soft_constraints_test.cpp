@@ -43,7 +43,7 @@ TEST(Inverse, RecoversForward) {
   int limits = 0, contacts = 0;
   double worst = 0.0;
   for (int seed = 0; seed < 1000; ++seed) {
-    Scene s = randomScene(seed, 6);
+    Scene s = lawScene(seed, 6);
     ASSERT_EQ(s.forward(), SolveStatus::converged) << "seed " << seed;
     limits += s.data->constraints.jointLimit.rowCount() > 0 && activeRows(s) > 0;
     contacts += s.data->constraints.contact.rowCount() > 0;
@@ -63,7 +63,7 @@ TEST(Inverse, RecoversForward) {
 TEST(Forward, RecoversInverse) {
   double worst = 0.0;
   for (int seed = 0; seed < 200; ++seed) {
-    Scene s = randomScene(seed, 6);
+    Scene s = lawScene(seed, 6);
     Random random(seed);
     const VectorX a = random.vector(s.model.nv, 100.0);
     setAppliedForce(inverse(s, a), s.data->forces);
@@ -76,7 +76,7 @@ TEST(Forward, RecoversInverse) {
 
 TEST(Inverse, IsTheGradientOfTheCost) {
   for (int seed = 0; seed < 40; ++seed) {
-    Scene s = randomScene(seed, 6);
+    Scene s = lawScene(seed, 6);
     Random random(seed);
     const VectorX a = random.vector(s.model.nv, 30.0);
     const ConvexProblem p = denseProblem(*s.data);
@@ -90,7 +90,7 @@ TEST(Inverse, IsTheGradientOfTheCost) {
 TEST(InverseJacobian, MatchesFiniteDifferencesInsideACell) {
   int compared = 0, coupled = 0;
   for (int seed = 0; seed < 60; ++seed) {
-    Scene s = randomScene(seed, 6);
+    Scene s = lawScene(seed, 6);
     s.forward();
     const VectorX a = s.data->forward.a;
     inverse(s, a);
@@ -121,7 +121,7 @@ TEST(InverseJacobian, MatchesFiniteDifferencesInsideACell) {
 
 TEST(InverseJacobian, IsMassMatrixPlusCurvatureAndPositiveDefinite) {
   for (int seed = 0; seed < 60; ++seed) {
-    Scene s = randomScene(seed, 6);
+    Scene s = lawScene(seed, 6);
     s.forward();
     inverse(s, s.data->forward.a);
     TreeMatrix P;
@@ -138,7 +138,7 @@ TEST(Forward, MatchesReferenceSolver) {
   double worst = 0.0;
   int active = 0;
   for (int seed = 0; seed < 60; ++seed) {
-    Scene s = randomScene(seed, 4);
+    Scene s = lawScene(seed, 4);
     s.forward();
     active += activeRows(s);
     const ReferenceSolution reference = solveByGaussSeidel(denseProblem(*s.data));
@@ -153,7 +153,7 @@ TEST(Forward, MatchesReferenceSolver) {
 TEST(Cost, DecreasesEveryIteration) {
   int iterations = 0;
   for (int seed = 0; seed < 60; ++seed) {
-    Scene s = randomScene(seed, 10);
+    Scene s = lawScene(seed, 10);
     const ConvexProblem p = denseProblem(*s.data);
     double previous = kInfinity;
     for (int limit = 0; limit <= 100; ++limit) {
@@ -177,7 +177,7 @@ TEST(Cost, DecreasesEveryIteration) {
 TEST(Solver, WarmStartIsNeverWorse) {
   int cold = 0, warm = 0;
   for (int seed = 0; seed < 60; ++seed) {
-    Scene s = randomScene(seed, 10);
+    Scene s = lawScene(seed, 10);
     s.forward();
     const VectorX a = s.data->forward.a;
     cold += s.data->forward.report.iterations;

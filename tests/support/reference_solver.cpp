@@ -2,17 +2,27 @@
 #include "tests/support/reference_solver.hpp"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 
 namespace softgauss::test {
 
+VectorX ConvexProblem::force(const VectorX& a) const {
+  const VectorX f = D.cwiseProduct(aRef - J * a);
+  return f.cwiseMax(lower).cwiseMin(upper);
+}
+
 double ConvexProblem::cost(const VectorX& a) const {
-  const VectorX overshoot = (J * a - aRef).cwiseMin(0.0);
-  return 0.5 * a.dot(M * a) - a.dot(net) + 0.5 * overshoot.dot(D.cwiseProduct(overshoot));
+  // Where a bound holds, s goes on as a line: −f x − ½ R f².
+  const VectorX x = J * a - aRef, f = force(a);
+  double rows = 0.0;
+  for (Eigen::Index i = 0; i < f.size(); ++i)
+    rows +=
+        f[i] == -D[i] * x[i] ? 0.5 * D[i] * x[i] * x[i] : -f[i] * x[i] - 0.5 * f[i] * f[i] / D[i];
+  return 0.5 * a.dot(M * a) - a.dot(net) + rows;
 }
 
 VectorX ConvexProblem::gradient(const VectorX& a) const {
-  const VectorX overshoot = (J * a - aRef).cwiseMin(0.0);
-  return M * a - net + J.transpose() * D.cwiseProduct(overshoot);
+  return M * a - net - J.transpose() * force(a);
 }
 
 ReferenceSolution solveByGaussSeidel(const ConvexProblem& p, double tolerance, int maxSweeps) {
@@ -29,7 +39,7 @@ ReferenceSolution solveByGaussSeidel(const ConvexProblem& p, double tolerance, i
     double change = 0.0;
     for (Eigen::Index i = 0; i < f.size(); ++i) {
       const double old = f[i];
-      f[i] = std::max(0.0, old - (A.row(i).dot(f) + b[i]) / A(i, i));
+      f[i] = std::clamp(old - (A.row(i).dot(f) + b[i]) / A(i, i), p.lower[i], p.upper[i]);
       change = std::max(change, std::abs(f[i] - old));
     }
     if (f.size() == 0 || change <= tolerance * f.cwiseAbs().maxCoeff()) break;

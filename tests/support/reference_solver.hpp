@@ -4,21 +4,26 @@
 /// An independent solver of the convex problem (13), as an oracle for Newton's method.
 ///
 /// It works on the dual, with dense matrices: with A = J M⁻¹ Jᵀ and R = D⁻¹ the forces are
-///   f = argmin  ½ fᵀ(A + R) f + fᵀ(J a_s − a_ref)   subject to f ≥ 0,   a = a_s + M⁻¹ Jᵀ f
-/// found by Gauss–Seidel sweeps, one row after another.
+///   f = argmin  ½ fᵀ(A + R) f + fᵀ(J a_s − a_ref)   subject to lower ≤ f ≤ upper
+///   a = a_s + M⁻¹ Jᵀ f
+/// found by Gauss–Seidel sweeps, one row after another. The bounds tell the penalties apart: (0, ∞)
+/// for a half quadratic, (−∞, ∞) for a quadratic, ± limit for Huber's.
 
 #include "engine/core/types.hpp"
 
 namespace softgauss::test {
 
 struct ConvexProblem {
-  MatrixX M;     ///< (nv × nv)
-  VectorX net;   ///< τ − c (nv)
-  MatrixX J;     ///< (rows × nv)
-  VectorX aRef;  ///< (rows)
-  VectorX D;     ///< (rows)
+  MatrixX M;             ///< (nv × nv)
+  VectorX net;           ///< τ − c (nv)
+  MatrixX J;             ///< (rows × nv)
+  VectorX aRef;          ///< (rows)
+  VectorX D;             ///< (rows)
+  VectorX lower, upper;  ///< bounds of the forces (rows)
 
-  /// ½ aᵀM a − aᵀ(τ − c) + Σ ½ D min(J a − a_ref, 0)².
+  /// Forces −D x within their bounds, x = J a − a_ref.
+  VectorX force(const VectorX& a) const;
+  /// ½ aᵀM a − aᵀ(τ − c) + Σ s(x), with s′(x) = −f.
   double cost(const VectorX& a) const;
   /// Its gradient.
   VectorX gradient(const VectorX& a) const;

@@ -64,6 +64,7 @@ struct RandomTreeOptions {
   bool armature = true;
   bool ranges = true;
   bool geometries = true;  ///< a small sphere on every massive link, and the ground
+  bool effects = false;    ///< in randomScene(): every other soft effect, at random
 };
 
 /// Trees of every joint kind, with massless intermediates (universal joints), planar joints and

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/support/scene.hpp"
 
+#include <tuple>
+#include <utility>
+
 #include "tests/support/reference_solver.hpp"
 
 namespace softgauss::test {
@@ -25,11 +28,26 @@ State randomState(const Model& model, Random& random, double speed) {
   return state;
 }
 
+namespace {
+
+/// Dry friction in half of the joints.
+void addRandomEffects(Model& model, Random random) {
+  for (Dof& dof : model.dofs) {
+    if (!random.chance(0.5)) continue;
+    dof.dryFriction = random.uniform(0.1, 5.0);
+    dof.frictionImpedance.dMin = random.uniform(0.5, 0.95);
+  }
+}
+
+}  // namespace
+
 Scene randomScene(std::uint64_t seed, int contacts, const RandomTreeOptions& options) {
   Random random(seed ^ 0x9e3779b97f4a7c15ull);
   Scene scene(randomForest(seed, options).build());
   const Model& model = scene.model;
-  scene.state = randomState(model, random);
+  if (options.effects) addRandomEffects(scene.model, Random(seed + 5000));
+  // Slow enough that joints with dry friction stick as well as slide.
+  scene.state = randomState(model, random, options.effects ? 0.1 : 2.0);
   scene.input.tau = random.vector(model.nv, 10.0);
   for (int i = 0; i < 2; ++i)
     scene.input.wrenches.push_back(
@@ -43,6 +61,19 @@ Scene randomScene(std::uint64_t seed, int contacts, const RandomTreeOptions& opt
   return scene;
 }
 
+Scene lawScene(std::uint64_t seed, int contacts) {
+  RandomTreeOptions options;
+  options.effects = seed % 2 == 1;
+  return randomScene(seed, contacts, options);
+}
+
+namespace {
+
+std::pair<double, double> forceBounds(const HalfQuadratic&) { return {0.0, kInfinity}; }
+std::pair<double, double> forceBounds(const Huber& s) { return {-s.limit, s.limit}; }
+
+}  // namespace
+
 ConvexProblem denseProblem(const Data& data) {
   ConvexProblem problem;
   problem.M = data.inertia.M.dense();
@@ -51,11 +82,14 @@ ConvexProblem denseProblem(const Data& data) {
   const int rows = data.constraints.rowCount();
   problem.aRef.resize(rows);
   problem.D.resize(rows);
+  problem.lower.resize(rows);
+  problem.upper.resize(rows);
   int row = 0;
   data.constraints.visit([&](const auto& c) {
     for (int i = 0; i < c.rowCount(); ++i, ++row) {
       problem.aRef[row] = c.reference[i];
       problem.D[row] = c.D[i];
+      std::tie(problem.lower[row], problem.upper[row]) = forceBounds(c.penalty(i));
     }
   });
   return problem;

@@ -43,6 +43,9 @@ State randomState(const Model& model, Random& random, double speed = 2.0);
 /// random contacts, its stages computed.
 Scene randomScene(std::uint64_t seed, int contacts = 8, const RandomTreeOptions& options = {});
 
+/// randomScene(seed, contacts), with the other soft effects for odd seeds.
+Scene lawScene(std::uint64_t seed, int contacts = 8);
+
 /// The convex problem of the scene's stages, dense.
 struct ConvexProblem;
 ConvexProblem denseProblem(const Data& data);

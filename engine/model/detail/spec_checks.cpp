@@ -40,6 +40,27 @@ void checkLink(const LinkSpec& link) {
     fail("inertia has a negative principal moment " + momentsText(moments) + ", expected none");
 }
 
+void checkImpedance(const Impedance& p, const SourceLocation& where, const std::string& element) {
+  const auto positive = [&](double x, const char* what) {
+    if (!(x > 0.0) || !std::isfinite(x))
+      throw ModelError(where, element,
+                       std::string(what) + " is " + number(x) + ", expected more than 0");
+  };
+  positive(p.timeConstant, "time constant");
+  positive(p.dampingRatio, "damping ratio");
+  for (const double d : {p.dMin, p.dMax, p.midpoint})
+    if (!(d >= 0.0 && d <= 1.0))
+      throw ModelError(
+          where, element,
+          "impedance has " + number(d) + ", expected dMin, dMax and midpoint in [0, 1]");
+  if (!(p.width >= 0.0) || !std::isfinite(p.width))
+    throw ModelError(where, element,
+                     "impedance width is " + number(p.width) + ", expected 0 or more");
+  if (!(p.power >= 1.0) || !std::isfinite(p.power))
+    throw ModelError(where, element,
+                     "impedance power is " + number(p.power) + ", expected 1 or more");
+}
+
 void checkJoint(const JointSpec& joint) {
   const std::string element = "joint '" + joint.name + "'";
   const auto fail = [&](const std::string& text) { throw ModelError(joint.where, element, text); };
@@ -61,6 +82,7 @@ void checkJoint(const JointSpec& joint) {
   };
   notNegative(joint.damping, "damping");
   notNegative(joint.dryFriction, "friction");
+  checkImpedance(joint.frictionImpedance, joint.where, element + " friction");
   notNegative(joint.armature, "armature");
   if (joint.effort) notNegative(*joint.effort, "effort");
   if (joint.velocity) notNegative(*joint.velocity, "velocity");

@@ -10,6 +10,8 @@
 namespace softgauss::detail {
 
 void checkLink(const LinkSpec& link);
+void checkImpedance(const Impedance& impedance, const SourceLocation& where,
+                    const std::string& element);
 void checkJoint(const JointSpec& joint);
 void checkGeometry(const GeometrySpec& geometry);
 void checkOptions(const Options& options);

@@ -66,6 +66,8 @@ ConvexProblem randomProblem(std::uint64_t seed, int rows) {
   for (double& x : p.J.reshaped()) x = random.uniform(-1.0, 1.0);
   p.aRef = random.vector(rows, 3.0);
   p.D = VectorX::Constant(rows, 20.0);
+  p.lower = VectorX::Zero(rows);
+  p.upper = VectorX::Constant(rows, kInfinity);
   return p;
 }
 

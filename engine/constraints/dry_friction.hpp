@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Dry (Coulomb) friction of joints, one row for each dof that has it.
+///
+/// The row wants the joint to come to rest, with a force of at most f_max = Dof::dryFriction:
+///   x = aᵢ − a_ref,   a_ref = −b vᵢ,   f = −D x clamped to ± f_max                        (T.27)
+/// There is no distance: b, D come from the dof's Impedance at r = 0. While the joint slides,
+/// |x| ≥ R f_max and the force is f_max against the motion; while it sticks, it creeps at the speed
+/// R f/b under a load f. Contract: |f| ≤ f_max.
+
+#include <vector>
+
+#include "engine/constraints/assembly.hpp"
+#include "engine/constraints/rows.hpp"
+
+namespace softgauss {
+
+class DryFriction : public ScalarRows<Huber> {
+ public:
+  void assemble(const Assembly& in);
+  void multiply(const VectorX& a, std::vector<double>& y) const {
+    for (std::size_t i = 0; i < dof_.size(); ++i) y[i] = a[dof_[i]];
+  }
+  void addForce(VectorX& tau) const {
+    for (std::size_t i = 0; i < dof_.size(); ++i) tau[dof_[i]] += f[i];
+  }
+  void addCurvature(TreeMatrix& P) {
+    for (std::size_t i = 0; i < dof_.size(); ++i) P.row(dof_[i])[dof_[i]] += h[i];
+  }
+  /// y ← y + scale · (row i of J)ᵀ.
+  void addRow(int i, double scale, VectorX& y) const { y[dof_[i]] += scale; }
+  int dof(int row) const { return dof_[row]; }
+
+ private:
+  std::vector<int> dof_;
+};
+
+}  // namespace softgauss
