@@ -2,12 +2,9 @@
 #include "io/goals.hpp"
 
 #include <fmt/format.h>
-#include <yaml-cpp/eventhandler.h>
-#include <yaml-cpp/yaml.h>
 
 #include <algorithm>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <utility>
 
@@ -16,194 +13,14 @@
 #include "gdd/goals/reach.hpp"
 #include "gdd/goals/virtual_damping.hpp"
 #include "io/detail/text.hpp"
+#include "io/detail/yaml.hpp"
 
 namespace softgauss::io {
 namespace {
 
-// ---- YAML, read strictly ------------------------------------------------------------------------
-
-/// Text as messages show it: short, and without characters that move a terminal's cursor.
-std::string quoted(std::string text) {
-  constexpr std::size_t kMost = 60;
-  if (text.size() > kMost) text = text.substr(0, kMost) + "…";
-  std::replace_if(
-      text.begin(), text.end(),
-      [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }, '?');
-  return "'" + text + "'";
-}
-
-/// A scalar in quotes is text, even if it looks like a number.
-bool isPlain(const YAML::Node& node) { return node.Tag() == "?"; }
-
-/// What a message says was found.
-std::string described(const YAML::Node& node) {
-  switch (node.Type()) {
-    case YAML::NodeType::Scalar:
-      return isPlain(node) ? quoted(node.Scalar()) : "the text " + quoted(node.Scalar());
-    case YAML::NodeType::Sequence:
-      return "a list of " + std::to_string(node.size());
-    case YAML::NodeType::Map:
-      return "a map";
-    default:
-      return "nothing";
-  }
-}
-
-std::optional<double> finiteNumber(const YAML::Node& node) {
-  if (!node.IsScalar() || !isPlain(node)) return std::nullopt;
-  return detail::parseNumber(node.Scalar());
-}
-
-enum class Range { any, notNegative, positive };
-
-/// A map of the file, and what messages need to name it. Its keys are distinct names.
-class YamlMap {
- public:
-  struct Entry {
-    std::string key;
-    YAML::Node value;
-    int line = 0;
-  };
-
-  /// `label` is how messages begin, "goal 2 'reach': "; `prefix` what they put before keys.
-  YamlMap(const std::string& file, std::string label, std::string prefix, const YAML::Node& map)
-      : file_(&file), label_(std::move(label)), prefix_(std::move(prefix)) {
-    for (const auto& pair : map) {
-      const int line = pair.first.Mark().line + 1;
-      if (!pair.first.IsScalar())
-        throw ModelError({*file_, line}, label_ + "key",
-                         fmt::format("found {}, expected a name", described(pair.first)));
-      const std::string key = pair.first.Scalar();
-      if (const Entry* first = find(key))
-        fail({key, {}, line},
-             fmt::format("found a second time, first in line {}; expected once", first->line));
-      entries_.push_back({key, pair.second, line});
-    }
-  }
-
-  const std::vector<Entry>& entries() const { return entries_; }
-
-  void expectOnly(const std::vector<std::string>& known) const {
-    for (const Entry& entry : entries_)
-      if (std::find(known.begin(), known.end(), entry.key) == known.end())
-        fail(entry, fmt::format("found an unknown key, expected one of {}{}", detail::listed(known),
-                                detail::suggestion(entry.key, known)));
-  }
-
-  const Entry* find(const std::string& key) const {
-    const auto it = std::find_if(entries_.begin(), entries_.end(),
-                                 [&](const Entry& entry) { return entry.key == key; });
-    return it == entries_.end() ? nullptr : &*it;
-  }
-
-  const Entry& required(const std::string& key, const std::string& expected, int mapLine) const {
-    const Entry* entry = find(key);
-    if (!entry) fail({key, {}, mapLine}, "found no such key, expected " + expected);
-    return *entry;
-  }
-
-  /// The number of the entry.
-  double number(const Entry& entry, Range range = Range::any) const {
-    const std::optional<double> x = finiteNumber(entry.value);
-    const bool inside =
-        x && (range == Range::any || *x > 0.0 || (range == Range::notNegative && *x == 0.0));
-    if (inside) return *x;
-    const char* const bound = range == Range::notNegative ? " >= 0"
-                              : range == Range::positive  ? " > 0"
-                                                          : "";
-    fail(entry, fmt::format("found {}, expected a finite number{}", described(entry.value), bound));
-  }
-  /// Sets x if the key is there.
-  void read(const std::string& key, double& x, Range range) const {
-    if (const Entry* entry = find(key)) x = number(*entry, range);
-  }
-
-  Vector3 vector3(const Entry& entry) const {
-    const YAML::Node& list = entry.value;
-    if (!list.IsSequence() || list.size() != 3)
-      fail(entry, fmt::format("found {}, expected three numbers [x, y, z]", described(list)));
-    Vector3 p;
-    for (int i = 0; i < 3; ++i) {
-      const YAML::Node item = list[static_cast<std::size_t>(i)];
-      const std::optional<double> x = finiteNumber(item);
-      if (!x)
-        fail({entry.key, {}, item.Mark().line + 1},
-             fmt::format("found {} as number {}, expected three finite numbers [x, y, z]",
-                         described(item), i + 1));
-      p[i] = *x;
-    }
-    return p;
-  }
-
-  std::string name(const Entry& entry) const {
-    if (!entry.value.IsScalar())
-      fail(entry, fmt::format("found {}, expected a name", described(entry.value)));
-    return entry.value.Scalar();
-  }
-
-  /// The map that is the value of the entry; messages call its keys `key.…`.
-  YamlMap map(const Entry& entry) const {
-    if (!entry.value.IsMap())
-      fail(entry, fmt::format("found {}, expected a map {{…}}", described(entry.value)));
-    return {*file_, label_, prefix_ + entry.key + ".", entry.value};
-  }
-
-  [[noreturn]] void fail(const Entry& entry, const std::string& problem) const {
-    throw ModelError({*file_, entry.line}, label_ + "key " + quoted(prefix_ + entry.key), problem);
-  }
-
- private:
-  const std::string* file_;
-  std::string label_, prefix_;
-  std::vector<Entry> entries_;
-};
-
-/// Notes where the document begins that a parser reads.
-class DocumentStart final : public YAML::EventHandler {
- public:
-  int line = 0;
-
-  void OnDocumentStart(const YAML::Mark& mark) override { line = mark.line + 1; }
-  void OnDocumentEnd() override {}
-  void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
-  void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
-  void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t,
-                const std::string&) override {}
-  void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
-                       YAML::EmitterStyle::value) override {}
-  void OnSequenceEnd() override {}
-  void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
-                  YAML::EmitterStyle::value) override {}
-  void OnMapEnd() override {}
-};
-
-/// The only document of the file.
-YAML::Node parseYaml(const std::string& file, const std::string& text) {
-  // yaml-cpp takes some control characters for the end of the file.
-  const auto control = std::find_if(text.begin(), text.end(), [](char c) {
-    return static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\r' && c != '\t';
-  });
-  if (control != text.end())
-    throw ModelError({file, 1 + static_cast<int>(std::count(text.begin(), control, '\n'))}, "YAML",
-                     "found a control character, expected text in UTF-8");
-  try {
-    const YAML::Node document = YAML::Load(text);
-    // Not YAML::LoadAll: what it cannot read it may meet again and again, for ever.
-    std::istringstream stream(text);
-    YAML::Parser parser(stream);
-    DocumentStart start;
-    const bool hasMore = parser.HandleNextDocument(start) && parser.HandleNextDocument(start);
-    if (hasMore)
-      throw ModelError({file, start.line}, "YAML",
-                       "found more behind the end of the document, expected the end of the file");
-    if (document.IsNull()) throw ModelError({file, 1}, "file", "is empty, expected goals: [...]");
-    return document;
-  } catch (const YAML::Exception& error) {
-    throw ModelError(
-        {file, error.mark.line + 1}, "YAML",
-        fmt::format("cannot be read: {} (column {})", error.msg, error.mark.column + 1));
-  }
-}
+using detail::Range;
+using detail::YamlMap;
+using detail::YamlValue;
 
 // ---- One function for each kind of goal ---------------------------------------------------------
 
@@ -215,12 +32,6 @@ struct Scene {
   const State& initial;
 };
 
-/// A goal as written: the line of its kind and the keys below it.
-struct Written {
-  int line = 0;
-  const YamlMap& keys;
-};
-
 /// The link that the entry names; it must move.
 std::string movingLink(const YamlMap& keys, const YamlMap::Entry& entry, const Model& model) {
   const std::string link = keys.name(entry);
@@ -229,12 +40,13 @@ std::string movingLink(const YamlMap& keys, const YamlMap::Entry& entry, const M
     if (frame.body != 0) links.push_back(frame.name);
   const int frame = model.findFrame(link);
   if (frame < 0)
-    keys.fail(entry, fmt::format("found {}, expected a link of model '{}'{}", quoted(link),
-                                 model.name, detail::suggestion(link, links)));
+    keys.fail(entry,
+              fmt::format("found {}, expected a link of model '{}'{}", detail::quotedText(link),
+                          model.name, detail::suggestion(link, links)));
   if (model.frames[static_cast<std::size_t>(frame)].body == 0)
     keys.fail(entry,
               fmt::format("found {}, which is fixed to the world, expected a link that moves",
-                          quoted(link)));
+                          detail::quotedText(link)));
   return link;
 }
 
@@ -250,12 +62,10 @@ gdd::MinimumJerk readMinimumJerk(const YamlMap& keys, const gdd::Reach& goal, co
   return line;
 }
 
-GoalPointer readReach(const Written& written, const Scene& scene) {
-  const YamlMap& keys = written.keys;
+GoalPointer readReach(const YamlMap& keys, const Scene& scene) {
   const std::string link =
-      movingLink(keys, keys.required("link", "the name of a link", written.line), scene.model);
-  const Vector3 target =
-      keys.vector3(keys.required("target", "three numbers [x, y, z]", written.line));
+      movingLink(keys, keys.required("link", "the name of a link"), scene.model);
+  const Vector3 target = keys.vector3(keys.required("target", "three numbers [x, y, z]"));
   auto goal = std::make_unique<gdd::Reach>(scene.model, link, target);
   if (const auto* point = keys.find("point")) goal->p_FP = keys.vector3(*point);
   keys.read("weight", goal->weight, Range::notNegative);
@@ -287,8 +97,7 @@ void readJoints(const YamlMap& joints, const Model& model, VectorX& q) {
   }
 }
 
-GoalPointer readPosture(const Written& written, const Scene& scene) {
-  const YamlMap& keys = written.keys;
+GoalPointer readPosture(const YamlMap& keys, const Scene& scene) {
   auto goal = std::make_unique<gdd::Posture>(scene.initial.q);
   keys.read("weight", goal->weight, Range::notNegative);
   keys.read("stiffness", goal->stiffness, Range::notNegative);
@@ -297,17 +106,17 @@ GoalPointer readPosture(const Written& written, const Scene& scene) {
   return goal;
 }
 
-GoalPointer readDamping(const Written& written, const Scene&) {
+GoalPointer readDamping(const YamlMap& keys, const Scene&) {
   auto goal = std::make_unique<gdd::VirtualDamping>();
-  written.keys.read("weight", goal->weight, Range::notNegative);
-  written.keys.read("rate", goal->rate, Range::notNegative);
+  keys.read("weight", goal->weight, Range::notNegative);
+  keys.read("rate", goal->rate, Range::notNegative);
   return goal;
 }
 
 struct GoalKind {
   std::string name;
   std::vector<std::string> keys;
-  GoalPointer (*read)(const Written& written, const Scene& scene);
+  GoalPointer (*read)(const YamlMap& keys, const Scene& scene);
 };
 
 /// To add a kind of goal: write its function above, name it and its keys here, and show it in
@@ -326,21 +135,21 @@ const std::vector<GoalKind>& goalKinds() {
 // ---- The file -----------------------------------------------------------------------------------
 
 /// The goal of one item of the list, `kind: {key: value, …}`.
-GoalPointer readGoal(const std::string& file, const YAML::Node& item, std::size_t number,
+GoalPointer readGoal(const std::string& file, const YamlValue& item, std::size_t number,
                      const Scene& scene) {
   const std::string label = fmt::format("goal {}", number);
   std::vector<std::string> names;
   for (const GoalKind& kind : goalKinds()) names.push_back(kind.name);
-  if (!item.IsMap())
-    throw ModelError({file, item.Mark().line + 1}, label,
+  if (item.kind != YamlValue::Kind::map)
+    throw ModelError({file, item.line}, label,
                      fmt::format("found {}, expected kind: {{…}}, the kind one of {}",
-                                 described(item), detail::listed(names)));
+                                 item.described(), detail::listed(names)));
   const YamlMap kinds(file, label + ": ", "", item);
   if (kinds.entries().size() != 1) {
     std::vector<std::string> found;
     for (const YamlMap::Entry& entry : kinds.entries()) found.push_back(entry.key);
     throw ModelError(
-        {file, item.Mark().line + 1}, label,
+        {file, item.line}, label,
         fmt::format("found {} ({}), expected one, the kind, whose own keys are in {{…}} "
                     "or indented below it",
                     detail::counted(found.size(), "key"), detail::listed(found)));
@@ -351,16 +160,16 @@ GoalPointer readGoal(const std::string& file, const YAML::Node& item, std::size_
   if (kind == goalKinds().end())
     throw ModelError(
         {file, only.line}, label,
-        fmt::format("found the unknown kind {}, expected one of {}{}", quoted(only.key),
+        fmt::format("found the unknown kind {}, expected one of {}{}", detail::quotedText(only.key),
                     detail::listed(names), detail::suggestion(only.key, names)));
   const std::string named = fmt::format("{} '{}'", label, kind->name);
-  if (!only.value.IsMap())
+  if (only.value.kind != YamlValue::Kind::map)
     throw ModelError({file, only.line}, named,
                      fmt::format("found {}, expected a map {{…}} with keys of {}",
-                                 described(only.value), detail::listed(kind->keys)));
+                                 only.value.described(), detail::listed(kind->keys)));
   const YamlMap keys(file, named + ": ", "", only.value);
   keys.expectOnly(kind->keys);
-  return kind->read({only.line, keys}, scene);
+  return kind->read(keys, scene);
 }
 
 }  // namespace
@@ -371,19 +180,19 @@ std::vector<std::unique_ptr<gdd::Goal>> readGoals(const std::filesystem::path& f
   const std::string path = file.string();
   const std::optional<std::string> text = detail::readFile(path);
   if (!text) throw ModelError({path, 0}, "file", "cannot be read, expected a YAML file of goals");
-  const YAML::Node root = parseYaml(path, *text);
-  if (!root.IsMap())
-    throw ModelError({path, root.Mark().line + 1}, "file",
-                     fmt::format("found {}, expected goals: [...]", described(root)));
+  const YamlValue root = detail::parseYaml(path, *text, "goals: [...]");
+  if (root.kind != YamlValue::Kind::map)
+    throw ModelError({path, root.line}, "file",
+                     fmt::format("found {}, expected goals: [...]", root.described()));
   const YamlMap top(path, "", "", root);
   top.expectOnly({"goals"});
-  const YamlMap::Entry& list = top.required("goals", "a list of goals", root.Mark().line + 1);
-  if (!list.value.IsSequence() || list.value.size() == 0)
+  const YamlMap::Entry& list = top.required("goals", "a list of goals");
+  if (list.value.items.empty())
     top.fail(list,
-             fmt::format("found {}, expected a list of at least one goal", described(list.value)));
+             fmt::format("found {}, expected a list of at least one goal", list.value.described()));
 
   std::vector<std::unique_ptr<gdd::Goal>> goals;
-  for (const YAML::Node& item : list.value)
+  for (const YamlValue& item : list.value.items)
     goals.push_back(readGoal(path, item, goals.size() + 1, {model, initial}));
   return goals;
 }
