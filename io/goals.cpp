@@ -185,7 +185,8 @@ std::vector<std::unique_ptr<gdd::Goal>> readGoals(const std::filesystem::path& f
     throw ModelError({path, root.line}, "file",
                      fmt::format("found {}, expected goals: [...]", root.described()));
   const YamlMap top(path, "", "", root);
-  top.expectOnly({"goals"});
+  // A scene file, whose other keys readScene() knows, may hold goals too.
+  if (!top.find("robots") && !top.find("objects")) top.expectOnly({"goals"});
   const YamlMap::Entry& list = top.required("goals", "a list of goals");
   if (list.value.items.empty())
     top.fail(list,

@@ -21,7 +21,7 @@ using detail::UrdfShape;
 class ShapeReader {
  public:
   ShapeReader(const std::filesystem::path& urdf, const UrdfOptions& options)
-      : finder_(urdf, options.packagePaths), readsVisualMeshes_(options.visualMeshes) {}
+      : finder_(urdf, options.packagePaths), options_(options) {}
 
   /// Throws where the mesh is missing or cannot be read.
   GeometrySpec collision(const UrdfShape& shape, const std::string& link, std::size_t index) {
@@ -31,6 +31,8 @@ class ShapeReader {
     spec.X_LG = shape.X_LG;
     spec.shape = shape.shape;
     spec.where = shape.element.where();
+    const auto material = options_.linkMaterials.find(link);
+    spec.material = material == options_.linkMaterials.end() ? options_.material : material->second;
     if (shape.shape.kind == ShapeKind::mesh) spec.shape.mesh = mesh(shape);
     return spec;
   }
@@ -81,7 +83,7 @@ class ShapeReader {
       missing_.push_back(shape.meshUri);
       return nullptr;
     }
-    if (readsVisualMeshes_) return readMesh(found.path, shape);
+    if (options_.visualMeshes) return readMesh(found.path, shape);
     Mesh unread;
     unread.file = found.path.string();
     return std::make_shared<const Mesh>(std::move(unread));
@@ -97,7 +99,7 @@ class ShapeReader {
 
   detail::ResourceFinder finder_;
   MeshCache meshes_;
-  bool readsVisualMeshes_;
+  const UrdfOptions& options_;
   std::vector<std::string> missing_, notShown_;
 };
 
@@ -136,7 +138,19 @@ ModelBuilder readUrdf(const std::filesystem::path& file, const UrdfOptions& opti
     contents->links = static_cast<int>(urdf.links.size());
     contents->joints = static_cast<int>(urdf.joints.size());
     contents->mass = 0.0;
-    for (const detail::UrdfLink& link : urdf.links) contents->mass += link.spec.mass;
+    contents->linkNames.clear();
+    contents->scalarJoints.clear();
+    for (const detail::UrdfLink& link : urdf.links) {
+      contents->mass += link.spec.mass;
+      contents->linkNames.push_back(link.spec.name);
+    }
+    contents->floatingLink.clear();
+    for (const JointSpec& joint : urdf.joints) {
+      if (joint.type == JointType::floating) contents->floatingLink = joint.child;
+      if (joint.type == JointType::revolute || joint.type == JointType::continuous ||
+          joint.type == JointType::prismatic)
+        contents->scalarJoints.push_back(joint.name);
+    }
   }
   return builder;
 }

@@ -12,6 +12,7 @@
 /// none means no box. Followers of a mimic are free, passive joints until mimic is simulated.
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,8 @@ struct UrdfOptions {
   bool visualMeshes = false;
   BaseKind base = BaseKind::automatic;
   bool zeroEffortIsUnlimited = false;
+  Material material;                              ///< of collision shapes
+  std::map<std::string, Material> linkMaterials;  ///< of those of some links instead
 };
 
 /// What the file holds, before links are merged; for --explain and the summary.
@@ -34,6 +37,9 @@ struct UrdfContents {
   int links = 0;
   int joints = 0;
   double mass = 0.0;  ///< [kg] of all links, those fixed to the world too
+  std::vector<std::string> linkNames;
+  std::string floatingLink;               ///< of a joint of type floating, if there is one
+  std::vector<std::string> scalarJoints;  ///< names of the joints of one degree of freedom
 };
 
 /// Throws ModelError. Options may still be set on the builder; its build() checks the rest.

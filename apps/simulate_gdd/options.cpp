@@ -94,6 +94,18 @@ EffectSet parseEffects(const std::string& text) {
 
 }  // namespace
 
+void checkSteps(const SimulateOptions& options, double timestep) {
+  if (timestep > kLongestStep)
+    throw UsageError(fmt::format("--timestep {}: expected at most {} s", timestep, kLongestStep));
+  if (options.duration / timestep > kMostSteps)
+    throw UsageError(fmt::format("--duration {} is more than {:g} steps of {} s", options.duration,
+                                 kMostSteps, timestep));
+}
+
+bool SimulateOptions::isScene() const {
+  return model.extension() == ".yaml" || model.extension() == ".yml";
+}
+
 std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
   SimulateOptions options;
   CLI::App app(
@@ -107,7 +119,8 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
     options.commandLine +=
         i == 0 ? std::filesystem::path(argv[0]).filename().string() : fmt::format(" {}", argv[i]);
 
-  app.add_option("MODEL", options.model, "a .urdf file")->required();
+  app.add_option("MODEL", options.model, "a .urdf file, or a .yaml scene (docs/scenes.md)")
+      ->required();
   const char* const scene = "Scene";
   app.add_option("--base", base,
                  "fixed or floating; default: floating, or fixed when the root link is 'world'")
@@ -148,7 +161,8 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
   const char* const simulation = "Simulation";
   app.add_option("--duration", options.duration, "simulated time [s], default 2")
       ->group(simulation);
-  app.add_option("--timestep", options.timestep, "step [s], default 0.002")->group(simulation);
+  app.add_option("--timestep", options.timestep, "step [s], default 0.002 or as the scene says")
+      ->group(simulation);
   app.add_option("--integrator", integrator,
                  "semi-implicit-euler (default): order 1, one solve a step, implicit joint damping")
       ->check(CLI::IsMember({"semi-implicit-euler"}))
@@ -191,16 +205,11 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
                                       : BaseKind::automatic;
   options.groundIsDefault = ground.empty();
   if (!ground.empty() && ground != "none") options.ground = parseNumber(ground, "--ground");
-  for (const auto& [option, value] :
-       {std::pair{"--duration", options.duration}, std::pair{"--timestep", options.timestep}})
+  for (const auto& [option, value] : {std::pair{"--duration", options.duration},
+                                      std::pair{"--timestep", options.timestep.value_or(1.0)}})
     if (!(value > 0.0) || !std::isfinite(value))
       throw UsageError(fmt::format("{} {}: expected a number of seconds above 0", option, value));
-  if (options.timestep > kLongestStep)
-    throw UsageError(
-        fmt::format("--timestep {}: expected at most {} s", options.timestep, kLongestStep));
-  if (options.duration / options.timestep > kMostSteps)
-    throw UsageError(fmt::format("--duration {} is more than {:g} steps of {} s", options.duration,
-                                 kMostSteps, options.timestep));
+  if (options.timestep) checkSteps(options, *options.timestep);
   const auto mustBeNear = [](double metres, const std::string& option) {
     if (!(std::abs(metres) <= kFarthest))
       throw UsageError(
@@ -226,10 +235,17 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
     options.q0.emplace_back(text.substr(0, equals), parseNumber(text.substr(equals + 1), "--q0"));
   }
   checkOutputs(options);
+  if (options.isScene())
+    for (const auto& [option, given] : {std::pair{"--base", !base.empty() && base != "automatic"},
+                                        std::pair{"--base-height", options.baseHeight.has_value()},
+                                        std::pair{"--ground", !ground.empty()}})
+      if (given)
+        throw UsageError(fmt::format("{} is for a URDF; a scene file says it itself", option));
   const bool hasGoals = !options.reach.empty() || !options.goals.empty();
   if (int{options.passive} + int{!options.torques.empty()} + int{hasGoals} > 1)
     throw UsageError("choose one of goals (--reach, --goals), --torques and --passive");
-  if (!options.passive && options.torques.empty() && !hasGoals && !options.explain)
+  if (!options.isScene() && !options.passive && options.torques.empty() && !hasGoals &&
+      !options.explain)
     throw UsageError(
         "nothing to do: give a goal (--reach LINK=x,y,z or --goals FILE), --torques or --passive");
   return options;

@@ -26,7 +26,7 @@ struct SimulateOptions {
   std::optional<double> ground;  ///< height of the ground plane [m]
   bool groundIsDefault = true;   ///< 0 for a floating base, none for a fixed one
   double duration = 2.0;
-  double timestep = 0.002;
+  std::optional<double> timestep;  ///< absent: the model's own [s]
   std::vector<ReachArgument> reach;
   bool passive = false;
   std::filesystem::path goals, torques;
@@ -39,6 +39,9 @@ struct SimulateOptions {
   std::filesystem::path log, summary, view, plot;
   std::string commandLine;  ///< as it was typed
   std::vector<std::filesystem::path> packagePaths;
+
+  /// MODEL is a scene file, not a URDF.
+  bool isScene() const;
 };
 
 /// A command line that cannot be run: exit code 2.
@@ -46,6 +49,9 @@ class UsageError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
+
+/// Throws UsageError when the step is too long, or the run has too many of them.
+void checkSteps(const SimulateOptions& options, double timestep);
 
 /// Parses argv. Returns nothing when the program is done already (--help, --version), which it
 /// has printed. Throws UsageError.

@@ -32,7 +32,7 @@ Replay::Replay(const SimulateOptions& options, const Scene& scene,
   if (!page_ && !plot_) return;
   recording_.emplace(scene.model, goals, start);
   recording_->command = options.commandLine;
-  recording_->reserve(static_cast<std::size_t>(options.duration / options.timestep),
+  recording_->reserve(static_cast<std::size_t>(options.duration / scene.model.options.timestep),
                       options.duration);
   if (page_) recording_->hulls = collidingHulls(scene);
 }

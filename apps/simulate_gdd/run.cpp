@@ -84,7 +84,8 @@ class Runner {
   }
 
   ExitCode run() {
-    const auto steps = static_cast<long>(std::ceil(options_.duration / options_.timestep - 1e-9));
+    const auto steps =
+        static_cast<long>(std::ceil(options_.duration / model_.options.timestep - 1e-9));
     Progress progress(options_.duration, options_.quiet);
     Verdict verdict(model_);
     ExitCode code = kDone;

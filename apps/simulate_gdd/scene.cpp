@@ -3,12 +3,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
 #include "collision/lowest_point.hpp"
 #include "io/explain.hpp"
 #include "io/goals.hpp"
+#include "io/scene.hpp"
 
 namespace softgauss::app {
 namespace {
@@ -39,66 +41,114 @@ void setJointPositions(const SimulateOptions& options, const Model& model, State
   }
 }
 
-/// Stands every floating tree on the ground, or at the wished height.
-void placeBases(const SimulateOptions& options, const Model& model, std::optional<double> ground,
-                State& state) {
+/// Stands floating trees on the ground: all, or those whose root link is named.
+void standOnGround(const Model& model, double ground, const std::vector<std::string>* links,
+                   State& state) {
   Kinematics k(model);
   computeKinematics(model, state, k);
   for (int t = 0; t < static_cast<int>(model.trees.size()); ++t) {
     const Body& root = model.bodies[model.trees[t].rootBody];
     if (root.joint != JointKind::floating) continue;
-    double& z = state.q[root.q + 2];
-    if (options.baseHeight) {
-      z = *options.baseHeight;
-    } else if (ground) {
-      const double lowest = collision::lowestPoint(model, k, t);
-      if (std::isfinite(lowest)) z += *ground - lowest;
-    }
+    const std::string& link = model.bodyNames[model.trees[t].rootBody];
+    if (links && std::find(links->begin(), links->end(), link) == links->end()) continue;
+    const double lowest = collision::lowestPoint(model, k, t);
+    if (std::isfinite(lowest)) state.q[root.q + 2] += ground - lowest;
   }
+}
+
+void addGround(ModelBuilder& builder, double height, const Material& material) {
+  GeometrySpec plane;
+  plane.name = "ground";
+  plane.link = "world";
+  plane.shape = Shape::plane();
+  plane.X_LG.p.z() = height;
+  plane.material = material;
+  builder.geometry(plane);
+}
+
+void setOptions(const SimulateOptions& options, ModelBuilder& builder) {
+  if (options.timestep) builder.options.timestep = *options.timestep;
+  builder.options.effects = options.effects;
+  builder.options.midpointCoriolis = !options.likeMujoco;
+}
+
+io::UrdfOptions urdfOptions(const SimulateOptions& options) {
+  io::UrdfOptions urdf;
+  urdf.packagePaths = options.packagePaths;
+  urdf.visualMeshes = !options.view.empty();
+  urdf.base = options.base;
+  urdf.zeroEffortIsUnlimited = options.zeroEffortIsUnlimited;
+  return urdf;
+}
+
+/// A robot alone, as the command line says.
+void loadRobot(const SimulateOptions& options, Scene& scene) {
+  ModelBuilder builder = io::readUrdf(options.model, urdfOptions(options), &scene.contents);
+  setOptions(options, builder);
+  scene.model = builder.build();
+
+  // Whether there is ground by default is known only once the base is.
+  std::optional<double> ground = options.ground;
+  if (options.groundIsDefault && hasFloatingBase(scene.model)) ground = 0.0;
+  if (ground) {
+    addGround(builder, *ground, {});
+    scene.model = builder.build();
+  }
+  scene.initial = State(scene.model);
+  setJointPositions(options, scene.model, scene.initial);
+  if (options.baseHeight) {
+    for (const Tree& tree : scene.model.trees)
+      if (scene.model.bodies[tree.rootBody].joint == JointKind::floating)
+        scene.initial.q[scene.model.bodies[tree.rootBody].q + 2] = *options.baseHeight;
+  } else if (ground) {
+    standOnGround(scene.model, *ground, nullptr, scene.initial);
+  }
+}
+
+void loadSceneFile(const SimulateOptions& options, Scene& scene) {
+  io::SceneFile file = io::readScene(options.model, urdfOptions(options));
+  setOptions(options, file.builder);
+  std::optional<double> ground = file.ground;
+  if (!ground && !file.noGround && !file.starts.empty()) ground = 0.0;
+  if (ground) addGround(file.builder, *ground, file.groundMaterial);
+  scene.model = file.builder.build();
+  scene.contents = file.contents;
+  scene.hasGoals = file.hasGoals;
+  scene.initial = file.initialState(scene.model);
+  setJointPositions(options, scene.model, scene.initial);
+  if (!ground) return;
+  std::vector<std::string> standing;
+  for (const io::SceneFile::Start& start : file.starts)
+    if (start.onGround) standing.push_back(start.link);
+  standOnGround(scene.model, *ground, &standing, scene.initial);
 }
 
 }  // namespace
 
 std::unique_ptr<Scene> loadScene(const SimulateOptions& options) {
   auto scene = std::make_unique<Scene>();
-  io::UrdfOptions urdf;
-  urdf.packagePaths = options.packagePaths;
-  urdf.visualMeshes = !options.view.empty();
-  urdf.base = options.base;
-  urdf.zeroEffortIsUnlimited = options.zeroEffortIsUnlimited;
-  ModelBuilder builder = io::readUrdf(options.model, urdf, &scene->contents);
-  builder.options.timestep = options.timestep;
-  builder.options.effects = options.effects;
-  builder.options.midpointCoriolis = !options.likeMujoco;
-  scene->model = builder.build();
-
-  // Whether there is ground by default is known only once the base is.
-  std::optional<double> ground = options.ground;
-  if (options.groundIsDefault && hasFloatingBase(scene->model)) ground = 0.0;
-  if (ground) {
-    GeometrySpec plane;
-    plane.name = "ground";
-    plane.link = "world";
-    plane.shape = Shape::plane();
-    plane.X_LG.p.z() = *ground;
-    builder.geometry(plane);
-    scene->model = builder.build();
-  }
+  if (options.isScene())
+    loadSceneFile(options, *scene);
+  else
+    loadRobot(options, *scene);
+  checkSteps(options, scene->model.options.timestep);
   if (scene->model.nv > kMostDofs)
     throw ModelError(
         {options.model.string(), 0}, "model '" + scene->model.name + "'",
         fmt::format("has {} degrees of freedom, expected at most {}", scene->model.nv, kMostDofs));
   scene->contacts = std::make_unique<collision::SceneContacts>(scene->model);
-  scene->initial = State(scene->model);
-  setJointPositions(options, scene->model, scene->initial);
-  placeBases(options, scene->model, ground, scene->initial);
   return scene;
 }
 
 std::vector<std::unique_ptr<gdd::Goal>> makeGoals(const SimulateOptions& options,
                                                   const Scene& scene) {
   std::vector<std::unique_ptr<gdd::Goal>> goals;
-  if (!options.goals.empty()) goals = io::readGoals(options.goals, scene.model, scene.initial);
+  for (const std::filesystem::path& file :
+       {scene.hasGoals ? options.model : std::filesystem::path(), options.goals}) {
+    if (file.empty()) continue;
+    for (std::unique_ptr<gdd::Goal>& goal : io::readGoals(file, scene.model, scene.initial))
+      goals.push_back(std::move(goal));
+  }
   for (const ReachArgument& r : options.reach)
     goals.push_back(std::make_unique<gdd::Reach>(scene.model, r.link, r.p_WTarget, r.p_FP));
   if (!options.reach.empty()) goals.push_back(std::make_unique<gdd::VirtualDamping>());

@@ -18,12 +18,14 @@ struct Scene {
   io::UrdfContents contents;
   std::unique_ptr<collision::SceneContacts> contacts;
   State initial;
+  bool hasGoals = false;  ///< the scene file holds goals
 };
 
 /// Throws ModelError.
 std::unique_ptr<Scene> loadScene(const SimulateOptions& options);
 
-/// The goals of --goals and --reach, the latter with virtual damping (26). Throws ModelError.
+/// The goals of the scene file, of --goals and of --reach, the latter with virtual damping (26).
+/// Throws ModelError.
 std::vector<std::unique_ptr<gdd::Goal>> makeGoals(const SimulateOptions& options,
                                                   const Scene& scene);
 

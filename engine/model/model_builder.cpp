@@ -2,6 +2,7 @@
 #include "engine/model/model_builder.hpp"
 
 #include <algorithm>
+#include <set>
 #include <utility>
 
 #include "engine/model/capsule_recognition.hpp"
@@ -33,6 +34,8 @@ ModelBuilder& ModelBuilder::warning(std::string text) {
 
 namespace {
 
+bool isWorld(const LinkSpec& link) { return link.name == "world"; }
+
 /// Where a link ended up: a pose in a body.
 struct Placement {
   int body = 0;
@@ -55,10 +58,10 @@ class Assembler {
   /// A root link: the world itself, welded to the world, or free.
   void addRoot(int link, BaseKind base, const Transform& X_WRoot) {
     const LinkSpec& spec = links_[static_cast<std::size_t>(link)];
-    const bool isWorld = spec.name == "world";
     robot_ = robots_++;
-    const bool floats = base == BaseKind::floating || (base == BaseKind::automatic && !isWorld);
-    if (isWorld) {
+    const bool floats =
+        base == BaseKind::floating || (base == BaseKind::automatic && !isWorld(spec));
+    if (isWorld(spec)) {
       place(link, {0, Transform{}});
     } else if (!floats) {
       place(link, {0, X_WRoot});
@@ -268,6 +271,62 @@ VectorX initialConfiguration(const Model& model) {
 
 }  // namespace
 
+std::vector<std::string> ModelBuilder::rootLinks() const {
+  std::set<std::string> children;
+  for (const JointSpec& joint : joints_) children.insert(joint.child);
+  std::vector<std::string> roots;
+  for (const LinkSpec& link : links_)
+    if (!children.count(link.name)) roots.push_back(link.name);
+  return roots;
+}
+
+ModelBuilder& ModelBuilder::add(const ModelBuilder& other, const std::string& prefix) {
+  const auto own = [&](const std::string& name) {
+    return prefix.empty() ? name : prefix + "/" + name;
+  };
+  std::set<std::string> links;
+  for (const LinkSpec& link : other.links_) links.insert(link.name);
+  const std::vector<std::string> otherRoots = other.rootLinks();
+  // "world" means the world where the other has no link of that name.
+  const auto linkName = [&](const std::string& link) {
+    return links.count(link) ? own(link) : link;
+  };
+
+  for (LinkSpec link : other.links_) {
+    if (std::find(otherRoots.begin(), otherRoots.end(), link.name) != otherRoots.end()) {
+      const auto root = std::find_if(other.roots_.begin(), other.roots_.end(),
+                                     [&](const Root& r) { return r.link == link.name; });
+      const BaseKind kind = root == other.roots_.end() ? other.base : root->base;
+      const bool floats =
+          kind == BaseKind::floating || (kind == BaseKind::automatic && !isWorld(link));
+      roots_.push_back({own(link.name), floats ? BaseKind::floating : BaseKind::fixed,
+                        root == other.roots_.end() ? other.X_WRoot : root->X_WRoot});
+    }
+    link.name = own(link.name);
+    links_.push_back(std::move(link));
+  }
+  for (JointSpec joint : other.joints_) {
+    joint.name = own(joint.name);
+    joint.parent = linkName(joint.parent);
+    joint.child = linkName(joint.child);
+    if (joint.mimic) joint.mimic->leader = own(joint.mimic->leader);
+    if (other.zeroEffortIsUnlimited && joint.effort == 0.0) joint.effort.reset();
+    joints_.push_back(std::move(joint));
+  }
+  for (GeometrySpec geometry : other.geometries_) {
+    geometry.name = own(geometry.name);
+    geometry.link = linkName(geometry.link);
+    geometries_.push_back(std::move(geometry));
+  }
+  for (VisualSpec visual : other.visuals_) {
+    visual.link = linkName(visual.link);
+    visuals_.push_back(std::move(visual));
+  }
+  for (const std::string& text : other.warnings_)
+    warnings_.push_back(prefix.empty() ? text : prefix + ": " + text);
+  return *this;
+}
+
 Model ModelBuilder::build() const {
   for (const LinkSpec& link : links_) detail::checkLink(link);
   for (const JointSpec& joint : joints_) detail::checkJoint(joint);
@@ -280,9 +339,15 @@ Model ModelBuilder::build() const {
   model.warnings = warnings_;
   Assembler assembler(model, links_, joints_);
   for (const detail::TreeEdge& edge : order.visits) {
-    if (edge.joint < 0)
-      assembler.addRoot(edge.child, base, X_WRoot);
-    else
+    if (edge.joint < 0) {
+      const std::string& link = links_[static_cast<std::size_t>(edge.child)].name;
+      const auto root =
+          std::find_if(roots_.begin(), roots_.end(), [&](const Root& r) { return r.link == link; });
+      if (root == roots_.end())
+        assembler.addRoot(edge.child, base, X_WRoot);
+      else
+        assembler.addRoot(edge.child, root->base, root->X_WRoot);
+    } else
       assembler.addJoint(edge, zeroEffortIsUnlimited);
   }
 

@@ -80,17 +80,33 @@ class ModelBuilder {
   ModelBuilder& geometry(GeometrySpec spec);  ///< link "world" fixes it to the world
   ModelBuilder& visual(VisualSpec spec);
   ModelBuilder& warning(std::string text);
+  /// Puts another description beside this one, its links, joints and geometries called prefix/name
+  /// (with an empty prefix, name). Its roots keep its `base` and `X_WRoot`, its joints its
+  /// `zeroEffortIsUnlimited`; its options are not read. Its link "world", if it has one, becomes a
+  /// link fixed at X_WRoot.
+  ModelBuilder& add(const ModelBuilder& other, const std::string& prefix);
+
+  /// Links that are no joint's child, in the order in which they were given.
+  std::vector<std::string> rootLinks() const;
 
   Options options;
-  BaseKind base = BaseKind::automatic;  ///< of every root link
-  Transform X_WRoot;                    ///< initial (floating) or permanent (fixed) pose of roots
+  BaseKind base = BaseKind::automatic;  ///< of every root link that was not added with another
+  Transform X_WRoot;                    ///< initial (floating) or permanent (fixed) pose of those
   bool zeroEffortIsUnlimited = false;   ///< a limit with effort 0: actuated without a box
 
   /// Throws ModelError.
   Model build() const;
 
  private:
+  /// How a root link meets the world, where it is not as `base` and `X_WRoot` say.
+  struct Root {
+    std::string link;
+    BaseKind base;
+    Transform X_WRoot;
+  };
+
   std::string name_;
+  std::vector<Root> roots_;
   std::vector<LinkSpec> links_;
   std::vector<JointSpec> joints_;
   std::vector<GeometrySpec> geometries_;

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/detail/scene_parts.hpp"
+
+#include <fmt/format.h>
+
+#include "engine/core/check.hpp"
+#include "engine/core/rotation.hpp"
+#include "io/detail/text.hpp"
+
+namespace softgauss::io::detail {
+namespace {
+
+void readImpedance(const YamlMap& map, Impedance& impedance) {
+  map.expectOnly({"minimum", "maximum", "width", "midpoint", "power"});
+  const auto share = [&](const std::string& key, double& x) {
+    const YamlMap::Entry* entry = map.find(key);
+    if (!entry) return;
+    x = map.number(*entry);
+    if (!(x > 0.0 && x < 1.0))
+      map.fail(*entry, fmt::format("found {}, expected a number between 0 and 1",
+                                   entry->value.described()));
+  };
+  share("minimum", impedance.dMin);
+  share("maximum", impedance.dMax);
+  share("midpoint", impedance.midpoint);
+  map.read("width", impedance.width, Range::positive);
+  if (const YamlMap::Entry* entry = map.find("power")) {
+    impedance.power = map.number(*entry);
+    if (impedance.power < 1.0)
+      map.fail(*entry, fmt::format("found {}, expected a number >= 1", entry->value.described()));
+  }
+}
+
+Material readMaterial(const YamlMap& map) {
+  map.expectOnly({"friction", "torsional_friction", "rolling_friction", "condim", "margin",
+                  "time_constant", "damping_ratio", "impedance"});
+  Material m;
+  map.read("friction", m.slidingFriction, Range::notNegative);
+  map.read("torsional_friction", m.torsionalFriction, Range::notNegative);
+  map.read("rolling_friction", m.rollingFriction, Range::notNegative);
+  if (const auto* entry = map.find("condim")) m.condim = map.integer(*entry, {1, 3, 4, 6});
+  map.read("margin", m.margin, Range::notNegative);
+  map.read("time_constant", m.impedance.timeConstant, Range::positive);
+  map.read("damping_ratio", m.impedance.dampingRatio, Range::positive);
+  if (const auto* entry = map.find("impedance")) readImpedance(map.map(*entry), m.impedance);
+  return m;
+}
+
+}  // namespace
+
+Materials readMaterials(const YamlMap& map) {
+  Materials materials;
+  materials["default"];
+  for (const YamlMap::Entry& entry : map.entries())
+    materials[entry.key] = readMaterial(map.map(entry));
+  return materials;
+}
+
+Material materialOf(const YamlMap& map, const Materials& materials) {
+  const YamlMap::Entry* entry = map.find("material");
+  std::vector<std::string> names;
+  for (const auto& [name, material] : materials) names.push_back(name);
+  return materials.at(entry ? map.choice(*entry, names) : "default");
+}
+
+Transform readPose(const YamlMap& map) {
+  Transform X;
+  map.read("position", X.p);
+  const YamlMap::Entry* rpy = map.find("rpy");
+  const YamlMap::Entry* quaternion = map.find("quaternion");
+  if (rpy && quaternion)
+    map.fail(*quaternion,
+             fmt::format("found beside rpy in line {}, expected one of them", rpy->line));
+  if (rpy) X.R = rpyRotation(map.vector3(*rpy));
+  if (quaternion) {
+    const std::vector<YamlValue>& items = map.list(*quaternion);
+    Eigen::Vector4d q = Eigen::Vector4d::Zero();
+    bool good = items.size() == 4;
+    for (std::size_t i = 0; good && i < 4; ++i) {
+      const std::optional<double> x = items[i].finiteNumber();
+      good = x.has_value();
+      if (good) q[static_cast<Eigen::Index>(i)] = *x;
+    }
+    if (!good || std::abs(q.norm() - 1.0) > 1e-3)
+      map.fail(*quaternion, fmt::format("found {}, expected four numbers [w, x, y, z] of length 1",
+                                        quaternion->value.described()));
+    X.R = Quaternion(q[0], q[1], q[2], q[3]).normalized().toRotationMatrix();
+  }
+  return X;
+}
+
+Shape readShape(const YamlMap& map, MeshCache& meshes) {
+  const YamlMap::Entry* only = nullptr;
+  for (const std::string& key : kShapeKeys) {
+    const YamlMap::Entry* entry = map.find(key);
+    if (entry && only)
+      map.fail(*entry, fmt::format("found beside {} in line {}, expected one shape", only->key,
+                                   only->line));
+    if (entry) only = entry;
+  }
+  if (!only) map.required("sphere", "a shape: one of " + listed(kShapeKeys));
+  const YamlMap size = map.map(*only);
+  const auto length = [&](const std::string& key) {
+    return size.number(size.required(key, "a length [m]"), Range::positive);
+  };
+  if (only->key == "plane") {
+    size.expectOnly({});
+    return Shape::plane();
+  }
+  if (only->key == "sphere") {
+    size.expectOnly({"radius"});
+    return Shape::sphere(length("radius"));
+  }
+  if (only->key == "box") {
+    size.expectOnly({"size"});
+    const YamlMap::Entry& entry = size.required("size", "three lengths [x, y, z] [m]");
+    const Vector3 full = size.vector3(entry);
+    if (!(full.minCoeff() > 0.0)) size.fail(entry, "found a length of 0 or less, expected more");
+    return Shape::box(0.5 * full);
+  }
+  if (only->key == "mesh") {
+    size.expectOnly({"file", "scale"});
+    const YamlMap::Entry& entry = size.required("file", "the name of a mesh file");
+    Vector3 scale = Vector3::Ones();
+    size.read("scale", scale);
+    return Shape::hull(meshes.get(existingFile(size, entry, size.name(entry)), scale));
+  }
+  size.expectOnly({"radius", "length"});
+  const double radius = length("radius"), half = 0.5 * length("length");
+  return only->key == "cylinder" ? Shape::cylinder(radius, half) : Shape::capsule(radius, half);
+}
+
+std::filesystem::path existingFile(const YamlMap& map, const YamlMap::Entry& entry,
+                                   const std::string& text) {
+  std::filesystem::path path = text;
+  if (path.is_relative()) path = std::filesystem::path(map.file()).parent_path() / path;
+  if (!std::filesystem::is_regular_file(path))
+    map.fail(entry, fmt::format("found no file {}, expected one, relative to the scene's folder",
+                                quotedText(path.string())));
+  return path;
+}
+
+}  // namespace softgauss::io::detail

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Parts of a scene file that are used in several places.
+
+#include <map>
+#include <string>
+
+#include "engine/model/shape.hpp"
+#include "io/detail/yaml.hpp"
+#include "io/mesh.hpp"
+
+namespace softgauss::io::detail {
+
+/// Materials by name; "default" is there from the start.
+using Materials = std::map<std::string, Material>;
+
+/// `materials: {name: {friction: …}}`
+Materials readMaterials(const YamlMap& map);
+/// The material that the key `material` names, or the default one.
+Material materialOf(const YamlMap& map, const Materials& materials);
+
+/// The keys that give a pose, and the pose they give: `position`, and `rpy` or `quaternion`.
+inline const std::vector<std::string> kPoseKeys = {"position", "rpy", "quaternion"};
+Transform readPose(const YamlMap& map);
+
+/// The keys of shapes, of which an object has one, and that shape.
+inline const std::vector<std::string> kShapeKeys = {"sphere",  "box",  "cylinder",
+                                                    "capsule", "mesh", "plane"};
+Shape readShape(const YamlMap& map, MeshCache& meshes);
+
+/// A file named relative to the scene's own folder; it must exist.
+std::filesystem::path existingFile(const YamlMap& map, const YamlMap::Entry& entry,
+                                   const std::string& text);
+
+}  // namespace softgauss::io::detail

@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/scene.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "engine/core/check.hpp"
+#include "engine/core/rotation.hpp"
+#include "engine/model/mass_properties.hpp"
+#include "io/detail/scene_parts.hpp"
+#include "io/detail/text.hpp"
+
+namespace softgauss::io {
+namespace {
+
+using detail::Range;
+using detail::YamlMap;
+using detail::YamlValue;
+
+constexpr double kWater = 1000.0;  ///< default density [kg/m³]
+
+std::vector<std::string> operator+(std::vector<std::string> a, const std::vector<std::string>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+/// Reads one scene, part by part.
+class SceneReader {
+ public:
+  SceneReader(const YamlMap& top, const UrdfOptions& options) : top_(top), urdfOptions_(options) {}
+
+  SceneFile read() {
+    top_.expectOnly(
+        {"name", "timestep", "gravity", "ground", "materials", "robots", "objects", "goals"});
+    std::string name = std::filesystem::path(top_.file()).stem().string();
+    if (const auto* entry = top_.find("name")) name = top_.name(*entry);
+    scene_.builder = ModelBuilder(name);
+    top_.read("timestep", scene_.builder.options.timestep, Range::positive);
+    top_.read("gravity", scene_.builder.options.gravity);
+    materials_["default"];
+    if (const auto* entry = top_.find("materials"))
+      materials_ = detail::readMaterials(top_.map(*entry));
+    if (const auto* entry = top_.find("ground")) readGround(*entry);
+    const auto forEach = [&](const char* key, const char* noun, auto&& readOne) {
+      const YamlMap::Entry* entry = top_.find(key);
+      if (!entry) return;
+      std::size_t number = 0;
+      for (const YamlValue& item : top_.list(*entry)) {
+        const std::string label = fmt::format("{} {}", noun, ++number);
+        if (item.kind != YamlValue::Kind::map)
+          throw ModelError({top_.file(), item.line}, label,
+                           fmt::format("found {}, expected a map {{…}}", item.described()));
+        readOne(YamlMap(top_.file(), label + ": ", "", item));
+      }
+    };
+    forEach("robots", "robot", [&](const YamlMap& map) { readRobot(map); });
+    forEach("objects", "object", [&](const YamlMap& map) { readObject(map); });
+    if (scene_.contents.links == 0)
+      throw ModelError({top_.file(), top_.line()}, "scene",
+                       "holds nothing, expected a list of robots or of objects");
+    scene_.hasGoals = top_.find("goals") != nullptr;
+    return std::move(scene_);
+  }
+
+ private:
+  void readGround(const YamlMap::Entry& entry) {
+    if (entry.value.kind == YamlValue::Kind::text && entry.value.text == "none") {
+      scene_.noGround = true;
+    } else if (entry.value.kind == YamlValue::Kind::map) {
+      const YamlMap map = top_.map(entry);
+      map.expectOnly({"height", "material"});
+      scene_.ground = 0.0;
+      map.read("height", *scene_.ground, Range::any);
+      scene_.groundMaterial = detail::materialOf(map, materials_);
+    } else {
+      if (!entry.value.finiteNumber())
+        top_.fail(entry, fmt::format("found {}, expected a height [m], none, or a map {{height: …, "
+                                     "material: …}}",
+                                     entry.value.described()));
+      scene_.ground = top_.number(entry);
+    }
+  }
+
+  /// A name that nothing else in the scene has, or none where there is but one thing of its kind.
+  std::string ownName(const YamlMap& map, bool mayBeNameless) {
+    const YamlMap::Entry* entry = map.find("name");
+    if (!entry && mayBeNameless) return {};
+    const YamlMap::Entry& found = entry ? *entry : map.required("name", "a name of its own");
+    const std::string name = map.name(found);
+    if (name.empty() || name == "world" || name.find('/') != std::string::npos)
+      map.fail(found, fmt::format("found {}, expected a name without '/' other than world",
+                                  detail::quotedText(name)));
+    if (!names_.insert(name).second)
+      map.fail(found, fmt::format("found {} a second time, expected a name of its own",
+                                  detail::quotedText(name)));
+    return name;
+  }
+
+  bool flag(const YamlMap& map, const std::string& key, bool otherwise) {
+    const YamlMap::Entry* entry = map.find(key);
+    return entry ? map.boolean(*entry) : otherwise;
+  }
+
+  /// How a floating root starts; a fixed one has no such keys.
+  void readStart(const YamlMap& map, const std::string& root, bool floats) {
+    SceneFile::Start start;
+    start.link = root;
+    for (const char* key : {"velocity", "angular_velocity", "on_ground"})
+      if (const auto* entry = map.find(key); entry && !floats)
+        map.fail(*entry, "is for what floats, and this is fixed to the world");
+    map.read("velocity", start.velocity);
+    map.read("angular_velocity", start.angularVelocity);
+    start.onGround = flag(map, "on_ground", !map.find("position"));
+    if (floats) scene_.starts.push_back(start);
+  }
+
+  void readRobot(const YamlMap& map) {
+    map.expectOnly(std::vector<std::string>{"name", "urdf", "base"} + detail::kPoseKeys +
+                   std::vector<std::string>{"velocity", "angular_velocity", "on_ground", "joints",
+                                            "joint_velocities", "material", "materials"});
+    const std::size_t robots = top_.find("robots")->value.items.size();
+    const std::string name = ownName(map, robots == 1);
+    const YamlMap::Entry& urdf = map.required("urdf", "the name of a URDF file");
+    const std::filesystem::path file = detail::existingFile(map, urdf, map.name(urdf));
+
+    UrdfOptions options = urdfOptions_;
+    options.base = BaseKind::automatic;
+    if (const auto* entry = map.find("base"))
+      options.base = map.choice(*entry, {"fixed", "floating"}) == "fixed" ? BaseKind::fixed
+                                                                          : BaseKind::floating;
+    options.material = detail::materialOf(map, materials_);
+    if (const auto* entry = map.find("materials")) {
+      const YamlMap links = map.map(*entry);
+      std::vector<std::string> known;
+      for (const auto& [material, parameters] : materials_) known.push_back(material);
+      for (const YamlMap::Entry& link : links.entries())
+        options.linkMaterials[link.key] = materials_.at(links.choice(link, known));
+    }
+    UrdfContents contents;
+    ModelBuilder robot = readUrdf(file, options, &contents);
+    if (const auto* entry = map.find("materials"))
+      expectNames(map.map(*entry), contents.linkNames, "link");
+    robot.X_WRoot = detail::readPose(map);
+    scene_.builder.add(robot, name);
+
+    const std::string prefix = name.empty() ? "" : name + "/";
+    const auto readJoints = [&](const char* key, auto& values) {
+      const YamlMap::Entry* entry = map.find(key);
+      if (!entry) return;
+      const YamlMap joints = map.map(*entry);
+      expectNames(joints, contents.scalarJoints, "joint of one degree of freedom");
+      for (const YamlMap::Entry& joint : joints.entries())
+        values.emplace_back(prefix + joint.key, joints.number(joint));
+    };
+    readJoints("joints", scene_.positions);
+    readJoints("joint_velocities", scene_.velocities);
+    const std::string root = robot.rootLinks().front();
+    if (root == "world" && name.empty() &&
+        !(robot.X_WRoot.p.isZero(0.0) && robot.X_WRoot.R.isIdentity(0.0)))
+      map.fail(*map.find("urdf"),
+               "has the root 'world', so it stands where the world is; expected "
+               "a name beside its position");
+    const bool rootFloats = options.base == BaseKind::floating ||
+                            (options.base == BaseKind::automatic && root != "world");
+    readStart(map, prefix + (rootFloats ? root : contents.floatingLink),
+              rootFloats || !contents.floatingLink.empty());
+    scene_.contents.links += contents.links;
+    scene_.contents.joints += contents.joints;
+    scene_.contents.mass += contents.mass;
+  }
+
+  static void expectNames(const YamlMap& map, const std::vector<std::string>& names,
+                          const char* noun) {
+    for (const YamlMap::Entry& entry : map.entries())
+      if (std::find(names.begin(), names.end(), entry.key) == names.end())
+        map.fail(entry, fmt::format("found no {} of that name in the URDF{}", noun,
+                                    detail::suggestion(entry.key, names)));
+  }
+
+  void readObject(const YamlMap& map) {
+    map.expectOnly(std::vector<std::string>{"name"} + detail::kShapeKeys + detail::kPoseKeys +
+                   std::vector<std::string>{"mass", "density", "fixed", "velocity",
+                                            "angular_velocity", "on_ground", "material", "color"});
+    const std::string name = ownName(map, false);
+    const Shape shape = detail::readShape(map, meshes_);
+    const bool fixed = flag(map, "fixed", shape.kind == ShapeKind::plane);
+    const YamlMap::Entry* mass = map.find("mass");
+    const YamlMap::Entry* density = map.find("density");
+    for (const YamlMap::Entry* entry : {mass, density})
+      if (entry && fixed) map.fail(*entry, "is for what moves, and this is fixed to the world");
+    if (mass && density)
+      map.fail(*density,
+               fmt::format("found beside mass in line {}, expected one of them", mass->line));
+    if (!fixed && shape.kind == ShapeKind::plane)
+      map.fail(*map.find("plane"), "found a plane that moves, expected it to be fixed");
+
+    LinkSpec link;
+    link.name = name;
+    link.where = {map.file(), map.line()};
+    if (!fixed) {
+      MassProperties solid =
+          solidOf(shape, density ? map.number(*density, Range::positive) : kWater);
+      if (!(solid.mass > 0.0))
+        map.fail(*map.find("mesh"),
+                 "found a mesh without a volume, so it has no mass; expected a "
+                 "closed mesh whose triangles face outwards");
+      const double scale = mass ? map.number(*mass, Range::positive) / solid.mass : 1.0;
+      link.mass = scale * solid.mass;
+      link.com = solid.com;
+      link.I_Lcm = scale * solid.I_Gcm;
+    }
+    ModelBuilder object;
+    object.base = fixed ? BaseKind::fixed : BaseKind::floating;
+    object.X_WRoot = detail::readPose(map);
+    GeometrySpec geometry;
+    geometry.name = name;
+    geometry.link = name;
+    geometry.shape = shape;
+    geometry.material = detail::materialOf(map, materials_);
+    geometry.where = link.where;
+    VisualSpec visual;
+    visual.link = name;
+    visual.shape = shape;
+    if (const auto* entry = map.find("color")) {
+      visual.rgba.head<3>() = map.vector3(*entry);
+      if (visual.rgba.head<3>().minCoeff() < 0.0 || visual.rgba.head<3>().maxCoeff() > 1.0)
+        map.fail(*entry, "found a number outside 0 to 1, expected red, green and blue within");
+      object.visual(visual);
+    }
+    scene_.contents.links += 1;
+    scene_.contents.mass += link.mass;
+    scene_.builder.add(object.link(link).geometry(geometry), "");
+    readStart(map, name, !fixed);
+  }
+
+  const YamlMap& top_;
+  const UrdfOptions& urdfOptions_;
+  SceneFile scene_;
+  detail::Materials materials_;
+  MeshCache meshes_;
+  std::set<std::string> names_;
+};
+
+}  // namespace
+
+State SceneFile::initialState(const Model& model) const {
+  State state(model);
+  const auto dofOf = [&](const std::string& joint) {
+    return model.bodies[static_cast<std::size_t>(model.findJoint(joint))];
+  };
+  for (const auto& [joint, value] : positions) state.q[dofOf(joint).q] = value;
+  for (const auto& [joint, value] : velocities) state.v[dofOf(joint).v] = value;
+  for (const Start& start : starts) {
+    const Frame& frame = model.frames[static_cast<std::size_t>(model.findFrame(start.link))];
+    const Body& body = model.bodies[static_cast<std::size_t>(frame.body)];
+    const Quaternion q(state.q[body.q + 3], state.q[body.q + 4], state.q[body.q + 5],
+                       state.q[body.q + 6]);
+    state.v.segment<3>(body.v) = start.velocity;
+    state.v.segment<3>(body.v + 3) = q.conjugate() * start.angularVelocity;
+  }
+  return state;
+}
+
+SceneFile readScene(const std::filesystem::path& file, const UrdfOptions& options) {
+  const std::string path = file.string();
+  const std::optional<std::string> text = detail::readFile(path);
+  if (!text) throw ModelError({path, 0}, "file", "cannot be read, expected a scene");
+  const YamlValue root = detail::parseYaml(path, *text, "robots: [...] or objects: [...]");
+  if (root.kind != YamlValue::Kind::map)
+    throw ModelError({path, root.line}, "file",
+                     fmt::format("found {}, expected keys such as robots: [...] and objects: [...]",
+                                 root.described()));
+  return SceneReader(YamlMap(path, "", "", root), options).read();
+}
+
+}  // namespace softgauss::io

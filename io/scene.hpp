@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Reads scene files: robots and objects, where they stand, what they are made of, how they start.
+/// The schema, with examples, is docs/scenes.md.
+///
+/// Strict, as goals are: an unknown key, a value of another type than expected, a number out of
+/// range, a file or name that does not exist end in a ModelError `file:line: robot 2 'left': key
+/// 'urdf': found …, expected …`.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/model/state.hpp"
+#include "io/urdf.hpp"
+
+namespace softgauss::io {
+
+/// A scene as its file describes it.
+struct SceneFile {
+  ModelBuilder builder;   ///< its options may still be changed before build()
+  UrdfContents contents;  ///< of all robots and objects together
+
+  /// The height of the ground plane [m], where the file gives one; with `noGround` it wants none.
+  /// Where it says nothing, there is ground at 0 if anything floats.
+  std::optional<double> ground;
+  bool noGround = false;
+  Material groundMaterial;
+
+  /// A floating root and how it starts.
+  struct Start {
+    std::string link;
+    Vector3 velocity = Vector3::Zero();         ///< of its origin, world [m/s]
+    Vector3 angularVelocity = Vector3::Zero();  ///< world [rad/s]
+    bool onGround = false;  ///< raised or lowered until its lowest point touches the ground
+  };
+  std::vector<Start> starts;
+  std::vector<std::pair<std::string, double>> positions;   ///< of scalar joints [rad or m]
+  std::vector<std::pair<std::string, double>> velocities;  ///< of scalar joints [rad/s or m/s]
+
+  bool hasGoals = false;  ///< has a list that readGoals() reads
+
+  /// The state in which it starts, but for the heights of what stands on the ground. `model` was
+  /// built by `builder`.
+  State initialState(const Model& model) const;
+};
+
+/// Of the options, `base` and the materials are not read: the file says. Throws ModelError.
+SceneFile readScene(const std::filesystem::path& file, const UrdfOptions& options = {});
+
+}  // namespace softgauss::io
