@@ -55,6 +55,7 @@ const ParityCase kCases[] = {
     {"random_tree_fixed"},
     {"random_tree_floating"},
     {"random_tree_large"},
+    {"random_trees_heap"},
     {"damped_chain"},
     {"free_chain"},
     {"tumbling_box"},

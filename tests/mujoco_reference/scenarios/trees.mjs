@@ -21,14 +21,13 @@ function randomLink(scene, name, random) {
   scene.link(name, mass, inertia, random.vector(3, 0.1));
 }
 
-// Hinges, slides, planar joints, fixed joints and floating bases, with branches.
-function randomTrees(seed, links, floating) {
-  const random = new Random(seed);
-  const scene = new Scene();
+// Adds hinges, slides, planar joints, fixed joints and a floating base, with branches. Returns the
+// names of the links.
+function addRandomTree(scene, random, links, floating, prefix = '') {
   const names = [];
   for (let i = 0; i < links; ++i) {
-    const name = `link_${i}`;
-    const joint = `joint_${i}`;
+    const name = `${prefix}link_${i}`;
+    const joint = `${prefix}joint_${i}`;
     const parent = i === 0 ? 'world' : names[Math.floor(random.uniform(0, names.length))];
     const place = { position: random.vector(3, 0.3), quaternion: random.quaternion() };
     const moves = () => ({
@@ -55,11 +54,12 @@ function randomTrees(seed, links, floating) {
     randomLink(scene, name, random);
     names.push(name);
   }
-  return scene;
+  return names;
 }
 
 function randomTree(name, about, seed, links, floating, options) {
-  const scene = randomTrees(seed, links, floating);
+  const scene = new Scene();
+  addRandomTree(scene, new Random(seed), links, floating);
   const random = new Random(seed + 100);
   const joints = scene.joints.filter((joint) => !['fixed', 'floating'].includes(joint.type)).length;
   const state = () => ({
@@ -74,6 +74,44 @@ function randomTree(name, about, seed, links, floating, options) {
   });
   const { q, v } = state();
   return { name, about, seed, options, scene, start: { q, v }, states: [state(), state(), state()] };
+}
+
+// Three floating trees in a heap, with spheres at their roots and at the ends of their branches.
+function heap(seed) {
+  const random = new Random(seed);
+  const scene = new Scene().ground();
+  const scalars = ['a_', 'b_', 'c_'].map((prefix) => {
+    const names = addRandomTree(scene, random, 6, true, prefix);
+    for (const link of [names[0], names.at(-1)])
+      scene.geometry(`${link}_ball`, link, sphere(random.uniform(0.1, 0.2)), {
+        position: random.vector(3, 0.05),
+        friction: [random.uniform(0.2, 1.5), 0.005, 0.0001],
+        condim: random.next() < 0.3 ? 1 : 3,
+      });
+    const isScalar = (joint) => joint.name.startsWith(prefix) && joint.axis;
+    return scene.joints.filter(isScalar).length;
+  });
+  const state = () => ({
+    q: scalars.flatMap((n) => [
+      ...random.vector(2, 0.25),
+      random.uniform(0, 0.5),
+      ...random.quaternion(),
+      ...random.vector(n, 0.7),
+    ]),
+    v: scalars.flatMap((n) => random.vector(n + 6, 1)),
+    force: scalars.flatMap((n) => random.vector(n + 6, 3)),
+  });
+  const states = Array.from({ length: 6 }, state);
+  return {
+    name: 'random_trees_heap',
+    about: 'three random trees on a heap: contacts couple their branches',
+    seed,
+    scene,
+    start: { q: scalars.flatMap((n, i) => [0.8 * i, 0, 1.2, 1, 0, 0, 0, ...random.vector(n, 0.3)]) },
+    states,
+    stateTimes: [0.7],
+    every: 0.1,
+  };
 }
 
 // A chain of capsules that hangs from the world.
@@ -102,6 +140,7 @@ export const trees = [
   randomTree('random_tree_large', 'thirty links on a floating base, gravity askew', 13, 30, true, {
     gravity: [3, -2, -9],
   }),
+  heap(14),
   {
     name: 'damped_chain',
     about: 'four hinges with damping and armature, by every integrator',
