@@ -41,18 +41,9 @@ function showHeader(run) {
   const { header } = run;
   byId('model').textContent = header.model;
   byId('summary').textContent = header.facts[0]?.[1] ?? '';
-  if (header.outcome.kind !== 'completed') {
-    const what = {
-      'non-finite': 'The simulation became non-finite',
-      interrupted: 'The run was interrupted',
-    };
-    complain(
-      'banner',
-      [what[header.outcome.kind] ?? header.outcome.kind, header.outcome.message]
-        .filter(Boolean)
-        .join(': '),
-    );
-  }
+  const { kind, message } = header.outcome;
+  const reason = message || `the run ended early: ${kind}`;
+  if (kind !== 'completed') complain('banner', `${reason[0].toUpperCase()}${reason.slice(1)}.`);
 }
 
 function start(run, begun) {

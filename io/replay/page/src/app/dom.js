@@ -71,7 +71,7 @@ export function number(value, digits = 4) {
   const size = Math.abs(value);
   const text =
     size !== 0 && (size < 1e-3 || size >= 1e5)
-      ? value.toExponential(digits - 2)
+      ? Number(value.toPrecision(digits - 1)).toExponential()
       : String(Number(value.toPrecision(digits)));
   return text.replace('-', '−').replace('e-', 'e−').replace('e+', 'e');
 }

@@ -4,6 +4,20 @@
 import { byId } from './dom.js';
 import { toggleDialog } from '../panels/dialogs.js';
 
+/**
+ * What the pointer has pressed gives the keyboard back, so that the space bar plays and arrows step
+ * after a click on a button or a slider, as before it.
+ */
+function releaseAfterPointer() {
+  document.addEventListener('click', (event) => {
+    if (event.detail > 0 && !event.target.closest('dialog'))
+      event.target.closest('button, [type=checkbox], [type=range]')?.blur();
+  });
+  document.addEventListener('change', (event) => {
+    if (event.target.matches('select')) event.target.blur();
+  });
+}
+
 export function listenToKeys({ clock, settings, selection, layout, plots, stage, run }) {
   const actions = {
     ' ': () => clock.toggle(),
@@ -34,6 +48,7 @@ export function listenToKeys({ clock, settings, selection, layout, plots, stage,
     },
     Escape: () => selection.select(null),
   };
+  releaseAfterPointer();
   for (let digit = 1; digit <= 9; ++digit) actions[digit] = () => plots.toggle(digit - 1);
 
   document.addEventListener('keydown', (event) => {

@@ -67,7 +67,6 @@ export class Layout {
         { once: true },
       );
       event.preventDefault();
-      bar.focus();
     });
     bar.addEventListener('keydown', (event) => {
       const step = {

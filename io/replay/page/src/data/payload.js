@@ -26,7 +26,9 @@ async function inflate(bytes) {
         'Chromium 80, Firefox 113 and Safari 16.4 have it.',
     );
   const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('deflate'));
-  return new Response(stream).arrayBuffer();
+  return new Response(stream).arrayBuffer().catch(() => {
+    throw new Error('The run in this page is damaged: it cannot be unpacked.');
+  });
 }
 
 /** Returns {header, array(name)}; the arrays are views, nothing is copied. */

@@ -15,7 +15,7 @@ export class Plots {
     this.settings = settings;
     this.selection = selection;
     this.seriesTime = run.array('series_time');
-    this.full = [run.start, Math.max(run.end, run.start + 1e-9)];
+    this.full = [run.start, Math.max(run.end, run.start + run.header.timestep)];
     this.zoom = this.full;
     this.plots = run.header.series.groups.map((group) => new Plot(this, group));
     this.shown = new Set();

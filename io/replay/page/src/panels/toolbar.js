@@ -71,7 +71,7 @@ export function toolbar(host, run, stage, settings, selection) {
     );
     follow.replaceChildren(
       element('option', { value: '' }, 'No follow'),
-      element('option', { value: 'com' }, 'Follow mass centre'),
+      element('option', { value: 'com' }, 'Follow COM'),
       ...links.map((name) => element('option', { value: name }, `Follow ${name}`)),
     );
     follow.value = settings.get('follow') ?? '';

@@ -105,7 +105,7 @@ export class Tree {
       if (twist.contains(event.target) && row.children.length > 0)
         this.#open(row, !this.#isOpen(row));
       else this.selection.select(node.link ? node.name : null);
-      this.#focus(row);
+      this.#mark(row);
     });
     this.rows.push(row);
     list.append(item);
@@ -128,8 +128,13 @@ export class Tree {
     row.item.setAttribute('aria-expanded', open);
   }
 
-  #focus(row) {
+  /** The row that the tab key comes to. A click leaves the keyboard where it is. */
+  #mark(row) {
     for (const other of this.rows) other.item.tabIndex = other === row ? 0 : -1;
+  }
+
+  #focus(row) {
+    this.#mark(row);
     row.item.focus({ preventScroll: true });
     row.item.firstChild.scrollIntoView({ block: 'nearest' });
   }
@@ -185,6 +190,7 @@ export class Tree {
   #showSelection() {
     for (const row of this.rows) {
       const chosen = row.name === this.selection.name;
+      if (chosen) this.#mark(row);
       row.item.setAttribute('aria-selected', chosen);
       if (!chosen) continue;
       for (let p = row.parent; p; p = p.parent) this.#open(p, true);

@@ -183,7 +183,8 @@ export class Marks {
     this.com.visible = shown.com && com !== null;
     if (com) {
       this.comBall.position.fromArray(com);
-      const above = ground !== null && com[2] > ground;
+      const height = ground === null ? 0 : com[2] - ground;
+      const above = height > 0 && height < 20 * this.size;
       this.comRing.visible = this.comLine.visible = above;
       if (above) {
         this.comRing.position.set(com[0], com[1], ground);

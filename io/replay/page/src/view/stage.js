@@ -38,8 +38,8 @@ const THEMES = {
     ground: '#24282e',
     line: '#464d57',
     shadow: 0.55,
-    sky: 1.35,
-    key: 2.3,
+    sky: 1.7,
+    key: 2.8,
     rim: 1.0,
     bounce: '#3a3f48',
   },
@@ -82,6 +82,7 @@ export class Stage extends Emitter {
     this.raycaster = new Raycaster();
     this.following = null;
     this.pictures = 0;
+    [this.width, this.height] = [0, 0];
     this.coarse = false;
     this.pace = 0;
     this.changed = true;
@@ -202,10 +203,12 @@ export class Stage extends Emitter {
   resize() {
     const { clientWidth: width, clientHeight: height } = this.canvas.parentElement;
     if (width === 0 || height === 0) return;
+    const isOther = width !== this.width || height !== this.height;
+    [this.width, this.height] = [width, height];
     this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio) * (this.coarse ? 0.5 : 1));
     this.renderer.setSize(width, height, false);
     this.camera.resize(width, height);
-    if (!this.camera.chosen) this.frameAll();
+    if (isOther && !this.camera.chosen) this.frameAll();
     // The resized canvas is empty, and is shown before the next turn of the clock.
     this.changed = true;
     this.draw();
