@@ -5,17 +5,16 @@
 
 import { element, icon } from '../app/dom.js';
 
-/** The items below each: [{link, body, children}]. */
+/** The roots, each {link, body, name, children}. */
 function build(run) {
   const { bodies, links } = run;
-  const own = bodies.map(
-    (body, b) =>
-      links.find((l) => l.body === b && l.name === body.name) ??
-      links.find((l) => l.body === b) ??
-      null,
-  );
+  // The link that stands for a body; for the world only one of its name, or its only one.
+  const own = bodies.map((body, b) => {
+    const on = links.filter((link) => link.body === b);
+    return on.find((link) => link.name === body.name) ?? (b > 0 || on.length === 1 ? on[0] : null);
+  });
   const nodes = bodies.map((body, b) => ({
-    link: own[b],
+    link: own[b] ?? null,
     body,
     name: own[b]?.name ?? body.name,
     children: [],
