@@ -74,13 +74,16 @@ export class Tree {
 
   #add(node, parent, level, list) {
     const joint = node.body?.joint && node.body.kind !== 'floating' ? node.body.joint : '';
+    // In a scene both names begin with the robot's; once is enough.
+    const robot = node.name.slice(0, node.name.lastIndexOf('/') + 1);
+    const short = joint.startsWith(robot) ? joint.slice(robot.length) : joint;
     const twist = element('span', { class: 'twist' }, icon('chevron'));
     const label = element(
       'span',
       { class: 'row' },
       twist,
       element('span', { class: 'name' }, node.name),
-      joint && joint !== node.name ? element('span', { class: 'joint' }, joint) : null,
+      joint && joint !== node.name ? element('span', { class: 'joint' }, short) : null,
     );
     const item = element(
       'li',
