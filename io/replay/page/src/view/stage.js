@@ -102,7 +102,7 @@ export class Stage extends Emitter {
     this.rim = new DirectionalLight('#dfeaff', 0.8);
     this.ambient = new AmbientLight('#ffffff', 0.15);
     this.key.castShadow = true;
-    this.key.shadow.mapSize.set(2048, 2048);
+    this.#setShadowSize(2048);
     this.key.shadow.radius = 5;
     this.key.shadow.bias = -0.0004;
     this.key.shadow.normalBias = 0.006 * this.size;
@@ -111,6 +111,13 @@ export class Stage extends Emitter {
     [camera.left, camera.right, camera.bottom, camera.top] = [-reach, reach, -reach, reach];
     [camera.near, camera.far] = [0.1 * this.size, 8 * this.size];
     this.scene.add(this.sky, this.ambient, this.key, this.key.target, this.rim, this.rim.target);
+  }
+
+  #setShadowSize(pixels) {
+    const { shadow } = this.key;
+    shadow.mapSize.set(pixels, pixels);
+    shadow.map?.dispose();
+    shadow.map = null;
   }
 
   #listen() {
@@ -223,6 +230,7 @@ export class Stage extends Emitter {
     const coarse = milliseconds !== null && (this.coarse || this.pace > 80);
     if (coarse === this.coarse) return;
     this.coarse = coarse;
+    this.#setShadowSize(coarse ? 512 : 2048);
     this.resize();
   }
 
