@@ -72,7 +72,7 @@ LinkSpec linkOf(const Json& item) {
 
 JointSpec jointOf(const Json& item) {
   allowKeys(item, {"name", "type", "parent", "child", "position", "quaternion", "axis", "range",
-                   "damping", "armature", "margin", "solref", "solimp"});
+                   "damping", "armature", "dryFriction", "margin", "solref", "solimp"});
   static const std::map<std::string, JointType> types = {{"fixed", JointType::fixed},
                                                          {"revolute", JointType::revolute},
                                                          {"prismatic", JointType::prismatic},
@@ -91,6 +91,8 @@ JointSpec jointOf(const Json& item) {
   }
   joint.damping = item.value("damping", 0.0);
   joint.armature = item.value("armature", 0.0);
+  joint.dryFriction = item.value("dryFriction", 0.0);
+  joint.frictionImpedance = impedanceOf(item);
   return joint;
 }
 

@@ -2,7 +2,7 @@
 
 // Rows of single joints: ranges, springs, dry friction, couplings.
 
-import { Scene, box, capsule } from '../scene.mjs';
+import { Scene, box, capsule, sphere } from '../scene.mjs';
 
 const kWings = { position: [0, 0, 0] };
 
@@ -17,6 +17,26 @@ function slider(joint) {
   return new Scene()
     .solid('block', 2, box(0.1, 0.1, 0.1), [0, 0, 0])
     .joint('rail', 'prismatic', 'world', 'block', { axis: [1, 0, 0.3], armature: 0.1, ...joint });
+}
+
+// Three hinges with dry friction and ranges, whose last link strikes the ground.
+function rubbingChain() {
+  const scene = new Scene().geometry('ground', 'world', { kind: 'plane' }, { position: [0, 0, -0.82] });
+  let parent = 'world';
+  for (let i = 0; i < 3; ++i) {
+    const name = `link_${i}`;
+    scene.solid(name, 1 - 0.2 * i, capsule(0.03, 0.12), [0, 0, -0.15]);
+    scene.joint(`joint_${i}`, 'revolute', parent, name, {
+      axis: i === 1 ? [1, 0, 0] : [0, 1, 0],
+      position: i ? [0, 0, -0.3] : [0, 0, 0],
+      range: [-0.7, 0.7],
+      dryFriction: 0.3 / (1 + i),
+      damping: 0.02,
+      armature: 0.005,
+    });
+    parent = name;
+  }
+  return scene.geometry('tip', parent, sphere(0.04), { position: [0, 0, -0.3] });
 }
 
 // Two pendulums, the second follows the first.
@@ -113,6 +133,14 @@ export const joints = [
     start: { q: [1.2], v: [0] },
     stateTimes: [0, 0.3, 0.6, 1],
     states: [{ q: [0.05], v: [0] }],
+  },
+  {
+    name: 'chain_dry_friction',
+    about: 'three hinges with dry friction and ranges, whose tip strikes the ground',
+    scene: rubbingChain(),
+    start: { q: [0.69, -0.6, 0.65], v: [0.5, 1, 2] },
+    stateTimes: [0.05, 0.25, 0.5, 1],
+    states: [{ q: [0.1, -0.71, 0.72], v: [0, 1e-4, 0], force: [0.1, 0.05, -0.2] }],
   },
   {
     name: 'mimic_pair',
