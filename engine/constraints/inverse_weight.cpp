@@ -11,7 +11,9 @@ InverseWeights::InverseWeights(const Model& model)
       rotation(model.bodies.size(), 0.0),
       dof(model.dofs.size(), 0.0) {
   if (model.nv == 0) return;
-  const State state(model);
+  State state(model);
+  for (const Body& body : model.bodies)
+    if (body.dofs == 1) state.q[body.q] = 0.0;
   Kinematics k(model);
   MassMatrix inertia(model);
   computeKinematics(model, state, k);
@@ -19,7 +21,7 @@ InverseWeights::InverseWeights(const Model& model)
   TreeFactor factor;
   if (!factor.compute(inertia.M))
     throw ModelError({}, "joint '" + model.jointNames[model.dofs[factor.failedRow()].body] + "'",
-                     "the mass matrix is singular in the initial configuration; this joint moves "
+                     "the mass matrix is singular where all joints are at zero; this joint moves "
                      "nothing that resists it, or its numbers overflow");
 
   VectorX column(model.nv);

@@ -3,9 +3,9 @@
 
 /// Constant inverse inertias that scale the regulariser of every row (T.12).
 ///
-/// Computed once in the initial configuration, armature included: for a body the mean of the
-/// diagonal of J M⁻¹ Jᵀ over the three translations, and over the three rotations, of its centre
-/// of mass; for a dof the diagonal of M⁻¹ (for a floating joint the mean of three).
+/// Computed once with all joints at zero, as MuJoCo does it, armature included: for a body the mean
+/// of the diagonal of J M⁻¹ Jᵀ over the three translations, and over the three rotations, of its
+/// centre of mass; for a dof the diagonal of M⁻¹ (for a floating joint the mean of three).
 
 #include <vector>
 
@@ -19,7 +19,7 @@ struct InverseWeights {
   std::vector<double> dof;          ///< (nv)
 
   InverseWeights() = default;
-  /// Throws ModelError when the mass matrix is singular in the initial configuration.
+  /// Throws ModelError when the mass matrix is singular there.
   explicit InverseWeights(const Model& model);
 };
 

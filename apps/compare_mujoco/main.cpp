@@ -1,0 +1,312 @@
+// SPDX-License-Identifier: Apache-2.0
+/// compare_mujoco: one model in two engines, in one process.
+///
+/// Along the path that softgauss takes, with the same controls, both are put into every state:
+/// their accelerations are compared with both solvers fully converged, each
+/// with its own contact points and ours with MuJoCo's too, and their steps, forward and
+/// inverse dynamics are timed in turns, at the tolerances that each has by default. At last both
+/// run freely for a second from the same state.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "apps/compare_mujoco/mjcf.hpp"
+#include "apps/compare_mujoco/mujoco.hpp"
+#include "collision/lowest_point.hpp"
+#include "collision/scene_contacts.hpp"
+#include "engine/engine.hpp"
+#include "io/urdf.hpp"
+
+namespace {
+
+using namespace softgauss;
+using app::Mujoco;
+using Json = nlohmann::ordered_json;
+
+constexpr double kControlShare = 0.05;  ///< of the effort limit that the controls swing by
+constexpr double kFreeRun = 1.0;        ///< [s]
+
+struct Arguments {
+  std::string model, base = "automatic", json;
+  double duration = 2.0, timestep = 0.002;
+  std::vector<std::filesystem::path> packagePaths;
+};
+
+Model loadModel(const Arguments& arguments) {
+  io::UrdfOptions options;
+  options.packagePaths = arguments.packagePaths;
+  options.base = arguments.base == "fixed"      ? BaseKind::fixed
+                 : arguments.base == "floating" ? BaseKind::floating
+                                                : BaseKind::automatic;
+  ModelBuilder builder = io::readUrdf(arguments.model, options);
+  builder.options.timestep = arguments.timestep;
+  builder.options.midpointCoriolis = false;  // as MuJoCo has it
+  Model model = builder.build();
+  const auto floats = [](const Body& body) { return body.joint == JointKind::floating; };
+  if (std::none_of(model.bodies.begin(), model.bodies.end(), floats)) return model;
+  GeometrySpec plane;
+  plane.name = "ground";
+  plane.link = "world";
+  plane.shape = Shape::plane();
+  return builder.geometry(plane).build();
+}
+
+/// Floating bases stand on the ground.
+State initialState(const Model& model) {
+  State state(model);
+  Kinematics k(model);
+  computeKinematics(model, state, k);
+  for (int t = 0; t < static_cast<int>(model.trees.size()); ++t) {
+    const Body& root = model.bodies[model.trees[t].rootBody];
+    const double lowest = collision::lowestPoint(model, k, t);
+    if (root.joint == JointKind::floating && std::isfinite(lowest)) state.q[root.q + 2] -= lowest;
+  }
+  return state;
+}
+
+/// Controls that swing, each joint at its own pace.
+VectorX controlAt(const Model& model, double time) {
+  VectorX tau = VectorX::Zero(model.nv);
+  for (int i = 0; i < model.nv; ++i) {
+    const Dof& dof = model.dofs[static_cast<std::size_t>(i)];
+    if (!dof.actuated) continue;
+    const double effort = std::isfinite(dof.effortUpper) ? dof.effortUpper : 10.0;
+    tau[i] = kControlShare * effort * std::sin((3.0 + 0.7 * (i % 7)) * time + i);
+  }
+  return tau;
+}
+
+double percentile(std::vector<double> values, double share) {
+  if (values.empty()) return 0.0;
+  std::sort(values.begin(), values.end());
+  const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(values.size())));
+  return values[std::max<std::size_t>(rank, 1) - 1];
+}
+
+/// Times of the two engines for the same work, taken in turns [µs].
+struct Duel {
+  std::vector<double> ours, mujoco;
+
+  template <class F>
+  static void time(std::vector<double>& out, F&& work) {
+    const auto start = std::chrono::steady_clock::now();
+    work();
+    out.push_back(1e6 *
+                  std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  }
+  Json json() const {
+    const double a = percentile(ours, 0.5), b = percentile(mujoco, 0.5);
+    return {{"ours", a}, {"mujoco", b}, {"ratio", a / b}};
+  }
+};
+
+/// Largest difference, relative to the largest entry where that is above 1.
+double difference(const VectorX& a, const VectorX& b) {
+  return (a - b).cwiseAbs().maxCoeff() / std::max(1.0, b.cwiseAbs().maxCoeff());
+}
+
+class Comparison {
+ public:
+  explicit Comparison(const Arguments& arguments)
+      : model_(loadModel(arguments)),
+        contacts_(model_),
+        data_(model_),
+        mujoco_(app::mjcfOf(model_, contacts_.filter())),
+        initial_(initialState(model_)) {
+    if (mujoco_.nq() != model_.nq || mujoco_.nv() != model_.nv)
+      throw std::runtime_error(
+          fmt::format("MuJoCo has {} positions and {} velocities, ours {} and {}", mujoco_.nq(),
+                      mujoco_.nv(), model_.nq, model_.nv));
+  }
+
+  Json run(double duration) {
+    const auto steps = static_cast<int>(std::ceil(duration / model_.options.timestep - 1e-9));
+    State state = initial_;
+    for (int i = 0; i < steps; ++i) {
+      const VectorX tau = controlAt(model_, state.time);
+      compareAccelerations(state, tau);
+      timeForwardAndInverse(state, tau);
+      timeStep(state, tau);
+    }
+    const double freely = freeRun();
+    return {{"mujoco_version", Mujoco::version()},
+            {"model", model_.name},
+            {"dof", model_.nv},
+            {"step_us", step_.json()},
+            {"forward_us", forward_.json()},
+            {"inverse_us", inverse_.json()},
+            {"acceleration_difference", spread(accelerations_)},
+            {"acceleration_difference_same_contacts", spread(sameContacts_)},
+            {"inverse_difference", spread(forces_)},
+            {"state_difference_after_1s", freely},
+            {"contacts",
+             {{"ours", percentile(ourContacts_, 0.5)},
+              {"mujoco", percentile(theirContacts_, 0.5)},
+              {"steps_with_equal_numbers", equalContacts_}}},
+            {"steps", steps},
+            {"mujoco_warning", mujoco_.firstWarning()}};
+  }
+
+ private:
+  static Json spread(const std::vector<double>& values) {
+    return {{"p50", percentile(values, 0.5)},
+            {"p95", percentile(values, 0.95)},
+            {"max", percentile(values, 1.0)}};
+  }
+
+  /// (T.1) and (T.2) against MuJoCo's, both converged.
+  void compareAccelerations(const State& state, const VectorX& tau) {
+    input_.tau = tau;
+    computeStages(model_, input_, state, data_, &contacts_);
+    forwardDynamics(model_, state, data_);
+    mujoco_.setTolerance(0.0);
+    mujoco_.set(state, tau);
+    mujoco_.setWarmStart(data_.forward.a);
+    mujoco_.forward();
+    accelerations_.push_back(difference(data_.forward.a, mujoco_.acceleration()));
+    const VectorX a = mujoco_.acceleration();
+    inverseDynamics(model_, a, data_, scratch_);
+    mujoco_.inverse();
+    forces_.push_back(difference(scratch_, mujoco_.inverseForce()));
+    const int ours = data_.stats.contacts;
+    theirs_.points = mujoco_.contacts(model_);
+    ourContacts_.push_back(ours);
+    theirContacts_.push_back(static_cast<double>(theirs_.points.size()));
+    equalContacts_ += ours == static_cast<int>(theirs_.points.size()) ? 1 : 0;
+    // The same contact points in both: what is left is dynamics and constraints alone.
+    computeStages(model_, input_, state, data_, &theirs_);
+    forwardDynamics(model_, state, data_);
+    sameContacts_.push_back(difference(data_.forward.a, a));
+  }
+
+  void timeForwardAndInverse(const State& state, const VectorX& tau) {
+    mujoco_.setTolerance(kTheirTolerance);
+    mujoco_.set(state, tau);
+    if (theirWarmStart_.size() > 0) mujoco_.setWarmStart(theirWarmStart_);
+    Duel::time(forward_.ours, [&] {
+      computeStages(model_, input_, state, data_, &contacts_);
+      forwardDynamics(model_, state, data_);
+    });
+    Duel::time(forward_.mujoco, [&] { mujoco_.forward(); });
+    const VectorX a = data_.forward.a;
+    mujoco_.setAcceleration(a);
+    Duel::time(inverse_.ours, [&] {
+      computeStages(model_, input_, state, data_, &contacts_);
+      inverseDynamics(model_, a, data_, scratch_);
+    });
+    Duel::time(inverse_.mujoco, [&] { mujoco_.inverse(); });
+  }
+
+  /// Both from the same state; the path goes on with ours.
+  void timeStep(State& state, const VectorX& tau) {
+    mujoco_.set(state, tau);
+    if (theirWarmStart_.size() > 0) mujoco_.setWarmStart(theirWarmStart_);
+    Duel::time(step_.mujoco, [&] { mujoco_.step(); });
+    theirWarmStart_ = mujoco_.acceleration();
+    Duel::time(step_.ours, [&] {
+      if (step(model_, input_, state, data_, &contacts_) == SolveStatus::notFinite)
+        throw std::runtime_error(fmt::format("became non-finite at t = {} s", state.time));
+    });
+  }
+
+  /// Largest difference of the configurations a second after the start, each on its own path.
+  double freeRun() {
+    State state = initial_;
+    Mujoco& theirs = mujoco_;
+    theirs.setTolerance(0.0);
+    const auto steps = static_cast<int>(std::round(kFreeRun / model_.options.timestep));
+    theirs.set(state, VectorX::Zero(model_.nv));
+    theirs.setWarmStart(VectorX::Zero(model_.nv));
+    for (int i = 0; i < steps; ++i) {
+      input_.tau = controlAt(model_, state.time);
+      step(model_, input_, state, data_, &contacts_);
+      theirs.setForce(input_.tau);
+      theirs.step();
+    }
+    const VectorX other = theirs.q();
+    return positionDifference(model_, state.q, other).cwiseAbs().maxCoeff();
+  }
+
+  static constexpr double kTheirTolerance = 1e-8;  ///< MuJoCo's default
+
+  Model model_;
+  collision::SceneContacts contacts_;
+  Data data_;
+  Mujoco mujoco_;
+  State initial_;
+  Input input_;
+  VectorX scratch_, theirWarmStart_;
+  Duel step_, forward_, inverse_;
+  FixedContacts theirs_;
+  std::vector<double> accelerations_, sameContacts_, forces_, ourContacts_, theirContacts_;
+  int equalContacts_ = 0;
+};
+
+void print(const Json& result) {
+  fmt::print("{}, {} dof, {} steps, MuJoCo {}\n", result["model"].get<std::string>(),
+             result["dof"].get<int>(), result["steps"].get<int>(),
+             result["mujoco_version"].get<std::string>());
+  fmt::print("  {:<24}{:>10}{:>10}{:>10}\n", "[µs]", "ours", "MuJoCo", "ratio");
+  for (const auto& [name, key] : {std::pair{"step", "step_us"},
+                                  {"forward dynamics", "forward_us"},
+                                  {"inverse dynamics", "inverse_us"}}) {
+    const Json& d = result[key];
+    fmt::print("  {:<24}{:>10.3g}{:>10.3g}{:>10.2f}\n", name, d["ours"].get<double>(),
+               d["mujoco"].get<double>(), d["ratio"].get<double>());
+  }
+  fmt::print("  {:<24}{:>10}{:>10}{:>10}\n", "relative difference", "p50", "p95", "max");
+  for (const auto& [name, key] :
+       {std::pair{"acceleration", "acceleration_difference"},
+        {"  with the same contacts", "acceleration_difference_same_contacts"},
+        {"inverse dynamics", "inverse_difference"}}) {
+    const Json& d = result[key];
+    fmt::print("  {:<24}{:>10.2g}{:>10.2g}{:>10.2g}\n", name, d["p50"].get<double>(),
+               d["p95"].get<double>(), d["max"].get<double>());
+  }
+  fmt::print("  state after 1 s: {:.2g} rad or m; contacts equal in {} steps\n",
+             result["state_difference_after_1s"].get<double>(),
+             result["contacts"]["steps_with_equal_numbers"].get<int>());
+  if (const std::string warning = result["mujoco_warning"]; !warning.empty())
+    fmt::print("  MuJoCo warns: {}\n", warning);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Arguments arguments;
+  CLI::App app("The same model in softgauss and in MuJoCo: differences and times");
+  app.add_option("MODEL", arguments.model, "a .urdf file")->required();
+  app.add_option("--base", arguments.base, "fixed or floating")
+      ->check(CLI::IsMember({"fixed", "floating"}));
+  app.add_option("--duration", arguments.duration, "compared time [s], default 2")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--timestep", arguments.timestep, "step [s], default 0.002")
+      ->check(CLI::Range(1e-6, 1.0));
+  app.add_option("--json", arguments.json, "write the figures to this file too");
+  app.add_option("--package-path", arguments.packagePaths,
+                 "where package://NAME/… is looked for first; repeatable");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  try {
+    const Json result = Comparison(arguments).run(arguments.duration);
+    print(result);
+    if (!arguments.json.empty() && !(std::ofstream(arguments.json) << result.dump(2) << '\n'))
+      throw ModelError({arguments.json, 0}, "json", "cannot be written");
+  } catch (const ModelError& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return 2;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "compare_mujoco: {}\n", error.what());
+    return 1;
+  }
+  return 0;
+}

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// MuJoCo behind the calls that the comparison needs. Nothing else sees its header.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/constraints/contact_set.hpp"
+#include "engine/model/state.hpp"
+
+namespace softgauss::app {
+
+class Mujoco {
+ public:
+  /// Throws ModelError with MuJoCo's own message when it refuses the description.
+  explicit Mujoco(const std::string& mjcf);
+  ~Mujoco();
+
+  static std::string version();
+
+  int nq() const;
+  int nv() const;
+  /// Tolerance of the solver; 0 lets it run until nothing improves.
+  void setTolerance(double tolerance);
+  /// State and applied force of the next call. Its warm start is left alone.
+  void set(const State& state, const VectorX& tau);
+  void setForce(const VectorX& tau);
+  void setWarmStart(const VectorX& a);
+  void setAcceleration(const VectorX& a);
+  void forward();
+  void inverse();
+  void step();
+
+  VectorX q() const;
+  VectorX acceleration() const;  ///< of the last forward()
+  VectorX inverseForce() const;  ///< of the last inverse()
+  /// Contacts of the last forward(), as our engine takes them.
+  std::vector<Contact> contacts(const Model& model) const;
+  std::string firstWarning() const;  ///< empty when there was none
+
+ private:
+  struct Memory;
+  std::unique_ptr<Memory> memory_;
+};
+
+}  // namespace softgauss::app
