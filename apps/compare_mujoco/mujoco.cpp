@@ -43,6 +43,8 @@ VectorX vectorOf(const mjtNum* values, int count) {
 }  // namespace
 
 Mujoco::Mujoco(const std::string& mjcf) : memory_(std::make_unique<Memory>()) {
+  // It would print them, and write a log where the program was started; firstWarning() tells.
+  mju_user_warning = [](const char*) {};
   memory_->model = load(mjcf);
   memory_->data = mj_makeData(memory_->model);
 }
