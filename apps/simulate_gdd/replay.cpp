@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
 #include <map>
 
 namespace softgauss::app {
@@ -22,11 +23,18 @@ std::vector<std::shared_ptr<const Mesh>> collidingHulls(const Scene& scene) {
   return hulls;
 }
 
+/// ", 2.7 MB" of a file, nothing of a folder.
+std::string sizeOf(const std::filesystem::path& target) {
+  std::error_code error;
+  const auto bytes = std::filesystem::file_size(target, error);
+  return error ? std::string() : fmt::format(", {:.2g} MB", 1e-6 * static_cast<double>(bytes));
+}
+
 }  // namespace
 
 Replay::Replay(const SimulateOptions& options, const Scene& scene,
-               const std::vector<std::unique_ptr<gdd::Goal>>& goals,
-               const gdd::GoalContext& start) {
+               const std::vector<std::unique_ptr<gdd::Goal>>& goals, const gdd::GoalContext& start)
+    : view_(options.view), drawing_(options.plot) {
   if (!options.view.empty()) page_.emplace(options.view);
   if (!options.plot.empty()) plot_.emplace(options.plot);
   if (!page_ && !plot_) return;
@@ -44,10 +52,17 @@ std::string Replay::finish(const Data& data, const State& last, const io::Summar
   recording_->outcome = {summary.outcome, message};
   recording_->facts = summary.facts();
   recording_->warnings = summary.warnings;
+  const auto timed = [&](const std::filesystem::path& target, auto&& write) {
+    const auto start = std::chrono::steady_clock::now();
+    write();
+    const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
+    written_ +=
+        fmt::format("wrote {}{} in {:.2g} s\n", target.string(), sizeOf(target), time.count());
+  };
   const std::string generator = fmt::format("softgauss {}", summary.version);
   try {
-    if (page_) page_->write(*recording_, generator);
-    if (plot_) plot_->write(*recording_);
+    if (page_) timed(view_, [&] { page_->write(*recording_, generator); });
+    if (plot_) timed(drawing_, [&] { plot_->write(*recording_); });
   } catch (const std::exception& error) {
     return error.what();
   }

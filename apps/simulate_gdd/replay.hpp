@@ -26,11 +26,15 @@ class Replay {
   /// what could not be written, or nothing.
   std::string finish(const Data& data, const State& last, const io::Summary& summary,
                      const std::string& message);
+  /// What finish() has written and how long that took, a line each.
+  const std::string& written() const { return written_; }
 
  private:
   std::optional<io::Recording> recording_;
   std::optional<io::ReplayPage> page_;
   std::optional<io::Plot> plot_;
+  std::filesystem::path view_, drawing_;
+  std::string written_;
 };
 
 }  // namespace softgauss::app

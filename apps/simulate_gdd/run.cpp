@@ -202,7 +202,7 @@ class Runner {
     if (!options_.summary.empty()) summary_.write(options_.summary);
     const std::string error = replay_->finish(data_, state_, summary_, reason);
     if (outputError_.empty()) outputError_ = error;
-    if (!options_.quiet) fmt::print("{}", summary_.table());
+    if (!options_.quiet) fmt::print("{}{}", replay_->written(), summary_.table());
   }
 
   const SimulateOptions& options_;

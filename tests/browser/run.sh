@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Records runs and looks at their replay pages in Chromium.
 #
-#   run.sh SIMULATE_GDD ROOT FOLDER
+#   run.sh SIMULATE_GDD ROOT FOLDER [SCRIPT ARGUMENT…]
 #
 # Runs, screenshots and playwright-core go to FOLDER. Exit code 77: skipped, for there is no Chromium.
 set -euo pipefail
@@ -19,4 +19,7 @@ record() {  # NAME ARGUMENTS…
 record humanoid "$root/data/robots/humanoid.urdf" --goals "$root/data/goals/stand_and_reach.yaml" --duration 10
 record arm "$root/data/robots/arm.urdf" --goals "$root/data/goals/arm_reach.yaml" --duration 2
 record hand "$root/data/robots/hand.urdf" --passive --duration 1
-exec node "$here/replay_test.mjs" "$folder" "$(tail -n 1 <<<"$said")" "$root/data/robots"
+script=${4:-replay_test.mjs}
+arguments=("${@:5}")
+((${#arguments[@]})) || arguments=("$root/data/robots")
+exec node "$here/$script" "$folder" "$(tail -n 1 <<<"$said")" "${arguments[@]}"
