@@ -13,7 +13,11 @@ void GoalCost::clear() {
 
 void GoalCost::addPoint(const Model& model, const Kinematics& k, const TreeSparsity& tree, int body,
                         const Vector3& p_WP, double weight, const Vector3& target) {
-  rows_.add(model, k, tree, 0, body, p_WP, Matrix3::Identity(), 3);
+  RelativeMotion motion;  // against the world
+  motion.bodyB = body;
+  motion.p_WA = motion.p_WB = p_WP;
+  motion.linearDim = 3;
+  rows_.add(model, k, tree, motion);
   weight_.push_back(weight);
   target_.push_back(target);
 }

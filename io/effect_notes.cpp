@@ -29,6 +29,11 @@ const std::string& jointOf(const Model& model, int body) {
   return model.jointNames[static_cast<std::size_t>(body)];
 }
 
+std::string bodyPair(const Model& model, int a, int b) {
+  return model.bodyNames[static_cast<std::size_t>(a)] + " - " +
+         model.bodyNames[static_cast<std::size_t>(b)];
+}
+
 template <class Predicate>
 Callers dofsWith(const Model& model, Predicate&& predicate) {
   Callers callers;
@@ -92,9 +97,11 @@ std::vector<EffectNote> effectNotes(const Model& model) {
   const bool moves = model.nv > 0;
   const std::size_t moving = model.bodies.size() - 1;
 
-  Callers ranges, followers;
+  Callers ranges, equalities;
   for (const JointRange& range : model.ranges) ranges.add(jointOf(model, range.body));
-  for (const Mimic& mimic : model.mimics) followers.add(jointOf(model, mimic.follower));
+  for (const Connection& c : model.connections) equalities.add(bodyPair(model, c.bodyA, c.bodyB));
+  for (const Weld& w : model.welds) equalities.add(bodyPair(model, w.bodyA, w.bodyB));
+  for (const JointCoupling& c : model.couplings) equalities.add(jointOf(model, c.follower));
   Callers torsional, rolling;
   for (const Geometry& geometry : model.geometries) {
     if (geometry.material.condim >= 4) torsional.add(geometry.name);
@@ -120,7 +127,7 @@ std::vector<EffectNote> effectNotes(const Model& model) {
   notes.add("joint_limit", ranges, "joint range", "no joint has a range");
   notes.add("dry_friction", dofsWith(model, [](const Dof& d) { return d.dryFriction > 0.0; }),
             "dof", "no joint has friction");
-  notes.add("equality", followers, "mimic", "no mimic, weld or connection");
+  notes.add("equality", equalities, "equality constraint", "no mimic joint, weld or connection");
   notes.add("self_collision", shapes.selfTouching, "robot", "no robot has shapes on two bodies");
   notes.add(
       "ground_contact", shapes.world.count > 0 && shapes.moving.count > 0,

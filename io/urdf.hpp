@@ -9,7 +9,7 @@
 /// know, is in Model::warnings. Angles [rad], SI units throughout.
 ///
 /// effort is the box of the control, |u| ≤ effort; 0 means not actuated (ModelBuilder says which);
-/// none means no box. Followers of a mimic are free, passive joints until mimic is simulated.
+/// none means no box. A mimic joint is coupled to its leader (T.30) and not actuated.
 
 #include <filesystem>
 #include <map>

@@ -28,26 +28,28 @@ void BlockJacobian::clear() {
 }
 
 void BlockJacobian::add(const Model& model, const Kinematics& k, const TreeSparsity& tree,
-                        int bodyA, int bodyB, const Vector3& p_WP, const Matrix3& directions,
-                        int dim) {
+                        const RelativeMotion& m) {
   JacobianBlock block;
-  block.dim = dim;
+  block.dim = m.linearDim + m.angularDim;
   block.value = static_cast<int>(values_.size());
   block.segment = static_cast<int>(segments_.size());
 
-  const int lastA = model.lastDof(bodyA), lastB = model.lastDof(bodyB);
+  const int lastA = model.lastDof(m.bodyA), lastB = model.lastDof(m.bodyB);
   const int common = commonDof(model, lastA, lastB);
   block.couples = lastA > common && lastB > common;
+  // Common ancestors turn one point about the other, if the two are apart.
+  const bool apart = m.linearDim > 0 && m.p_WA != m.p_WB;
 
   // Depth-first numbering puts one whole branch before the other.
   const bool aFirst = lastA < lastB;
   const int last[2] = {aFirst ? lastA : lastB, aFirst ? lastB : lastA};
   int split = 0;  // columns of the first branch
   for (int side = 0; side < 2; ++side) {
-    if (last[side] > common) {
+    const int from = side == 0 && apart ? 0 : common + 1;
+    if (last[side] >= from) {
       for (const Segment* s = tree.begin(last[side]); s != tree.end(last[side]); ++s) {
-        if (s->end <= common + 1) continue;
-        const int begin = std::max(s->begin, common + 1);
+        if (s->end <= from) continue;
+        const int begin = std::max(s->begin, from);
         if (block.columns > 0 && segments_.back().end == begin)
           segments_.back().end = s->end;
         else
@@ -59,24 +61,31 @@ void BlockJacobian::add(const Model& model, const Kinematics& k, const TreeSpars
   }
   block.segmentEnd = static_cast<int>(segments_.size());
 
-  values_.resize(values_.size() + static_cast<std::size_t>(dim * block.columns));
+  values_.resize(values_.size() + static_cast<std::size_t>(block.dim * block.columns));
   double* J = values_.data() + block.value;
   Vector3 r[2];  // the point from O, in the tree of each branch
   double sign[2];
   for (int side = 0; side < 2; ++side) {
-    const int body = (side == 0) == aFirst ? bodyA : bodyB;
-    sign[side] = body == bodyB ? 1.0 : -1.0;
-    r[side] = body == 0 ? Vector3::Zero() : Vector3(p_WP - k.p_WO[model.bodies[body].tree]);
+    const bool isB = (side == 0) != aFirst;
+    const int body = isB ? m.bodyB : m.bodyA;
+    sign[side] = isB ? 1.0 : -1.0;
+    r[side] = body == 0 ? Vector3::Zero()
+                        : Vector3((isB ? m.p_WB : m.p_WA) - k.p_WO[model.bodies[body].tree]);
   }
   int c = 0;
   for (int s = block.segment; s < block.segmentEnd; ++s) {
     for (int i = segments_[s].begin; i < segments_[s].end; ++i, ++c) {
       const int side = c < split ? 0 : 1;
-      const Vector3 u = sign[side] * dofPointVelocity(k.S[i], r[side]);
-      for (int d = 0; d < dim; ++d) J[d * block.columns + c] = directions.col(d).dot(u);
+      const bool both = i <= common;
+      Vector3 u = sign[side] * dofPointVelocity(k.S[i], r[side]);
+      if (both) u += sign[1] * dofPointVelocity(k.S[i], r[1]);
+      for (int d = 0; d < m.linearDim; ++d) J[d * block.columns + c] = m.linear.col(d).dot(u);
+      for (int d = 0; d < m.angularDim; ++d)
+        J[(m.linearDim + d) * block.columns + c] =
+            both ? 0.0 : sign[side] * m.angular.col(d).dot(k.S[i].angular);
     }
   }
-  scratch_.resize(std::max(scratch_.size(), static_cast<std::size_t>(dim * block.columns)));
+  scratch_.resize(std::max(scratch_.size(), static_cast<std::size_t>(block.dim * block.columns)));
   blocks_.push_back(block);
 }
 

@@ -3,10 +3,12 @@
 
 /// Jacobian blocks that know which dofs move them.
 ///
-/// A block relates the relative motion of two bodies at a point to the dofs between them:
+/// A block relates the relative motion of two bodies to the dofs that cause it:
 ///   y = J a,   y ∈ R^dim,   J = [d₁ … d_dim]ᵀ (J_B − J_A)
-/// Ancestors common to both bodies move neither against the other, so only the two branches below
-/// them appear: a few ranges of consecutive dofs (segments), each row of J stored without gaps.
+/// J_A, J_B are the Jacobians of a point of each body, or of the bodies' rotation. Where the two
+/// points are one, ancestors common to both bodies move neither against the other: then only the
+/// two branches below them appear. The dofs are a few ranges (segments), each row of J is stored
+/// without gaps.
 
 #include <vector>
 
@@ -14,6 +16,19 @@
 #include "engine/dynamics/tree_matrix.hpp"
 
 namespace softgauss {
+
+/// What a block measures of the motion of body B as seen from body A: first the velocity of a point
+/// of B less that of a point of A, along columns of `linear`, then the relative angular velocity,
+/// along columns of `angular`; world axes.
+struct RelativeMotion {
+  int bodyA = 0, bodyB = 0;
+  Vector3 p_WA = Vector3::Zero();  ///< the point of A
+  Vector3 p_WB = Vector3::Zero();  ///< the point of B
+  Matrix3 linear = Matrix3::Identity();
+  int linearDim = 0;  ///< columns used
+  Matrix3 angular = Matrix3::Identity();
+  int angularDim = 0;
+};
 
 struct JacobianBlock {
   int dim = 0;      ///< rows
@@ -27,10 +42,8 @@ struct JacobianBlock {
 class BlockJacobian {
  public:
   void clear();
-  /// Adds a block for the point p_WP, fixed to body B and seen from body A, along the columns of
-  /// `directions` (first `dim` of them, world).
-  void add(const Model& model, const Kinematics& k, const TreeSparsity& tree, int bodyA, int bodyB,
-           const Vector3& p_WP, const Matrix3& directions, int dim);
+  void add(const Model& model, const Kinematics& k, const TreeSparsity& tree,
+           const RelativeMotion& motion);
 
   int size() const { return static_cast<int>(blocks_.size()); }
   const JacobianBlock& block(int i) const { return blocks_[i]; }

@@ -18,6 +18,9 @@ void Constraints::assemble(const Assembly& in) {
 
   couplings_.clear();
   couplingEnd_.clear();
+  connection.appendCouplings(couplings_, couplingEnd_);
+  weld.appendCouplings(couplings_, couplingEnd_);
+  coupling.appendCouplings(couplings_, couplingEnd_);
   contact.appendCouplings(couplings_, couplingEnd_);
   if (couplings_.empty()) {
     sparsity_ = &in.tree;

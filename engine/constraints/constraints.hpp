@@ -10,9 +10,12 @@
 #include <concepts>
 #include <vector>
 
+#include "engine/constraints/connection.hpp"
 #include "engine/constraints/contact.hpp"
 #include "engine/constraints/dry_friction.hpp"
+#include "engine/constraints/joint_coupling.hpp"
 #include "engine/constraints/joint_limit.hpp"
+#include "engine/constraints/weld.hpp"
 
 namespace softgauss {
 
@@ -36,18 +39,27 @@ concept SoftConstraint = requires(C c, const Assembly& in, const VectorX& a, Vec
 
 class Constraints {
  public:
+  ConnectionRows connection;
+  WeldRows weld;
+  CouplingRows coupling;
   DryFriction dryFriction;
   JointLimit jointLimit;
   PyramidalContact contact;
 
   template <class F>
   void visit(F&& f) {
+    f(connection);
+    f(weld);
+    f(coupling);
     f(dryFriction);
     f(jointLimit);
     f(contact);
   }
   template <class F>
   void visit(F&& f) const {
+    f(connection);
+    f(weld);
+    f(coupling);
     f(dryFriction);
     f(jointLimit);
     f(contact);
@@ -100,6 +112,9 @@ class Constraints {
   std::vector<int> couplingEnd_, lastCouplingEnd_;
 };
 
+static_assert(SoftConstraint<ConnectionRows>);
+static_assert(SoftConstraint<WeldRows>);
+static_assert(SoftConstraint<CouplingRows>);
 static_assert(SoftConstraint<DryFriction>);
 static_assert(SoftConstraint<JointLimit>);
 static_assert(SoftConstraint<PyramidalContact>);

@@ -70,8 +70,13 @@ void PyramidalContact::assemble(const Assembly& in) {
     const bool frictional = material.condim > 1 && material.slidingFriction >= kSmallestFriction;
     const double mu = frictional ? material.slidingFriction : 0.0;
     ContactRows made{i, static_cast<int>(reference.size()), mu, contactFrame(c)};
-    jacobian_.add(model, in.kinematics, in.tree, c.bodyA, c.bodyB, c.p_WC, made.R_WC,
-                  frictional ? 3 : 1);
+    RelativeMotion motion;
+    motion.bodyA = c.bodyA;
+    motion.bodyB = c.bodyB;
+    motion.p_WA = motion.p_WB = c.p_WC;
+    motion.linear = made.R_WC;
+    motion.linearDim = frictional ? 3 : 1;
+    jacobian_.add(model, in.kinematics, in.tree, motion);
     made_.push_back(made);
 
     const double weight =

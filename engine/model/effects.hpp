@@ -18,6 +18,7 @@ enum class Effect : std::uint8_t {
   actuation,
   jointLimit,
   dryFriction,
+  equality,
   selfCollision,
   groundContact,
   objectContact
@@ -37,6 +38,7 @@ inline constexpr EffectName kEffectNames[] = {
     {Effect::actuation, "actuation", "controls on actuated joints"},
     {Effect::jointLimit, "joint_limit", "soft joint limits"},
     {Effect::dryFriction, "dry_friction", "Coulomb friction of joints"},
+    {Effect::equality, "equality", "connections, welds, coupled joints"},
     {Effect::selfCollision, "self_collision", "contacts between bodies of one robot"},
     {Effect::groundContact, "ground_contact", "contacts with shapes fixed to the world"},
     {Effect::objectContact, "object_contact", "contacts between different robots"},

@@ -15,6 +15,7 @@
 #include "engine/core/check.hpp"
 #include "engine/core/spatial.hpp"
 #include "engine/model/effects.hpp"
+#include "engine/model/equality.hpp"
 #include "engine/model/material.hpp"
 #include "engine/model/shape.hpp"
 
@@ -77,14 +78,6 @@ struct JointRange {
   Impedance impedance;
 };
 
-/// q_follower = multiplier · q_leader + offset, as the URDF says it.
-struct Mimic {
-  int follower = 0;  ///< bodies
-  int leader = 0;
-  double multiplier = 1.0;
-  double offset = 0.0;
-};
-
 /// A named frame fixed to a body: every link of the URDF, merged or not.
 struct Frame {
   std::string name;
@@ -113,7 +106,9 @@ struct Model {
   std::vector<Tree> trees;
   std::vector<Dof> dofs;
   std::vector<JointRange> ranges;  ///< ordered by body
-  std::vector<Mimic> mimics;
+  std::vector<Connection> connections;
+  std::vector<Weld> welds;
+  std::vector<JointCoupling> couplings;  ///< mimic joints first
   std::vector<Frame> frames;
   std::vector<Geometry> geometries;
   std::vector<Visual> visuals;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "engine/model/capsule_recognition.hpp"
+#include "engine/model/detail/equalities.hpp"
 #include "engine/model/detail/kinematic_tree.hpp"
 #include "engine/model/detail/spec_checks.hpp"
 
@@ -21,6 +22,18 @@ ModelBuilder& ModelBuilder::joint(JointSpec spec) {
 }
 ModelBuilder& ModelBuilder::geometry(GeometrySpec spec) {
   geometries_.push_back(std::move(spec));
+  return *this;
+}
+ModelBuilder& ModelBuilder::connect(ConnectSpec spec) {
+  connections_.push_back(std::move(spec));
+  return *this;
+}
+ModelBuilder& ModelBuilder::weld(WeldSpec spec) {
+  welds_.push_back(std::move(spec));
+  return *this;
+}
+ModelBuilder& ModelBuilder::couple(CouplingSpec spec) {
+  couplings_.push_back(std::move(spec));
   return *this;
 }
 ModelBuilder& ModelBuilder::visual(VisualSpec spec) {
@@ -233,27 +246,8 @@ class Assembler {
   int robot_ = -1;  ///< of the present root
 };
 
-/// A follower may lead another, but not, by some detour, itself.
-void checkMimicChains(const Model& model, const std::vector<JointSpec>& joints) {
-  for (const Mimic& mimic : model.mimics) {
-    int body = mimic.leader;
-    for (std::size_t steps = 0; steps <= model.mimics.size(); ++steps) {
-      const auto next = std::find_if(model.mimics.begin(), model.mimics.end(),
-                                     [&](const Mimic& m) { return m.follower == body; });
-      if (next == model.mimics.end()) break;
-      body = next->leader;
-      if (body != mimic.follower) continue;
-      const std::string& name = model.jointNames[static_cast<std::size_t>(mimic.follower)];
-      const auto spec = std::find_if(joints.begin(), joints.end(),
-                                     [&](const JointSpec& j) { return j.name == name; });
-      throw ModelError(spec->where, "joint '" + name + "'",
-                       "mimics itself by way of other joints; expected a leader that follows none "
-                       "of its followers");
-    }
-  }
-}
-
-/// Configuration at zero, or at the middle of the range where zero lies outside it.
+/// Configuration at zero, or at the middle of the range where zero lies outside it; a joint that
+/// follows another where its coupling wants it.
 VectorX initialConfiguration(const Model& model) {
   VectorX q = VectorX::Zero(model.nq);
   for (const Body& body : model.bodies) {
@@ -266,6 +260,7 @@ VectorX initialConfiguration(const Model& model) {
     const int i = model.bodies[static_cast<std::size_t>(range.body)].q;
     if (range.lower > 0.0 || range.upper < 0.0) q[i] = 0.5 * (range.lower + range.upper);
   }
+  detail::applyCouplings(model, q);
   return q;
 }
 
@@ -368,15 +363,9 @@ Model ModelBuilder::build() const {
     const Placement at = placementOf(spec.link, {}, "visual");
     model.visuals.push_back({spec.link, at.body, at.X_BL * spec.X_LG, spec.shape, spec.rgba});
   }
-  for (const JointSpec& joint : joints_) {
-    if (!joint.mimic) continue;
-    const int follower = model.findJoint(joint.name), leader = model.findJoint(joint.mimic->leader);
-    if (leader < 0)
-      throw ModelError(joint.where, "joint '" + joint.name + "'",
-                       "mimics '" + joint.mimic->leader + "', which is not a moving joint");
-    model.mimics.push_back({follower, leader, joint.mimic->multiplier, joint.mimic->offset});
-  }
-  checkMimicChains(model, joints_);
+  detail::addConnections(model, connections_);
+  detail::addWelds(model, welds_);
+  detail::addCouplings(model, joints_, couplings_);
   assembler.finish();
   model.q0 = initialConfiguration(model);
   return model;

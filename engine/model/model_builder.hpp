@@ -7,6 +7,7 @@
 /// splits a planar joint into two slides and a hinge, sorts bodies depth first and throws
 /// ModelError naming file, line and element when the description cannot be simulated.
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -58,6 +59,33 @@ struct GeometrySpec {
   SourceLocation where;
 };
 
+/// Ties a point of link A to a point of link B; "world" is a link.
+struct ConnectSpec {
+  std::string linkA, linkB;
+  Vector3 p_LAP = Vector3::Zero();  ///< in link A [m]
+  Vector3 p_LBP = Vector3::Zero();  ///< in link B [m]
+  Impedance impedance;
+  SourceLocation where;
+};
+
+/// Ties a frame of link A to a frame of link B.
+struct WeldSpec {
+  std::string linkA, linkB;
+  Transform X_LAF;
+  Transform X_LBF;
+  double torqueScale = 1.0;  ///< [m]
+  Impedance impedance;
+  SourceLocation where;
+};
+
+/// q_follower = c₀ + c₁ q_leader + … + c₄ q_leader⁴; without a leader q_follower = c₀.
+struct CouplingSpec {
+  std::string follower, leader;  ///< joints of one degree of freedom
+  std::array<double, 5> polynomial{0, 1, 0, 0, 0};
+  Impedance impedance;
+  SourceLocation where;
+};
+
 struct VisualSpec {
   std::string link;
   Transform X_LG;
@@ -78,6 +106,9 @@ class ModelBuilder {
   ModelBuilder& link(LinkSpec spec);
   ModelBuilder& joint(JointSpec spec);
   ModelBuilder& geometry(GeometrySpec spec);  ///< link "world" fixes it to the world
+  ModelBuilder& connect(ConnectSpec spec);
+  ModelBuilder& weld(WeldSpec spec);
+  ModelBuilder& couple(CouplingSpec spec);
   ModelBuilder& visual(VisualSpec spec);
   ModelBuilder& warning(std::string text);
   /// Puts another description beside this one, its links, joints and geometries called prefix/name
@@ -110,6 +141,9 @@ class ModelBuilder {
   std::vector<LinkSpec> links_;
   std::vector<JointSpec> joints_;
   std::vector<GeometrySpec> geometries_;
+  std::vector<ConnectSpec> connections_;
+  std::vector<WeldSpec> welds_;
+  std::vector<CouplingSpec> couplings_;
   std::vector<VisualSpec> visuals_;
   std::vector<std::string> warnings_;
 };

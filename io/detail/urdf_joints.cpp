@@ -30,7 +30,7 @@ JointType readType(const XmlElement& joint) {
 
 /// Joints of a kind worth one warning each kind.
 struct Notes {
-  std::vector<std::string> noRange, halfRange, unusedRange, unusedDynamics, mimics, fixedMimics;
+  std::vector<std::string> noRange, halfRange, unusedRange, unusedDynamics, fixedMimics;
 
   void appendTo(std::vector<std::string>& warnings) const {
     const auto add = [&](const std::vector<std::string>& joints, const char* text) {
@@ -40,8 +40,6 @@ struct Notes {
     add(halfRange, "one end of the range is not written and taken as 0: ");
     add(unusedRange, "a range has no meaning on a continuous, planar or floating joint, ignored: ");
     add(unusedDynamics, "damping and friction of a floating joint are ignored: ");
-    add(mimics,
-        "mimic is read but not simulated yet, these joints move freely and are not actuated: ");
     add(fixedMimics, "mimic of a fixed joint is ignored: ");
   }
 };
@@ -100,7 +98,6 @@ void readMimic(const XmlElement& mimic, JointSpec& joint, Notes& notes) {
     mimic.fail("is on a planar or floating joint, expected revolute, continuous or prismatic");
   if (spec.leader == joint.name) mimic.fail("a joint cannot mimic itself");
   joint.mimic = spec;
-  notes.mimics.push_back(joint.name);
 }
 
 std::string readLinkName(const XmlElement& end, const std::vector<std::string>& links) {

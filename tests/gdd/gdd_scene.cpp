@@ -106,7 +106,7 @@ GddScene randomGddScene(std::uint64_t seed, int contacts, double boxShare,
 
 GddScene lawGddScene(std::uint64_t seed, int contacts, double boxShare) {
   RandomTreeOptions options;
-  options.effects = seed % 2 == 1;
+  options.dryFriction = options.equalities = seed % 2 == 1;
   return randomGddScene(seed, contacts, boxShare, options);
 }
 

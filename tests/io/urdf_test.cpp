@@ -153,19 +153,19 @@ TEST(UrdfJoint, FixedOnesMayCarryAZeroAxisAndAnEmptyLimit) {
   EXPECT_GE(m.findFrame("tip"), 0);
 }
 
-TEST(UrdfJoint, MimicFollowerIsAPassiveJointWithAWarning) {
+TEST(UrdfJoint, MimicFollowerIsCoupledAndPassive) {
   const Model m = load(with(
       kSampleUrdf, "</robot>",
       "<link name=\"tip\"><inertial><mass value=\"1\"/><inertia ixx=\"1\" ixy=\"0\" ixz=\"0\" "
       "iyy=\"1\" iyz=\"0\" izz=\"1\"/></inertial></link><joint name=\"end\" type=\"continuous\">"
       "<parent link=\"arm\"/><child link=\"tip\"/>"
       "<mimic joint=\"shoulder\" multiplier=\"-2\" offset=\"0.5\"/></joint></robot>"));
-  ASSERT_EQ(m.mimics.size(), 1u);
-  EXPECT_EQ(m.mimics[0].leader, m.findJoint("shoulder"));
-  EXPECT_EQ(m.mimics[0].multiplier, -2.0);
-  EXPECT_EQ(m.mimics[0].offset, 0.5);
+  ASSERT_EQ(m.couplings.size(), 1u);
+  EXPECT_EQ(m.couplings[0].follower, m.findJoint("end"));
+  EXPECT_EQ(m.couplings[0].leader, m.findJoint("shoulder"));
+  EXPECT_EQ(m.couplings[0].polynomial, (std::array<double, 5>{0.5, -2.0, 0, 0, 0}));
   EXPECT_FALSE(m.dofs[7].actuated);
-  EXPECT_TRUE(hasWarning(m, "mimic"));
+  EXPECT_FALSE(hasWarning(m, "mimic"));
 }
 
 TEST(UrdfWarning, CountsWhatIsNotRead) {

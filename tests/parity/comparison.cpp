@@ -9,6 +9,8 @@
 namespace softgauss::test {
 namespace {
 
+constexpr double kSmallRow = 1e-3;  // of J: rows of zeros, in mechanisms of a plane
+
 /// The index of the nearest item that is not taken; npos when all are.
 template <class Distance>
 std::size_t takeNearest(std::vector<bool>& taken, const Distance& distance) {
@@ -123,7 +125,7 @@ RowDifference compareRows(const std::vector<Row>& rows, const std::vector<Row>& 
   for (const Row& theirs : reference) {
     const auto differenceOf = [&](std::size_t i) {
       const Row& ours = rows[i];
-      return std::array{relativeDifference(ours.J, theirs.J, 0.0),
+      return std::array{relativeDifference(ours.J, theirs.J, kSmallRow),
                         std::abs(ours.reference - theirs.reference) /
                             std::max(kSmallAcceleration, std::abs(theirs.reference)),
                         std::abs(ours.D - theirs.D) / theirs.D};

@@ -126,13 +126,54 @@ GeometrySpec geometryOf(const Json& item) {
   return g;
 }
 
+/// MuJoCo ties sites: the first is A.
+void addEquality(ModelBuilder& builder, const Json& item) {
+  const std::string kind = item.at("kind");
+  if (kind == "joint") {
+    allowKeys(item, {"kind", "follower", "leader", "polynomial", "solref", "solimp"});
+    CouplingSpec spec;
+    spec.follower = item.at("follower");
+    spec.leader = item.at("leader");
+    spec.polynomial = item.at("polynomial").get<std::array<double, 5>>();
+    spec.impedance = impedanceOf(item);
+    builder.couple(spec);
+    return;
+  }
+  allowKeys(item, {"kind", "linkA", "positionA", "quaternionA", "linkB", "positionB", "quaternionB",
+                   "solref", "solimp"});
+  const auto frame = [&](const std::string& side) {
+    Json pose;
+    if (item.contains("position" + side)) pose["position"] = item["position" + side];
+    if (item.contains("quaternion" + side)) pose["quaternion"] = item["quaternion" + side];
+    return poseOf(pose);
+  };
+  if (kind == "weld") {
+    WeldSpec spec;
+    spec.linkA = item.at("linkA");
+    spec.linkB = item.at("linkB");
+    spec.X_LAF = frame("A");
+    spec.X_LBF = frame("B");
+    spec.impedance = impedanceOf(item);
+    builder.weld(spec);
+  } else if (kind == "connect") {
+    ConnectSpec spec;
+    spec.linkA = item.at("linkA");
+    spec.linkB = item.at("linkB");
+    spec.p_LAP = frame("A").p;
+    spec.p_LBP = frame("B").p;
+    spec.impedance = impedanceOf(item);
+    builder.connect(spec);
+  } else {
+    throw std::runtime_error("an equality of kind '" + kind + "'");
+  }
+}
+
 }  // namespace
 
 Model referenceModel(const std::string& name, const Json& scene, const Json& options) {
   allowKeys(scene, {"links", "joints", "geometries", "equalities"});
   allowKeys(options, {"timestep", "gravity", "cone", "impratio"});
   if (options.at("cone") != "pyramidal") throw std::runtime_error("only pyramidal cones");
-  if (!scene.at("equalities").empty()) throw std::runtime_error("no equalities");
 
   ModelBuilder builder(name);
   builder.base = BaseKind::fixed;
@@ -146,6 +187,7 @@ Model referenceModel(const std::string& name, const Json& scene, const Json& opt
   for (const Json& item : scene.at("links")) builder.link(linkOf(item));
   for (const Json& item : scene.at("joints")) builder.joint(jointOf(item));
   for (const Json& item : scene.at("geometries")) builder.geometry(geometryOf(item));
+  for (const Json& item : scene.at("equalities")) addEquality(builder, item);
   Model model = builder.build();
   // A URDF has neither margin nor softness of a range, so the builder takes none.
   for (const Json& item : scene.at("joints"))

@@ -6,14 +6,18 @@
 
 namespace softgauss::test {
 
-VectorX ConvexProblem::force(const VectorX& a) const {
-  const VectorX f = D.cwiseProduct(aRef - J * a);
-  return f.cwiseMax(lower).cwiseMin(upper);
+VectorX ConvexProblem::residual(const VectorX& a) const {
+  const VectorX Ja = J * a;
+  return Ja - aRef;
+}
+
+VectorX ConvexProblem::force(const VectorX& x) const {
+  return (-D.cwiseProduct(x)).cwiseMax(lower).cwiseMin(upper);
 }
 
 double ConvexProblem::cost(const VectorX& a) const {
   // Where a bound holds, s goes on as a line: −f x − ½ R f².
-  const VectorX x = J * a - aRef, f = force(a);
+  const VectorX x = residual(a), f = force(x);
   double rows = 0.0;
   for (Eigen::Index i = 0; i < f.size(); ++i)
     rows +=
@@ -22,7 +26,7 @@ double ConvexProblem::cost(const VectorX& a) const {
 }
 
 VectorX ConvexProblem::gradient(const VectorX& a) const {
-  return M * a - net - J.transpose() * force(a);
+  return M * a - net - J.transpose() * force(residual(a));
 }
 
 ReferenceSolution solveByGaussSeidel(const ConvexProblem& p, double tolerance, int maxSweeps) {

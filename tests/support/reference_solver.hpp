@@ -21,8 +21,10 @@ struct ConvexProblem {
   VectorX D;             ///< (rows)
   VectorX lower, upper;  ///< bounds of the forces (rows)
 
-  /// Forces −D x within their bounds, x = J a − a_ref.
-  VectorX force(const VectorX& a) const;
+  /// x = J a − a_ref.
+  VectorX residual(const VectorX& a) const;
+  /// Forces −D x within their bounds.
+  VectorX force(const VectorX& x) const;
   /// ½ aᵀM a − aᵀ(τ − c) + Σ s(x), with s′(x) = −f.
   double cost(const VectorX& a) const;
   /// Its gradient.

@@ -64,7 +64,10 @@ struct RandomTreeOptions {
   bool armature = true;
   bool ranges = true;
   bool geometries = true;  ///< a small sphere on every massive link, and the ground
-  bool effects = false;    ///< in randomScene(): every other soft effect, at random
+  // In randomScene() only, at random:
+  bool dryFriction = false;
+  bool equalities =
+      false;  ///< a connection, a weld, two couplings, almost met in the scene's state
 };
 
 /// Trees of every joint kind, with massless intermediates (universal joints), planar joints and

@@ -4,6 +4,7 @@
 #include <tuple>
 #include <utility>
 
+#include "engine/core/rotation.hpp"
 #include "tests/support/reference_solver.hpp"
 
 namespace softgauss::test {
@@ -31,11 +32,52 @@ State randomState(const Model& model, Random& random, double speed) {
 namespace {
 
 /// Dry friction in half of the joints.
-void addRandomEffects(Model& model, Random random) {
+void addDryFriction(Model& model, Random random) {
   for (Dof& dof : model.dofs) {
     if (!random.chance(0.5)) continue;
     dof.dryFriction = random.uniform(0.1, 5.0);
     dof.frictionImpedance.dMin = random.uniform(0.5, 0.95);
+  }
+}
+
+void addEqualities(Scene& scene, Random random) {
+  Model& model = scene.model;
+  computeKinematics(model, scene.state, scene.data->kinematics);
+  const std::vector<Transform>& X_WB = scene.data->kinematics.X_WB;
+  const auto almost = [&](const Transform& X) {
+    return Transform{X.R * quaternionExp(random.vector3(1e-3)).toRotationMatrix(),
+                     X.p + random.vector3(1e-3)};
+  };
+  const auto anyBody = [&] { return random.index(model.bodyCount()); };
+  Connection connection;
+  connection.bodyA = anyBody();
+  connection.bodyB =
+      (connection.bodyA + 1 + random.index(model.bodyCount() - 1)) % model.bodyCount();
+  connection.p_AP = random.vector3(0.2);
+  const Transform at{Matrix3::Identity(), X_WB[connection.bodyA] * connection.p_AP};
+  connection.p_BP = X_WB[connection.bodyB].inverse() * almost(at).p;
+  model.connections.push_back(connection);
+  Weld weld;
+  weld.bodyA = anyBody();
+  weld.bodyB = (weld.bodyA + 1 + random.index(model.bodyCount() - 1)) % model.bodyCount();
+  weld.X_AF = {random.rotation(), random.vector3(0.2)};
+  weld.X_BF = X_WB[weld.bodyB].inverse() * almost(X_WB[weld.bodyA] * weld.X_AF);
+  weld.torqueScale = random.uniform(0.2, 2.0);
+  model.welds.push_back(weld);
+  std::vector<int> scalar;
+  for (int b = 1; b < model.bodyCount(); ++b)
+    if (model.bodies[b].dofs == 1) scalar.push_back(b);
+  for (const int leads : {1, 0}) {
+    JointCoupling coupling;
+    const int count = static_cast<int>(scalar.size()), i = random.index(count);
+    coupling.follower = scalar[i];
+    coupling.leader = leads ? scalar[(i + 1 + random.index(count - 1)) % count] : 0;
+    for (double& c : coupling.polynomial) c = random.uniform(-1.0, 1.0);
+    const double leader = leads ? scene.state.q[model.bodies[coupling.leader].q] : 0.0;
+    const double off = scene.state.q[model.bodies[coupling.follower].q] -
+                       (leads ? coupling.value(leader) : coupling.polynomial[0]);
+    coupling.polynomial[0] += off + random.uniform(-1e-3, 1e-3);
+    model.couplings.push_back(coupling);
   }
 }
 
@@ -45,9 +87,10 @@ Scene randomScene(std::uint64_t seed, int contacts, const RandomTreeOptions& opt
   Random random(seed ^ 0x9e3779b97f4a7c15ull);
   Scene scene(randomForest(seed, options).build());
   const Model& model = scene.model;
-  if (options.effects) addRandomEffects(scene.model, Random(seed + 5000));
   // Slow enough that joints with dry friction stick as well as slide.
-  scene.state = randomState(model, random, options.effects ? 0.1 : 2.0);
+  scene.state = randomState(model, random, options.dryFriction ? 0.1 : 2.0);
+  if (options.dryFriction) addDryFriction(scene.model, Random(seed + 5000));
+  if (options.equalities) addEqualities(scene, Random(seed + 6000));
   scene.input.tau = random.vector(model.nv, 10.0);
   for (int i = 0; i < 2; ++i)
     scene.input.wrenches.push_back(
@@ -63,13 +106,14 @@ Scene randomScene(std::uint64_t seed, int contacts, const RandomTreeOptions& opt
 
 Scene lawScene(std::uint64_t seed, int contacts) {
   RandomTreeOptions options;
-  options.effects = seed % 2 == 1;
+  options.dryFriction = options.equalities = seed % 2 == 1;
   return randomScene(seed, contacts, options);
 }
 
 namespace {
 
 std::pair<double, double> forceBounds(const HalfQuadratic&) { return {0.0, kInfinity}; }
+std::pair<double, double> forceBounds(const Quadratic&) { return {-kInfinity, kInfinity}; }
 std::pair<double, double> forceBounds(const Huber& s) { return {-s.limit, s.limit}; }
 
 }  // namespace

@@ -28,13 +28,26 @@ struct Probe {
     for (int i = 0; i < blocks; ++i) {
       const int a = i == 0 ? 0 : random.index(model.bodyCount());
       const int b = i == 1 ? 0 : random.index(model.bodyCount());
-      const int dim = random.chance(0.3) ? 1 : 3;
-      const Vector3 p = random.vector3(1.0);
-      const Matrix3 directions = random.rotation();
-      J.add(model, k, tree, a, b, p, directions, dim);
-      pointJacobian(model, k, a, p, Ja);
-      pointJacobian(model, k, b, p, Jb);
-      dense.push_back(directions.leftCols(dim).transpose() * (Jb - Ja));
+      // One point in half of the blocks, two in the others; some with rotation, some that alone.
+      RelativeMotion m;
+      m.bodyA = a;
+      m.bodyB = b;
+      m.p_WA = m.p_WB = random.vector3(1.0);
+      if (i % 2 == 1) m.p_WA += random.vector3(0.1);
+      m.linear = random.rotation();
+      m.angular = random.rotation();
+      m.linearDim = random.chance(0.3) ? 1 : 3;
+      m.angularDim = i % 3 == 2 ? 1 + random.index(3) : 0;
+      if (i == 8) m.linearDim = 0;
+      J.add(model, k, tree, m);
+      MatrixX rows(m.linearDim + m.angularDim, model.nv);
+      pointJacobian(model, k, a, m.p_WA, Ja);
+      pointJacobian(model, k, b, m.p_WB, Jb);
+      rows.topRows(m.linearDim) = m.linear.leftCols(m.linearDim).transpose() * (Jb - Ja);
+      rotationJacobian(model, k, a, Ja);
+      rotationJacobian(model, k, b, Jb);
+      rows.bottomRows(m.angularDim) = m.angular.leftCols(m.angularDim).transpose() * (Jb - Ja);
+      dense.push_back(rows);
       bodies.emplace_back(a, b);
     }
   }
@@ -133,14 +146,23 @@ TEST(BlockJacobian, LeavesOutDofsThatMoveBothBodies) {
   computeKinematics(model, State(model), k);
   const TreeSparsity tree(model);
   BlockJacobian J;
-  J.add(model, k, tree, model.findJoint("left_foot"), model.findJoint("right_foot"),
-        Vector3::Zero(), Matrix3::Identity(), 3);
+  RelativeMotion feet, leg;
+  feet.bodyA = model.findJoint("left_foot");
+  feet.bodyB = model.findJoint("right_foot");
+  leg.bodyA = model.findJoint("left_thigh");
+  leg.bodyB = model.findJoint("left_foot");
+  feet.linearDim = leg.linearDim = 3;
+  J.add(model, k, tree, feet);
   EXPECT_EQ(J.block(0).columns, 12);
   EXPECT_TRUE(J.block(0).couples);
-  J.add(model, k, tree, model.findJoint("left_thigh"), model.findJoint("left_foot"),
-        Vector3::Zero(), Matrix3::Identity(), 3);
+  J.add(model, k, tree, leg);
   EXPECT_EQ(J.block(1).columns, 3);
   EXPECT_FALSE(J.block(1).couples);
+  // Points apart: the pelvis turns one about the other.
+  feet.p_WA = Vector3(0.01, 0.0, 0.0);
+  J.add(model, k, tree, feet);
+  EXPECT_EQ(J.block(2).columns, 18);
+  EXPECT_TRUE(J.block(2).couples);
 }
 
 }  // namespace

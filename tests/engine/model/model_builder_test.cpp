@@ -275,11 +275,59 @@ TEST(Joint, ThatMimicsIsNotActuated) {
   follower.mimic = MimicSpec{"hinge", -2.0, 0.5};
   const Model m = builder.joint(follower).build();
   EXPECT_FALSE(m.dofs[1].actuated);
-  ASSERT_EQ(m.mimics.size(), 1u);
-  EXPECT_EQ(m.mimics[0].follower, 2);
-  EXPECT_EQ(m.mimics[0].leader, 1);
-  EXPECT_EQ(m.mimics[0].multiplier, -2.0);
-  EXPECT_EQ(m.mimics[0].offset, 0.5);
+  ASSERT_EQ(m.couplings.size(), 1u);
+  EXPECT_EQ(m.couplings[0].follower, 2);
+  EXPECT_EQ(m.couplings[0].leader, 1);
+  EXPECT_EQ(m.couplings[0].polynomial, (std::array<double, 5>{0.5, -2.0, 0, 0, 0}));
+  EXPECT_EQ(m.q0[1], 0.5) << "it starts where it follows";
+}
+
+TEST(Joint, StartsWhereAChainOfCouplingsPutsIt) {
+  ModelBuilder builder = chain(4);
+  // Listed from the end of the chain to its start.
+  const char* joints[] = {"joint0", "joint1", "joint2", "joint3"};
+  for (int i = 3; i > 0; --i) {
+    CouplingSpec c;
+    c.follower = joints[i];
+    c.leader = joints[i - 1];
+    c.polynomial = {0.1, 2.0, -1.0, 0, 0};
+    builder.couple(c);
+  }
+  CouplingSpec held;
+  held.follower = joints[0];
+  held.polynomial = {0.3, 5.0, 5.0, 5.0, 5.0};
+  const Model m = builder.couple(held).build();
+  double q = 0.3;
+  for (int i = 0; i < 4; ++i) {
+    EXPECT_SMALL(m.q0[i] - q, 1e-15);
+    q = 0.1 + 2.0 * q - q * q;
+  }
+}
+
+TEST(Equality, PointsAndFramesOfMergedLinksBecomeThoseOfTheirBody) {
+  ModelBuilder builder = chain(2);
+  builder.link(emptyLink("hook"));
+  const Transform X_LH{axisRotation(Vector3::UnitZ(), 0.3), {0.1, 0.2, 0.3}};
+  builder.joint(jointSpec("on", JointType::fixed, "link1", "hook", X_LH));
+  ConnectSpec connect;
+  connect.linkA = "hook";
+  connect.linkB = "world";
+  connect.p_LAP = {0.0, 0.1, 0.0};
+  connect.p_LBP = {1.0, 2.0, 3.0};
+  WeldSpec weld;
+  weld.linkA = "link0";
+  weld.linkB = "hook";
+  weld.X_LBF.p = {0.5, 0.0, 0.0};
+  const Model m = builder.connect(connect).weld(weld).build();
+  ASSERT_EQ(m.connections.size(), 1u);
+  EXPECT_EQ(m.connections[0].bodyA, 2);
+  EXPECT_EQ(m.connections[0].bodyB, 0);
+  EXPECT_APPROX(m.connections[0].p_AP, X_LH * connect.p_LAP, 1e-15);
+  EXPECT_EQ(m.connections[0].p_BP, connect.p_LBP);
+  ASSERT_EQ(m.welds.size(), 1u);
+  EXPECT_EQ(m.welds[0].bodyB, 2);
+  EXPECT_APPROX(m.welds[0].X_BF.p, X_LH * weld.X_LBF.p, 1e-15);
+  EXPECT_APPROX(m.welds[0].X_BF.R, X_LH.R, 1e-15);
 }
 
 TEST(EffectNames, AreTheirInverse) {

@@ -23,6 +23,9 @@ struct Description {
   Options options;
   std::vector<LinkSpec> moreLinks;
   std::vector<JointSpec> moreJoints;
+  ConnectSpec connect;  ///< of links, where they have names
+  WeldSpec weld;
+  CouplingSpec coupling;
 
   Description() {
     base.where = {"robot.urdf", 2};
@@ -31,6 +34,7 @@ struct Description {
     hinge.where = {"robot.urdf", 5};
     slide.where = {"robot.urdf", 6};
     ball.where = {"robot.urdf", 7};
+    connect.where = weld.where = coupling.where = {"scene", 8};
   }
   Model build() const {
     ModelBuilder builder("robot");
@@ -39,6 +43,9 @@ struct Description {
     builder.joint(hinge).joint(slide).geometry(ball);
     for (const LinkSpec& link : moreLinks) builder.link(link);
     for (const JointSpec& joint : moreJoints) builder.joint(joint);
+    if (!connect.linkA.empty()) builder.connect(connect);
+    if (!weld.linkA.empty()) builder.weld(weld);
+    if (!coupling.follower.empty()) builder.couple(coupling);
     return builder.build();
   }
 };
@@ -152,6 +159,56 @@ const Mistake kMistakes[] = {
        d.slide.mimic = MimicSpec{"hinge", kNaN, 0.0};
      },
      {"robot.urdf:6", "mimic"}},
+    {"MimicOfItselfByADetour",
+     [](Description& d) {
+       d.hinge.mimic = MimicSpec{"slide", 1.0, 0.0};
+       d.slide.mimic = MimicSpec{"hinge", 1.0, 0.0};
+     },
+     {"robot.urdf:6", "joint 'slide'", "mimics itself"}},
+    {"FollowerOfTwo",
+     [](Description& d) {
+       d.slide.mimic = MimicSpec{"hinge", 1.0, 0.0};
+       d.coupling.follower = "slide";
+     },
+     {"scene:8", "coupling of joint 'slide'", "two joints"}},
+    {"CouplingOfNothing",
+     [](Description& d) { d.coupling.follower = "ghost"; },
+     {"scene:8", "coupling", "'ghost'", "not a moving joint"}},
+    {"CouplingToAFloatingBase",
+     [](Description& d) { d.coupling.follower = "slide", d.coupling.leader = "base"; },
+     {"scene:8", "'base'", "more than one degree of freedom"}},
+    {"NanPolynomial",
+     [](Description& d) { d.coupling.follower = "slide", d.coupling.polynomial[3] = kNaN; },
+     {"scene:8", "coupling", "coefficient"}},
+    {"ConnectionToNothing",
+     [](Description& d) { d.connect.linkA = "hand", d.connect.linkB = "ghost"; },
+     {"scene:8", "connection 'hand' - 'ghost'", "link 'ghost'", "does not exist"}},
+    {"ConnectionOfOneBody",
+     [](Description& d) {
+       d.moreLinks = {emptyLink("plate")};
+       d.moreJoints = {jointSpec("glue", JointType::fixed, "hand", "plate")};
+       d.connect.linkA = "hand", d.connect.linkB = "plate";
+     },
+     {"scene:8", "connection", "cannot move against each other"}},
+    {"NanConnection",
+     [](Description& d) {
+       d.connect.linkA = "hand", d.connect.linkB = "world", d.connect.p_LBP.x() = kNaN;
+     },
+     {"scene:8", "connection", "not finite"}},
+    {"ImpossibleImpedance",
+     [](Description& d) {
+       d.connect.linkA = "hand", d.connect.linkB = "world", d.connect.impedance.timeConstant = 0.0;
+     },
+     {"scene:8", "connection", "time constant is 0"}},
+    {"WeldOfTheWorldToItself",
+     [](Description& d) { d.weld.linkA = "world", d.weld.linkB = "world"; },
+     {"scene:8", "weld", "cannot move against each other"}},
+    {"ZeroTorqueScale",
+     [](Description& d) { d.weld.linkA = "hand", d.weld.linkB = "base", d.weld.torqueScale = 0.0; },
+     {"scene:8", "weld 'hand' - 'base'", "torque scale"}},
+    {"NegativeFrictionImpedance",
+     [](Description& d) { d.hinge.frictionImpedance.dMin = -0.1; },
+     {"robot.urdf:5", "joint 'hinge'", "-0.1"}},
     {"GeometryOnNothing",
      [](Description& d) { d.ball.link = "ghost"; },
      {"robot.urdf:7", "link 'ghost'", "does not exist"}},

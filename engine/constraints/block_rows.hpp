@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Bilateral rows that are the rows of Jacobian blocks, three to a block: what connections and
+/// welds share.
+
+#include <cstddef>
+#include <vector>
+
+#include "engine/constraints/block_jacobian.hpp"
+#include "engine/constraints/rows.hpp"
+
+namespace softgauss {
+
+class BlockRows : public ScalarRows<Quadratic> {
+ public:
+  void multiply(const VectorX& a, std::vector<double>& y) const {
+    for (int i = 0; i < jacobian_.size(); ++i) jacobian_.multiply(i, a, y.data() + 3 * i);
+  }
+  void addForce(VectorX& tau) const {
+    for (int i = 0; i < jacobian_.size(); ++i) jacobian_.addTransposed(i, f.data() + 3 * i, tau);
+  }
+  void addCurvature(TreeMatrix& P) {
+    for (int i = 0; i < jacobian_.size(); ++i) {
+      const double* d = h.data() + 3 * i;
+      const double H[9] = {d[0], 0.0, 0.0, 0.0, d[1], 0.0, 0.0, 0.0, d[2]};
+      jacobian_.addCurvature(i, H, P);
+    }
+  }
+  /// y ← y + scale · (row i of J)ᵀ.
+  void addRow(int i, double scale, VectorX& y) const {
+    double rows[3] = {0.0, 0.0, 0.0};
+    rows[i % 3] = scale;
+    jacobian_.addTransposed(i / 3, rows, y);
+  }
+  void appendCouplings(std::vector<Segment>& segments, std::vector<int>& setEnd) const {
+    jacobian_.appendCouplings(segments, setEnd);
+  }
+
+ protected:
+  void clearBlocks() {
+    jacobian_.clear();
+    clearRows();
+  }
+  /// The three rows of the last block added.
+  void pushRows(const Vector3& aRef, double R) {
+    for (const double a : aRef) {
+      reference.push_back(a);
+      D.push_back(1.0 / R);
+    }
+  }
+
+  BlockJacobian jacobian_;
+};
+
+}  // namespace softgauss

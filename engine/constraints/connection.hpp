@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Connections: a point of body A and a point of body B coincide. Three rows each, world axes.
+///
+/// Distance r = p_A − p_B, J = J_A − J_B of the two points, and the force f pulls body A along +f,
+/// body B along −f:
+///   x = J a − a_ref,   a_ref = −b ṙ − k d(|r|) r − J̇ v,   s(x) = ½ D x²                  (T.28)
+/// with A = w_A + w_B, the bodies' translational inverse weights. With J̇ v, r̈ is the acceleration
+/// of the distance itself, and closed loops do not drift when they turn fast.
+
+#include "engine/constraints/assembly.hpp"
+#include "engine/constraints/block_rows.hpp"
+
+namespace softgauss {
+
+class ConnectionRows : public BlockRows {
+ public:
+  void assemble(const Assembly& in);
+};
+
+/// Where a point of A is against a point of B, and how that changes (world axes).
+struct PointOffset {
+  Vector3 r;     ///< p_A − p_B [m]
+  Vector3 rate;  ///< ṙ [m/s]
+  Vector3 bias;  ///< J̇ v [m/s²]
+
+  PointOffset(const Assembly& in, int bodyA, const Vector3& p_WA, int bodyB, const Vector3& p_WB);
+};
+
+/// The Jacobian J_A − J_B of that offset.
+RelativeMotion offsetMotion(int bodyA, const Vector3& p_WA, int bodyB, const Vector3& p_WB);
+
+}  // namespace softgauss

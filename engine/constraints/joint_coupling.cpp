@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/constraints/joint_coupling.hpp"
+
+#include <algorithm>
+
+#include "engine/constraints/impedance.hpp"
+
+namespace softgauss {
+namespace {
+
+/// Whether dof `up` is `down` or one of its ancestors.
+bool isAncestor(const Model& model, int up, int down) {
+  while (down > up) down = model.dofs[down].parent;
+  return down == up;
+}
+
+}  // namespace
+
+void CouplingRows::assemble(const Assembly& in) {
+  const Model& model = in.model;
+  pairs_.clear();
+  clearRows();
+  if (model.options.effects.has(Effect::equality)) {
+    for (const JointCoupling& c : model.couplings) {
+      const Body &follower = model.bodies[c.follower], &leader = model.bodies[c.leader];
+      Pair pair{follower.v, follower.v, 0.0, false};
+      double r = in.state.q[follower.q] - c.polynomial[0];
+      double weight = in.weights.dof[follower.v], rate = in.state.v[follower.v];
+      if (c.leader != 0) {
+        const double q = in.state.q[leader.q];
+        r = in.state.q[follower.q] - c.value(q);
+        pair.leader = leader.v;
+        pair.slope = c.slope(q);
+        pair.couples =
+            !isAncestor(model, std::min(follower.v, leader.v), std::max(follower.v, leader.v));
+        weight += in.weights.dof[leader.v];
+        rate -= pair.slope * in.state.v[leader.v];
+      }
+      const Softness soft = softnessAt(c.impedance, r, weight, model.options.timestep);
+      pairs_.push_back(pair);
+      reference.push_back(soft.referenceAcceleration(rate, r));
+      D.push_back(1.0 / soft.R);
+    }
+  }
+  resizeRows(pairs_.size());
+}
+
+void CouplingRows::multiply(const VectorX& a, std::vector<double>& y) const {
+  for (std::size_t i = 0; i < pairs_.size(); ++i)
+    y[i] = a[pairs_[i].follower] - pairs_[i].slope * a[pairs_[i].leader];
+}
+
+void CouplingRows::addForce(VectorX& tau) const {
+  for (std::size_t i = 0; i < pairs_.size(); ++i) addRow(static_cast<int>(i), f[i], tau);
+}
+
+void CouplingRows::addCurvature(TreeMatrix& P) {
+  for (std::size_t i = 0; i < pairs_.size(); ++i) {
+    const Pair& pair = pairs_[i];
+    P.row(pair.follower)[pair.follower] += h[i];
+    if (pair.leader == pair.follower) continue;
+    P.row(pair.leader)[pair.leader] += pair.slope * pair.slope * h[i];
+    P.row(std::max(pair.follower, pair.leader))[std::min(pair.follower, pair.leader)] -=
+        pair.slope * h[i];
+  }
+}
+
+void CouplingRows::addRow(int i, double scale, VectorX& y) const {
+  y[pairs_[i].follower] += scale;
+  y[pairs_[i].leader] -= scale * pairs_[i].slope;
+}
+
+void CouplingRows::appendCouplings(std::vector<Segment>& segments, std::vector<int>& setEnd) const {
+  for (const Pair& pair : pairs_) {
+    if (!pair.couples) continue;
+    const auto [first, last] = std::minmax(pair.follower, pair.leader);
+    segments.push_back({first, first + 1});
+    segments.push_back({last, last + 1});
+    setEnd.push_back(static_cast<int>(segments.size()));
+  }
+}
+
+}  // namespace softgauss

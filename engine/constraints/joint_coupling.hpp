@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Joint couplings: the coordinate of one scalar joint is a polynomial p of that of another (mimic
+/// joints, gears), or a constant. One row each.
+///
+/// Distance r = q_f − p(q_l), so J = e_fᵀ − p′(q_l) e_lᵀ:
+///   x = J a − a_ref,   a_ref = −b J v − k d(|r|) r,   s(x) = ½ D x²,   A = w_f + w_l       (T.30)
+/// The curvature p″ of the polynomial is left out of a_ref, as in MuJoCo's model.
+
+#include <vector>
+
+#include "engine/constraints/assembly.hpp"
+#include "engine/constraints/rows.hpp"
+
+namespace softgauss {
+
+class CouplingRows : public ScalarRows<Quadratic> {
+ public:
+  void assemble(const Assembly& in);
+  void multiply(const VectorX& a, std::vector<double>& y) const;
+  void addForce(VectorX& tau) const;
+  void addCurvature(TreeMatrix& P);
+  /// y ← y + scale · (row i of J)ᵀ.
+  void addRow(int i, double scale, VectorX& y) const;
+  /// Pairs of dofs on different branches.
+  void appendCouplings(std::vector<Segment>& segments, std::vector<int>& setEnd) const;
+
+ private:
+  struct Pair {
+    int follower = 0;      ///< dof
+    int leader = 0;        ///< dof; the follower's own without a leader
+    double slope = 0.0;    ///< p′, 0 without a leader
+    bool couples = false;  ///< neither dof moves the other's body
+  };
+  std::vector<Pair> pairs_;
+};
+
+}  // namespace softgauss

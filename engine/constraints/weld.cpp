@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/constraints/weld.hpp"
+
+#include <cmath>
+
+#include "engine/constraints/connection.hpp"
+#include "engine/constraints/impedance.hpp"
+#include "engine/core/rotation.hpp"
+
+namespace softgauss {
+namespace {
+
+/// How a frame of A is turned against a frame of B, and how that changes.
+struct RotationOffset {
+  Vector3 r;     ///< s ē
+  Matrix3 J_r;   ///< ṙ = J_r ω for ω = ω_A − ω_B in the world
+  Vector3 rate;  ///< ṙ
+  Vector3 bias;  ///< J̇ v
+
+  RotationOffset(const Kinematics& k, const Weld& weld, const Matrix3& R_WA, const Matrix3& R_WB) {
+    const Quaternion e(Matrix3(R_WB.transpose() * R_WA));
+    const double s = weld.torqueScale;
+    r = s * e.vec();
+    Matrix3 E = skew(e.vec());
+    E.diagonal().array() += e.w();
+    J_r = 0.5 * s * E * R_WA.transpose();
+    const Motion &A = k.A_bias[weld.bodyA], &B = k.A_bias[weld.bodyB];
+    const Vector3 wA = k.V[weld.bodyA].angular, w = wA - k.V[weld.bodyB].angular;
+    rate = J_r * w;
+    bias = J_r * (A.angular - B.angular - wA.cross(w)) - 0.25 * w.squaredNorm() * r;
+  }
+};
+
+}  // namespace
+
+void WeldRows::assemble(const Assembly& in) {
+  const Model& model = in.model;
+  const Kinematics& k = in.kinematics;
+  clearBlocks();
+  if (model.options.effects.has(Effect::equality)) {
+    for (const Weld& weld : model.welds) {
+      const Transform X_WA = k.X_WB[weld.bodyA] * weld.X_AF, X_WB = k.X_WB[weld.bodyB] * weld.X_BF;
+      const PointOffset point(in, weld.bodyA, X_WA.p, weld.bodyB, X_WB.p);
+      const RotationOffset turn(k, weld, X_WA.R, X_WB.R);
+      const double distance = std::hypot(point.r.norm(), turn.r.norm());
+      const auto softness = [&](const std::vector<double>& weight) {
+        return softnessAt(weld.impedance, distance, weight[weld.bodyA] + weight[weld.bodyB],
+                          model.options.timestep);
+      };
+      RelativeMotion motion = offsetMotion(weld.bodyA, X_WA.p, weld.bodyB, X_WB.p);
+      const Softness linear = softness(in.weights.translation);
+      jacobian_.add(model, k, in.tree, motion);
+      pushRows(-linear.damping * point.rate - linear.stiffness * point.r - point.bias, linear.R);
+
+      // Bodies that slide only cannot be turned back.
+      if (in.weights.rotation[weld.bodyA] + in.weights.rotation[weld.bodyB] == 0.0) continue;
+      motion.linearDim = 0;
+      motion.angularDim = 3;
+      motion.angular = turn.J_r.transpose();
+      const Softness angular = softness(in.weights.rotation);
+      jacobian_.add(model, k, in.tree, motion);
+      pushRows(-angular.damping * turn.rate - angular.stiffness * turn.r - turn.bias, angular.R);
+    }
+  }
+  resizeRows(reference.size());
+}
+
+}  // namespace softgauss
