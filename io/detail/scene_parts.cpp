@@ -40,13 +40,17 @@ Material readMaterial(const YamlMap& map) {
   map.read("rolling_friction", m.rollingFriction, Range::notNegative);
   if (const auto* entry = map.find("condim")) m.condim = map.integer(*entry, {1, 3, 4, 6});
   map.read("margin", m.margin, Range::notNegative);
-  map.read("time_constant", m.impedance.timeConstant, Range::positive);
-  map.read("damping_ratio", m.impedance.dampingRatio, Range::positive);
-  if (const auto* entry = map.find("impedance")) readImpedance(map.map(*entry), m.impedance);
+  readSoftness(map, m.impedance);
   return m;
 }
 
 }  // namespace
+
+void readSoftness(const YamlMap& map, Impedance& impedance) {
+  map.read("time_constant", impedance.timeConstant, Range::positive);
+  map.read("damping_ratio", impedance.dampingRatio, Range::positive);
+  if (const auto* entry = map.find("impedance")) readImpedance(map.map(*entry), impedance);
+}
 
 Materials readMaterials(const YamlMap& map) {
   Materials materials;

@@ -20,6 +20,11 @@ Materials readMaterials(const YamlMap& map);
 /// The material that the key `material` names, or the default one.
 Material materialOf(const YamlMap& map, const Materials& materials);
 
+/// Keys that say how soft a constraint is, and what they say.
+inline const std::vector<std::string> kSoftnessKeys = {"time_constant", "damping_ratio",
+                                                       "impedance"};
+void readSoftness(const YamlMap& map, Impedance& impedance);
+
 /// The keys that give a pose, and the pose they give: `position`, and `rpy` or `quaternion`.
 inline const std::vector<std::string> kPoseKeys = {"position", "rpy", "quaternion"};
 Transform readPose(const YamlMap& map);

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/detail/scene_constraints.hpp"
+
+#include <fmt/format.h>
+
+#include "engine/core/check.hpp"
+#include "io/detail/scene_parts.hpp"
+#include "io/detail/text.hpp"
+
+namespace softgauss::io::detail {
+namespace {
+
+std::vector<std::string> with(std::vector<std::string> keys, const std::vector<std::string>& more) {
+  keys.insert(keys.end(), more.begin(), more.end());
+  return keys;
+}
+
+std::string linkName(const YamlMap& map, const std::string& key) {
+  return map.name(map.required(key, "the name of a link, or world"));
+}
+
+void readConnect(const YamlMap& map, ModelBuilder& builder) {
+  map.expectOnly(with({"link_a", "link_b", "point_a", "point_b"}, kSoftnessKeys));
+  ConnectSpec spec;
+  spec.where = {map.file(), map.line()};
+  spec.linkA = linkName(map, "link_a");
+  spec.linkB = linkName(map, "link_b");
+  map.read("point_a", spec.p_LAP);
+  map.read("point_b", spec.p_LBP);
+  readSoftness(map, spec.impedance);
+  builder.connect(std::move(spec));
+}
+
+Transform poseUnder(const YamlMap& map, const std::string& key) {
+  const YamlMap::Entry* entry = map.find(key);
+  if (!entry) return {};
+  const YamlMap pose = map.map(*entry);
+  pose.expectOnly(kPoseKeys);
+  return readPose(pose);
+}
+
+void readWeld(const YamlMap& map, ModelBuilder& builder) {
+  map.expectOnly(with({"link_a", "link_b", "pose_a", "pose_b", "torque_scale"}, kSoftnessKeys));
+  WeldSpec spec;
+  spec.where = {map.file(), map.line()};
+  spec.linkA = linkName(map, "link_a");
+  spec.linkB = linkName(map, "link_b");
+  spec.X_LAF = poseUnder(map, "pose_a");
+  spec.X_LBF = poseUnder(map, "pose_b");
+  map.read("torque_scale", spec.torqueScale, Range::positive);
+  readSoftness(map, spec.impedance);
+  builder.weld(std::move(spec));
+}
+
+void readCouple(const YamlMap& map, ModelBuilder& builder) {
+  map.expectOnly(with({"follower", "leader", "multiplier", "offset", "polynomial"}, kSoftnessKeys));
+  CouplingSpec spec;
+  spec.where = {map.file(), map.line()};
+  spec.follower = map.name(map.required("follower", "the name of a joint"));
+  if (const auto* entry = map.find("leader")) spec.leader = map.name(*entry);
+  if (const auto* entry = map.find("polynomial")) {
+    for (const char* key : {"multiplier", "offset"})
+      if (const auto* other = map.find(key))
+        map.fail(*other,
+                 fmt::format("found beside polynomial in line {}, which says it all", entry->line));
+    const std::vector<YamlValue>& items = map.list(*entry);
+    if (items.empty() || items.size() > spec.polynomial.size())
+      map.fail(*entry, fmt::format("found {}, expected one to five numbers [c0, c1, …]",
+                                   entry->value.described()));
+    spec.polynomial.fill(0.0);
+    for (std::size_t i = 0; i < items.size(); ++i) {
+      const std::optional<double> c = items[i].finiteNumber();
+      if (!c)
+        map.fail(*entry, fmt::format("found {} as number {}, expected finite numbers",
+                                     items[i].described(), i + 1));
+      spec.polynomial[i] = *c;
+    }
+  } else {
+    map.read("offset", spec.polynomial[0], Range::any);
+    map.read("multiplier", spec.polynomial[1], Range::any);
+  }
+  readSoftness(map, spec.impedance);
+  builder.couple(std::move(spec));
+}
+
+struct ConstraintKind {
+  const char* name;
+  void (*read)(const YamlMap& map, ModelBuilder& builder);
+};
+
+constexpr ConstraintKind kConstraintKinds[] = {
+    {"connect", readConnect}, {"weld", readWeld}, {"couple", readCouple}};
+
+}  // namespace
+
+void readConstraint(const std::string& file, const YamlValue& item, std::size_t number,
+                    ModelBuilder& builder) {
+  const std::string label = fmt::format("constraint {}", number);
+  std::vector<std::string> names;
+  for (const ConstraintKind& kind : kConstraintKinds) names.push_back(kind.name);
+  if (item.kind != YamlValue::Kind::map || item.pairs.size() != 1)
+    throw ModelError({file, item.line}, label,
+                     fmt::format("found {}, expected kind: {{…}}, the kind one of {}",
+                                 item.described(), listed(names)));
+  const YamlMap kinds(file, label + ": ", "", item);
+  kinds.expectOnly(names);
+  const YamlMap::Entry& only = kinds.entries().front();
+  for (const ConstraintKind& kind : kConstraintKinds)
+    if (only.key == kind.name) kind.read(kinds.map(only), builder);
+}
+
+void readJointParameters(const YamlMap& joints, ModelBuilder& robot) {
+  for (const YamlMap::Entry& entry : joints.entries()) {
+    const YamlMap map = joints.map(entry);
+    JointSpec& joint = *robot.findJoint(entry.key);
+    map.expectOnly({"friction", "damping", "armature"});
+    map.read("friction", joint.dryFriction, Range::notNegative);
+    map.read("damping", joint.damping, Range::notNegative);
+    map.read("armature", joint.armature, Range::notNegative);
+  }
+}
+
+}  // namespace softgauss::io::detail
