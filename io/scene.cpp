@@ -9,6 +9,7 @@
 #include "engine/core/check.hpp"
 #include "engine/core/rotation.hpp"
 #include "engine/model/mass_properties.hpp"
+#include "io/detail/scene_constraints.hpp"
 #include "io/detail/scene_parts.hpp"
 #include "io/detail/text.hpp"
 
@@ -32,8 +33,8 @@ class SceneReader {
   SceneReader(const YamlMap& top, const UrdfOptions& options) : top_(top), urdfOptions_(options) {}
 
   SceneFile read() {
-    top_.expectOnly(
-        {"name", "timestep", "gravity", "ground", "materials", "robots", "objects", "goals"});
+    top_.expectOnly({"name", "timestep", "gravity", "ground", "materials", "robots", "objects",
+                     "constraints", "goals"});
     std::string name = std::filesystem::path(top_.file()).stem().string();
     if (const auto* entry = top_.find("name")) name = top_.name(*entry);
     scene_.builder = ModelBuilder(name);
@@ -57,6 +58,11 @@ class SceneReader {
     };
     forEach("robots", "robot", [&](const YamlMap& map) { readRobot(map); });
     forEach("objects", "object", [&](const YamlMap& map) { readObject(map); });
+    if (const auto* entry = top_.find("constraints")) {
+      std::size_t number = 0;
+      for (const YamlValue& item : top_.list(*entry))
+        detail::readConstraint(top_.file(), item, ++number, scene_.builder);
+    }
     if (scene_.contents.links == 0)
       throw ModelError({top_.file(), top_.line()}, "scene",
                        "holds nothing, expected a list of robots or of objects");
@@ -119,7 +125,8 @@ class SceneReader {
   void readRobot(const YamlMap& map) {
     map.expectOnly(std::vector<std::string>{"name", "urdf", "base"} + detail::kPoseKeys +
                    std::vector<std::string>{"velocity", "angular_velocity", "on_ground", "joints",
-                                            "joint_velocities", "material", "materials"});
+                                            "joint_velocities", "joint_parameters", "material",
+                                            "materials"});
     const std::size_t robots = top_.find("robots")->value.items.size();
     const std::string name = ownName(map, robots == 1);
     const YamlMap::Entry& urdf = map.required("urdf", "the name of a URDF file");
@@ -142,6 +149,11 @@ class SceneReader {
     ModelBuilder robot = readUrdf(file, options, &contents);
     if (const auto* entry = map.find("materials"))
       expectNames(map.map(*entry), contents.linkNames, "link");
+    if (const auto* entry = map.find("joint_parameters")) {
+      const YamlMap joints = map.map(*entry);
+      expectNames(joints, contents.scalarJoints, "joint of one degree of freedom");
+      detail::readJointParameters(joints, robot);
+    }
     robot.X_WRoot = detail::readPose(map);
     scene_.builder.add(robot, name);
 

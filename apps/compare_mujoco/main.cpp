@@ -89,6 +89,12 @@ double percentile(std::vector<double> values, double share) {
   return values[std::max<std::size_t>(rank, 1) - 1];
 }
 
+/// Exit code 3.
+class NotFinite : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
 /// Times of the two engines for the same work, taken in turns [µs].
 struct Duel {
   std::vector<double> ours, mujoco;
@@ -211,7 +217,9 @@ class Comparison {
     theirWarmStart_ = mujoco_.acceleration();
     Duel::time(step_.ours, [&] {
       if (step(model_, input_, state, data_, &contacts_) == SolveStatus::notFinite)
-        throw std::runtime_error(fmt::format("became non-finite at t = {} s", state.time));
+        throw NotFinite(fmt::format(
+            "our simulation became non-finite at t = {:.6g} s; try a smaller --timestep",
+            state.time));
     });
   }
 
@@ -304,8 +312,11 @@ int main(int argc, char** argv) {
   } catch (const ModelError& error) {
     fmt::print(stderr, "{}\n", error.what());
     return 2;
-  } catch (const std::exception& error) {
+  } catch (const NotFinite& error) {
     fmt::print(stderr, "compare_mujoco: {}\n", error.what());
+    return 3;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "compare_mujoco: internal error: {}\n", error.what());
     return 1;
   }
   return 0;

@@ -45,6 +45,9 @@ class Writer {
   }
 
   std::string write() {
+    if (!model_.connections.empty() || !model_.welds.empty())
+      throw ModelError({}, "model '" + model_.name + "'",
+                       "has connections or welds, expected none");
     const Options& o = model_.options;
     const bool gravity = o.effects.has(Effect::gravity);
     line("<mujoco model=\"comparison\">");
@@ -63,6 +66,10 @@ class Writer {
     if (listsPairs_)
       for (const collision::GeometryPair& pair : filter_.pairs) writePair(pair);
     line("</contact>");
+    line("<equality>");
+    if (o.effects.has(Effect::equality))
+      for (const JointCoupling& coupling : model_.couplings) writeCoupling(coupling);
+    line("</equality>");
     line("</mujoco>");
     return std::move(out_);
   }
@@ -116,6 +123,14 @@ class Writer {
     return fmt::format("condim=\"{}\" friction=\"{} {} {}\" margin=\"{}\" {}", m.condim,
                        text(m.slidingFriction), text(m.torsionalFriction), text(m.rollingFriction),
                        text(m.margin), softness(m.impedance));
+  }
+
+  /// MuJoCo counts the leader from its reference, which is zero here.
+  void writeCoupling(const JointCoupling& c) {
+    const auto& p = c.polynomial;
+    const std::string leader = c.leader == 0 ? "" : fmt::format("joint2=\"j{}\"", c.leader);
+    line("<joint joint1=\"j{}\" {} polycoef=\"{} {} {} {} {}\" {}/>", c.follower, leader,
+         text(p[0]), text(p[1]), text(p[2]), text(p[3]), text(p[4]), softness(c.impedance));
   }
 
   void writeGeometry(int g) {

@@ -6,7 +6,8 @@
 /// Bodies, joints and shapes are called b1, j1, g0 after their indices. A body without mass becomes
 /// one more joint of the body that it carries, since MuJoCo wants mass in every body: with X_PB the
 /// pose of the carried body, the joint's axis and anchor are seen from it. Positions and velocities
-/// then have the same order and meaning in both engines.
+/// then have the same order and meaning in both engines. Connections and welds, which no URDF has,
+/// are refused.
 
 #include <string>
 

@@ -266,6 +266,12 @@ VectorX initialConfiguration(const Model& model) {
 
 }  // namespace
 
+JointSpec* ModelBuilder::findJoint(const std::string& name) {
+  const auto it = std::find_if(joints_.begin(), joints_.end(),
+                               [&](const JointSpec& joint) { return joint.name == name; });
+  return it == joints_.end() ? nullptr : &*it;
+}
+
 std::vector<std::string> ModelBuilder::rootLinks() const {
   std::set<std::string> children;
   for (const JointSpec& joint : joints_) children.insert(joint.child);
@@ -312,6 +318,20 @@ ModelBuilder& ModelBuilder::add(const ModelBuilder& other, const std::string& pr
     geometry.name = own(geometry.name);
     geometry.link = linkName(geometry.link);
     geometries_.push_back(std::move(geometry));
+  }
+  const auto tie = [&](const auto& specs, auto& all) {
+    for (auto spec : specs) {
+      spec.linkA = linkName(spec.linkA);
+      spec.linkB = linkName(spec.linkB);
+      all.push_back(std::move(spec));
+    }
+  };
+  tie(other.connections_, connections_);
+  tie(other.welds_, welds_);
+  for (CouplingSpec coupling : other.couplings_) {
+    coupling.follower = own(coupling.follower);
+    if (!coupling.leader.empty()) coupling.leader = own(coupling.leader);
+    couplings_.push_back(std::move(coupling));
   }
   for (VisualSpec visual : other.visuals_) {
     visual.link = linkName(visual.link);

@@ -117,6 +117,8 @@ class ModelBuilder {
   /// link fixed at X_WRoot.
   ModelBuilder& add(const ModelBuilder& other, const std::string& prefix);
 
+  /// The joint of that name, to be changed; null where there is none.
+  JointSpec* findJoint(const std::string& name);
   /// Links that are no joint's child, in the order in which they were given.
   std::vector<std::string> rootLinks() const;
 

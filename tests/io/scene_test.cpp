@@ -202,6 +202,20 @@ TEST(SceneFile, RefusalsNameTheLineThePartAndTheKey) {
       {"materials: {ice: {impedance: {maximum: 1}}}",
        "key 'materials.ice.impedance.maximum': found"},
       {"materials: {ice: {impedance: {power: 0.5}}}", "expected a number >= 1"},
+      {"robots:\n" + robot + ", joint_parameters: {shoulder: {friction: -1}}}",
+       "key 'joint_parameters.shoulder.friction': found '-1'"},
+      {"robots:\n" + robot + "}\nconstraints:\n  - glue: {}", ":4: constraint 1: key 'glue'"},
+      {"robots:\n" + robot + "}\nconstraints:\n  - connect: {link_a: a/arm}",
+       "key 'connect.link_b': found no such key"},
+      {"robots:\n" + robot + "}\nconstraints:\n  - connect: {link_a: a/arm, link_b: b/arm}",
+       ":4: "},
+      {"robots:\n" + robot + "}\nconstraints:\n  - couple: {follower: a/elbow}", ":4: "},
+      {"robots:\n" + robot +
+           "}\nconstraints:\n  - couple: {follower: a/shoulder, offset: 1, polynomial: [1]}",
+       "key 'couple.offset': found beside polynomial"},
+      {"robots:\n" + robot +
+           "}\nconstraints:\n  - weld: {link_a: a/arm, link_b: world, pose_a: {x: 1}}",
+       "key 'weld.pose_a.x': found an unknown key"},
       {"ground: [0]", "key 'ground': found a list of 1, expected a height [m], none"},
       {"timestep: 0", "key 'timestep': found '0', expected a finite number > 0"},
   };
@@ -210,6 +224,40 @@ TEST(SceneFile, RefusalsNameTheLineThePartAndTheKey) {
     EXPECT_NE(message.find("scene.yaml:"), std::string::npos) << message;
     EXPECT_NE(message.find(words), std::string::npos) << scene << "\n  -> " << message;
   }
+}
+
+TEST(SceneFile, ConstraintsTieWhatTheyName) {
+  const SceneFolder folder(
+      "robots:\n"
+      "  - {name: a, urdf: sample.urdf, joint_parameters: {shoulder: {friction: 0.7, armature: "
+      "0.2}}}\n"
+      "  - {name: b, urdf: sample.urdf, position: [2, 0, 0]}\n"
+      "constraints:\n"
+      "  - connect: {link_a: a/arm, link_b: world, point_a: [0.1, 0, 0], point_b: [0, 0, 1],\n"
+      "              time_constant: 0.05}\n"
+      "  - weld: {link_a: a/base, link_b: b/base, pose_b: {position: [-2, 0, 0]}, torque_scale: "
+      "0.5}\n"
+      "  - couple: {follower: b/shoulder, leader: a/shoulder, multiplier: -2, offset: 0.1}\n"
+      "  - couple: {follower: a/shoulder, polynomial: [0.3]}\n");
+  const Model model = folder.read().builder.build();
+  ASSERT_EQ(model.connections.size(), 1u);
+  EXPECT_EQ(model.connections[0].bodyA, model.frames[model.findFrame("a/arm")].body);
+  EXPECT_EQ(model.connections[0].bodyB, 0);
+  EXPECT_APPROX(model.connections[0].p_BP, Vector3(0, 0, 1), 1e-15);
+  EXPECT_EQ(model.connections[0].impedance.timeConstant, 0.05);
+  ASSERT_EQ(model.welds.size(), 1u);
+  EXPECT_APPROX(model.welds[0].X_BF.p, Vector3(-2, 0, 0), 1e-15);
+  EXPECT_EQ(model.welds[0].torqueScale, 0.5);
+  ASSERT_EQ(model.couplings.size(), 2u);
+  EXPECT_EQ(model.couplings[0].leader, model.findJoint("a/shoulder"));
+  EXPECT_EQ(model.couplings[0].follower, model.findJoint("b/shoulder"));
+  EXPECT_EQ(model.couplings[0].value(0.5), 0.1 - 2.0 * 0.5);
+  EXPECT_EQ(model.couplings[1].leader, 0);
+  EXPECT_EQ(model.couplings[1].value(9.0), 0.3);
+  const Dof& dof = model.dofs[model.bodies[model.findJoint("a/shoulder")].v];
+  EXPECT_EQ(dof.dryFriction, 0.7);
+  EXPECT_EQ(dof.armature, 0.2);
+  EXPECT_EQ(dof.damping, 0.5) << "as the URDF says";
 }
 
 // An alias of aliases would fill the memory.

@@ -338,5 +338,35 @@ TEST(EffectNames, AreTheirInverse) {
   EXPECT_FALSE(effectFromName("magic").has_value());
 }
 
+// ---- One description beside another ----
+
+TEST(ModelBuilderAdd, TiesAndNamesAreThoseOfTheAdded) {
+  ModelBuilder pair("pair");
+  pair.link(boxLink("base", 1.0, {0.1, 0.1, 0.1})).link(boxLink("arm", 1.0, {0.1, 0.1, 0.1}));
+  pair.joint(jointSpec("hinge", JointType::revolute, "base", "arm"));
+  ConnectSpec connect;
+  connect.linkA = "arm";
+  connect.linkB = "world";
+  CouplingSpec couple;
+  couple.follower = "hinge";
+  WeldSpec weld;
+  weld.linkA = "base";
+  weld.linkB = "arm";
+  pair.connect(connect).couple(couple).weld(weld);
+  pair.X_WRoot.p.x() = 7.0;
+
+  const Model model = ModelBuilder("both").add(pair, "left").add(pair, "right").build();
+  ASSERT_EQ(model.connections.size(), 2u);
+  for (const auto& [i, side] : {std::pair{0u, "left"}, {1u, "right"}}) {
+    const std::string prefix = std::string(side) + "/";
+    const int arm = model.frames[model.findFrame(prefix + "arm")].body;
+    EXPECT_EQ(model.connections[i].bodyA, arm);
+    EXPECT_EQ(model.connections[i].bodyB, 0) << "the world is one";
+    EXPECT_EQ(model.welds[i].bodyB, arm);
+    EXPECT_EQ(model.couplings[i].follower, model.findJoint(prefix + "hinge"));
+    EXPECT_EQ(model.q0[model.bodies[model.frames[model.findFrame(prefix + "base")].body].q], 7.0);
+  }
+}
+
 }  // namespace
 }  // namespace softgauss::test
