@@ -139,4 +139,10 @@ std::shared_ptr<const Mesh> MeshCache::get(const std::filesystem::path& file,
   return scaled = std::make_shared<const Mesh>(std::move(copy));
 }
 
+std::vector<std::filesystem::path> MeshCache::files() const {
+  std::vector<std::filesystem::path> files;
+  for (const auto& [file, mesh] : files_) files.push_back(file);
+  return files;
+}
+
 }  // namespace softgauss::io

@@ -13,6 +13,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <vector>
 
 #include "engine/model/shape.hpp"
 
@@ -27,6 +28,7 @@ Mesh readMesh(const std::filesystem::path& file, const Vector3& scale = Vector3:
 class MeshCache {
  public:
   std::shared_ptr<const Mesh> get(const std::filesystem::path& file, const Vector3& scale);
+  std::vector<std::filesystem::path> files() const;  ///< that were read
 
  private:
   std::map<std::filesystem::path, std::shared_ptr<const Mesh>> files_;  ///< unscaled

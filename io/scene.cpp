@@ -66,6 +66,7 @@ class SceneReader {
     if (scene_.contents.links == 0)
       throw ModelError({top_.file(), top_.line()}, "scene",
                        "holds nothing, expected a list of robots or of objects");
+    for (const std::filesystem::path& file : meshes_.files()) scene_.contents.files.push_back(file);
     scene_.hasGoals = top_.find("goals") != nullptr;
     return std::move(scene_);
   }
@@ -178,6 +179,8 @@ class SceneReader {
                             (options.base == BaseKind::automatic && root != "world");
     readStart(map, prefix + (rootFloats ? root : contents.floatingLink),
               rootFloats || !contents.floatingLink.empty());
+    scene_.contents.files.insert(scene_.contents.files.end(), contents.files.begin(),
+                                 contents.files.end());
     scene_.contents.links += contents.links;
     scene_.contents.joints += contents.joints;
     scene_.contents.mass += contents.mass;

@@ -60,6 +60,8 @@ class ShapeReader {
     return spec;
   }
 
+  std::vector<std::filesystem::path> filesRead() const { return meshes_.files(); }
+
   void appendWarnings(ModelBuilder& builder) const {
     if (!missing_.empty())
       builder.warning(fmt::format("{} not found, not shown: {}",
@@ -138,6 +140,8 @@ ModelBuilder readUrdf(const std::filesystem::path& file, const UrdfOptions& opti
     contents->links = static_cast<int>(urdf.links.size());
     contents->joints = static_cast<int>(urdf.joints.size());
     contents->mass = 0.0;
+    contents->files = shapes.filesRead();
+    contents->files.push_back(file);
     contents->linkNames.clear();
     contents->scalarJoints.clear();
     for (const detail::UrdfLink& link : urdf.links) {

@@ -36,7 +36,8 @@ struct UrdfOptions {
 struct UrdfContents {
   int links = 0;
   int joints = 0;
-  double mass = 0.0;  ///< [kg] of all links, those fixed to the world too
+  double mass = 0.0;                         ///< [kg] of all links, those fixed to the world too
+  std::vector<std::filesystem::path> files;  ///< that were read: the URDF and its meshes
   std::vector<std::string> linkNames;
   std::string floatingLink;               ///< of a joint of type floating, if there is one
   std::vector<std::string> scalarJoints;  ///< names of the joints of one degree of freedom

@@ -21,6 +21,9 @@ int main(int argc, char** argv) {
   } catch (const app::UsageError& error) {
     fmt::print(stderr, "simulate_gdd: {}\nsimulate_gdd --help lists the options\n", error.what());
     return app::kBadInput;
+  } catch (const app::OutputError& error) {
+    fmt::print(stderr, "simulate_gdd: {}\n", error.what());
+    return app::kBadInput;
   } catch (const ModelError& error) {
     fmt::print(stderr, "{}\n", error.what());
     return app::kBadInput;

@@ -14,26 +14,6 @@ constexpr double kLongestStep = 1.0;  // [s]
 constexpr double kMostSteps = 1e9;
 constexpr double kFarthest = 1e6;  // [m] farther out, doubles no longer resolve a contact
 
-/// An output may not overwrite an input or another output.
-void checkOutputs(const SimulateOptions& options) {
-  const std::pair<const char*, std::filesystem::path> files[] = {
-      {"MODEL", options.model}, {"--goals", options.goals},     {"--torques", options.torques},
-      {"--log", options.log},   {"--summary", options.summary}, {"--view", options.view},
-      {"--plot", options.plot}};
-  const auto same = [](const std::filesystem::path& a, const std::filesystem::path& b) {
-    std::error_code error;
-    return !a.empty() && !b.empty() &&
-           (std::filesystem::weakly_canonical(a, error) ==
-                std::filesystem::weakly_canonical(b, error) ||
-            std::filesystem::equivalent(a, b, error));
-  };
-  for (std::size_t out = 3; out < std::size(files); ++out)
-    for (std::size_t other = 0; other < out; ++other)
-      if (same(files[out].second, files[other].second))
-        throw UsageError(
-            fmt::format("{} would overwrite {}", files[out].first, files[other].first));
-}
-
 std::vector<std::string> split(const std::string& text, char separator) {
   std::vector<std::string> parts(1);
   for (const char c : text) {
@@ -93,6 +73,30 @@ EffectSet parseEffects(const std::string& text) {
 }
 
 }  // namespace
+
+void checkOutputs(const SimulateOptions& options, const std::vector<std::filesystem::path>& read) {
+  std::vector<std::pair<std::string, std::filesystem::path>> files = {
+      {"MODEL", options.model}, {"--goals", options.goals}, {"--torques", options.torques}};
+  for (const std::filesystem::path& file : read) files.emplace_back(file.string(), file);
+  const std::size_t inputs = files.size();
+  for (const auto& [option, file] : {std::pair{"--log", &options.log},
+                                     {"--summary", &options.summary},
+                                     {"--view", &options.view},
+                                     {"--plot", &options.plot}})
+    files.emplace_back(option, *file);
+  const auto same = [](const std::filesystem::path& a, const std::filesystem::path& b) {
+    std::error_code error;
+    return !a.empty() && !b.empty() &&
+           (std::filesystem::weakly_canonical(a, error) ==
+                std::filesystem::weakly_canonical(b, error) ||
+            std::filesystem::equivalent(a, b, error));
+  };
+  for (std::size_t out = inputs; out < files.size(); ++out)
+    for (std::size_t other = 0; other < out; ++other)
+      if (same(files[out].second, files[other].second))
+        throw UsageError(
+            fmt::format("{} would overwrite {}", files[out].first, files[other].first));
+}
 
 void checkSteps(const SimulateOptions& options, double timestep) {
   if (timestep > kLongestStep)
@@ -234,7 +238,7 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
     if (equals == std::string::npos) throw UsageError("--q0 " + text + ": expected NAME=VALUE");
     options.q0.emplace_back(text.substr(0, equals), parseNumber(text.substr(equals + 1), "--q0"));
   }
-  checkOutputs(options);
+  checkOutputs(options, {});
   if (options.isScene())
     for (const auto& [option, given] : {std::pair{"--base", !base.empty() && base != "automatic"},
                                         std::pair{"--base-height", options.baseHeight.has_value()},

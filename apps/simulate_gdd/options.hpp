@@ -50,6 +50,16 @@ class UsageError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// An output that could not be written: exit code 2 too.
+class OutputError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// An output may not overwrite an input or another output. `read`: files that the model named.
+/// Throws UsageError.
+void checkOutputs(const SimulateOptions& options, const std::vector<std::filesystem::path>& read);
+
 /// Throws UsageError when the step is too long, or the run has too many of them.
 void checkSteps(const SimulateOptions& options, double timestep);
 

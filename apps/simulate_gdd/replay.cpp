@@ -45,28 +45,31 @@ Replay::Replay(const SimulateOptions& options, const Scene& scene,
   if (page_) recording_->hulls = collidingHulls(scene);
 }
 
-std::string Replay::finish(const Data& data, const State& last, const io::Summary& summary,
+std::string Replay::finish(const io::StepRecord& last, const Data& data, const io::Summary& summary,
                            const std::string& message) {
   if (!recording_) return {};
-  recording_->finish(data, last);
+  recording_->finish(last, data);
   recording_->outcome = {summary.outcome, message};
   recording_->facts = summary.facts();
   recording_->warnings = summary.warnings;
-  const auto timed = [&](const std::filesystem::path& target, auto&& write) {
+  std::string failures;
+  // Each is tried, whatever became of the other.
+  const auto attempt = [&](const std::filesystem::path& target, auto&& write) {
     const auto start = std::chrono::steady_clock::now();
-    write();
+    try {
+      write();
+    } catch (const std::exception& error) {
+      failures += (failures.empty() ? "" : "\n") + std::string(error.what());
+      return;
+    }
     const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
     written_ +=
         fmt::format("wrote {}{} in {:.2g} s\n", target.string(), sizeOf(target), time.count());
   };
   const std::string generator = fmt::format("softgauss {}", summary.version);
-  try {
-    if (page_) timed(view_, [&] { page_->write(*recording_, generator); });
-    if (plot_) timed(drawing_, [&] { plot_->write(*recording_); });
-  } catch (const std::exception& error) {
-    return error.what();
-  }
-  return {};
+  if (page_) attempt(view_, [&] { page_->write(*recording_, generator); });
+  if (plot_) attempt(drawing_, [&] { plot_->write(*recording_); });
+  return failures;
 }
 
 }  // namespace softgauss::app

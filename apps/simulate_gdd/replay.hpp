@@ -24,7 +24,7 @@ class Replay {
   }
   /// The final state, whose stages are in `data`; `message` says why the run ended early. Returns
   /// what could not be written, or nothing.
-  std::string finish(const Data& data, const State& last, const io::Summary& summary,
+  std::string finish(const io::StepRecord& last, const Data& data, const io::Summary& summary,
                      const std::string& message);
   /// What finish() has written and how long that took, a line each.
   const std::string& written() const { return written_; }

@@ -119,7 +119,7 @@ class Runner {
       summary_.outcome = "interrupted";
     }
     finish(verdict, reason);
-    if (!outputError_.empty()) throw UsageError(outputError_);
+    if (!outputError_.empty()) throw OutputError(outputError_);
     return code;
   }
 
@@ -188,7 +188,9 @@ class Runner {
     last.a = last.u = VectorX::Zero(model_.nv);
     last.contacts = data_.stats.contacts;
     last.constraints = data_.stats.rows;
-    last.energy = computeEnergy(model_, data_.kinematics, state_.v).total();
+    const Energy energy = computeEnergy(model_, data_.kinematics, state_.v);
+    last.energy = energy.total();
+    last.kineticEnergy = energy.kinetic;
     last.maxPenetration = data_.stats.maxPenetration;
     writeLog(last);
     closeLog();
@@ -200,7 +202,7 @@ class Runner {
       summary_.warnings.push_back(std::move(unreached));
     summary_.finish(last);
     if (!options_.summary.empty()) summary_.write(options_.summary);
-    const std::string error = replay_->finish(data_, state_, summary_, reason);
+    const std::string error = replay_->finish(last, data_, summary_, reason);
     if (outputError_.empty()) outputError_ = error;
     if (!options_.quiet) fmt::print("{}{}", replay_->written(), summary_.table());
   }

@@ -132,6 +132,7 @@ std::unique_ptr<Scene> loadScene(const SimulateOptions& options) {
   else
     loadRobot(options, *scene);
   checkSteps(options, scene->model.options.timestep);
+  checkOutputs(options, scene->contents.files);
   if (scene->model.nv > kMostDofs)
     throw ModelError(
         {options.model.string(), 0}, "model '" + scene->model.name + "'",

@@ -8,6 +8,8 @@ namespace {
 
 constexpr double kCarriesAbove = 0.70710678118654752;  // cos 45°
 
+}  // namespace
+
 std::optional<Vector3> centerOfPressure(const Model& model,
                                         const std::vector<Snapshot::ContactForce>& contacts) {
   const double gravity = model.options.gravity.norm();
@@ -26,8 +28,6 @@ std::optional<Vector3> centerOfPressure(const Model& model,
   if (!(load > 0.0)) return std::nullopt;
   return moment / load;
 }
-
-}  // namespace
 
 void contactForces(const Data& data, std::vector<Snapshot::ContactForce>& contacts) {
   contacts.clear();

@@ -29,11 +29,14 @@ struct Snapshot {
   std::vector<Vector3> velocity;         ///< (bodies) of the body's origin [m/s]
   std::vector<Vector3> angularVelocity;  ///< (bodies) [rad/s]
   std::vector<ContactForce> contacts;    ///< within their margins; those not pressed have no force
-  Vector3 centerOfMass = Vector3::Zero();  ///< of all moving bodies [m]
-  /// Mean of the points at which the world carries bodies, weighted by normal force [m]. Nothing
-  /// when it carries none. The world carries where it pushes a body within 45° of upwards.
-  std::optional<Vector3> centerOfPressure;
+  Vector3 centerOfMass = Vector3::Zero();   ///< of all moving bodies [m]
+  std::optional<Vector3> centerOfPressure;  ///< see below
 };
+
+/// Mean of the points at which the world carries bodies, weighted by normal force [m]. Nothing when
+/// it carries none. The world carries where it pushes a body within 45° of upwards.
+std::optional<Vector3> centerOfPressure(const Model& model,
+                                        const std::vector<Snapshot::ContactForce>& contacts);
 
 /// The contacts of the last solve, with their forces.
 void contactForces(const Data& data, std::vector<Snapshot::ContactForce>& contacts);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 
 #include "engine/step/forward.hpp"
 #include "engine/step/integrators/semi_implicit_euler.hpp"
@@ -41,6 +42,20 @@ int firstBadDof(const Model& model, const Input& input, const State& state) {
     if (bad) return body.v;
   }
   return -1;
+}
+
+/// Where a step that failed went wrong: the dof of the first force that is not finite, or else of
+/// what is largest.
+int worstDof(const Model& model, const Data& data, const State& state) {
+  int worst = -1;
+  double largest = 0.0;
+  for (int i = 0; i < model.nv; ++i) {
+    const double net = data.forces.net[i];
+    if (!std::isfinite(net)) return i;
+    const double size = std::max(std::abs(state.v[i]), model.options.timestep * std::abs(net));
+    if (size > largest) largest = size, worst = i;
+  }
+  return worst;
 }
 
 }  // namespace
@@ -98,10 +113,10 @@ SolveStatus advance(const Model& model, const VectorX* guess, Data& data, State&
   stats.factorizations = data.forward.report.factorizations;
   stats.residual = data.forward.report.residual;
   stats.times.solve = lap(clock);
-  if (stats.status == SolveStatus::notFinite) return stats.status;
-
-  if (!semiImplicitEuler(model, data, state)) {
+  if (stats.status != SolveStatus::notFinite && !semiImplicitEuler(model, data, state))
     stats.status = SolveStatus::notFinite;
+  if (stats.status == SolveStatus::notFinite) {
+    stats.badDof = worstDof(model, data, state);
     return stats.status;
   }
   state.warmstart.a = data.forward.a;

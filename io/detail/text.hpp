@@ -35,6 +35,9 @@ std::string listed(const std::vector<std::string>& names, std::size_t most = 12)
 /// "1 joint", "2 joints".
 std::string counted(std::size_t n, std::string_view noun);
 
+/// The text with a replacement mark for every byte that is no UTF-8.
+std::string validUtf8(const std::string& text);
+
 /// The whole file, or nothing if it cannot be read.
 std::optional<std::string> readFile(const std::string& path);
 

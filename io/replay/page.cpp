@@ -4,13 +4,13 @@
 #include <fmt/format.h>
 #include <zlib.h>
 
-#include <cerrno>
 #include <cstring>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "engine/core/check.hpp"
+#include "io/detail/text.hpp"
 #include "io/replay/detail/page_template.hpp"
 #include "io/replay/detail/payload.hpp"
 
@@ -156,7 +156,12 @@ void writeSeries(const Recording& recording, Json& header, Payload& payload) {
     Json curves = Json::array();
     for (const Curve& curve : group.curves) {
       const std::string name = fmt::format("series{}", curve.column);
-      payload.array(name, recording.series().column(curve.column));
+      const std::vector<double> values = recording.series().column(curve.column);
+      // Far from zero a position needs all its digits.
+      if (group.name == "Floating bases")
+        payload.array(name, values);
+      else
+        payload.array(name, std::vector<float>(values.begin(), values.end()));
       Json json = {{"name", curve.name}, {"values", name}};
       if (std::isfinite(curve.lower)) json["lower"] = curve.lower;
       if (std::isfinite(curve.upper)) json["upper"] = curve.upper;
@@ -167,7 +172,7 @@ void writeSeries(const Recording& recording, Json& header, Payload& payload) {
                       {"scale", group.logarithmic ? "log" : "linear"},
                       {"curves", curves}});
   }
-  header["series"] = {{"groups", groups}};
+  header["series"] = {{"bucket", recording.series().samplesPerBucket()}, {"groups", groups}};
 }
 
 std::string deflated(const std::string& bytes) {
@@ -236,33 +241,23 @@ std::string replayPayload(const Recording& recording, const std::string& generat
   return payload.pack(header.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
-ReplayPage::ReplayPage(const std::filesystem::path& file)
-    : path_(file.string()), file_(std::fopen(path_.c_str(), "wb")) {
-  if (!file_)
-    throw ModelError({path_, 0}, "replay page",
-                     fmt::format("cannot be written: {}", std::strerror(errno)));
-}
+ReplayPage::ReplayPage(const std::filesystem::path& file) : file_(file, "replay page") {}
 
 void ReplayPage::write(const Recording& recording, const std::string& generator) {
   const std::string run = base64(deflated(replayPayload(recording, generator)));
   std::string_view rest = detail::pageTemplate();
-  bool written = true;
-  const auto send = [&](std::string_view text) {
-    written = written && std::fwrite(text.data(), 1, text.size(), file_.get()) == text.size();
-  };
-  for (const auto& [place, text] : {std::pair<std::string_view, std::string>{
-                                        "@@SOFTGAUSS_TITLE@@", escapedHtml(recording.model().name)},
-                                    {"@@SOFTGAUSS_RUN@@", run}}) {
+  for (const auto& [place, text] :
+       {std::pair<std::string_view, std::string>{
+            "@@SOFTGAUSS_TITLE@@", escapedHtml(detail::validUtf8(recording.model().name))},
+        {"@@SOFTGAUSS_RUN@@", run}}) {
     const std::size_t at = rest.find(place);
     SOFTGAUSS_ASSERT(at != std::string_view::npos);
-    send(rest.substr(0, at));
-    send(text);
+    file_.write(rest.substr(0, at));
+    file_.write(text);
     rest.remove_prefix(at + place.size());
   }
-  send(rest);
-  if (std::fclose(file_.release()) != 0 || !written)
-    throw std::runtime_error(
-        fmt::format("{}: replay page: cannot be written: {}", path_, std::strerror(errno)));
+  file_.write(rest);
+  file_.commit();
 }
 
 }  // namespace softgauss::io

@@ -6,11 +6,10 @@
 /// A template made from io/replay/page/ with the run put in: a JSON header and typed arrays,
 /// compressed by zlib, in base64. The layout is that of docs/replay.md.
 
-#include <cstdio>
 #include <filesystem>
-#include <memory>
 #include <string>
 
+#include "io/detail/output_file.hpp"
 #include "io/replay/recording.hpp"
 
 namespace softgauss::io {
@@ -20,18 +19,15 @@ std::string replayPayload(const Recording& recording, const std::string& generat
 
 class ReplayPage {
  public:
-  /// Makes the file, so that a run whose page cannot be written need not begin. Throws ModelError.
+  /// Makes sure that the file can be written, before a run is begun whose page could not. A page
+  /// that is there stays until the new one is complete. Throws ModelError.
   explicit ReplayPage(const std::filesystem::path& file);
 
   /// Throws std::runtime_error if the disk is full or gone.
   void write(const Recording& recording, const std::string& generator);
 
  private:
-  struct Closer {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-  };
-  std::string path_;
-  std::unique_ptr<std::FILE, Closer> file_;
+  detail::OutputFile file_;
 };
 
 }  // namespace softgauss::io

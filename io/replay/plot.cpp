@@ -2,15 +2,20 @@
 #include "io/replay/plot.hpp"
 
 #include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cctype>
 #include <cerrno>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <stdexcept>
 
 #include "engine/core/check.hpp"
+#include "io/detail/text.hpp"
 
 namespace softgauss::io {
 namespace {
@@ -24,6 +29,9 @@ constexpr double kCell = 150.0;
 constexpr double kPanel = 210.0;
 constexpr std::size_t kMostTogether = 6;  ///< curves in one panel
 constexpr int kMostEntries = 1200;        ///< no page shows more
+
+constexpr std::size_t kLongestSubtitle = 150;
+constexpr const char* kDrawing = "drawing.svg";
 
 // Colours that differ in print and for the colour-blind (Okabe and Ito).
 constexpr const char* kColours[] = {"#0072b2", "#d55e00", "#009e73",
@@ -52,12 +60,12 @@ int gridRows(const CurveGroup& group) {
   return (static_cast<int>(group.curves.size()) + kCellsPerRow - 1) / kCellsPerRow;
 }
 
-/// The least of 1, 2, 5, 10, … times a power of ten that is at least x.
+/// The greatest of 1, 2, 5 times a power of ten that is at most x.
 double niceStep(double x) {
   const double power = std::pow(10.0, std::floor(std::log10(x)));
-  for (const double digit : {1.0, 2.0, 5.0})
-    if (digit * power >= x) return digit * power;
-  return 10.0 * power;
+  for (const double digit : {5.0, 2.0})
+    if (digit * power <= x) return digit * power;
+  return power;
 }
 
 double heightOf(const CurveGroup& group) {
@@ -67,8 +75,7 @@ double heightOf(const CurveGroup& group) {
 /// Writes a script panel by panel, from the top down.
 class Script {
  public:
-  Script(const Recording& recording, const std::vector<CurveGroup>& groups,
-         const std::filesystem::path& file)
+  Script(const Recording& recording, const std::vector<CurveGroup>& groups)
       : series_(recording.series().thinned(kMostEntries)) {
     if (!series_.times().empty()) {
       start_ = series_.times().front();
@@ -77,7 +84,7 @@ class Script {
     height_ = kTitle;
     for (const CurveGroup& group : groups) height_ += heightOf(group);
     writeData(groups);
-    begin(recording, file);
+    begin(recording);
     top_ = kTitle;
     for (std::size_t i = 0; i < groups.size(); ++i) {
       if (isGrid(groups[i]))
@@ -87,6 +94,7 @@ class Script {
       top_ += heightOf(groups[i]);
     }
     line("unset multiplot");
+    line("unset output");
   }
 
   std::string text;
@@ -100,12 +108,12 @@ class Script {
 
   void writeData(const std::vector<CurveGroup>& groups) {
     for (std::size_t i = 0; i < groups.size(); ++i) {
-      std::vector<std::vector<float>> columns;
+      std::vector<std::vector<double>> columns;
       for (const Curve& curve : groups[i].curves) columns.push_back(series_.column(curve.column));
       line("$group{} << END", i);
       for (std::size_t row = 0; row < series_.times().size(); ++row) {
         fmt::format_to(std::back_inserter(text), "{:.9g}", series_.times()[row]);
-        for (const std::vector<float>& column : columns)
+        for (const std::vector<double>& column : columns)
           text += std::isfinite(column[row]) ? fmt::format(" {:.7g}", column[row]) : " NaN";
         text += '\n';
       }
@@ -113,10 +121,10 @@ class Script {
     }
   }
 
-  void begin(const Recording& recording, const std::filesystem::path& file) {
+  void begin(const Recording& recording) {
     line("set terminal svg noenhanced size {},{} font 'Helvetica,11' background '#ffffff'", kWidth,
          height_);
-    line("set output {}", literal(file.string()));
+    line("set output '{}'", kDrawing);
     line("set datafile missing 'NaN'");
     line("set multiplot");
     line("set border 3 linecolor '#666666'");
@@ -127,6 +135,7 @@ class Script {
     line("set label 1 {} at screen 0.02,{} font 'Helvetica-Bold,15'",
          literal(recording.model().name), y(18.0));
     std::string subtitle = recording.command;
+    if (subtitle.size() > kLongestSubtitle) subtitle = subtitle.substr(0, kLongestSubtitle) + " …";
     if (!recording.outcome.message.empty()) subtitle = recording.outcome.message;
     line("set label 2 {} at screen 0.02,{} textcolor '{}'", literal(subtitle), y(36.0),
          recording.outcome.message.empty() ? "#666666" : "#c00000");
@@ -144,17 +153,17 @@ class Script {
   void range(const std::vector<Curve>& curves, bool logarithmic) {
     double least = kInfinity, greatest = -kInfinity;
     for (const Curve& curve : curves) {
-      for (const float value : series_.column(curve.column)) {
-        if (!std::isfinite(value) || (logarithmic && value <= 0.0f)) continue;
-        least = std::min(least, static_cast<double>(value));
-        greatest = std::max(greatest, static_cast<double>(value));
+      for (const double value : series_.column(curve.column)) {
+        if (!std::isfinite(value) || (logarithmic && value <= 0.0)) continue;
+        least = std::min(least, value);
+        greatest = std::max(greatest, value);
       }
       if (std::isfinite(curve.lower)) least = std::min(least, curve.lower);
       if (std::isfinite(curve.upper)) greatest = std::max(greatest, curve.upper);
     }
     if (logarithmic) {
       const bool empty = !(greatest > 0.0);
-      line("set logscale y; set format y '10^{{%T}}'");
+      line("set logscale y; set format y '%.0e'");
       line("set ytics autofreq");
       line("set yrange [{:.6g}:{:.6g}]", empty ? 0.1 : 0.5 * least, empty ? 1.0 : 2.0 * greatest);
       return;
@@ -164,7 +173,7 @@ class Script {
                            ? 0.06 * (greatest - least)
                            : std::max(0.05 * std::abs(greatest), 1e-6);
     line("unset logscale y; set format y '%h'; set ytics {:.9g}",
-         niceStep((greatest - least + 2.0 * pad) / 4.0));
+         niceStep((greatest - least + 2.0 * pad) / 2.5));
     line("set yrange [{:.9g}:{:.9g}]", least - pad, greatest + pad);
   }
 
@@ -175,7 +184,7 @@ class Script {
 
   void addGrid(const CurveGroup& group, const std::string& data) {
     heading(group);
-    line("unset key; set xtics {:.9g}", niceStep((end_ - start_) / 5.0));
+    line("unset key; set xtics {:.9g}", niceStep((end_ - start_) / 2.5));
     for (std::size_t i = 0; i < group.curves.size(); ++i) {
       const Curve& curve = group.curves[i];
       const int row = static_cast<int>(i) / kCellsPerRow,
@@ -216,14 +225,50 @@ class Script {
   double top_ = 0.0;
 };
 
-void runGnuplot(const std::string& script) {
-  std::FILE* gnuplot = popen("gnuplot", "w");
-  if (!gnuplot)
+/// A folder of its own, gone at the end.
+class ScratchFolder {
+ public:
+  ScratchFolder() {
+    std::string name = (std::filesystem::temp_directory_path() / "softgauss-XXXXXX").string();
+    if (!mkdtemp(name.data()))
+      throw std::runtime_error(fmt::format("plot: no folder {}: {}", name, std::strerror(errno)));
+    path = name;
+  }
+  ~ScratchFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path, ignored);
+  }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  std::filesystem::path path;
+};
+
+/// The drawing that gnuplot makes of a script. It gets plain names in a folder of its own, no
+/// user's settings (-d) and no pipe, so neither names nor interrupts can confuse it.
+std::string drawn(const std::string& script) {
+  const ScratchFolder scratch;
+  detail::OutputFile file(scratch.path / "script", "plot");
+  file.write(script);
+  file.commit();
+
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addchdir_np(&actions, scratch.path.c_str());
+  char program[] = "gnuplot", plain[] = "-d", name[] = "script";
+  char* const arguments[] = {program, plain, name, nullptr};
+  pid_t child = 0;
+  const int error = posix_spawnp(&child, program, &actions, nullptr, arguments, environ);
+  posix_spawn_file_actions_destroy(&actions);
+  if (error != 0)
     throw std::runtime_error(
-        fmt::format("plot: gnuplot cannot be started: {}", std::strerror(errno)));
-  const bool sent = std::fwrite(script.data(), 1, script.size(), gnuplot) == script.size();
-  if (pclose(gnuplot) != 0 || !sent)
-    throw std::runtime_error("plot: gnuplot failed; its message is above");
+        fmt::format("plot: gnuplot cannot be started: {}", std::strerror(error)));
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0 && errno == EINTR) continue;
+
+  const std::optional<std::string> svg = detail::readFile((scratch.path / kDrawing).string());
+  if (status != 0 || !svg || svg->find("</svg>") == std::string::npos)
+    throw std::runtime_error("plot: gnuplot failed; its message, if it had one, is above");
+  return *svg;
 }
 
 /// "Joint positions" in rad becomes joint_positions_rad.svg.
@@ -241,36 +286,39 @@ std::string fileName(const CurveGroup& group) {
 
 }  // namespace
 
-std::string plotScript(const Recording& recording, const std::vector<CurveGroup>& groups,
-                       const std::filesystem::path& file) {
-  return Script(recording, groups, file).text;
+std::string plotScript(const Recording& recording, const std::vector<CurveGroup>& groups) {
+  return detail::validUtf8(Script(recording, groups).text);
 }
 
-Plot::Plot(const std::filesystem::path& target)
-    : target_(target), isFolder_(std::filesystem::is_directory(target) || !target.has_extension()) {
+Plot::Plot(const std::filesystem::path& target) : target_(target) {
+  const bool isFolder = std::filesystem::is_directory(target) || !target.has_extension();
   const auto fail = [&](const std::string& problem) {
     throw ModelError({target.string(), 0}, "plot", problem);
   };
-  if (!isFolder_ && target.extension() != ".svg")
+  if (!isFolder && target.extension() != ".svg")
     fail(fmt::format("extension '{}', expected .svg or a folder", target.extension().string()));
   if (std::system("command -v gnuplot >/dev/null 2>&1") != 0)
     fail("gnuplot was not found, expected it in the PATH (Debian: apt-get install gnuplot-nox)");
-  std::error_code error;
-  if (isFolder_) {
-    std::filesystem::create_directories(target, error);
-    if (error) fail("cannot be made: " + error.message());
-  } else {
-    std::FILE* file = std::fopen(target.string().c_str(), "wb");
-    if (!file) fail(fmt::format("cannot be written: {}", std::strerror(errno)));
-    std::fclose(file);
+  if (!isFolder) {
+    file_.emplace(target, "plot");
+    return;
   }
+  std::error_code error;
+  std::filesystem::create_directories(target, error);
+  if (error) fail("cannot be made: " + error.message());
 }
 
-void Plot::write(const Recording& recording) const {
+void Plot::write(const Recording& recording) {
   const std::vector<CurveGroup> groups = recording.plots();
-  if (!isFolder_) return runGnuplot(plotScript(recording, groups, target_));
-  for (const CurveGroup& group : groups)
-    runGnuplot(plotScript(recording, {group}, target_ / fileName(group)));
+  const auto fill = [](detail::OutputFile& file, const std::string& script) {
+    file.write(drawn(script));
+    file.commit();
+  };
+  if (file_) return fill(*file_, plotScript(recording, groups));
+  for (const CurveGroup& group : groups) {
+    detail::OutputFile file(target_ / fileName(group), "plot");
+    fill(file, plotScript(recording, {group}));
+  }
 }
 
 }  // namespace softgauss::io

@@ -7,27 +7,28 @@
 /// limits, or that are many, are drawn as a grid with a small drawing for each curve.
 
 #include <filesystem>
+#include <optional>
 
+#include "io/detail/output_file.hpp"
 #include "io/replay/recording.hpp"
 
 namespace softgauss::io {
 
 class Plot {
  public:
-  /// Makes the file or the folder. Throws ModelError when it cannot, when the name has another
-  /// extension than .svg, or when there is no gnuplot.
+  /// Makes the folder, or makes sure that the file can be written. Throws ModelError when it
+  /// cannot, when the name has another extension than .svg, or when there is no gnuplot.
   explicit Plot(const std::filesystem::path& target);
 
   /// Throws std::runtime_error when gnuplot fails or the disk is full.
-  void write(const Recording& recording) const;
+  void write(const Recording& recording);
 
  private:
   std::filesystem::path target_;
-  bool isFolder_;
+  std::optional<detail::OutputFile> file_;  ///< absent: a folder
 };
 
-/// The script that gnuplot is given for one file, data included.
-std::string plotScript(const Recording& recording, const std::vector<CurveGroup>& groups,
-                       const std::filesystem::path& file);
+/// The script that gnuplot is given for one drawing, data included.
+std::string plotScript(const Recording& recording, const std::vector<CurveGroup>& groups);
 
 }  // namespace softgauss::io

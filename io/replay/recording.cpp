@@ -8,9 +8,9 @@
 namespace softgauss::io {
 namespace {
 
-constexpr float kNoValue = std::numeric_limits<float>::quiet_NaN();
+constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
 
-/// Entries of a series however many columns: 64 MB of samples at most.
+/// Entries of a series however many columns: 128 MB of samples at most.
 int mostEntries(int columns) { return std::min(20000, (16 << 20) / std::max(1, columns)); }
 
 }  // namespace
@@ -112,73 +112,77 @@ void Recording::addOtherGroups() {
   for (const char* name : {"forward", "goal directed", "step"}) addCurve(time, name);
   CurveGroup& depth = addGroup("Deepest penetration", "m");
   addCurve(depth, "penetration");
-  CurveGroup& physics = addGroup("Physics violation", "N m", true);
+  CurveGroup& physics = addGroup("Physics violation", "N, N m", true);
   addCurve(physics, "as applied");
   addCurve(physics, "before clamping");
 }
 
-void Recording::readMarks(const gdd::GoalContext& context) {
-  for (std::size_t i = 0; i < goals_.size(); ++i) marks_[i] = goals_[i]->mark(context);
-}
-
-void Recording::addStep(const StepRecord& r, const Data& data) {
+void Recording::readMarks(const StepRecord& r, const Data& data) {
   state_.q = r.q;
   state_.v = r.v;
   state_.time = r.time;
-  readMarks({model_, state_, data});
+  for (std::size_t i = 0; i < goals_.size(); ++i)
+    marks_[i] = goals_[i]->mark({model_, state_, data});
+}
+
+void Recording::addStep(const StepRecord& r, const Data& data) {
+  readMarks(r, data);
   contactForces(data, contacts_);
-  writeSample(r, series_.add(r.time));
+  writeSample(r, false, series_.add(r.time));
   if (frames_.due(r.time)) {
     takeSnapshot(model_, data, r.time, snapshot_);
     frames_.add(snapshot_, marks_);
   }
 }
 
-/// In the order of the columns.
-void Recording::writeSample(const StepRecord& r, float* sample) {
-  float* next = sample;
-  for (const int i : q_) *next++ = static_cast<float>(r.q[i]);
-  for (const int i : u_) *next++ = static_cast<float>(r.u[i]);
-  for (const int i : v_) *next++ = static_cast<float>(r.v[i]);
-  for (const int i : base_) *next++ = static_cast<float>(r.q[i]);
+/// In the order of the columns. At the end of a run nothing has been solved or controlled.
+void Recording::writeSample(const StepRecord& r, bool isEnd, double* sample) {
+  const auto solved = [&](double x) { return isEnd ? kNoValue : x; };
+  double* next = sample;
+  for (const int i : q_) *next++ = r.q[i];
+  for (const int i : u_) *next++ = solved(r.u[i]);
+  for (const int i : v_) *next++ = r.v[i];
+  for (const int i : base_) *next++ = r.q[i];
   // A contact of two bodies is felt by both, and is one of all.
-  float& all = *next;
-  std::fill_n(next, forceColumns_, 0.0f);
+  double& all = *next;
+  std::fill_n(next, forceColumns_, solved(0.0));
   for (const Snapshot::ContactForce& c : contacts_) {
-    const auto force = static_cast<float>(c.normalForce());
-    all += force;
+    all += c.normalForce();
     for (const int geometry : {c.geometryA, c.geometryB}) {
       const int column = forceColumn_[static_cast<std::size_t>(geometry)];
-      if (column >= 0) sample[column] += force;
+      if (column >= 0) sample[column] += c.normalForce();
     }
   }
   next += forceColumns_;
   for (const std::optional<gdd::GoalMark>& mark : marks_)
-    *next++ = mark ? static_cast<float>((mark->p_WTarget - mark->p_WPoint).norm()) : kNoValue;
-  for (const double x : {r.kineticEnergy, r.energy - r.kineticEnergy, r.energy})
-    *next++ = static_cast<float>(x);
+    *next++ = mark ? (mark->p_WTarget - mark->p_WPoint).norm() : kNoValue;
+  for (const double x : {r.kineticEnergy, r.energy - r.kineticEnergy, r.energy}) *next++ = x;
   for (const int count : {r.contacts, r.constraints, r.iterations, r.dualUpdates})
-    *next++ = static_cast<float>(count);
-  for (const double x :
-       {r.forwardUs, r.gddUs, r.stepUs, r.maxPenetration, r.physicsViolation, r.gddViolation})
-    *next++ = static_cast<float>(x);
+    *next++ = solved(count);
+  for (const double x : {r.forwardUs, r.gddUs, r.stepUs}) *next++ = solved(x);
+  *next++ = r.maxPenetration;
+  for (const double x : {r.physicsViolation, r.gddViolation}) *next++ = solved(x);
   SOFTGAUSS_ASSERT(next == sample + columns_);
 }
 
-void Recording::finish(const Data& data, const State& last) {
+void Recording::finish(const StepRecord& last, const Data& data) {
+  readMarks(last, data);
+  writeSample(last, true, series_.add(last.time));
   series_.finish();
-  readMarks({model_, last, data});
-  const std::vector<Snapshot::ContactForce> led = contacts_;
   takeSnapshot(model_, data, last.time, snapshot_);
-  if (!led.empty()) snapshot_.contacts = led;
+  // No force has been solved for here. Those of the last step led here.
+  if (!contacts_.empty()) {
+    snapshot_.contacts = contacts_;
+    snapshot_.centerOfPressure = centerOfPressure(model_, contacts_);
+  }
   frames_.add(snapshot_, marks_);
 }
 
 std::vector<CurveGroup> Recording::plots() const {
   const auto isZero = [&](const Curve& curve) {
-    const std::vector<float> values = series_.column(curve.column);
+    const std::vector<double> values = series_.column(curve.column);
     return std::none_of(values.begin(), values.end(),
-                        [](float x) { return std::isfinite(x) && x != 0.0f; });
+                        [](double x) { return std::isfinite(x) && x != 0.0; });
   };
   std::vector<CurveGroup> plots;
   for (std::size_t i = 0; i < groups_.size(); ++i) {

@@ -58,9 +58,9 @@ class Recording {
   }
   /// A step that was taken: its record, and the stages that it was taken from.
   void addStep(const StepRecord& record, const Data& data);
-  /// The state that the run ended with, whose stages are in `data`. Its contact forces are those
-  /// of the last step, which led there.
-  void finish(const Data& data, const State& last);
+  /// The state that the run ended with, whose stages are in `data`. The frame shows the contact
+  /// forces of the last step, which led there; curves of what a solve gives end before it.
+  void finish(const StepRecord& last, const Data& data);
 
   const Model& model() const { return model_; }
   const FrameTrack& frames() const { return frames_; }
@@ -84,8 +84,8 @@ class Recording {
                 double upper = kInfinity);
   void addJointGroups();
   void addOtherGroups();
-  void readMarks(const gdd::GoalContext& context);
-  void writeSample(const StepRecord& record, float* sample);
+  void readMarks(const StepRecord& record, const Data& data);
+  void writeSample(const StepRecord& record, bool isEnd, double* sample);
 
   const Model& model_;
   std::vector<const gdd::Goal*> goals_;  ///< those that are a place

@@ -29,9 +29,9 @@ void SeriesTable::reserve(std::size_t samples) {
   fetch(rows_, entries * static_cast<std::size_t>(columns_));
 }
 
-float* SeriesTable::add(double time) {
+double* SeriesTable::add(double time) {
   makeRoom();
-  std::vector<float>& rows = width_ == 1 ? rows_ : openRows_;
+  std::vector<double>& rows = width_ == 1 ? rows_ : openRows_;
   (width_ == 1 ? times_ : openTimes_).push_back(time);
   const std::size_t first = rows.size();
   rows.resize(first + static_cast<std::size_t>(columns_));
@@ -51,16 +51,16 @@ void SeriesTable::finish() {
   openRows_.clear();
 }
 
-void SeriesTable::appendBucket(std::span<const double> times, std::span<const float> rows) {
+void SeriesTable::appendBucket(std::span<const double> times, std::span<const double> rows) {
   const auto n = static_cast<std::size_t>(columns_);
   times_.push_back(times.front());
   times_.push_back(times[times.size() / 2]);
   const std::size_t first = rows_.size();
-  rows_.resize(first + 2 * n, std::numeric_limits<float>::quiet_NaN());
-  float* least = rows_.data() + first;
-  float* greatest = least + n;
+  rows_.resize(first + 2 * n, std::numeric_limits<double>::quiet_NaN());
+  double* least = rows_.data() + first;
+  double* greatest = least + n;
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    const float value = rows[i];
+    const double value = rows[i];
     if (std::isnan(value)) continue;
     // Also true while they are NaN.
     if (!(least[i % n] <= value)) least[i % n] = value;
@@ -70,7 +70,7 @@ void SeriesTable::appendBucket(std::span<const double> times, std::span<const fl
 
 void SeriesTable::coarsen() {
   const std::vector<double> times = std::exchange(times_, {});
-  const std::vector<float> rows = std::exchange(rows_, {});
+  const std::vector<double> rows = std::exchange(rows_, {});
   times_.reserve(most_ + 2);
   rows_.reserve((most_ + 2) * static_cast<std::size_t>(columns_));
   for (std::size_t i = 0; i < times.size(); i += kMerged) {
@@ -81,8 +81,8 @@ void SeriesTable::coarsen() {
   width_ *= width_ == 1 ? static_cast<int>(kMerged) : 2;
 }
 
-std::vector<float> SeriesTable::column(int c) const {
-  std::vector<float> values(times_.size());
+std::vector<double> SeriesTable::column(int c) const {
+  std::vector<double> values(times_.size());
   for (std::size_t i = 0; i < values.size(); ++i)
     values[i] = rows_[i * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(c)];
   return values;

@@ -20,14 +20,14 @@ class SeriesTable {
   void reserve(std::size_t samples);
   /// Appends a sample at `time` [s]: its values, one a column, are to be written where the returned
   /// pointer says, before the next call. NaN is a gap.
-  float* add(double time);
+  double* add(double time);
   /// Ends the bucket that is open. To be called after the last sample.
   void finish();
 
   int size() const { return static_cast<int>(times_.size()); }  ///< entries
   int columns() const { return columns_; }
   const std::vector<double>& times() const { return times_; }
-  std::vector<float> column(int c) const;
+  std::vector<double> column(int c) const;
   /// Samples in a bucket; 1 while every sample is kept.
   int samplesPerBucket() const { return width_; }
 
@@ -37,15 +37,15 @@ class SeriesTable {
  private:
   void makeRoom();
   void coarsen();
-  void appendBucket(std::span<const double> times, std::span<const float> rows);
+  void appendBucket(std::span<const double> times, std::span<const double> rows);
 
   int columns_;
   std::size_t most_;
   int width_ = 1;
   std::vector<double> times_;
-  std::vector<float> rows_;  ///< entry by entry
+  std::vector<double> rows_;  ///< entry by entry
   std::vector<double> openTimes_;
-  std::vector<float> openRows_;  ///< samples of the bucket that is being filled
+  std::vector<double> openRows_;  ///< samples of the bucket that is being filled
 };
 
 }  // namespace softgauss::io

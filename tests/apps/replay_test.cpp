@@ -2,6 +2,7 @@
 /// --view and --plot: a page and drawings from every run, however it ends.
 
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 
 #include "tests/apps/process.hpp"
@@ -25,7 +26,7 @@ TEST(View, ShowsTheRunOfTheLog) {
   EXPECT_EQ(run.header["model"], "humanoid");
   EXPECT_FALSE(run.header["visuals"].empty());
   const auto series = run.array<double>("series_time");
-  ASSERT_EQ(series.size() + 1, csv.rows.size()) << "the log has the final state too";
+  ASSERT_EQ(series.size(), csv.rows.size());
   for (const auto& group : run.header["series"]["groups"])
     for (const auto& curve : group["curves"]) {
       const int column = csv.find("q:" + curve["name"].get<std::string>());
@@ -49,6 +50,7 @@ TEST(View, ARunThatEndsBadlyShowsItsLastGoodStepAndWhy) {
   EXPECT_EQ(run.header["outcome"]["kind"], "non-finite");
   const std::string message = run.header["outcome"]["message"];
   EXPECT_NE(message.find("t = "), std::string::npos) << message;
+  EXPECT_NE(message.find("joint '"), std::string::npos) << message;
   EXPECT_NE(outcome.err.find(message), std::string::npos) << "the same words as on stderr";
   for (const float x : run.array<float>("pose")) ASSERT_TRUE(std::isfinite(x));
   EXPECT_NEAR(run.array<double>("frame_time").back(), 0.1, 0.01);
@@ -80,6 +82,49 @@ TEST(View, OutputsThatCannotBeMadeAreToldBeforeTheRun) {
   }
   const std::string same = folder.path() / "run.svg";
   EXPECT_EQ(simulate({arm, "--passive", "--view", same, "--plot", same}).exitCode, 2);
+}
+
+// What a user has set up for gnuplot is for their own drawings.
+TEST(View, UsersGnuplotSettingsDoNotReachThePlots) {
+  const io::TempFolder home;
+  home.write(".gnuplot", "set datafile separator comma\n");
+  const std::string plot = home.path() / "it's a | name.svg", plain = home.path() / "plain.svg";
+  const std::vector<std::string> run = {dataFile("robots/arm.urdf"),
+                                        "--reach",
+                                        "hand=0.5,0.3,0.5",
+                                        "--duration",
+                                        "0.1",
+                                        "--quiet",
+                                        "--plot"};
+  const auto with = [&](const std::string& file) {
+    std::vector<std::string> arguments = run;
+    arguments.push_back(file);
+    return simulate(arguments);
+  };
+  ASSERT_EQ(with(plain).exitCode, 0);
+  const std::string old = std::getenv("HOME") ? std::getenv("HOME") : "";
+  setenv("HOME", home.path().c_str(), 1);
+  const Outcome outcome = with(plot);
+  setenv("HOME", old.c_str(), 1);
+  ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+  // The same curves: times of steps differ from run to run, sizes hardly do.
+  EXPECT_NEAR(
+      static_cast<double>(readFile(plot).size()) / static_cast<double>(readFile(plain).size()), 1.0,
+      0.2);
+}
+
+TEST(View, OutputsNeverReplaceWhatWasReadOrWhatIsThere) {
+  const io::TempFolder folder;
+  const std::string urdf = readFile(dataFile("robots/arm.urdf"));
+  const std::string robot = folder.write("arm.urdf", urdf);
+  const std::string scene = folder.write("scene.yaml", "robots: [{urdf: arm.urdf}]\n");
+  EXPECT_EQ(simulate({scene, "--duration", "0.01", "--quiet", "--view", robot}).exitCode, 2);
+  EXPECT_EQ(readFile(robot), urdf);
+  // A page stays until the next one is complete.
+  const std::string page = folder.write("run.html", "the page of last night");
+  EXPECT_EQ(simulate({scene, "--view", page, "--plot", folder.path() / "no" / "a.svg"}).exitCode,
+            2);
+  EXPECT_EQ(readFile(page), "the page of last night");
 }
 
 }  // namespace

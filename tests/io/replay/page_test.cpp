@@ -90,20 +90,26 @@ TEST(ReplayPayload, SeriesAreTheLogAndNamesAreTheModels) {
   EXPECT_EQ(payload.header["goals"].size(), 1u) << "virtual damping is no place";
   EXPECT_EQ(payload.header["goals"][0]["name"], "reach body");
   const auto times = payload.array<double>("series_time");
-  ASSERT_EQ(times.size(), 300u);
+  ASSERT_EQ(times.size(), 301u) << "every step and the end";
   std::set<std::string> groups;
   int compared = 0;
   for (const auto& group : payload.header["series"]["groups"]) {
     groups.insert(group["name"]);
     for (const auto& curve : group["curves"]) {
-      const auto values = payload.array<float>(curve["values"]);
+      const bool isDouble =
+          payload.header["arrays"][curve["values"].get<std::string>()]["type"] == "f64";
+      std::vector<double> values;
+      if (isDouble)
+        values = payload.array<double>(curve["values"]);
+      else
+        for (const float x : payload.array<float>(curve["values"])) values.push_back(x);
       ASSERT_EQ(values.size(), times.size());
-      for (std::size_t i = 0; i < times.size(); ++i) {
+      for (std::size_t i = 0; i + 1 < times.size(); ++i) {
         const io::StepRecord& r = run.records[i];
         EXPECT_EQ(times[i], r.time);
         const auto [known, expected] = valueOf(curve["name"], r);
         if (!known) continue;
-        EXPECT_EQ(values[i], static_cast<float>(expected)) << curve["name"];
+        EXPECT_EQ(static_cast<float>(values[i]), static_cast<float>(expected)) << curve["name"];
         ++compared;
       }
     }

@@ -22,7 +22,12 @@ class RecordedRun {
         scene_.model, goals_, gdd::GoalContext{scene_.model, scene_.state, *scene_.data});
     for (int i = 0; i < steps; ++i) step();
     scene_.stages();
-    recording->finish(*scene_.data, scene_.state);
+    io::StepRecord last;
+    last.time = scene_.state.time;
+    last.q = scene_.state.q;
+    last.v = scene_.state.v;
+    last.a = last.u = VectorX::Zero(scene_.model.nv);
+    recording->finish(last, *scene_.data);
     states.push_back(scene_.state);
   }
 

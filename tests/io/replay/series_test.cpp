@@ -12,8 +12,8 @@ namespace softgauss::io {
 namespace {
 
 void add(SeriesTable& table, double time, const std::vector<double>& values) {
-  float* sample = table.add(time);
-  for (const double value : values) *sample++ = static_cast<float>(value);
+  double* sample = table.add(time);
+  for (const double value : values) *sample++ = value;
 }
 
 TEST(SeriesTable, KeepsEverySampleOfAShortRun) {
@@ -24,8 +24,8 @@ TEST(SeriesTable, KeepsEverySampleOfAShortRun) {
   EXPECT_EQ(table.samplesPerBucket(), 1);
   for (int i = 0; i < 99; ++i) {
     EXPECT_EQ(table.times()[i], 0.5 * i);
-    EXPECT_EQ(table.column(0)[i], 1.0f * i);
-    EXPECT_EQ(table.column(1)[i], -2.0f * i);
+    EXPECT_EQ(table.column(0)[i], 1.0 * i);
+    EXPECT_EQ(table.column(1)[i], -2.0 * i);
   }
 }
 
@@ -36,11 +36,11 @@ TEST(SeriesTable, LongRunsKeepTheExtremesOfEveryBucket) {
   std::normal_distribution<double> normal;
   for (const int samples : {101, 102, 399, 400, 401, 1234, 5003}) {
     SeriesTable table(2, 100);
-    std::vector<float> first, second;
+    std::vector<double> first, second;
     for (int i = 0; i < samples; ++i) {
       const std::vector<double> values = {normal(random), normal(random)};
-      first.push_back(static_cast<float>(values[0]));
-      second.push_back(static_cast<float>(values[1]));
+      first.push_back(values[0]);
+      second.push_back(values[1]);
       add(table, i, values);
     }
     table.finish();
@@ -66,7 +66,7 @@ TEST(SeriesTable, GapsStayGaps) {
   for (int i = 0; i < 64; ++i) add(table, i, {i < 32 ? gap : 1.0 * i});
   table.finish();
   EXPECT_TRUE(std::isnan(table.column(0).front()));
-  EXPECT_EQ(table.column(0).back(), 63.0f);
+  EXPECT_EQ(table.column(0).back(), 63.0);
 }
 
 TEST(SeriesTable, ThinnedKeepsTheExtremes) {
@@ -76,7 +76,7 @@ TEST(SeriesTable, ThinnedKeepsTheExtremes) {
   EXPECT_EQ(table.thinned(2000).size(), 800);
   const SeriesTable thinned = table.thinned(100);
   EXPECT_LE(thinned.size(), 100);
-  const std::vector<float> all = table.column(0), kept = thinned.column(0);
+  const std::vector<double> all = table.column(0), kept = thinned.column(0);
   EXPECT_EQ(*std::max_element(all.begin(), all.end()), *std::max_element(kept.begin(), kept.end()));
   EXPECT_EQ(*std::min_element(all.begin(), all.end()), *std::min_element(kept.begin(), kept.end()));
 }
