@@ -3,11 +3,13 @@
 //
 //   node replay_test.mjs FOLDER CHROMIUM ROBOTS
 //
-// FOLDER holds humanoid, arm and hand as .html and .csv, and playwright-core; screenshots go there.
+// FOLDER holds humanoid, arm, hand, long and failed as .html and .csv, and playwright-core;
+// screenshots go there.
 
 import assert from 'node:assert/strict';
 import { statSync } from 'node:fs';
 import { join } from 'node:path';
+import { Truth } from './drawn.mjs';
 import { difference, linkPoses, readLog, readUrdf } from './kinematics.mjs';
 import { Browser } from './pages.mjs';
 
@@ -65,6 +67,7 @@ async function plotPoint(page, group, fraction) {
 
 const browser = await Browser.launch(folder, chromium);
 const page = await browser.open('humanoid');
+const atFirst = ['Joint positions', 'Controls', 'Contact normal forces', 'Goal errors'];
 const size = statSync(join(folder, 'humanoid.html')).size;
 const firstFrame = await api(page, 'firstFrameMs');
 console.log(
@@ -75,6 +78,42 @@ await test('every link is where forward kinematics of the log puts it', async ()
   await posesAreThoseOfTheLog(page, 'humanoid');
   const arm = await browser.open('arm');
   await posesAreThoseOfTheLog(arm, 'arm');
+  await arm.close();
+});
+
+await test('a page of the humanoid is small and soon there', () => {
+  assert.ok(size < 15e6, `${size} bytes`);
+  assert.ok(firstFrame < 2000, `${firstFrame} ms`);
+});
+
+const truth = new Truth(page, folder, robots, 'humanoid');
+await test('the shapes that are drawn are those of the URDF, where its joints put them', async () => {
+  for (const frame of [0, 25, 300]) await truth.shapes(frame);
+  for (const link of ['torso', 'head']) await truth.pixel(link, truth.urdf.visuals.get(link)[0].rgba);
+});
+
+await test('the marks are at the centre of mass, the goal and its target', async () => {
+  const goal = { link: 'right_hand', target: [0.45, -0.25, 1.1] };
+  for (const frame of [0, 25, 600]) await truth.marks(frame, goal);
+});
+
+await test('the arrows carry the weight of who stands, the centre of pressure is amid them', () =>
+  truth.standing(600, ['right_foot', 'left_foot']));
+
+await test('curves, limits and legends are those of the log and the URDF', async () => {
+  await truth.curves(77);
+  await api(page, `setView({ groups: ${JSON.stringify(atFirst)} })`);
+});
+
+await test('the inspector gives pose and velocity', () => truth.inspector(25, 'right_hand'));
+
+await test('an arm is drawn as its log has it', async () => {
+  const arm = await browser.open('arm');
+  const armTruth = new Truth(arm, folder, robots, 'arm');
+  await armTruth.shapes(40);
+  await armTruth.marks(120, { link: 'hand', target: [0.5, 0.3, 0.5] });
+  await armTruth.curves(40);
+  await armTruth.inspector(30, 'hand');
   await arm.close();
 });
 
@@ -328,13 +367,30 @@ await test('a dark window opens dark; what plays by itself stops at the end', as
 });
 
 await test('a run that failed says why', async () => {
-  browser.alter('arm', 'failed', (header) => {
-    header.outcome = { kind: 'non-finite', message: 'the simulation became non-finite at <elbow>' };
-  });
   const bad = await browser.open('failed');
-  const banner = bad.getByRole('alert');
-  assert.equal(await banner.innerText(), 'The simulation became non-finite at <elbow>.');
+  const said = await bad.getByRole('alert').innerText();
+  assert.match(said, /^The simulation became non-finite at t = 0\.1 s/);
+  assert.ok((await api(bad, 'header.duration')) < 0.11);
   await browser.screenshot(bad, 'failed');
+  await bad.close();
+});
+
+await test('of a thinned run legends give the range of the bucket', async () => {
+  const long = await browser.open('long');
+  const bucket = await api(long, 'header.series.bucket');
+  assert.ok(bucket > 1, `bucket of ${bucket}`);
+  const longTruth = new Truth(long, folder, robots, 'long', 'arm');
+  for (const time of [0.10005, 0.6, 1.0]) await longTruth.ranges(time, bucket);
+  await long.close();
+});
+
+await test('what a run says is text, not markup', async () => {
+  browser.alter('arm', 'altered', (header) => {
+    header.outcome = { kind: 'non-finite', message: 'the state became <b>bad</b> at <elbow>' };
+  });
+  const bad = await browser.open('altered');
+  const banner = bad.getByRole('alert');
+  assert.equal(await banner.innerText(), 'The state became <b>bad</b> at <elbow>.');
   await bad.close();
 });
 

@@ -4,8 +4,9 @@
 //   node build.mjs MODULES OUTPUT
 //
 // MODULES is the node_modules folder that `npm ci` filled from package-lock.json. The same sources
-// give the same bytes. The first comment of the page holds the SHA-256 over the sources: of the
-// lines "<sha256>  <path>", one a file, in the order of the paths, as check_page.cmake has it.
+// give the same bytes. The first comment of the page holds two sums, as check_page.cmake has them:
+// the SHA-256 over the sources, that is of the lines "<sha256>  <path>", one a file, in the order
+// of the paths; and the SHA-256 of all of the page that follows the line of the sums.
 
 import { createHash } from 'node:crypto';
 import { readdirSync, readFileSync, writeFileSync } from 'node:fs';
@@ -24,11 +25,12 @@ function sources(folder = here) {
   );
 }
 
+const sha256 = (data) => createHash('sha256').update(data).digest('hex');
+
 function sourceHash() {
   const paths = sources()
     .map((file) => relative(here, file).split(sep).join('/'))
     .sort();
-  const sha256 = (data) => createHash('sha256').update(data).digest('hex');
   return sha256(
     paths.map((path) => `${sha256(readFileSync(join(here, path)))}  ${path}\n`).join(''),
   );
@@ -85,16 +87,19 @@ const body = readFileSync(join(here, 'index.html'), 'utf8').replace(/@(\w+)@/g, 
   if (parts[name] === undefined) throw new Error(`index.html: there is no part ${whole}`);
   return parts[name];
 });
-const page = `<!doctype html>
-<!--
-SPDX-License-Identifier: Apache-2.0
-Made from io/replay/page by "./dev page"; do not edit. SHA-256 of the sources: ${sourceHash()}
-
+const rest = `
 It holds these libraries:
 
 ${parts.LICENCES}
 -->
 ${body}`;
+const page = `<!doctype html>
+<!--
+SPDX-License-Identifier: Apache-2.0
+Made from io/replay/page by "./dev page"; do not edit.
+SHA-256 of the sources: ${sourceHash()}
+SHA-256 of what follows this line: ${sha256(rest)}
+${rest}`;
 
 for (const place of [parts.TITLE, parts.RUN])
   if (page.split(place).length !== 2) throw new Error(`the page must hold ${place} exactly once`);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // window.softgauss: the page by script, for tests and for those who want pictures of a run.
 
+import { drawn } from './drawn.js';
+
 export function makeApi({
   run,
   clock,
@@ -44,6 +46,7 @@ export function makeApi({
     pause: () => clock.pause(),
     select: (name) => selection.select(name === null ? null : link(name).name),
     linkPose: (name) => run.linkPose(link(name), poses()),
+    drawn: () => drawn(stage, plots, run.header.origin),
     screenPosition: (name) => stage?.screenPosition(link(name).name) ?? null,
     /**
      * Any of: mode, theme, follow, forceScale, limits and the marks as in the settings; speed,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers of the selected link at the time shown.
+// Numbers of the selected link at the time shown: pose and velocity of its frame, world axes.
 
 import { element, fixed } from '../app/dom.js';
 import { norm, rollPitchYaw } from '../data/transform.js';
@@ -26,7 +26,9 @@ export class Inspector {
       ['position', 'Position [m]'],
       ['quaternion', 'Quaternion wxyz'],
       ['rpy', 'Roll pitch yaw [°]'],
+      ['velocity', 'Velocity [m/s]'],
       ['speed', 'Speed [m/s]'],
+      ['angular', 'Angular vel. [rad/s]'],
       ['turn', 'Angular speed [rad/s]'],
     ]) {
       this.cells[key] = element('dd');
@@ -56,6 +58,8 @@ export class Inspector {
         2,
       ),
     );
+    show('velocity', triple(linear, 3));
+    show('angular', triple(angular, 3));
     show('speed', fixed(norm(linear), 3));
     show('turn', fixed(norm(angular), 3));
   }

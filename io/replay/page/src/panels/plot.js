@@ -26,6 +26,7 @@ export class Plot {
       values: panel.run.array(curve.values),
     }));
     this.hovered = null;
+    this.limitLines = [];
     this.chart = element('div', { class: 'chart' });
     this.legend = element('ul', { class: 'legend', 'aria-label': `Curves of ${group.name}` });
     this.node = element(
@@ -187,6 +188,7 @@ export class Plot {
   #drawLimits() {
     const { ctx, bbox } = this.plot;
     const curves = this.#limited();
+    this.limitLines = [];
     ctx.save();
     ctx.beginPath();
     ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
@@ -217,6 +219,7 @@ export class Plot {
         ctx.moveTo(bbox.left, y);
         ctx.lineTo(bbox.left + bbox.width, y);
         ctx.stroke();
+        this.limitLines.push({ curve: curve.name, value: this.plot.posToVal(y, 'y', true) });
       }
     }
     ctx.restore();
@@ -258,10 +261,30 @@ export class Plot {
     this.cursor.style.transform = `translateX(${x.toFixed(1)}px)`;
   }
 
+  /**
+   * The values at an entry of the series. In a thinned run entries 2 b and 2 b + 1 are the least
+   * and the greatest value of bucket b: no one value, but a range.
+   */
   showValues(index) {
+    const first = this.panel.bucket > 1 ? index - (index % 2) : index;
     for (const { value, values } of this.curves) {
-      const text = number(values[index], 3);
+      const [least, greatest] = [values[first], values[first + 1]];
+      const isRange = this.panel.bucket > 1 && Number.isFinite(greatest) && least !== greatest;
+      const text = isRange ? `${number(least, 3)} … ${number(greatest, 3)}` : number(least, 3);
       if (value.textContent !== text) value.textContent = text;
     }
+  }
+
+  /** What uPlot draws: its data by curve, and the limits where their lines were drawn. */
+  drawn() {
+    const { data, series } = this.plot;
+    return {
+      group: this.group.name,
+      times: Array.from(data[0]),
+      curves: series
+        .slice(1)
+        .map(({ label, show }, i) => ({ name: label, shown: show, values: Array.from(data[i + 1]) })),
+      limits: this.limitLines,
+    };
   }
 }

@@ -15,6 +15,8 @@ export class Plots {
     this.settings = settings;
     this.selection = selection;
     this.seriesTime = run.array('series_time');
+    // Samples that two entries stand for; 1: every sample is there.
+    this.bucket = run.header.series.bucket ?? 1;
     this.full = [run.start, Math.max(run.end, run.start + run.header.timestep)];
     this.zoom = this.full;
     this.plots = run.header.series.groups.map((group) => new Plot(this, group));
@@ -120,6 +122,11 @@ export class Plots {
 
   #visible() {
     return [...this.shown].map((i) => this.plots[i]);
+  }
+
+  /** The curves and limits of the plots that are shown. */
+  drawn() {
+    return this.#visible().map((plot) => plot.drawn());
   }
 
   restyle() {
