@@ -37,13 +37,17 @@ export class Truth {
   }
 
   /** Goes to a frame; gives what is drawn there, the log's row and the links' poses. */
-  async at(frame) {
-    const [drawn, time] = await this.page.evaluate(async (i) => {
-      softgauss.frame(i);
-      // Marks are placed with the next picture.
-      for (let k = 0; k < 2; ++k) await new Promise(requestAnimationFrame);
-      return [softgauss.drawn(), softgauss.time];
-    }, frame);
+  async at(frame, { withPlots = false } = {}) {
+    const [drawn, time] = await this.page.evaluate(
+      async ([i, isWhole]) => {
+        softgauss.frame(i);
+        // Marks are placed with the next picture.
+        for (let k = 0; k < 2; ++k) await new Promise(requestAnimationFrame);
+        const { plots, ...view } = softgauss.drawn();
+        return [isWhole ? { ...view, plots } : view, softgauss.time];
+      },
+      [frame, withPlots],
+    );
     const index = this.index.get(time);
     assert.ok(index !== undefined, `frame ${frame} is at no time of the log`);
     const poses = linkPoses(this.urdf, this.rows[index]);
@@ -127,6 +131,18 @@ export class Truth {
     );
   }
 
+  /** The legend of a plot: names and what stands beside them. */
+  #legend(group) {
+    const parts = ['.name', '.value'];
+    return this.page
+      .locator(`section.plot[aria-label="${group}"] .legend li`)
+      .evaluateAll(
+        (items, classes) =>
+          items.map((item) => classes.map((name) => item.querySelector(name).textContent)),
+        parts,
+      );
+  }
+
   /** Curves, limits and legends of joints. */
   async curves(frame) {
     const groups = [
@@ -138,7 +154,7 @@ export class Truth {
       (names) => softgauss.setView({ groups: names, limits: true }),
       groups.map(([name]) => name),
     );
-    const { drawn, row } = await this.at(frame);
+    const { drawn, row } = await this.at(frame, { withPlots: true });
     for (const [name, letter, limits] of groups) {
       const plot = drawn.plots.find(({ group }) => group === name);
       assert.ok(plot, name);
@@ -146,24 +162,24 @@ export class Truth {
       assert.ok(plot.times.length >= this.rows.length - 1, `${name}: ${plot.times.length} entries`);
       assert.ok(plot.curves.length >= 7);
       const entries = [0, 0.13, 0.5, 0.77, 1].map((s) => Math.round(s * (plot.times.length - 1)));
-      const legend = this.page.locator(`section.plot[aria-label="${name}"] .legend li`);
-      const texts = await legend.evaluateAll((items) =>
-        items.map((item) => ['.name', '.value'].map((part) => item.querySelector(part).textContent)),
-      );
+      const texts = await this.#legend(name);
       assert.equal(texts.length, plot.curves.length);
       plot.curves.forEach(({ name: joint, values }, c) => {
         const column = `${letter}:${joint}`;
         for (const entry of entries) {
           const logged = this.rows[entry].get(column);
           const error = Math.abs(values[entry] - logged);
-          assert.ok(error <= 1e-6 * Math.abs(logged) + 1e-12, `${column}: ${values[entry]}, ${logged}`);
+          const bound = 1e-6 * Math.abs(logged) + 1e-12;
+          assert.ok(error <= bound, `${column}: ${values[entry]}, ${logged}`);
           assert.equal(plot.times[entry], this.rows[entry].get('time_s'));
         }
         const logged = row.get(column);
         assert.equal(texts[c][0], joint);
         const [said] = numbersIn(texts[c][1]);
+        // Three digits, two of what is below a thousandth.
+        const bound = Math.abs(logged) * (Math.abs(logged) < 1e-3 ? 0.06 : 0.006);
         assert.ok(
-          Math.abs(said - logged) <= 0.06 * Math.min(Math.abs(logged), 0.001) + 0.006 * Math.abs(logged),
+          Math.abs(said - logged) <= bound,
           `legend of ${column}: ${texts[c][1]}, ${logged}`,
         );
         if (!limits) return;
@@ -186,11 +202,7 @@ export class Truth {
       },
       [group, time],
     );
-    const texts = await this.page
-      .locator(`section.plot[aria-label="${group}"] .legend li`)
-      .evaluateAll((items) =>
-        items.map((item) => ['.name', '.value'].map((part) => item.querySelector(part).textContent)),
-      );
+    const texts = await this.#legend(group);
     const index = this.rows.findIndex((row) => row.get('time_s') > time + 1e-12) - 1;
     const first = index - (index % bucket);
     let wide = 0;
@@ -247,7 +259,10 @@ export class Truth {
   async pixel(link, rgba) {
     const marks = ['forces', 'contacts', 'com', 'cop', 'goals'];
     const set = (shown) =>
-      this.page.evaluate((view) => softgauss.setView(view), Object.fromEntries(marks.map((m) => [m, shown])));
+      this.page.evaluate(
+        (view) => softgauss.setView(view),
+        Object.fromEntries(marks.map((mark) => [mark, shown])),
+      );
     await set(false);
     await this.at(0);
     const [x, y] = await this.page.evaluate((name) => softgauss.screenPosition(name), link);
@@ -256,7 +271,8 @@ export class Truth {
       const image = new Image();
       image.src = `data:image/png;base64,${data}`;
       await image.decode();
-      const context = Object.assign(document.createElement('canvas'), { width: 3, height: 3 }).getContext('2d');
+      const canvas = Object.assign(document.createElement('canvas'), { width: 3, height: 3 });
+      const context = canvas.getContext('2d');
       context.drawImage(image, 0, 0);
       return [...context.getImageData(1, 1, 1, 1).data].slice(0, 3).map((c) => c / 255);
     }, png.toString('base64'));
