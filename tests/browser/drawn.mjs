@@ -158,8 +158,7 @@ export class Truth {
     for (const [name, letter, limits] of groups) {
       const plot = drawn.plots.find(({ group }) => group === name);
       assert.ok(plot, name);
-      // The last row is the state after the last step, which no curve has.
-      assert.ok(plot.times.length >= this.rows.length - 1, `${name}: ${plot.times.length} entries`);
+      assert.equal(plot.times.length, this.rows.length, name);
       assert.ok(plot.curves.length >= 7);
       const entries = [0, 0.13, 0.5, 0.77, 1].map((s) => Math.round(s * (plot.times.length - 1)));
       const texts = await this.#legend(name);
