@@ -71,3 +71,11 @@ export class Browser {
     );
   }
 }
+
+/** A point of the plot of a group, at a fraction of its width. */
+export async function plotPoint(page, group, fraction) {
+  const over = page.locator(`section.plot[aria-label="${group}"] .u-over`);
+  await over.scrollIntoViewIfNeeded();
+  const { x, y, width, height } = await over.boundingBox();
+  return [x + fraction * width, y + height / 2];
+}

@@ -10,8 +10,9 @@ import assert from 'node:assert/strict';
 import { statSync } from 'node:fs';
 import { join } from 'node:path';
 import { Truth } from './drawn.mjs';
+import { misplacedButtons } from './layout.mjs';
 import { difference, linkPoses, readLog, readUrdf } from './kinematics.mjs';
-import { Browser } from './pages.mjs';
+import { Browser, plotPoint } from './pages.mjs';
 
 const [folder, chromium, robots] = process.argv.slice(2);
 // Poses are single precision, relative to an origin near the robot.
@@ -55,14 +56,6 @@ async function posesAreThoseOfTheLog(page, name) {
     }
   }
   assert.ok(compared >= 5 * urdf.links.length);
-}
-
-/** The plot of a group: its element, and a point at a fraction of its width. */
-async function plotPoint(page, group, fraction) {
-  const over = page.locator(`section.plot[aria-label="${group}"] .u-over`);
-  await over.scrollIntoViewIfNeeded();
-  const { x, y, width, height } = await over.boundingBox();
-  return [x + fraction * width, y + height / 2];
 }
 
 const browser = await Browser.launch(folder, chromium);
@@ -326,30 +319,7 @@ await test('every button has a name, and none is outside the window or over anot
   ]) {
     await page.setViewportSize({ width, height });
     await settle(page);
-    const found = await page.evaluate(() => {
-      const shown = [
-        ...document.querySelectorAll(
-          '#top button, #toolbar button, #toolbar select, #transport button, #transport select, .panel-head button',
-        ),
-      ].filter((node) => node.checkVisibility());
-      const boxes = shown.map((node) => node.getBoundingClientRect());
-      const name = (node) => node.getAttribute('aria-label') ?? node.textContent.trim();
-      const bad = shown.filter((node) => !name(node)).map((node) => node.outerHTML);
-      boxes.forEach((a, i) => {
-        if (a.left < 0 || a.top < 0 || a.right > innerWidth || a.bottom > innerHeight)
-          bad.push(`${name(shown[i])} is outside`);
-        boxes.slice(i + 1).forEach((b, k) => {
-          if (
-            a.left < b.right - 1 &&
-            b.left < a.right - 1 &&
-            a.top < b.bottom - 1 &&
-            b.top < a.bottom - 1
-          )
-            bad.push(`${name(shown[i])} and ${name(shown[i + 1 + k])} overlap`);
-        });
-      });
-      return bad;
-    });
+    const found = await page.evaluate(misplacedButtons);
     assert.deepEqual(found, [], `${width} × ${height}`);
     await browser.screenshot(page, `humanoid_${width}x${height}`);
   }
