@@ -109,7 +109,7 @@ void SceneContacts::Scene::setPairs(const std::vector<GeometryPair>& pairs, int 
   for (const GeometryPair& pair : pairs) {
     const Geometry& a = model.geometries[static_cast<std::size_t>(pair.a)];
     const Geometry& b = model.geometries[static_cast<std::size_t>(pair.b)];
-    const double margin = mixMaterials(a.material, b.material).margin;
+    const double margin = pairMaterial(model, pair.a, pair.b).margin;
     const double reach = radius[static_cast<std::size_t>(pair.a)] +
                          radius[static_cast<std::size_t>(pair.b)] + margin;
     (a.shape.kind == ShapeKind::plane ? planeRows : rows)
@@ -125,8 +125,12 @@ void SceneContacts::Scene::setPairs(const std::vector<GeometryPair>& pairs, int 
   for (std::size_t i = 0; i < model.geometries.size(); ++i) {
     if (model.geometries[i].shape.kind == ShapeKind::plane) continue;
     movable.push_back(static_cast<int>(i));
-    // Half of each pair's margin: material margins add up.
-    radii.push_back(radius[i] + std::max(model.geometries[i].material.margin, 0.0));
+    // At least half of each pair's margin: material margins add up.
+    double margin = std::max(model.geometries[i].material.margin, 0.0);
+    for (const ContactPair& pair : model.contactPairs)
+      if (pair.geometryA == static_cast<int>(i) || pair.geometryB == static_cast<int>(i))
+        margin = std::max(margin, 0.5 * pair.material.margin);
+    radii.push_back(radius[i] + margin);
   }
   movableCentre.resize(movable.size());
   broadphase = std::make_unique<detail::Broadphase>(radii);

@@ -119,7 +119,8 @@ std::vector<EffectNote> effectNotes(const Model& model) {
             "nothing moves");
   notes.add("damping", dofsWith(model, [](const Dof& d) { return d.damping > 0.0; }), "dof",
             "no joint has damping");
-  notes.add("spring", false, "", "no joint has a spring");
+  notes.add("spring", dofsWith(model, [](const Dof& d) { return d.stiffness > 0.0; }), "dof",
+            "no joint has a spring");
   notes.add("armature", dofsWith(model, [](const Dof& d) { return d.armature > 0.0; }), "dof",
             "no joint has rotor inertia");
   notes.add("actuation", dofsWith(model, [](const Dof& d) { return d.actuated; }), "actuated joint",

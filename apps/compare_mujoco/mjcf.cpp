@@ -163,8 +163,7 @@ class Writer {
   }
 
   void writePair(const collision::GeometryPair& pair) {
-    const Material m = mixMaterials(model_.geometries[idx(pair.a)].material,
-                                    model_.geometries[idx(pair.b)].material);
+    const Material m = pairMaterial(model_, pair.a, pair.b);
     line(
         "<pair geom1=\"g{}\" geom2=\"g{}\" condim=\"{}\" friction=\"{} {} {} {} {}\" margin=\"{}\" "
         "{}/>",

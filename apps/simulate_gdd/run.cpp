@@ -152,7 +152,7 @@ class Runner {
     record_.gddUs = gdd ? 1e6 * controller_.solveTime : 0.0;
     record_.forwardUs = record_.stepUs - record_.gddUs;
     record_.physicsViolation = physicsViolation(model_, data_, scratch_);
-    const Energy energy = computeEnergy(model_, data_.kinematics, record_.v);
+    const Energy energy = computeEnergy(model_, data_.kinematics, record_.q, record_.v);
     record_.energy = energy.total();
     record_.kineticEnergy = energy.kinetic;
     record_.maxPenetration = stats.maxPenetration;
@@ -188,7 +188,7 @@ class Runner {
     last.a = last.u = VectorX::Zero(model_.nv);
     last.contacts = data_.stats.contacts;
     last.constraints = data_.stats.rows;
-    const Energy energy = computeEnergy(model_, data_.kinematics, state_.v);
+    const Energy energy = computeEnergy(model_, data_.kinematics, state_.q, state_.v);
     last.energy = energy.total();
     last.kineticEnergy = energy.kinetic;
     last.maxPenetration = data_.stats.maxPenetration;

@@ -2,6 +2,7 @@
 #include "engine/constraints/contact.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "engine/constraints/impedance.hpp"
 #include "engine/core/rotation.hpp"
@@ -26,12 +27,19 @@ Matrix3 contactFrame(const Contact& c) {
   return R;
 }
 
-/// Values on the edges from those in the contact frame: e = y_n ± μ y_k.
-void toEdges(const double* y, double mu, double* e) {
-  e[0] = y[0] + mu * y[1];
-  e[1] = y[0] - mu * y[1];
-  e[2] = y[0] + mu * y[2];
-  e[3] = y[0] - mu * y[2];
+/// condim of the effects that are switched on. Rolling friction comes with torsional friction.
+int simulatedCondim(const EffectSet& effects, int condim) {
+  if (!effects.has(Effect::rollingFriction)) condim = std::min(condim, 4);
+  if (!effects.has(Effect::torsionalFriction)) condim = std::min(condim, 3);
+  return condim;
+}
+
+/// Values on the edges from those in the contact frame: e = y_n ± μ_k y_k.
+void toEdges(const double* y, const ContactRows& made, double* e) {
+  for (int k = 0; k < made.pairs; ++k) {
+    e[2 * k] = y[0] + made.frictions[k] * y[k + 1];
+    e[2 * k + 1] = y[0] - made.frictions[k] * y[k + 1];
+  }
 }
 
 }  // namespace
@@ -54,6 +62,18 @@ Material mixMaterials(const Material& a, const Material& b) {
   return m;
 }
 
+Material pairMaterial(const Model& model, int geometryA, int geometryB) {
+  if (!model.contactPairs.empty()) {
+    const auto [a, b] = std::minmax(geometryA, geometryB);
+    const auto at = std::lower_bound(
+        model.contactPairs.begin(), model.contactPairs.end(), std::pair<int, int>(a, b),
+        [](const ContactPair& p, auto key) { return std::pair(p.geometryA, p.geometryB) < key; });
+    if (at != model.contactPairs.end() && at->geometryA == a && at->geometryB == b)
+      return at->material;
+  }
+  return mixMaterials(model.geometries[geometryA].material, model.geometries[geometryB].material);
+}
+
 void PyramidalContact::assemble(const Assembly& in) {
   const Model& model = in.model;
   jacobian_.clear();
@@ -62,39 +82,51 @@ void PyramidalContact::assemble(const Assembly& in) {
   for (int i = 0; i < in.contacts.size(); ++i) {
     const Contact& c = in.contacts.contacts[i];
     if (model.bodies[c.bodyA].dofs == 0 && model.bodies[c.bodyB].dofs == 0) continue;
-    const Material material = mixMaterials(model.geometries[c.geometryA].material,
-                                           model.geometries[c.geometryB].material);
+    const Material material = pairMaterial(model, c.geometryA, c.geometryB);
     const double r = c.distance - material.margin;
     if (r >= 0.0) continue;  // NaN makes rows, so that the solve reports it
 
-    const bool frictional = material.condim > 1 && material.slidingFriction >= kSmallestFriction;
+    const int condim = simulatedCondim(model.options.effects, material.condim);
+    const bool frictional = condim > 1 && material.slidingFriction >= kSmallestFriction;
     const double mu = frictional ? material.slidingFriction : 0.0;
     ContactRows made{i, static_cast<int>(reference.size()), mu, contactFrame(c)};
+    if (frictional) {
+      made.pairs = condim - 1;
+      const double spin = std::max(material.torsionalFriction, kSmallestFriction);
+      const double roll = std::max(material.rollingFriction, kSmallestFriction);
+      made.frictions = {mu, mu, spin, roll, roll};
+    }
     RelativeMotion motion;
     motion.bodyA = c.bodyA;
     motion.bodyB = c.bodyB;
     motion.p_WA = motion.p_WB = c.p_WC;
-    motion.linear = made.R_WC;
+    motion.linear = motion.angular = made.R_WC;
     motion.linearDim = frictional ? 3 : 1;
+    motion.angularDim = std::max(0, made.pairs - 2);
     jacobian_.add(model, in.kinematics, in.tree, motion);
     made_.push_back(made);
 
     const double weight =
         (in.weights.translation[c.bodyA] + in.weights.translation[c.bodyB]) * (1.0 + mu * mu);
     const Softness soft = softnessAt(material.impedance, r, weight, model.options.timestep);
-    const Vector3 ydot =
+    double ydot[6];
+    Eigen::Map<Vector3>(ydot).noalias() =
         made.R_WC.transpose() * (pointVelocity(model, in.kinematics, c.bodyB, c.p_WC) -
                                  pointVelocity(model, in.kinematics, c.bodyA, c.p_WC));
+    if (motion.angularDim > 0)
+      Eigen::Map<Vector3>(ydot + 3).noalias() =
+          made.R_WC.transpose() *
+          (in.kinematics.V[c.bodyB].angular - in.kinematics.V[c.bodyA].angular);
     if (!frictional) {
       reference.push_back(soft.referenceAcceleration(ydot[0], r));
       D.push_back(1.0 / soft.R);
       continue;
     }
-    double edgeVelocity[4];
-    toEdges(ydot.data(), mu, edgeVelocity);
+    double edgeVelocity[10];
+    toEdges(ydot, made, edgeVelocity);
     const double R = 2.0 * mu * mu / model.options.impedanceRatio * soft.R;
-    for (const double velocity : edgeVelocity) {
-      reference.push_back(soft.referenceAcceleration(velocity, r));
+    for (int edge = 0; edge < 2 * made.pairs; ++edge) {
+      reference.push_back(soft.referenceAcceleration(edgeVelocity[edge], r));
       D.push_back(1.0 / R);
     }
   }
@@ -108,57 +140,73 @@ void PyramidalContact::assemble(const Assembly& in) {
 
 void PyramidalContact::multiply(const VectorX& a, std::vector<double>& y) const {
   for (std::size_t i = 0; i < made_.size(); ++i) {
-    double frame[3];
+    double frame[6];
     jacobian_.multiply(static_cast<int>(i), a, frame);
     double* rows = y.data() + made_[i].row;
-    if (made_[i].friction > 0.0)
-      toEdges(frame, made_[i].friction, rows);
+    if (made_[i].pairs > 0)
+      toEdges(frame, made_[i], rows);
     else
       rows[0] = frame[0];
   }
 }
 
+void PyramidalContact::frameForce(int i, double* frame) const {
+  const double* e = f.data() + made_[i].row;
+  const ContactRows& made = made_[i];
+  frame[0] = made.pairs > 0 ? 0.0 : e[0];
+  for (int k = 0; k < made.pairs; ++k) {
+    frame[0] = frame[0] + e[2 * k] + e[2 * k + 1];
+    frame[k + 1] = made.frictions[k] * (e[2 * k] - e[2 * k + 1]);
+  }
+}
+
 void PyramidalContact::addForce(VectorX& tau) const {
-  for (std::size_t i = 0; i < made_.size(); ++i) {
-    const double* e = f.data() + made_[i].row;
-    const double mu = made_[i].friction;
-    const double frame[3] = {mu > 0.0 ? e[0] + e[1] + e[2] + e[3] : e[0],
-                             mu > 0.0 ? mu * (e[0] - e[1]) : 0.0,
-                             mu > 0.0 ? mu * (e[2] - e[3]) : 0.0};
-    if (frame[0] != 0.0) jacobian_.addTransposed(static_cast<int>(i), frame, tau);
+  for (int i = 0; i < static_cast<int>(made_.size()); ++i) {
+    double frame[6];
+    frameForce(i, frame);
+    if (frame[0] != 0.0) jacobian_.addTransposed(i, frame, tau);
   }
 }
 
 void PyramidalContact::addCurvature(TreeMatrix& P) {
   for (std::size_t i = 0; i < made_.size(); ++i) {
     const double* e = h.data() + made_[i].row;
-    const double mu = made_[i].friction;
-    if (mu > 0.0) {
-      // Σ over edges of D (1, ±μ eₖ)(1, ±μ eₖ)ᵀ.
-      const double normal = e[0] + e[1] + e[2] + e[3];
-      if (normal == 0.0) continue;
-      const double n1 = mu * (e[0] - e[1]), n2 = mu * (e[2] - e[3]);
-      const double t1 = mu * mu * (e[0] + e[1]), t2 = mu * mu * (e[2] + e[3]);
-      const double H[9] = {normal, n1, n2, n1, t1, 0.0, n2, 0.0, t2};
-      jacobian_.addCurvature(static_cast<int>(i), H, P);
-    } else if (e[0] != 0.0) {
-      jacobian_.addCurvature(static_cast<int>(i), e, P);
+    const int pairs = made_[i].pairs, dim = pairs + 1;
+    if (pairs == 0) {
+      if (e[0] != 0.0) jacobian_.addCurvature(static_cast<int>(i), e, P);
+      continue;
     }
+    // Σ over edges of D (1, ±μ_k e_k)(1, ±μ_k e_k)ᵀ.
+    double H[36];
+    std::fill_n(H, dim * dim, 0.0);
+    for (int k = 0; k < pairs; ++k) {
+      const double mu = made_[i].frictions[k], sum = e[2 * k] + e[2 * k + 1];
+      H[0] = H[0] + e[2 * k] + e[2 * k + 1];
+      H[k + 1] = H[(k + 1) * dim] = mu * (e[2 * k] - e[2 * k + 1]);
+      H[(k + 1) * dim + k + 1] = mu * mu * sum;
+    }
+    if (H[0] != 0.0) jacobian_.addCurvature(static_cast<int>(i), H, P);
   }
 }
 
 void PyramidalContact::addRow(int row, double scale, VectorX& y) const {
   const int i = contactOfRow_[row], edge = row - made_[i].row;
-  const double mu = edge % 2 == 0 ? made_[i].friction : -made_[i].friction;
-  const double frame[3] = {scale, edge < 2 ? scale * mu : 0.0, edge < 2 ? 0.0 : scale * mu};
+  double frame[6] = {scale, 0.0, 0.0, 0.0, 0.0, 0.0};
+  if (made_[i].pairs > 0)
+    frame[1 + edge / 2] = scale * (edge % 2 == 0 ? 1.0 : -1.0) * made_[i].frictions[edge / 2];
   jacobian_.addTransposed(i, frame, y);
 }
 
 Vector3 PyramidalContact::force(int i) const {
-  const double* e = f.data() + made_[i].row;
-  const double mu = made_[i].friction;
-  if (mu == 0.0) return e[0] * made_[i].R_WC.col(0);
-  return made_[i].R_WC * Vector3(e[0] + e[1] + e[2] + e[3], mu * (e[0] - e[1]), mu * (e[2] - e[3]));
+  double frame[6] = {};
+  frameForce(i, frame);
+  return made_[i].R_WC * Vector3(frame[0], frame[1], frame[2]);
+}
+
+Vector3 PyramidalContact::moment(int i) const {
+  double frame[6] = {};
+  frameForce(i, frame);
+  return made_[i].R_WC * Vector3(frame[3], frame[4], frame[5]);
 }
 
 }  // namespace softgauss

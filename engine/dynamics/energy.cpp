@@ -23,7 +23,7 @@ BodyMotion bodyMotion(const Model& model, const Kinematics& k, int b) {
 
 }  // namespace
 
-Energy computeEnergy(const Model& model, const Kinematics& k, const VectorX& v) {
+Energy computeEnergy(const Model& model, const Kinematics& k, const VectorX& q, const VectorX& v) {
   Energy e;
   const bool gravity = model.options.effects.has(Effect::gravity);
   for (int b = 1; b < model.bodyCount(); ++b) {
@@ -35,6 +35,12 @@ Energy computeEnergy(const Model& model, const Kinematics& k, const VectorX& v) 
   }
   if (model.options.effects.has(Effect::armature))
     for (int i = 0; i < model.nv; ++i) e.kinetic += 0.5 * model.dofs[i].armature * v[i] * v[i];
+  if (model.options.effects.has(Effect::spring))
+    for (const Dof& dof : model.dofs) {
+      if (dof.stiffness == 0.0) continue;
+      const double stretch = q[model.bodies[dof.body].q] - dof.springReference;
+      e.potential += 0.5 * dof.stiffness * stretch * stretch;
+    }
   return e;
 }
 

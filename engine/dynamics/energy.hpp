@@ -8,12 +8,13 @@
 namespace softgauss {
 
 struct Energy {
-  double kinetic = 0.0;    ///< ½ vᵀM v, armature included [J]
-  double potential = 0.0;  ///< −Σ m gᵀ p_com, zero at the world's origin [J]
+  double kinetic = 0.0;  ///< ½ vᵀM v, armature included [J]
+  double potential = 0.0;  ///< −Σ m gᵀ p_com, zero at the world's origin, and Σ ½ k (q − q_s)² [J]
   double total() const { return kinetic + potential; }
 };
 
-Energy computeEnergy(const Model& model, const Kinematics& kinematics, const VectorX& v);
+Energy computeEnergy(const Model& model, const Kinematics& kinematics, const VectorX& q,
+                     const VectorX& v);
 
 /// Linear momentum [kg m/s] and angular momentum about the world's origin [kg m²/s].
 struct Momentum {

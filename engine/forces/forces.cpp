@@ -3,6 +3,7 @@
 
 #include "engine/forces/damping.hpp"
 #include "engine/forces/external_wrench.hpp"
+#include "engine/forces/spring.hpp"
 
 namespace softgauss {
 
@@ -11,6 +12,7 @@ void computeSmoothForces(const Model& model, const State& state, const Input& in
   computeBias(model, k, inertia, stage.work, stage.bias);
   stage.c = stage.bias;
   addDamping(model, state.v, stage.c);
+  addSprings(model, state.q, stage.c);
   for (const ExternalWrench& wrench : input.wrenches) addExternalWrench(model, k, wrench, stage.c);
   if (input.tau.size() == model.nv)
     stage.tau = input.tau;

@@ -3,9 +3,10 @@
 
 /// Smooth forces: everything in  M a + c = τ + Jᵀ f  that no constraint makes (T.7).
 ///
-///   c = b(q, v) + D v − Σ J_Bᵀ F_B,   τ = applied generalised force
+///   c = b(q, v) + D v + K (q − q_s) − Σ J_Bᵀ F_B,   τ = applied generalised force
 ///
-/// b: gravity, Coriolis and centripetal terms (rnea.hpp); D: joint damping; F_B: external wrenches.
+/// b: gravity, Coriolis and centripetal terms (rnea.hpp); D: joint damping; K:
+/// joint springs; F_B: external wrenches.
 /// c is the paper's c(q, v): all that does not depend on the control or the acceleration.
 
 #include "engine/dynamics/rnea.hpp"

@@ -14,6 +14,7 @@ enum class Effect : std::uint8_t {
   gravity,
   coriolis,
   damping,
+  spring,
   armature,
   actuation,
   jointLimit,
@@ -21,7 +22,9 @@ enum class Effect : std::uint8_t {
   equality,
   selfCollision,
   groundContact,
-  objectContact
+  objectContact,
+  torsionalFriction,
+  rollingFriction
 };
 
 struct EffectName {
@@ -34,6 +37,7 @@ inline constexpr EffectName kEffectNames[] = {
     {Effect::gravity, "gravity", "weight of every body"},
     {Effect::coriolis, "coriolis", "velocity-dependent inertial forces"},
     {Effect::damping, "damping", "joint damping, implicit in the step"},
+    {Effect::spring, "spring", "springs of joints"},
     {Effect::armature, "armature", "rotor inertia on the diagonal of M"},
     {Effect::actuation, "actuation", "controls on actuated joints"},
     {Effect::jointLimit, "joint_limit", "soft joint limits"},
@@ -42,6 +46,8 @@ inline constexpr EffectName kEffectNames[] = {
     {Effect::selfCollision, "self_collision", "contacts between bodies of one robot"},
     {Effect::groundContact, "ground_contact", "contacts with shapes fixed to the world"},
     {Effect::objectContact, "object_contact", "contacts between different robots"},
+    {Effect::torsionalFriction, "torsional_friction", "moment about the normal of a contact"},
+    {Effect::rollingFriction, "rolling_friction", "moment about the tangents of a contact"},
 };
 
 /// A set of effects.

@@ -25,7 +25,7 @@ struct Material {
   double slidingFriction = 1.0;      ///< μ, Coulomb [-]
   double torsionalFriction = 0.005;  ///< [m], read by condim 4 and 6
   double rollingFriction = 0.0001;   ///< [m], read by condim 6
-  int condim = 3;                    ///< 1 frictionless, 3 sliding friction
+  int condim = 3;                    ///< 1 frictionless, 3 sliding, 4 and torsional, 6 and rolling
   double margin = 0.0;               ///< [m] a contact makes rows where distance < margin
   Impedance impedance;
 };

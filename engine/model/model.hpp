@@ -63,6 +63,8 @@ struct Dof {
   double armature = 0.0;            ///< rotor inertia added to the diagonal of M [kg m² or kg]
   double dryFriction = 0.0;         ///< largest dry friction force [N m or N]
   Impedance frictionImpedance;      ///< of the dry friction
+  double stiffness = 0.0;           ///< of a spring, scalar joints only [N m/rad or N/m]
+  double springReference = 0.0;     ///< q at which the spring is at rest [rad or m]
   bool actuated = false;            ///< has a control u
   double effortLower = -kInfinity;  ///< control box [N m or N]
   double effortUpper = kInfinity;
@@ -111,6 +113,7 @@ struct Model {
   std::vector<JointCoupling> couplings;  ///< mimic joints first
   std::vector<Frame> frames;
   std::vector<Geometry> geometries;
+  std::vector<ContactPair> contactPairs;  ///< ordered by (geometryA, geometryB)
   std::vector<Visual> visuals;
   std::vector<std::string> warnings;  ///< what a user should know about how it was read
 

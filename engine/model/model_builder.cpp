@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "engine/model/capsule_recognition.hpp"
+#include "engine/model/detail/contact_pairs.hpp"
 #include "engine/model/detail/equalities.hpp"
 #include "engine/model/detail/kinematic_tree.hpp"
 #include "engine/model/detail/spec_checks.hpp"
@@ -22,6 +23,10 @@ ModelBuilder& ModelBuilder::joint(JointSpec spec) {
 }
 ModelBuilder& ModelBuilder::geometry(GeometrySpec spec) {
   geometries_.push_back(std::move(spec));
+  return *this;
+}
+ModelBuilder& ModelBuilder::pair(PairSpec spec) {
+  pairs_.push_back(std::move(spec));
   return *this;
 }
 ModelBuilder& ModelBuilder::connect(ConnectSpec spec) {
@@ -203,6 +208,8 @@ class Assembler {
     dof.dryFriction = joint.dryFriction;
     dof.frictionImpedance = joint.frictionImpedance;
     dof.armature = joint.armature;
+    dof.stiffness = joint.stiffness;
+    dof.springReference = joint.springReference;
     dof.actuated = actuated;
     if (joint.effort && *joint.effort > 0.0) {
       dof.effortLower = -*joint.effort;
@@ -383,6 +390,7 @@ Model ModelBuilder::build() const {
     const Placement at = placementOf(spec.link, {}, "visual");
     model.visuals.push_back({spec.link, at.body, at.X_BL * spec.X_LG, spec.shape, spec.rgba});
   }
+  detail::addContactPairs(model, pairs_);
   detail::addConnections(model, connections_);
   detail::addWelds(model, welds_);
   detail::addCouplings(model, joints_, couplings_);

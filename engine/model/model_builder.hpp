@@ -45,6 +45,8 @@ struct JointSpec {
   double damping = 0.0;
   double dryFriction = 0.0;  ///< largest force [N m or N]
   Impedance frictionImpedance;
+  double stiffness = 0.0;        ///< of a spring [N m/rad or N/m]; revolute, continuous, prismatic
+  double springReference = 0.0;  ///< [rad or m]
   double armature = 0.0;
   std::optional<MimicSpec> mimic;
   SourceLocation where;
@@ -55,6 +57,13 @@ struct GeometrySpec {
   std::string link;
   Transform X_LG;
   Shape shape;
+  Material material;
+  SourceLocation where;
+};
+
+/// Gives two geometries that touch each other a surface of its own.
+struct PairSpec {
+  std::string geometryA, geometryB;  ///< names
   Material material;
   SourceLocation where;
 };
@@ -106,6 +115,7 @@ class ModelBuilder {
   ModelBuilder& link(LinkSpec spec);
   ModelBuilder& joint(JointSpec spec);
   ModelBuilder& geometry(GeometrySpec spec);  ///< link "world" fixes it to the world
+  ModelBuilder& pair(PairSpec spec);
   ModelBuilder& connect(ConnectSpec spec);
   ModelBuilder& weld(WeldSpec spec);
   ModelBuilder& couple(CouplingSpec spec);
@@ -143,6 +153,7 @@ class ModelBuilder {
   std::vector<LinkSpec> links_;
   std::vector<JointSpec> joints_;
   std::vector<GeometrySpec> geometries_;
+  std::vector<PairSpec> pairs_;
   std::vector<ConnectSpec> connections_;
   std::vector<WeldSpec> welds_;
   std::vector<CouplingSpec> couplings_;

@@ -85,6 +85,13 @@ struct Geometry {
   Material material;
 };
 
+/// A pair of geometries with a surface of its own, in place of the mix of theirs.
+struct ContactPair {
+  int geometryA = 0;  ///< index into Model::geometries
+  int geometryB = 0;  ///< > geometryA
+  Material material;
+};
+
 /// A shape that is only looked at.
 struct Visual {
   std::string link;

@@ -184,3 +184,33 @@ TEST(SceneContacts, WhatLiesFlatOnABoxRests) {
     EXPECT_GE(data.contacts.size(), 4);
   }
 }
+
+// A pair with a margin of its own is found within that margin, by the broadphase too.
+TEST(SceneContacts, FindAPairWithinItsOwnMargin) {
+  for (const int broadphasePairs : {0, 1 << 20}) {
+    ModelBuilder builder = heap(3);
+    for (const char* name : {"left", "right"})
+      builder.link(sphereLink(name, 1.0, 0.1)).geometry(geometrySpec(name, Shape::sphere(0.1)));
+    PairSpec pair;
+    const std::string left = geometrySpec("left", Shape::sphere(0.1)).name;
+    pair.geometryA = left;
+    pair.geometryB = geometrySpec("right", Shape::sphere(0.1)).name;
+    pair.material.margin = 0.02;
+    const Model model = builder.pair(pair).build();
+    State state(model);
+    for (const Tree& tree : model.trees) {
+      const int b = tree.rootBody, q = model.bodies[static_cast<std::size_t>(b)].q;
+      const std::string& name = model.bodyNames[static_cast<std::size_t>(b)];
+      state.q.segment<3>(q) = Vector3(3.0 * b, 0.0, 5.0);
+      if (name == "left") state.q.segment<3>(q) = Vector3(0.0, 0.0, 9.0);
+      if (name == "right") state.q.segment<3>(q) = Vector3(0.215, 0.0, 9.0);
+    }
+    Kinematics k(model);
+    computeKinematics(model, state, k);
+    SceneContacts source(model, broadphasePairs);
+    ContactSet contacts;
+    source.detect(model, k, contacts);
+    ASSERT_EQ(contacts.size(), 1) << broadphasePairs;
+    EXPECT_NEAR(contacts.contacts[0].distance, 0.015, 1e-12);
+  }
+}

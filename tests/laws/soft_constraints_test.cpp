@@ -198,15 +198,20 @@ TEST(Solver, WarmStartIsNeverWorse) {
 TEST(Friction, StaysInPyramid) {
   int checked = 0;
   for (int seed = 0; seed < 100; ++seed) {
-    Scene s = randomScene(seed, 8);
+    Scene s = lawScene(seed, 8);
     s.forward();
     const PyramidalContact& contact = s.data->constraints.contact;
     for (int i = 0; i < static_cast<int>(contact.made().size()); ++i) {
-      const Vector3 f = contact.made()[i].R_WC.transpose() * contact.force(i);
+      const ContactRows& made = contact.made()[i];
+      const Vector3 f = made.R_WC.transpose() * contact.force(i);
+      const Vector3 m = made.R_WC.transpose() * contact.moment(i);
       EXPECT_GE(f[0], 0.0);
-      // The sum of four non-negative edge forces, up to rounding.
-      EXPECT_LE(std::abs(f[1]) + std::abs(f[2]),
-                contact.made()[i].friction * f[0] + 1e-12 * (1.0 + f[0]));
+      // The sum of non-negative edge forces, up to rounding.
+      const double each[5] = {f[1], f[2], m[0], m[1], m[2]};
+      double shares = 0.0;
+      for (int k = 0; k < made.pairs; ++k) shares += std::abs(each[k]) / made.frictions[k];
+      for (int k = made.pairs; k < 5; ++k) EXPECT_SMALL(each[k], 1e-12 * (1.0 + f[0]));
+      EXPECT_LE(shares, f[0] + 1e-12 * (1.0 + f[0]));
       checked += f[0] > 0.0;
     }
   }
@@ -227,10 +232,11 @@ TEST(Contact, ForceIsNonNegativeAndVanishesOnTheFreeSide) {
 }
 
 // Newton's third law and Jᵀ: the constraint force on the dofs is the sum of the contacts' forces
-// at their points, on both bodies, and of the limits'.
+// at their points, and of their moments, on both bodies.
 TEST(Contact, ForceActsAtItsPointOnBothBodies) {
+  int moments = 0;
   for (int seed = 0; seed < 40; ++seed) {
-    Scene s = randomScene(seed, 8);
+    Scene s = lawScene(seed, 8);
     s.forward();
     VectorX actual = VectorX::Zero(s.model.nv), expected = actual;
     s.data->constraints.contact.addForce(actual);
@@ -242,9 +248,15 @@ TEST(Contact, ForceActsAtItsPointOnBothBodies) {
       expected += J.transpose() * contact.force(i);
       pointJacobian(s.model, s.data->kinematics, c.bodyA, c.p_WC, J);
       expected -= J.transpose() * contact.force(i);
+      rotationJacobian(s.model, s.data->kinematics, c.bodyB, J);
+      expected += J.transpose() * contact.moment(i);
+      rotationJacobian(s.model, s.data->kinematics, c.bodyA, J);
+      expected -= J.transpose() * contact.moment(i);
+      moments += contact.moment(i).norm() > 0.0;
     }
     EXPECT_APPROX(actual, expected, 1e-12) << "seed " << seed;
   }
+  EXPECT_GT(moments, 20);
 }
 
 }  // namespace

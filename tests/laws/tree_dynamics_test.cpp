@@ -100,7 +100,7 @@ TEST(Rnea, IsLagrangesEquation) {
       probe.state = s.state;
       probe.state.q = q;
       computeKinematics(s.model, probe.state, probe.data->kinematics);
-      const Energy e = computeEnergy(s.model, probe.data->kinematics, s.state.v);
+      const Energy e = computeEnergy(s.model, probe.data->kinematics, s.state.q, s.state.v);
       return VectorX(VectorX::Constant(1, e.kinetic - e.potential));
     };
     const VectorX tau = alongTrajectory(s.model, s.state, a, momentum) -

@@ -72,7 +72,8 @@ LinkSpec linkOf(const Json& item) {
 
 JointSpec jointOf(const Json& item) {
   allowKeys(item, {"name", "type", "parent", "child", "position", "quaternion", "axis", "range",
-                   "damping", "armature", "dryFriction", "margin", "solref", "solimp"});
+                   "damping", "armature", "dryFriction", "stiffness", "springReference", "margin",
+                   "solref", "solimp"});
   static const std::map<std::string, JointType> types = {{"fixed", JointType::fixed},
                                                          {"revolute", JointType::revolute},
                                                          {"prismatic", JointType::prismatic},
@@ -92,6 +93,8 @@ JointSpec jointOf(const Json& item) {
   joint.damping = item.value("damping", 0.0);
   joint.armature = item.value("armature", 0.0);
   joint.dryFriction = item.value("dryFriction", 0.0);
+  joint.stiffness = item.value("stiffness", 0.0);
+  joint.springReference = item.value("springReference", 0.0);
   joint.frictionImpedance = impedanceOf(item);
   return joint;
 }

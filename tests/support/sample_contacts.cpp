@@ -65,9 +65,7 @@ class Detector {
   }
 
  private:
-  double margin(int a, int b) const {
-    return mixMaterials(geometry(a).material, geometry(b).material).margin;
-  }
+  double margin(int a, int b) const { return pairMaterial(model_, a, b).margin; }
   Contact between(int a, int b) const {
     Contact contact;
     contact.geometryA = a;

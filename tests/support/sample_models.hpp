@@ -66,6 +66,8 @@ struct RandomTreeOptions {
   bool geometries = true;  ///< a small sphere on every massive link, and the ground
   // In randomScene() only, at random:
   bool dryFriction = false;
+  bool springs = false;
+  bool contactMoments = false;  ///< torsional and rolling friction of some shapes
   bool equalities =
       false;  ///< a connection, a weld, two couplings, almost met in the scene's state
 };

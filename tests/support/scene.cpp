@@ -40,6 +40,24 @@ void addDryFriction(Model& model, Random random) {
   }
 }
 
+/// Springs on half of the scalar joints.
+void addSprings(Model& model, Random random) {
+  for (Dof& dof : model.dofs) {
+    if (model.bodies[dof.body].dofs != 1 || !random.chance(0.5)) continue;
+    dof.stiffness = random.uniform(1.0, 50.0);
+    dof.springReference = random.uniform(-0.5, 0.5);
+  }
+}
+
+void addContactMoments(Model& model, Random random) {
+  for (Geometry& g : model.geometries) {
+    constexpr int kCondims[] = {1, 3, 4, 6};
+    g.material.condim = kCondims[random.index(4)];
+    g.material.torsionalFriction = random.uniform(0.01, 0.2);
+    g.material.rollingFriction = random.uniform(0.01, 0.1);
+  }
+}
+
 void addEqualities(Scene& scene, Random random) {
   Model& model = scene.model;
   computeKinematics(model, scene.state, scene.data->kinematics);
@@ -90,6 +108,8 @@ Scene randomScene(std::uint64_t seed, int contacts, const RandomTreeOptions& opt
   // Slow enough that joints with dry friction stick as well as slide.
   scene.state = randomState(model, random, options.dryFriction ? 0.1 : 2.0);
   if (options.dryFriction) addDryFriction(scene.model, Random(seed + 5000));
+  if (options.springs) addSprings(scene.model, Random(seed + 7000));
+  if (options.contactMoments) addContactMoments(scene.model, Random(seed + 8000));
   if (options.equalities) addEqualities(scene, Random(seed + 6000));
   scene.input.tau = random.vector(model.nv, 10.0);
   for (int i = 0; i < 2; ++i)
@@ -106,7 +126,8 @@ Scene randomScene(std::uint64_t seed, int contacts, const RandomTreeOptions& opt
 
 Scene lawScene(std::uint64_t seed, int contacts) {
   RandomTreeOptions options;
-  options.dryFriction = options.equalities = seed % 2 == 1;
+  options.dryFriction = options.equalities = options.springs = options.contactMoments =
+      seed % 2 == 1;
   return randomScene(seed, contacts, options);
 }
 

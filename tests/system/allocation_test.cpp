@@ -124,6 +124,17 @@ TEST(Allocation, NoneInTheStepOfAHundredLinkChainWithContacts) {
   EXPECT_EQ(allocationsOfSteadySteps(s, 100), 0);
 }
 
+// Dry friction, springs, connections, welds, couplings, contacts of every condim.
+TEST(Allocation, NoneInTheStepWithEveryEffect) {
+  SKIP_WITHOUT_HOOK();
+  for (const int seed : {1, 3, 5}) {
+    Scene s = lawScene(seed, 6);
+    EXPECT_GT(s.data->constraints.dryFriction.rowCount(), 0);
+    EXPECT_GT(s.data->constraints.weld.rowCount(), 0);
+    EXPECT_EQ(allocationsOfSteadySteps(s, 20), 0) << "seed " << seed;
+  }
+}
+
 TEST(Allocation, NoneInInverseDynamics) {
   SKIP_WITHOUT_HOOK();
   Scene s = thrownHumanoid();

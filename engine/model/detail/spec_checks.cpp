@@ -84,11 +84,28 @@ void checkJoint(const JointSpec& joint) {
   notNegative(joint.dryFriction, "friction");
   checkImpedance(joint.frictionImpedance, joint.where, element + " friction");
   notNegative(joint.armature, "armature");
+  notNegative(joint.stiffness, "stiffness");
+  if (!std::isfinite(joint.springReference)) fail("spring reference is not finite");
+  const bool scalar = joint.type == JointType::revolute || joint.type == JointType::continuous ||
+                      joint.type == JointType::prismatic;
+  if (joint.stiffness != 0.0 && !scalar)
+    fail("has a spring, which only a revolute, continuous or prismatic joint may have");
   if (joint.effort) notNegative(*joint.effort, "effort");
   if (joint.velocity) notNegative(*joint.velocity, "velocity");
   if (joint.mimic &&
       !(std::isfinite(joint.mimic->multiplier) && std::isfinite(joint.mimic->offset)))
     fail("mimic multiplier or offset is not finite");
+}
+
+void checkMaterial(const Material& m, const SourceLocation& where, const std::string& element) {
+  const auto fail = [&](const std::string& text) { throw ModelError(where, element, text); };
+  if (!(m.slidingFriction >= 0.0)) fail("friction is negative, expected 0 or more");
+  if (!(m.torsionalFriction >= 0.0) || !(m.rollingFriction >= 0.0))
+    fail("torsional or rolling friction is negative, expected 0 or more");
+  if (m.condim != 1 && m.condim != 3 && m.condim != 4 && m.condim != 6)
+    fail("condim is not 1, 3, 4 or 6");
+  if (!std::isfinite(m.margin)) fail("margin is not finite");
+  checkImpedance(m.impedance, where, element);
 }
 
 void checkGeometry(const GeometrySpec& g) {
@@ -118,9 +135,7 @@ void checkGeometry(const GeometrySpec& g) {
       if (!g.shape.mesh || g.shape.mesh->vertices.empty()) fail("mesh has no vertices");
       break;
   }
-  const Material& m = g.material;
-  if (!(m.slidingFriction >= 0.0)) fail("friction is negative, expected 0 or more");
-  if (m.condim != 1 && m.condim != 3) fail("condim is not 1 or 3");
+  checkMaterial(g.material, g.where, element);
 }
 
 void checkOptions(const Options& options) {

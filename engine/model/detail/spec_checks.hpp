@@ -13,6 +13,8 @@ void checkLink(const LinkSpec& link);
 void checkImpedance(const Impedance& impedance, const SourceLocation& where,
                     const std::string& element);
 void checkJoint(const JointSpec& joint);
+void checkMaterial(const Material& material, const SourceLocation& where,
+                   const std::string& element);
 void checkGeometry(const GeometrySpec& geometry);
 void checkOptions(const Options& options);
 

@@ -90,6 +90,44 @@ TEST(Contact, RowsAreTheEdgesOfThePyramid) {
   }
 }
 
+// condim 4 and 6: pairs of edges of the relative rotation too, all with one R.
+TEST(Contact, RowsOfTorsionalAndRollingFrictionAreEdgesOfTheRotation) {
+  for (const int condim : {4, 6}) {
+    Scene s = oneContact(condim, [&](Model& m, Contact&) {
+      for (Geometry& g : m.geometries) {
+        g.material.condim = condim;
+        g.material.torsionalFriction = 0.03;
+        g.material.rollingFriction = 0.0;  // counts as 10⁻⁵
+      }
+    });
+    const Contact& c = s.data->contacts.contacts[0];
+    const PyramidalContact& rows = s.data->constraints.contact;
+    ASSERT_EQ(rows.rowCount(), 2 * (condim - 1));
+    Eigen::Matrix<double, 3, Eigen::Dynamic> Ja(3, s.model.nv), Jb(3, s.model.nv);
+    const Matrix3 R_CW = rows.made()[0].R_WC.transpose();
+    MatrixX J(6, s.model.nv);
+    pointJacobian(s.model, s.data->kinematics, c.bodyA, c.p_WC, Ja);
+    pointJacobian(s.model, s.data->kinematics, c.bodyB, c.p_WC, Jb);
+    J.topRows(3) = R_CW * (Jb - Ja);
+    rotationJacobian(s.model, s.data->kinematics, c.bodyA, Ja);
+    rotationJacobian(s.model, s.data->kinematics, c.bodyB, Jb);
+    J.bottomRows(3) = R_CW * (Jb - Ja);
+    const double mu[5] = {0.6, 0.6, 0.03, 1e-5, 1e-5};
+    const ConvexProblem p = denseProblem(*s.data);
+    const auto& w = s.data->weights.translation;
+    const Softness soft =
+        softnessAt(Impedance{}, c.distance, (w[c.bodyA] + w[c.bodyB]) * 1.36, 0.002);
+    for (int row = 0; row < p.J.rows(); ++row) {
+      const double sign = row % 2 == 0 ? 1.0 : -1.0;
+      const MatrixX edge = J.row(0) + sign * mu[row / 2] * J.row(1 + row / 2);
+      EXPECT_APPROX(p.J.row(row), edge, 1e-14);
+      const double aRef = soft.referenceAcceleration((edge * s.state.v)(0), c.distance);
+      EXPECT_SMALL(p.aRef[row] / aRef - 1.0, 1e-12);
+      EXPECT_SMALL(p.D[row] * 2 * 0.36 * soft.R - 1.0, 1e-14);
+    }
+  }
+}
+
 TEST(Contact, WithoutFrictionHasOneRow) {
   const auto frictionless = {std::function<void(Model&, Contact&)>([](Model& m, Contact&) {
                                for (Geometry& g : m.geometries) g.material.condim = 1;
@@ -108,6 +146,35 @@ TEST(Contact, WithoutFrictionHasOneRow) {
     s.forward();
     const Vector3 f = rows.force(0);
     EXPECT_SMALL(f.cross(c.n_W).norm(), 1e-12 * (1.0 + f.norm()));
+  }
+}
+
+TEST(Contact, OfAPairWithASurfaceOfItsOwnFollowsThat) {
+  Material own;
+  own.condim = 4;
+  own.slidingFriction = 0.2;
+  own.torsionalFriction = 0.07;
+  own.margin = 0.002;
+  own.impedance.timeConstant = 0.05;
+  for (const bool swapped : {false, true}) {
+    const Scene s = oneContact(7, [&](Model& m, Contact& c) {
+      c.distance = 0.001;  // beyond the geometries' own margins
+      if (swapped) {
+        std::swap(c.bodyA, c.bodyB);
+        std::swap(c.geometryA, c.geometryB);
+      }
+      const auto [a, b] = std::minmax(c.geometryA, c.geometryB);
+      m.contactPairs = {{a, b, own}};
+    });
+    const PyramidalContact& rows = s.data->constraints.contact;
+    ASSERT_EQ(rows.rowCount(), 6);
+    EXPECT_EQ(rows.made()[0].frictions[0], 0.2);
+    EXPECT_EQ(rows.made()[0].frictions[2], 0.07);
+    const Contact& c = s.data->contacts.contacts[0];
+    const auto& w = s.data->weights.translation;
+    const Softness soft =
+        softnessAt(own.impedance, -0.001, (w[c.bodyA] + w[c.bodyB]) * 1.04, 0.002);
+    EXPECT_SMALL(rows.D[0] * 2 * 0.04 * soft.R - 1.0, 1e-12);
   }
 }
 

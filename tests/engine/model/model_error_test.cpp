@@ -23,6 +23,7 @@ struct Description {
   Options options;
   std::vector<LinkSpec> moreLinks;
   std::vector<JointSpec> moreJoints;
+  PairSpec pair;
   ConnectSpec connect;  ///< of links, where they have names
   WeldSpec weld;
   CouplingSpec coupling;
@@ -34,7 +35,7 @@ struct Description {
     hinge.where = {"robot.urdf", 5};
     slide.where = {"robot.urdf", 6};
     ball.where = {"robot.urdf", 7};
-    connect.where = weld.where = coupling.where = {"scene", 8};
+    pair.where = connect.where = weld.where = coupling.where = {"scene", 8};
   }
   Model build() const {
     ModelBuilder builder("robot");
@@ -43,6 +44,7 @@ struct Description {
     builder.joint(hinge).joint(slide).geometry(ball);
     for (const LinkSpec& link : moreLinks) builder.link(link);
     for (const JointSpec& joint : moreJoints) builder.joint(joint);
+    if (!pair.geometryA.empty()) builder.pair(pair);
     if (!connect.linkA.empty()) builder.connect(connect);
     if (!weld.linkA.empty()) builder.weld(weld);
     if (!coupling.follower.empty()) builder.couple(coupling);
@@ -180,6 +182,12 @@ const Mistake kMistakes[] = {
     {"NanPolynomial",
      [](Description& d) { d.coupling.follower = "slide", d.coupling.polynomial[3] = kNaN; },
      {"scene:8", "coupling", "coefficient"}},
+    {"PairOfNothing",
+     [](Description& d) { d.pair.geometryA = d.ball.name, d.pair.geometryB = "ghost"; },
+     {"scene:8", "pair", "geometry 'ghost' does not exist"}},
+    {"PairOfOne",
+     [](Description& d) { d.pair.geometryA = d.pair.geometryB = d.ball.name; },
+     {"scene:8", "pair", "one geometry, expected two"}},
     {"ConnectionToNothing",
      [](Description& d) { d.connect.linkA = "hand", d.connect.linkB = "ghost"; },
      {"scene:8", "connection 'hand' - 'ghost'", "link 'ghost'", "does not exist"}},
@@ -227,6 +235,15 @@ const Mistake kMistakes[] = {
     {"NegativeSlidingFriction",
      [](Description& d) { d.ball.material.slidingFriction = -0.1; },
      {"robot.urdf:7", "friction is negative"}},
+    {"NegativeRollingFriction",
+     [](Description& d) { d.ball.material.rollingFriction = -0.1; },
+     {"robot.urdf:7", "rolling friction is negative"}},
+    {"SpringOfAPlanarJoint",
+     [](Description& d) { d.hinge.type = JointType::planar, d.hinge.stiffness = 1.0; },
+     {"robot.urdf:5", "joint 'hinge'", "spring"}},
+    {"NegativeStiffness",
+     [](Description& d) { d.hinge.stiffness = -1.0; },
+     {"robot.urdf:5", "stiffness is -1"}},
     {"UnknownCondim",
      [](Description& d) { d.ball.material.condim = 2; },
      {"robot.urdf:7", "condim"}},

@@ -56,8 +56,8 @@ class RecordedRun {
     r.u = VectorX::Zero(scene_.model.nv);
     r.contacts = data.stats.contacts;
     r.constraints = data.stats.rows;
-    r.kineticEnergy = computeEnergy(scene_.model, data.kinematics, r.v).kinetic;
-    r.energy = computeEnergy(scene_.model, data.kinematics, r.v).total();
+    r.kineticEnergy = computeEnergy(scene_.model, data.kinematics, r.q, r.v).kinetic;
+    r.energy = computeEnergy(scene_.model, data.kinematics, r.q, r.v).total();
     recording->addStep(r, data);
     states.push_back(before);
     records.push_back(r);
