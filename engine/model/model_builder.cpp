@@ -2,7 +2,6 @@
 #include "engine/model/model_builder.hpp"
 
 #include <algorithm>
-#include <set>
 #include <utility>
 
 #include "engine/model/capsule_recognition.hpp"
@@ -277,76 +276,6 @@ JointSpec* ModelBuilder::findJoint(const std::string& name) {
   const auto it = std::find_if(joints_.begin(), joints_.end(),
                                [&](const JointSpec& joint) { return joint.name == name; });
   return it == joints_.end() ? nullptr : &*it;
-}
-
-std::vector<std::string> ModelBuilder::rootLinks() const {
-  std::set<std::string> children;
-  for (const JointSpec& joint : joints_) children.insert(joint.child);
-  std::vector<std::string> roots;
-  for (const LinkSpec& link : links_)
-    if (!children.count(link.name)) roots.push_back(link.name);
-  return roots;
-}
-
-ModelBuilder& ModelBuilder::add(const ModelBuilder& other, const std::string& prefix) {
-  const auto own = [&](const std::string& name) {
-    return prefix.empty() ? name : prefix + "/" + name;
-  };
-  std::set<std::string> links;
-  for (const LinkSpec& link : other.links_) links.insert(link.name);
-  const std::vector<std::string> otherRoots = other.rootLinks();
-  // "world" means the world where the other has no link of that name.
-  const auto linkName = [&](const std::string& link) {
-    return links.count(link) ? own(link) : link;
-  };
-
-  for (LinkSpec link : other.links_) {
-    if (std::find(otherRoots.begin(), otherRoots.end(), link.name) != otherRoots.end()) {
-      const auto root = std::find_if(other.roots_.begin(), other.roots_.end(),
-                                     [&](const Root& r) { return r.link == link.name; });
-      const BaseKind kind = root == other.roots_.end() ? other.base : root->base;
-      const bool floats =
-          kind == BaseKind::floating || (kind == BaseKind::automatic && !isWorld(link));
-      roots_.push_back({own(link.name), floats ? BaseKind::floating : BaseKind::fixed,
-                        root == other.roots_.end() ? other.X_WRoot : root->X_WRoot});
-    }
-    link.name = own(link.name);
-    links_.push_back(std::move(link));
-  }
-  for (JointSpec joint : other.joints_) {
-    joint.name = own(joint.name);
-    joint.parent = linkName(joint.parent);
-    joint.child = linkName(joint.child);
-    if (joint.mimic) joint.mimic->leader = own(joint.mimic->leader);
-    if (other.zeroEffortIsUnlimited && joint.effort == 0.0) joint.effort.reset();
-    joints_.push_back(std::move(joint));
-  }
-  for (GeometrySpec geometry : other.geometries_) {
-    geometry.name = own(geometry.name);
-    geometry.link = linkName(geometry.link);
-    geometries_.push_back(std::move(geometry));
-  }
-  const auto tie = [&](const auto& specs, auto& all) {
-    for (auto spec : specs) {
-      spec.linkA = linkName(spec.linkA);
-      spec.linkB = linkName(spec.linkB);
-      all.push_back(std::move(spec));
-    }
-  };
-  tie(other.connections_, connections_);
-  tie(other.welds_, welds_);
-  for (CouplingSpec coupling : other.couplings_) {
-    coupling.follower = own(coupling.follower);
-    if (!coupling.leader.empty()) coupling.leader = own(coupling.leader);
-    couplings_.push_back(std::move(coupling));
-  }
-  for (VisualSpec visual : other.visuals_) {
-    visual.link = linkName(visual.link);
-    visuals_.push_back(std::move(visual));
-  }
-  for (const std::string& text : other.warnings_)
-    warnings_.push_back(prefix.empty() ? text : prefix + ": " + text);
-  return *this;
 }
 
 Model ModelBuilder::build() const {
