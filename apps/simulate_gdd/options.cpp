@@ -171,8 +171,10 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
                  "semi-implicit-euler (default): order 1, one solve a step, implicit joint damping")
       ->check(CLI::IsMember({"semi-implicit-euler"}))
       ->group(simulation);
-  app.add_option("--cone", cone, "pyramidal (default): friction pyramids of four edges")
-      ->check(CLI::IsMember({"pyramidal"}))
+  app.add_option("--cone", cone,
+                 "pyramidal (default): friction pyramids, piecewise quadratic, the fastest;\n"
+                 "elliptic: friction alike in all directions, rest depth independent of it")
+      ->check(CLI::IsMember({"pyramidal", "elliptic"}))
       ->group(simulation);
   app.add_option("--gdd-solver", solver,
                  "augmented-lagrangian (default): the paper's primal-dual Gauss-Newton solver")
@@ -224,6 +226,7 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
     if (base == "fixed")
       throw UsageError("--base-height is for a floating base, and --base is fixed");
   }
+  if (!cone.empty()) options.cone = cone == "elliptic" ? Cone::elliptic : Cone::pyramidal;
   options.likeMujoco = compatibility == "mujoco";
   options.zeroEffortIsUnlimited = zeroEffort == "unlimited";
   options.effects = parseEffects(effects);

@@ -33,7 +33,8 @@ struct SimulateOptions {
   std::vector<std::pair<std::string, double>> q0;
   EffectSet effects = EffectSet::all();
   bool zeroEffortIsUnlimited = false;
-  bool likeMujoco = false;  ///< --compatibility mujoco
+  std::optional<Cone> cone;  ///< absent: the model's own
+  bool likeMujoco = false;   ///< --compatibility mujoco
   bool explain = false;
   bool quiet = false;
   std::filesystem::path log, summary, view, plot;

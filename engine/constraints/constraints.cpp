@@ -22,6 +22,7 @@ void Constraints::assemble(const Assembly& in) {
   weld.appendCouplings(couplings_, couplingEnd_);
   coupling.appendCouplings(couplings_, couplingEnd_);
   contact.appendCouplings(couplings_, couplingEnd_);
+  ellipticContact.appendCouplings(couplings_, couplingEnd_);
   if (couplings_.empty()) {
     sparsity_ = &in.tree;
     return;
@@ -76,7 +77,7 @@ void Constraints::addCurvature(TreeMatrix& P) {
 void Constraints::findCrossings(std::vector<Crossing>& crossings) const {
   int kind = 0;
   visit([&](const auto& c) {
-    c.findCrossings(kind, crossings);
+    if constexpr (PiecewiseQuadratic<std::decay_t<decltype(c)>>) c.findCrossings(kind, crossings);
     ++kind;
   });
 }
@@ -87,20 +88,21 @@ void Constraints::addRow(RowId id, double scale, VectorX& y) const {
 
 double Constraints::aboveKnot(Knot knot) const {
   double x = 0.0;
-  visitOne(*this, knot.row.kind, [&](const auto& c) { x = c.aboveKnot(knot.row.row, knot.index); });
+  visitKnotted(*this, knot.row.kind,
+               [&](const auto& c) { x = c.aboveKnot(knot.row.row, knot.index); });
   return x;
 }
 
 double Constraints::curvatureJump(Knot knot) const {
   double jump = 0.0;
-  visitOne(*this, knot.row.kind,
-           [&](const auto& c) { jump = c.penalty(knot.row.row).curvatureJump(knot.index); });
+  visitKnotted(*this, knot.row.kind,
+               [&](const auto& c) { jump = c.penalty(knot.row.row).curvatureJump(knot.index); });
   return jump;
 }
 
 void Constraints::placeAtKnot(Knot knot, bool stiffSide) {
-  visitOne(*this, knot.row.kind,
-           [&](auto& c) { c.placeAtKnot(knot.row.row, knot.index, stiffSide); });
+  visitKnotted(*this, knot.row.kind,
+               [&](auto& c) { c.placeAtKnot(knot.row.row, knot.index, stiffSide); });
 }
 
 void Constraints::holdOnRay(RowId id) {

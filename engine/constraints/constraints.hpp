@@ -8,21 +8,22 @@
 /// an empty loop.
 
 #include <concepts>
+#include <type_traits>
 #include <vector>
 
 #include "engine/constraints/connection.hpp"
-#include "engine/constraints/contact.hpp"
 #include "engine/constraints/dry_friction.hpp"
+#include "engine/constraints/elliptic_contact.hpp"
 #include "engine/constraints/joint_coupling.hpp"
 #include "engine/constraints/joint_limit.hpp"
+#include "engine/constraints/pyramidal_contact.hpp"
 #include "engine/constraints/weld.hpp"
 
 namespace softgauss {
 
 template <class C>
 concept SoftConstraint = requires(C c, const Assembly& in, const VectorX& a, VectorX& tau,
-                                  std::vector<double>& y, TreeMatrix& P, bool& changed, Jet& jet,
-                                  std::vector<Crossing>& crossings) {
+                                  std::vector<double>& y, TreeMatrix& P, bool& changed, Jet& jet) {
   { c.rowCount() } -> std::convertible_to<int>;
   c.assemble(in);                                          // rows, a_ref, D
   c.multiply(a, y);                                        // y = J a
@@ -30,11 +31,17 @@ concept SoftConstraint = requires(C c, const Assembly& in, const VectorX& a, Vec
   c.along(0.0, jet);                                       // derivatives along a ray
   c.advance(0.0);                                          // x += α dx
   c.addForce(tau);                                         // tau += Jᵀ f
-  c.findCrossings(0, crossings);                           // knots along a ray
+  c.addCurvature(P);                                       // P += Jᵀ ∇²s J
+  c.addRow(0, 1.0, tau);                                   // tau += scale · (row of J)ᵀ
+};
+
+/// Rows whose penalties are piecewise quadratic, each by itself.
+template <class C>
+concept PiecewiseQuadratic = SoftConstraint<C> && requires(C c, std::vector<Crossing>& crossings) {
+  c.findCrossings(0, crossings);  // knots along a ray
   { c.aboveKnot(0, 0) } -> std::convertible_to<double>;
+  { c.penalty(0).curvatureJump(0) } -> std::convertible_to<double>;
   c.placeAtKnot(0, 0, true);
-  c.addCurvature(P);      // P += Jᵀ ∇²s J
-  c.addRow(0, 1.0, tau);  // tau += scale · (row of J)ᵀ
 };
 
 class Constraints {
@@ -45,6 +52,7 @@ class Constraints {
   DryFriction dryFriction;
   JointLimit jointLimit;
   PyramidalContact contact;
+  EllipticContact ellipticContact;
 
   template <class F>
   void visit(F&& f) {
@@ -54,6 +62,7 @@ class Constraints {
     f(dryFriction);
     f(jointLimit);
     f(contact);
+    f(ellipticContact);
   }
   template <class F>
   void visit(F&& f) const {
@@ -63,6 +72,7 @@ class Constraints {
     f(dryFriction);
     f(jointLimit);
     f(contact);
+    f(ellipticContact);
   }
 
   void assemble(const Assembly& in);
@@ -105,6 +115,14 @@ class Constraints {
       if (i++ == kind) f(c);
     });
   }
+  /// Calls f with the effect of a row that has knots.
+  template <class Self, class F>
+  static void visitKnotted(Self& self, int kind, F&& f) {
+    visitOne(self, kind, [&](auto& c) {
+      if constexpr (PiecewiseQuadratic<std::remove_const_t<std::remove_reference_t<decltype(c)>>>)
+        f(c);
+    });
+  }
 
   const TreeSparsity* sparsity_ = nullptr;
   TreeSparsity coupled_;
@@ -112,11 +130,12 @@ class Constraints {
   std::vector<int> couplingEnd_, lastCouplingEnd_;
 };
 
-static_assert(SoftConstraint<ConnectionRows>);
-static_assert(SoftConstraint<WeldRows>);
-static_assert(SoftConstraint<CouplingRows>);
-static_assert(SoftConstraint<DryFriction>);
-static_assert(SoftConstraint<JointLimit>);
-static_assert(SoftConstraint<PyramidalContact>);
+static_assert(PiecewiseQuadratic<ConnectionRows>);
+static_assert(PiecewiseQuadratic<WeldRows>);
+static_assert(PiecewiseQuadratic<CouplingRows>);
+static_assert(PiecewiseQuadratic<DryFriction>);
+static_assert(PiecewiseQuadratic<JointLimit>);
+static_assert(PiecewiseQuadratic<PyramidalContact>);
+static_assert(SoftConstraint<EllipticContact>);
 
 }  // namespace softgauss

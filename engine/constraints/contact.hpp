@@ -1,26 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// Frictional contact with a pyramidal cone, and frictionless contact.
+/// Contacts as the constraints see them: surfaces, frames, relative motion. What bounds their
+/// friction, a pyramid or an elliptic cone, is in pyramidal_contact.hpp and elliptic_contact.hpp.
 ///
 /// At a contact of distance r with normal n (from A to B) and tangents t₁, t₂, let y be the
 /// relative acceleration of the touching bodies less its bias J̇ v: y_n, y₁, y₂ that of the touching
 /// points along n, t₁, t₂, and, with condim 4 and 6, the angular y₃, y₄, y₅ about n, t₁, t₂. The
-/// rows are the edges of the friction pyramid (T.14):
-///   x = (y_n ± μ_k y_k) − a_ref,   a_ref = −b (ẏ_n ± μ_k ẏ_k) − k d (r − margin),  k = 1 … condim
-///   − 1 s(x) = ½ D min(x, 0)²,         D = impratio/(2 μ² R₀),   R₀ = (1 − d)/d (w_A + w_B)(1 +
-///   μ²)
-/// with w the bodies' translational inverse weights, μ₁ = μ₂ = μ [-] of sliding, μ₃ [m] of
-/// torsional and μ₄ = μ₅ [m] of rolling friction. Edge forces f ≥ 0 add up to
-///   f_n = Σ f,   f_k = μ_k (f₊ − f₋),   so Σ |f_k|/μ_k ≤ f_n whatever the acceleration.
-/// condim 1, or μ below 10⁻⁵: the one row x = y_n − a_ref with R = (1 − d)/d (w_A + w_B).
+/// friction coefficients are μ₁ = μ₂ = μ [-] of sliding, μ₃ [m] of torsional and μ₄ = μ₅ [m] of
+/// rolling friction.
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "engine/constraints/assembly.hpp"
 #include "engine/constraints/block_jacobian.hpp"
-#include "engine/constraints/rows.hpp"
 
 namespace softgauss {
 
@@ -31,39 +26,57 @@ Material mixMaterials(const Material& a, const Material& b);
 /// The surface of a pair of geometries: its own, or the mix of theirs.
 Material pairMaterial(const Model& model, int geometryA, int geometryB);
 
-/// A contact that made rows.
-struct ContactRows {
-  int contact = 0;                    ///< index into ContactSet::contacts
-  int row = 0;                        ///< first row
-  double friction = 0;                ///< μ, 0 when frictionless
-  Matrix3 R_WC;                       ///< columns n, t₁, t₂
-  int pairs = 0;                      ///< pairs of edges: condim − 1; 0: one row
-  std::array<double, 5> frictions{};  ///< μ_k of each pair
+/// Two surfaces that touch.
+struct Touch {
+  double distance = 0.0;  ///< r: that of the contact less the margin, < 0 [m]
+  double weight = 0.0;    ///< w_A + w_B of translation [1/kg]
+  Impedance impedance;
+  int frictionDim = 0;               ///< condim − 1; 0 when frictionless
+  std::array<double, 5> friction{};  ///< μ_k of frictionDim directions
+
+  double mu() const { return friction[0]; }  ///< of sliding; 0 when frictionless
 };
 
-class PyramidalContact : public ScalarRows<HalfQuadratic> {
+/// Contact i of the scene; nothing where it makes no rows: its bodies cannot move, or are apart.
+std::optional<Touch> touchAt(const Assembly& in, int i);
+
+/// A contact that made rows.
+struct ContactRows {
+  int contact = 0;                   ///< index into ContactSet::contacts
+  int row = 0;                       ///< first row
+  Matrix3 R_WC;                      ///< columns n, t₁, t₂
+  int frictionDim = 0;               ///< condim − 1; 0 when frictionless
+  std::array<double, 5> friction{};  ///< μ_k
+};
+
+/// Contacts of one kind, and how they move.
+class ContactBlocks {
  public:
-  void assemble(const Assembly& in);
-  void multiply(const VectorX& a, std::vector<double>& y) const;
-  void addForce(VectorX& tau) const;
-  void addCurvature(TreeMatrix& P);
-  /// y ← y + scale · (row i of J)ᵀ.
-  void addRow(int i, double scale, VectorX& y) const;
+  /// Contacts with rows; contact i starts at row made()[i].row.
+  const std::vector<ContactRows>& made() const { return made_; }
   void appendCouplings(std::vector<Segment>& segments, std::vector<int>& setEnd) const {
     jacobian_.appendCouplings(segments, setEnd);
   }
 
-  /// Contacts with rows; contact i starts at row made()[i].row.
-  const std::vector<ContactRows>& made() const { return made_; }
-  /// Force on body B at contact i, world [N]; body A feels the opposite.
-  Vector3 force(int i) const;
-  /// Moment on body B at contact i, of torsional and rolling friction, world [N m]; body A feels
-  /// the opposite.
-  Vector3 moment(int i) const;
+ protected:
+  /// Velocities ẏ, or forces and moments, in the frame of a contact.
+  using FrameVector = std::array<double, 6>;
 
- private:
-  /// Forces and moments of contact i in its frame: (f_n, f₁ … f_{condim − 1}).
-  void frameForce(int i, double* frame) const;
+  void clearBlocks() {
+    jacobian_.clear();
+    made_.clear();
+  }
+  /// The block of contact i, whose rows begin at `row`; returns ẏ.
+  FrameVector addBlock(const Assembly& in, int i, const Touch& touch, int row);
+  /// Contact of each of `rows` rows.
+  void indexRows(std::size_t rows);
+  /// The first three, or the last three, of a frame's six numbers in world axes.
+  Vector3 linearInWorld(int i, const FrameVector& y) const {
+    return made_[i].R_WC * Vector3(y[0], y[1], y[2]);
+  }
+  Vector3 angularInWorld(int i, const FrameVector& y) const {
+    return made_[i].R_WC * Vector3(y[3], y[4], y[5]);
+  }
 
   BlockJacobian jacobian_;  ///< block i: y of contact i
   std::vector<ContactRows> made_;

@@ -87,12 +87,19 @@ struct Frame {
   Transform X_BF;
 };
 
+/// What bounds the friction of a contact.
+enum class Cone : std::uint8_t {
+  pyramidal,  ///< edges ± μ_k t_k: piecewise quadratic (constraints/pyramidal_contact.hpp)
+  elliptic    ///< √Σ(f_k/μ_k)² ≤ f_n (constraints/elliptic_contact.hpp)
+};
+
 /// Choices that hold for the whole simulation.
 struct Options {
   double timestep = 0.002;                     ///< h [s]
   Vector3 gravity = Vector3(0.0, 0.0, -9.81);  ///< [m/s²], world
   EffectSet effects = EffectSet::all();        ///< which effects may be simulated
   bool midpointCoriolis = true;                ///< see integrators/semi_implicit_euler.hpp
+  Cone cone = Cone::pyramidal;                 ///< of contacts with friction
   double impedanceRatio = 1.0;                 ///< impratio: friction against normal impedance
   int maxIterations = 100;                     ///< Newton
   double tolerance = 1e-12;                    ///< Newton: scaled gradient, see solver/newton.hpp

@@ -73,10 +73,13 @@ NewtonReport minimize(Objective& objective, double tolerance, int maxIterations,
       return report;
     }
     if (report.residual <= tolerance) return report;
-    // In an unchanged cell a step that gains less than half has reached rounding.
-    const bool stuck = factored && !objective.cellChanged() && report.residual > 0.5 * previous;
+    // In an unchanged cell a step that gains less than half has reached rounding. So it has, near
+    // the tolerance, where the curvature varies.
+    const bool near = report.residual <= kRoundingFloor * tolerance;
+    const bool stuck =
+        factored && (near || !objective.cellChanged()) && report.residual > 0.5 * previous;
     if (stuck || report.iterations == maxIterations) {
-      if (report.residual <= kRoundingFloor * tolerance) return report;
+      if (near) return report;
       report.status = stuck ? SolveStatus::stalled : SolveStatus::iterationLimit;
       return report;
     }

@@ -31,11 +31,19 @@ std::optional<Vector3> centerOfPressure(const Model& model,
 
 void contactForces(const Data& data, std::vector<Snapshot::ContactForce>& contacts) {
   contacts.clear();
-  const PyramidalContact& rows = data.constraints.contact;
-  int i = 0;
-  for (const ContactRows& made : rows.made()) {
-    const Contact& c = data.contacts.contacts[made.contact];
-    contacts.push_back({c.geometryA, c.geometryB, c.p_WC, c.n_W, rows.force(i++)});
+  const PyramidalContact& pyramids = data.constraints.contact;
+  const EllipticContact& cones = data.constraints.ellipticContact;
+  const int pyramidCount = static_cast<int>(pyramids.made().size());
+  const int coneCount = static_cast<int>(cones.made().size());
+  // In the order of the contacts, of whichever kind.
+  for (int i = 0, k = 0; i < pyramidCount || k < coneCount;) {
+    const bool pyramid = k == coneCount ||
+                         (i < pyramidCount && pyramids.made()[i].contact < cones.made()[k].contact);
+    const Contact& c =
+        data.contacts.contacts[pyramid ? pyramids.made()[i].contact : cones.made()[k].contact];
+    contacts.push_back(
+        {c.geometryA, c.geometryB, c.p_WC, c.n_W, pyramid ? pyramids.force(i) : cones.force(k)});
+    ++(pyramid ? i : k);
   }
 }
 

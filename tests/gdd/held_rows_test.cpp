@@ -28,7 +28,7 @@ int contactKind(const Constraints& constraints) {
 /// The four edges of each of the first `contacts` frictional contacts.
 void holdContacts(const Constraints& constraints, int contacts, gdd::HeldRows& held) {
   for (const ContactRows& made : constraints.contact.made()) {
-    if (made.friction == 0.0) continue;
+    if (made.frictionDim == 0) continue;
     if (contacts-- == 0) return;
     for (int i = 0; i < 4; ++i) held.hold({{contactKind(constraints), made.row + i}}, constraints);
   }

@@ -209,8 +209,8 @@ TEST(Friction, StaysInPyramid) {
       // The sum of non-negative edge forces, up to rounding.
       const double each[5] = {f[1], f[2], m[0], m[1], m[2]};
       double shares = 0.0;
-      for (int k = 0; k < made.pairs; ++k) shares += std::abs(each[k]) / made.frictions[k];
-      for (int k = made.pairs; k < 5; ++k) EXPECT_SMALL(each[k], 1e-12 * (1.0 + f[0]));
+      for (int k = 0; k < made.frictionDim; ++k) shares += std::abs(each[k]) / made.friction[k];
+      for (int k = made.frictionDim; k < 5; ++k) EXPECT_SMALL(each[k], 1e-12 * (1.0 + f[0]));
       EXPECT_LE(shares, f[0] + 1e-12 * (1.0 + f[0]));
       checked += f[0] > 0.0;
     }

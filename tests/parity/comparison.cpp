@@ -63,14 +63,28 @@ std::vector<Contact> loggedContacts(const Model& model, const std::vector<Refere
 
 std::vector<Row> rowsOf(const Model& model, const Data& data) {
   std::vector<Row> rows;
+  const auto add = [&](const auto& effect, int i, double D, bool eitherWay) {
+    const auto at = static_cast<std::size_t>(i);
+    Row row{VectorX::Zero(model.nv), D, effect.reference[at], effect.f[at], eitherWay};
+    effect.addRow(i, 1.0, row.J);
+    rows.push_back(std::move(row));
+  };
   data.constraints.visit([&](const auto& effect) {
-    for (int i = 0; i < effect.rowCount(); ++i) {
-      const auto at = static_cast<std::size_t>(i);
-      Row row{VectorX::Zero(model.nv), effect.D[at], effect.reference[at], effect.f[at]};
-      effect.addRow(i, 1.0, row.J);
-      rows.push_back(std::move(row));
-    }
+    if constexpr (PiecewiseQuadratic<std::decay_t<decltype(effect)>>)
+      for (int i = 0; i < effect.rowCount(); ++i)
+        add(effect, i, effect.D[static_cast<std::size_t>(i)], false);
   });
+  // A cone's rows are as stiff as where it sticks.
+  const EllipticContact& cones = data.constraints.ellipticContact;
+  for (std::size_t i = 0; i < cones.made().size(); ++i) {
+    const EllipticCone& cone = cones.cone(static_cast<int>(i));
+    const int first = cones.made()[i].row;
+    add(cones, first, cone.D, false);
+    for (std::size_t k = 0; k + 1 < static_cast<std::size_t>(cone.dim); ++k) {
+      const double share = cone.friction[k] / cone.mu;
+      add(cones, first + 1 + static_cast<int>(k), cone.D * share * share, true);
+    }
+  }
   return rows;
 }
 
@@ -123,10 +137,14 @@ RowDifference compareRows(const std::vector<Row>& rows, const std::vector<Row>& 
 
   std::vector<bool> taken(rows.size(), false);
   for (const Row& theirs : reference) {
+    const auto signOf = [&](std::size_t i) {
+      return rows[i].eitherWay && rows[i].J.dot(theirs.J) < 0.0 ? -1.0 : 1.0;
+    };
     const auto differenceOf = [&](std::size_t i) {
       const Row& ours = rows[i];
-      return std::array{relativeDifference(ours.J, theirs.J, kSmallRow),
-                        std::abs(ours.reference - theirs.reference) /
+      const double sign = signOf(i);
+      return std::array{relativeDifference(sign * ours.J, theirs.J, kSmallRow),
+                        std::abs(sign * ours.reference - theirs.reference) /
                             std::max(kSmallAcceleration, std::abs(theirs.reference)),
                         std::abs(ours.D - theirs.D) / theirs.D};
     };
@@ -142,8 +160,8 @@ RowDifference compareRows(const std::vector<Row>& rows, const std::vector<Row>& 
     worst.J = std::max(worst.J, d[0]);
     worst.reference = std::max(worst.reference, d[1]);
     worst.D = std::max(worst.D, d[2]);
-    worst.force =
-        std::max(worst.force, std::abs(rows[nearest].force - theirs.force) / largestForce);
+    worst.force = std::max(
+        worst.force, std::abs(signOf(nearest) * rows[nearest].force - theirs.force) / largestForce);
   }
   return worst;
 }

@@ -23,6 +23,7 @@ struct Row {
   double D = 0.0;
   double reference = 0.0;  ///< a_ref
   double force = 0.0;
+  bool eitherWay = false;  ///< −J, −a_ref and −f are the same row: friction of an elliptic cone
 };
 
 /// Sums over all moving bodies.

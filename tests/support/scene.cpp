@@ -151,12 +151,14 @@ ConvexProblem denseProblem(const Data& data) {
   problem.upper.resize(rows);
   int row = 0;
   data.constraints.visit([&](const auto& c) {
-    for (int i = 0; i < c.rowCount(); ++i, ++row) {
-      problem.aRef[row] = c.reference[i];
-      problem.D[row] = c.D[i];
-      std::tie(problem.lower[row], problem.upper[row]) = forceBounds(c.penalty(i));
-    }
+    if constexpr (PiecewiseQuadratic<std::decay_t<decltype(c)>>)
+      for (int i = 0; i < c.rowCount(); ++i, ++row) {
+        problem.aRef[row] = c.reference[i];
+        problem.D[row] = c.D[i];
+        std::tie(problem.lower[row], problem.upper[row]) = forceBounds(c.penalty(i));
+      }
   });
+  if (row != rows) throw std::logic_error("cones are no rows of scalar penalties");
   return problem;
 }
 

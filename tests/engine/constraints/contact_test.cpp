@@ -168,8 +168,8 @@ TEST(Contact, OfAPairWithASurfaceOfItsOwnFollowsThat) {
     });
     const PyramidalContact& rows = s.data->constraints.contact;
     ASSERT_EQ(rows.rowCount(), 6);
-    EXPECT_EQ(rows.made()[0].frictions[0], 0.2);
-    EXPECT_EQ(rows.made()[0].frictions[2], 0.07);
+    EXPECT_EQ(rows.made()[0].friction[0], 0.2);
+    EXPECT_EQ(rows.made()[0].friction[2], 0.07);
     const Contact& c = s.data->contacts.contacts[0];
     const auto& w = s.data->weights.translation;
     const Softness soft =

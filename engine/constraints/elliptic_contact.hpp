@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Frictional contact with an elliptic cone.
+///
+/// The rows of a contact are its condim directions themselves (T.32):
+///   x = y − a_ref,   a_ref = (−b ẏ_n − k d r, −b ẏ₁, …, −b ẏ_{condim − 1})
+///   D = d/((1 − d)(w_A + w_B)) of the normal row,   μ̂ = μ/√impratio
+/// and their penalty is that of elliptic_cone.hpp. Normal softness does not depend on friction.
+
+#include "engine/constraints/contact.hpp"
+#include "engine/constraints/elliptic_cone.hpp"
+#include "engine/constraints/rows.hpp"
+
+namespace softgauss {
+
+class EllipticContact : public ContactBlocks {
+ public:
+  std::vector<double> reference;  ///< a_ref
+  std::vector<double> x;          ///< residual at the present acceleration
+  std::vector<double> dx;         ///< J d
+  std::vector<double> f;          ///< force −∇s(x)
+
+  int rowCount() const { return static_cast<int>(x.size()); }
+  void assemble(const Assembly& in);
+  void multiply(const VectorX& a, std::vector<double>& y) const;
+  double evaluate(bool& cellChanged);
+  void along(double alpha, Jet& sum) const;
+  void advance(double alpha);
+  void addForce(VectorX& tau) const;
+  void addCurvature(TreeMatrix& P);
+  void addRow(int i, double scale, VectorX& y) const;
+
+  const EllipticCone& cone(int i) const { return cones_[i]; }
+  /// Force on body B at contact i, world [N]; body A feels the opposite.
+  Vector3 force(int i) const { return linearInWorld(i, frameForce(i)); }
+  /// Moment on body B at contact i, of torsional and rolling friction, world [N m]; body A feels
+  /// the opposite.
+  Vector3 moment(int i) const { return angularInWorld(i, frameForce(i)); }
+
+ private:
+  FrameVector frameForce(int i) const;
+
+  std::vector<EllipticCone> cones_;
+  std::vector<ConeZone> zones_;
+};
+
+}  // namespace softgauss

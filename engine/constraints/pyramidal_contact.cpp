@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/constraints/pyramidal_contact.hpp"
+
+#include <algorithm>
+
+#include "engine/constraints/impedance.hpp"
+
+namespace softgauss {
+namespace {
+
+/// Values on the edges from those in the contact frame: e = y_n ± μ_k y_k. Without friction the one
+/// row is y_n.
+void toEdges(const double* y, int frictionDim, const std::array<double, 5>& mu, double* e) {
+  if (frictionDim == 0) e[0] = y[0];
+  for (int k = 0; k < frictionDim; ++k) {
+    e[2 * k] = y[0] + mu[k] * y[k + 1];
+    e[2 * k + 1] = y[0] - mu[k] * y[k + 1];
+  }
+}
+
+}  // namespace
+
+void PyramidalContact::assemble(const Assembly& in) {
+  const Options& options = in.model.options;
+  clearBlocks();
+  clearRows();
+  for (int i = 0; i < in.contacts.size(); ++i) {
+    const std::optional<Touch> touch = touchAt(in, i);
+    if (!touch || (touch->frictionDim > 0 && options.cone != Cone::pyramidal)) continue;
+    const FrameVector velocity = addBlock(in, i, *touch, static_cast<int>(reference.size()));
+    const double mu = touch->mu();
+    const Softness soft = softnessAt(touch->impedance, touch->distance,
+                                     touch->weight * (1.0 + mu * mu), options.timestep);
+    const double R =
+        touch->frictionDim > 0 ? 2.0 * mu * mu / options.impedanceRatio * soft.R : soft.R;
+    double edgeVelocity[10];
+    toEdges(velocity.data(), touch->frictionDim, touch->friction, edgeVelocity);
+    const int edges = std::max(1, 2 * touch->frictionDim);
+    for (int edge = 0; edge < edges; ++edge) {
+      reference.push_back(soft.referenceAcceleration(edgeVelocity[edge], touch->distance));
+      D.push_back(1.0 / R);
+    }
+  }
+  resizeRows(reference.size());
+  indexRows(reference.size());
+}
+
+void PyramidalContact::multiply(const VectorX& a, std::vector<double>& y) const {
+  for (std::size_t i = 0; i < made_.size(); ++i) {
+    double frame[6];
+    jacobian_.multiply(static_cast<int>(i), a, frame);
+    toEdges(frame, made_[i].frictionDim, made_[i].friction, y.data() + made_[i].row);
+  }
+}
+
+ContactBlocks::FrameVector PyramidalContact::frameForce(int i) const {
+  const double* e = f.data() + made_[i].row;
+  const ContactRows& made = made_[i];
+  FrameVector frame{};
+  if (made.frictionDim == 0) frame[0] = e[0];
+  for (int k = 0; k < made.frictionDim; ++k) {
+    frame[0] = frame[0] + e[2 * k] + e[2 * k + 1];
+    frame[k + 1] = made.friction[k] * (e[2 * k] - e[2 * k + 1]);
+  }
+  return frame;
+}
+
+void PyramidalContact::addForce(VectorX& tau) const {
+  for (int i = 0; i < static_cast<int>(made_.size()); ++i) {
+    const FrameVector frame = frameForce(i);
+    if (frame[0] != 0.0) jacobian_.addTransposed(i, frame.data(), tau);
+  }
+}
+
+void PyramidalContact::addCurvature(TreeMatrix& P) {
+  for (std::size_t i = 0; i < made_.size(); ++i) {
+    const double* e = h.data() + made_[i].row;
+    const int pairs = made_[i].frictionDim, dim = pairs + 1;
+    if (pairs == 0) {
+      if (e[0] != 0.0) jacobian_.addCurvature(static_cast<int>(i), e, P);
+      continue;
+    }
+    // Σ over edges of D (1, ±μ_k e_k)(1, ±μ_k e_k)ᵀ.
+    double H[36];
+    std::fill_n(H, dim * dim, 0.0);
+    for (int k = 0; k < pairs; ++k) {
+      const double mu = made_[i].friction[k], sum = e[2 * k] + e[2 * k + 1];
+      H[0] = H[0] + e[2 * k] + e[2 * k + 1];
+      H[k + 1] = H[(k + 1) * dim] = mu * (e[2 * k] - e[2 * k + 1]);
+      H[(k + 1) * dim + k + 1] = mu * mu * sum;
+    }
+    if (H[0] != 0.0) jacobian_.addCurvature(static_cast<int>(i), H, P);
+  }
+}
+
+void PyramidalContact::addRow(int row, double scale, VectorX& y) const {
+  const int i = contactOfRow_[row], edge = row - made_[i].row;
+  FrameVector frame = {scale};
+  if (made_[i].frictionDim > 0)
+    frame[1 + edge / 2] = scale * (edge % 2 == 0 ? 1.0 : -1.0) * made_[i].friction[edge / 2];
+  jacobian_.addTransposed(i, frame.data(), y);
+}
+
+}  // namespace softgauss

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Frictional contact with a pyramidal cone, and frictionless contact.
+///
+/// The rows of a contact are the edges of its friction pyramid (T.14):
+///   x = (y_n ± μ_k y_k) − a_ref,   a_ref = −b (ẏ_n ± μ_k ẏ_k) − k d r,   k = 1 … condim − 1
+///   s(x) = ½ D min(x, 0)²,         D = impratio/(2 μ² R₀),   R₀ = (1 − d)/d (w_A + w_B)(1 + μ²)
+/// with w the bodies' translational inverse weights. Edge forces f ≥ 0 add up to
+///   f_n = Σ f,   f_k = μ_k (f₊ − f₋),   so Σ |f_k|/μ_k ≤ f_n whatever the acceleration.
+/// A contact without friction has the one row x = y_n − a_ref with R = (1 − d)/d (w_A + w_B).
+
+#include "engine/constraints/contact.hpp"
+#include "engine/constraints/rows.hpp"
+
+namespace softgauss {
+
+class PyramidalContact : public ScalarRows<HalfQuadratic>, public ContactBlocks {
+ public:
+  void assemble(const Assembly& in);
+  void multiply(const VectorX& a, std::vector<double>& y) const;
+  void addForce(VectorX& tau) const;
+  void addCurvature(TreeMatrix& P);
+  /// y ← y + scale · (row i of J)ᵀ.
+  void addRow(int i, double scale, VectorX& y) const;
+
+  /// Force on body B at contact i, world [N]; body A feels the opposite.
+  Vector3 force(int i) const { return linearInWorld(i, frameForce(i)); }
+  /// Moment on body B at contact i, of torsional and rolling friction, world [N m]; body A feels
+  /// the opposite.
+  Vector3 moment(int i) const { return angularInWorld(i, frameForce(i)); }
+
+ private:
+  FrameVector frameForce(int i) const;
+};
+
+}  // namespace softgauss
