@@ -7,7 +7,7 @@
 namespace softgauss::gdd {
 
 AugmentedLagrangian::AugmentedLagrangian(const Model& model)
-    : hessian_(model), held_(model.nv), ray_(model) {
+    : hessian_(model), held_(model.nv), ray_(model), curvedRay_(model) {
   for (VectorX* x : {&a_, &g_, &Ma_, &Rg_, &lambda_, &rho_, &slope_, &curvature_, &w_, &gradient_,
                      &costGradient_, &direction_, &Md_, &scratch_})
     *x = VectorX::Zero(model.nv);
@@ -147,9 +147,17 @@ GddReport AugmentedLagrangian::solve(const Model& model, GoalCost& cost, const C
     held_.holdOnRay(data.constraints);
     hessian_.multiplyP(direction_, scratch_);
     M.multiply(direction_, Md_);
-    const RayResult ray =
-        ray_.minimize(data.constraints, massFactor_, bounds, g_, scratch_,
-                      costGradient_.dot(direction_), cost.curvatureAlong(direction_, Md_));
+    const double costSlope = costGradient_.dot(direction_);
+    const double costCurvature = cost.curvatureAlong(direction_, Md_);
+    const RayResult ray = data.constraints.piecewiseQuadratic()
+                              ? ray_.minimize(data.constraints, massFactor_, bounds, g_, scratch_,
+                                              costSlope, costCurvature)
+                              : curvedRay_.minimize(data.constraints, massFactor_, bounds, g_, Md_,
+                                                    costSlope, costCurvature);
+    if (ray.bend && ray.alpha * decrement <= 1e-10 * merit) {
+      evaluate(data);
+      return end(GddStatus::bend);
+    }
     ++report.iterations;
     a_ += ray.alpha * direction_;
     if (ray.kink) held_.hold(ray.last, data.constraints);

@@ -17,6 +17,7 @@
 /// row is held at its knot and the iteration goes on within the kink (held_rows.hpp).
 
 #include "gdd/cost.hpp"
+#include "gdd/curved_ray.hpp"
 #include "gdd/held_rows.hpp"
 #include "gdd/hessian.hpp"
 #include "gdd/problem.hpp"
@@ -36,6 +37,7 @@ enum class GddStatus {
   converged,
   kink,  ///< converged, with rows held at their knots
   iterationLimit,
+  bend,  ///< no descent along the direction, past a kink of an elliptic cone: not certified
   notFinite
 };
 
@@ -81,6 +83,7 @@ class AugmentedLagrangian {
   GaussNewtonHessian hessian_;
   HeldRows held_;
   Ray ray_;
+  CurvedRay curvedRay_;
   double penalty_ = 0.0;       ///< Σ ψ
   bool rowsChanged_ = true;    ///< a row changed its piece: P is out of date
   bool stale_ = true;          ///< P changed since H was factored

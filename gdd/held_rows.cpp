@@ -19,8 +19,7 @@ void HeldRows::hold(Knot knot, const Constraints& constraints) {
   row.knot = knot;
   row.jump = constraints.curvatureJump(knot);
   row.drift = 0.0;
-  row.J.setZero();
-  constraints.addRow(knot.row, 1.0, row.J);
+  constraints.knotGradient(knot, row.J);
 }
 
 void HeldRows::release(int i) {
@@ -31,6 +30,7 @@ void HeldRows::release(int i) {
 void HeldRows::place(Constraints& constraints) {
   for (int i = 0; i < count_; ++i) {
     rows_[i].drift = constraints.aboveKnot(rows_[i].knot);
+    if (!constraints.piecewiseQuadratic()) constraints.knotGradient(rows_[i].knot, rows_[i].J);
     constraints.placeAtKnot(rows_[i].knot, false);
   }
 }

@@ -33,7 +33,8 @@ struct BoundPenalty {
 
 struct RayResult {
   double alpha = 0.0;
-  bool kink = false;  ///< ended at a knot of a row
+  bool kink = false;  ///< ended at a knot of a row, `last`
+  bool bend = false;  ///< ended where the slope jumps at an elliptic cone
   int crossings = 0;  ///< knots passed
   Knot last;          ///< the last knot passed
 };

@@ -176,6 +176,10 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
                  "elliptic: friction alike in all directions, rest depth independent of it")
       ->check(CLI::IsMember({"pyramidal", "elliptic"}))
       ->group(simulation);
+  app.add_flag("--no-slip", options.noSlip,
+               "friction without creep, by a second solve with the normal forces held; inverse\n"
+               "dynamics then miss the control by what the summary calls physics violation")
+      ->group(simulation);
   app.add_option("--gdd-solver", solver,
                  "augmented-lagrangian (default): the paper's primal-dual Gauss-Newton solver")
       ->check(CLI::IsMember({"augmented-lagrangian"}))

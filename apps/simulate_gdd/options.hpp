@@ -33,6 +33,7 @@ struct SimulateOptions {
   std::vector<std::pair<std::string, double>> q0;
   EffectSet effects = EffectSet::all();
   bool zeroEffortIsUnlimited = false;
+  bool noSlip = false;
   std::optional<Cone> cone;  ///< absent: the model's own
   bool likeMujoco = false;   ///< --compatibility mujoco
   bool explain = false;

@@ -69,6 +69,7 @@ void addGround(ModelBuilder& builder, double height, const Material& material) {
 void setOptions(const SimulateOptions& options, ModelBuilder& builder) {
   if (options.timestep) builder.options.timestep = *options.timestep;
   builder.options.effects = options.effects;
+  if (options.noSlip) builder.options.noSlip = true;
   if (options.cone) builder.options.cone = *options.cone;
   builder.options.midpointCoriolis = !options.likeMujoco;
 }

@@ -17,8 +17,8 @@ class BlockRows : public ScalarRows<Quadratic> {
   void multiply(const VectorX& a, std::vector<double>& y) const {
     for (int i = 0; i < jacobian_.size(); ++i) jacobian_.multiply(i, a, y.data() + 3 * i);
   }
-  void addForce(VectorX& tau) const {
-    for (int i = 0; i < jacobian_.size(); ++i) jacobian_.addTransposed(i, f.data() + 3 * i, tau);
+  void addTransposed(const std::vector<double>& y, VectorX& tau) const {
+    for (int i = 0; i < jacobian_.size(); ++i) jacobian_.addTransposed(i, y.data() + 3 * i, tau);
   }
   void addCurvature(TreeMatrix& P) {
     for (int i = 0; i < jacobian_.size(); ++i) {

@@ -46,6 +46,7 @@ void Constraints::setResidual(const VectorX& a) {
     c.multiply(a, c.x);
     for (std::size_t i = 0; i < c.x.size(); ++i) c.x[i] -= c.reference[i];
   });
+  ellipticContact.letGo();
 }
 
 void Constraints::setRay(const VectorX& d) {
@@ -67,7 +68,14 @@ void Constraints::advance(double alpha) {
 }
 
 void Constraints::addForce(VectorX& tau) const {
-  visit([&](const auto& c) { c.addForce(tau); });
+  visit([&](const auto& c) { c.addTransposed(c.f, tau); });
+}
+
+void Constraints::addForceRate(VectorX& tau) {
+  visit([&](auto& c) {
+    c.setForceRate();
+    c.addTransposed(c.df, tau);
+  });
 }
 
 void Constraints::addCurvature(TreeMatrix& P) {
@@ -77,7 +85,7 @@ void Constraints::addCurvature(TreeMatrix& P) {
 void Constraints::findCrossings(std::vector<Crossing>& crossings) const {
   int kind = 0;
   visit([&](const auto& c) {
-    if constexpr (PiecewiseQuadratic<std::decay_t<decltype(c)>>) c.findCrossings(kind, crossings);
+    c.findCrossings(kind, crossings);
     ++kind;
   });
 }
@@ -88,25 +96,34 @@ void Constraints::addRow(RowId id, double scale, VectorX& y) const {
 
 double Constraints::aboveKnot(Knot knot) const {
   double x = 0.0;
-  visitKnotted(*this, knot.row.kind,
-               [&](const auto& c) { x = c.aboveKnot(knot.row.row, knot.index); });
+  visitOne(*this, knot.row.kind, [&](const auto& c) { x = c.aboveKnot(knot.row.row, knot.index); });
   return x;
+}
+
+void Constraints::knotGradient(Knot knot, VectorX& y) const {
+  y.setZero();
+  visitOne(*this, knot.row.kind, [&](const auto& c) {
+    if constexpr (requires { c.addKnotGradient(0, 0, 1.0, y); })
+      c.addKnotGradient(knot.row.row, knot.index, 1.0, y);
+    else
+      c.addRow(knot.row.row, 1.0, y);
+  });
 }
 
 double Constraints::curvatureJump(Knot knot) const {
   double jump = 0.0;
-  visitKnotted(*this, knot.row.kind,
-               [&](const auto& c) { jump = c.penalty(knot.row.row).curvatureJump(knot.index); });
+  visitOne(*this, knot.row.kind,
+           [&](const auto& c) { jump = c.curvatureJump(knot.row.row, knot.index); });
   return jump;
 }
 
 void Constraints::placeAtKnot(Knot knot, bool stiffSide) {
-  visitKnotted(*this, knot.row.kind,
-               [&](auto& c) { c.placeAtKnot(knot.row.row, knot.index, stiffSide); });
+  visitOne(*this, knot.row.kind,
+           [&](auto& c) { c.placeAtKnot(knot.row.row, knot.index, stiffSide); });
 }
 
 void Constraints::holdOnRay(RowId id) {
-  visitOne(*this, id.kind, [&](auto& c) { c.dx[id.row] = 0.0; });
+  visitOne(*this, id.kind, [&](auto& c) { c.holdOnRay(id.row); });
 }
 
 MatrixX Constraints::denseJacobian() const {

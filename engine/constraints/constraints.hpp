@@ -8,7 +8,6 @@
 /// an empty loop.
 
 #include <concepts>
-#include <type_traits>
 #include <vector>
 
 #include "engine/constraints/connection.hpp"
@@ -23,25 +22,23 @@ namespace softgauss {
 
 template <class C>
 concept SoftConstraint = requires(C c, const Assembly& in, const VectorX& a, VectorX& tau,
-                                  std::vector<double>& y, TreeMatrix& P, bool& changed, Jet& jet) {
+                                  std::vector<double>& y, TreeMatrix& P, bool& changed, Jet& jet,
+                                  std::vector<Crossing>& crossings) {
   { c.rowCount() } -> std::convertible_to<int>;
   c.assemble(in);                                          // rows, a_ref, D
   c.multiply(a, y);                                        // y = J a
   { c.evaluate(changed) } -> std::convertible_to<double>;  // cost; force, curvature
   c.along(0.0, jet);                                       // derivatives along a ray
   c.advance(0.0);                                          // x += α dx
-  c.addForce(tau);                                         // tau += Jᵀ f
+  c.setForceRate();                                        // df ← −∇²s dx
+  c.addTransposed(y, tau);                                 // tau += Jᵀ y
   c.addCurvature(P);                                       // P += Jᵀ ∇²s J
   c.addRow(0, 1.0, tau);                                   // tau += scale · (row of J)ᵀ
-};
-
-/// Rows whose penalties are piecewise quadratic, each by itself.
-template <class C>
-concept PiecewiseQuadratic = SoftConstraint<C> && requires(C c, std::vector<Crossing>& crossings) {
-  c.findCrossings(0, crossings);  // knots along a ray
+  c.findCrossings(0, crossings);                           // knots along a ray
   { c.aboveKnot(0, 0) } -> std::convertible_to<double>;
-  { c.penalty(0).curvatureJump(0) } -> std::convertible_to<double>;
+  { c.curvatureJump(0, 0) } -> std::convertible_to<double>;
   c.placeAtKnot(0, 0, true);
+  c.holdOnRay(0);
 };
 
 class Constraints {
@@ -55,22 +52,30 @@ class Constraints {
   EllipticContact ellipticContact;
 
   template <class F>
-  void visit(F&& f) {
+  void visitAllButContacts(F&& f) {
     f(connection);
     f(weld);
     f(coupling);
     f(dryFriction);
     f(jointLimit);
+  }
+  template <class F>
+  void visitAllButContacts(F&& f) const {
+    f(connection);
+    f(weld);
+    f(coupling);
+    f(dryFriction);
+    f(jointLimit);
+  }
+  template <class F>
+  void visit(F&& f) {
+    visitAllButContacts(f);
     f(contact);
     f(ellipticContact);
   }
   template <class F>
   void visit(F&& f) const {
-    f(connection);
-    f(weld);
-    f(coupling);
-    f(dryFriction);
-    f(jointLimit);
+    visitAllButContacts(f);
     f(contact);
     f(ellipticContact);
   }
@@ -90,18 +95,24 @@ class Constraints {
   void along(double alpha, Jet& jet) const;
   void advance(double alpha);
   void addForce(VectorX& tau) const;
+  /// Adds the rate of that force along the ray, −Jᵀ∇²s dx, at the present residual.
+  void addForceRate(VectorX& tau);
   void addCurvature(TreeMatrix& P);
+  /// Whether s is a sum of piecewise quadratics at present, so that findCrossings() is complete.
+  bool piecewiseQuadratic() const { return ellipticContact.rowCount() == 0; }
   /// All knots ahead on the ray, α ≥ 0, unordered.
   void findCrossings(std::vector<Crossing>& crossings) const;
   /// y ← y + scale · (row of J)ᵀ.
   void addRow(RowId id, double scale, VectorX& y) const;
-  /// x of the row less x at its knot.
+  /// How far the row is above its knot: x less x there, or what takes its place on a cone.
   double aboveKnot(Knot knot) const;
+  /// y ← the gradient in a of that distance.
+  void knotGradient(Knot knot, VectorX& y) const;
   /// s″ above a knot less s″ below it.
   double curvatureJump(Knot knot) const;
   /// Puts the row exactly at its knot, where it is free, or next to it on the stiff side.
   void placeAtKnot(Knot knot, bool stiffSide);
-  /// Takes a row off the ray: dx ← 0.
+  /// Takes a row off the ray.
   void holdOnRay(RowId id);
   /// (rows × nv) J, dense; allocates.
   MatrixX denseJacobian() const;
@@ -115,14 +126,6 @@ class Constraints {
       if (i++ == kind) f(c);
     });
   }
-  /// Calls f with the effect of a row that has knots.
-  template <class Self, class F>
-  static void visitKnotted(Self& self, int kind, F&& f) {
-    visitOne(self, kind, [&](auto& c) {
-      if constexpr (PiecewiseQuadratic<std::remove_const_t<std::remove_reference_t<decltype(c)>>>)
-        f(c);
-    });
-  }
 
   const TreeSparsity* sparsity_ = nullptr;
   TreeSparsity coupled_;
@@ -130,12 +133,12 @@ class Constraints {
   std::vector<int> couplingEnd_, lastCouplingEnd_;
 };
 
-static_assert(PiecewiseQuadratic<ConnectionRows>);
-static_assert(PiecewiseQuadratic<WeldRows>);
-static_assert(PiecewiseQuadratic<CouplingRows>);
-static_assert(PiecewiseQuadratic<DryFriction>);
-static_assert(PiecewiseQuadratic<JointLimit>);
-static_assert(PiecewiseQuadratic<PyramidalContact>);
+static_assert(SoftConstraint<ConnectionRows>);
+static_assert(SoftConstraint<WeldRows>);
+static_assert(SoftConstraint<CouplingRows>);
+static_assert(SoftConstraint<DryFriction>);
+static_assert(SoftConstraint<JointLimit>);
+static_assert(SoftConstraint<PyramidalContact>);
 static_assert(SoftConstraint<EllipticContact>);
 
 }  // namespace softgauss

@@ -57,11 +57,20 @@ class ContactBlocks {
   void appendCouplings(std::vector<Segment>& segments, std::vector<int>& setEnd) const {
     jacobian_.appendCouplings(segments, setEnd);
   }
-
- protected:
   /// Velocities ẏ, or forces and moments, in the frame of a contact.
   using FrameVector = std::array<double, 6>;
+  /// Block i: from a to y of contact i.
+  BlockJacobian& jacobian() { return jacobian_; }
+  const BlockJacobian& jacobian() const { return jacobian_; }
+  /// The first three of a frame's six numbers in world axes, and the last three.
+  Vector3 linearInWorld(int i, const FrameVector& y) const {
+    return made_[i].R_WC * Vector3(y[0], y[1], y[2]);
+  }
+  Vector3 angularInWorld(int i, const FrameVector& y) const {
+    return made_[i].R_WC * Vector3(y[3], y[4], y[5]);
+  }
 
+ protected:
   void clearBlocks() {
     jacobian_.clear();
     made_.clear();
@@ -70,13 +79,6 @@ class ContactBlocks {
   FrameVector addBlock(const Assembly& in, int i, const Touch& touch, int row);
   /// Contact of each of `rows` rows.
   void indexRows(std::size_t rows);
-  /// The first three, or the last three, of a frame's six numbers in world axes.
-  Vector3 linearInWorld(int i, const FrameVector& y) const {
-    return made_[i].R_WC * Vector3(y[0], y[1], y[2]);
-  }
-  Vector3 angularInWorld(int i, const FrameVector& y) const {
-    return made_[i].R_WC * Vector3(y[3], y[4], y[5]);
-  }
 
   BlockJacobian jacobian_;  ///< block i: y of contact i
   std::vector<ContactRows> made_;

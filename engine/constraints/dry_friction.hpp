@@ -22,8 +22,8 @@ class DryFriction : public ScalarRows<Huber> {
   void multiply(const VectorX& a, std::vector<double>& y) const {
     for (std::size_t i = 0; i < dof_.size(); ++i) y[i] = a[dof_[i]];
   }
-  void addForce(VectorX& tau) const {
-    for (std::size_t i = 0; i < dof_.size(); ++i) tau[dof_[i]] += f[i];
+  void addTransposed(const std::vector<double>& y, VectorX& tau) const {
+    for (std::size_t i = 0; i < dof_.size(); ++i) tau[dof_[i]] += y[i];
   }
   void addCurvature(TreeMatrix& P) {
     for (std::size_t i = 0; i < dof_.size(); ++i) P.row(dof_[i])[dof_[i]] += h[i];

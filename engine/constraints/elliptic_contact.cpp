@@ -27,8 +27,9 @@ void EllipticContact::assemble(const Assembly& in) {
         reference.push_back(soft.referenceAcceleration(velocity[k], 0.0));
     }
   }
-  for (std::vector<double>* column : {&x, &dx, &f}) column->resize(reference.size());
-  zones_.resize(cones_.size());
+  for (std::vector<double>* column : {&x, &dx, &f, &df}) column->resize(reference.size());
+  zones_.assign(cones_.size(), ConeZone::top);
+  placed_.assign(cones_.size(), false);
   indexRows(reference.size());
 }
 
@@ -37,13 +38,20 @@ void EllipticContact::multiply(const VectorX& a, std::vector<double>& y) const {
     jacobian_.multiply(static_cast<int>(i), a, y.data() + made_[i].row);
 }
 
+double EllipticContact::evaluate(std::size_t i, const double* at, double* force, double* H,
+                                 ConeZone& zone) const {
+  const EllipticCone::Point z = cones_[i].point(at);
+  zone = placed_[i] ? zones_[i] : z.zone();
+  return cones_[i].at(z, zone, force, H);
+}
+
 double EllipticContact::evaluate(bool& cellChanged) {
   double cost = 0.0;
   for (std::size_t i = 0; i < made_.size(); ++i) {
     ConeZone zone;
-    cost += cones_[i].at(x.data() + made_[i].row, f.data() + made_[i].row, nullptr, zone);
-    // The middle zone is curved: there the curvature changes with every step.
-    cellChanged |= zone != zones_[i] || zone == ConeZone::middle;
+    cost += evaluate(i, x.data() + made_[i].row, f.data() + made_[i].row, nullptr, zone);
+    // The middle zone bends: there the curvature changes with every step.
+    cellChanged |= placed_[i] || zone != zones_[i] || zone == ConeZone::middle;
     zones_[i] = zone;
   }
   return cost;
@@ -57,7 +65,7 @@ void EllipticContact::along(double alpha, Jet& sum) const {
     double H[EllipticCone::kMaxDim * EllipticCone::kMaxDim];
     for (int k = 0; k < dim; ++k) at[k] = from[k] + alpha * rate[k];
     ConeZone zone;
-    sum.value += cones_[i].at(at, force, H, zone);
+    sum.value += evaluate(i, at, force, H, zone);
     if (zone == ConeZone::top) continue;
     for (int k = 0; k < dim; ++k) {
       sum.slope -= force[k] * rate[k];
@@ -70,24 +78,36 @@ void EllipticContact::advance(double alpha) {
   for (std::size_t i = 0; i < x.size(); ++i) x[i] += alpha * dx[i];
 }
 
+void EllipticContact::setForceRate() {
+  for (std::size_t i = 0; i < made_.size(); ++i) {
+    const int dim = cones_[i].dim;
+    const std::size_t first = static_cast<std::size_t>(made_[i].row);
+    double force[EllipticCone::kMaxDim], H[EllipticCone::kMaxDim * EllipticCone::kMaxDim];
+    ConeZone zone;
+    evaluate(i, x.data() + first, force, H, zone);
+    for (int k = 0; k < dim; ++k) {
+      df[first + k] = 0.0;
+      for (int l = 0; l < dim; ++l) df[first + k] -= H[k * dim + l] * dx[first + l];
+    }
+  }
+}
+
 ContactBlocks::FrameVector EllipticContact::frameForce(int i) const {
   FrameVector frame{};
   std::copy_n(f.data() + made_[i].row, cones_[i].dim, frame.data());
   return frame;
 }
 
-void EllipticContact::addForce(VectorX& tau) const {
-  for (int i = 0; i < static_cast<int>(made_.size()); ++i) {
-    const double* frame = f.data() + made_[i].row;
-    if (frame[0] != 0.0) jacobian_.addTransposed(i, frame, tau);
-  }
+void EllipticContact::addTransposed(const std::vector<double>& y, VectorX& tau) const {
+  for (int i = 0; i < static_cast<int>(made_.size()); ++i)
+    if (zones_[i] != ConeZone::top) jacobian_.addTransposed(i, y.data() + made_[i].row, tau);
 }
 
 void EllipticContact::addCurvature(TreeMatrix& P) {
   for (std::size_t i = 0; i < made_.size(); ++i) {
     double force[EllipticCone::kMaxDim], H[EllipticCone::kMaxDim * EllipticCone::kMaxDim];
     ConeZone zone;
-    cones_[i].at(x.data() + made_[i].row, force, H, zone);
+    evaluate(i, x.data() + made_[i].row, force, H, zone);
     if (zone != ConeZone::top) jacobian_.addCurvature(static_cast<int>(i), H, P);
   }
 }
@@ -97,6 +117,63 @@ void EllipticContact::addRow(int row, double scale, VectorX& y) const {
   FrameVector frame{};
   frame[row - made_[i].row] = scale;
   jacobian_.addTransposed(i, frame.data(), y);
+}
+
+void EllipticContact::findCrossings(int kind, std::vector<Crossing>& crossings) const {
+  for (std::size_t i = 0; i < made_.size(); ++i) {
+    if (placed_[i]) continue;
+    const EllipticCone& cone = cones_[i];
+    const double *from = x.data() + made_[i].row, *rate = dx.data() + made_[i].row;
+    // N(α) = n₀ + n₁ α,  T(α)² = t₀ + 2 t₁ α + t₂ α².
+    const double n0 = cone.mu * from[0], n1 = cone.mu * rate[0];
+    double t0 = 0.0, t1 = 0.0, t2 = 0.0;
+    for (int k = 1; k < cone.dim; ++k) {
+      const double U = cone.friction[k - 1] * from[k], dU = cone.friction[k - 1] * rate[k];
+      t0 += U * U, t1 += U * dU, t2 += dU * dU;
+    }
+    for (const int knot : {0, 1}) {
+      // χ = 0 where N = −T/μ̂, φ = 0 where N = μ̂ T: the same quadratic with slope², and a sign.
+      const double slope = knot == 0 ? -1.0 / cone.mu : cone.mu;
+      const double a = n1 * n1 - slope * slope * t2, b = n0 * n1 - slope * slope * t1;
+      const double c = n0 * n0 - slope * slope * t0, discriminant = b * b - a * c;
+      if (!(discriminant >= 0.0)) continue;
+      const double q = -(b + std::copysign(std::sqrt(discriminant), b));
+      for (const double alpha : {q / a, c / q}) {
+        if (!(alpha >= 0.0 && alpha < kInfinity)) continue;
+        const double N = n0 + alpha * n1,
+                     T = std::sqrt(std::max(0.0, t0 + alpha * (2.0 * t1 + alpha * t2)));
+        if (N * slope < 0.0 || T == 0.0) continue;  // the other nappe
+        const double dT = (t1 + alpha * t2) / T;
+        const double above = knot == 0 ? cone.mu * n1 + dT : n1 - cone.mu * dT;
+        const double jump = curvatureJump(made_[i].row, knot);
+        crossings.push_back(
+            {alpha, above > 0.0 ? jump : -jump, above, {{kind, made_[i].row}, knot}});
+      }
+    }
+  }
+}
+
+double EllipticContact::aboveKnot(int row, int knot) const {
+  const EllipticCone& cone = cones_[contactOfRow_[row]];
+  return EllipticCone::aboveKnot(cone.point(x.data() + row), knot);
+}
+
+double EllipticContact::curvatureJump(int row, int) const {
+  return -cones_[contactOfRow_[row]].stiffness();
+}
+
+void EllipticContact::addKnotGradient(int row, int knot, double scale, VectorX& y) const {
+  const int i = contactOfRow_[row];
+  FrameVector gradient{};
+  cones_[i].knotGradient(cones_[i].point(x.data() + row), knot, gradient.data());
+  for (double& entry : gradient) entry *= scale;
+  jacobian_.addTransposed(i, gradient.data(), y);
+}
+
+void EllipticContact::placeAtKnot(int row, int knot, bool stiffSide) {
+  const int i = contactOfRow_[row];
+  zones_[i] = static_cast<ConeZone>(stiffSide ? knot : knot + 1);
+  placed_[i] = true;
 }
 
 }  // namespace softgauss

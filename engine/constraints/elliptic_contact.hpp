@@ -20,6 +20,7 @@ class EllipticContact : public ContactBlocks {
   std::vector<double> x;          ///< residual at the present acceleration
   std::vector<double> dx;         ///< J d
   std::vector<double> f;          ///< force −∇s(x)
+  std::vector<double> df;         ///< rate of f along the search direction
 
   int rowCount() const { return static_cast<int>(x.size()); }
   void assemble(const Assembly& in);
@@ -27,9 +28,22 @@ class EllipticContact : public ContactBlocks {
   double evaluate(bool& cellChanged);
   void along(double alpha, Jet& sum) const;
   void advance(double alpha);
-  void addForce(VectorX& tau) const;
+  void setForceRate();  ///< df ← −∇²s(x) dx
+  void addTransposed(const std::vector<double>& y, VectorX& tau) const;
   void addCurvature(TreeMatrix& P);
   void addRow(int i, double scale, VectorX& y) const;
+
+  // Knots, where a contact changes its zone (elliptic_cone.hpp). Their row is the contact's first.
+  void findCrossings(int kind, std::vector<Crossing>& crossings) const;
+  double aboveKnot(int row, int knot) const;
+  double curvatureJump(int row, int knot) const;
+  /// y ← y + scale · Jᵀ∇(what vanishes at the knot).
+  void addKnotGradient(int row, int knot, double scale, VectorX& y) const;
+  /// The contact counts as in the zone above the knot, or below it on the stiff side, wherever it
+  /// is, until letGo().
+  void placeAtKnot(int row, int knot, bool stiffSide);
+  void letGo() { placed_.assign(placed_.size(), false); }
+  void holdOnRay(int) {}
 
   const EllipticCone& cone(int i) const { return cones_[i]; }
   /// Force on body B at contact i, world [N]; body A feels the opposite.
@@ -38,11 +52,15 @@ class EllipticContact : public ContactBlocks {
   /// the opposite.
   Vector3 moment(int i) const { return angularInWorld(i, frameForce(i)); }
 
- private:
   FrameVector frameForce(int i) const;
 
+ private:
+  /// Penalty of contact i at x; where it is not placed, `zone` is that of x.
+  double evaluate(std::size_t i, const double* at, double* force, double* H, ConeZone& zone) const;
+
   std::vector<EllipticCone> cones_;
-  std::vector<ConeZone> zones_;
+  std::vector<ConeZone> zones_;  ///< of the last evaluation
+  std::vector<bool> placed_;     ///< zones_[i] holds wherever x is
 };
 
 }  // namespace softgauss

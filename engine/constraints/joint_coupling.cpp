@@ -50,8 +50,8 @@ void CouplingRows::multiply(const VectorX& a, std::vector<double>& y) const {
     y[i] = a[pairs_[i].follower] - pairs_[i].slope * a[pairs_[i].leader];
 }
 
-void CouplingRows::addForce(VectorX& tau) const {
-  for (std::size_t i = 0; i < pairs_.size(); ++i) addRow(static_cast<int>(i), f[i], tau);
+void CouplingRows::addTransposed(const std::vector<double>& y, VectorX& tau) const {
+  for (std::size_t i = 0; i < pairs_.size(); ++i) addRow(static_cast<int>(i), y[i], tau);
 }
 
 void CouplingRows::addCurvature(TreeMatrix& P) {

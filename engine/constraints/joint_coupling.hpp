@@ -19,7 +19,7 @@ class CouplingRows : public ScalarRows<Quadratic> {
  public:
   void assemble(const Assembly& in);
   void multiply(const VectorX& a, std::vector<double>& y) const;
-  void addForce(VectorX& tau) const;
+  void addTransposed(const std::vector<double>& y, VectorX& tau) const;
   void addCurvature(TreeMatrix& P);
   /// y ← y + scale · (row i of J)ᵀ.
   void addRow(int i, double scale, VectorX& y) const;

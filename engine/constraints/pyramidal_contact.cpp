@@ -53,8 +53,8 @@ void PyramidalContact::multiply(const VectorX& a, std::vector<double>& y) const 
   }
 }
 
-ContactBlocks::FrameVector PyramidalContact::frameForce(int i) const {
-  const double* e = f.data() + made_[i].row;
+ContactBlocks::FrameVector PyramidalContact::inFrame(int i, const std::vector<double>& y) const {
+  const double* e = y.data() + made_[i].row;
   const ContactRows& made = made_[i];
   FrameVector frame{};
   if (made.frictionDim == 0) frame[0] = e[0];
@@ -65,10 +65,10 @@ ContactBlocks::FrameVector PyramidalContact::frameForce(int i) const {
   return frame;
 }
 
-void PyramidalContact::addForce(VectorX& tau) const {
+void PyramidalContact::addTransposed(const std::vector<double>& y, VectorX& tau) const {
   for (int i = 0; i < static_cast<int>(made_.size()); ++i) {
-    const FrameVector frame = frameForce(i);
-    if (frame[0] != 0.0) jacobian_.addTransposed(i, frame.data(), tau);
+    const FrameVector frame = inFrame(i, y);
+    if (frame != FrameVector{}) jacobian_.addTransposed(i, frame.data(), tau);
   }
 }
 

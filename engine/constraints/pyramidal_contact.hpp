@@ -19,19 +19,27 @@ class PyramidalContact : public ScalarRows<HalfQuadratic>, public ContactBlocks 
  public:
   void assemble(const Assembly& in);
   void multiply(const VectorX& a, std::vector<double>& y) const;
-  void addForce(VectorX& tau) const;
+  void addTransposed(const std::vector<double>& y, VectorX& tau) const;
   void addCurvature(TreeMatrix& P);
   /// y ← y + scale · (row i of J)ᵀ.
   void addRow(int i, double scale, VectorX& y) const;
 
   /// Force on body B at contact i, world [N]; body A feels the opposite.
-  Vector3 force(int i) const { return linearInWorld(i, frameForce(i)); }
+  Vector3 force(int i) const { return linearInWorld(i, inFrame(i, f)); }
   /// Moment on body B at contact i, of torsional and rolling friction, world [N m]; body A feels
   /// the opposite.
-  Vector3 moment(int i) const { return angularInWorld(i, frameForce(i)); }
+  Vector3 moment(int i) const { return angularInWorld(i, inFrame(i, f)); }
+
+  /// The force at contact i in its frame, and what the edges of direction k carry together.
+  FrameVector frameForce(int i) const { return inFrame(i, f); }
+  double edgeSum(int i, int k) const {
+    const auto row = static_cast<std::size_t>(made_[i].row + 2 * k);
+    return f[row] + f[row + 1];
+  }
 
  private:
-  FrameVector frameForce(int i) const;
+  /// Sum over the edges of contact i of `y` times the edge.
+  FrameVector inFrame(int i, const std::vector<double>& y) const;
 };
 
 }  // namespace softgauss

@@ -52,6 +52,7 @@ class ScalarRows {
   std::vector<double> dx;         ///< J d, rate of x along the search direction d
   std::vector<double> f;          ///< force −s′(x)
   std::vector<double> h;          ///< curvature s″(x)
+  std::vector<double> df;         ///< −s″(x) dx, rate of f along the search direction
 
   int rowCount() const { return static_cast<int>(x.size()); }
   Penalty penalty(std::size_t i) const {
@@ -69,7 +70,7 @@ class ScalarRows {
   }
   /// Fits the arrays that the solver writes to `rows`.
   void resizeRows(std::size_t rows) {
-    for (std::vector<double>* column : {&reference, &D, &x, &dx, &f, &h}) column->resize(rows);
+    for (std::vector<double>* column : {&reference, &D, &x, &dx, &f, &h, &df}) column->resize(rows);
     piece_.resize(rows);
   }
 
@@ -118,6 +119,10 @@ class ScalarRows {
     }
   }
 
+  double curvatureJump(int row, int knot) const { return penalty(row).curvatureJump(knot); }
+  /// Takes a row off the ray.
+  void holdOnRay(int row) { dx[row] = 0.0; }
+
   /// x of a row above one of its knots.
   double aboveKnot(int row, int knot) const { return x[row] - penalty(row).knot(knot); }
 
@@ -134,6 +139,9 @@ class ScalarRows {
 
   void advance(double alpha) {
     for (std::size_t i = 0; i < x.size(); ++i) x[i] += alpha * dx[i];
+  }
+  void setForceRate() {
+    for (std::size_t i = 0; i < x.size(); ++i) df[i] = -h[i] * dx[i];
   }
 
  private:

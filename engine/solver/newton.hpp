@@ -63,9 +63,11 @@ NewtonReport minimize(Objective& objective, double tolerance, int maxIterations,
                       VectorX& d) {
   /// Where rounding ends progress before the tolerance: this much is still called converged.
   constexpr double kRoundingFloor = 1e3;
+  constexpr int kSlowSteps = 3;
   NewtonReport report;
   bool factored = false;
   double previous = kInfinity;
+  int slowSteps = 0;
   for (;;) {
     report.residual = objective.gradient(g);
     if (!std::isfinite(report.residual)) {
@@ -73,11 +75,12 @@ NewtonReport minimize(Objective& objective, double tolerance, int maxIterations,
       return report;
     }
     if (report.residual <= tolerance) return report;
-    // In an unchanged cell a step that gains less than half has reached rounding. So it has, near
-    // the tolerance, where the curvature varies.
+    // In an unchanged cell a step that gains less than half has reached rounding. Where the
+    // curvature varies, so have several such steps near the tolerance.
     const bool near = report.residual <= kRoundingFloor * tolerance;
-    const bool stuck =
-        factored && (near || !objective.cellChanged()) && report.residual > 0.5 * previous;
+    const bool slow = factored && report.residual > 0.5 * previous;
+    slowSteps = slow && near ? slowSteps + 1 : 0;
+    const bool stuck = (slow && !objective.cellChanged()) || slowSteps == kSlowSteps;
     if (stuck || report.iterations == maxIterations) {
       if (near) return report;
       report.status = stuck ? SolveStatus::stalled : SolveStatus::iterationLimit;

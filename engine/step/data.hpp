@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "engine/constraints/constraints.hpp"
+#include "engine/constraints/sticking_friction.hpp"
 #include "engine/forces/forces.hpp"
 #include "engine/solver/newton.hpp"
 
@@ -21,7 +22,7 @@ struct ForwardSolution {
   TreeFactor massFactor;  ///< of M, or of M + h D where damping is implicit
   NewtonReport report;
 
-  VectorX direction, Md, scale, start;  ///< scratch
+  VectorX direction, Md, scale, start, heldNet;  ///< scratch
   TreeMatrix P;
 };
 
@@ -60,6 +61,7 @@ struct Data {
   SmoothForces forces;
   ContactSet contacts;
   Constraints constraints;
+  StickingFriction sticking;  ///< with Options::noSlip: friction of the last solve, else empty
   ForwardSolution forward;
   VectorX acceleration;  ///< discrete, (v⁺ − v)/h (nv)
   StepStats stats;

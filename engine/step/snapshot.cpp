@@ -41,8 +41,10 @@ void contactForces(const Data& data, std::vector<Snapshot::ContactForce>& contac
                          (i < pyramidCount && pyramids.made()[i].contact < cones.made()[k].contact);
     const Contact& c =
         data.contacts.contacts[pyramid ? pyramids.made()[i].contact : cones.made()[k].contact];
-    contacts.push_back(
-        {c.geometryA, c.geometryB, c.p_WC, c.n_W, pyramid ? pyramids.force(i) : cones.force(k)});
+    const Vector3 force = data.sticking.rowCount() > 0
+                              ? data.sticking.force(pyramid ? i : pyramidCount + k)
+                              : (pyramid ? pyramids.force(i) : cones.force(k));
+    contacts.push_back({c.geometryA, c.geometryB, c.p_WC, c.n_W, force});
     ++(pyramid ? i : k);
   }
 }

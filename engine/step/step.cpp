@@ -67,7 +67,7 @@ Data::Data(const Model& model)
       forces(model),
       acceleration(VectorX::Zero(model.nv)) {
   ForwardSolution& s = forward;
-  for (VectorX* x : {&s.a, &s.Ma, &s.gradient, &s.direction, &s.Md, &s.scale, &s.start})
+  for (VectorX* x : {&s.a, &s.Ma, &s.gradient, &s.direction, &s.Md, &s.scale, &s.start, &s.heldNet})
     *x = VectorX::Zero(model.nv);
   // Rows exist before the first step, so that stages may be read in any state.
   constraints.assemble({model, State(model), kinematics, contacts, weights, inertia.sparsity});
@@ -100,6 +100,7 @@ SolveStatus computeStages(const Model& model, const Input& input, const State& s
 
   data.constraints.assemble(
       {model, state, data.kinematics, data.contacts, data.weights, data.inertia.sparsity});
+  data.sticking.clear();
   data.stats.rows = data.constraints.rowCount();
   data.stats.times.rows = lap(clock);
   return SolveStatus::converged;

@@ -20,7 +20,9 @@ VectorX inverse(Scene& s, const VectorX& a) {
 /// Pieces that the rows of s are in: curvature zero or not.
 std::vector<double> cellOf(const Scene& s) {
   std::vector<double> h;
-  s.data->constraints.visit([&](const auto& c) { h.insert(h.end(), c.h.begin(), c.h.end()); });
+  s.data->constraints.visit([&](const auto& c) {
+    if constexpr (requires { c.h; }) h.insert(h.end(), c.h.begin(), c.h.end());
+  });
   return h;
 }
 
@@ -239,7 +241,7 @@ TEST(Contact, ForceActsAtItsPointOnBothBodies) {
     Scene s = lawScene(seed, 8);
     s.forward();
     VectorX actual = VectorX::Zero(s.model.nv), expected = actual;
-    s.data->constraints.contact.addForce(actual);
+    s.data->constraints.contact.addTransposed(s.data->constraints.contact.f, actual);
     Eigen::Matrix<double, 3, Eigen::Dynamic> J(3, s.model.nv);
     const PyramidalContact& contact = s.data->constraints.contact;
     for (int i = 0; i < static_cast<int>(contact.made().size()); ++i) {

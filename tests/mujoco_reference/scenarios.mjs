@@ -16,4 +16,21 @@ import { pairings } from './scenarios/pairs.mjs';
 import { robots } from './scenarios/robots.mjs';
 import { trees } from './scenarios/trees.mjs';
 
-export const scenarios = [...trees, ...joints, ...loops, ...contacts, ...pairings, ...robots];
+const written = [...trees, ...joints, ...loops, ...contacts, ...pairings, ...robots];
+
+// Whether something in the scene may touch something else, with friction.
+const rubs = ({ geometries }) =>
+  geometries.length > 1 && geometries.some((geometry) => (geometry.condim ?? 3) > 1);
+
+// Every scenario whose contacts rub comes with elliptic cones too.
+const names = new Set(written.map(({ name }) => name));
+const elliptic = written
+  .filter(({ name, scene }) => rubs(scene) && !names.has(`elliptic_${name}`) && !name.startsWith('elliptic_'))
+  .map((scenario) => ({
+    ...scenario,
+    name: `elliptic_${scenario.name}`,
+    about: `${scenario.about}; elliptic cones`,
+    options: { ...scenario.options, cone: 'elliptic' },
+  }));
+
+export const scenarios = [...written, ...elliptic];

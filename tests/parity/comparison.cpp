@@ -70,7 +70,7 @@ std::vector<Row> rowsOf(const Model& model, const Data& data) {
     rows.push_back(std::move(row));
   };
   data.constraints.visit([&](const auto& effect) {
-    if constexpr (PiecewiseQuadratic<std::decay_t<decltype(effect)>>)
+    if constexpr (requires { effect.D; })
       for (int i = 0; i < effect.rowCount(); ++i)
         add(effect, i, effect.D[static_cast<std::size_t>(i)], false);
   });

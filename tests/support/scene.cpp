@@ -151,7 +151,7 @@ ConvexProblem denseProblem(const Data& data) {
   problem.upper.resize(rows);
   int row = 0;
   data.constraints.visit([&](const auto& c) {
-    if constexpr (PiecewiseQuadratic<std::decay_t<decltype(c)>>)
+    if constexpr (requires { c.penalty(0); })
       for (int i = 0; i < c.rowCount(); ++i, ++row) {
         problem.aRef[row] = c.reference[i];
         problem.D[row] = c.D[i];

@@ -126,7 +126,7 @@ TEST(Weld, CarriesWhatItWelds) {
   EXPECT_SMALL((s.state.q.head<3>() - Vector3(-0.1, 0, 0.7)).norm(), 2e-3);
   EXPECT_SMALL(s.state.q.segment<3>(4).norm(), 2e-3);
   VectorX force = VectorX::Zero(6);
-  s.data->constraints.weld.addForce(force);
+  s.data->constraints.weld.addTransposed(s.data->constraints.weld.f, force);
   VectorX weight(6);
   weight << 0, 0, 2.0 * 9.81, 0, 0, 0;
   EXPECT_APPROX(force, weight, 1e-6);
@@ -161,7 +161,7 @@ TEST(Mimic, FollowersFollowAndTheLeaderCarriesThem) {
   VectorX along(3);
   along << 1.0, 0.5, 1.0;
   VectorX force = VectorX::Zero(3);
-  s.data->constraints.coupling.addForce(force);
+  s.data->constraints.coupling.addTransposed(s.data->constraints.coupling.f, force);
   EXPECT_SMALL(force.dot(along), 1e-10);
   EXPECT_GT(force.norm(), 1e-3);
 }

@@ -44,7 +44,7 @@ TEST(JointLimit, PushesInward) {
     s.forward();
     EXPECT_GT(rows.f[0], 0.0);
     VectorX force = VectorX::Zero(1);
-    rows.addForce(force);
+    rows.addTransposed(rows.f, force);
     EXPECT_EQ(force[0], -sign * rows.f[0]);
   }
 }

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/step/no_slip.hpp"
+
+#include "engine/step/gauss_objective.hpp"
+
+namespace softgauss {
+namespace {
+
+/// All constraints but the contacts, and their friction in place of them.
+class HeldNormals {
+ public:
+  HeldNormals(Constraints& constraints, StickingFriction& friction)
+      : constraints_(constraints), friction_(friction) {}
+
+  const TreeSparsity& sparsity() const { return constraints_.sparsity(); }
+  void setResidual(const VectorX& a) {
+    const auto set = [&](auto& c) {
+      c.multiply(a, c.x);
+      for (std::size_t i = 0; i < c.x.size(); ++i) c.x[i] -= c.reference[i];
+    };
+    constraints_.visitAllButContacts(set);
+    set(friction_);
+  }
+  void setRay(const VectorX& d) {
+    constraints_.visitAllButContacts([&](auto& c) { c.multiply(d, c.dx); });
+    friction_.multiply(d, friction_.dx);
+  }
+  double evaluate(bool& cellChanged) {
+    double cost = friction_.evaluate(cellChanged);
+    constraints_.visitAllButContacts([&](auto& c) { cost += c.evaluate(cellChanged); });
+    return cost;
+  }
+  void along(double alpha, Jet& jet) const {
+    constraints_.visitAllButContacts([&](const auto& c) { c.along(alpha, jet); });
+    friction_.along(alpha, jet);
+  }
+  void advance(double alpha) {
+    constraints_.visitAllButContacts([&](auto& c) { c.advance(alpha); });
+    friction_.advance(alpha);
+  }
+  void addForce(VectorX& tau) const {
+    constraints_.visitAllButContacts([&](const auto& c) { c.addTransposed(c.f, tau); });
+    friction_.addForce(tau);
+  }
+  void addCurvature(TreeMatrix& P) {
+    constraints_.visitAllButContacts([&](auto& c) { c.addCurvature(P); });
+    friction_.addCurvature(P);
+  }
+
+ private:
+  Constraints& constraints_;
+  StickingFriction& friction_;
+};
+
+}  // namespace
+
+void removeSlip(const Model& model, Data& data) noexcept {
+  ForwardSolution& s = data.forward;
+  if (!data.sticking.take(data.constraints.contact, data.constraints.ellipticContact)) return;
+  s.heldNet = data.forces.net;
+  data.sticking.addNormalForce(s.heldNet);
+  HeldNormals rows(data.constraints, data.sticking);
+  GaussObjective objective(data.inertia, s.heldNet, rows, s);
+  s.start = s.a;  // moveTo() writes s.a
+  objective.moveTo(s.start);
+  const NewtonReport first = s.report;
+  s.report = minimize(objective, model.options.tolerance, model.options.maxIterations, s.gradient,
+                      s.direction);
+  s.report.iterations += first.iterations;
+  s.report.factorizations += first.factorizations;
+  s.report.lineSearchEvaluations += first.lineSearchEvaluations;
+}
+
+}  // namespace softgauss

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Line search for the augmented Lagrangian Φ along a + α d (T.18) where cones bend (T.32).
+///
+/// With elliptic cones g is not affine between knots, so no interval has a closed form. But Φ(α)
+/// and its slope are known exactly at any α,
+///   g(α) = g₀ + α M d − Jᵀ(f(x + α dx) − f(x)),    Φ′ = wᵀġ + ∇ℓᵀd,    ġ = M d + Jᵀ∇²s dx
+/// with w of (T.19). The search brackets the first sign change of the slope below which Φ is no
+/// higher than at the start, and closes in by secants and bisection. Where the slope jumps across
+/// zero the bracket shrinks to a kink.
+
+#include "gdd/ray.hpp"
+
+namespace softgauss::gdd {
+
+class CurvedRay {
+ public:
+  explicit CurvedRay(const Model& model);
+
+  /// g: inverse dynamics at α = 0; Md: M d; costSlope, costCurvature: of ℓ along d. The rows must
+  /// be evaluated and their ray set; they are left somewhere on the ray.
+  RayResult minimize(Constraints& constraints, const TreeFactor& massFactor,
+                     const BoundPenalty& bounds, const VectorX& g, const VectorX& Md,
+                     double costSlope, double costCurvature);
+
+ private:
+  VectorX base_, g_, rate_, Rg_;
+  std::vector<Crossing> crossings_;
+};
+
+}  // namespace softgauss::gdd

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Friction without creep: what Options::noSlip gains, what it keeps and what it costs.
+
+#include "engine/step/inverse.hpp"
+#include "engine/step/snapshot.hpp"
+#include "tests/support/matchers.hpp"
+#include "tests/support/scene.hpp"
+
+namespace softgauss::test {
+namespace {
+
+/// A box of 2 kg at rest on a slope of `theta` with friction `mu`.
+Scene boxOnSlope(double theta, double mu, Cone cone, bool noSlip) {
+  const Matrix3 R = Eigen::AngleAxisd(theta, Vector3::UnitY()).toRotationMatrix();
+  ModelBuilder builder = boxOnPlane({0.1, 0.1, 0.02}, 2.0, mu, R);
+  builder.options.cone = cone;
+  builder.options.noSlip = noSlip;
+  Scene s(builder.build(), std::make_shared<SampleContacts>());
+  const Quaternion q(R);
+  s.state.q.head<3>() = R.col(2) * 0.0199;
+  s.state.q.tail<4>() << q.w(), q.x(), q.y(), q.z();
+  return s;
+}
+
+double downhillSpeed(const Scene& s, double theta) {
+  return (Eigen::AngleAxisd(theta, Vector3::UnitY()).toRotationMatrix().col(0))
+      .dot(s.state.v.head<3>());
+}
+
+double physicsViolation(Scene& s) {
+  VectorX tau(s.model.nv);
+  inverseDynamics(s.model, s.data->forward.a, *s.data, tau);
+  return (tau - s.data->forces.tau).cwiseAbs().maxCoeff();
+}
+
+constexpr Cone kCones[] = {Cone::pyramidal, Cone::elliptic};
+
+// The creep of a load f_t is R_t f_t/b, and R_t is 10⁴ times smaller.
+TEST(NoSlip, BoundsTheCreepOfALoad) {
+  const double theta = 0.2, mu = 0.8;
+  for (const Cone cone : kCones) {
+    Scene soft = boxOnSlope(theta, mu, cone, false), stiff = boxOnSlope(theta, mu, cone, true);
+    soft.steps(2000);
+    stiff.steps(2000);
+    const double creep = downhillSpeed(soft, theta);
+    EXPECT_GT(creep, 1e-4);
+    EXPECT_SMALL(downhillSpeed(stiff, theta) * StickingFriction::kStiffer / creep - 1.0, 1e-2);
+  }
+}
+
+// Beyond the friction cone it slides, with the same force.
+TEST(NoSlip, SlidesAsCoulombSays) {
+  const double theta = 0.6, mu = 0.3;
+  for (const Cone cone : kCones) {
+    Scene s = boxOnSlope(theta, mu, cone, true);
+    s.steps(500);
+    const double expected = 9.81 * (std::sin(theta) - mu * std::cos(theta));
+    const double before = downhillSpeed(s, theta);
+    s.steps(100);
+    EXPECT_SMALL((downhillSpeed(s, theta) - before) / 0.2 / expected - 1.0, 1e-6);
+  }
+}
+
+TEST(NoSlip, ForcesStayInTheFrictionCone) {
+  int patches = 0;
+  for (int seed = 0; seed < 100; ++seed)
+    for (const Cone cone : kCones) {
+      Scene s = lawScene(seed, 8);
+      s.model.options.cone = cone;
+      s.model.options.noSlip = true;
+      s.stages();
+      ASSERT_EQ(s.forward(), SolveStatus::converged) << "seed " << seed;
+      std::vector<Snapshot::ContactForce> contacts;
+      contactForces(*s.data, contacts);
+      for (const Snapshot::ContactForce& c : contacts) {
+        const double mu = pairMaterial(s.model, c.geometryA, c.geometryB).slidingFriction;
+        const double normal = c.normalForce();
+        const double tangential = (c.force - normal * c.n_W).norm();
+        EXPECT_LE(tangential, mu * normal * (1.0 + 1e-12) + 1e-12) << "seed " << seed;
+        patches += tangential > 0.0;
+      }
+    }
+  EXPECT_GT(patches, 400);
+}
+
+// Newton's equation holds with the forces that are reported: nothing is lost between the solves.
+TEST(NoSlip, ForcesGiveTheAcceleration) {
+  for (int seed = 0; seed < 60; ++seed)
+    for (const Cone cone : kCones) {
+      Scene s = lawScene(seed, 6);
+      s.model.options.cone = cone;
+      s.model.options.noSlip = true;
+      s.stages();
+      s.forward();
+      const VectorX Ma = s.data->inertia.M.dense() * s.data->forward.a;
+      VectorX force = s.data->forces.net;
+      s.data->constraints.visitAllButContacts([&](const auto& c) { c.addTransposed(c.f, force); });
+      s.data->sticking.addNormalForce(force);
+      s.data->sticking.addForce(force);
+      const VectorX unit = s.data->inertia.M.dense().diagonal().cwiseSqrt();
+      const double scale = 1.0 + Ma.cwiseQuotient(unit).cwiseAbs().maxCoeff();
+      EXPECT_SMALL((Ma - force).cwiseQuotient(unit).cwiseAbs().maxCoeff() / scale, 1e-8)
+          << "seed " << seed;
+    }
+}
+
+// The price: inverse dynamics miss the applied force by the change of the friction. At rest on the
+// slope, where all of it creeps without, that is the load itself.
+TEST(NoSlip, CostsTheConsistencyOfTheInverse) {
+  const double theta = 0.2, mu = 0.8;
+  for (const Cone cone : kCones) {
+    Scene soft = boxOnSlope(theta, mu, cone, false), stiff = boxOnSlope(theta, mu, cone, true);
+    soft.steps(500);
+    stiff.steps(500);
+    EXPECT_SMALL(physicsViolation(soft), 1e-9);
+    const double load = 2.0 * 9.81 * std::sin(theta) * std::cos(theta);  // along world x
+    EXPECT_SMALL(physicsViolation(stiff) / load - 1.0, 1e-2);
+  }
+}
+
+TEST(NoSlip, WithoutFrictionNothingChanges) {
+  Scene a(sphereOnPlane(0.1, 1.0, 0.0).build(), std::make_shared<SampleContacts>());
+  ModelBuilder builder = sphereOnPlane(0.1, 1.0, 0.0);
+  builder.options.noSlip = true;
+  Scene b(builder.build(), std::make_shared<SampleContacts>());
+  a.state.v[0] = b.state.v[0] = 0.4;
+  a.steps(200);
+  b.steps(200);
+  EXPECT_EQ(a.state.q, b.state.q);
+  EXPECT_EQ(a.state.v, b.state.v);
+}
+
+}  // namespace
+}  // namespace softgauss::test
