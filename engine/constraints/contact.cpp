@@ -42,14 +42,7 @@ Material mixMaterials(const Material& a, const Material& b) {
   m.rollingFriction = std::max(a.rollingFriction, b.rollingFriction);
   m.condim = std::max(a.condim, b.condim);
   m.margin = a.margin + b.margin;
-  const Impedance &p = a.impedance, &q = b.impedance;
-  m.impedance = {0.5 * (p.timeConstant + q.timeConstant),
-                 0.5 * (p.dampingRatio + q.dampingRatio),
-                 0.5 * (p.dMin + q.dMin),
-                 0.5 * (p.dMax + q.dMax),
-                 0.5 * (p.width + q.width),
-                 0.5 * (p.midpoint + q.midpoint),
-                 0.5 * (p.power + q.power)};
+  m.impedance = mixImpedances(a.impedance, b.impedance);
   return m;
 }
 

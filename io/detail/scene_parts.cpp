@@ -32,8 +32,10 @@ void readImpedance(const YamlMap& map, Impedance& impedance) {
 }
 
 Material readMaterial(const YamlMap& map) {
-  map.expectOnly({"friction", "torsional_friction", "rolling_friction", "condim", "margin",
-                  "time_constant", "damping_ratio", "impedance"});
+  std::vector<std::string> keys = {"friction", "torsional_friction", "rolling_friction", "condim",
+                                   "margin"};
+  keys.insert(keys.end(), kSoftnessKeys.begin(), kSoftnessKeys.end());
+  map.expectOnly(keys);
   Material m;
   map.read("friction", m.slidingFriction, Range::notNegative);
   map.read("torsional_friction", m.torsionalFriction, Range::notNegative);
@@ -44,11 +46,30 @@ Material readMaterial(const YamlMap& map) {
   return m;
 }
 
+/// Two keys that say the same in different words.
+[[noreturn]] void refuseBeside(const YamlMap& map, const YamlMap::Entry& entry,
+                               const YamlMap::Entry& other) {
+  map.fail(entry, fmt::format("found beside {} in line {}, expected one or the other", other.key,
+                              other.line));
+}
+
 }  // namespace
 
 void readSoftness(const YamlMap& map, Impedance& impedance) {
   map.read("time_constant", impedance.timeConstant, Range::positive);
   map.read("damping_ratio", impedance.dampingRatio, Range::positive);
+  const auto* stiffness = map.find("reference_stiffness");
+  const auto* damping = map.find("reference_damping");
+  if (stiffness || damping) {
+    for (const char* key : {"time_constant", "damping_ratio"})
+      if (const auto* other = map.find(key))
+        refuseBeside(map, *other, stiffness ? *stiffness : *damping);
+    impedance.direct.emplace();
+    impedance.direct->stiffness = map.number(
+        map.required("reference_stiffness", "it beside reference_damping"), Range::notNegative);
+    impedance.direct->damping = map.number(
+        map.required("reference_damping", "it beside reference_stiffness"), Range::notNegative);
+  }
   if (const auto* entry = map.find("impedance")) readImpedance(map.map(*entry), impedance);
 }
 

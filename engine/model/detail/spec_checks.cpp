@@ -46,16 +46,24 @@ void checkImpedance(const Impedance& p, const SourceLocation& where, const std::
       throw ModelError(where, element,
                        std::string(what) + " is " + number(x) + ", expected more than 0");
   };
-  positive(p.timeConstant, "time constant");
-  positive(p.dampingRatio, "damping ratio");
+  const auto notNegative = [&](double x, const char* what) {
+    if (!(x >= 0.0) || !std::isfinite(x))
+      throw ModelError(where, element,
+                       std::string(what) + " is " + number(x) + ", expected 0 or more");
+  };
+  if (p.direct) {
+    notNegative(p.direct->stiffness, "reference stiffness");
+    notNegative(p.direct->damping, "reference damping");
+  } else {
+    positive(p.timeConstant, "time constant");
+    positive(p.dampingRatio, "damping ratio");
+  }
   for (const double d : {p.dMin, p.dMax, p.midpoint})
     if (!(d >= 0.0 && d <= 1.0))
       throw ModelError(
           where, element,
           "impedance has " + number(d) + ", expected dMin, dMax and midpoint in [0, 1]");
-  if (!(p.width >= 0.0) || !std::isfinite(p.width))
-    throw ModelError(where, element,
-                     "impedance width is " + number(p.width) + ", expected 0 or more");
+  notNegative(p.width, "impedance width");
   if (!(p.power >= 1.0) || !std::isfinite(p.power))
     throw ModelError(where, element,
                      "impedance power is " + number(p.power) + ", expected 1 or more");

@@ -208,6 +208,16 @@ const Mistake kMistakes[] = {
        d.connect.linkA = "hand", d.connect.linkB = "world", d.connect.impedance.timeConstant = 0.0;
      },
      {"scene:8", "connection", "time constant is 0"}},
+    {"NegativeReferenceStiffness",
+     [](Description& d) {
+       d.ball.material.impedance.direct = {-1.0, 1.0};
+     },
+     {"robot.urdf:7", "reference stiffness is -1", "0 or more"}},
+    {"NanReferenceDamping",
+     [](Description& d) {
+       d.ball.material.impedance.direct = {1.0, kNaN};
+     },
+     {"robot.urdf:7", "reference damping is"}},
     {"WeldOfTheWorldToItself",
      [](Description& d) { d.weld.linkA = "world", d.weld.linkB = "world"; },
      {"scene:8", "weld", "cannot move against each other"}},
