@@ -122,6 +122,9 @@ class Writer {
   }
 
   std::string surface(const Material& m) const {
+    if (m.spring)
+      throw ModelError({}, "model '" + model_.name + "'",
+                       "has a contact of N/m, expected the impedance that MuJoCo has");
     return fmt::format("condim=\"{}\" friction=\"{} {} {}\" margin=\"{}\" {}", m.condim,
                        text(m.slidingFriction), text(m.torsionalFriction), text(m.rollingFriction),
                        text(m.margin), softness(m.impedance));

@@ -32,6 +32,17 @@ struct Impedance {
   bool operator==(const Impedance&) const = default;
 };
 
+/// Softness of a contact in physical units, in place of its Impedance (T.36): a spring and a damper
+/// that make the normal force, the same for every friction, mass and cone. Either way of giving the
+/// spring, and of giving the damper, excludes the other.
+struct ContactSpring {
+  double stiffness = 0.0;  ///< [N/m]; 0: by restDepth
+  double restDepth = 0.0;  ///< [m] overlap of one contact under its body's own weight; 0: not used
+  double damping = 0.0;    ///< [N s/m]
+  double dampingRatio = 0.0;  ///< [-] with the body's own mass, 1 is critical
+  bool operator==(const ContactSpring&) const = default;
+};
+
 /// Surface parameters of a geometry; a pair is mixed by the rules of constraints/contact.hpp.
 struct Material {
   double slidingFriction = 1.0;      ///< μ, Coulomb [-]
@@ -40,6 +51,7 @@ struct Material {
   int condim = 3;                    ///< 1 frictionless, 3 sliding, 4 and torsional, 6 and rolling
   double margin = 0.0;               ///< [m] a contact makes rows where distance < margin
   Impedance impedance;
+  std::optional<ContactSpring> spring = {};  ///< in place of the impedance
   bool operator==(const Material&) const = default;
 };
 

@@ -202,6 +202,16 @@ TEST(SceneFile, RefusalsNameTheLineThePartAndTheKey) {
       {"materials: {ice: {impedance: {maximum: 1}}}",
        "key 'materials.ice.impedance.maximum': found"},
       {"materials: {ice: {impedance: {power: 0.5}}}", "expected a number >= 1"},
+      {"materials: {ice: {stiffness: 0}}", "key 'materials.ice.stiffness': found '0'"},
+      {"materials: {ice: {rest_depth: -1}}", "key 'materials.ice.rest_depth': found '-1'"},
+      {"materials: {ice: {damping: 3}}",
+       "key 'materials.ice.damping': found without stiffness [N/m] or rest_depth [m]"},
+      {"materials: {ice: {stiffness: 1, rest_depth: 1}}",
+       "key 'materials.ice.rest_depth': found beside stiffness"},
+      {"materials: {ice: {stiffness: 1, damping: 1, damping_ratio: 1}}",
+       "key 'materials.ice.damping_ratio': found beside damping in line 1"},
+      {"materials: {ice: {stiffness: 1, impedance: {minimum: 0.5}}}",
+       "key 'materials.ice.impedance': found beside stiffness"},
       {"materials: {ice: {reference_stiffness: 100}}",
        "key 'materials.ice.reference_damping': found no such key"},
       {"materials: {ice: {reference_stiffness: -1, reference_damping: 0}}",
@@ -230,6 +240,29 @@ TEST(SceneFile, RefusalsNameTheLineThePartAndTheKey) {
     EXPECT_NE(message.find("scene.yaml:"), std::string::npos) << message;
     EXPECT_NE(message.find(words), std::string::npos) << scene << "\n  -> " << message;
   }
+}
+
+TEST(SceneFile, MaterialsMayHaveSprings) {
+  const SceneFolder folder(
+      "materials:\n"
+      "  a: {stiffness: 2.0e+4, damping: 30}\n"
+      "  b: {stiffness: 500}\n"
+      "  c: {rest_depth: 0.001, damping_ratio: 0.2}\n"
+      "  d: {rest_depth: 0.001, damping: 0}\n"
+      "objects:\n"
+      "  - {name: a, sphere: {radius: 0.1}, material: a}\n"
+      "  - {name: b, sphere: {radius: 0.1}, material: b}\n"
+      "  - {name: c, sphere: {radius: 0.1}, material: c}\n"
+      "  - {name: d, sphere: {radius: 0.1}, material: d}\n"
+      "  - {name: e, sphere: {radius: 0.1}}\n");
+  const Model model = folder.read().builder.build();
+  ASSERT_EQ(model.geometries.size(), 5u);
+  const auto spring = [&](int i) { return model.geometries[i].material.spring; };
+  EXPECT_EQ(spring(0), (ContactSpring{2e4, 0.0, 30.0, 0.0}));
+  EXPECT_EQ(spring(1), (ContactSpring{500.0, 0.0, 0.0, 1.0})) << "critical by default";
+  EXPECT_EQ(spring(2), (ContactSpring{0.0, 1e-3, 0.0, 0.2}));
+  EXPECT_EQ(spring(3), (ContactSpring{0.0, 1e-3, 0.0, 0.0}));
+  EXPECT_FALSE(spring(4));
 }
 
 TEST(SceneFile, ConstraintsTieWhatTheyName) {
