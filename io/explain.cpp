@@ -8,6 +8,7 @@
 #include <map>
 
 #include "io/detail/text.hpp"
+#include "io/detail/text_table.hpp"
 
 namespace softgauss::io {
 namespace {
@@ -16,32 +17,6 @@ using detail::counted;
 using detail::listed;
 
 std::size_t idx(int i) { return static_cast<std::size_t>(i); }
-
-/// Lines of cells, each column as wide as its widest cell.
-class TextTable {
- public:
-  void row(std::vector<std::string> cells) { rows_.push_back(std::move(cells)); }
-
-  std::string text() const {
-    std::vector<std::size_t> widths;
-    for (const auto& row : rows_)
-      for (std::size_t i = 0; i < row.size(); ++i) {
-        if (i == widths.size()) widths.push_back(0);
-        widths[i] = std::max(widths[i], row[i].size());
-      }
-    std::string out;
-    for (const auto& row : rows_) {
-      std::string line = " ";
-      for (std::size_t i = 0; i < row.size(); ++i)
-        line += fmt::format(" {:<{}}", row[i], widths[i]);
-      out += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
-    }
-    return out;
-  }
-
- private:
-  std::vector<std::vector<std::string>> rows_;
-};
 
 const char* kindName(JointKind kind) {
   switch (kind) {
@@ -91,7 +66,7 @@ std::string headText(const Model& model, const ExplainContext& context) {
 std::string jointsText(const Model& model) {
   std::map<int, const JointRange*> ranges;
   for (const JointRange& range : model.ranges) ranges[range.body] = &range;
-  TextTable table;
+  detail::TextTable table;
   table.row({"joint", "kind", "moves", "range", "start", "effort", "damping", "friction"});
   for (int b = 1; b < model.bodyCount(); ++b) {
     const Body& body = model.bodies[idx(b)];
@@ -130,7 +105,7 @@ std::string framesText(const Model& model) {
     out += fmt::format("moving links without mass, carried by what hangs from them\n  {}\n",
                        listed(massless, massless.size()));
   if (!merged.empty()) {
-    TextTable table;
+    detail::TextTable table;
     for (const auto& [body, names] : merged)
       table.row({model.bodyNames[idx(body)], "<- " + listed(names, names.size())});
     out += "links on fixed joints, kept as frames of the body they are merged with\n";
@@ -179,7 +154,7 @@ std::string shapesText(const Model& model, const ExplainContext& context) {
 }
 
 std::string effectsText(const Model& model) {
-  TextTable on, off;
+  detail::TextTable on, off;
   for (const EffectNote& note : effectNotes(model))
     (note.on ? on : off).row({note.name, note.reason});
   return "effects that are simulated, and what calls them\n" + on.text() +
@@ -198,6 +173,7 @@ std::string explain(const Model& model, const ExplainContext& context) {
   section(jointsText(model));
   section(framesText(model));
   section(shapesText(model, context));
+  section(softnessText(model, context));
   section(effectsText(model));
   if (!model.warnings.empty()) {
     std::string warnings = "warnings\n";

@@ -6,6 +6,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/model/model.hpp"
@@ -37,10 +38,17 @@ struct FilteredPair {
 
 /// What explain() is told besides the model.
 struct ExplainContext {
-  std::optional<UrdfContents> contents;  ///< of the file, before links were merged
-  std::vector<FilteredPair> filtered;    ///< grouped by reason in the text
-  std::optional<int> testedPairs;        ///< pairs of shapes that may touch
+  std::optional<UrdfContents> contents;    ///< of the file, before links were merged
+  std::vector<FilteredPair> filtered;      ///< grouped by reason in the text
+  std::optional<int> testedPairs;          ///< pairs of shapes that may touch
+  std::vector<std::pair<int, int>> pairs;  ///< those pairs, as indices into Model::geometries
+  std::vector<std::pair<std::string, Material>> materials;  ///< the surfaces that have a name
 };
+
+/// The part of explain() on contacts: for each pair of surfaces among `context.pairs`, what sinks
+/// least and what sinks most into the other by its own weight, on one contact, and how fast that
+/// creeps; and the softness in both forms, physical and as an impedance.
+std::string softnessText(const Model& model, const ExplainContext& context);
 
 std::string explain(const Model& model, const ExplainContext& context = {});
 

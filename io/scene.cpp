@@ -43,6 +43,7 @@ class SceneReader {
     materials_["default"];
     if (const auto* entry = top_.find("materials"))
       materials_ = detail::readMaterials(top_.map(*entry));
+    scene_.materials.assign(materials_.begin(), materials_.end());
     if (const auto* entry = top_.find("ground")) readGround(*entry);
     const auto forEach = [&](const char* key, const char* noun, auto&& readOne) {
       const YamlMap::Entry* entry = top_.find(key);

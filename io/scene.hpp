@@ -29,6 +29,7 @@ struct SceneFile {
   std::optional<double> ground;
   bool noGround = false;
   Material groundMaterial;
+  std::vector<std::pair<std::string, Material>> materials;  ///< by name, "default" among them
 
   /// A floating root and how it starts.
   struct Start {

@@ -23,10 +23,12 @@ std::string pose(const Transform& X) {
                      q.y(), q.z());
 }
 
+/// A reference that is given directly is a solref of two negative numbers.
 std::string softness(const Impedance& i, const char* suffix = "") {
   return fmt::format(
       "solref{0}=\"{1:.17g} {2:.17g}\" solimp{0}=\"{3:.17g} {4:.17g} {5:.17g} {6:.17g} {7:.17g}\"",
-      suffix, i.timeConstant, i.dampingRatio, i.dMin, i.dMax, i.width, i.midpoint, i.power);
+      suffix, i.direct ? -i.direct->stiffness : i.timeConstant,
+      i.direct ? -i.direct->damping : i.dampingRatio, i.dMin, i.dMax, i.width, i.midpoint, i.power);
 }
 
 /// Writes a model, its bodies depth first.
@@ -120,6 +122,9 @@ class Writer {
   }
 
   std::string surface(const Material& m) const {
+    if (m.spring)
+      throw ModelError({}, "model '" + model_.name + "'",
+                       "has a contact of N/m, expected the impedance that MuJoCo has");
     return fmt::format("condim=\"{}\" friction=\"{} {} {}\" margin=\"{}\" {}", m.condim,
                        text(m.slidingFriction), text(m.torsionalFriction), text(m.rollingFriction),
                        text(m.margin), softness(m.impedance));

@@ -116,6 +116,7 @@ void loadSceneFile(const SimulateOptions& options, Scene& scene) {
   scene.model = file.builder.build();
   scene.contents = file.contents;
   scene.hasGoals = file.hasGoals;
+  scene.materials = file.materials;
   scene.initial = file.initialState(scene.model);
   setJointPositions(options, scene.model, scene.initial);
   if (!ground) return;
@@ -163,6 +164,9 @@ std::string explainScene(const Scene& scene) {
   context.contents = scene.contents;
   const collision::PairFilter& filter = scene.contacts->filter();
   context.testedPairs = static_cast<int>(filter.pairs.size());
+  for (const collision::GeometryPair& pair : filter.pairs)
+    context.pairs.emplace_back(pair.a, pair.b);
+  context.materials = scene.materials;
   for (const collision::ExcludedPair& pair : filter.excluded) {
     const bool adjacent = pair.reason == collision::ExclusionReason::adjacent;
     context.filtered.push_back(

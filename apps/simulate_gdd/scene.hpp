@@ -4,6 +4,8 @@
 /// From the command line to a model, its contacts, its initial state and its goals.
 
 #include <memory>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "apps/simulate_gdd/options.hpp"
@@ -19,6 +21,8 @@ struct Scene {
   std::unique_ptr<collision::SceneContacts> contacts;
   State initial;
   bool hasGoals = false;  ///< the scene file holds goals
+  /// Surfaces by name.
+  std::vector<std::pair<std::string, Material>> materials = {{"default", Material{}}};
 };
 
 /// Throws ModelError.

@@ -4,13 +4,11 @@
 #include <algorithm>
 #include <utility>
 
+#include "engine/constraints/contact_softness.hpp"
 #include "engine/core/rotation.hpp"
 
 namespace softgauss {
 namespace {
-
-/// Below this coefficient a cone degenerates: the contact is frictionless.
-constexpr double kSmallestFriction = 1e-5;
 
 /// A wished tangent is followed as long as rounding does not decide where it points: this sine of
 /// the angle between it and the normal.
@@ -26,13 +24,6 @@ Matrix3 contactFrame(const Contact& c) {
   return R;
 }
 
-/// condim of the effects that are switched on. Rolling friction comes with torsional friction.
-int simulatedCondim(const EffectSet& effects, int condim) {
-  if (!effects.has(Effect::rollingFriction)) condim = std::min(condim, 4);
-  if (!effects.has(Effect::torsionalFriction)) condim = std::min(condim, 3);
-  return condim;
-}
-
 }  // namespace
 
 Material mixMaterials(const Material& a, const Material& b) {
@@ -42,27 +33,28 @@ Material mixMaterials(const Material& a, const Material& b) {
   m.rollingFriction = std::max(a.rollingFriction, b.rollingFriction);
   m.condim = std::max(a.condim, b.condim);
   m.margin = a.margin + b.margin;
-  const Impedance &p = a.impedance, &q = b.impedance;
-  m.impedance = {0.5 * (p.timeConstant + q.timeConstant),
-                 0.5 * (p.dampingRatio + q.dampingRatio),
-                 0.5 * (p.dMin + q.dMin),
-                 0.5 * (p.dMax + q.dMax),
-                 0.5 * (p.width + q.width),
-                 0.5 * (p.midpoint + q.midpoint),
-                 0.5 * (p.power + q.power)};
+  m.impedance = mixImpedances(a.impedance, b.impedance);
+  m.spring = a.spring && b.spring ? inSeries(*a.spring, *b.spring) : a.spring ? a.spring : b.spring;
   return m;
 }
 
 Material pairMaterial(const Model& model, int geometryA, int geometryB) {
+  const Geometry &first = model.geometries[geometryA], &second = model.geometries[geometryB];
+  const auto inUse = [&](Material m) {
+    if (m.spring)
+      m.spring = inNewtons(*m.spring, restingMass(model, first.body, second.body),
+                           model.options.gravity.norm());
+    return m;
+  };
   if (!model.contactPairs.empty()) {
     const auto [a, b] = std::minmax(geometryA, geometryB);
     const auto at = std::lower_bound(
         model.contactPairs.begin(), model.contactPairs.end(), std::pair<int, int>(a, b),
         [](const ContactPair& p, auto key) { return std::pair(p.geometryA, p.geometryB) < key; });
     if (at != model.contactPairs.end() && at->geometryA == a && at->geometryB == b)
-      return at->material;
+      return inUse(at->material);
   }
-  return mixMaterials(model.geometries[geometryA].material, model.geometries[geometryB].material);
+  return mixMaterials(inUse(first.material), inUse(second.material));
 }
 
 std::optional<Touch> touchAt(const Assembly& in, int i) {
@@ -73,13 +65,12 @@ std::optional<Touch> touchAt(const Assembly& in, int i) {
   Touch touch;
   touch.distance = c.distance - material.margin;
   if (touch.distance >= 0.0) return std::nullopt;  // NaN makes rows, so that the solve reports it
-  touch.weight = in.weights.translation[c.bodyA] + in.weights.translation[c.bodyB];
-  touch.impedance = material.impedance;
-
-  const int condim = simulatedCondim(model.options.effects, material.condim);
-  const double mu = material.slidingFriction;
-  if (condim > 1 && mu >= kSmallestFriction) {
-    touch.frictionDim = condim - 1;
+  touch.frictionDim = frictionDim(material, model.options.effects);
+  touch.softness = contactSoftness(
+      material, touch.frictionDim, touch.distance,
+      in.weights.translation[c.bodyA] + in.weights.translation[c.bodyB], model.options);
+  if (touch.frictionDim > 0) {
+    const double mu = material.slidingFriction;
     const double spin = std::max(material.torsionalFriction, kSmallestFriction);
     const double roll = std::max(material.rollingFriction, kSmallestFriction);
     touch.friction = {mu, mu, spin, roll, roll};

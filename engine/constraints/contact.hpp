@@ -16,22 +16,23 @@
 
 #include "engine/constraints/assembly.hpp"
 #include "engine/constraints/block_jacobian.hpp"
+#include "engine/constraints/impedance.hpp"
 
 namespace softgauss {
 
 /// Surface parameters of a pair (T.15): condim and frictions are the larger of the two, impedance
-/// parameters their mean, margins the sum.
+/// parameters their mean, margins the sum. Springs, in newtons, are in series (T.38); where only
+/// one surface has a spring, the other is rigid.
 Material mixMaterials(const Material& a, const Material& b);
 
-/// The surface of a pair of geometries: its own, or the mix of theirs.
+/// The surface of a pair of geometries: its own, or the mix of theirs; its spring in newtons.
 Material pairMaterial(const Model& model, int geometryA, int geometryB);
 
 /// Two surfaces that touch.
 struct Touch {
-  double distance = 0.0;  ///< r: that of the contact less the margin, < 0 [m]
-  double weight = 0.0;    ///< w_A + w_B of translation [1/kg]
-  Impedance impedance;
+  double distance = 0.0;             ///< r: that of the contact less the margin, < 0 [m]
   int frictionDim = 0;               ///< condim − 1; 0 when frictionless
+  Softness softness;                 ///< of an edge, or of the row along the normal
   std::array<double, 5> friction{};  ///< μ_k of frictionDim directions
 
   double mu() const { return friction[0]; }  ///< of sliding; 0 when frictionless

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/constraints/impedance.hpp"
-
 namespace softgauss {
 
 void EllipticContact::assemble(const Assembly& in) {
@@ -18,8 +16,7 @@ void EllipticContact::assemble(const Assembly& in) {
       const std::optional<Touch> touch = touchAt(in, i);
       if (!touch || touch->frictionDim == 0) continue;
       const FrameVector velocity = addBlock(in, i, *touch, static_cast<int>(reference.size()));
-      const Softness soft =
-          softnessAt(touch->impedance, touch->distance, touch->weight, options.timestep);
+      const Softness& soft = touch->softness;
       cones_.push_back({touch->frictionDim + 1, 1.0 / soft.R,
                         touch->mu() / std::sqrt(options.impedanceRatio), touch->friction});
       reference.push_back(soft.referenceAcceleration(velocity[0], touch->distance));

@@ -6,7 +6,8 @@
 /// With distance r (negative when violated, measured from the margin) and row velocity ẋ = J v:
 ///   d(r)   impedance, rises from dMin at r = 0 to dMax at |r| ≥ width
 ///   R      = (1 − d)/d · A          regulariser; A approximates J M⁻¹ Jᵀ
-///   k      = 1/(dMax² tc² ζ²),  b = 2/(dMax tc)
+///   k      = 1/(dMax² tc² ζ²),  b = 2/(dMax tc)     or, given directly (T.35),
+///   k      = stiffness/dMax²,   b = damping/dMax
 ///   a_ref  = −b ẋ − k d r            so that ẍ + b ẋ + k d r = 0 where the row is hard
 /// The force at acceleration x̂ is f = D (a_ref − x̂) with D = 1/R.
 
@@ -45,16 +46,39 @@ inline double impedanceAt(const Impedance& p, double distance) {
   return dMin + y * (dMax - dMin);
 }
 
+/// The impedance of a contact between two surfaces (T.15): the mean of all parameters. A reference
+/// that is given directly replaces one that is not; of two, the stiffer and the more damped.
+inline Impedance mixImpedances(const Impedance& p, const Impedance& q) {
+  Impedance m{0.5 * (p.timeConstant + q.timeConstant),
+              0.5 * (p.dampingRatio + q.dampingRatio),
+              0.5 * (p.dMin + q.dMin),
+              0.5 * (p.dMax + q.dMax),
+              0.5 * (p.width + q.width),
+              0.5 * (p.midpoint + q.midpoint),
+              0.5 * (p.power + q.power),
+              p.direct ? p.direct : q.direct};
+  if (p.direct && q.direct)
+    m.direct = {std::max(p.direct->stiffness, q.direct->stiffness),
+                std::max(p.direct->damping, q.direct->damping)};
+  return m;
+}
+
 /// `inverseInertia` is A; `timestep` bounds the time constant from below by 2h, below which an
-/// explicit step cannot follow the reference spring-damper.
+/// explicit step cannot follow the reference spring-damper. One that is given directly is taken as
+/// it is.
 inline Softness softnessAt(const Impedance& p, double distance, double inverseInertia,
                            double timestep) {
   const double d = impedanceAt(p, distance);
   const double dMax = std::clamp(p.dMax, 1e-4, 0.9999);
-  const double tc = std::max(p.timeConstant, 2.0 * timestep);
-  const double root = dMax * tc * p.dampingRatio;
   Softness s;
   s.R = std::max(1e-15, (1.0 - d) / d * inverseInertia);
+  if (p.direct) {
+    s.stiffness = p.direct->stiffness * d / (dMax * dMax);
+    s.damping = p.direct->damping / dMax;
+    return s;
+  }
+  const double tc = std::max(p.timeConstant, 2.0 * timestep);
+  const double root = dMax * tc * p.dampingRatio;
   s.stiffness = d / (root * root);
   s.damping = 2.0 / (dMax * tc);
   return s;

@@ -3,8 +3,6 @@
 
 #include <algorithm>
 
-#include "engine/constraints/impedance.hpp"
-
 namespace softgauss {
 namespace {
 
@@ -28,17 +26,13 @@ void PyramidalContact::assemble(const Assembly& in) {
     const std::optional<Touch> touch = touchAt(in, i);
     if (!touch || (touch->frictionDim > 0 && options.cone != Cone::pyramidal)) continue;
     const FrameVector velocity = addBlock(in, i, *touch, static_cast<int>(reference.size()));
-    const double mu = touch->mu();
-    const Softness soft = softnessAt(touch->impedance, touch->distance,
-                                     touch->weight * (1.0 + mu * mu), options.timestep);
-    const double R =
-        touch->frictionDim > 0 ? 2.0 * mu * mu / options.impedanceRatio * soft.R : soft.R;
+    const Softness& soft = touch->softness;
     double edgeVelocity[10];
     toEdges(velocity.data(), touch->frictionDim, touch->friction, edgeVelocity);
     const int edges = std::max(1, 2 * touch->frictionDim);
     for (int edge = 0; edge < edges; ++edge) {
       reference.push_back(soft.referenceAcceleration(edgeVelocity[edge], touch->distance));
-      D.push_back(1.0 / R);
+      D.push_back(1.0 / soft.R);
     }
   }
   resizeRows(reference.size());

@@ -6,24 +6,15 @@
 namespace softgauss {
 namespace {
 
-/// Caps come as numbers of a text file, so shapes of one material have equal numbers.
-bool sameMaterial(const Material& a, const Material& b) {
-  const Impedance &p = a.impedance, &q = b.impedance;
-  return a.slidingFriction == b.slidingFriction && a.torsionalFriction == b.torsionalFriction &&
-         a.rollingFriction == b.rollingFriction && a.condim == b.condim && a.margin == b.margin &&
-         p.timeConstant == q.timeConstant && p.dampingRatio == q.dampingRatio && p.dMin == q.dMin &&
-         p.dMax == q.dMax && p.width == q.width && p.midpoint == q.midpoint && p.power == q.power;
-}
-
-/// Whether `sphere` caps the end of `cylinder` towards +z (side = 1) or −z (side = −1).
+/// Whether `sphere` caps the end of `cylinder` towards +z (side = 1) or −z (side = −1). Numbers of
+/// one material come from one text, so they are equal.
 bool caps(const GeometrySpec& sphere, const GeometrySpec& cylinder, double side) {
   const Shape& rod = cylinder.shape;
   if (sphere.shape.kind != ShapeKind::sphere || sphere.link != cylinder.link) return false;
   const Vector3 end = cylinder.X_LG * Vector3(0.0, 0.0, side * rod.halfLength);
   const double tolerance = kCapsuleTolerance * (rod.radius + rod.halfLength);
   return std::abs(sphere.shape.radius - rod.radius) <= tolerance &&
-         (sphere.X_LG.p - end).norm() <= tolerance &&
-         sameMaterial(sphere.material, cylinder.material);
+         (sphere.X_LG.p - end).norm() <= tolerance && sphere.material == cylinder.material;
 }
 
 }  // namespace

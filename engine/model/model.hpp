@@ -52,7 +52,8 @@ struct Tree {
   int rootBody = 0;
   int bodyEnd = 0;  ///< bodies [rootBody, bodyEnd)
   int firstDof = 0;
-  int dofEnd = 0;  ///< dofs [firstDof, dofEnd)
+  int dofEnd = 0;     ///< dofs [firstDof, dofEnd)
+  double mass = 0.0;  ///< of all its bodies [kg]
 };
 
 /// One entry of the velocity vector v.

@@ -153,9 +153,12 @@ class Assembler {
       const Body& body = model_.bodies[idx(b)];
       if (body.parent != 0) continue;
       const Body& last = model_.bodies[idx(body.subtreeEnd - 1)];
-      model_.trees.push_back({b, body.subtreeEnd, body.v, last.v + last.dofs});
-      for (int i = b; i < body.subtreeEnd; ++i)
-        model_.bodies[idx(i)].tree = static_cast<int>(model_.trees.size()) - 1;
+      Tree tree{b, body.subtreeEnd, body.v, last.v + last.dofs};
+      for (int i = b; i < body.subtreeEnd; ++i) {
+        model_.bodies[idx(i)].tree = static_cast<int>(model_.trees.size());
+        tree.mass += model_.bodies[idx(i)].mass;
+      }
+      model_.trees.push_back(tree);
     }
     detail::checkMovingInertias(model_, where_);
     if (!powerless_.empty()) {
@@ -309,7 +312,7 @@ Model ModelBuilder::build() const {
     if (link == "world") return Placement{};
     throw ModelError(where, element, "is on link '" + link + "', which does not exist");
   };
-  for (const GeometrySpec& spec : geometries_) detail::checkGeometry(spec);
+  for (const GeometrySpec& spec : geometries_) detail::checkGeometry(spec, options);
   for (const GeometrySpec& spec : recogniseCapsules(geometries_)) {
     const Placement at = placementOf(spec.link, spec.where, "geometry '" + spec.name + "'");
     model.geometries.push_back(

@@ -10,6 +10,13 @@
 namespace softgauss::io::detail {
 namespace {
 
+/// Two keys that say the same in different words.
+[[noreturn]] void refuseBeside(const YamlMap& map, const YamlMap::Entry& entry,
+                               const YamlMap::Entry& other) {
+  map.fail(entry, fmt::format("found beside {} in line {}, expected one or the other", other.key,
+                              other.line));
+}
+
 void readImpedance(const YamlMap& map, Impedance& impedance) {
   map.expectOnly({"minimum", "maximum", "width", "midpoint", "power"});
   const auto share = [&](const std::string& key, double& x) {
@@ -31,16 +38,41 @@ void readImpedance(const YamlMap& map, Impedance& impedance) {
   }
 }
 
+/// A contact's softness in physical units, if the map has one.
+bool readSpring(const YamlMap& map, std::optional<ContactSpring>& spring) {
+  const auto *stiffness = map.find("stiffness"), *depth = map.find("rest_depth");
+  const auto *damping = map.find("damping"), *ratio = map.find("damping_ratio");
+  const YamlMap::Entry* by = stiffness ? stiffness : depth;
+  if (!by) {
+    if (damping)
+      map.fail(*damping, "found without stiffness [N/m] or rest_depth [m], expected one of them");
+    return false;
+  }
+  if (stiffness && depth) refuseBeside(map, *depth, *stiffness);
+  if (damping && ratio) refuseBeside(map, *ratio, *damping);
+  for (const char* key : {"time_constant", "reference_stiffness", "reference_damping", "impedance"})
+    if (const auto* other = map.find(key)) refuseBeside(map, *other, *by);
+  spring.emplace();
+  map.read("stiffness", spring->stiffness, Range::positive);
+  map.read("rest_depth", spring->restDepth, Range::positive);
+  spring->dampingRatio = damping ? 0.0 : 1.0;
+  map.read("damping", spring->damping, Range::notNegative);
+  map.read("damping_ratio", spring->dampingRatio, Range::notNegative);
+  return true;
+}
+
 Material readMaterial(const YamlMap& map) {
-  map.expectOnly({"friction", "torsional_friction", "rolling_friction", "condim", "margin",
-                  "time_constant", "damping_ratio", "impedance"});
+  std::vector<std::string> keys = {"friction", "torsional_friction", "rolling_friction", "condim",
+                                   "margin",   "stiffness",          "rest_depth",       "damping"};
+  keys.insert(keys.end(), kSoftnessKeys.begin(), kSoftnessKeys.end());
+  map.expectOnly(keys);
   Material m;
   map.read("friction", m.slidingFriction, Range::notNegative);
   map.read("torsional_friction", m.torsionalFriction, Range::notNegative);
   map.read("rolling_friction", m.rollingFriction, Range::notNegative);
   if (const auto* entry = map.find("condim")) m.condim = map.integer(*entry, {1, 3, 4, 6});
   map.read("margin", m.margin, Range::notNegative);
-  readSoftness(map, m.impedance);
+  if (!readSpring(map, m.spring)) readSoftness(map, m.impedance);
   return m;
 }
 
@@ -49,6 +81,18 @@ Material readMaterial(const YamlMap& map) {
 void readSoftness(const YamlMap& map, Impedance& impedance) {
   map.read("time_constant", impedance.timeConstant, Range::positive);
   map.read("damping_ratio", impedance.dampingRatio, Range::positive);
+  const auto* stiffness = map.find("reference_stiffness");
+  const auto* damping = map.find("reference_damping");
+  if (stiffness || damping) {
+    for (const char* key : {"time_constant", "damping_ratio"})
+      if (const auto* other = map.find(key))
+        refuseBeside(map, *other, stiffness ? *stiffness : *damping);
+    impedance.direct.emplace();
+    impedance.direct->stiffness = map.number(
+        map.required("reference_stiffness", "it beside reference_damping"), Range::notNegative);
+    impedance.direct->damping = map.number(
+        map.required("reference_damping", "it beside reference_stiffness"), Range::notNegative);
+  }
   if (const auto* entry = map.find("impedance")) readImpedance(map.map(*entry), impedance);
 }
 

@@ -21,8 +21,8 @@ Materials readMaterials(const YamlMap& map);
 Material materialOf(const YamlMap& map, const Materials& materials);
 
 /// Keys that say how soft a constraint is, and what they say.
-inline const std::vector<std::string> kSoftnessKeys = {"time_constant", "damping_ratio",
-                                                       "impedance"};
+inline const std::vector<std::string> kSoftnessKeys = {
+    "time_constant", "damping_ratio", "reference_stiffness", "reference_damping", "impedance"};
 void readSoftness(const YamlMap& map, Impedance& impedance);
 
 /// The keys that give a pose, and the pose they give: `position`, and `rpy` or `quaternion`.

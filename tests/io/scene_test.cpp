@@ -202,6 +202,22 @@ TEST(SceneFile, RefusalsNameTheLineThePartAndTheKey) {
       {"materials: {ice: {impedance: {maximum: 1}}}",
        "key 'materials.ice.impedance.maximum': found"},
       {"materials: {ice: {impedance: {power: 0.5}}}", "expected a number >= 1"},
+      {"materials: {ice: {stiffness: 0}}", "key 'materials.ice.stiffness': found '0'"},
+      {"materials: {ice: {rest_depth: -1}}", "key 'materials.ice.rest_depth': found '-1'"},
+      {"materials: {ice: {damping: 3}}",
+       "key 'materials.ice.damping': found without stiffness [N/m] or rest_depth [m]"},
+      {"materials: {ice: {stiffness: 1, rest_depth: 1}}",
+       "key 'materials.ice.rest_depth': found beside stiffness"},
+      {"materials: {ice: {stiffness: 1, damping: 1, damping_ratio: 1}}",
+       "key 'materials.ice.damping_ratio': found beside damping in line 1"},
+      {"materials: {ice: {stiffness: 1, impedance: {minimum: 0.5}}}",
+       "key 'materials.ice.impedance': found beside stiffness"},
+      {"materials: {ice: {reference_stiffness: 100}}",
+       "key 'materials.ice.reference_damping': found no such key"},
+      {"materials: {ice: {reference_stiffness: -1, reference_damping: 0}}",
+       "key 'materials.ice.reference_stiffness': found '-1'"},
+      {"materials:\n  ice: {time_constant: 1,\n   reference_stiffness: 1, reference_damping: 0}",
+       "key 'materials.ice.time_constant': found beside reference_stiffness in line 3"},
       {"robots:\n" + robot + ", joint_parameters: {shoulder: {friction: -1}}}",
        "key 'joint_parameters.shoulder.friction': found '-1'"},
       {"robots:\n" + robot + "}\nconstraints:\n  - glue: {}", ":4: constraint 1: key 'glue'"},
@@ -226,6 +242,29 @@ TEST(SceneFile, RefusalsNameTheLineThePartAndTheKey) {
   }
 }
 
+TEST(SceneFile, MaterialsMayHaveSprings) {
+  const SceneFolder folder(
+      "materials:\n"
+      "  a: {stiffness: 2.0e+4, damping: 30}\n"
+      "  b: {stiffness: 500}\n"
+      "  c: {rest_depth: 0.001, damping_ratio: 0.2}\n"
+      "  d: {rest_depth: 0.001, damping: 0}\n"
+      "objects:\n"
+      "  - {name: a, sphere: {radius: 0.1}, material: a}\n"
+      "  - {name: b, sphere: {radius: 0.1}, material: b}\n"
+      "  - {name: c, sphere: {radius: 0.1}, material: c}\n"
+      "  - {name: d, sphere: {radius: 0.1}, material: d}\n"
+      "  - {name: e, sphere: {radius: 0.1}}\n");
+  const Model model = folder.read().builder.build();
+  ASSERT_EQ(model.geometries.size(), 5u);
+  const auto spring = [&](int i) { return model.geometries[i].material.spring; };
+  EXPECT_EQ(spring(0), (ContactSpring{2e4, 0.0, 30.0, 0.0}));
+  EXPECT_EQ(spring(1), (ContactSpring{500.0, 0.0, 0.0, 1.0})) << "critical by default";
+  EXPECT_EQ(spring(2), (ContactSpring{0.0, 1e-3, 0.0, 0.2}));
+  EXPECT_EQ(spring(3), (ContactSpring{0.0, 1e-3, 0.0, 0.0}));
+  EXPECT_FALSE(spring(4));
+}
+
 TEST(SceneFile, ConstraintsTieWhatTheyName) {
   const SceneFolder folder(
       "robots:\n"
@@ -235,16 +274,20 @@ TEST(SceneFile, ConstraintsTieWhatTheyName) {
       "constraints:\n"
       "  - connect: {link_a: a/arm, link_b: world, point_a: [0.1, 0, 0], point_b: [0, 0, 1],\n"
       "              time_constant: 0.05}\n"
+      "  - connect: {link_a: b/arm, link_b: world, reference_stiffness: 900, reference_damping: "
+      "60}\n"
       "  - weld: {link_a: a/base, link_b: b/base, pose_b: {position: [-2, 0, 0]}, torque_scale: "
       "0.5}\n"
       "  - couple: {follower: b/shoulder, leader: a/shoulder, multiplier: -2, offset: 0.1}\n"
       "  - couple: {follower: a/shoulder, polynomial: [0.3]}\n");
   const Model model = folder.read().builder.build();
-  ASSERT_EQ(model.connections.size(), 1u);
+  ASSERT_EQ(model.connections.size(), 2u);
   EXPECT_EQ(model.connections[0].bodyA, model.frames[model.findFrame("a/arm")].body);
   EXPECT_EQ(model.connections[0].bodyB, 0);
   EXPECT_APPROX(model.connections[0].p_BP, Vector3(0, 0, 1), 1e-15);
   EXPECT_EQ(model.connections[0].impedance.timeConstant, 0.05);
+  EXPECT_FALSE(model.connections[0].impedance.direct);
+  EXPECT_EQ(model.connections[1].impedance.direct, (ReferenceSpring{900.0, 60.0}));
   ASSERT_EQ(model.welds.size(), 1u);
   EXPECT_APPROX(model.welds[0].X_BF.p, Vector3(-2, 0, 0), 1e-15);
   EXPECT_EQ(model.welds[0].torqueScale, 0.5);

@@ -43,9 +43,14 @@ Impedance impedanceOf(const Json& item) {
   Impedance p;
   if (item.contains("solref")) {
     const Eigen::Vector2d solref = vectorOf<2>(item["solref"]);
-    if (solref.minCoeff() <= 0.0) throw std::runtime_error("solref not above 0");
-    p.timeConstant = solref[0];
-    p.dampingRatio = solref[1];
+    if (solref.minCoeff() > 0.0) {
+      p.timeConstant = solref[0];
+      p.dampingRatio = solref[1];
+    } else if (solref.maxCoeff() <= 0.0) {
+      p.direct = {-solref[0], -solref[1]};
+    } else {
+      throw std::runtime_error("solref of two signs");
+    }
   }
   if (item.contains("solimp")) {
     const Eigen::Matrix<double, 5, 1> solimp = vectorOf<5>(item["solimp"]);

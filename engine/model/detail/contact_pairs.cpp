@@ -38,7 +38,7 @@ void addContactPairs(Model& model, const std::vector<PairSpec>& specs) {
     if (pair.geometryA == pair.geometryB)
       throw ModelError(spec.where, element, "is one geometry, expected two");
     if (pair.geometryA > pair.geometryB) std::swap(pair.geometryA, pair.geometryB);
-    checkMaterial(spec.material, spec.where, element);
+    checkMaterial(spec.material, model.options, spec.where, element);
     pair.material = spec.material;
     const auto at =
         std::lower_bound(model.contactPairs.begin(), model.contactPairs.end(), pair, order);

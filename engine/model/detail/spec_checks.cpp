@@ -46,16 +46,24 @@ void checkImpedance(const Impedance& p, const SourceLocation& where, const std::
       throw ModelError(where, element,
                        std::string(what) + " is " + number(x) + ", expected more than 0");
   };
-  positive(p.timeConstant, "time constant");
-  positive(p.dampingRatio, "damping ratio");
+  const auto notNegative = [&](double x, const char* what) {
+    if (!(x >= 0.0) || !std::isfinite(x))
+      throw ModelError(where, element,
+                       std::string(what) + " is " + number(x) + ", expected 0 or more");
+  };
+  if (p.direct) {
+    notNegative(p.direct->stiffness, "reference stiffness");
+    notNegative(p.direct->damping, "reference damping");
+  } else {
+    positive(p.timeConstant, "time constant");
+    positive(p.dampingRatio, "damping ratio");
+  }
   for (const double d : {p.dMin, p.dMax, p.midpoint})
     if (!(d >= 0.0 && d <= 1.0))
       throw ModelError(
           where, element,
           "impedance has " + number(d) + ", expected dMin, dMax and midpoint in [0, 1]");
-  if (!(p.width >= 0.0) || !std::isfinite(p.width))
-    throw ModelError(where, element,
-                     "impedance width is " + number(p.width) + ", expected 0 or more");
+  notNegative(p.width, "impedance width");
   if (!(p.power >= 1.0) || !std::isfinite(p.power))
     throw ModelError(where, element,
                      "impedance power is " + number(p.power) + ", expected 1 or more");
@@ -97,7 +105,27 @@ void checkJoint(const JointSpec& joint) {
     fail("mimic multiplier or offset is not finite");
 }
 
-void checkMaterial(const Material& m, const SourceLocation& where, const std::string& element) {
+void checkSpring(const ContactSpring& s, const Options& options, const SourceLocation& where,
+                 const std::string& element) {
+  const auto fail = [&](const std::string& text) { throw ModelError(where, element, text); };
+  for (const auto& [x, what] : {std::pair(s.stiffness, "stiffness"),
+                                {s.restDepth, "rest depth"},
+                                {s.damping, "damping"},
+                                {s.dampingRatio, "damping ratio"}})
+    if (!(x >= 0.0) || !std::isfinite(x))
+      fail(std::string("contact ") + what + " is " + number(x) + ", expected 0 or more");
+  if ((s.stiffness > 0.0) == (s.restDepth > 0.0))
+    fail("contact stiffness is " + number(s.stiffness) + " and rest depth " + number(s.restDepth) +
+         ", expected one of them above 0");
+  if (s.damping > 0.0 && s.dampingRatio > 0.0)
+    fail("has a contact damping and a damping ratio, expected one of them");
+  if (s.restDepth > 0.0 && options.gravity.isZero(0.0))
+    fail(
+        "has a rest depth, which is that under gravity, and gravity is zero; expected a stiffness");
+}
+
+void checkMaterial(const Material& m, const Options& options, const SourceLocation& where,
+                   const std::string& element) {
   const auto fail = [&](const std::string& text) { throw ModelError(where, element, text); };
   if (!(m.slidingFriction >= 0.0)) fail("friction is negative, expected 0 or more");
   if (!(m.torsionalFriction >= 0.0) || !(m.rollingFriction >= 0.0))
@@ -106,9 +134,10 @@ void checkMaterial(const Material& m, const SourceLocation& where, const std::st
     fail("condim is not 1, 3, 4 or 6");
   if (!std::isfinite(m.margin)) fail("margin is not finite");
   checkImpedance(m.impedance, where, element);
+  if (m.spring) checkSpring(*m.spring, options, where, element);
 }
 
-void checkGeometry(const GeometrySpec& g) {
+void checkGeometry(const GeometrySpec& g, const Options& options) {
   const std::string element = "geometry '" + g.name + "'";
   const auto fail = [&](const std::string& text) { throw ModelError(g.where, element, text); };
   const auto positive = [&](double x, const char* what) {
@@ -135,7 +164,7 @@ void checkGeometry(const GeometrySpec& g) {
       if (!g.shape.mesh || g.shape.mesh->vertices.empty()) fail("mesh has no vertices");
       break;
   }
-  checkMaterial(g.material, g.where, element);
+  checkMaterial(g.material, options, g.where, element);
 }
 
 void checkOptions(const Options& options) {

@@ -13,9 +13,9 @@ void checkLink(const LinkSpec& link);
 void checkImpedance(const Impedance& impedance, const SourceLocation& where,
                     const std::string& element);
 void checkJoint(const JointSpec& joint);
-void checkMaterial(const Material& material, const SourceLocation& where,
+void checkMaterial(const Material& material, const Options& options, const SourceLocation& where,
                    const std::string& element);
-void checkGeometry(const GeometrySpec& geometry);
+void checkGeometry(const GeometrySpec& geometry, const Options& options);
 void checkOptions(const Options& options);
 
 /// After merging: a moving body with mass has a positive definite inertia, and every joint moves

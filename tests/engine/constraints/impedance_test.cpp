@@ -101,6 +101,50 @@ TEST(Softness, TimeConstantIsAtLeastTwoSteps) {
   EXPECT_EQ(a.damping, b.damping);
 }
 
+// Given directly, deep inside the constraint the row is the spring-damper itself: d k = stiffness
+// and d b = damping where d = dMax. The step is not asked.
+TEST(Softness, OfADirectReferenceIsThatReferenceWhereDeep) {
+  Impedance p;
+  p.direct = {3000.0, 40.0};
+  for (const double timestep : {1e-4, 0.1}) {
+    const Softness deep = softnessAt(p, -1.0, 3.0, timestep);
+    EXPECT_SMALL(0.95 * deep.stiffness / 3000.0 - 1.0, kRounding);
+    EXPECT_SMALL(0.95 * deep.damping / 40.0 - 1.0, kRounding);
+    const Softness shallow = softnessAt(p, 0.0, 3.0, timestep);
+    EXPECT_SMALL(shallow.stiffness / deep.stiffness - 0.9 / 0.95, kRounding);
+    EXPECT_EQ(shallow.damping, deep.damping);
+    EXPECT_EQ(shallow.R, softnessAt(Impedance{}, 0.0, 3.0, timestep).R);
+  }
+}
+
+// The two forms agree: 1/(tc ζ)² and 2/tc.
+TEST(Softness, OfADirectReferenceIsThatOfItsTimeConstant) {
+  Impedance standard, direct;
+  standard.timeConstant = 0.03;
+  standard.dampingRatio = 0.6;
+  direct.direct = {1.0 / std::pow(0.03 * 0.6, 2), 2.0 / 0.03};
+  for (const double r : {0.0, -0.3e-3, -0.1}) {
+    const Softness a = softnessAt(standard, r, 2.0, 0.002), b = softnessAt(direct, r, 2.0, 0.002);
+    EXPECT_SMALL(a.stiffness / b.stiffness - 1.0, kRounding);
+    EXPECT_SMALL(a.damping / b.damping - 1.0, kRounding);
+  }
+}
+
+// One that is given directly wins; of two, each number is the larger. Either way round.
+TEST(Softness, DirectReferencesMix) {
+  Impedance standard, soft, stiff;
+  soft.direct = {2000.0, 30.0};
+  stiff.direct = {4000.0, 20.0};
+  EXPECT_FALSE(mixImpedances(standard, standard).direct);
+  for (const bool swapped : {false, true}) {
+    const auto mix = [&](const Impedance& p, const Impedance& q) {
+      return swapped ? mixImpedances(q, p) : mixImpedances(p, q);
+    };
+    EXPECT_EQ(mix(standard, soft).direct, soft.direct);
+    EXPECT_EQ(mix(soft, stiff).direct, (ReferenceSpring{4000.0, 30.0}));
+  }
+}
+
 TEST(Softness, RegulariserHasAFloor) {
   EXPECT_EQ(softnessAt(Impedance{}, -0.001, 0.0, 0.002).R, 1e-15);
 }

@@ -208,6 +208,41 @@ const Mistake kMistakes[] = {
        d.connect.linkA = "hand", d.connect.linkB = "world", d.connect.impedance.timeConstant = 0.0;
      },
      {"scene:8", "connection", "time constant is 0"}},
+    {"NegativeReferenceStiffness",
+     [](Description& d) {
+       d.ball.material.impedance.direct = {-1.0, 1.0};
+     },
+     {"robot.urdf:7", "reference stiffness is -1", "0 or more"}},
+    {"NegativeContactStiffness",
+     [](Description& d) {
+       d.ball.material.spring = {-1.0, 0.0, 0.0, 0.0};
+     },
+     {"robot.urdf:7", "contact stiffness is -1"}},
+    {"ContactStiffnessAndRestDepth",
+     [](Description& d) {
+       d.ball.material.spring = {1.0, 1.0, 0.0, 0.0};
+     },
+     {"robot.urdf:7", "one of them above 0"}},
+    {"NoContactStiffness",
+     [](Description& d) {
+       d.ball.material.spring = {0.0, 0.0, 1.0, 0.0};
+     },
+     {"robot.urdf:7", "one of them above 0"}},
+    {"TwoContactDampings",
+     [](Description& d) {
+       d.ball.material.spring = {1.0, 0.0, 1.0, 1.0};
+     },
+     {"robot.urdf:7", "contact damping and a damping ratio"}},
+    {"RestDepthWithoutWeight",
+     [](Description& d) {
+       d.ball.material.spring = {0.0, 1e-3, 0.0, 1.0}, d.options.gravity.setZero();
+     },
+     {"robot.urdf:7", "gravity is zero"}},
+    {"NanReferenceDamping",
+     [](Description& d) {
+       d.ball.material.impedance.direct = {1.0, kNaN};
+     },
+     {"robot.urdf:7", "reference damping is"}},
     {"WeldOfTheWorldToItself",
      [](Description& d) { d.weld.linkA = "world", d.weld.linkB = "world"; },
      {"scene:8", "weld", "cannot move against each other"}},

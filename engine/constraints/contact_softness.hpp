@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// How soft the rows of a contact are, by its impedance or by a spring and a damper of N/m and N
+/// s/m, and what that comes to: how deep it sinks, how fast it creeps.
+///
+/// A spring: with r < 0 the distance less the margin, K the stiffness and B the damping, the normal
+/// force is that of the end of the step, r⁺ = r + h ẏ + h² y and ẏ⁺ = ẏ + h y (T.36):
+///   f = max(0, −K r⁺ − B ẏ⁺) = max(0, −D (y − a_ref)),   D = h (K h + B),   a_ref = −ẏ/h − (K/D) r
+/// At rest f = −K r, whatever mass and friction are, and no stiffness makes the step unstable. The
+/// edges of a friction pyramid share D alike; an elliptic cone has it along the normal.
+
+#include "engine/constraints/impedance.hpp"
+#include "engine/model/model.hpp"
+
+namespace softgauss {
+
+/// The mass that rests on a contact between two bodies [kg]: that of the lighter of their trees.
+/// The world rests on nothing; 0 where neither body moves.
+double restingMass(const Model& model, int bodyA, int bodyB);
+
+/// The same spring by its stiffness and damping alone (T.37): K = m g/restDepth and
+/// B = 2 dampingRatio √(K m), with `mass` m [kg] and `gravity` g [m/s²] > 0.
+ContactSpring inNewtons(const ContactSpring& spring, double mass, double gravity);
+
+/// Two springs in newtons, one behind the other, pressed by the same force (T.38); the damping is
+/// that of slow motion.
+ContactSpring inSeries(const ContactSpring& a, const ContactSpring& b);
+
+/// Below this coefficient a cone degenerates: the contact is frictionless.
+inline constexpr double kSmallestFriction = 1e-5;
+
+/// Directions of friction that a contact has with the effects that are switched on: condim − 1; 0
+/// where it is frictionless. Rolling friction comes with torsional friction.
+int frictionDim(const Material& pair, const EffectSet& effects);
+
+/// R, k d and b of the row along the normal, or with pyramids of each of the 2 `frictionDim` edges
+/// (T.14), (T.36). `pair` is the surface of both, its spring in newtons; `distance` is
+/// measured from the margin, `weight` is w_A + w_B [1/kg].
+Softness contactSoftness(const Material& pair, int frictionDim, double distance, double weight,
+                         const Options& options);
+
+/// One contact that holds still under a load along its normal.
+struct ContactAtRest {
+  double depth = 0.0;       ///< below the margin [m]
+  double stiffness = 0.0;   ///< load/depth [N/m]
+  double damping = 0.0;     ///< normal force per normal speed, at that depth [N s/m]
+  double mobility = 0.0;    ///< creep: tangential speed per tangential force [m/(N s)]
+  double stickForce = 0.0;  ///< tangential force up to which that holds [N]
+  Impedance equivalent;     ///< impedance of constant d that has all this too, at this `weight`
+};
+
+/// Of the contact that contactSoftness() describes, under `load` > 0 [N] (T.39).
+ContactAtRest contactAtRest(const Material& pair, double weight, double load,
+                            const Options& options);
+
+}  // namespace softgauss
