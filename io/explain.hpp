@@ -10,6 +10,7 @@
 
 #include "engine/model/model.hpp"
 #include "io/urdf.hpp"
+#include "io/wrenches.hpp"
 
 namespace softgauss::io {
 
@@ -22,7 +23,9 @@ struct EffectNote {
 };
 
 /// Every effect that interfaces name, in their order, for this model and its Options::effects.
-std::vector<EffectNote> effectNotes(const Model& model);
+/// `wrenches` act on it from outside.
+std::vector<EffectNote> effectNotes(const Model& model,
+                                    const std::vector<TimedWrench>& wrenches = {});
 
 /// Names of those that are on.
 std::vector<std::string> effectsOn(const std::vector<EffectNote>& notes);
@@ -40,6 +43,7 @@ struct ExplainContext {
   std::optional<UrdfContents> contents;  ///< of the file, before links were merged
   std::vector<FilteredPair> filtered;    ///< grouped by reason in the text
   std::optional<int> testedPairs;        ///< pairs of shapes that may touch
+  std::vector<TimedWrench> wrenches;     ///< that act from outside
 };
 
 std::string explain(const Model& model, const ExplainContext& context = {});

@@ -116,8 +116,8 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
       "Simulates a robot under goal directed dynamics: at every step the controls are found that\n"
       "bring it nearer its goals, with the contact forces that then act.");
   app.set_version_flag("--version", std::string("softgauss ") + SOFTGAUSS_VERSION);
-  std::string base = "automatic", ground, effects = "auto", zeroEffort = "passive", integrator,
-              cone, solver, compatibility;
+  std::string base = "automatic", ground, effects, zeroEffort = "passive", integrator, cone, solver,
+              compatibility;
   std::vector<std::string> reach, q0;
   for (int i = 0; i < argc; ++i)
     options.commandLine +=
@@ -224,9 +224,9 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
     if (base == "fixed")
       throw UsageError("--base-height is for a floating base, and --base is fixed");
   }
-  options.likeMujoco = compatibility == "mujoco";
+  if (!compatibility.empty()) options.likeMujoco = compatibility == "mujoco";
   options.zeroEffortIsUnlimited = zeroEffort == "unlimited";
-  options.effects = parseEffects(effects);
+  if (!effects.empty()) options.effects = parseEffects(effects);
   if (options.ground) mustBeNear(*options.ground, "--ground");
   for (const std::string& text : reach) {
     options.reach.push_back(parseReach(text));

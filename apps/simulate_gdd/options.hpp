@@ -31,9 +31,9 @@ struct SimulateOptions {
   bool passive = false;
   std::filesystem::path goals, torques;
   std::vector<std::pair<std::string, double>> q0;
-  EffectSet effects = EffectSet::all();
+  std::optional<EffectSet> effects;  ///< absent: the scene's own, or all
   bool zeroEffortIsUnlimited = false;
-  bool likeMujoco = false;  ///< --compatibility mujoco
+  std::optional<bool> likeMujoco;  ///< --compatibility
   bool explain = false;
   bool quiet = false;
   std::filesystem::path log, summary, view, plot;

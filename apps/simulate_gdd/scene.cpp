@@ -68,8 +68,8 @@ void addGround(ModelBuilder& builder, double height, const Material& material) {
 
 void setOptions(const SimulateOptions& options, ModelBuilder& builder) {
   if (options.timestep) builder.options.timestep = *options.timestep;
-  builder.options.effects = options.effects;
-  builder.options.midpointCoriolis = !options.likeMujoco;
+  if (options.effects) builder.options.effects = *options.effects;
+  if (options.likeMujoco) builder.options.midpointCoriolis = !*options.likeMujoco;
 }
 
 io::UrdfOptions urdfOptions(const SimulateOptions& options) {
@@ -114,6 +114,8 @@ void loadSceneFile(const SimulateOptions& options, Scene& scene) {
   scene.model = file.builder.build();
   scene.contents = file.contents;
   scene.hasGoals = file.hasGoals;
+  scene.wrenches = file.wrenches;
+  scene.schedule = io::WrenchSchedule(scene.model, file.wrenches);
   scene.initial = file.initialState(scene.model);
   setJointPositions(options, scene.model, scene.initial);
   if (!ground) return;
@@ -159,6 +161,7 @@ std::vector<std::unique_ptr<gdd::Goal>> makeGoals(const SimulateOptions& options
 std::string explainScene(const Scene& scene) {
   io::ExplainContext context;
   context.contents = scene.contents;
+  context.wrenches = scene.wrenches;
   const collision::PairFilter& filter = scene.contacts->filter();
   context.testedPairs = static_cast<int>(filter.pairs.size());
   for (const collision::ExcludedPair& pair : filter.excluded) {

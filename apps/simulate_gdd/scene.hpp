@@ -10,6 +10,7 @@
 #include "collision/scene_contacts.hpp"
 #include "gdd/gdd.hpp"
 #include "io/urdf.hpp"
+#include "io/wrenches.hpp"
 
 namespace softgauss::app {
 
@@ -18,7 +19,9 @@ struct Scene {
   io::UrdfContents contents;
   std::unique_ptr<collision::SceneContacts> contacts;
   State initial;
-  bool hasGoals = false;  ///< the scene file holds goals
+  std::vector<io::TimedWrench> wrenches;
+  io::WrenchSchedule schedule;  ///< of those
+  bool hasGoals = false;        ///< the scene file holds goals
 };
 
 /// Throws ModelError.

@@ -31,20 +31,20 @@ void readImpedance(const YamlMap& map, Impedance& impedance) {
   }
 }
 
-Material readMaterial(const YamlMap& map) {
-  map.expectOnly({"friction", "torsional_friction", "rolling_friction", "condim", "margin",
-                  "time_constant", "damping_ratio", "impedance"});
-  Material m;
+}  // namespace
+
+void readSurface(const YamlMap& map, Material& m) {
+  if (const auto* gap = map.find("gap"))
+    map.fail(*gap,
+             "is not known: in MuJoCo 3.9 and later a gap lists contacts that do not push yet; "
+             "expected none, or for older files the margin less the gap as margin");
   map.read("friction", m.slidingFriction, Range::notNegative);
   map.read("torsional_friction", m.torsionalFriction, Range::notNegative);
   map.read("rolling_friction", m.rollingFriction, Range::notNegative);
   if (const auto* entry = map.find("condim")) m.condim = map.integer(*entry, {1, 3, 4, 6});
   map.read("margin", m.margin, Range::notNegative);
   readSoftness(map, m.impedance);
-  return m;
 }
-
-}  // namespace
 
 void readSoftness(const YamlMap& map, Impedance& impedance) {
   map.read("time_constant", impedance.timeConstant, Range::positive);
@@ -55,8 +55,11 @@ void readSoftness(const YamlMap& map, Impedance& impedance) {
 Materials readMaterials(const YamlMap& map) {
   Materials materials;
   materials["default"];
-  for (const YamlMap::Entry& entry : map.entries())
-    materials[entry.key] = readMaterial(map.map(entry));
+  for (const YamlMap::Entry& entry : map.entries()) {
+    const YamlMap surface = map.map(entry);
+    readSurface(surface, materials[entry.key] = Material{});
+    surface.expectOnly(kSurfaceKeys);
+  }
   return materials;
 }
 
