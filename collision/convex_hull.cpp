@@ -222,9 +222,11 @@ int ConvexHull::supportVertex(const Vector3& d_G) const {
   double farthest = vertices[static_cast<std::size_t>(best)].dot(d_G);
   for (int from = -1; from != best;) {
     from = best;
-    for (int i : neighbours.of(from)) {
-      const double reach = vertices[static_cast<std::size_t>(i)].dot(d_G);
-      if (reach > farthest) farthest = reach, best = i;
+    const auto at = static_cast<std::size_t>(from);
+    const auto end = static_cast<std::size_t>(neighbours.start[at + 1]);
+    for (auto k = static_cast<std::size_t>(neighbours.start[at]); k < end; ++k) {
+      const double reach = neighbourPoints[k].dot(d_G);
+      if (reach > farthest) farthest = reach, best = neighbours.indices[k];
     }
   }
   return best;
@@ -251,6 +253,8 @@ ConvexHull makeConvexHull(const Mesh& mesh) {
       extent.thickness <= tolerance ? flatHull(mesh.vertices, extent) : solidHull(mesh);
 
   connect(hull);
+  for (const int i : hull.neighbours.indices)
+    hull.neighbourPoints.push_back(hull.vertices[static_cast<std::size_t>(i)]);
 
   Vector3 lower = hull.vertices[0], upper = hull.vertices[0];
   for (const Vector3& v : hull.vertices) {

@@ -36,6 +36,7 @@ struct ConvexHull {
   std::vector<Vector3> vertices;          ///< in G [m], each an extreme point
   std::vector<HullFace> faces;            ///< at least 4, or 2 when flat
   IndexLists neighbours;                  ///< of each vertex, along the edges
+  std::vector<Vector3> neighbourPoints;   ///< where those are, in their order: for speed
   IndexLists facesAround;                 ///< of each vertex
   std::array<int, 8> octants{};           ///< support vertex of (±1, ±1, ±1); bit 0 set means +x
   bool flat = false;                      ///< a convex polygon without thickness

@@ -92,7 +92,7 @@ class Notes {
 
 }  // namespace
 
-std::vector<EffectNote> effectNotes(const Model& model) {
+std::vector<EffectNote> effectNotes(const Model& model, const std::vector<TimedWrench>& wrenches) {
   const auto& g = model.options.gravity;
   const bool moves = model.nv > 0;
   const std::size_t moving = model.bodies.size() - 1;
@@ -107,6 +107,13 @@ std::vector<EffectNote> effectNotes(const Model& model) {
     if (geometry.material.condim >= 4) torsional.add(geometry.name);
     if (geometry.material.condim >= 6) rolling.add(geometry.name);
   }
+  for (const ContactPair& pair : model.contactPairs) {
+    const std::string& name = model.geometries[static_cast<std::size_t>(pair.geometryA)].name;
+    if (pair.material.condim >= 4) torsional.add(name);
+    if (pair.material.condim >= 6) rolling.add(name);
+  }
+  Callers forced;
+  for (const TimedWrench& wrench : wrenches) forced.add(wrench.link);
   const ShapeCensus shapes(model);
 
   Notes notes(model);
@@ -125,6 +132,7 @@ std::vector<EffectNote> effectNotes(const Model& model) {
             "no joint has rotor inertia");
   notes.add("actuation", dofsWith(model, [](const Dof& d) { return d.actuated; }), "actuated joint",
             "no joint is actuated");
+  notes.add("external_wrench", forced, "wrench", "no force or moment is applied from outside");
   notes.add("joint_limit", ranges, "joint range", "no joint has a range");
   notes.add("dry_friction", dofsWith(model, [](const Dof& d) { return d.dryFriction > 0.0; }),
             "dof", "no joint has friction");

@@ -142,6 +142,9 @@ std::string shapesText(const Model& model, const ExplainContext& context) {
   out += fmt::format("  {}\n", kinds.empty() ? "none" : listed(kinds));
   if (context.testedPairs)
     out += fmt::format("  {} may touch\n", counted(idx(*context.testedPairs), "pair"));
+  if (!model.contactPairs.empty())
+    out +=
+        fmt::format("  {} with a surface of its own\n", counted(model.contactPairs.size(), "pair"));
   std::map<std::string, std::vector<std::string>> byReason;
   for (const FilteredPair& pair : context.filtered)
     byReason[pair.reason].push_back(fmt::format("{} - {}{}{}", pair.first, pair.second,
@@ -153,9 +156,24 @@ std::string shapesText(const Model& model, const ExplainContext& context) {
   return out;
 }
 
-std::string effectsText(const Model& model) {
+std::string wrenchesText(const ExplainContext& context) {
+  if (context.wrenches.empty()) return {};
+  const auto vector = [](const Vector3& x, const char* unit) {
+    return x.isZero(0.0) ? std::string("-")
+                         : fmt::format("({:.4g}, {:.4g}, {:.4g}) {}", x.x(), x.y(), x.z(), unit);
+  };
+  detail::TextTable table;
+  table.row({"link", "force", "moment", "at", "from", "to"});
+  for (const TimedWrench& w : context.wrenches)
+    table.row({w.link, vector(w.force_W, "N"), vector(w.moment_W, "N m"), vector(w.p_LP, "m"),
+               fmt::format("{:.4g} s", w.start),
+               std::isinf(w.end) ? "-" : fmt::format("{:.4g} s", w.end)});
+  return "wrenches from outside, in world axes, at points of links\n" + table.text();
+}
+
+std::string effectsText(const Model& model, const ExplainContext& context) {
   detail::TextTable on, off;
-  for (const EffectNote& note : effectNotes(model))
+  for (const EffectNote& note : effectNotes(model, context.wrenches))
     (note.on ? on : off).row({note.name, note.reason});
   return "effects that are simulated, and what calls them\n" + on.text() +
          "effects that are off, and why\n" + off.text();
@@ -174,7 +192,8 @@ std::string explain(const Model& model, const ExplainContext& context) {
   section(framesText(model));
   section(shapesText(model, context));
   section(softnessText(model, context));
-  section(effectsText(model));
+  section(wrenchesText(context));
+  section(effectsText(model, context));
   if (!model.warnings.empty()) {
     std::string warnings = "warnings\n";
     for (const std::string& warning : model.warnings) warnings += "  " + warning + "\n";

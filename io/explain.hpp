@@ -11,6 +11,7 @@
 
 #include "engine/model/model.hpp"
 #include "io/urdf.hpp"
+#include "io/wrenches.hpp"
 
 namespace softgauss::io {
 
@@ -23,7 +24,9 @@ struct EffectNote {
 };
 
 /// Every effect that interfaces name, in their order, for this model and its Options::effects.
-std::vector<EffectNote> effectNotes(const Model& model);
+/// `wrenches` act on it from outside.
+std::vector<EffectNote> effectNotes(const Model& model,
+                                    const std::vector<TimedWrench>& wrenches = {});
 
 /// Names of those that are on.
 std::vector<std::string> effectsOn(const std::vector<EffectNote>& notes);
@@ -43,6 +46,7 @@ struct ExplainContext {
   std::optional<int> testedPairs;          ///< pairs of shapes that may touch
   std::vector<std::pair<int, int>> pairs;  ///< those pairs, as indices into Model::geometries
   std::vector<std::pair<std::string, Material>> materials;  ///< the surfaces that have a name
+  std::vector<TimedWrench> wrenches;                        ///< that act from outside
 };
 
 /// The part of explain() on contacts: for each pair of surfaces among `context.pairs`, what sinks

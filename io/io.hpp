@@ -7,6 +7,8 @@
 #include "io/goals.hpp"
 #include "io/log.hpp"
 #include "io/mesh.hpp"
+#include "io/scene.hpp"
 #include "io/summary.hpp"
 #include "io/torque_table.hpp"
 #include "io/urdf.hpp"
+#include "io/wrenches.hpp"

@@ -10,6 +10,7 @@
 #include "engine/core/rotation.hpp"
 #include "engine/model/mass_properties.hpp"
 #include "io/detail/scene_constraints.hpp"
+#include "io/detail/scene_options.hpp"
 #include "io/detail/scene_parts.hpp"
 #include "io/detail/text.hpp"
 
@@ -34,7 +35,7 @@ class SceneReader {
 
   SceneFile read() {
     top_.expectOnly({"name", "timestep", "gravity", "ground", "materials", "robots", "objects",
-                     "constraints", "goals"});
+                     "constraints", "pairs", "wrenches", "options", "goals"});
     std::string name = std::filesystem::path(top_.file()).stem().string();
     if (const auto* entry = top_.find("name")) name = top_.name(*entry);
     scene_.builder = ModelBuilder(name);
@@ -44,7 +45,10 @@ class SceneReader {
     if (const auto* entry = top_.find("materials"))
       materials_ = detail::readMaterials(top_.map(*entry));
     scene_.materials.assign(materials_.begin(), materials_.end());
+    scene_.groundMaterial = materials_.at("default");
     if (const auto* entry = top_.find("ground")) readGround(*entry);
+    if (const auto* entry = top_.find("options"))
+      detail::readOptions(top_.map(*entry), scene_.builder.options);
     const auto forEach = [&](const char* key, const char* noun, auto&& readOne) {
       const YamlMap::Entry* entry = top_.find(key);
       if (!entry) return;
@@ -64,6 +68,7 @@ class SceneReader {
       for (const YamlValue& item : top_.list(*entry))
         detail::readConstraint(top_.file(), item, ++number, scene_.builder);
     }
+    readPairsAndWrenches(forEach);
     if (scene_.contents.links == 0)
       throw ModelError({top_.file(), top_.line()}, "scene",
                        "holds nothing, expected a list of robots or of objects");
@@ -91,14 +96,28 @@ class SceneReader {
     }
   }
 
+  /// What names links and shapes of everything above it.
+  template <class ForEach>
+  void readPairsAndWrenches(const ForEach& forEach) {
+    std::vector<std::string> links;
+    for (const auto& [link, surface] : surfaces_) links.push_back(link);
+    forEach("wrenches", "wrench",
+            [&](const YamlMap& map) { scene_.wrenches.push_back(detail::readWrench(map, links)); });
+    if (!scene_.noGround) surfaces_.try_emplace("ground", scene_.groundMaterial);
+    forEach("pairs", "pair", [&](const YamlMap& map) {
+      detail::readPair(map, materials_, surfaces_, scene_.builder);
+    });
+  }
+
   /// A name that nothing else in the scene has, or none where there is but one thing of its kind.
   std::string ownName(const YamlMap& map, bool mayBeNameless) {
     const YamlMap::Entry* entry = map.find("name");
     if (!entry && mayBeNameless) return {};
     const YamlMap::Entry& found = entry ? *entry : map.required("name", "a name of its own");
     const std::string name = map.name(found);
-    if (name.empty() || name == "world" || name.find('/') != std::string::npos)
-      map.fail(found, fmt::format("found {}, expected a name without '/' other than world",
+    if (name.empty() || name == "world" || name == "ground" || name.find('/') != std::string::npos)
+      map.fail(found, fmt::format("found {}, expected a name without '/' other than world and "
+                                  "ground",
                                   detail::quotedText(name)));
     if (!names_.insert(name).second)
       map.fail(found, fmt::format("found {} a second time, expected a name of its own",
@@ -160,6 +179,11 @@ class SceneReader {
     scene_.builder.add(robot, name);
 
     const std::string prefix = name.empty() ? "" : name + "/";
+    for (const std::string& link : contents.linkNames) {
+      const auto own = options.linkMaterials.find(link);
+      surfaces_[prefix + link] =
+          own == options.linkMaterials.end() ? options.material : own->second;
+    }
     const auto readJoints = [&](const char* key, auto& values) {
       const YamlMap::Entry* entry = map.find(key);
       if (!entry) return;
@@ -245,6 +269,7 @@ class SceneReader {
         map.fail(*entry, "found a number outside 0 to 1, expected red, green and blue within");
       object.visual(visual);
     }
+    surfaces_[name] = geometry.material;
     scene_.contents.links += 1;
     scene_.contents.mass += link.mass;
     scene_.builder.add(object.link(link).geometry(geometry), "");
@@ -255,6 +280,7 @@ class SceneReader {
   const UrdfOptions& urdfOptions_;
   SceneFile scene_;
   detail::Materials materials_;
+  std::map<std::string, Material> surfaces_;  ///< of links, objects and the ground
   MeshCache meshes_;
   std::set<std::string> names_;
 };

@@ -16,6 +16,7 @@
 
 #include "engine/model/state.hpp"
 #include "io/urdf.hpp"
+#include "io/wrenches.hpp"
 
 namespace softgauss::io {
 
@@ -41,6 +42,8 @@ struct SceneFile {
   std::vector<Start> starts;
   std::vector<std::pair<std::string, double>> positions;   ///< of scalar joints [rad or m]
   std::vector<std::pair<std::string, double>> velocities;  ///< of scalar joints [rad/s or m/s]
+
+  std::vector<TimedWrench> wrenches;
 
   bool hasGoals = false;  ///< has a list that readGoals() reads
 

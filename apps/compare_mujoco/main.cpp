@@ -18,6 +18,8 @@
 
 #include "apps/compare_mujoco/mjcf.hpp"
 #include "apps/compare_mujoco/mujoco.hpp"
+#include "apps/compare_mujoco/urdf_copy.hpp"
+#include "apps/compare_mujoco/urdf_reading.hpp"
 #include "collision/lowest_point.hpp"
 #include "collision/scene_contacts.hpp"
 #include "engine/engine.hpp"
@@ -33,7 +35,7 @@ constexpr double kControlShare = 0.05;  ///< of the effort limit that the contro
 constexpr double kFreeRun = 1.0;        ///< [s]
 
 struct Arguments {
-  std::string model, base = "automatic", json;
+  std::string model, base = "automatic", json, copy;
   double duration = 2.0, timestep = 0.002;
   std::vector<std::filesystem::path> packagePaths;
 };
@@ -131,6 +133,8 @@ class Comparison {
                       mujoco_.nv(), model_.nq, model_.nv));
   }
 
+  const Model& model() const { return model_; }
+
   Json run(double duration) {
     const auto steps = static_cast<int>(std::ceil(duration / model_.options.timestep - 1e-9));
     State state = initial_;
@@ -150,6 +154,8 @@ class Comparison {
             {"acceleration_difference", spread(accelerations_)},
             {"acceleration_difference_same_contacts", spread(sameContacts_)},
             {"inverse_difference", spread(forces_)},
+            {"inverse_difference_same_contacts", spread(sameContactForces_)},
+            {"mujoco_imbalance", spread(imbalances_)},
             {"state_difference_after_1s", freely},
             {"contacts",
              {{"ours", percentile(ourContacts_, 0.5)},
@@ -175,13 +181,14 @@ class Comparison {
     mujoco_.set(state, tau);
     mujoco_.setWarmStart(data_.forward.a);
     mujoco_.forward();
+    theirs_.points = mujoco_.contacts(model_);
+    imbalances_.push_back(mujoco_.imbalance());
     accelerations_.push_back(difference(data_.forward.a, mujoco_.acceleration()));
     const VectorX a = mujoco_.acceleration();
     inverseDynamics(model_, a, data_, scratch_);
     mujoco_.inverse();
     forces_.push_back(difference(scratch_, mujoco_.inverseForce()));
     const int ours = data_.stats.contacts;
-    theirs_.points = mujoco_.contacts(model_);
     ourContacts_.push_back(ours);
     theirContacts_.push_back(static_cast<double>(theirs_.points.size()));
     equalContacts_ += ours == static_cast<int>(theirs_.points.size()) ? 1 : 0;
@@ -189,6 +196,10 @@ class Comparison {
     computeStages(model_, input_, state, data_, &theirs_);
     forwardDynamics(model_, state, data_);
     sameContacts_.push_back(difference(data_.forward.a, a));
+    theirs_.points = mujoco_.contacts(model_);  // of inverse(), which finds its own
+    computeStages(model_, input_, state, data_, &theirs_);
+    inverseDynamics(model_, a, data_, scratch_);
+    sameContactForces_.push_back(difference(scratch_, mujoco_.inverseForce()));
   }
 
   void timeForwardAndInverse(const State& state, const VectorX& tau) {
@@ -252,9 +263,32 @@ class Comparison {
   VectorX scratch_, theirWarmStart_;
   Duel step_, forward_, inverse_;
   FixedContacts theirs_;
-  std::vector<double> accelerations_, sameContacts_, forces_, ourContacts_, theirContacts_;
+  std::vector<double> accelerations_, sameContacts_, forces_, sameContactForces_, ourContacts_,
+      theirContacts_, imbalances_;
   int equalContacts_ = 0;
 };
+
+/// Whether MuJoCo reads the same robot in the URDF.
+void printReading(const Json& reading) {
+  if (reading.contains("refused")) {
+    fmt::print("  the URDF as MuJoCo reads it: {}\n", reading["refused"].get<std::string>());
+    return;
+  }
+  fmt::print("  the URDF as MuJoCo reads it: ");
+  for (const auto& difference : reading["differs"])
+    fmt::print("\n    {}", difference.get<std::string>());
+  if (reading.contains("bodies")) {
+    fmt::print("{} bodies, {} of {} shapes; largest differences\n", reading["bodies"].get<int>(),
+               reading["shapes"].get<int>(), reading["shapes_ours"].get<int>());
+    int column = 0;
+    for (const auto& [name, value] : reading.items())
+      if (value.is_number_float())
+        fmt::print("    {:<20}{:>8.1e}{}", name, value.get<double>(), ++column % 3 ? "" : "\n");
+    if (column % 3) fmt::print("\n");
+  }
+  for (const auto& left : reading["not_read"])
+    fmt::print("    not so in MuJoCo: {}\n", left.get<std::string>());
+}
 
 void print(const Json& result) {
   fmt::print("{}, {} dof, {} steps, MuJoCo {}\n", result["model"].get<std::string>(),
@@ -272,16 +306,29 @@ void print(const Json& result) {
   for (const auto& [name, key] :
        {std::pair{"acceleration", "acceleration_difference"},
         {"  with the same contacts", "acceleration_difference_same_contacts"},
-        {"inverse dynamics", "inverse_difference"}}) {
+        {"inverse dynamics", "inverse_difference"},
+        {"  with the same contacts", "inverse_difference_same_contacts"}}) {
     const Json& d = result[key];
     fmt::print("  {:<24}{:>10.2g}{:>10.2g}{:>10.2g}\n", name, d["p50"].get<double>(),
                d["p95"].get<double>(), d["max"].get<double>());
   }
+  fmt::print("  MuJoCo's forces balance to {:.1e}\n",
+             result["mujoco_imbalance"]["max"].get<double>());
   fmt::print("  state after 1 s: {:.2g} rad or m; contacts equal in {} steps\n",
              result["state_difference_after_1s"].get<double>(),
              result["contacts"]["steps_with_equal_numbers"].get<int>());
+  printReading(result["urdf_reading"]);
   if (const std::string warning = result["mujoco_warning"]; !warning.empty())
     fmt::print("  MuJoCo warns: {}\n", warning);
+}
+
+Json compare(const Arguments& arguments) {
+  Comparison comparison(arguments);
+  const app::UrdfCopy copy = app::copyUrdf(arguments.model, comparison.model());
+  if (!arguments.copy.empty()) app::writeCopy(copy, arguments.copy);
+  Json result = comparison.run(arguments.duration);
+  result["urdf_reading"] = app::compareReading(comparison.model(), copy);
+  return result;
 }
 
 }  // namespace
@@ -297,6 +344,8 @@ int main(int argc, char** argv) {
   app.add_option("--timestep", arguments.timestep, "step [s], default 0.002")
       ->check(CLI::Range(1e-6, 1.0));
   app.add_option("--json", arguments.json, "write the figures to this file too");
+  app.add_option("--write-copy", arguments.copy,
+                 "write the URDF as MuJoCo reads it, with its meshes, into this folder");
   app.add_option("--package-path", arguments.packagePaths,
                  "where package://NAME/… is looked for first; repeatable");
   try {
@@ -305,7 +354,7 @@ int main(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : 2;
   }
   try {
-    const Json result = Comparison(arguments).run(arguments.duration);
+    const Json result = compare(arguments);
     print(result);
     if (!arguments.json.empty() && !(std::ofstream(arguments.json) << result.dump(2) << '\n'))
       throw ModelError({arguments.json, 0}, "json", "cannot be written");

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/compare_mujoco/mujoco.hpp"
 
-#include <fmt/format.h>
-#include <mujoco/mujoco.h>
-
+#include <algorithm>
 #include <cstdlib>
 
-#include "engine/core/check.hpp"
+#include "apps/compare_mujoco/mujoco_load.hpp"
 
 namespace softgauss::app {
 
@@ -21,21 +19,6 @@ struct Mujoco::Memory {
 
 namespace {
 
-/// It reads files only, so the text becomes one in memory.
-mjModel* load(const std::string& mjcf) {
-  const auto files = std::make_unique<mjVFS>();
-  mj_defaultVFS(files.get());
-  constexpr const char* kName = "comparison.xml";
-  mj_makeEmptyFileVFS(files.get(), kName, static_cast<int>(mjcf.size()));
-  const int place = mj_findFileVFS(files.get(), kName);
-  std::copy(mjcf.begin(), mjcf.end(), static_cast<char*>(files->filedata[place]));
-  char error[1000] = "";
-  mjModel* const model = mj_loadXML(kName, files.get(), error, sizeof error);
-  mj_deleteVFS(files.get());
-  if (!model) throw ModelError({}, "MuJoCo", fmt::format("refuses the model: {}", error));
-  return model;
-}
-
 VectorX vectorOf(const mjtNum* values, int count) {
   return Eigen::Map<const VectorX>(values, count);
 }
@@ -43,9 +26,7 @@ VectorX vectorOf(const mjtNum* values, int count) {
 }  // namespace
 
 Mujoco::Mujoco(const std::string& mjcf) : memory_(std::make_unique<Memory>()) {
-  // It would print them, and write a log where the program was started; firstWarning() tells.
-  mju_user_warning = [](const char*) {};
-  memory_->model = load(mjcf);
+  memory_->model = loadMujoco("comparison.xml", mjcf);
   memory_->data = mj_makeData(memory_->model);
 }
 Mujoco::~Mujoco() = default;
@@ -72,6 +53,14 @@ void Mujoco::setAcceleration(const VectorX& a) {
   Eigen::Map<VectorX>(memory_->data->qacc, nv()) = a;
 }
 void Mujoco::forward() { mj_forward(memory_->model, memory_->data); }
+double Mujoco::imbalance() const {
+  const mjData& d = *memory_->data;
+  VectorX force(nv());
+  mj_mulM(memory_->model, memory_->data, force.data(), d.qacc);
+  const VectorX smooth = vectorOf(d.qfrc_smooth, nv());
+  force -= smooth + vectorOf(d.qfrc_constraint, nv());
+  return force.cwiseAbs().maxCoeff() / std::max(1.0, smooth.cwiseAbs().maxCoeff());
+}
 void Mujoco::inverse() { mj_inverse(memory_->model, memory_->data); }
 void Mujoco::step() { mj_step(memory_->model, memory_->data); }
 

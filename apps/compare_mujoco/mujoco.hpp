@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// MuJoCo behind the calls that the comparison needs. Nothing else sees its header.
+/// MuJoCo behind the calls that the comparison needs.
 
 #include <memory>
 #include <string>
@@ -30,13 +30,16 @@ class Mujoco {
   void setWarmStart(const VectorX& a);
   void setAcceleration(const VectorX& a);
   void forward();
+  /// Largest |M a − τ + c − Jᵀf| after forward(), over the largest |τ − c| or 1.
+  double imbalance() const;
   void inverse();
   void step();
 
   VectorX q() const;
   VectorX acceleration() const;  ///< of the last forward()
   VectorX inverseForce() const;  ///< of the last inverse()
-  /// Contacts of the last forward(), as our engine takes them.
+  /// Contacts of the last forward(), inverse() or step(), as our engine takes them. Each of these
+  /// finds them anew, with other rounding.
   std::vector<Contact> contacts(const Model& model) const;
   std::string firstWarning() const;  ///< empty when there was none
 

@@ -116,8 +116,8 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
       "Simulates a robot under goal directed dynamics: at every step the controls are found that\n"
       "bring it nearer its goals, with the contact forces that then act.");
   app.set_version_flag("--version", std::string("softgauss ") + SOFTGAUSS_VERSION);
-  std::string base = "automatic", ground, effects = "auto", zeroEffort = "passive", integrator,
-              cone, solver, compatibility;
+  std::string base = "automatic", ground, effects, zeroEffort = "passive", integrator, cone, solver,
+              compatibility;
   std::vector<std::string> reach, q0;
   for (int i = 0; i < argc; ++i)
     options.commandLine +=
@@ -176,6 +176,9 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
                  "elliptic: friction alike in all directions, rest depth independent of it")
       ->check(CLI::IsMember({"pyramidal", "elliptic"}))
       ->group(simulation);
+  app.add_flag("--exact-diagonal", options.exactDiagonal,
+               "softness of constraints from the present inertia, not from constants of the model")
+      ->group(simulation);
   app.add_flag("--no-slip", options.noSlip,
                "friction without creep, by a second solve with the normal forces held; inverse\n"
                "dynamics then miss the control by what the summary calls physics violation")
@@ -231,9 +234,9 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
       throw UsageError("--base-height is for a floating base, and --base is fixed");
   }
   if (!cone.empty()) options.cone = cone == "elliptic" ? Cone::elliptic : Cone::pyramidal;
-  options.likeMujoco = compatibility == "mujoco";
+  if (!compatibility.empty()) options.likeMujoco = compatibility == "mujoco";
   options.zeroEffortIsUnlimited = zeroEffort == "unlimited";
-  options.effects = parseEffects(effects);
+  if (!effects.empty()) options.effects = parseEffects(effects);
   if (options.ground) mustBeNear(*options.ground, "--ground");
   for (const std::string& text : reach) {
     options.reach.push_back(parseReach(text));

@@ -31,11 +31,12 @@ struct SimulateOptions {
   bool passive = false;
   std::filesystem::path goals, torques;
   std::vector<std::pair<std::string, double>> q0;
-  EffectSet effects = EffectSet::all();
+  std::optional<EffectSet> effects;  ///< absent: the scene's own, or all
   bool zeroEffortIsUnlimited = false;
   bool noSlip = false;
-  std::optional<Cone> cone;  ///< absent: the model's own
-  bool likeMujoco = false;   ///< --compatibility mujoco
+  bool exactDiagonal = false;
+  std::optional<Cone> cone;        ///< absent: the scene's own, or pyramidal
+  std::optional<bool> likeMujoco;  ///< --compatibility
   bool explain = false;
   bool quiet = false;
   std::filesystem::path log, summary, view, plot;

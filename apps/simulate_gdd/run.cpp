@@ -65,13 +65,14 @@ class Runner {
         state_(scene.initial),
         data_(model_),
         controller_(model_),
+        wrenches_(scene.schedule),
         summary_(model_) {
     if (!options.passive && options.torques.empty()) controller_.goals = makeGoals(options, scene);
     if (!options.torques.empty()) torques_ = io::TorqueTable::read(options.torques, model_);
     if (!options.log.empty()) log_.emplace(options.log, model_);
     summary_.version = SOFTGAUSS_VERSION;
     summary_.massKg = scene.contents.mass;
-    const std::vector<io::EffectNote> notes = io::effectNotes(model_);
+    const std::vector<io::EffectNote> notes = io::effectNotes(model_, scene.wrenches);
     summary_.effects = io::effectsOn(notes);
     for (const io::EffectNote& note : notes)
       if (note.asked && !note.on)
@@ -130,6 +131,10 @@ class Runner {
     record_.q = state_.q;
     record_.v = state_.v;
     if (torques_) torques_->controlAt(state_.time, input_.tau);
+    if (!wrenches_.empty()) {
+      computeKinematics(model_, state_, data_.kinematics);
+      wrenches_.at(state_.time, model_.options.timestep, data_.kinematics, input_.wrenches);
+    }
     const Clock::time_point start = Clock::now();
     const SolveStatus status = controller_.goals.empty()
                                    ? softgauss::step(model_, input_, state_, data_, &contacts_)
@@ -213,6 +218,7 @@ class Runner {
   State state_;
   Data data_;
   gdd::GoalDirectedController controller_;
+  const io::WrenchSchedule& wrenches_;
   Input input_;
   std::optional<io::TorqueTable> torques_;
   std::optional<io::LogWriter> log_;

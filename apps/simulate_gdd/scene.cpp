@@ -68,10 +68,11 @@ void addGround(ModelBuilder& builder, double height, const Material& material) {
 
 void setOptions(const SimulateOptions& options, ModelBuilder& builder) {
   if (options.timestep) builder.options.timestep = *options.timestep;
-  builder.options.effects = options.effects;
+  if (options.exactDiagonal) builder.options.exactDiagonal = true;
   if (options.noSlip) builder.options.noSlip = true;
   if (options.cone) builder.options.cone = *options.cone;
-  builder.options.midpointCoriolis = !options.likeMujoco;
+  if (options.effects) builder.options.effects = *options.effects;
+  if (options.likeMujoco) builder.options.midpointCoriolis = !*options.likeMujoco;
 }
 
 io::UrdfOptions urdfOptions(const SimulateOptions& options) {
@@ -117,6 +118,8 @@ void loadSceneFile(const SimulateOptions& options, Scene& scene) {
   scene.contents = file.contents;
   scene.hasGoals = file.hasGoals;
   scene.materials = file.materials;
+  scene.wrenches = file.wrenches;
+  scene.schedule = io::WrenchSchedule(scene.model, file.wrenches);
   scene.initial = file.initialState(scene.model);
   setJointPositions(options, scene.model, scene.initial);
   if (!ground) return;
@@ -162,6 +165,7 @@ std::vector<std::unique_ptr<gdd::Goal>> makeGoals(const SimulateOptions& options
 std::string explainScene(const Scene& scene) {
   io::ExplainContext context;
   context.contents = scene.contents;
+  context.wrenches = scene.wrenches;
   const collision::PairFilter& filter = scene.contacts->filter();
   context.testedPairs = static_cast<int>(filter.pairs.size());
   for (const collision::GeometryPair& pair : filter.pairs)

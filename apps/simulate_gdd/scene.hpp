@@ -12,6 +12,7 @@
 #include "collision/scene_contacts.hpp"
 #include "gdd/gdd.hpp"
 #include "io/urdf.hpp"
+#include "io/wrenches.hpp"
 
 namespace softgauss::app {
 
@@ -20,9 +21,11 @@ struct Scene {
   io::UrdfContents contents;
   std::unique_ptr<collision::SceneContacts> contacts;
   State initial;
-  bool hasGoals = false;  ///< the scene file holds goals
   /// Surfaces by name.
   std::vector<std::pair<std::string, Material>> materials = {{"default", Material{}}};
+  std::vector<io::TimedWrench> wrenches;
+  io::WrenchSchedule schedule;  ///< of those
+  bool hasGoals = false;        ///< the scene file holds goals
 };
 
 /// Throws ModelError.

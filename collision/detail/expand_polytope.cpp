@@ -15,8 +15,6 @@ class Polytope {
   struct Face {
     std::array<int, 3> corners;  ///< counter-clockwise from outside
     Vector3 normal;              ///< unit
-    double height;               ///< of the plane above the origin along the normal
-    bool tried;                  ///< no point of D lies above it
   };
 
   int addPoint(const Vector3& x) {
@@ -28,39 +26,50 @@ class Polytope {
 
   void addFace(int a, int b, int c) {
     if (faceCount_ >= kMaxFaces) return;
-    Face face{{a, b, c}, (point(b) - point(a)).cross(point(c) - point(a)), 0.0, false};
+    const auto i = static_cast<std::size_t>(faceCount_++);
+    Face& face = faces_[i];
+    face = {{a, b, c}, (point(b) - point(a)).cross(point(c) - point(a))};
     const double area = face.normal.norm();
+    heights_[i] = kInfinity;
     // A sliver has no direction of its own, but keeps the surface closed.
-    face.tried = !(area > 1e-300);
-    if (!face.tried) face.normal /= area;
-    face.height = face.normal.dot(point(a));
-    faces_[static_cast<std::size_t>(faceCount_++)] = face;
+    if (!(area > 1e-300)) return;
+    face.normal /= area;
+    heights_[i] = face.normal.dot(point(a));
   }
 
-  /// The untried face nearest to the origin, or null.
-  Face* nearest() {
-    Face* best = nullptr;
-    for (int i = 0; i < faceCount_; ++i) {
-      Face& face = faces_[static_cast<std::size_t>(i)];
-      if (!face.tried && (best == nullptr || face.height < best->height)) best = &face;
-    }
+  /// The untried face nearest to the origin, or −1.
+  int nearest() const {
+    int best = -1;
+    double lowest = kInfinity;
+    for (int i = 0; i < faceCount_; ++i)
+      if (height(i) < lowest) lowest = height(i), best = i;
     return best;
   }
+  const Vector3& normal(int face) const { return faces_[static_cast<std::size_t>(face)].normal; }
+  /// Of a face's plane above the origin along its normal.
+  double height(int face) const { return heights_[static_cast<std::size_t>(face)]; }
+  /// No point of D lies above the face.
+  void setTried(int face) { heights_[static_cast<std::size_t>(face)] = kInfinity; }
 
   /// Replaces the faces that see the point w by a fan from w to their rim. A face sees w when w is
   /// above it by more than `coplanar`.
   void include(const Vector3& w, double coplanar) {
     const int apex = addPoint(w);
     rimCount_ = 0;
-    int kept = 0;
-    for (int i = 0; i < faceCount_; ++i) {
-      const Face face = faces_[static_cast<std::size_t>(i)];
-      if (face.normal.dot(w - point(face.corners[0])) > coplanar)
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(faceCount_); ++i) {
+      const Face& face = faces_[i];
+      if (face.normal.dot(w - point(face.corners[0])) > coplanar) {
         for (std::size_t k = 0; k < 3; ++k) toggleRim(face.corners[k], face.corners[(k + 1) % 3]);
-      else
-        faces_[static_cast<std::size_t>(kept++)] = face;
+        continue;
+      }
+      if (kept != i) {
+        faces_[kept] = face;
+        heights_[kept] = heights_[i];
+      }
+      ++kept;
     }
-    faceCount_ = kept;
+    faceCount_ = static_cast<int>(kept);
     for (int k = 0; k < rimCount_; ++k) {
       const auto& edge = rim_[static_cast<std::size_t>(k)];
       addFace(edge[0], edge[1], apex);
@@ -82,6 +91,7 @@ class Polytope {
 
   std::array<Vector3, kMaxPoints> points_;
   std::array<Face, kMaxFaces> faces_;
+  std::array<double, kMaxFaces> heights_;  ///< infinite where tried
   std::array<std::array<int, 2>, kMaxFaces> rim_;
   int pointCount_ = 0, faceCount_ = 0, rimCount_ = 0;
 };
@@ -132,14 +142,14 @@ void expandPolytope(Minkowski& D, const Simplex& start, double size) {
   // No direction is better than the nearest face: stop when one tried comes close to it.
   const double tolerance = 1e-9 * size;
   while (!polytope.full()) {
-    auto* face = polytope.nearest();
-    if (face == nullptr || !(-D.best().separation - face->height > tolerance)) return;
-    const Vector3 n = face->normal;
+    const int face = polytope.nearest();
+    if (face < 0 || !(-D.best().separation - polytope.height(face) > tolerance)) return;
+    const Vector3 n = polytope.normal(face);
     const Vector3 w = D.support(n);
-    if (n.dot(w) - face->height > tolerance)
+    if (n.dot(w) - polytope.height(face) > tolerance)
       polytope.include(w, 0.1 * tolerance);
     else
-      face->tried = true;
+      polytope.setTried(face);
   }
 }
 

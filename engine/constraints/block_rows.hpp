@@ -43,10 +43,10 @@ class BlockRows : public ScalarRows<Quadratic> {
     clearRows();
   }
   /// The three rows of the last block added.
-  void pushRows(const Vector3& aRef, double R) {
+  void pushRows(const Vector3& aRef, const Softness& softness) {
     for (const double a : aRef) {
       reference.push_back(a);
-      D.push_back(1.0 / R);
+      pushSoftness(softness);
     }
   }
 

@@ -36,7 +36,7 @@ void ConnectionRows::assemble(const Assembly& in) {
                      in.weights.translation[c.bodyA] + in.weights.translation[c.bodyB],
                      model.options.timestep);
       jacobian_.add(model, in.kinematics, in.tree, offsetMotion(c.bodyA, p_WA, c.bodyB, p_WB));
-      pushRows(-soft.damping * offset.rate - soft.stiffness * offset.r - offset.bias, soft.R);
+      pushRows(-soft.damping * offset.rate - soft.stiffness * offset.r - offset.bias, soft);
     }
   }
   resizeRows(reference.size());

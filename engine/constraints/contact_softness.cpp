@@ -58,7 +58,10 @@ Softness contactSoftness(const Material& pair, int frictionDim, double distance,
   }
   const double mu = edges ? pair.slidingFriction : 0.0;
   Softness s = softnessAt(pair.impedance, distance, weight * (1.0 + mu * mu), options.timestep);
-  if (edges) s.R *= 2.0 * mu * mu / options.impedanceRatio;
+  if (!edges) return s;
+  const double scale = 2.0 * mu * mu / options.impedanceRatio;
+  s.R *= scale;
+  s.perInertia *= scale;
   return s;
 }
 

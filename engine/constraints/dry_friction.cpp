@@ -17,7 +17,7 @@ void DryFriction::assemble(const Assembly& in) {
           softnessAt(dof.frictionImpedance, 0.0, in.weights.dof[i], model.options.timestep);
       dof_.push_back(i);
       reference.push_back(soft.referenceAcceleration(in.state.v[i], 0.0));
-      D.push_back(1.0 / soft.R);
+      pushSoftness(soft);
       limit.push_back(dof.dryFriction);
     }
   }

@@ -10,6 +10,7 @@ void EllipticContact::assemble(const Assembly& in) {
   const Options& options = in.model.options;
   clearBlocks();
   cones_.clear();
+  perInertia_.clear();
   reference.clear();
   if (options.cone == Cone::elliptic) {
     for (int i = 0; i < in.contacts.size(); ++i) {
@@ -17,6 +18,7 @@ void EllipticContact::assemble(const Assembly& in) {
       if (!touch || touch->frictionDim == 0) continue;
       const FrameVector velocity = addBlock(in, i, *touch, static_cast<int>(reference.size()));
       const Softness& soft = touch->softness;
+      perInertia_.push_back(soft.perInertia);
       cones_.push_back({touch->frictionDim + 1, 1.0 / soft.R,
                         touch->mu() / std::sqrt(options.impedanceRatio), touch->friction});
       reference.push_back(soft.referenceAcceleration(velocity[0], touch->distance));

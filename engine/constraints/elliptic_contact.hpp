@@ -46,6 +46,9 @@ class EllipticContact : public ContactBlocks {
   void holdOnRay(int) {}
 
   const EllipticCone& cone(int i) const { return cones_[i]; }
+  /// Softness::perInertia of contact i, and D of its normal row, which scales its other rows too.
+  double perInertia(int i) const { return perInertia_[i]; }
+  void setNormalStiffness(int i, double D) { cones_[i].D = D; }
   /// Force on body B at contact i, world [N]; body A feels the opposite.
   Vector3 force(int i) const { return linearInWorld(i, frameForce(i)); }
   /// Moment on body B at contact i, of torsional and rolling friction, world [N m]; body A feels
@@ -59,6 +62,7 @@ class EllipticContact : public ContactBlocks {
   double evaluate(std::size_t i, const double* at, double* force, double* H, ConeZone& zone) const;
 
   std::vector<EllipticCone> cones_;
+  std::vector<double> perInertia_;
   std::vector<ConeZone> zones_;  ///< of the last evaluation
   std::vector<bool> placed_;     ///< zones_[i] holds wherever x is
 };

@@ -18,11 +18,14 @@
 
 namespace softgauss {
 
+inline constexpr double kSmallestRegulariser = 1e-15;
+
 /// Regulariser and reference spring-damper of a row at the present distance.
 struct Softness {
-  double R = 0.0;          ///< regulariser [1/kg or 1/(kg m²)]
-  double stiffness = 0.0;  ///< k d [1/s²]
-  double damping = 0.0;    ///< b [1/s]
+  double R = 0.0;           ///< regulariser [1/kg or 1/(kg m²)]
+  double perInertia = 0.0;  ///< R per inverse inertia A; 0 where A has no part in it [-]
+  double stiffness = 0.0;   ///< k d [1/s²]
+  double damping = 0.0;     ///< b [1/s]
 
   double referenceAcceleration(double velocity, double distance) const {
     return -damping * velocity - stiffness * distance;
@@ -71,7 +74,8 @@ inline Softness softnessAt(const Impedance& p, double distance, double inverseIn
   const double d = impedanceAt(p, distance);
   const double dMax = std::clamp(p.dMax, 1e-4, 0.9999);
   Softness s;
-  s.R = std::max(1e-15, (1.0 - d) / d * inverseInertia);
+  s.perInertia = (1.0 - d) / d;
+  s.R = std::max(kSmallestRegulariser, s.perInertia * inverseInertia);
   if (p.direct) {
     s.stiffness = p.direct->stiffness * d / (dMax * dMax);
     s.damping = p.direct->damping / dMax;

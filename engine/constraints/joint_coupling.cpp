@@ -39,7 +39,7 @@ void CouplingRows::assemble(const Assembly& in) {
       const Softness soft = softnessAt(c.impedance, r, weight, model.options.timestep);
       pairs_.push_back(pair);
       reference.push_back(soft.referenceAcceleration(rate, r));
-      D.push_back(1.0 / soft.R);
+      pushSoftness(soft);
     }
   }
   resizeRows(pairs_.size());

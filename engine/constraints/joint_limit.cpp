@@ -22,7 +22,7 @@ void JointLimit::assemble(const Assembly& in) {
         dof_.push_back(body.v);
         sign_.push_back(sign);
         reference.push_back(soft.referenceAcceleration(sign * in.state.v[body.v], r));
-        D.push_back(1.0 / soft.R);
+        pushSoftness(soft);
       }
     }
   }

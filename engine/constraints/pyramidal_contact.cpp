@@ -32,7 +32,7 @@ void PyramidalContact::assemble(const Assembly& in) {
     const int edges = std::max(1, 2 * touch->frictionDim);
     for (int edge = 0; edge < edges; ++edge) {
       reference.push_back(soft.referenceAcceleration(edgeVelocity[edge], touch->distance));
-      D.push_back(1.0 / soft.R);
+      pushSoftness(soft);
     }
   }
   resizeRows(reference.size());

@@ -15,6 +15,7 @@
 #include <limits>
 #include <vector>
 
+#include "engine/constraints/impedance.hpp"
 #include "engine/constraints/penalty.hpp"
 #include "engine/core/check.hpp"
 
@@ -45,14 +46,15 @@ struct Crossing {
 template <ScalarPenalty Penalty>
 class ScalarRows {
  public:
-  std::vector<double> reference;  ///< a_ref
-  std::vector<double> D;          ///< stiffness 1/R
-  std::vector<double> limit;      ///< of the force, where the penalty has one; else unused
-  std::vector<double> x;          ///< residual at the present acceleration
-  std::vector<double> dx;         ///< J d, rate of x along the search direction d
-  std::vector<double> f;          ///< force −s′(x)
-  std::vector<double> h;          ///< curvature s″(x)
-  std::vector<double> df;         ///< −s″(x) dx, rate of f along the search direction
+  std::vector<double> reference;   ///< a_ref
+  std::vector<double> D;           ///< stiffness 1/R
+  std::vector<double> perInertia;  ///< R per inverse inertia, Softness::perInertia
+  std::vector<double> limit;       ///< of the force, where the penalty has one; else unused
+  std::vector<double> x;           ///< residual at the present acceleration
+  std::vector<double> dx;          ///< J d, rate of x along the search direction d
+  std::vector<double> f;           ///< force −s′(x)
+  std::vector<double> h;           ///< curvature s″(x)
+  std::vector<double> df;          ///< −s″(x) dx, rate of f along the search direction
 
   int rowCount() const { return static_cast<int>(x.size()); }
   Penalty penalty(std::size_t i) const {
@@ -62,10 +64,15 @@ class ScalarRows {
       return {D[i]};
   }
 
+  void pushSoftness(const Softness& softness) {
+    D.push_back(1.0 / softness.R);
+    perInertia.push_back(softness.perInertia);
+  }
   /// Drops all rows; keeps the memory.
   void clearRows() {
     reference.clear();
     D.clear();
+    perInertia.clear();
     limit.clear();
   }
   /// Fits the arrays that the solver writes to `rows`.

@@ -13,7 +13,9 @@ void computeSmoothForces(const Model& model, const State& state, const Input& in
   stage.c = stage.bias;
   addDamping(model, state.v, stage.c);
   addSprings(model, state.q, stage.c);
-  for (const ExternalWrench& wrench : input.wrenches) addExternalWrench(model, k, wrench, stage.c);
+  if (model.options.effects.has(Effect::externalWrench))
+    for (const ExternalWrench& wrench : input.wrenches)
+      addExternalWrench(model, k, wrench, stage.c);
   if (input.tau.size() == model.nv)
     stage.tau = input.tau;
   else

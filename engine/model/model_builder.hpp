@@ -61,9 +61,10 @@ struct GeometrySpec {
   SourceLocation where;
 };
 
-/// Gives two geometries that touch each other a surface of its own.
+/// Gives what touches each other a surface of its own. A name is that of a link, for all its
+/// geometries, or else of a geometry.
 struct PairSpec {
-  std::string geometryA, geometryB;  ///< names
+  std::string geometryA, geometryB;
   Material material;
   SourceLocation where;
 };

@@ -56,6 +56,11 @@ ModelBuilder& ModelBuilder::add(const ModelBuilder& other, const std::string& pr
     geometry.link = linkName(geometry.link);
     geometries_.push_back(std::move(geometry));
   }
+  for (PairSpec pair : other.pairs_) {
+    pair.geometryA = own(pair.geometryA);
+    pair.geometryB = own(pair.geometryB);
+    pairs_.push_back(std::move(pair));
+  }
   const auto tie = [&](const auto& specs, auto& all) {
     for (auto spec : specs) {
       spec.linkA = linkName(spec.linkA);

@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "engine/constraints/constraints.hpp"
+#include "engine/constraints/exact_diagonal.hpp"
 #include "engine/constraints/sticking_friction.hpp"
 #include "engine/forces/forces.hpp"
 #include "engine/solver/newton.hpp"
@@ -61,6 +62,7 @@ struct Data {
   SmoothForces forces;
   ContactSet contacts;
   Constraints constraints;
+  ExactDiagonal exactDiagonal;
   StickingFriction sticking;  ///< with Options::noSlip: friction of the last solve, else empty
   ForwardSolution forward;
   VectorX acceleration;  ///< discrete, (v⁺ − v)/h (nv)

@@ -65,6 +65,7 @@ Data::Data(const Model& model)
       kinematics(model),
       inertia(model),
       forces(model),
+      exactDiagonal(model.nv),
       acceleration(VectorX::Zero(model.nv)) {
   ForwardSolution& s = forward;
   for (VectorX* x : {&s.a, &s.Ma, &s.gradient, &s.direction, &s.Md, &s.scale, &s.start, &s.heldNet})
@@ -100,6 +101,8 @@ SolveStatus computeStages(const Model& model, const Input& input, const State& s
 
   data.constraints.assemble(
       {model, state, data.kinematics, data.contacts, data.weights, data.inertia.sparsity});
+  // A mass matrix that cannot be factored is found, and reported, by the solve.
+  if (model.options.exactDiagonal) data.exactDiagonal.apply(data.inertia.M, data.constraints);
   data.sticking.clear();
   data.stats.rows = data.constraints.rowCount();
   data.stats.times.rows = lap(clock);

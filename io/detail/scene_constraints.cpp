@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "engine/constraints/contact.hpp"
 #include "engine/core/check.hpp"
 #include "io/detail/scene_parts.hpp"
 #include "io/detail/text.hpp"
@@ -109,14 +110,60 @@ void readConstraint(const std::string& file, const YamlValue& item, std::size_t 
     if (only.key == kind.name) kind.read(kinds.map(only), builder);
 }
 
+void readPair(const YamlMap& map, const Materials& materials,
+              const std::map<std::string, Material>& surfaces, ModelBuilder& builder) {
+  std::vector<std::string> names;
+  for (const auto& [name, surface] : surfaces) names.push_back(name);
+  const auto named = [&](const std::string& key) {
+    return map.choice(map.required(key, "the name of a link, of an object, or ground"), names);
+  };
+  PairSpec spec;
+  spec.where = {map.file(), map.line()};
+  spec.geometryA = named("a");
+  spec.geometryB = named("b");
+  if (spec.geometryA == spec.geometryB)
+    map.fail(*map.find("b"),
+             fmt::format("found {} as in a, expected another", quotedText(spec.geometryB)));
+  spec.material = map.find("material")
+                      ? materialOf(map, materials)
+                      : mixMaterials(surfaces.at(spec.geometryA), surfaces.at(spec.geometryB));
+  readSurface(map, spec.material);
+  map.expectOnly(with({"a", "b", "material"}, kSurfaceKeys));
+  if (map.entries().size() == 2)
+    map.fail(*map.find("b"), "found nothing else, expected a material or what differs: one of " +
+                                 listed(kSurfaceKeys, kSurfaceKeys.size()));
+  builder.pair(std::move(spec));
+}
+
+TimedWrench readWrench(const YamlMap& map, const std::vector<std::string>& links) {
+  map.expectOnly({"link", "force", "moment", "point", "start", "end"});
+  TimedWrench wrench;
+  wrench.where = {map.file(), map.line()};
+  wrench.link = map.choice(map.required("link", "the name of a link"), links);
+  if (!map.find("moment")) map.required("force", "a force [N] or a moment [N m]");
+  map.read("force", wrench.force_W);
+  map.read("moment", wrench.moment_W);
+  map.read("point", wrench.p_LP);
+  map.read("start", wrench.start, Range::notNegative);
+  map.read("end", wrench.end, Range::notNegative);
+  if (!(wrench.end > wrench.start))
+    map.fail(*map.find("end"), fmt::format("found {}, expected more than the start, {:g} s",
+                                           map.find("end")->value.described(), wrench.start));
+  return wrench;
+}
+
 void readJointParameters(const YamlMap& joints, ModelBuilder& robot) {
   for (const YamlMap::Entry& entry : joints.entries()) {
     const YamlMap map = joints.map(entry);
     JointSpec& joint = *robot.findJoint(entry.key);
-    map.expectOnly({"friction", "damping", "armature"});
+    map.expectOnly({"friction", "damping", "armature", "stiffness", "spring_reference"});
     map.read("friction", joint.dryFriction, Range::notNegative);
     map.read("damping", joint.damping, Range::notNegative);
     map.read("armature", joint.armature, Range::notNegative);
+    map.read("stiffness", joint.stiffness, Range::notNegative);
+    map.read("spring_reference", joint.springReference, Range::any);
+    if (const auto* reference = map.find("spring_reference"); reference && joint.stiffness == 0.0)
+      map.fail(*reference, "found without a stiffness above 0, expected both or neither");
   }
 }
 

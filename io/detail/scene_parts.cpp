@@ -61,24 +61,26 @@ bool readSpring(const YamlMap& map, std::optional<ContactSpring>& spring) {
   return true;
 }
 
-Material readMaterial(const YamlMap& map) {
-  std::vector<std::string> keys = {"friction", "torsional_friction", "rolling_friction", "condim",
-                                   "margin",   "stiffness",          "rest_depth",       "damping"};
-  keys.insert(keys.end(), kSoftnessKeys.begin(), kSoftnessKeys.end());
-  map.expectOnly(keys);
-  Material m;
+}  // namespace
+
+void readSurface(const YamlMap& map, Material& m) {
+  if (const auto* gap = map.find("gap"))
+    map.fail(*gap,
+             "is not known: in MuJoCo 3.9 and later a gap lists contacts that do not push yet; "
+             "expected none, or for older files the margin less the gap as margin");
   map.read("friction", m.slidingFriction, Range::notNegative);
   map.read("torsional_friction", m.torsionalFriction, Range::notNegative);
   map.read("rolling_friction", m.rollingFriction, Range::notNegative);
   if (const auto* entry = map.find("condim")) m.condim = map.integer(*entry, {1, 3, 4, 6});
   map.read("margin", m.margin, Range::notNegative);
-  if (!readSpring(map, m.spring)) readSoftness(map, m.impedance);
-  return m;
+  if (readSpring(map, m.spring)) return;
+  for (const std::string& key : kSoftnessKeys)
+    if (map.find(key)) m.spring.reset();
+  readSoftness(map, m.impedance);
 }
 
-}  // namespace
-
 void readSoftness(const YamlMap& map, Impedance& impedance) {
+  if (map.find("time_constant") || map.find("damping_ratio")) impedance.direct.reset();
   map.read("time_constant", impedance.timeConstant, Range::positive);
   map.read("damping_ratio", impedance.dampingRatio, Range::positive);
   const auto* stiffness = map.find("reference_stiffness");
@@ -99,8 +101,11 @@ void readSoftness(const YamlMap& map, Impedance& impedance) {
 Materials readMaterials(const YamlMap& map) {
   Materials materials;
   materials["default"];
-  for (const YamlMap::Entry& entry : map.entries())
-    materials[entry.key] = readMaterial(map.map(entry));
+  for (const YamlMap::Entry& entry : map.entries()) {
+    const YamlMap surface = map.map(entry);
+    readSurface(surface, materials[entry.key] = Material{});
+    surface.expectOnly(kSurfaceKeys);
+  }
   return materials;
 }
 

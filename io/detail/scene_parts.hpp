@@ -15,6 +15,15 @@ namespace softgauss::io::detail {
 /// Materials by name; "default" is there from the start.
 using Materials = std::map<std::string, Material>;
 
+/// Keys of a surface, which a material has and a pair may have, and what they say: it replaces
+/// what `material` holds.
+inline const std::vector<std::string> kSurfaceKeys = {
+    "friction",      "torsional_friction", "rolling_friction",    "condim",
+    "margin",        "stiffness",          "rest_depth",          "damping",
+    "time_constant", "damping_ratio",      "reference_stiffness", "reference_damping",
+    "impedance"};
+void readSurface(const YamlMap& map, Material& material);
+
 /// `materials: {name: {friction: …}}`
 Materials readMaterials(const YamlMap& map);
 /// The material that the key `material` names, or the default one.

@@ -100,7 +100,7 @@ std::string listed(const std::vector<std::string>& names, std::size_t most) {
 }
 
 std::string counted(std::size_t n, std::string_view noun) {
-  return fmt::format("{} {}{}", n, noun, n == 1 ? "" : "s");
+  return fmt::format("{} {}{}", n, noun, n == 1 ? "" : noun.ends_with("ch") ? "es" : "s");
 }
 
 std::string validUtf8(const std::string& text) {

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/apps/process.hpp"
+#include "tests/io/sample_urdf.hpp"
 
 namespace softgauss::test {
 namespace {
@@ -25,13 +26,46 @@ TEST(CompareMujoco, HumanoidMovesTheSameInBoth) {
   ASSERT_EQ(run(dataFile("robots/humanoid.urdf") + " --duration 0.2 --json " + file), 0);
   const auto json = nlohmann::json::parse(readFile(file));
   // Rounding, amplified by the condition of M.
-  for (const char* key :
-       {"acceleration_difference", "acceleration_difference_same_contacts", "inverse_difference"})
+  for (const char* key : {"acceleration_difference", "acceleration_difference_same_contacts",
+                          "inverse_difference", "inverse_difference_same_contacts"})
     EXPECT_LT(json[key]["max"], 1e-9) << key;
   EXPECT_LT(json["state_difference_after_1s"], 1e-9);
   for (const char* key : {"step_us", "forward_us", "inverse_us"})
     for (const char* engine : {"ours", "mujoco", "ratio"}) EXPECT_GT(json[key][engine], 0.0);
+  // MuJoCo finds principal axes to eight digits, and takes massless links for 10⁻¹² kg.
+  const auto& reading = json["urdf_reading"];
+  ASSERT_FALSE(reading.contains("refused")) << reading["refused"];
+  EXPECT_TRUE(reading["differs"].empty()) << reading["differs"];
+  for (const char* key :
+       {"total_mass", "body_mass", "centre_of_mass_m", "inertia", "joint_axis", "joint_range",
+        "damping", "body_position_m", "mass_matrix", "smooth_acceleration", "inverse_weight"})
+    EXPECT_LT(reading[key], 1e-7) << key;
+  EXPECT_EQ(reading["shapes"], reading["shapes_ours"]);
+  EXPECT_LT(json["mujoco_imbalance"]["max"], 1e-10);
   EXPECT_FALSE(json["mujoco_version"].get<std::string>().empty());
+}
+
+// What MuJoCo reads otherwise is told: a range of a continuous joint, a mimic joint.
+TEST(CompareMujoco, TellsWhatMujocoReadsOtherwise) {
+  if (!std::filesystem::exists(kProgram)) GTEST_SKIP() << "built without MuJoCo";
+  const io::TempFolder folder;
+  const std::string follower =
+      "<link name=\"tip\"><inertial><mass value=\"1\"/><inertia ixx=\"1\" ixy=\"0\" ixz=\"0\" "
+      "iyy=\"1\" iyz=\"0\" izz=\"1\"/></inertial></link><joint name=\"wrist\" "
+      "type=\"continuous\"><parent link=\"arm\"/><child link=\"tip\"/><axis xyz=\"1 0 "
+      "0\"/><mimic joint=\"shoulder\"/></joint></robot>";
+  const std::string file = folder.write(
+      "robot.urdf", io::with(io::with(io::kSampleUrdf, "type=\"revolute\"", "type=\"continuous\""),
+                             "</robot>", follower));
+  const std::string figures = folder.path() / "figures.json", copy = folder.path() / "copy";
+  ASSERT_EQ(run(file + " --duration 0.01 --json " + figures + " --write-copy " + copy), 0);
+  const auto reading = nlohmann::json::parse(readFile(figures))["urdf_reading"];
+  ASSERT_EQ(reading["differs"].size(), 1u) << reading;
+  EXPECT_EQ(reading["differs"][0], "joint 'shoulder': MuJoCo reads a range -1 .. 1.5, ours none");
+  EXPECT_EQ(reading["not_read"][0], "mimic of joint 'wrist': carried over as an equality");
+  const std::string text = readFile(copy + "/robot.urdf");
+  EXPECT_NE(text.find("type=\"floating\""), std::string::npos) << text;
+  EXPECT_NE(text.find("<link name=\"world\"/>"), std::string::npos) << text;
 }
 
 TEST(CompareMujoco, RefusesWhatItCannotRead) {

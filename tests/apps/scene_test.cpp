@@ -45,6 +45,41 @@ TEST(SceneRun, ObjectsFallOntoTheGroundAndRobotsReach) {
   EXPECT_LT(json["goals"][0]["final_error_m"], 0.2 * double{json["goals"][0]["initial_error_m"]});
 }
 
+// What a scene says of pairs, effects and wrenches reaches the run; the command line overrides it.
+TEST(SceneRun, PairsOptionsAndWrenchesAct) {
+  const io::TempFolder folder;
+  const std::string head =
+      "objects:\n"
+      "  - {name: rough, box: {size: [0.2, 0.2, 0.2]}, mass: 1}\n"
+      "  - {name: smooth, box: {size: [0.2, 0.2, 0.2]}, mass: 1, position: [0, 1, 0.1]}\n"
+      "pairs: [{a: smooth, b: ground, condim: 1}]\n"
+      "wrenches:\n"
+      "  - {link: rough, force: [2, 0, 0], end: 0.5}\n"
+      "  - {link: smooth, force: [2, 0, 0], end: 0.5}\n";
+  const std::string scene = folder.write("scene.yaml", head);
+  const std::string off =
+      folder.write("off.yaml", head + "options: {effects: [gravity, coriolis, ground_contact]}\n");
+  const std::string log = folder.path() / "log.csv";
+  const auto speeds = [&](const std::vector<std::string>& arguments) {
+    std::vector<std::string> all = {"--duration", "0.5", "--log", log, "--quiet"};
+    all.insert(all.begin(), arguments.begin(), arguments.end());
+    const Outcome outcome = simulate(all);
+    EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+    const Csv csv((readFile(log)));
+    const int last = static_cast<int>(csv.rows.size()) - 1;
+    return std::pair(csv.number(last, "v:rough.vx"), csv.number(last, "v:smooth.vx"));
+  };
+  const auto [rough, smooth] = speeds({scene});
+  EXPECT_LT(rough, 0.05) << "friction holds 2 N of 9.81 N, but for creep";
+  EXPECT_NEAR(smooth, 1.0, 1e-9) << "2 N for 0.5 s on 1 kg";
+  EXPECT_EQ(speeds({off}), std::pair(0.0, 0.0));
+  EXPECT_EQ(speeds({off, "--effects", "auto"}), std::pair(rough, smooth));
+  const Outcome told = simulate({scene, "--explain"});
+  for (const char* words : {"external_wrench", "2 wrenches, first 'rough'", "(2, 0, 0) N",
+                            "1 pair with a surface of its own"})
+    EXPECT_NE(told.out.find(words), std::string::npos) << words << "\n" << told.out;
+}
+
 TEST(SceneRun, OptionsOfAUrdfAloneAreRefused) {
   const std::string scene = dataFile("scenes/two_arms.yaml");
   for (const auto& [option, value] :

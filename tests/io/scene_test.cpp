@@ -5,38 +5,11 @@
 #include "engine/engine.hpp"
 #include "gdd/goals/reach.hpp"
 #include "io/goals.hpp"
-#include "sample_urdf.hpp"
-#include "temp_folder.hpp"
+#include "scene_folder.hpp"
 #include "tests/support/matchers.hpp"
 
 namespace softgauss::test {
 namespace {
-
-/// A folder with the sample robot and a scene.
-class SceneFolder {
- public:
-  explicit SceneFolder(const std::string& scene) {
-    folder_.write("sample.urdf", io::kSampleUrdf);
-    file = folder_.write("scene.yaml", scene);
-  }
-  io::SceneFile read() const { return io::readScene(file); }
-  std::filesystem::path file;
-
- private:
-  io::TempFolder folder_;
-};
-
-/// The message that the scene is refused with.
-std::string refusal(const std::string& scene) {
-  const SceneFolder folder(scene);
-  try {
-    folder.read().builder.build();
-  } catch (const ModelError& error) {
-    return error.what();
-  }
-  ADD_FAILURE() << "read without complaint:\n" << scene;
-  return {};
-}
 
 const char* const kTwoRobots = R"(# a comment
 name: meeting
@@ -232,6 +205,11 @@ TEST(SceneFile, RefusalsNameTheLineThePartAndTheKey) {
       {"robots:\n" + robot +
            "}\nconstraints:\n  - weld: {link_a: a/arm, link_b: world, pose_a: {x: 1}}",
        "key 'weld.pose_a.x': found an unknown key"},
+      {"robots:\n" + robot + ", joint_parameters: {shoulder: {stiffness: -1}}}",
+       "key 'joint_parameters.shoulder.stiffness': found '-1', expected a finite number >= 0"},
+      {"robots:\n" + robot + ", joint_parameters: {shoulder: {spring_reference: 1}}}",
+       "key 'joint_parameters.shoulder.spring_reference': found without a stiffness"},
+      {"materials: {ice: {gap: 0.1}}", "key 'materials.ice.gap': is not known: in MuJoCo 3.9"},
       {"ground: [0]", "key 'ground': found a list of 1, expected a height [m], none"},
       {"timestep: 0", "key 'timestep': found '0', expected a finite number > 0"},
   };

@@ -175,7 +175,7 @@ TEST(EffectNotes, FollowTheSceneAndTheSwitches) {
     ADD_FAILURE() << name;
     return EffectNote{};
   };
-  EXPECT_EQ(effectNotes(m).size(), 14u);
+  EXPECT_EQ(effectNotes(m).size(), 15u);
   EXPECT_TRUE(note("gravity").on);
   EXPECT_TRUE(note("self_collision").on);
   EXPECT_FALSE(note("ground_contact").on);

@@ -148,7 +148,8 @@ class Converter {
     return element(e.kind, { site1: site('A'), site2: site('B'), ...solver });
   }
 
-  model(name, options, solver) {
+  model(name, { diagexact, ...attributes }, solver) {
+    const flags = diagexact ? { diagexact: 'enable' } : {};
     const equalities = this.scene.equalities.map((e, i) => this.equality(e, i));
     return element('mujoco', { model: name }, [
       element('compiler', {
@@ -157,7 +158,7 @@ class Converter {
         inertiafromgeom: 'false',
         fusestatic: 'true',
       }),
-      element('option', { ...options, ...solver }, [element('flag', { island: 'disable' })]),
+      element('option', { ...attributes, ...solver }, [element('flag', { island: 'disable', ...flags })]),
       element('worldbody', {}, this.contents('world')),
       ...(equalities.length ? [element('equality', {}, equalities)] : []),
     ]);

@@ -33,4 +33,27 @@ const elliptic = written
     options: { ...scenario.options, cone: 'elliptic' },
   }));
 
-export const scenarios = [...written, ...elliptic];
+// Some with the exact diagonal of J M⁻¹ Jᵀ in place of constant inverse weights: every kind of row.
+const exact = [...written, ...elliptic]
+  .filter(({ name }) =>
+    [
+      'pendulum_limit',
+      'coupled_pair',
+      'weld_hanging',
+      'four_bar_redundant',
+      'chain_dry_friction',
+      'box_condim_1',
+      'box_condim_6',
+      'humanoid_lying',
+      'elliptic_box_condim_6',
+      'elliptic_hand_fingers',
+    ].includes(name),
+  )
+  .map((scenario) => ({
+    ...scenario,
+    name: `exact_${scenario.name}`,
+    about: `${scenario.about}; exact diagonal of J inv(M) J'`,
+    options: { ...scenario.options, diagexact: true },
+  }));
+
+export const scenarios = [...written, ...elliptic, ...exact];

@@ -164,6 +164,16 @@ const ParityCase kCases[] = {
     {"elliptic_hand_fingers"},
     {"elliptic_arm_push", Points::logged, Run::apart, 0.5},
     {"elliptic_arm_push_ball"},
+    {"exact_pendulum_limit"},
+    {"exact_coupled_pair"},
+    {"exact_weld_hanging"},
+    {"exact_four_bar_redundant"},
+    {"exact_chain_dry_friction"},
+    {"exact_box_condim_1"},
+    {"exact_box_condim_6"},
+    {"exact_humanoid_lying"},
+    {"exact_elliptic_box_condim_6"},
+    {"exact_elliptic_hand_fingers"},
 };
 
 /// Logs of what this engine does not simulate yet: the reader of scenes refuses them.

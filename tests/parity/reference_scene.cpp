@@ -180,12 +180,13 @@ void addEquality(ModelBuilder& builder, const Json& item) {
 
 Model referenceModel(const std::string& name, const Json& scene, const Json& options) {
   allowKeys(scene, {"links", "joints", "geometries", "equalities"});
-  allowKeys(options, {"timestep", "gravity", "cone", "impratio"});
+  allowKeys(options, {"timestep", "gravity", "cone", "impratio", "diagexact"});
   ModelBuilder builder(name);
   builder.base = BaseKind::fixed;
   builder.options.timestep = options.at("timestep");
   builder.options.gravity = vectorOf<3>(options.at("gravity"));
   builder.options.cone = options.at("cone") == "elliptic" ? Cone::elliptic : Cone::pyramidal;
+  builder.options.exactDiagonal = options.value("diagexact", false);
   builder.options.impedanceRatio = options.at("impratio");
   builder.options.midpointCoriolis = false;  // MuJoCo's Euler takes them at the start of the step
   LinkSpec world;

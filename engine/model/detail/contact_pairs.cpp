@@ -10,18 +10,24 @@
 namespace softgauss::detail {
 namespace {
 
-/// The only geometry of that name.
-int findGeometry(const Model& model, const std::string& name, const SourceLocation& where,
-                 const std::string& element) {
-  int found = -1, count = 0;
-  for (std::size_t i = 0; i < model.geometries.size(); ++i)
-    if (model.geometries[i].name == name) found = static_cast<int>(i), ++count;
-  if (count == 1) return found;
-  throw ModelError(
-      where, element,
-      "geometry '" + name + "' " +
-          (count == 0 ? "does not exist"
-                      : "is the name of " + std::to_string(count) + " geometries, expected one"));
+/// All geometries of the link of that name, or else the only geometry of that name.
+std::vector<int> findGeometries(const Model& model, const std::string& name,
+                                const SourceLocation& where, const std::string& element) {
+  std::vector<int> ofLink, ofName;
+  for (int i = 0; i < static_cast<int>(model.geometries.size()); ++i) {
+    const Geometry& geometry = model.geometries[static_cast<std::size_t>(i)];
+    if (geometry.link == name) ofLink.push_back(i);
+    if (geometry.name == name) ofName.push_back(i);
+  }
+  if (!ofLink.empty()) return ofLink;
+  if (ofName.size() == 1) return ofName;
+  throw ModelError(where, element,
+                   ofName.empty()
+                       ? "geometry '" + name +
+                             "' does not exist, and no link of that name has a "
+                             "collision shape"
+                       : "geometry '" + name + "' is the name of " + std::to_string(ofName.size()) +
+                             " geometries, expected one");
 }
 
 }  // namespace
@@ -30,21 +36,21 @@ void addContactPairs(Model& model, const std::vector<PairSpec>& specs) {
   const auto order = [](const ContactPair& a, const ContactPair& b) {
     return std::tie(a.geometryA, a.geometryB) < std::tie(b.geometryA, b.geometryB);
   };
+  std::vector<ContactPair>& pairs = model.contactPairs;
   for (const PairSpec& spec : specs) {
     const std::string element = "pair '" + spec.geometryA + "' - '" + spec.geometryB + "'";
-    ContactPair pair;
-    pair.geometryA = findGeometry(model, spec.geometryA, spec.where, element);
-    pair.geometryB = findGeometry(model, spec.geometryB, spec.where, element);
-    if (pair.geometryA == pair.geometryB)
-      throw ModelError(spec.where, element, "is one geometry, expected two");
-    if (pair.geometryA > pair.geometryB) std::swap(pair.geometryA, pair.geometryB);
     checkMaterial(spec.material, model.options, spec.where, element);
-    pair.material = spec.material;
-    const auto at =
-        std::lower_bound(model.contactPairs.begin(), model.contactPairs.end(), pair, order);
-    if (at != model.contactPairs.end() && !order(pair, *at))
-      throw ModelError(spec.where, element, "is given twice");
-    model.contactPairs.insert(at, pair);
+    const std::vector<int> second = findGeometries(model, spec.geometryB, spec.where, element);
+    for (const int a : findGeometries(model, spec.geometryA, spec.where, element)) {
+      for (const int b : second) {
+        if (a == b) throw ModelError(spec.where, element, "is one geometry, expected two");
+        const ContactPair pair{std::min(a, b), std::max(a, b), spec.material};
+        const auto at = std::lower_bound(pairs.begin(), pairs.end(), pair, order);
+        if (at != pairs.end() && !order(pair, *at))
+          throw ModelError(spec.where, element, "is given twice");
+        pairs.insert(at, pair);
+      }
+    }
   }
 }
 

@@ -172,7 +172,10 @@ void checkOptions(const Options& options) {
   if (!(options.timestep > 0.0) || !std::isfinite(options.timestep))
     fail("timestep is " + number(options.timestep) + " s, expected more than 0");
   if (!options.gravity.allFinite()) fail("gravity is not finite");
-  if (!(options.impedanceRatio > 0.0)) fail("impedance ratio is not positive");
+  if (!(options.impedanceRatio > 0.0) || !std::isfinite(options.impedanceRatio))
+    fail("impedance ratio is " + number(options.impedanceRatio) + ", expected more than 0");
+  if (!(options.tolerance >= 0.0) || !std::isfinite(options.tolerance))
+    fail("tolerance is " + number(options.tolerance) + ", expected 0 or more");
   if (options.maxIterations < 1) fail("maximum iterations is less than 1");
 }
 

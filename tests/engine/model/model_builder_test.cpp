@@ -354,15 +354,24 @@ TEST(ModelBuilderAdd, TiesAndNamesAreThoseOfTheAdded) {
   weld.linkB = "arm";
   pair.connect(connect).couple(couple).weld(weld);
   pair.X_WRoot.p.x() = 7.0;
+  pair.geometry(geometrySpec("base", Shape::sphere(0.1)));
+  pair.geometry(geometrySpec("arm", Shape::sphere(0.1)));
+  PairSpec surface;
+  surface.geometryA = "arm";
+  surface.geometryB = "base";
+  pair.pair(surface);
 
   const Model model = ModelBuilder("both").add(pair, "left").add(pair, "right").build();
   ASSERT_EQ(model.connections.size(), 2u);
+  ASSERT_EQ(model.contactPairs.size(), 2u);
   for (const auto& [i, side] : {std::pair{0u, "left"}, {1u, "right"}}) {
     const std::string prefix = std::string(side) + "/";
     const int arm = model.frames[model.findFrame(prefix + "arm")].body;
     EXPECT_EQ(model.connections[i].bodyA, arm);
     EXPECT_EQ(model.connections[i].bodyB, 0) << "the world is one";
     EXPECT_EQ(model.welds[i].bodyB, arm);
+    EXPECT_EQ(model.geometries[model.contactPairs[i].geometryA].link, prefix + "base");
+    EXPECT_EQ(model.geometries[model.contactPairs[i].geometryB].link, prefix + "arm");
     EXPECT_EQ(model.couplings[i].follower, model.findJoint(prefix + "hinge"));
     EXPECT_EQ(model.q0[model.bodies[model.frames[model.findFrame(prefix + "base")].body].q], 7.0);
   }

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// The regulariser from the inverse inertia that rows have now, in place of constants of the model.
+///
+/// R = (1 − d)/d A of (T.10) takes A from the inverse weights (T.12). With Options::exactDiagonal
+/// it is the diagonal of J M⁻¹ Jᵀ at the present configuration, a triangular solve for each row.
+/// All edges of a friction pyramid take the A of the first one, all rows of an elliptic cone that
+/// of the normal; contact springs have no A. That is MuJoCo's `diagexact`.
+
+#include "engine/constraints/constraints.hpp"
+#include "engine/dynamics/inertia.hpp"
+
+namespace softgauss {
+
+class ExactDiagonal {
+ public:
+  explicit ExactDiagonal(int dofs) : row_(VectorX::Zero(dofs)), solved_(VectorX::Zero(dofs)) {}
+
+  /// Rescales the stiffness of all rows; false where M is not positive definite.
+  bool apply(const TreeMatrix& M, Constraints& constraints);
+
+ private:
+  TreeFactor factor_;  ///< of M
+  VectorX row_, solved_;
+};
+
+}  // namespace softgauss

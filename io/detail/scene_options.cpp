@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/detail/scene_options.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace softgauss::io::detail {
+namespace {
+
+constexpr double kMostIterations = 1e6;
+
+EffectSet readEffects(const YamlMap& map, const YamlMap::Entry& entry) {
+  if (entry.value.kind == YamlValue::Kind::text && entry.value.text == "auto")
+    return EffectSet::all();
+  if (entry.value.kind != YamlValue::Kind::list)
+    map.fail(entry,
+             fmt::format("found {}, expected auto or a list of effects", entry.value.described()));
+  std::vector<std::string> names;
+  for (const EffectName& effect : kEffectNames) names.emplace_back(effect.name);
+  EffectSet effects = EffectSet::none();
+  for (const YamlValue& item : entry.value.items)
+    effects.insert(*effectFromName(map.choice({entry.key, item, item.line}, names)));
+  return effects;
+}
+
+}  // namespace
+
+void readOptions(const YamlMap& map, Options& options) {
+  map.expectOnly({"integrator", "cone", "no_slip", "exact_diagonal", "tolerance", "max_iterations",
+                  "impedance_ratio", "effects", "compatibility"});
+  if (const auto* entry = map.find("integrator")) map.choice(*entry, {"semi-implicit-euler"});
+  if (const auto* entry = map.find("cone"))
+    options.cone = map.choice(*entry, {"pyramidal", "elliptic"}) == "elliptic" ? Cone::elliptic
+                                                                               : Cone::pyramidal;
+  if (const auto* entry = map.find("no_slip")) options.noSlip = map.boolean(*entry);
+  if (const auto* entry = map.find("exact_diagonal")) options.exactDiagonal = map.boolean(*entry);
+  map.read("tolerance", options.tolerance, Range::notNegative);
+  if (const auto* entry = map.find("max_iterations")) {
+    const double count = map.number(*entry, Range::positive);
+    if (count != std::floor(count) || count > kMostIterations)
+      map.fail(*entry, fmt::format("found {}, expected a whole number from 1 to {:g}",
+                                   entry->value.described(), kMostIterations));
+    options.maxIterations = static_cast<int>(count);
+  }
+  map.read("impedance_ratio", options.impedanceRatio, Range::positive);
+  if (const auto* entry = map.find("effects")) options.effects = readEffects(map, *entry);
+  if (const auto* entry = map.find("compatibility"))
+    options.midpointCoriolis = map.choice(*entry, {"none", "mujoco"}) == "none";
+}
+
+}  // namespace softgauss::io::detail

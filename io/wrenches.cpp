@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/wrenches.hpp"
+
+#include "engine/core/check.hpp"
+
+namespace softgauss::io {
+
+WrenchSchedule::WrenchSchedule(const Model& model, const std::vector<TimedWrench>& wrenches)
+    : wrenches_(wrenches) {
+  for (const TimedWrench& wrench : wrenches_) {
+    const int index = model.findFrame(wrench.link);
+    const std::string element = "wrench on '" + wrench.link + "'";
+    if (index < 0) throw ModelError(wrench.where, element, "found no link of that name");
+    const Frame& frame = model.frames[static_cast<std::size_t>(index)];
+    if (frame.body == 0)
+      throw ModelError(wrench.where, element,
+                       "found a link fixed to the world, expected one that moves");
+    bodies_.push_back(frame.body);
+    p_BP_.push_back(frame.X_BF * wrench.p_LP);
+  }
+}
+
+void WrenchSchedule::at(double time, double timestep, const Kinematics& kinematics,
+                        std::vector<ExternalWrench>& out) const {
+  out.clear();
+  const double middle = time + 0.5 * timestep;
+  for (std::size_t i = 0; i < wrenches_.size(); ++i) {
+    const TimedWrench& wrench = wrenches_[i];
+    if (middle < wrench.start || middle > wrench.end) continue;
+    const Vector3 r_W = kinematics.X_WB[static_cast<std::size_t>(bodies_[i])].R * p_BP_[i];
+    out.push_back({bodies_[i], {wrench.moment_W + r_W.cross(wrench.force_W), wrench.force_W}});
+  }
+}
+
+}  // namespace softgauss::io
