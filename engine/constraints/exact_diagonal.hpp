@@ -6,7 +6,8 @@
 /// R = (1 − d)/d A of (T.10) takes A from the inverse weights (T.12). With Options::exactDiagonal
 /// it is the diagonal of J M⁻¹ Jᵀ at the present configuration, a triangular solve for each row.
 /// All edges of a friction pyramid take the A of the first one, all rows of an elliptic cone that
-/// of the normal; contact springs have no A. That is MuJoCo's `diagexact`.
+/// of the normal; contact springs have no A. That is MuJoCo's `diagexact`, but for rows along which
+/// nothing moves: R keeps 10⁻⁹ of its constant.
 
 #include "engine/constraints/constraints.hpp"
 #include "engine/dynamics/inertia.hpp"

@@ -106,13 +106,17 @@ TEST(SceneFile, OptionsAreThoseOfTheModel) {
   const Options o =
       SceneFolder(robot +
                   "options: {integrator: semi-implicit-euler, tolerance: 1e-9, max_iterations: 7,\n"
-                  "  impedance_ratio: 4, effects: [gravity, joint_limit], compatibility: mujoco}\n")
+                  "  impedance_ratio: 4, effects: [gravity, joint_limit], compatibility: mujoco,\n"
+                  "  cone: elliptic, no_slip: true, exact_diagonal: true}\n")
           .read()
           .builder.options;
   EXPECT_EQ(o.tolerance, 1e-9);
   EXPECT_EQ(o.maxIterations, 7);
   EXPECT_EQ(o.impedanceRatio, 4.0);
   EXPECT_FALSE(o.midpointCoriolis);
+  EXPECT_EQ(o.cone, Cone::elliptic);
+  EXPECT_TRUE(o.noSlip);
+  EXPECT_TRUE(o.exactDiagonal);
   EffectSet two = EffectSet::none();
   two.insert(Effect::gravity);
   two.insert(Effect::jointLimit);
@@ -207,7 +211,10 @@ TEST(SceneFile, RefusalsOfPairsOptionsAndWrenches) {
        ":4: pair 'y' - 'x': is given twice"},
       {"objects: [{name: ground, sphere: {radius: 1}}]", "other than world and ground"},
       {ball + "options: [tolerance]", "key 'options': found a list"},
-      {ball + "options: {cone: round}", "key 'options.cone': found an unknown key"},
+      {ball + "options: {cone: round}",
+       "key 'options.cone': found 'round', expected one of pyramidal, elliptic"},
+      {ball + "options: {no_slip: 1}", "key 'options.no_slip': found"},
+      {ball + "options: {friction: 1}", "key 'options.friction': found an unknown key"},
       {ball + "options: {integrator: magic}", "key 'options.integrator': found 'magic'"},
       {ball + "options: {tolerance: -1}", "key 'options.tolerance': found '-1'"},
       {ball + "options: {max_iterations: 1.5}", "expected a whole number from 1"},

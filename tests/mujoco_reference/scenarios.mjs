@@ -40,7 +40,7 @@ const exact = [...written, ...elliptic]
       'pendulum_limit',
       'coupled_pair',
       'weld_hanging',
-      'four_bar_redundant',
+      'connect_hanging',
       'chain_dry_friction',
       'box_condim_1',
       'box_condim_6',

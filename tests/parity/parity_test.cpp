@@ -167,7 +167,7 @@ const ParityCase kCases[] = {
     {"exact_pendulum_limit"},
     {"exact_coupled_pair"},
     {"exact_weld_hanging"},
-    {"exact_four_bar_redundant"},
+    {"exact_connect_hanging"},
     {"exact_chain_dry_friction"},
     {"exact_box_condim_1"},
     {"exact_box_condim_6"},
