@@ -48,26 +48,30 @@ TEST(NoSlip, BoundsTheCreepOfALoad) {
   }
 }
 
-// Beyond the friction cone it slides. A pyramid that slides slowly shares the load with edges that
-// do not rub; the second solve keeps to that.
-TEST(NoSlip, SlidesAsCoulombSays) {
+// Beyond the friction cone it slides, and there the second solve finds nothing to improve.
+TEST(NoSlip, SlidesAsWithout) {
   const double theta = 0.6, mu = 0.3;
   for (const Cone cone : kCones) {
-    Scene s = boxOnSlope(theta, mu, cone, true);
-    s.steps(500);
-    std::vector<Snapshot::ContactForce> contacts;
-    contactForces(*s.data, contacts);
-    ASSERT_GE(contacts.size(), 2u);
-    for (const Snapshot::ContactForce& c : contacts) {
-      const Vector3 friction = c.force - c.normalForce() * c.n_W;
-      const double ratio = friction.norm() / (mu * c.normalForce());
-      if (cone == Cone::elliptic) {
-        EXPECT_SMALL(ratio - 1.0, 1e-9);
+    Scene soft = boxOnSlope(theta, mu, cone, false), stiff = boxOnSlope(theta, mu, cone, true);
+    int pressed = 0;
+    for (int i = 0; i < 500; ++i) {
+      soft.step();
+      stiff.step();
+      std::vector<Snapshot::ContactForce> contacts;
+      contactForces(*stiff.data, contacts);
+      for (const Snapshot::ContactForce& c : contacts) {
+        const Vector3 friction = c.force - c.normalForce() * c.n_W;
+        if (downhillSpeed(stiff, theta) < 0.1 || c.normalForce() < 1e-3) continue;
+        ++pressed;
+        EXPECT_LE(friction.norm(), mu * c.normalForce() * (1.0 + 1e-9));
+        // A pyramid that slides slowly leaves some of the load to edges that do not rub.
+        EXPECT_GE(friction.norm(),
+                  mu * c.normalForce() * (cone == Cone::elliptic ? 0.999999 : 0.4));
+        EXPECT_GT(friction.dot(c.n_W.cross(Vector3::UnitY())), 0.0) << "against the motion";
       }
-      EXPECT_LE(ratio, 1.0 + 1e-9);
-      EXPECT_GT(ratio, 0.8);
-      EXPECT_LT(c.n_W.cross(friction).dot(Vector3::UnitY()), 0.0) << "against the motion";
     }
+    EXPECT_GT(pressed, 200);
+    EXPECT_SMALL(downhillSpeed(stiff, theta) / downhillSpeed(soft, theta) - 1.0, 1e-6);
   }
 }
 
