@@ -10,6 +10,7 @@
 #include "engine/constraints/contact.hpp"
 #include "engine/constraints/contact_softness.hpp"
 #include "engine/constraints/inverse_weight.hpp"
+#include "engine/constraints/sticking_friction.hpp"
 #include "io/detail/text.hpp"
 #include "io/detail/text_table.hpp"
 #include "io/explain.hpp"
@@ -100,6 +101,7 @@ std::string formOf(const Material& pair) {
 std::string softnessText(const Model& model, const ExplainContext& context) {
   const double gravity = model.options.gravity.norm();
   if (context.pairs.empty() || gravity == 0.0) return {};
+  const double stiffer = model.options.noSlip ? StickingFriction::kStiffer : 1.0;
   std::string out;
   for (const Group& group : groupsOf(model, context)) {
     detail::TextTable table;
@@ -117,7 +119,7 @@ std::string softnessText(const Model& model, const ExplainContext& context) {
       table.row({fmt::format("'{}', {:.4g} kg", restingBody(model, *rest), rest->mass),
                  fmt::format("{:.4g}", 1e3 * at.depth), fmt::format("{:.4g}", at.stiffness),
                  fmt::format("{:.4g}", at.damping),
-                 rubs ? fmt::format("{:.4g}", 1e3 * at.mobility) : "slides",
+                 rubs ? fmt::format("{:.4g}", 1e3 * at.mobility / stiffer) : "slides",
                  rubs ? fmt::format("{:.4g}", at.stickForce) : "-",
                  possible ? fmt::format("{:.4g}", d) : "-",
                  possible ? fmt::format("{:.4g}, {:.4g}", at.equivalent.direct->stiffness,
@@ -130,6 +132,10 @@ std::string softnessText(const Model& model, const ExplainContext& context) {
     out += table.text();
   }
   if (out.empty()) return out;
+  if (model.options.exactDiagonal)
+    out +=
+        "  With the exact diagonal, softness by an impedance follows the configuration;\n"
+        "  these figures are those of the constant inverse weights.\n";
   return fmt::format("softness of contacts, {} (docs/softness.md)\n",
                      model.options.cone == Cone::elliptic ? "elliptic cones" : "pyramidal cones") +
          out;

@@ -242,8 +242,12 @@ class SceneReader {
     if (!fixed) {
       MassProperties solid =
           solidOf(shape, density ? map.number(*density, Range::positive) : kWater);
+      const YamlMap::Entry* mesh = map.find("mesh");
+      if (!(solid.mass > 0.0) && !mesh)
+        throw ModelError(link.where, "object '" + name + "'",
+                         "is too small to have a volume, expected larger numbers");
       if (!(solid.mass > 0.0))
-        map.fail(*map.find("mesh"),
+        map.fail(*mesh,
                  "found a mesh without a volume, so it has no mass; expected a "
                  "closed mesh whose triangles face outwards");
       const double scale = mass ? map.number(*mass, Range::positive) / solid.mass : 1.0;

@@ -55,7 +55,11 @@ Summary::Summary(const Model& model)
       modelName_(model.name),
       links_(static_cast<int>(model.frames.size())),
       dofs_(model.nv),
-      timestep_(model.options.timestep) {
+      timestep_(model.options.timestep),
+      cone_(model.options.cone == Cone::elliptic ? "elliptic" : "pyramidal"),
+      impedanceRatio_(model.options.impedanceRatio),
+      exactDiagonal_(model.options.exactDiagonal),
+      noSlip_(model.options.noSlip) {
   for (int i = 0; i < model.nv; ++i) {
     const Dof& dof = model.dofs[static_cast<std::size_t>(i)];
     if (!dof.actuated) continue;
@@ -112,7 +116,10 @@ std::string Summary::json() const {
       {"options",
        {{"timestep_s", timestep_},
         {"integrator", integrator},
-        {"cone", cone},
+        {"cone", cone_},
+        {"impedance_ratio", impedanceRatio_},
+        {"exact_diagonal", exactDiagonal_},
+        {"no_slip", noSlip_},
         {"gdd_solver", gddSolver}}},
       {"outcome", outcome},
       {"steps", steps_},

@@ -52,7 +52,6 @@ class Summary {
   // What only the caller knows.
   std::string version;
   std::string integrator = "semi-implicit-euler";
-  std::string cone = "pyramidal";
   std::string gddSolver = "augmented-lagrangian";
   std::string outcome = "completed";
   double wallSeconds = 0.0;
@@ -73,6 +72,9 @@ class Summary {
   std::string modelName_;
   int links_ = 0, dofs_ = 0, actuated_ = 0;
   double timestep_ = 0.0;
+  std::string cone_;
+  double impedanceRatio_ = 1.0;
+  bool exactDiagonal_ = false, noSlip_ = false;
   std::vector<Bounded> bounded_;  ///< controls with a box
   std::size_t steps_ = 0;
   double startTime_ = 0.0, endTime_ = 0.0;

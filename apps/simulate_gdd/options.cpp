@@ -180,7 +180,7 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
                "softness of constraints from the present inertia, not from constants of the model")
       ->group(simulation);
   app.add_flag("--no-slip", options.noSlip,
-               "friction without creep, by a second solve with the normal forces held; inverse\n"
+               "friction without creep, by a second solve bounded by the first; inverse\n"
                "dynamics then miss the control by what the summary calls physics violation")
       ->group(simulation);
   app.add_option("--gdd-solver", solver,

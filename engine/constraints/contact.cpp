@@ -10,6 +10,14 @@
 namespace softgauss {
 namespace {
 
+/// Share of the first of two weights; half where both vanish.
+double shareOf(double a, double b) {
+  constexpr double kSmallest = 1e-15;
+  if (a < kSmallest && b < kSmallest) return 0.5;
+  if (a < kSmallest) return 0.0;
+  return b < kSmallest ? 1.0 : a / (a + b);
+}
+
 /// A wished tangent is followed as long as rounding does not decide where it points: this sine of
 /// the angle between it and the normal.
 constexpr double kSmallestSine = 1e-6;
@@ -27,13 +35,18 @@ Matrix3 contactFrame(const Contact& c) {
 }  // namespace
 
 Material mixMaterials(const Material& a, const Material& b) {
+  if (a.priority != b.priority) {
+    Material m = a.priority > b.priority ? a : b;
+    m.margin = a.margin + b.margin;
+    return m;
+  }
   Material m;
   m.slidingFriction = std::max(a.slidingFriction, b.slidingFriction);
   m.torsionalFriction = std::max(a.torsionalFriction, b.torsionalFriction);
   m.rollingFriction = std::max(a.rollingFriction, b.rollingFriction);
   m.condim = std::max(a.condim, b.condim);
   m.margin = a.margin + b.margin;
-  m.impedance = mixImpedances(a.impedance, b.impedance);
+  m.impedance = mixImpedances(a.impedance, b.impedance, shareOf(a.mixWeight, b.mixWeight));
   m.spring = a.spring && b.spring ? inSeries(*a.spring, *b.spring) : a.spring ? a.spring : b.spring;
   return m;
 }
@@ -54,6 +67,8 @@ Material pairMaterial(const Model& model, int geometryA, int geometryB) {
     if (at != model.contactPairs.end() && at->geometryA == a && at->geometryB == b)
       return inUse(at->material);
   }
+  if (!first.material.spring && !second.material.spring)
+    return mixMaterials(first.material, second.material);
   return mixMaterials(inUse(first.material), inUse(second.material));
 }
 

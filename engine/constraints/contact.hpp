@@ -21,8 +21,9 @@
 namespace softgauss {
 
 /// Surface parameters of a pair (T.15): condim and frictions are the larger of the two, impedance
-/// parameters their mean, margins the sum. Springs, in newtons, are in series (T.38); where only
-/// one surface has a spring, the other is rigid.
+/// parameters their mean by mixWeight, margins the sum. Springs, in newtons, are in series (T.38);
+/// where only one surface has a spring, the other is rigid. Where priorities differ, the surface of
+/// higher priority gives all but the margin.
 Material mixMaterials(const Material& a, const Material& b);
 
 /// The surface of a pair of geometries: its own, or the mix of theirs; its spring in newtons.

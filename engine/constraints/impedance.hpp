@@ -49,16 +49,18 @@ inline double impedanceAt(const Impedance& p, double distance) {
   return dMin + y * (dMax - dMin);
 }
 
-/// The impedance of a contact between two surfaces (T.15): the mean of all parameters. A reference
-/// that is given directly replaces one that is not; of two, the stiffer and the more damped.
-inline Impedance mixImpedances(const Impedance& p, const Impedance& q) {
-  Impedance m{0.5 * (p.timeConstant + q.timeConstant),
-              0.5 * (p.dampingRatio + q.dampingRatio),
-              0.5 * (p.dMin + q.dMin),
-              0.5 * (p.dMax + q.dMax),
-              0.5 * (p.width + q.width),
-              0.5 * (p.midpoint + q.midpoint),
-              0.5 * (p.power + q.power),
+/// The impedance of a contact between two surfaces (T.15): the mean of all parameters, `share` that
+/// of the first. A reference that is given directly replaces one that is not; of two, the stiffer
+/// and the more damped.
+inline Impedance mixImpedances(const Impedance& p, const Impedance& q, double share = 0.5) {
+  const auto mean = [share](double a, double b) { return share * a + (1.0 - share) * b; };
+  Impedance m{mean(p.timeConstant, q.timeConstant),
+              mean(p.dampingRatio, q.dampingRatio),
+              mean(p.dMin, q.dMin),
+              mean(p.dMax, q.dMax),
+              mean(p.width, q.width),
+              mean(p.midpoint, q.midpoint),
+              mean(p.power, q.power),
               p.direct ? p.direct : q.direct};
   if (p.direct && q.direct)
     m.direct = {std::max(p.direct->stiffness, q.direct->stiffness),

@@ -30,12 +30,8 @@ class PyramidalContact : public ScalarRows<HalfQuadratic>, public ContactBlocks 
   /// the opposite.
   Vector3 moment(int i) const { return angularInWorld(i, inFrame(i, f)); }
 
-  /// The force at contact i in its frame, and what the edges of direction k carry together.
+  /// The force at contact i in its frame.
   FrameVector frameForce(int i) const { return inFrame(i, f); }
-  double edgeSum(int i, int k) const {
-    const auto row = static_cast<std::size_t>(made_[i].row + 2 * k);
-    return f[row] + f[row + 1];
-  }
 
  private:
   /// Sum over the edges of contact i of `y` times the edge.

@@ -6,53 +6,86 @@
 
 namespace softgauss {
 
-double StickingFriction::Patch::at(const double* at, double* force, double* H, bool& sticks) const {
-  if (H) std::fill_n(H, dim * dim, 0.0);
-  sticks = true;
-  if (round) return atRound(at, force, H, sticks);
-  double cost = 0.0;
-  for (int k = 0; k < dim; ++k) {
-    const Jet s = limit[k] > 0.0 ? Huber{D[k], limit[k]}.at(at[k]) : Jet{};
-    cost += s.value;
-    force[k] = -s.slope;
-    if (H) H[k * (dim + 1)] = s.curvature;
-    sticks = sticks && s.curvature > 0.0;
+// Both take V = −D U in F, and leave its projection there; H (n × n) becomes −∂F/∂U, and the
+// result is the potential: F·(V − ½ F)/D.
+
+double StickingFriction::Patch::roundFriction(double* F, double* H, int& piece) const {
+  const int n = dim - 1;
+  double squares = 0.0;
+  for (int k = 0; k < n; ++k) squares += F[k] * F[k];
+  const double length = std::sqrt(squares);
+  if (length <= bound) {
+    piece = 0;
+    for (int k = 0; H && k < n; ++k) H[k * (n + 1)] = D;
+    return 0.5 * squares / D;
   }
-  return cost;
+  piece = -1;
+  const double shrink = bound / length;
+  for (int k = 0; H && k < n; ++k)
+    for (int l = 0; l < n; ++l)
+      H[k * n + l] = D * shrink * ((k == l ? 1.0 : 0.0) - F[k] * F[l] / squares);
+  for (int k = 0; k < n; ++k) F[k] *= shrink;
+  return bound * (length - 0.5 * bound) / D;
 }
 
-double StickingFriction::Patch::atRound(const double* at, double* force, double* H,
-                                        bool& sticks) const {
-  const double stiffness = dim > 0 ? D[0] / (friction[0] * friction[0]) : 0.0;  // D_k/μ_k²
-  double u[5], squares = 0.0;
-  for (int k = 0; k < dim; ++k) {
-    u[k] = friction[k] * at[k];
-    squares += u[k] * u[k];
-  }
-  const double T = std::sqrt(squares);
-  sticks = stiffness * T < normal;
-  if (sticks) {
-    for (int k = 0; k < dim; ++k) {
-      force[k] = -stiffness * friction[k] * u[k];
-      if (H) H[k * (dim + 1)] = D[k];
+double StickingFriction::Patch::edgedFriction(double* F, double* H, int& piece) const {
+  const int n = dim - 1;
+  double size[5], sum = 0.0;
+  for (int k = 0; k < n; ++k) sum += size[k] = std::abs(F[k]);
+  // All entries are shortened by the least θ that brings their sum down to the bound.
+  double theta = 0.0;
+  if (!(sum <= bound)) {
+    std::sort(size, size + n, std::greater<>());
+    double partial = 0.0;
+    for (int k = 0; k < n; ++k) {
+      partial += size[k];
+      const double next = (partial - bound) / (k + 1);
+      if (k > 0 && size[k] <= next) break;
+      theta = next;
     }
-    return 0.5 * stiffness * squares;
   }
-  for (int k = 0; k < dim; ++k) u[k] = T == 0.0 ? 0.0 : u[k] / T;  // NaN stays NaN
-  for (int k = 0; k < dim; ++k) {
-    force[k] = -normal * friction[k] * u[k];
-    if (!H || T == 0.0) continue;
-    for (int l = 0; l < dim; ++l)
-      H[k * dim + l] =
-          normal / T * friction[k] * friction[l] * ((k == l ? 1.0 : 0.0) - u[k] * u[l]);
+  double potential = 0.0;
+  int active = 0;
+  piece = theta > 0.0 ? 1 : 0;
+  double sign[5];
+  for (int k = 0; k < n; ++k) {
+    const double V = F[k], shortened = std::abs(V) - theta;
+    sign[k] = shortened > 0.0 || theta == 0.0 ? (V < 0.0 ? -1.0 : 1.0) : 0.0;
+    F[k] = std::isnan(V) ? V : sign[k] * shortened;
+    potential += F[k] * (V - 0.5 * F[k]) / D;
+    active += sign[k] != 0.0;
+    piece = 3 * piece + static_cast<int>(theta > 0.0 ? sign[k] + 1.0 : 0.0);
   }
-  return stiffness > 0.0 ? normal * (T - 0.5 * normal / stiffness) : 0.0;
+  if (!H) return potential;
+  for (int k = 0; k < n; ++k)
+    for (int l = 0; l < n; ++l)
+      H[k * n + l] =
+          sign[k] == 0.0 || sign[l] == 0.0
+              ? 0.0
+              : D * ((k == l ? 1.0 : 0.0) - (theta > 0.0 ? sign[k] * sign[l] / active : 0.0));
+  return potential;
 }
 
-ContactBlocks::FrameVector StickingFriction::Patch::inFrame(double first, const double* y) const {
-  ContactBlocks::FrameVector frame{first};
-  std::copy_n(y + row, dim, frame.data() + 1);
-  return frame;
+double StickingFriction::Patch::at(const double* at, double* force, double* H, int& piece) const {
+  const int n = dim - 1;
+  if (H) std::fill_n(H, dim * dim, 0.0);
+  const Jet normal = HalfQuadratic{Dn}.at(at[0]);
+  force[0] = -normal.slope;
+  if (H) H[0] = normal.curvature;
+  double F[5], inner[25] = {};
+  for (int k = 0; k < n; ++k) F[k] = -D * friction[k] * at[k + 1];
+  double cost = normal.value;
+  piece = 0;
+  if (n > 0)
+    cost += round ? roundFriction(F, H ? inner : nullptr, piece)
+                  : edgedFriction(F, H ? inner : nullptr, piece);
+  for (int k = 0; k < n; ++k) {
+    force[k + 1] = friction[k] * F[k];
+    for (int l = 0; H && l < n; ++l)
+      H[(k + 1) * dim + l + 1] = friction[k] * friction[l] * inner[k * n + l];
+  }
+  if (piece >= 0) piece = 2 * piece + (normal.curvature > 0.0 ? 1 : 0);
+  return cost;
 }
 
 void StickingFriction::clear() {
@@ -60,76 +93,70 @@ void StickingFriction::clear() {
   for (std::vector<double>* column : {&reference, &x, &dx, &f}) column->clear();
 }
 
-bool StickingFriction::take(PyramidalContact& pyramids, EllipticContact& cones) {
-  clear();
-  for (int i = 0; i < static_cast<int>(pyramids.made().size()); ++i) {
-    const ContactRows& made = pyramids.made()[i];
-    Patch patch{&pyramids, i, made.frictionDim, static_cast<int>(reference.size())};
-    patch.normal = pyramids.frameForce(i)[0];
-    patch.friction = made.friction;
-    for (int k = 0; k < made.frictionDim; ++k) {
-      const auto edge = static_cast<std::size_t>(made.row + 2 * k);
-      const double mu = made.friction[k];
-      patch.D[k] = kStiffer * 2.0 * mu * mu * pyramids.D[edge];
-      patch.limit[k] = mu * pyramids.edgeSum(i, k);
-      reference.push_back((pyramids.reference[edge] - pyramids.reference[edge + 1]) / (2.0 * mu));
-    }
-    patches_.push_back(patch);
-  }
-  for (int i = 0; i < static_cast<int>(cones.made().size()); ++i) {
-    const ContactRows& made = cones.made()[i];
-    const EllipticCone& cone = cones.cone(i);
-    Patch patch{&cones, i, made.frictionDim, static_cast<int>(reference.size())};
-    patch.normal = cones.frameForce(i)[0];
-    patch.round = true;
-    patch.friction = made.friction;
-    for (int k = 0; k < made.frictionDim; ++k) {
-      patch.D[k] = kStiffer * cone.D * made.friction[k] * made.friction[k] / (cone.mu * cone.mu);
-      reference.push_back(cones.reference[static_cast<std::size_t>(made.row + 1 + k)]);
-    }
-    patches_.push_back(patch);
-  }
-  for (std::vector<double>* column : {&x, &dx, &f}) column->assign(reference.size(), 0.0);
-  sticks_.assign(patches_.size(), false);
-  return !reference.empty();
+void StickingFriction::add(Patch patch, const VectorX& a, const double* aRef, int stride) {
+  patch.row = static_cast<int>(reference.size());
+  ContactBlocks::FrameVector y{};
+  patch.contacts->jacobian().multiply(patch.contact, a, y.data());
+  reference.push_back(y[0] + patch.bound / patch.Dn);
+  for (int k = 0; k + 1 < patch.dim; ++k)
+    reference.push_back(stride == 1 ? aRef[k + 1]
+                                    : (aRef[2 * k] - aRef[2 * k + 1]) / (2.0 * patch.friction[k]));
+  patches_.push_back(patch);
 }
 
-void StickingFriction::addNormalForce(VectorX& tau) const {
-  for (const Patch& p : patches_) {
-    const ContactBlocks::FrameVector frame{p.normal};
-    if (p.normal != 0.0) p.contacts->jacobian().addTransposed(p.contact, frame.data(), tau);
+bool StickingFriction::take(PyramidalContact& pyramids, EllipticContact& cones, const VectorX& a) {
+  clear();
+  bool rubs = false;
+  for (int i = 0; i < static_cast<int>(pyramids.made().size()); ++i) {
+    const ContactRows& made = pyramids.made()[i];
+    const auto row = static_cast<std::size_t>(made.row);
+    Patch patch{&pyramids, i, made.frictionDim + 1};
+    patch.friction = made.friction;
+    patch.bound = pyramids.frameForce(i)[0];
+    patch.Dn = std::max(1, 2 * made.frictionDim) * pyramids.D[row];
+    patch.D = kStiffer * 2.0 * pyramids.D[row];  // two edges a direction
+    add(patch, a, pyramids.reference.data() + row, 2);
+    rubs |= made.frictionDim > 0;
   }
+  for (int i = 0; i < static_cast<int>(cones.made().size()); ++i) {
+    const EllipticCone& cone = cones.cone(i);
+    Patch patch{&cones, i, cone.dim};
+    patch.friction = cone.friction;
+    patch.bound = cones.frameForce(i)[0];
+    patch.Dn = cone.D;
+    patch.D = kStiffer * cone.D / (cone.mu * cone.mu);
+    patch.round = true;
+    add(patch, a, cones.reference.data() + cones.made()[i].row, 1);
+    rubs = true;
+  }
+  for (std::vector<double>* column : {&x, &dx, &f}) column->assign(reference.size(), 0.0);
+  pieces_.assign(patches_.size(), -2);
+  return rubs;
 }
 
 void StickingFriction::multiply(const VectorX& a, std::vector<double>& y) const {
-  for (const Patch& p : patches_) {
-    ContactBlocks::FrameVector frame;
-    p.contacts->jacobian().multiply(p.contact, a, frame.data());
-    std::copy_n(frame.data() + 1, p.dim, y.data() + p.row);
-  }
+  for (const Patch& p : patches_) p.contacts->jacobian().multiply(p.contact, a, y.data() + p.row);
 }
 
 double StickingFriction::evaluate(bool& cellChanged) {
   double cost = 0.0;
   for (std::size_t i = 0; i < patches_.size(); ++i) {
     const Patch& p = patches_[i];
-    bool sticks = false;
-    cost += p.at(x.data() + p.row, f.data() + p.row, nullptr, sticks);
-    // Where a direction slides, or a cone bends, the curvature may have changed.
-    cellChanged |= !sticks || !sticks_[i];
-    sticks_[i] = sticks;
+    int piece = 0;
+    cost += p.at(x.data() + p.row, f.data() + p.row, nullptr, piece);
+    cellChanged |= piece < 0 || piece != pieces_[i];
+    pieces_[i] = piece;
   }
   return cost;
 }
 
 void StickingFriction::along(double alpha, Jet& sum) const {
   for (const Patch& p : patches_) {
-    double at[5], force[5], H[25];
-    bool sticks = false;
-    const double* rate = dx.data() + p.row;
-    for (int k = 0; k < p.dim; ++k)
-      at[k] = x[static_cast<std::size_t>(p.row + k)] + alpha * rate[k];
-    sum.value += p.at(at, force, H, sticks);
+    double at[kMaxDim], force[kMaxDim], H[kMaxDim * kMaxDim];
+    const double *from = x.data() + p.row, *rate = dx.data() + p.row;
+    for (int k = 0; k < p.dim; ++k) at[k] = from[k] + alpha * rate[k];
+    int piece = 0;
+    sum.value += p.at(at, force, H, piece);
     for (int k = 0; k < p.dim; ++k) {
       sum.slope -= force[k] * rate[k];
       for (int l = 0; l < p.dim; ++l) sum.curvature += rate[k] * H[k * p.dim + l] * rate[l];
@@ -142,27 +169,24 @@ void StickingFriction::advance(double alpha) {
 }
 
 void StickingFriction::addForce(VectorX& tau) const {
-  for (const Patch& p : patches_) {
-    const ContactBlocks::FrameVector frame = p.inFrame(0.0, f.data());
-    if (p.dim > 0) p.contacts->jacobian().addTransposed(p.contact, frame.data(), tau);
-  }
+  for (const Patch& p : patches_)
+    p.contacts->jacobian().addTransposed(p.contact, f.data() + p.row, tau);
 }
 
 void StickingFriction::addCurvature(TreeMatrix& P) {
   for (const Patch& p : patches_) {
-    if (p.dim == 0) continue;
-    double force[5], H[25], inBlock[36] = {};
-    bool sticks = false;
-    p.at(x.data() + p.row, force, H, sticks);
-    for (int k = 0; k < p.dim; ++k)
-      std::copy_n(H + k * p.dim, p.dim, inBlock + (k + 1) * (p.dim + 1) + 1);
-    p.contacts->jacobian().addCurvature(p.contact, inBlock, P);
+    double force[kMaxDim], H[kMaxDim * kMaxDim];
+    int piece = 0;
+    p.at(x.data() + p.row, force, H, piece);
+    p.contacts->jacobian().addCurvature(p.contact, H, P);
   }
 }
 
 Vector3 StickingFriction::force(int i) const {
   const Patch& p = patches_[static_cast<std::size_t>(i)];
-  return p.contacts->linearInWorld(p.contact, p.inFrame(p.normal, f.data()));
+  ContactBlocks::FrameVector frame{};
+  std::copy_n(f.data() + p.row, p.dim, frame.data());
+  return p.contacts->linearInWorld(p.contact, frame);
 }
 
 }  // namespace softgauss

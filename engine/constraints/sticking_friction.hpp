@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// Friction of contacts that does not creep: a second problem, with the normal forces held.
+/// Friction of contacts that does not creep: a second problem, bounded by the forces of the first.
 ///
 /// A soft friction force needs a slip of its reference to exist, so contacts creep under load. Here
-/// the normal forces f_n of a first solve are constants, and the tangential rows of every contact
-/// are kStiffer times as hard, still bounded by f_n (T.34):
-///   x_k = y_k − a_ref,k,   a_ref,k = −b ẏ_k,   D_k = kStiffer × that of the sticking contact
-///   pyramid:  s = Σ_k Huber(x_k; D_k, μ_k (f₊ + f₋)_k)         each pair of edges by itself
-///   cone:     s = Huber(|U|; D_k/μ_k², f_n),  U_k = μ_k x_k     all directions together
+/// the normal forces f_n of a first solve bound friction that is kStiffer times as hard (T.34):
+///   normal    s = ½ D_n min(x_n, 0)²,  x_n = y_n − y_n¹ − f_n/D_n     f_n at the first solution y¹
+///   friction  x_k = y_k − a_ref,k,  a_ref,k = −b ẏ_k,  U_k = μ_k x_k,  D = kStiffer × its
+///   stiffness
+///             f_k = μ_k F_k,  F = −D U projected onto  Σ |F_k| ≤ f_n (pyramid),  |F| ≤ f_n (cone)
+/// F is minus the gradient of a convex, C¹ function of U. D_n is the stiffness of the contact's
+/// normal: without it the normal would not answer to the change of friction within the step.
 /// The result no longer minimises (T.1): inverse dynamics give other forces than went in.
 
 #include <array>
@@ -30,10 +32,8 @@ class StickingFriction {
 
   /// Forgets all contacts.
   void clear();
-  /// Takes all contacts with their present forces; false where none has friction.
-  bool take(PyramidalContact& pyramids, EllipticContact& cones);
-  /// tau ← tau + Jᵀ (normal forces).
-  void addNormalForce(VectorX& tau) const;
+  /// Takes all contacts with their forces at the acceleration a; false where none has friction.
+  bool take(PyramidalContact& pyramids, EllipticContact& cones, const VectorX& a);
 
   int rowCount() const { return static_cast<int>(x.size()); }
   void multiply(const VectorX& a, std::vector<double>& y) const;
@@ -45,29 +45,34 @@ class StickingFriction {
 
   /// Force on body B at contact i of those taken, pyramids first, world [N].
   Vector3 force(int i) const;
+  /// What bounds the friction of that contact: the normal force of the first solve [N].
+  double bound(int i) const { return patches_[static_cast<std::size_t>(i)].bound; }
 
  private:
-  /// One contact, with dim rows of friction.
+  static constexpr int kMaxDim = 6;
+
+  /// One contact: a normal row, then dim − 1 of friction.
   struct Patch {
     ContactBlocks* contacts = nullptr;
     int contact = 0;  ///< among them
-    int dim = 0;
-    int row = 0;          ///< first
-    double normal = 0.0;  ///< f_n
-    bool round = false;   ///< one bound, f_n, for all directions
+    int dim = 1;
+    int row = 0;         ///< first
+    double Dn = 0.0;     ///< stiffness of the normal row
+    double D = 0.0;      ///< of friction, in U
+    double bound = 0.0;  ///< f_n
+    bool round = false;  ///< |F| ≤ f_n, else Σ |F_k| ≤ f_n
     std::array<double, 5> friction{};
-    std::array<double, 5> D{};
-    std::array<double, 5> limit{};  ///< where not round
 
-    /// s; writes f and, unless null, H (dim × dim); says whether every direction sticks.
-    double at(const double* x, double* f, double* H, bool& sticks) const;
-    double atRound(const double* x, double* f, double* H, bool& sticks) const;
-    /// (normal, friction rows) of y, or zero in place of the normal.
-    ContactBlocks::FrameVector inFrame(double normal, const double* y) const;
+    /// s; writes f and, unless null, H (dim × dim). `piece` tells cells of constant H apart; −1
+    /// where H bends.
+    double at(const double* x, double* f, double* H, int& piece) const;
+    double roundFriction(double* F, double* H, int& piece) const;
+    double edgedFriction(double* F, double* H, int& piece) const;
   };
+  void add(Patch patch, const VectorX& a, const double* aRef, int stride);
 
   std::vector<Patch> patches_;
-  std::vector<bool> sticks_;
+  std::vector<int> pieces_;
 };
 
 }  // namespace softgauss

@@ -50,6 +50,8 @@ struct Material {
   double rollingFriction = 0.0001;   ///< [m], read by condim 6
   int condim = 3;                    ///< 1 frictionless, 3 sliding, 4 and torsional, 6 and rolling
   double margin = 0.0;               ///< [m] a contact makes rows where distance < margin
+  int priority = 0;                  ///< of two surfaces, the higher one alone decides (T.15)
+  double mixWeight = 1.0;            ///< ≥ 0, share of this surface in the pair's impedance
   Impedance impedance;
   std::optional<ContactSpring> spring = {};  ///< in place of the impedance
   bool operator==(const Material&) const = default;

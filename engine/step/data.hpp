@@ -23,7 +23,7 @@ struct ForwardSolution {
   TreeFactor massFactor;  ///< of M, or of M + h D where damping is implicit
   NewtonReport report;
 
-  VectorX direction, Md, scale, start, heldNet;  ///< scratch
+  VectorX direction, Md, scale, start;  ///< scratch
   TreeMatrix P;
 };
 

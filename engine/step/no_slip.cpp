@@ -6,10 +6,10 @@
 namespace softgauss {
 namespace {
 
-/// All constraints but the contacts, and their friction in place of them.
-class HeldNormals {
+/// All constraints, with the contacts' bounded friction in place of the contacts.
+class BoundedFriction {
  public:
-  HeldNormals(Constraints& constraints, StickingFriction& friction)
+  BoundedFriction(Constraints& constraints, StickingFriction& friction)
       : constraints_(constraints), friction_(friction) {}
 
   const TreeSparsity& sparsity() const { return constraints_.sparsity(); }
@@ -56,16 +56,25 @@ class HeldNormals {
 
 void removeSlip(const Model& model, Data& data) noexcept {
   ForwardSolution& s = data.forward;
-  if (!data.sticking.take(data.constraints.contact, data.constraints.ellipticContact)) return;
-  s.heldNet = data.forces.net;
-  data.sticking.addNormalForce(s.heldNet);
-  HeldNormals rows(data.constraints, data.sticking);
-  GaussObjective objective(data.inertia, s.heldNet, rows, s);
+  Constraints& constraints = data.constraints;
+  if (!data.sticking.take(constraints.contact, constraints.ellipticContact, s.a)) return;
+  BoundedFriction rows(constraints, data.sticking);
+  GaussObjective objective(data.inertia, data.forces.net, rows, s);
   s.start = s.a;  // moveTo() writes s.a
   objective.moveTo(s.start);
   const NewtonReport first = s.report;
   s.report = minimize(objective, model.options.tolerance, model.options.maxIterations, s.gradient,
                       s.direction);
+  if (s.report.status != SolveStatus::converged) {
+    // The first solution is a solution of the soft problem: this step creeps.
+    data.sticking.clear();
+    bool changed = false;
+    s.a = s.start;
+    constraints.setResidual(s.a);
+    constraints.evaluate(changed);
+    s.report.status = first.status;
+    s.report.residual = first.residual;
+  }
   s.report.iterations += first.iterations;
   s.report.factorizations += first.factorizations;
   s.report.lineSearchEvaluations += first.lineSearchEvaluations;

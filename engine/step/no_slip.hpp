@@ -5,9 +5,10 @@
 
 namespace softgauss {
 
-/// Solves for `data.forward.a` once more, with contact normal forces as they are and friction that
-/// hardly creeps (constraints/sticking_friction.hpp). Adds to the report's counts; the status is
-/// that of the second solve. Does nothing where no contact has friction.
+/// Solves for `data.forward.a` once more, with friction that hardly creeps, bounded by the normal
+/// forces that contacts have there (constraints/sticking_friction.hpp). Adds to the report's
+/// counts. Where the second solve does not converge, the first solution stands. Does nothing where
+/// no contact has friction.
 void removeSlip(const Model& model, Data& data) noexcept;
 
 }  // namespace softgauss

@@ -68,7 +68,7 @@ Data::Data(const Model& model)
       exactDiagonal(model.nv),
       acceleration(VectorX::Zero(model.nv)) {
   ForwardSolution& s = forward;
-  for (VectorX* x : {&s.a, &s.Ma, &s.gradient, &s.direction, &s.Md, &s.scale, &s.start, &s.heldNet})
+  for (VectorX* x : {&s.a, &s.Ma, &s.gradient, &s.direction, &s.Md, &s.scale, &s.start})
     *x = VectorX::Zero(model.nv);
   // Rows exist before the first step, so that stages may be read in any state.
   constraints.assemble({model, State(model), kinematics, contacts, weights, inertia.sparsity});

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "engine/core/check.hpp"
 #include "engine/core/rotation.hpp"
 #include "io/detail/text.hpp"
@@ -61,6 +63,15 @@ bool readSpring(const YamlMap& map, std::optional<ContactSpring>& spring) {
   return true;
 }
 
+int readPriority(const YamlMap& map, const YamlMap::Entry& entry) {
+  constexpr double kHighest = 1e6;
+  const double priority = map.number(entry);
+  if (priority != std::round(priority) || std::abs(priority) > kHighest)
+    map.fail(entry, fmt::format("found {}, expected a whole number within {:g}",
+                                entry.value.described(), kHighest));
+  return static_cast<int>(priority);
+}
+
 }  // namespace
 
 void readSurface(const YamlMap& map, Material& m) {
@@ -73,6 +84,8 @@ void readSurface(const YamlMap& map, Material& m) {
   map.read("rolling_friction", m.rollingFriction, Range::notNegative);
   if (const auto* entry = map.find("condim")) m.condim = map.integer(*entry, {1, 3, 4, 6});
   map.read("margin", m.margin, Range::notNegative);
+  if (const auto* entry = map.find("priority")) m.priority = readPriority(map, *entry);
+  map.read("mix_weight", m.mixWeight, Range::notNegative);
   if (readSpring(map, m.spring)) return;
   for (const std::string& key : kSoftnessKeys)
     if (map.find(key)) m.spring.reset();

@@ -17,11 +17,21 @@ using Materials = std::map<std::string, Material>;
 
 /// Keys of a surface, which a material has and a pair may have, and what they say: it replaces
 /// what `material` holds.
-inline const std::vector<std::string> kSurfaceKeys = {
-    "friction",      "torsional_friction", "rolling_friction",    "condim",
-    "margin",        "stiffness",          "rest_depth",          "damping",
-    "time_constant", "damping_ratio",      "reference_stiffness", "reference_damping",
-    "impedance"};
+inline const std::vector<std::string> kSurfaceKeys = {"friction",
+                                                      "torsional_friction",
+                                                      "rolling_friction",
+                                                      "condim",
+                                                      "margin",
+                                                      "priority",
+                                                      "mix_weight",
+                                                      "stiffness",
+                                                      "rest_depth",
+                                                      "damping",
+                                                      "time_constant",
+                                                      "damping_ratio",
+                                                      "reference_stiffness",
+                                                      "reference_damping",
+                                                      "impedance"};
 void readSurface(const YamlMap& map, Material& material);
 
 /// `materials: {name: {friction: …}}`

@@ -41,9 +41,16 @@ class Copier {
  public:
   explicit Copier(const std::string& file) : file_(file) {}
 
-  YamlValue copy(const YAML::Node& node) {
+  /// `depth`: of lists and maps around the node. An alias of what it stands in has no end.
+  YamlValue copy(const YAML::Node& node, int depth = 0) {
+    constexpr int kDeepest = 100;
     YamlValue value;
     value.line = node.Mark().line + 1;
+    if (depth > kDeepest)
+      throw ModelError({file_, value.line}, "YAML",
+                       fmt::format("found lists and maps more than {} deep, or an alias inside of "
+                                   "what it stands for; expected fewer",
+                                   kDeepest));
     if (++values_ > kMostValues)
       throw ModelError(
           {file_, value.line}, "YAML",
@@ -56,11 +63,12 @@ class Copier {
         break;
       case YAML::NodeType::Sequence:
         value.kind = YamlValue::Kind::list;
-        for (const YAML::Node& item : node) value.items.push_back(copy(item));
+        for (const YAML::Node& item : node) value.items.push_back(copy(item, depth + 1));
         break;
       case YAML::NodeType::Map:
         value.kind = YamlValue::Kind::map;
-        for (const auto& pair : node) value.pairs.push_back({copy(pair.first), copy(pair.second)});
+        for (const auto& pair : node)
+          value.pairs.push_back({copy(pair.first, depth + 1), copy(pair.second, depth + 1)});
         break;
       default:
         break;

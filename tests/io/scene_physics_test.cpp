@@ -213,6 +213,8 @@ TEST(SceneFile, RefusalsOfPairsOptionsAndWrenches) {
       {ball + "options: [tolerance]", "key 'options': found a list"},
       {ball + "options: {cone: round}",
        "key 'options.cone': found 'round', expected one of pyramidal, elliptic"},
+      {"objects: [{name: b, sphere: {radius: 1e-200}}]", "is too small to have a volume"},
+      {"a: &a [*a]", "an alias inside of what it stands for"},
       {ball + "options: {no_slip: 1}", "key 'options.no_slip': found"},
       {ball + "options: {friction: 1}", "key 'options.friction': found an unknown key"},
       {ball + "options: {integrator: magic}", "key 'options.integrator': found 'magic'"},

@@ -52,6 +52,18 @@ std::vector<std::string> keysOf(const ordered_json& object) {
   return keys;
 }
 
+TEST(Summary, OptionsAreThoseOfTheModel) {
+  Model model = sampleModel();
+  model.options.cone = Cone::elliptic;
+  model.options.impedanceRatio = 4.0;
+  model.options.noSlip = model.options.exactDiagonal = true;
+  const ordered_json options = ordered_json::parse(Summary(model).json())["options"];
+  EXPECT_EQ(options["cone"], "elliptic");
+  EXPECT_EQ(options["impedance_ratio"], 4.0);
+  EXPECT_EQ(options["no_slip"], true);
+  EXPECT_EQ(options["exact_diagonal"], true);
+}
+
 TEST(Summary, HasTheKeysOfTheInterfaceInOrder) {
   const ordered_json json = ordered_json::parse(sampleSummary(sampleModel()).json());
   using Keys = std::vector<std::string>;
@@ -77,7 +89,8 @@ TEST(Summary, HasTheKeysOfTheInterfaceInOrder) {
                                 "max_control_ratio",
                                 "warnings"}));
   EXPECT_EQ(keysOf(json["model"]), (Keys{"name", "links", "dof", "actuated", "mass_kg"}));
-  EXPECT_EQ(keysOf(json["options"]), (Keys{"timestep_s", "integrator", "cone", "gdd_solver"}));
+  EXPECT_EQ(keysOf(json["options"]), (Keys{"timestep_s", "integrator", "cone", "impedance_ratio",
+                                           "exact_diagonal", "no_slip", "gdd_solver"}));
   EXPECT_EQ(keysOf(json["time_us"]), (Keys{"forward", "gdd", "step"}));
   for (const auto& [key, value] : json["time_us"].items())
     EXPECT_EQ(keysOf(value), (Keys{"mean", "p50", "p95"})) << key;

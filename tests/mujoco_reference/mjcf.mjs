@@ -64,6 +64,8 @@ function geometryElement(g) {
     friction: g.friction,
     condim: g.condim,
     margin: g.margin,
+    priority: g.priority,
+    solmix: g.solmix,
     solref: g.solref,
     solimp: g.solimp,
   });

@@ -11,7 +11,7 @@
 //              dryFriction, stiffness, springReference, margin, solref, solimp}
 //             type: fixed, revolute, prismatic, floating (from `world`)
 //   geometry  {name, link, kind, radius, halfLength, halfExtents, position, quaternion,
-//              friction: [slide, spin, roll], condim, margin, solref, solimp}
+//              friction: [slide, spin, roll], condim, margin, priority, solmix, solref, solimp}
 //   equality  {kind: joint, follower, leader, polynomial} or
 //             {kind: connect or weld, linkA, positionA, quaternionA, linkB, …B}, solref, solimp
 

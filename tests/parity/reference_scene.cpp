@@ -116,7 +116,8 @@ Shape shapeOf(const Json& item) {
 
 GeometrySpec geometryOf(const Json& item) {
   allowKeys(item, {"name", "link", "kind", "radius", "halfLength", "halfExtents", "position",
-                   "quaternion", "friction", "condim", "margin", "solref", "solimp"});
+                   "quaternion", "friction", "condim", "margin", "priority", "solmix", "solref",
+                   "solimp"});
   GeometrySpec g;
   g.name = item.at("name");
   g.link = item.at("link");
@@ -130,6 +131,8 @@ GeometrySpec geometryOf(const Json& item) {
   }
   g.material.condim = item.value("condim", g.material.condim);
   g.material.margin = item.value("margin", g.material.margin);
+  g.material.priority = item.value("priority", g.material.priority);
+  g.material.mixWeight = item.value("solmix", g.material.mixWeight);
   g.material.impedance = impedanceOf(item);
   return g;
 }

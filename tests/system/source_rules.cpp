@@ -46,9 +46,8 @@ const std::map<std::string, Names> kMayInclude = {
 // Libraries that only the .cpp files of a folder may see; its headers see Eigen at most.
 const std::map<std::string, std::regex> kLibraries = {
     {"collision", std::regex("(fcl|ccd|libqhull_r)/.*")},
-    {"io",
-     std::regex(
-         "(urdf_\\w+|console_bridge|assimp|yaml-cpp|nlohmann|fmt|sys)/.*|(tinyxml2|zlib|spawn|unistd)\\.h")},
+    {"io", std::regex("(urdf_\\w+|console_bridge|assimp|yaml-cpp|nlohmann|fmt|sys)/"
+                      ".*|(tinyxml2|zlib|spawn|unistd)\\.h")},
 };
 const std::regex kStandardOrEigen("[a-z_]+|Eigen/.*");
 

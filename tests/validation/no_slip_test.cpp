@@ -37,15 +37,23 @@ constexpr Cone kCones[] = {Cone::pyramidal, Cone::elliptic};
 
 // The creep of a load f_t is R_t f_t/b, and R_t is 10⁴ times smaller.
 TEST(NoSlip, BoundsTheCreepOfALoad) {
-  const double theta = 0.2, mu = 0.8;
-  for (const Cone cone : kCones) {
-    Scene soft = boxOnSlope(theta, mu, cone, false), stiff = boxOnSlope(theta, mu, cone, true);
-    soft.steps(2000);
-    stiff.steps(2000);
-    const double creep = downhillSpeed(soft, theta);
-    EXPECT_GT(creep, 1e-4);
-    EXPECT_SMALL(downhillSpeed(stiff, theta) * StickingFriction::kStiffer / creep - 1.0, 1e-2);
-  }
+  // The load is this share of what friction can bear. Up to a half all edges of a pyramid share it.
+  for (const double share : {0.3, 0.45, 0.9})
+    for (const double mu : {0.05, 0.2, 0.8})
+      for (const Cone cone : kCones) {
+        const double theta = std::atan(share * mu);
+        Scene soft = boxOnSlope(theta, mu, cone, false), stiff = boxOnSlope(theta, mu, cone, true);
+        soft.steps(2000);
+        stiff.steps(2000);
+        const double creep = downhillSpeed(soft, theta);
+        EXPECT_GT(creep, 1e-5);
+        const double ratio = downhillSpeed(stiff, theta) * StickingFriction::kStiffer / creep;
+        if (share < 0.5 || cone == Cone::elliptic) {
+          EXPECT_SMALL(ratio - 1.0, 1e-2) << "friction " << mu << ", share " << share;
+        } else {
+          EXPECT_LE(ratio, 1.0) << "friction " << mu;
+        }
+      }
 }
 
 // Beyond the friction cone it slides, and there the second solve finds nothing to improve.
@@ -75,8 +83,22 @@ TEST(NoSlip, SlidesAsWithout) {
   }
 }
 
+/// Normal force that bounds the friction of contact i of the snapshot.
+double boundOf(const Scene& s, int i) {
+  // Pyramids are taken first; the snapshot has all in the order of the contacts.
+  const PyramidalContact& pyramids = s.data->constraints.contact;
+  const EllipticContact& cones = s.data->constraints.ellipticContact;
+  std::vector<std::pair<int, int>> order;
+  for (const ContactRows& made : pyramids.made())
+    order.emplace_back(made.contact, static_cast<int>(order.size()));
+  for (const ContactRows& made : cones.made())
+    order.emplace_back(made.contact, static_cast<int>(order.size()));
+  std::sort(order.begin(), order.end());
+  return s.data->sticking.bound(order[static_cast<std::size_t>(i)].second);
+}
+
 TEST(NoSlip, ForcesStayInTheFrictionCone) {
-  int patches = 0;
+  int patches = 0, creeping = 0;
   for (int seed = 0; seed < 100; ++seed)
     for (const Cone cone : kCones) {
       Scene s = lawScene(seed, 8);
@@ -86,19 +108,28 @@ TEST(NoSlip, ForcesStayInTheFrictionCone) {
       ASSERT_EQ(s.forward(), SolveStatus::converged) << "seed " << seed;
       std::vector<Snapshot::ContactForce> contacts;
       contactForces(*s.data, contacts);
-      for (const Snapshot::ContactForce& c : contacts) {
+      for (std::size_t i = 0; i < contacts.size(); ++i) {
+        const Snapshot::ContactForce& c = contacts[i];
         const double mu = pairMaterial(s.model, c.geometryA, c.geometryB).slidingFriction;
-        const double normal = c.normalForce();
-        const double tangential = (c.force - normal * c.n_W).norm();
-        EXPECT_LE(tangential, mu * normal * (1.0 + 1e-12) + 1e-12) << "seed " << seed;
+        EXPECT_GE(c.normalForce(), -1e-12);
+        if (s.data->sticking.rowCount() == 0) {
+          ++creeping;
+          break;
+        }
+        const double bound = mu * boundOf(s, static_cast<int>(i));
+        const double tangential = (c.force - c.normalForce() * c.n_W).norm();
+        // Rounding of −D U, which may be 10⁸ times what the bound leaves of it.
+        EXPECT_LE(tangential, bound * (1.0 + 1e-6) + 1e-9) << "seed " << seed;
         patches += tangential > 0.0;
       }
     }
   EXPECT_GT(patches, 400);
+  EXPECT_LE(creeping, 4);  // of 200: where the second solve does not converge, the first one stands
 }
 
 // Newton's equation holds with the forces that are reported: nothing is lost between the solves.
 TEST(NoSlip, ForcesGiveTheAcceleration) {
+  int solved = 0;
   for (int seed = 0; seed < 60; ++seed)
     for (const Cone cone : kCones) {
       Scene s = lawScene(seed, 6);
@@ -106,16 +137,18 @@ TEST(NoSlip, ForcesGiveTheAcceleration) {
       s.model.options.noSlip = true;
       s.stages();
       s.forward();
+      if (s.data->sticking.rowCount() == 0) continue;
+      ++solved;
       const VectorX Ma = s.data->inertia.M.dense() * s.data->forward.a;
       VectorX force = s.data->forces.net;
       s.data->constraints.visitAllButContacts([&](const auto& c) { c.addTransposed(c.f, force); });
-      s.data->sticking.addNormalForce(force);
       s.data->sticking.addForce(force);
       const VectorX unit = s.data->inertia.M.dense().diagonal().cwiseSqrt();
       const double scale = 1.0 + Ma.cwiseQuotient(unit).cwiseAbs().maxCoeff();
       EXPECT_SMALL((Ma - force).cwiseQuotient(unit).cwiseAbs().maxCoeff() / scale, 1e-8)
           << "seed " << seed;
     }
+  EXPECT_GT(solved, 110);
 }
 
 // The price: inverse dynamics miss the applied force by the change of the friction. At rest on the

@@ -134,8 +134,6 @@ TEST(Softness, CreepIsThePredictedOne) {
     for (const Form& form : kForms) {
       const Impedance& p = form.material.impedance;
       for (const bool box : {false, true}) {
-        // Corners that are not pressed alike have one D only where d does not depend on depth.
-        if (box && !form.material.spring && p.dMin != p.dMax) continue;
         for (const double mu : kFrictions)
           for (const double mass : kMasses) {
             SCOPED_TRACE(label(box, form, mu, mass, cone));
@@ -148,7 +146,9 @@ TEST(Softness, CreepIsThePredictedOne) {
             r.scene.input.tau[r.along] = load;
             const double transient = mass * rest.mobility / r.contacts;
             r.scene.steps(1000 + static_cast<int>(12.0 * transient / 0.002));
-            EXPECT_SMALL(r.scene.state.v[r.along] / speed - 1.0, 1e-4);
+            // Corners that are not pressed alike have one D only where d does not vary with depth.
+            const bool varies = box && !form.material.spring && p.dMin != p.dMax;
+            EXPECT_SMALL(r.scene.state.v[r.along] / speed - 1.0, varies ? 1e-3 : 1e-4);
             // By hand, for a spring under a pyramid: 2 f_t/(μ² (K h + B)).
             const auto spring = pairMaterial(r.scene.model, 0, 1).spring;
             if (!spring) continue;

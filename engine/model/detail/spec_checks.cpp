@@ -133,6 +133,7 @@ void checkMaterial(const Material& m, const Options& options, const SourceLocati
   if (m.condim != 1 && m.condim != 3 && m.condim != 4 && m.condim != 6)
     fail("condim is not 1, 3, 4 or 6");
   if (!std::isfinite(m.margin)) fail("margin is not finite");
+  if (!(m.mixWeight >= 0.0) || !std::isfinite(m.mixWeight)) fail("mixWeight is not a number >= 0");
   checkImpedance(m.impedance, where, element);
   if (m.spring) checkSpring(*m.spring, options, where, element);
 }

@@ -36,6 +36,39 @@ TEST(MixMaterials, TakesMaximaMeansAndSums) {
   }
 }
 
+TEST(MixMaterials, WeighsTheImpedancesAndLeavesTheRest) {
+  Material a, b;
+  a.slidingFriction = 0.3, b.slidingFriction = 0.7;
+  a.impedance.timeConstant = 0.01, b.impedance.timeConstant = 0.05;
+  a.mixWeight = 3.0, b.mixWeight = 1.0;
+  for (const Material& m : {mixMaterials(a, b), mixMaterials(b, a)}) {
+    EXPECT_SMALL(m.impedance.timeConstant - 0.02, 1e-17);
+    EXPECT_EQ(m.slidingFriction, 0.7);
+  }
+  b.mixWeight = 0.0;
+  EXPECT_EQ(mixMaterials(a, b).impedance.timeConstant, 0.01);
+  EXPECT_EQ(mixMaterials(b, a).impedance.timeConstant, 0.01);
+  a.mixWeight = 0.0;
+  EXPECT_SMALL(mixMaterials(a, b).impedance.timeConstant - 0.03, 1e-17);
+}
+
+TEST(MixMaterials, HigherPriorityDecidesOnAllButTheMargin) {
+  Material a, b;
+  a.slidingFriction = 0.3, b.slidingFriction = 0.7;
+  a.condim = 1, b.condim = 6;
+  a.margin = 0.001, b.margin = 0.003;
+  a.impedance.timeConstant = 0.01, b.impedance.timeConstant = 0.05;
+  b.spring = ContactSpring{1e4, 0.0, 10.0, 0.0};
+  a.priority = 1;
+  for (const Material& m : {mixMaterials(a, b), mixMaterials(b, a)}) {
+    EXPECT_EQ(m.slidingFriction, 0.3);
+    EXPECT_EQ(m.condim, 1);
+    EXPECT_EQ(m.impedance, a.impedance);
+    EXPECT_FALSE(m.spring);
+    EXPECT_SMALL(m.margin - 0.004, 1e-18);
+  }
+}
+
 /// A scene with one contact between two trees, its rows assembled.
 Scene oneContact(std::uint64_t seed, const std::function<void(Model&, Contact&)>& change) {
   Random random(seed);

@@ -113,6 +113,18 @@ const softness = [
     ground: { solref: [-4000, -20] },
   }),
   onPlane('box', 3, {
+    name: 'mix_weight',
+    about: 'solmix 3 and 1, margins of both',
+    material: { ...soft, solmix: 3, friction: [0.3, 0.005, 0.0001], margin: 0.002 },
+    ground: { solref: [0.03, 1.2], margin: 0.001, friction: [0.6, 0.005, 0.0001] },
+  }),
+  onPlane('box', 3, {
+    name: 'mix_priority',
+    about: 'a slippery box whose priority is above that of the ground, which would rub and spin',
+    material: { ...soft, priority: 2, friction: [0.3, 0.005, 0.0001], margin: 0.002 },
+    ground: { condim: 6, priority: 1, margin: 0.001, friction: [0.9, 0.05, 0.01] },
+  }),
+  onPlane('box', 3, {
     name: 'contact_margin',
     about: 'margins of both geometries: rows before touching',
     material: { margin: 0.01 },
