@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Laws of contacts with elliptic cones, in random scenes with every other soft effect.
 
-#include "engine/dynamics/jacobian.hpp"
-#include "engine/step/inverse.hpp"
+#include "tests/laws/law_measures.hpp"
 #include "tests/support/finite_difference.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/scene.hpp"
@@ -18,12 +17,6 @@ Scene ellipticScene(std::uint64_t seed, int contacts) {
   return s;
 }
 
-VectorX inverse(Scene& s, const VectorX& a) {
-  VectorX tau(s.model.nv);
-  inverseDynamics(s.model, a, *s.data, tau);
-  return tau;
-}
-
 /// The zones of the last evaluation.
 std::vector<ConeZone> zonesOf(const Scene& s) {
   std::vector<ConeZone> zones;
@@ -34,13 +27,6 @@ std::vector<ConeZone> zonesOf(const Scene& s) {
   return zones;
 }
 
-/// Size of the forces that cancel in M a + c = τ + Jᵀf, in units of √M_ii.
-double forceScale(const Scene& s, const VectorX& unit) {
-  const VectorX Ma = s.data->inertia.M.dense() * s.data->forward.a;
-  return std::max({s.data->forces.net.cwiseQuotient(unit).cwiseAbs().maxCoeff(),
-                   Ma.cwiseQuotient(unit).cwiseAbs().maxCoeff(), 1.0});
-}
-
 TEST(EllipticInverse, RecoversForward) {
   int zones[3] = {};
   double worst = 0.0;
@@ -48,9 +34,7 @@ TEST(EllipticInverse, RecoversForward) {
     Scene s = ellipticScene(seed, 6);
     ASSERT_EQ(s.forward(), SolveStatus::converged) << "seed " << seed;
     for (const ConeZone zone : zonesOf(s)) ++zones[static_cast<int>(zone)];
-    const VectorX unit = s.data->inertia.M.dense().diagonal().cwiseSqrt();
-    const VectorX error = inverse(s, s.data->forward.a) - s.input.tau;
-    worst = std::max(worst, error.cwiseQuotient(unit).cwiseAbs().maxCoeff() / forceScale(s, unit));
+    worst = std::max(worst, inverseMiss(s));
   }
   EXPECT_SMALL(worst, 1e-10);
   for (const int count : zones) EXPECT_GT(count, 500);
@@ -131,9 +115,7 @@ TEST(EllipticForward, IsComplementary) {
       worst = std::max({worst, (tangential - contact.f[row]) / scale, (dual - y0) / scale,
                         std::abs(product) / (scale * scale)});
     }
-    const VectorX unit = s.data->inertia.M.dense().diagonal().cwiseSqrt();
-    const VectorX residual = s.data->forward.gradient.cwiseQuotient(unit);
-    equation = std::max(equation, residual.cwiseAbs().maxCoeff() / forceScale(s, unit));
+    equation = std::max(equation, relativeImbalance(s, s.data->forward.gradient));
   }
   EXPECT_SMALL(worst, 1e-12);
   EXPECT_SMALL(equation, 1e-10);
@@ -147,22 +129,11 @@ TEST(EllipticContact, ForceActsAtItsPointOnBothBodies) {
     Scene s = ellipticScene(seed, 8);
     s.forward();
     const EllipticContact& contact = s.data->constraints.ellipticContact;
-    VectorX actual = VectorX::Zero(s.model.nv), expected = actual;
+    VectorX actual = VectorX::Zero(s.model.nv);
     contact.addTransposed(contact.f, actual);
-    Eigen::Matrix<double, 3, Eigen::Dynamic> J(3, s.model.nv);
-    for (int i = 0; i < static_cast<int>(contact.made().size()); ++i) {
-      const Contact& c = s.data->contacts.contacts[contact.made()[i].contact];
-      pointJacobian(s.model, s.data->kinematics, c.bodyB, c.p_WC, J);
-      expected += J.transpose() * contact.force(i);
-      pointJacobian(s.model, s.data->kinematics, c.bodyA, c.p_WC, J);
-      expected -= J.transpose() * contact.force(i);
-      rotationJacobian(s.model, s.data->kinematics, c.bodyB, J);
-      expected += J.transpose() * contact.moment(i);
-      rotationJacobian(s.model, s.data->kinematics, c.bodyA, J);
-      expected -= J.transpose() * contact.moment(i);
+    for (int i = 0; i < static_cast<int>(contact.made().size()); ++i)
       moments += contact.moment(i).norm() > 0.0;
-    }
-    EXPECT_APPROX(actual, expected, 1e-12) << "seed " << seed;
+    EXPECT_APPROX(actual, forceOfContacts(s, contact), 1e-12) << "seed " << seed;
   }
   EXPECT_GT(moments, 20);
 }
