@@ -30,8 +30,13 @@ void waitForFile(const std::string& path) {
 
 Outcome simulate(const std::vector<std::string>& arguments, double interruptAfter,
                  const std::string& interruptFile) {
+  return runProgram("simulate_gdd", arguments, interruptAfter, interruptFile);
+}
+
+Outcome runProgram(const std::string& name, const std::vector<std::string>& arguments,
+                   double interruptAfter, const std::string& interruptFile) {
   const io::TempFolder folder;
-  const std::string program = std::string(SOFTGAUSS_APP_DIR) + "/simulate_gdd";
+  const std::string program = std::string(SOFTGAUSS_APP_DIR) + "/" + name;
   const std::string out = folder.path() / "out", err = folder.path() / "err";
   std::vector<std::string> texts{program};
   texts.insert(texts.end(), arguments.begin(), arguments.end());

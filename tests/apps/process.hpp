@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// Runs simulate_gdd as a user does: a process with arguments, an exit code and two outputs.
+/// Runs a program as a user does: a process with arguments, an exit code and two outputs.
 
 #include <string>
 #include <vector>
@@ -16,8 +16,12 @@ struct Outcome {
   std::string err;    ///< standard error
 };
 
-/// Runs simulate_gdd to its end. With `interruptAfter` ≥ 0 it gets SIGINT that long after it has
-/// created `interruptFile` [s].
+/// Runs a program of apps/ to its end. With `interruptAfter` ≥ 0 it gets SIGINT that long after it
+/// has created `interruptFile` [s].
+Outcome runProgram(const std::string& name, const std::vector<std::string>& arguments,
+                   double interruptAfter = -1.0, const std::string& interruptFile = {});
+
+/// The same of simulate_gdd.
 Outcome simulate(const std::vector<std::string>& arguments, double interruptAfter = -1.0,
                  const std::string& interruptFile = {});
 

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/gdd_benchmark/contestant.hpp"
+
+#include <stdexcept>
+
+namespace softgauss::app {
+namespace {
+
+constexpr const char* kAugmentedLagrangian = "augmented-lagrangian";
+
+template <class Solver>
+class SolverContestant final : public Contestant {
+ public:
+  SolverContestant(std::string name, const Model& model)
+      : Contestant(std::move(name)), solver_(model) {}
+  gdd::GddReport solve(const Model& model, gdd::GoalCost& cost, const gdd::ControlBox& box,
+                       Data& data, const WarmStart& warm) override {
+    return solver_.solve(model, cost, box, data, warm);
+  }
+  const VectorX& acceleration() const override { return solver_.acceleration(); }
+  const VectorX& force() const override { return solver_.force(); }
+  void keepWarmStart(WarmStart& warm) const override { solver_.keepWarmStart(warm); }
+
+ private:
+  Solver solver_;
+};
+
+}  // namespace
+
+std::vector<std::string> solverNames() { return {kAugmentedLagrangian}; }
+
+std::unique_ptr<Contestant> makeContestant(const std::string& name, const Model& model) {
+  if (name == kAugmentedLagrangian)
+    return std::make_unique<SolverContestant<gdd::AugmentedLagrangian>>(name, model);
+  throw std::logic_error("no solver '" + name + "'");
+}
+
+}  // namespace softgauss::app

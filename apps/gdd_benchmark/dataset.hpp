@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// The dataset of the paper's section VI: records of a robot that a scripted operator drags about.
+///
+/// A record is what one step starts from, with both warm starts, the goal, and the control that was
+/// found: enough to take the step again, bit for bit.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "apps/gdd_benchmark/contestant.hpp"
+#include "apps/gdd_benchmark/progress.hpp"
+#include "apps/gdd_benchmark/scripted_operator.hpp"
+#include "collision/scene_contacts.hpp"
+#include "engine/engine.hpp"
+
+namespace softgauss::app {
+
+/// A robot on the ground.
+struct Robot {
+  std::string name;
+  Model model;
+  std::unique_ptr<collision::SceneContacts> contacts;
+  State initial;
+  double deviate = 0.5;      ///< σ of the operator's targets [m]
+  double lowest = 0.1;       ///< least z of a target [m]
+  double weightScale = 1.0;  ///< weight of its goals over that of the humanoid's [-]
+};
+
+/// `humanoid` stands and `hand` lies on the ground, neither held by anything; `held_hand` is the
+/// hand with its forearm fixed, palm down, 0.15 m above the ground.
+std::vector<std::string> robotNames();
+/// `name` is one of robotNames(); `folder` has humanoid.urdf and hand.urdf. Throws ModelError.
+std::unique_ptr<Robot> loadRobot(const std::string& folder, const std::string& name);
+
+struct Record {
+  State state;      ///< at the start of the step
+  VectorX control;  ///< applied, within its box (nv) [N or N m]
+  int goal = 0;     ///< index into Dataset::goals
+};
+
+struct Dataset {
+  std::string recorder;  ///< the solver that found the controls
+  double weight = 0.0;   ///< of the goals, w [kg]
+  std::vector<gdd::Reach> goals;
+  std::vector<Record> records;  ///< in the order of time
+};
+
+/// The goal directed problem at the state of the stages in `data`: clears `cost`, then adds the
+/// reach and virtual damping (26) with α = 0.1, β = 10 1/s.
+void poseProblem(const gdd::Reach& reach, const gdd::GoalContext& context, gdd::GoalCost& cost);
+
+/// Simulates `records` steps under the operator's goals and records them; fewer on an interrupt.
+/// `weight` is the humanoid's w [kg]. Throws std::runtime_error when the state becomes non-finite.
+Dataset recordRun(const Robot& robot, Contestant& recorder, int records, double weight,
+                  std::uint64_t seed, Progress& progress);
+
+}  // namespace softgauss::app

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+/// gdd_benchmark: the paper's two tables (section VI), made as the paper made them.
+///
+/// A scripted operator drags segments of the humanoid and of the hand about; the run is recorded
+/// (dataset.hpp), then replayed offline by every solver (replay.hpp). Same seed, same figures, but
+/// for the clock's. Exit codes: 0 done; 1 a state became non-finite; 2 bad usage or input;
+/// 130 interrupted, with the tables of what was done.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "apps/gdd_benchmark/report.hpp"
+
+namespace {
+
+using namespace softgauss;
+
+struct BenchmarkOptions {
+  int records = 20000, passes = 5;
+  std::uint64_t seed = 1;
+  std::vector<double> weights = {100.0};
+  std::vector<std::string> models = app::robotNames();
+  std::vector<std::string> solvers = app::solverNames();
+  std::string recorder = app::solverNames().front();
+  std::string file, robots = "data/robots";
+};
+
+void addOptions(CLI::App& parser, BenchmarkOptions& options) {
+  parser.add_option("--records", options.records, "steps recorded of each model")
+      ->check(CLI::Range(1, 10000000));
+  parser
+      .add_option("--weight", options.weights,
+                  "weight of the reach goals [kg], default 100; repeatable. For the humanoid; the "
+                  "hand's is less by the ratio of their masses")
+      ->check(CLI::NonNegativeNumber & CLI::Number);
+  parser.add_option("--seed", options.seed, "of the operator");
+  parser.add_option("--passes", options.passes, "replays; times are medians over them")
+      ->check(CLI::Range(1, 1000));
+  parser.add_option("--models", options.models, "those that are dragged about, default all")
+      ->check(CLI::IsMember(app::robotNames()))
+      ->delimiter(',');
+  parser.add_option("--solvers", options.solvers, "those that replay the records, default all")
+      ->check(CLI::IsMember(app::solverNames()))
+      ->delimiter(',');
+  parser.add_option("--record-with", options.recorder, "the solver of the recorded run")
+      ->check(CLI::IsMember(app::solverNames()));
+  parser.add_option("--json", options.file, "write the figures to this file too");
+  parser.add_option("--robots", options.robots, "folder of humanoid.urdf and hand.urdf")
+      ->check(CLI::ExistingDirectory);
+  parser.set_version_flag("--version", std::string("softgauss ") + SOFTGAUSS_VERSION);
+}
+
+nlohmann::ordered_json runAll(const BenchmarkOptions& options) {
+  nlohmann::ordered_json json = {{"version", SOFTGAUSS_VERSION},
+                                 {"seed", options.seed},
+                                 {"datasets", nlohmann::ordered_json::array()}};
+  for (const std::string& name : options.models)
+    for (const double weight : options.weights) {
+      if (app::interrupted()) return json;
+      const auto robot = app::loadRobot(options.robots, name);
+      const auto recorder = app::makeContestant(options.recorder, robot->model);
+      app::Dataset dataset;
+      {
+        app::Progress progress(fmt::format("{}, weight {:g}: recording", name, weight));
+        dataset =
+            app::recordRun(*robot, *recorder, options.records, weight, options.seed, progress);
+      }
+      app::Progress progress(fmt::format("{}, weight {:g}: replaying", name, weight));
+      const app::Replay replay =
+          app::replay(*robot, dataset, options.solvers, options.passes, progress);
+      progress.clear();
+      fmt::print("{}\n", app::tables(*robot, dataset, replay));
+      std::fflush(stdout);
+      json["datasets"].push_back(app::figures(*robot, dataset, replay));
+    }
+  return json;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App parser("The tables of the paper on goal directed dynamics, measured here.");
+  BenchmarkOptions options;
+  addOptions(parser, options);
+  try {
+    parser.parse(argc, argv);
+  } catch (const CLI::Success& success) {
+    return parser.exit(success);
+  } catch (const CLI::ParseError& error) {
+    fmt::print(stderr, "gdd_benchmark: {}\ngdd_benchmark --help lists the options\n", error.what());
+    return 2;
+  }
+  try {
+    std::ofstream file;
+    if (!options.file.empty()) {
+      file.open(options.file);
+      if (!file) {
+        fmt::print(stderr, "gdd_benchmark: --json {}: cannot be written\n", options.file);
+        return 2;
+      }
+    }
+    app::catchInterrupts();
+    const nlohmann::ordered_json json = runAll(options);
+    if (file.is_open() && !(file << json.dump(2) << std::endl)) {
+      fmt::print(stderr, "gdd_benchmark: --json {}: cannot be written\n", options.file);
+      return 2;
+    }
+  } catch (const ModelError& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return 2;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "gdd_benchmark: {}\n", error.what());
+    return 1;
+  }
+  return app::interrupted() ? 130 : 0;
+}
