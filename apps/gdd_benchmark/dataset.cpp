@@ -82,8 +82,9 @@ Dataset recordRun(const Robot& robot, Contestant& recorder, int records, double 
     poseProblem(dataset.goals.back(), {model, state, data}, cost);
     const gdd::GddReport report = recorder.solve(model, cost, box, data, state.warmstart);
     if (report.status == gdd::GddStatus::notFinite) fail();
-    dataset.records.push_back(
-        {state, box.clamp(recorder.force()), static_cast<int>(dataset.goals.size()) - 1});
+    dataset.records.push_back({state, box.clamp(recorder.force()), recorder.acceleration(),
+                               report.status, data.stats.contacts,
+                               static_cast<int>(dataset.goals.size()) - 1});
     setAppliedForce(dataset.records.back().control, data.forces);
     if (advance(model, &recorder.acceleration(), data, state) == SolveStatus::notFinite) fail();
     recorder.keepWarmStart(state.warmstart);

@@ -36,9 +36,12 @@ std::vector<std::string> robotNames();
 std::unique_ptr<Robot> loadRobot(const std::string& folder, const std::string& name);
 
 struct Record {
-  State state;      ///< at the start of the step
-  VectorX control;  ///< applied, within its box (nv) [N or N m]
-  int goal = 0;     ///< index into Dataset::goals
+  State state;           ///< at the start of the step
+  VectorX control;       ///< applied, within its box (nv) [N or N m]
+  VectorX acceleration;  ///< the solver's own, before the control was clamped (nv)
+  gdd::GddStatus status = gdd::GddStatus::converged;
+  int contacts = 0;
+  int goal = 0;  ///< index into Dataset::goals
 };
 
 struct Dataset {

@@ -14,6 +14,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/gdd_benchmark/report.hpp"
+#include "apps/gdd_benchmark/states.hpp"
 
 namespace {
 
@@ -26,7 +27,8 @@ struct BenchmarkOptions {
   std::vector<std::string> models = app::robotNames();
   std::vector<std::string> solvers = app::solverNames();
   std::string recorder = app::solverNames().front();
-  std::string file, robots = "data/robots";
+  std::string file, states, robots = "data/robots";
+  int stateCount = 70;
 };
 
 void addOptions(CLI::App& parser, BenchmarkOptions& options) {
@@ -49,6 +51,14 @@ void addOptions(CLI::App& parser, BenchmarkOptions& options) {
   parser.add_option("--record-with", options.recorder, "the solver of the recorded run")
       ->check(CLI::IsMember(app::solverNames()));
   parser.add_option("--json", options.file, "write the figures to this file too");
+  CLI::Option* states =
+      parser
+          .add_option("--states", options.states,
+                      "write recorded states with contacts to this folder, <model>_<weight>.json")
+          ->check(CLI::ExistingDirectory);
+  parser.add_option("--state-count", options.stateCount, "how many states a file, default 70")
+      ->check(CLI::Range(1, 1000000))
+      ->needs(states);
   parser.add_option("--robots", options.robots, "folder of humanoid.urdf and hand.urdf")
       ->check(CLI::ExistingDirectory);
   parser.set_version_flag("--version", std::string("softgauss ") + SOFTGAUSS_VERSION);
@@ -69,6 +79,8 @@ nlohmann::ordered_json runAll(const BenchmarkOptions& options) {
         dataset =
             app::recordRun(*robot, *recorder, options.records, weight, options.seed, progress);
       }
+      if (!options.states.empty())
+        app::writeStates(*robot, dataset, weight, options.stateCount, options.states);
       app::Progress progress(fmt::format("{}, weight {:g}: replaying", name, weight));
       const app::Replay replay =
           app::replay(*robot, dataset, options.solvers, options.passes, progress);

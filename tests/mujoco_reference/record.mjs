@@ -11,6 +11,7 @@ import { existsSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
 import { pathToFileURL } from 'node:url';
 
+import { gddScenarios, judge } from './gdd.mjs';
 import { jsonText } from './json_text.mjs';
 import { toMjcf } from './mjcf.mjs';
 import { Random } from './random.mjs';
@@ -85,22 +86,41 @@ function record(mujoco, given) {
   return `${jsonText(log)}\n`;
 }
 
+// The log of states that goal directed dynamics has recorded.
+function recordGdd(mujoco, { name, about, scene, timestep, ...recorded }) {
+  const options = { timestep, gravity: [0, 0, -9.81], cone: 'pyramidal', impratio: 1 };
+  const simulation = new Simulation(mujoco, toMjcf(name, scene, options, kSolver));
+  const log = {
+    name,
+    about,
+    recorded_with: { engine: 'MuJoCo', version: mujoco.mj_versionString(), package: kPackage, ...kSolver },
+    options,
+    states: judge(simulation, recorded),
+  };
+  simulation.delete();
+  return `${jsonText(log)}\n`;
+}
+
 const [modules, reference, ...rest] = process.argv.slice(2);
 const check = rest.includes('--check');
 const names = rest.filter((word) => word !== '--check');
+const all = [
+  ...scenarios.map((scenario) => ({ scenario, write: record })),
+  ...gddScenarios.map((scenario) => ({ scenario, write: recordGdd })),
+];
 for (const name of names)
-  if (!scenarios.some((scenario) => scenario.name === name)) throw new Error(`no scenario ${name}`);
+  if (!all.some(({ scenario }) => scenario.name === name)) throw new Error(`no scenario ${name}`);
 
 const entry = join(resolve(modules), kPackage, 'mujoco.js');
 const mujoco = await (await import(pathToFileURL(entry))).default();
 
 let wrong = 0;
-for (const scenario of scenarios) {
+for (const { scenario, write } of all) {
   if (names.length && !names.includes(scenario.name)) continue;
   const file = join(reference, `${scenario.name}.json`);
   let text;
   try {
-    text = record(mujoco, scenario);
+    text = write(mujoco, scenario);
   } catch (error) {
     throw new Error(`scenario ${scenario.name}: ${error.message ?? error}`);
   }
@@ -115,7 +135,7 @@ for (const scenario of scenarios) {
     console.log(`${file} ${text.length} bytes`);
   }
 }
-const known = new Set(scenarios.map((scenario) => `${scenario.name}.json`));
+const known = new Set(all.map(({ scenario }) => `${scenario.name}.json`));
 for (const file of names.length ? [] : readdirSync(reference)) {
   if (known.has(file)) continue;
   ++wrong;

@@ -186,6 +186,16 @@ export class Simulation {
     return record;
   }
 
+  // The acceleration alone.
+  accelerationAt(state) {
+    const { mujoco, model, data } = this;
+    this.set(state);
+    mujoco.mj_forward(model, data);
+    const imbalance = this.imbalance(this.massMatrix());
+    if (!(imbalance < kBalance)) throw new Error(`forces balance to ${imbalance} only`);
+    return { contacts: data.ncon, rows: data.nefc, acceleration: list(data.qacc) };
+  }
+
   // Samples of a free run, `every` [s].
   trajectory(state, integrator, timestep, duration, every) {
     const { mujoco, model, data } = this;

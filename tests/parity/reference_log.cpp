@@ -96,6 +96,17 @@ void checkDofs(const Model& model, const Json& dofs) {
   }
 }
 
+/// Names of the logs that begin with gdd_, or of the others.
+std::vector<std::string> logNames(bool gdd) {
+  std::vector<std::string> names;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder())) {
+    const std::string name = entry.path().stem().string();
+    if (name.starts_with("gdd_") == gdd) names.push_back(name);
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
 ReferenceLog read(const std::string& name) {
   std::ifstream file(folder() / (name + ".json"));
   const Json json = Json::parse(file);
@@ -121,13 +132,8 @@ const ReferenceTrajectory& ReferenceLog::trajectory(const std::string& integrato
   throw std::runtime_error(name + " has no trajectory by " + integrator);
 }
 
-std::vector<std::string> referenceLogNames() {
-  std::vector<std::string> names;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder()))
-    names.push_back(entry.path().stem().string());
-  std::sort(names.begin(), names.end());
-  return names;
-}
+std::vector<std::string> referenceLogNames() { return logNames(false); }
+std::vector<std::string> gddLogNames() { return logNames(true); }
 
 const ReferenceLog& referenceLog(const std::string& name) {
   static std::map<std::string, std::unique_ptr<ReferenceLog>> logs;

@@ -65,8 +65,10 @@ struct ReferenceLog {
   const ReferenceTrajectory& trajectory(const std::string& integrator, bool halfStep) const;
 };
 
-/// Names of all logs, sorted.
+/// Names of the logs of scenes, sorted.
 std::vector<std::string> referenceLogNames();
+/// Those of the states of data/gdd_states, sorted; all begin with gdd_.
+std::vector<std::string> gddLogNames();
 
 /// Throws std::runtime_error, ModelError or a JSON error. The logs are read once.
 const ReferenceLog& referenceLog(const std::string& name);
