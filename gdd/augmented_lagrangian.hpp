@@ -22,6 +22,7 @@
 #include "gdd/hessian.hpp"
 #include "gdd/problem.hpp"
 #include "gdd/ray.hpp"
+#include "gdd/report.hpp"
 
 namespace softgauss::gdd {
 
@@ -31,24 +32,6 @@ struct AugmentedLagrangianOptions {
   double violationTolerance = 1e-10;  ///< distance of g from its box, over max(1, |c|)
   int maxIterations = 50;
   int maxDualUpdates = 20;
-};
-
-enum class GddStatus {
-  converged,
-  kink,  ///< converged, with rows held at their knots
-  iterationLimit,
-  bend,  ///< no descent along the direction, past a kink of an elliptic cone: not certified
-  notFinite
-};
-
-struct GddReport {
-  GddStatus status = GddStatus::converged;
-  int iterations = 0;  ///< Newton directions
-  int dualUpdates = 0;
-  int factorizations = 0;
-  double violation = 0.0;  ///< distance of g(a) from its box [N or N m]
-  double stationarity = 0.0;  ///< max |∇Φ + J_Kᵀμ|ᵢ/√M_ii over max(1, max |∇ℓᵢ|/√M_ii)
-  double objective = 0.0;  ///< ½ gᵀR g + ℓ up to ℓ's constant
 };
 
 class AugmentedLagrangian {

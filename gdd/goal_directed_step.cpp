@@ -6,32 +6,45 @@
 namespace softgauss::gdd {
 
 GoalDirectedController::GoalDirectedController(const Model& model)
-    : box(model), solver(model), control(VectorX::Zero(model.nv)), cost_(model.nv) {}
+    : box(model),
+      augmentedLagrangian(model),
+      activeSet(model),
+      control(VectorX::Zero(model.nv)),
+      cost_(model.nv),
+      acceleration_(&activeSet.acceleration()) {}
 
-SolveStatus GoalDirectedController::step(const Model& model, const Input& input, State& state,
-                                         Data& data, ContactSource* contacts) noexcept {
+template <class Solver>
+SolveStatus GoalDirectedController::solveAndAdvance(Solver& used, const Model& model, State& state,
+                                                    Data& data) {
   using Clock = std::chrono::steady_clock;
-  if (computeStages(model, input, state, data, contacts) == SolveStatus::notFinite)
-    return SolveStatus::notFinite;
-
-  // A disturbance is not the control's: it belongs to what the control has to cope with.
   const Clock::time_point start = Clock::now();
+  // A disturbance is not the control's: it belongs to what the control has to cope with.
   data.forces.c -= data.forces.tau;
   cost_.clear();
   for (const auto& goal : goals) goal->addCost({model, state, data}, cost_);
-  report = solver.solve(model, cost_, box, data, state.warmstart);
+  report = used.solve(model, cost_, box, data, state.warmstart);
+  acceleration_ = &used.acceleration();
   solveTime = std::chrono::duration<double>(Clock::now() - start).count();
   if (report.status == GddStatus::notFinite) {
     data.stats.status = SolveStatus::notFinite;
-    data.stats.badDof = solver.badDof();
+    data.stats.badDof = used.badDof();
     return data.stats.status;
   }
 
-  control = solver.force().cwiseMax(box.lower).cwiseMin(box.upper);
+  control = box.clamp(used.force());
   setAppliedForce(control, data.forces);
-  const SolveStatus status = advance(model, &solver.acceleration(), data, state);
-  if (status != SolveStatus::notFinite) solver.keepWarmStart(state.warmstart);
+  const SolveStatus status = advance(model, acceleration_, data, state);
+  if (status != SolveStatus::notFinite) used.keepWarmStart(state.warmstart);
   return status;
+}
+
+SolveStatus GoalDirectedController::step(const Model& model, const Input& input, State& state,
+                                         Data& data, ContactSource* contacts) noexcept {
+  if (computeStages(model, input, state, data, contacts) == SolveStatus::notFinite)
+    return SolveStatus::notFinite;
+  if (solver == GddSolver::activeSet && data.constraints.piecewiseQuadratic())
+    return solveAndAdvance(activeSet, model, state, data);
+  return solveAndAdvance(augmentedLagrangian, model, state, data);
 }
 
 }  // namespace softgauss::gdd

@@ -4,16 +4,23 @@
 /// Goal directed dynamics: a step whose control is found from goals (figure 1 of the paper).
 ///
 /// Solve (T.17) for the acceleration that the goals want and the actuators can cause; clamp the
-/// control g_u(a) to its box; run forward dynamics from that acceleration; integrate.
+/// control g_u(a) to its box; run forward dynamics from that acceleration; integrate. Solver 2 ends
+/// on the physics: it clamps nothing, and forward dynamics has nothing left to do.
 
 #include <memory>
 #include <vector>
 
 #include "engine/step/step.hpp"
+#include "gdd/active_set.hpp"
 #include "gdd/augmented_lagrangian.hpp"
 #include "gdd/goal.hpp"
 
 namespace softgauss::gdd {
+
+enum class GddSolver {
+  augmentedLagrangian,  ///< solver 1, over accelerations
+  activeSet             ///< solver 2, over controls; where contacts have elliptic cones, solver 1
+};
 
 /// Goals, solver and memory of a controlled simulation. One a thread.
 class GoalDirectedController {
@@ -22,7 +29,9 @@ class GoalDirectedController {
 
   std::vector<std::unique_ptr<Goal>> goals;
   ControlBox box;  ///< of all dofs; change it to change what the actuators can do
-  AugmentedLagrangian solver;
+  GddSolver solver = GddSolver::activeSet;
+  AugmentedLagrangian augmentedLagrangian;
+  ActiveSet activeSet;
 
   VectorX control;         ///< u of the last step, 0 on unactuated dofs (nv) [N or N m]
   GddReport report;        ///< of the last step
@@ -32,9 +41,15 @@ class GoalDirectedController {
   /// state is left as it was.
   SolveStatus step(const Model& model, const Input& input, State& state, Data& data,
                    ContactSource* contacts) noexcept;
+  /// Of the last GDD solve, before the final forward step (nv).
+  const VectorX& acceleration() const { return *acceleration_; }
 
  private:
+  template <class Solver>
+  SolveStatus solveAndAdvance(Solver& used, const Model& model, State& state, Data& data);
+
   GoalCost cost_;
+  const VectorX* acceleration_ = nullptr;
 };
 
 }  // namespace softgauss::gdd

@@ -7,6 +7,7 @@ namespace softgauss::app {
 namespace {
 
 constexpr const char* kAugmentedLagrangian = "augmented-lagrangian";
+constexpr const char* kActiveSet = "active-set";
 
 template <class Solver>
 class SolverContestant final : public Contestant {
@@ -27,11 +28,12 @@ class SolverContestant final : public Contestant {
 
 }  // namespace
 
-std::vector<std::string> solverNames() { return {kAugmentedLagrangian}; }
+std::vector<std::string> solverNames() { return {kAugmentedLagrangian, kActiveSet}; }
 
 std::unique_ptr<Contestant> makeContestant(const std::string& name, const Model& model) {
   if (name == kAugmentedLagrangian)
     return std::make_unique<SolverContestant<gdd::AugmentedLagrangian>>(name, model);
+  if (name == kActiveSet) return std::make_unique<SolverContestant<gdd::ActiveSet>>(name, model);
   throw std::logic_error("no solver '" + name + "'");
 }
 

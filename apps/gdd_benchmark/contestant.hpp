@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "gdd/active_set.hpp"
 #include "gdd/augmented_lagrangian.hpp"
 
 namespace softgauss::app {

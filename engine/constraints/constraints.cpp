@@ -90,6 +90,38 @@ void Constraints::findCrossings(std::vector<Crossing>& crossings) const {
   });
 }
 
+Crossing Constraints::nextCrossing() const {
+  Crossing next;
+  next.alpha = kInfinity;
+  int kind = 0;
+  visit([&](const auto& c) {
+    if constexpr (requires { c.findNextCrossing(kind, next); }) c.findNextCrossing(kind, next);
+    ++kind;
+  });
+  return next;
+}
+
+void Constraints::enterPiece(Knot knot, bool above) {
+  visitOne(*this, knot.row.kind, [&](auto& c) {
+    if constexpr (requires { c.enterPiece(0, 0, above); })
+      c.enterPiece(knot.row.row, knot.index, above);
+  });
+}
+
+bool Constraints::isAbove(Knot knot) const {
+  bool above = false;
+  visitOne(*this, knot.row.kind, [&](const auto& c) {
+    if constexpr (requires { c.isAbove(0, 0); }) above = c.isAbove(knot.row.row, knot.index);
+  });
+  return above;
+}
+
+void Constraints::evaluateInPlace() {
+  visit([](auto& c) {
+    if constexpr (requires { c.evaluateInPlace(); }) c.evaluateInPlace();
+  });
+}
+
 void Constraints::addRow(RowId id, double scale, VectorX& y) const {
   visitOne(*this, id.kind, [&](const auto& c) { c.addRow(id.row, scale, y); });
 }

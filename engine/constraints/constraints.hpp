@@ -102,6 +102,14 @@ class Constraints {
   bool piecewiseQuadratic() const { return ellipticContact.rowCount() == 0; }
   /// All knots ahead on the ray, α ≥ 0, unordered.
   void findCrossings(std::vector<Crossing>& crossings) const;
+  /// The first knot ahead on the ray, counted from the pieces in which the rows are kept; alpha = ∞
+  /// if there is none. Only where s is piecewise quadratic.
+  Crossing nextCrossing() const;
+  /// Puts a row at a knot, in the piece above it or the one below.
+  void enterPiece(Knot knot, bool above);
+  bool isAbove(Knot knot) const;
+  /// Forces and curvatures at x with every row in the piece in which it is kept.
+  void evaluateInPlace();
   /// y ← y + scale · (row of J)ᵀ.
   void addRow(RowId id, double scale, VectorX& y) const;
   /// How far the row is above its knot: x less x there, or what takes its place on a cone.

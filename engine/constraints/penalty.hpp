@@ -7,7 +7,8 @@
 ///
 /// A penalty's pieces are numbered upwards from x = −∞; knot k lies between the pieces k and k + 1.
 /// s″ is D in one piece, the stiff one, and 0 in the others, the free ones. At a knot a row counts
-/// as free.
+/// as free. The kernel is `in`, the polynomial of one piece; `at` picks the piece by x. A method that
+/// walks from cell to cell keeps the pieces itself, for at a knot rounding must not choose.
 
 #include <concepts>
 
@@ -24,10 +25,11 @@ struct HalfQuadratic {
   static constexpr bool kLimited = false;
   double D;
 
-  Jet at(double x) const {
-    const double overshoot = x >= 0.0 ? 0.0 : x;  // NaN stays NaN
-    return {0.5 * D * overshoot * overshoot, D * overshoot, x >= 0.0 ? 0.0 : D};
+  Jet in(int piece, double x) const {
+    const double overshoot = piece == 1 ? 0.0 : x;  // NaN stays NaN
+    return {0.5 * D * overshoot * overshoot, D * overshoot, piece == 1 ? 0.0 : D};
   }
+  Jet at(double x) const { return in(piece(x), x); }
   int piece(double x) const { return x >= 0.0 ? 1 : 0; }
   double knot(int) const { return 0.0; }
   /// s″ above a knot less s″ below it.
@@ -40,7 +42,8 @@ struct Quadratic {
   static constexpr bool kLimited = false;
   double D;
 
-  Jet at(double x) const { return {0.5 * D * x * x, D * x, D}; }
+  Jet in(int, double x) const { return {0.5 * D * x * x, D * x, D}; }
+  Jet at(double x) const { return in(0, x); }
   int piece(double) const { return 0; }
   double knot(int) const { return 0.0; }
   double curvatureJump(int) const { return 0.0; }
@@ -55,12 +58,13 @@ struct Huber {
   double D;
   double limit;  ///< of the force, > 0
 
-  Jet at(double x) const {
+  Jet in(int piece, double x) const {
     const double r = limit / D;
-    if (x <= -r) return {limit * (-x - 0.5 * r), -limit, 0.0};
-    if (x >= r) return {limit * (x - 0.5 * r), limit, 0.0};
+    if (piece == 0) return {limit * (-x - 0.5 * r), -limit, 0.0};
+    if (piece == 2) return {limit * (x - 0.5 * r), limit, 0.0};
     return {0.5 * D * x * x, D * x, D};
   }
+  Jet at(double x) const { return in(piece(x), x); }
   int piece(double x) const { return x <= knot(0) ? 0 : (x >= knot(1) ? 2 : 1); }
   double knot(int k) const { return k == 0 ? -(limit / D) : limit / D; }
   double curvatureJump(int k) const { return k == 0 ? D : -D; }
@@ -71,6 +75,7 @@ concept ScalarPenalty = requires(const P s, double x, int k) {
   { s.D } -> std::convertible_to<double>;
   { P::kKnots } -> std::convertible_to<int>;
   { P::kLimited } -> std::convertible_to<bool>;
+  { s.in(k, x) } -> std::same_as<Jet>;
   { s.at(x) } -> std::same_as<Jet>;
   { s.piece(x) } -> std::same_as<int>;
   { s.knot(k) } -> std::same_as<double>;

@@ -98,6 +98,15 @@ class ScalarRows {
     return cost;
   }
 
+  /// The same with every row in the piece in which it was, whatever x says.
+  void evaluateInPlace() {
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      const Jet s = penalty(i).in(piece_[i], x[i]);
+      f[i] = -s.slope;
+      h[i] = s.curvature;
+    }
+  }
+
   /// Slope and curvature of Σ s(x + α dx) in α.
   void along(double alpha, Jet& sum) const {
     for (std::size_t i = 0; i < x.size(); ++i) {
@@ -125,6 +134,34 @@ class ScalarRows {
       }
     }
   }
+
+  /// The first knot that x + α dx meets if it is sooner than `next`, counted from the piece in which
+  /// every row was; a row that is past its knot by rounding meets it at once.
+  void findNextCrossing(int kind, Crossing& next) const {
+    if constexpr (Penalty::kKnots > 0) {
+      for (std::size_t i = 0; i < x.size(); ++i) {
+        if (dx[i] == 0.0) continue;
+        const bool up = dx[i] > 0.0;
+        const int k = up ? piece_[i] : piece_[i] - 1;
+        if (k < 0 || k >= Penalty::kKnots) continue;
+        const Penalty s = penalty(i);
+        const double alpha = std::max(0.0, (s.knot(k) - x[i]) / dx[i]);
+        if (!(alpha < next.alpha)) continue;
+        const double jump = up ? s.curvatureJump(k) : -s.curvatureJump(k);
+        next = {alpha, jump, dx[i], {{kind, static_cast<int>(i)}, k}};
+      }
+    }
+  }
+
+  /// Puts a row at a knot, in the piece above it or the one below.
+  void enterPiece(int row, int knot, bool above) {
+    const Penalty s = penalty(row);
+    piece_[row] = static_cast<std::int8_t>(above ? knot + 1 : knot);
+    x[row] = s.knot(knot);
+    h[row] = s.in(piece_[row], x[row]).curvature;
+  }
+  /// Whether a row is in the piece above a knot, or in one that is higher.
+  bool isAbove(int row, int knot) const { return piece_[row] > knot; }
 
   double curvatureJump(int row, int knot) const { return penalty(row).curvatureJump(knot); }
   /// Takes a row off the ray.

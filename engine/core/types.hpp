@@ -14,6 +14,7 @@ using Matrix3 = Eigen::Matrix3d;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 using VectorX = Eigen::VectorXd;
 using MatrixX = Eigen::MatrixXd;
+using RowMajorMatrixX = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 using Quaternion = Eigen::Quaterniond;
 
 template <class T>

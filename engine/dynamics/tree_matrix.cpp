@@ -165,6 +165,28 @@ void TreeMatrix::multiply(const VectorX& x, VectorX& y) const {
   }
 }
 
+void TreeMatrix::multiply(const RowMajorMatrixX& X, RowMajorMatrixX& Y) const {
+  const int n = size(), columns = static_cast<int>(X.cols());
+  for (int i = 0; i < n; ++i) {
+    const double* a = row(i);
+    const double* xi = X.data() + i * columns;
+    double* yi = Y.data() + i * columns;
+    for (int c = 0; c < columns; ++c) yi[c] = a[i] * xi[c];
+    for (const Segment* s = sparsity_->begin(i); s != sparsity_->end(i); ++s) {
+      const int end = std::min(s->end, i);
+      for (int j = s->begin; j < end; ++j) {
+        const double aij = a[j];
+        const double* xj = X.data() + j * columns;
+        double* yj = Y.data() + j * columns;
+        for (int c = 0; c < columns; ++c) {
+          yi[c] += aij * xj[c];
+          yj[c] += aij * xi[c];
+        }
+      }
+    }
+  }
+}
+
 MatrixX TreeMatrix::dense() const {
   MatrixX A = MatrixX::Zero(size(), size());
   for (int i = 0; i < size(); ++i)
@@ -247,6 +269,36 @@ void TreeFactor::solveLower(VectorX& x) const {
       for (int j = s->begin; j < end; ++j) sum -= L[j] * x[j];
     }
     x[k] = sum;
+  }
+}
+
+void TreeFactor::solve(RowMajorMatrixX& X) const {
+  const TreeSparsity& pattern = LD_.sparsity();
+  const int n = size(), columns = static_cast<int>(X.cols());
+  for (int k = n - 1; k >= 0; --k) {
+    const double* L = LD_.row(k);
+    double* xk = X.data() + k * columns;
+    for (const Segment* s = pattern.begin(k); s != pattern.end(k); ++s) {
+      const int end = std::min(s->end, k);
+      for (int j = s->begin; j < end; ++j) {
+        double* xj = X.data() + j * columns;
+        const double l = L[j];
+        for (int c = 0; c < columns; ++c) xj[c] -= l * xk[c];
+      }
+    }
+    for (int c = 0; c < columns; ++c) xk[c] *= inversePivot_[k];
+  }
+  for (int k = 1; k < n; ++k) {
+    const double* L = LD_.row(k);
+    double* xk = X.data() + k * columns;
+    for (const Segment* s = pattern.begin(k); s != pattern.end(k); ++s) {
+      const int end = std::min(s->end, k);
+      for (int j = s->begin; j < end; ++j) {
+        const double* xj = X.data() + j * columns;
+        const double l = L[j];
+        for (int c = 0; c < columns; ++c) xk[c] -= l * xj[c];
+      }
+    }
   }
 }
 

@@ -30,12 +30,13 @@ State::State(const Model& model) : q(model.q0), v(VectorX::Zero(model.nv)) {
   warmstart.a = VectorX::Zero(model.nv);
   warmstart.gddA = VectorX::Zero(model.nv);
   warmstart.multipliers = VectorX::Zero(model.nv);
+  warmstart.control = VectorX::Zero(model.nv);
 }
 
 std::uint64_t hash(const State& state) {
   std::uint64_t h = 0xcbf29ce484222325ull;
   for (const VectorX* x : {&state.q, &state.v, &state.warmstart.a, &state.warmstart.gddA,
-                           &state.warmstart.multipliers})
+                           &state.warmstart.multipliers, &state.warmstart.control})
     mix(h, x->data(), x->size());
   const double rest[] = {state.time, state.warmstart.valid ? 1.0 : 0.0,
                          state.warmstart.gddValid ? 1.0 : 0.0};

@@ -15,7 +15,8 @@ namespace softgauss {
 struct WarmStart {
   VectorX a;            ///< acceleration of the forward solve (nv)
   VectorX gddA;         ///< acceleration of the GDD solve (nv)
-  VectorX multipliers;  ///< of g_z = 0 and of the control box (nv)
+  VectorX multipliers;  ///< of g_z = 0 and of the control box, GDD solver 1 (nv)
+  VectorX control;      ///< of GDD solver 2 (nv) [N or N m]
   bool valid = false;   ///< a is set
   bool gddValid = false;
 };

@@ -17,7 +17,7 @@ int firstNotFinite(const VectorX& x) {
 
 }  // namespace
 
-SolveStatus forwardDynamics(const Model& model, const VectorX* guess, Data& data) noexcept {
+SolveStatus minimizeGauss(const Model& model, const VectorX* guess, Data& data) noexcept {
   ForwardSolution& s = data.forward;
   s.report = {};
   if (model.nv == 0) return SolveStatus::converged;
@@ -27,7 +27,6 @@ SolveStatus forwardDynamics(const Model& model, const VectorX* guess, Data& data
     return s.report.status;
   };
   const auto finish = [&] {
-    if (model.options.noSlip && s.report.status != SolveStatus::notFinite) removeSlip(model, data);
     if (s.report.status == SolveStatus::notFinite) data.stats.badDof = firstNotFinite(s.a);
     return s.report.status;
   };
@@ -55,6 +54,15 @@ SolveStatus forwardDynamics(const Model& model, const VectorX* guess, Data& data
   s.report = minimize(objective, model.options.tolerance, model.options.maxIterations, s.gradient,
                       s.direction);
   return finish();
+}
+
+SolveStatus forwardDynamics(const Model& model, const VectorX* guess, Data& data) noexcept {
+  const SolveStatus status = minimizeGauss(model, guess, data);
+  if (!model.options.noSlip || status == SolveStatus::notFinite) return status;
+  removeSlip(model, data);
+  if (data.forward.report.status == SolveStatus::notFinite)
+    data.stats.badDof = firstNotFinite(data.forward.a);
+  return data.forward.report.status;
 }
 
 }  // namespace softgauss

@@ -16,7 +16,10 @@ namespace softgauss {
 /// Starts from `guess` (null: none) or the unconstrained acceleration, whichever costs less.
 SolveStatus forwardDynamics(const Model& model, const VectorX* guess, Data& data) noexcept;
 
-/// The same from the warm start of a state.
+/// (T.1) itself: forwardDynamics() without the second solve of Options::noSlip.
+SolveStatus minimizeGauss(const Model& model, const VectorX* guess, Data& data) noexcept;
+
+/// forwardDynamics() from the warm start of a state.
 inline SolveStatus forwardDynamics(const Model& model, const State& state, Data& data) noexcept {
   return forwardDynamics(model, state.warmstart.valid ? &state.warmstart.a : nullptr, data);
 }

@@ -36,13 +36,6 @@ const settle = (page) =>
     () => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))),
   );
 
-/** The least of up to `tries` times [ms]: what the page takes, less what the machine does beside. */
-async function fastest(tries, measure) {
-  let least = Infinity;
-  for (let i = 0; i < tries && !(least < 1500); i += 1) least = Math.min(least, await measure());
-  return least;
-}
-
 /** Compares every link at some frames with forward kinematics of the log's rows. */
 async function posesAreThoseOfTheLog(page, name) {
   const urdf = readUrdf(join(robots, `${name}.urdf`));
@@ -381,12 +374,7 @@ await test('the page may ask nothing of any network', async () => {
 await page.close();
 await test('a page of the humanoid is small and soon there', async () => {
   const size = statSync(join(folder, 'humanoid.html')).size;
-  const firstFrame = await fastest(10, async () => {
-    const page = await browser.open('humanoid');
-    const took = await api(page, 'firstFrameMs');
-    await page.close();
-    return took;
-  });
+  const firstFrame = await browser.leastTimeToFirstFrame('humanoid', 10);
   console.log(
     `humanoid, 10 s: ${(size / 1e6).toFixed(2)} MB, first frame after ${firstFrame.toFixed(0)} ms`,
   );

@@ -11,7 +11,8 @@ GddScene::GddScene(Scene s)
     : scene(std::move(s)),
       cost(scene.model.nv),
       box(scene.model),
-      solver(std::make_unique<gdd::AugmentedLagrangian>(scene.model)) {
+      solver(std::make_unique<gdd::AugmentedLagrangian>(scene.model)),
+      activeSet(std::make_unique<gdd::ActiveSet>(scene.model)) {
   const int n = scene.model.nv;
   const ConvexProblem physics = denseProblem(data());
   dense.M = physics.M;
@@ -85,6 +86,12 @@ const VectorX& GddScene::solve() {
   for (int i = 0; i < dofs(); ++i) dense.rho[i] = solver->options.penalty * data().weights.dof[i];
   matchBox();
   return solver->acceleration();
+}
+
+const VectorX& GddScene::solveByActiveSet() {
+  report = activeSet->solve(model(), cost, box, data(), scene.state.warmstart);
+  matchBox();
+  return activeSet->acceleration();
 }
 
 int GddScene::rowIndex(RowId id) const {

@@ -43,7 +43,7 @@ struct Watch {
     kinks += status == gdd::GddStatus::kink;
     unfinished += status == gdd::GddStatus::iterationLimit;
     if (status == gdd::GddStatus::iterationLimit || r.data.constraints.rowCount() == 0) return;
-    const VectorX assumed = rowForces(r.model, r.controller.solver.acceleration(), r.data);
+    const VectorX assumed = rowForces(r.model, r.controller.acceleration(), r.data);
     const VectorX acting = rowForces(r.model, r.data.forward.a, r.data);
     const double scale = std::max(1.0, acting.cwiseAbs().maxCoeff());
     forceGap = std::max(forceGap, (assumed - acting).cwiseAbs().maxCoeff() / scale);

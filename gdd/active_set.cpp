@@ -1,0 +1,308 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gdd/active_set.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "engine/step/forward.hpp"
+
+namespace softgauss::gdd {
+namespace {
+
+/// Paths that may cross a row freely. After that the program keeps it in its cell: where many rows
+/// meet, paths would else go back and forth between the same cells, ever shorter.
+constexpr int kGuarded = 2;
+
+}  // namespace
+
+ActiveSet::ActiveSet(const Model& model) : path_(model) {
+  for (VectorX* x : {&force_, &Rforce_, &costGradient_, &Ma_, &adjoint_, &residual_, &rate_})
+    *x = VectorX::Zero(model.nv);
+}
+
+/// u of the last step, within the box, and a = f(u).
+GddStatus ActiveSet::start(const Model& model, const ControlBox& box, Data& data,
+                           const WarmStart& warm) {
+  report_ = {};
+  badDof_ = -1;
+  tried_.clear();
+  path_.held.clear();
+  if (!cell_.start(model, box, data)) {
+    badDof_ = cell_.massFailedRow();
+    return GddStatus::notFinite;
+  }
+  const int n = cell_.columns();
+  cell_.select(box.lower, lower_);
+  cell_.select(box.upper, upper_);
+  const bool known = warm.gddValid && warm.control.size() == model.nv && warm.control.allFinite();
+  u_.setZero(n);
+  if (known) cell_.select(warm.control, u_);
+  u_ = u_.cwiseMax(lower_).cwiseMin(upper_);
+  force_ = box.lower;  // where the box has no width
+  cell_.spread(u_, force_);
+
+  setAppliedForce(force_, data.forces);
+  const VectorX* guess = warm.gddValid ? &warm.gddA : (warm.valid ? &warm.a : nullptr);
+  if (minimizeGauss(model, guess, data) == SolveStatus::notFinite) {
+    badDof_ = data.stats.badDof;
+    return GddStatus::notFinite;
+  }
+  report_.forwardIterations = data.forward.report.iterations;
+  path_.a = data.forward.a;
+  bool changed = false;
+  data.constraints.setResidual(path_.a);
+  data.constraints.evaluate(changed);
+  return GddStatus::converged;
+}
+
+/// B u − g(a), with the rows as they were last evaluated.
+void ActiveSet::computeResidual(const Data& data) {
+  data.inertia.M.multiply(path_.a, Ma_);
+  residual_ = force_ - Ma_ - data.forces.c;
+  data.constraints.addForce(residual_);
+}
+
+/// P, S, K and the sides of held rows, in the cell in which the rows are kept; a made exact in it.
+bool ActiveSet::enterCell(const GoalCost& cost, Data& data) {
+  Constraints& rows = data.constraints;
+  ++report_.factorizations;
+  if (!cell_.enter(data)) return false;
+
+  // Rounding along the path is undone by a Newton step of forward dynamics, exact in a cell.
+  rows.setResidual(path_.a);
+  rows.evaluateInPlace();
+  computeResidual(data);
+  cell_.solve(residual_);
+  path_.a += residual_;
+  rows.setResidual(path_.a);
+  rows.evaluateInPlace();
+
+  constrained_.clear();
+  for (int i = 0; i < path_.held.size(); ++i) {
+    HeldKnot& h = path_.held[i];
+    h.multiplier = 0.0;
+    if (!h.atKnot && h.paths < kGuarded) continue;
+    constrained_.push_back(i);
+    const bool above = rows.isAbove(h.knot);
+    if (h.atKnot) rows.enterPiece(h.knot, above);
+    h.sign = above ? 1.0 : -1.0;
+    h.distance = std::max(0.0, h.sign * rows.aboveKnot(h.knot));
+    h.jump = -h.sign * rows.curvatureJump(h.knot);
+    h.J.resize(force_.size());
+    rows.knotGradient(h.knot, h.J);
+    adjoint_ = h.sign * h.J;
+    cell_.solve(adjoint_);
+    cell_.select(adjoint_, h.side);
+  }
+  cell_.computeHessian(cost, data);
+  return true;
+}
+
+/// q = Bᵀ(R B u + P⁻¹∇ℓ); false when not finite.
+bool ActiveSet::computeGradient(const GoalCost& cost, const Data& data) {
+  data.inertia.M.multiply(path_.a, Ma_);
+  cost.gradient(data.inertia.M, path_.a, Ma_, costGradient_);
+  adjoint_ = costGradient_;
+  cell_.solve(adjoint_);
+  Rforce_ = force_;
+  cell_.multiplyR(Rforce_);
+  adjoint_ += Rforce_;
+  cell_.select(adjoint_, gradient_);
+  merit_ = 0.5 * force_.dot(Rforce_) + std::abs(cost.value(data.inertia.M, path_.a, Ma_));
+  return gradient_.allFinite() && std::isfinite(merit_);
+}
+
+/// The step p within the box and the sides of held rows; returns the decrease it promises.
+double ActiveSet::solveProgram() {
+  ++report_.cells;
+  stepLower_ = lower_ - u_;
+  stepUpper_ = upper_ - u_;
+  const int rows = static_cast<int>(constrained_.size());
+  if (sides_.rows() < rows || sides_.cols() != u_.size()) {
+    sides_.resize(rows, u_.size());
+    distances_.resize(rows);
+  }
+  for (int k = 0; k < rows; ++k) {
+    sides_.row(k) = path_.held[constrained_[k]].side.transpose();
+    distances_[k] = path_.held[constrained_[k]].distance;
+  }
+  if (!program_.setHessian(cell_.hessian())) return 0.0;
+  const bool solved =
+      program_.minimize(gradient_, stepLower_, stepUpper_, sides_, distances_, rows);
+  for (int k = 0; k < rows; ++k)
+    path_.held[constrained_[k]].multiplier = program_.rowMultipliers()[k];
+  return solved ? program_.decrease() : 0.0;
+}
+
+/// Moves along the path of the program's solution.
+PathEnd ActiveSet::followPath(const GoalCost& cost, Data& data) {
+  const VectorX& p = program_.solution();
+  PathStart start;
+  rate_.setZero();
+  cell_.spread(p, rate_);
+  start.forceSlope = rate_.dot(Rforce_);
+  start.forceCurvature = cell_.forceCurvature(p);
+  cell_.solve(rate_);
+  start.tMax = kInfinity;
+  for (Eigen::Index i = 0; i < p.size(); ++i) {
+    if (p[i] == 0.0) continue;
+    start.tMax = std::min(start.tMax, (p[i] > 0.0 ? stepUpper_[i] : stepLower_[i]) / p[i]);
+  }
+  start.tMax = std::max(1.0, start.tMax);
+  for (const HeldKnot& h : path_.held)
+    if (h.multiplier > 0.0 && !h.atKnot) start.tMax = 1.0;
+  const PathEnd end = path_.follow(start, cell_, cost, rate_, data);
+  u_ = (u_ + end.t * p).cwiseMax(lower_).cwiseMin(upper_);
+  cell_.spread(u_, force_);
+  return end;
+}
+
+/// What the program would promise after a step that stayed in its cell, by the multipliers it had:
+/// ½ ρᵀK⁻¹ρ, ρ what they leave of the gradient.
+double ActiveSet::remainingPromise() {
+  stepLower_ = gradient_ - program_.boundMultipliers();
+  for (const HeldKnot& h : path_.held)
+    if (h.multiplier > 0.0) stepLower_ -= h.multiplier * h.side;
+  stepUpper_ = stepLower_;
+  program_.solveHessian(stepUpper_);
+  return 0.5 * stepLower_.dot(stepUpper_);
+}
+
+/// (T.63). Stationary in this cell: looks for one beside it that descends, and enters it.
+ActiveSet::Next ActiveSet::leaveCell(Data& data) {
+  constexpr double kTolerance = 1e-9;
+  atKnot_.clear();
+  for (int i = 0; i < path_.held.size(); ++i)
+    if (path_.held[i].atKnot) atKnot_.push_back(i);
+  const int n = static_cast<int>(atKnot_.size());
+  const auto row = [&](int k) -> HeldKnot& { return path_.held[atKnot_[k]]; };
+  std::uint64_t here = 0;
+  for (int k = 0; k < std::min(n, 64); ++k)
+    if (row(k).sign > 0.0) here |= std::uint64_t{1} << k;
+  const auto tried = [&](std::uint64_t pattern) {
+    return std::find(tried_.begin(), tried_.end(), pattern) != tried_.end();
+  };
+  if (!tried(here)) tried_.push_back(here);
+
+  // w = P⁻¹(∇ℓ − Σ ν σ J): the same in all cells that share it.
+  adjoint_ = costGradient_;
+  for (int k = 0; k < n; ++k) adjoint_ -= row(k).multiplier * row(k).sign * row(k).J;
+  cell_.solve(adjoint_);
+  int worst = -1;
+  double least = 0.0;
+  bool settled = true;
+  for (int k = 0; k < n; ++k) {
+    const HeldKnot& h = row(k);
+    const double change = h.sign * h.jump * h.J.dot(adjoint_);
+    const double other = change - h.multiplier;
+    const double tolerance = kTolerance * (std::abs(change) + h.multiplier);
+    if (other >= -tolerance) continue;
+    settled = false;
+    if (other < least && !(n <= 64 && tried(here ^ (std::uint64_t{1} << k))))
+      least = other, worst = k;
+  }
+  if (settled) return Next::done;
+  if (n > 63) return Next::undecided;
+  std::uint64_t pattern = here;
+  if (worst >= 0) {
+    pattern ^= std::uint64_t{1} << worst;
+  } else {
+    // Dependent rows have more than one set of multipliers: try all cells, the nearest first.
+    if (n > options.maxPatternRows) return Next::undecided;
+    const std::uint64_t all = (std::uint64_t{1} << n) - 1;
+    int flips = n + 1;
+    for (std::uint64_t change = 1; change <= all; ++change) {
+      if (std::popcount(change) >= flips || tried(here ^ change)) continue;
+      flips = std::popcount(change);
+      pattern = here ^ change;
+    }
+    if (pattern == here) return Next::done;
+  }
+  for (int k = 0; k < n; ++k)
+    if (((pattern ^ here) >> k) & 1)
+      data.constraints.enterPiece(row(k).knot, ((pattern >> k) & 1) != 0);
+  return Next::cell;
+}
+
+/// a to rounding, the rows as they are there, and the report.
+void ActiveSet::finish(const ControlBox& box, const GoalCost& cost, Data& data) {
+  constexpr int kCorrections = 2;
+  bool changed = false;
+  for (int k = 0;; ++k) {
+    data.constraints.setResidual(path_.a);
+    data.constraints.evaluate(changed);
+    computeResidual(data);
+    if (k == kCorrections) break;
+    cell_.solve(residual_);
+    path_.a += residual_;
+  }
+  setAppliedForce(force_, data.forces);
+  report_.violation = box.violation(force_ - residual_);
+  Rforce_ = force_;
+  cell_.multiplyR(Rforce_);
+  report_.objective = 0.5 * force_.dot(Rforce_) + cost.value(data.inertia.M, path_.a, Ma_);
+  report_.heldRows = path_.held.atKnots();
+}
+
+GddReport ActiveSet::solve(const Model& model, GoalCost& cost, const ControlBox& box, Data& data,
+                           const WarmStart& warm) {
+  SOFTGAUSS_ASSERT(data.constraints.piecewiseQuadratic());
+  const auto end = [&](GddStatus status) {
+    report_.status = status;
+    if (status != GddStatus::notFinite) finish(box, cost, data);
+    return report_;
+  };
+  if (model.nv == 0) return report_ = {};
+  report_.status = start(model, box, data, warm);
+  if (report_.status == GddStatus::notFinite) return report_;
+  if (cell_.columns() == 0) {
+    if (!cell_.enter(data)) return end(GddStatus::notFinite);
+    return end(GddStatus::converged);
+  }
+  HeldKnots& held = path_.held;
+
+  for (;;) {
+    if (!enterCell(cost, data) || !computeGradient(cost, data)) return end(GddStatus::notFinite);
+    double promised = solveProgram();
+    const int heldBefore = held.atKnots();
+    bool stationary = promised <= options.tolerance * merit_;
+    if (!stationary) {
+      if (report_.iterations == options.maxIterations) {
+        report_.stationarity = promised / merit_;
+        return end(GddStatus::iterationLimit);
+      }
+      const PathEnd path = followPath(cost, data);
+      ++report_.iterations;
+      const bool moved = path.decrease > 1e-3 * options.tolerance * merit_;
+      if (moved || held.atKnots() > heldBefore) tried_.clear();
+      if (moved && path.crossings == 0) {
+        // Still in the cell: its minimum, if rounding has not spoilt it.
+        if (!computeGradient(cost, data)) return end(GddStatus::notFinite);
+        promised = remainingPromise();
+        stationary = promised <= options.tolerance * merit_;
+      } else {
+        stationary = !moved && held.atKnots() <= heldBefore;
+      }
+    }
+    if (!stationary) continue;
+    report_.stationarity = promised / std::max(merit_, 1e-300);
+    if (held.atKnots() == 0) return end(GddStatus::converged);
+    switch (leaveCell(data)) {
+      case Next::done:
+        return end(GddStatus::kink);
+      case Next::undecided:
+        return end(GddStatus::undecided);
+      case Next::cell:
+        break;
+    }
+  }
+}
+
+void ActiveSet::keepWarmStart(WarmStart& warm) const {
+  warm.gddA = path_.a;
+  warm.control = force_;
+  warm.gddValid = true;
+}
+
+}  // namespace softgauss::gdd

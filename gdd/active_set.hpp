@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Solver 2: a feasible path over the controls, by an active set of bounds and of rows at knots.
+///
+/// The forward form (7) of the problem (T.60):
+///   min_u  F(u) = ½ (B u)ᵀ R (B u) + ℓ(f(u))    subject to   lower ≤ u ≤ upper
+/// f = g⁻¹ is forward dynamics, B selects the dofs whose box is open. g_z = 0 holds by
+/// construction, and a = f(u) is exact at all times. In a cell f is affine, F quadratic and convex:
+///   S = ∂a/∂u = P⁻¹B,   q = ∂F/∂u = Bᵀ(R B u + P⁻¹∇ℓ),   K = ∂²F/∂u² = BᵀR B + Sᵀ∇²ℓ S
+/// Each iteration minimises that quadratic within the box, and, for rows held at their knots, on
+/// their side of it (quadratic_program.hpp), then follows the exact path f(u + t p) through as many
+/// cells as descend (forward_path.hpp). It ends where every cell that meets at the point promises
+/// nothing: all of them at once where the multipliers say so (T.63), one by one otherwise.
+///
+/// Needs rows that are piecewise quadratic: no elliptic cones.
+
+#include "gdd/cell_response.hpp"
+#include "gdd/cost.hpp"
+#include "gdd/forward_path.hpp"
+#include "gdd/problem.hpp"
+#include "gdd/quadratic_program.hpp"
+#include "gdd/report.hpp"
+
+namespace softgauss::gdd {
+
+struct ActiveSetOptions {
+  double tolerance = 1e-12;  ///< of the decrease still promised, over the objective
+  int maxIterations = 100;
+  int maxPatternRows = 6;  ///< dependent rows at their knots of which all 2^n cells are tried
+};
+
+class ActiveSet {
+ public:
+  explicit ActiveSet(const Model& model);
+
+  ActiveSetOptions options;
+
+  /// Reads the stages of `data` up to the rows and leaves the rows evaluated at the result; sets
+  /// the applied force to the control found.
+  GddReport solve(const Model& model, GoalCost& cost, const ControlBox& box, Data& data,
+                  const WarmStart& warm);
+  /// Writes the solution where the next solve starts from.
+  void keepWarmStart(WarmStart& warm) const;
+
+  /// After GddStatus::notFinite: the first dof whose force is not finite, or −1.
+  int badDof() const { return badDof_; }
+  const VectorX& acceleration() const { return path_.a; }
+  const VectorX& force() const { return force_; }  ///< B u, within the box (nv)
+
+ private:
+  enum class Next { done, cell, undecided };
+
+  GddStatus start(const Model& model, const ControlBox& box, Data& data, const WarmStart& warm);
+  void computeResidual(const Data& data);
+  bool enterCell(const GoalCost& cost, Data& data);
+  bool computeGradient(const GoalCost& cost, const Data& data);
+  double solveProgram();
+  PathEnd followPath(const GoalCost& cost, Data& data);
+  double remainingPromise();
+  Next leaveCell(Data& data);
+  void finish(const ControlBox& box, const GoalCost& cost, Data& data);
+
+  CellResponse cell_;
+  QuadraticProgram program_;
+  ForwardPath path_;  ///< holds a and the rows at their knots
+  std::vector<std::uint64_t>
+      tried_;  ///< cells at this point that promise nothing, by their pattern
+  VectorX u_, lower_, upper_, stepLower_, stepUpper_;  ///< (columns of B)
+  std::vector<int> constrained_;  ///< entries of path_.held that the program knows
+  std::vector<int> atKnot_;       ///< entries of path_.held that are at knots
+  VectorX distances_;
+  VectorX gradient_;        ///< q
+  RowMajorMatrixX sides_;   ///< a row for each row held
+  VectorX force_, Rforce_;  ///< B u, R B u (nv)
+  VectorX costGradient_, Ma_, adjoint_, residual_, rate_;
+  double merit_ = 0.0;  ///< size of the objective
+  GddReport report_;
+  int badDof_ = -1;
+};
+
+}  // namespace softgauss::gdd

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// How acceleration answers control in one cell, and what that makes of the objective (T.60):
+///
+///   S = P⁻¹B,   K = BᵀR B + Sᵀ∇²ℓ S,   P = M + Jᵀ∇²s J,   R = M⁻¹
+///
+/// B has a unit column for each dof that is driven. All columns are solved for at once.
+
+#include <vector>
+
+#include "engine/step/data.hpp"
+#include "gdd/cost.hpp"
+#include "gdd/problem.hpp"
+
+namespace softgauss::gdd {
+
+class CellResponse {
+ public:
+  /// Takes B from the box and R from M. Returns false when M is not positive definite.
+  bool start(const Model& model, const ControlBox& box, const Data& data);
+  /// P of the cell in which the rows are kept. Returns false when it cannot be factored.
+  bool enter(Data& data);
+  /// S and K of this cell.
+  void computeHessian(const GoalCost& cost, const Data& data);
+
+  int columns() const { return static_cast<int>(driven_.size()); }
+  const std::vector<int>& driven() const { return driven_; }  ///< the dof of each column of B
+  void select(const VectorX& x, VectorX& y) const;            ///< y ← Bᵀx
+  void spread(const VectorX& u, VectorX& tau) const;          ///< tau ← B u on driven dofs
+  void solve(VectorX& x) const { factor_.solve(x); }          ///< x ← P⁻¹x
+  void multiplyR(VectorX& x) const { massFactor_.solve(x); }  ///< x ← R x
+  const MatrixX& hessian() const { return K_; }
+  /// pᵀBᵀR B p.
+  double forceCurvature(const VectorX& p) const;
+  int massFailedRow() const { return massFactor_.failedRow(); }
+
+ private:
+  std::vector<int> driven_;
+  TreeFactor massFactor_, factor_;
+  TreeMatrix P_;
+  RowMajorMatrixX S_, MS_;
+  MatrixX forcePrice_;  ///< BᵀR B
+  MatrixX K_;
+};
+
+}  // namespace softgauss::gdd

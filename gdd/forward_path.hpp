@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// The exact path a(t) = f(u + t p) of forward dynamics along a ray of controls.
+///
+/// In a cell it is straight, P ȧ = B p. Where row r meets a knot, P gains Δs″ JᵀJ and
+///   ȧ ← ȧ − Δs″ (J ȧ)/(1 + Δs″ J P⁻¹Jᵀ) · P⁻¹Jᵀ                                            (T.62)
+/// The row's own rate J ȧ keeps its sign, so the path goes on into the next cell. The path ends at
+/// the first local minimum of F along it: inside a cell, at a knot past which F does not descend (a
+/// kink), or where the box ends.
+
+#include <vector>
+
+#include "engine/step/data.hpp"
+#include "gdd/cell_response.hpp"
+#include "gdd/cost.hpp"
+#include "gdd/held_knots.hpp"
+
+namespace softgauss::gdd {
+
+/// F along the path at its start.
+struct PathStart {
+  double forceSlope = 0.0;      ///< pᵀBᵀR B u
+  double forceCurvature = 0.0;  ///< pᵀBᵀR B p
+  double tMax = 1.0;            ///< where the box ends
+};
+
+struct PathEnd {
+  double t = 0.0;
+  double decrease = 0.0;  ///< of F, ≥ 0
+  int crossings = 0;
+};
+
+class ForwardPath {
+ public:
+  explicit ForwardPath(const Model& model);
+
+  VectorX a;       ///< f(u), moved along the path
+  HeldKnots held;  ///< rows at knots, and all that paths have crossed
+
+  /// Follows the path from the present point, where ȧ = rate; moves a and the rows along. Held rows
+  /// with a multiplier stay at their knots within the present cell, or come to them at t = 1.
+  /// Afterwards `held` tells which rows are at knots then.
+  PathEnd follow(const PathStart& start, const CellResponse& cell, const GoalCost& cost,
+                 const VectorX& rate, Data& data);
+
+ private:
+  struct Correction {
+    VectorX PinvJ;
+    double scale = 0.0;  ///< Δs″/(1 + Δs″ J P⁻¹Jᵀ)
+  };
+  void cross(const Crossing& crossing, const CellResponse& cell, Constraints& rows);
+  bool isBlocked(Knot knot) const;
+  void findHeld(const Constraints& rows);
+
+  VectorX rate_, Ma_, Mrate_, gradient_, J_;
+  std::vector<Correction> corrections_;  ///< of P⁻¹, the first correctionCount_ are in use
+  int correctionCount_ = 0;
+  std::vector<Knot> crossed_;
+};
+
+}  // namespace softgauss::gdd

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gdd/quadratic_program.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/core/check.hpp"
+
+namespace softgauss::gdd {
+namespace {
+
+/// Of |p|, for rows; of the bound, for bounds: what rounding may violate.
+constexpr double kFeasible = 1e-12;
+/// A normal of which less than this share (squared) is new depends on the active ones.
+constexpr double kDependent = 1e-18;
+
+}  // namespace
+
+bool QuadraticProgram::setHessian(const MatrixX& K) {
+  cholesky_.compute(K);
+  return cholesky_.info() == Eigen::Success;
+}
+
+double QuadraticProgram::slack(int constraint) const {
+  const int n = static_cast<int>(p_.size());
+  if (constraint < n) return p_[constraint] - (*lower_)[constraint];
+  if (constraint < 2 * n) return (*upper_)[constraint - n] - p_[constraint - n];
+  const int k = constraint - 2 * n;
+  return N_->row(k).dot(p_) + (*distance_)[k];
+}
+
+QuadraticProgram::Violation QuadraticProgram::mostViolated() const {
+  Violation most;
+  const int n = static_cast<int>(p_.size());
+  const auto consider = [&](int constraint, double amount, double tolerance) {
+    if (amount > std::max(most.amount, tolerance) && !isActive_[constraint])
+      most = {constraint, amount};
+  };
+  for (int i = 0; i < n; ++i) {
+    consider(i, (*lower_)[i] - p_[i], kFeasible * std::abs((*lower_)[i]));
+    consider(n + i, p_[i] - (*upper_)[i], kFeasible * std::abs((*upper_)[i]));
+  }
+  const double size = p_.norm();
+  for (int k = 0; k < rows_; ++k)
+    if (norm_[k] > 0.0)
+      consider(2 * n + k, -(N_->row(k).dot(p_) + (*distance_)[k]) / norm_[k], kFeasible * size);
+  return most;
+}
+
+void QuadraticProgram::rotatedNormal(int constraint) {
+  const int n = static_cast<int>(p_.size());
+  if (constraint < n)
+    d_ = J_.row(constraint).transpose();
+  else if (constraint < 2 * n)
+    d_ = -J_.row(constraint - n).transpose();
+  else
+    d_.noalias() = J_.transpose() * N_->row(constraint - 2 * n).transpose();
+}
+
+void QuadraticProgram::add(int constraint, double multiplier) {
+  // Rotate the columns of J so that d has one entry below those of the active ones.
+  const int n = static_cast<int>(p_.size()), m = static_cast<int>(active_.size());
+  for (int i = n - 1; i > m; --i) {
+    const double a = d_[i - 1], b = d_[i], h = std::hypot(a, b);
+    if (b == 0.0) continue;
+    const double c = a / h, s = b / h;
+    d_[i - 1] = h;
+    d_[i] = 0.0;
+    for (int k = 0; k < n; ++k) {
+      const double x = J_(k, i - 1), y = J_(k, i);
+      J_(k, i - 1) = c * x + s * y;
+      J_(k, i) = c * y - s * x;
+    }
+  }
+  R_.col(m).head(m + 1) = d_.head(m + 1);
+  active_.push_back(constraint);
+  multiplier_.push_back(multiplier);
+  isActive_[constraint] = 1;
+}
+
+void QuadraticProgram::drop(int place) {
+  const int n = static_cast<int>(p_.size()), m = static_cast<int>(active_.size());
+  isActive_[active_[place]] = 0;
+  active_.erase(active_.begin() + place);
+  multiplier_.erase(multiplier_.begin() + place);
+  for (int i = place; i + 1 < m; ++i) R_.col(i).head(i + 2) = R_.col(i + 1).head(i + 2);
+  // R is upper triangular but for one entry below the diagonal in each column from `place` on.
+  for (int i = place; i + 1 < m; ++i) {
+    const double a = R_(i, i), b = R_(i + 1, i), h = std::hypot(a, b);
+    if (h == 0.0) continue;
+    const double c = a / h, s = b / h;
+    for (int k = i; k + 1 < m; ++k) {
+      const double x = R_(i, k), y = R_(i + 1, k);
+      R_(i, k) = c * x + s * y;
+      R_(i + 1, k) = c * y - s * x;
+    }
+    for (int k = 0; k < n; ++k) {
+      const double x = J_(k, i), y = J_(k, i + 1);
+      J_(k, i) = c * x + s * y;
+      J_(k, i + 1) = c * y - s * x;
+    }
+  }
+}
+
+bool QuadraticProgram::minimize(const VectorX& q, const VectorX& lower, const VectorX& upper,
+                                const RowMajorMatrixX& N, const VectorX& distance, int rows) {
+  const int n = static_cast<int>(q.size());
+  lower_ = &lower, upper_ = &upper, N_ = &N, distance_ = &distance, rows_ = rows;
+  p_ = -q;
+  cholesky_.solveInPlace(p_);
+  active_.clear();
+  multiplier_.clear();
+  isActive_.assign(static_cast<std::size_t>(2 * n + rows), 0);
+  norm_.resize(static_cast<std::size_t>(rows));
+  for (int k = 0; k < rows; ++k) norm_[k] = N.row(k).norm();
+  bool rotated = false, solved = true;
+
+  for (int changes = 0; solved;) {
+    const Violation violation = mostViolated();
+    if (violation.constraint < 0) break;
+    const int entering = violation.constraint;
+    if (!rotated) {
+      J_.setIdentity(n, n);
+      cholesky_.matrixU().solveInPlace(J_);
+      R_.resize(n, n);
+      rotated = true;
+    }
+    double enteringMultiplier = 0.0;
+    for (;;) {
+      if (++changes > 20 * (n + rows)) {
+        solved = false;
+        break;
+      }
+      const int m = static_cast<int>(active_.size());
+      rotatedNormal(entering);
+      // Direction in p, and the rate of the active multipliers.
+      const double fresh = d_.tail(n - m).squaredNorm();
+      const bool dependent = !(fresh > kDependent * d_.squaredNorm());
+      r_ = d_.head(m);
+      if (m > 0) R_.topLeftCorner(m, m).triangularView<Eigen::Upper>().solveInPlace(r_);
+      double dual = kInfinity;
+      int leaving = -1;
+      for (int k = 0; k < m; ++k) {
+        if (!(r_[k] > 0.0) || multiplier_[k] / r_[k] >= dual) continue;
+        dual = multiplier_[k] / r_[k];
+        leaving = k;
+      }
+      const double primal = dependent ? kInfinity : -slack(entering) / fresh;
+      const double step = std::min(primal, dual);
+      if (!std::isfinite(step)) {  // infeasible, which p = 0 says it is not: rounding
+        solved = false;
+        break;
+      }
+      if (!dependent) {
+        z_.noalias() = J_.rightCols(n - m) * d_.tail(n - m);
+        p_ += step * z_;
+      }
+      for (int k = 0; k < m; ++k) multiplier_[k] -= step * r_[k];
+      enteringMultiplier += step;
+      if (primal <= dual) {
+        add(entering, enteringMultiplier);
+        break;
+      }
+      drop(leaving);
+    }
+  }
+
+  boundMultipliers_.setZero(n);
+  rowMultipliers_.setZero(rows);
+  for (std::size_t k = 0; k < active_.size(); ++k) {
+    const int c = active_[k];
+    const double multiplier = std::max(0.0, multiplier_[k]);
+    if (c < n)
+      boundMultipliers_[c] = multiplier, p_[c] = lower[c];
+    else if (c < 2 * n)
+      boundMultipliers_[c - n] = -multiplier, p_[c - n] = upper[c - n];
+    else
+      rowMultipliers_[c - 2 * n] = multiplier;
+  }
+  p_ = p_.cwiseMax(lower).cwiseMin(upper);
+  // −(½ pᵀKp + qᵀp), with Kp = −q + Aᵀν and νᵀA p = νᵀb: one product less, and no cancellation.
+  decrease_ = -0.5 * q.dot(p_) - 0.5 * boundMultipliers_.dot(p_);
+  for (int k = 0; k < rows; ++k) decrease_ += 0.5 * rowMultipliers_[k] * distance[k];
+  return solved;
+}
+
+}  // namespace softgauss::gdd

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// A small convex quadratic program, by the dual active-set method of Goldfarb and Idnani (1983):
+///
+///   min_p  ½ pᵀK p + qᵀp    subject to   lower ≤ p ≤ upper,   N p ≥ −distance               (T.61)
+///
+/// K is symmetric positive definite. The method starts at −K⁻¹q and takes in violated constraints
+/// one at a time, so linearly dependent rows of N do no harm: one that depends on active rows
+/// replaces one of them. Where no constraint is violated it costs one Cholesky solve.
+
+#include <Eigen/Cholesky>
+#include <vector>
+
+#include "engine/core/types.hpp"
+
+namespace softgauss::gdd {
+
+class QuadraticProgram {
+ public:
+  /// Factors K; false when it is not positive definite.
+  bool setHessian(const MatrixX& K);
+  /// x ← K⁻¹ x.
+  void solveHessian(VectorX& x) const { cholesky_.solveInPlace(x); }
+
+  /// Solves for p = 0 feasible. Returns false where rounding kept it from an answer; p is then
+  /// feasible up to rounding, but not optimal.
+  bool minimize(const VectorX& q, const VectorX& lower, const VectorX& upper,
+                const RowMajorMatrixX& N, const VectorX& distance, int rows);
+
+  const VectorX& solution() const { return p_; }
+  double decrease() const { return decrease_; }  ///< −(½ pᵀK p + qᵀp) ≥ 0
+  /// Kp + q = boundMultipliers + Nᵀ rowMultipliers; those of a lower bound are ≥ 0, of an upper ≤
+  /// 0.
+  const VectorX& boundMultipliers() const { return boundMultipliers_; }
+  const VectorX& rowMultipliers() const { return rowMultipliers_; }  ///< ≥ 0, 0 where not active
+
+ private:
+  /// A constraint n·p ≥ b, by number: lower bounds, upper bounds, rows of N.
+  struct Violation {
+    int constraint = -1;
+    double amount = 0.0;  ///< b − n·p > 0, over |n|
+  };
+  Violation mostViolated() const;
+  double slack(int constraint) const;
+  /// z ← Jᵀ n, J = L⁻ᵀ Q.
+  void rotatedNormal(int constraint);
+  void add(int constraint, double multiplier);
+  void drop(int place);
+
+  Eigen::LLT<MatrixX> cholesky_;
+  const VectorX* lower_ = nullptr;
+  const VectorX* upper_ = nullptr;
+  const RowMajorMatrixX* N_ = nullptr;
+  const VectorX* distance_ = nullptr;
+  int rows_ = 0;
+  VectorX p_, boundMultipliers_, rowMultipliers_;
+  double decrease_ = 0.0;
+  std::vector<double> norm_;  ///< of the rows of N
+  std::vector<char> isActive_;
+  std::vector<int> active_;
+  std::vector<double> multiplier_;
+  MatrixX J_, R_;
+  VectorX d_, z_, r_;
+};
+
+}  // namespace softgauss::gdd

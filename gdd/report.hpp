@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// What a solver of goal directed dynamics tells of its last solve.
+
+namespace softgauss::gdd {
+
+enum class GddStatus {
+  converged,
+  kink,            ///< converged, with rows held at their knots
+  iterationLimit,  ///< the best point so far
+  bend,       ///< no descent along the direction, past a kink of an elliptic cone: not certified
+  undecided,  ///< at a kink of more dependent rows than the solver tries in all combinations
+  notFinite
+};
+
+struct GddReport {
+  GddStatus status = GddStatus::converged;
+  int iterations = 0;   ///< solver 1: Newton directions; solver 2: paths followed
+  int dualUpdates = 0;  ///< of solver 1
+  int factorizations = 0;
+  int cells = 0;              ///< solver 2: cells in which a quadratic program was solved
+  int heldRows = 0;           ///< rows at their knots at the end
+  int forwardIterations = 0;  ///< solver 2: Newton iterations of its one forward solve
+  double violation = 0.0;     ///< distance of g(a) from its box [N or N m]
+  /// Solver 1: max |∇Φ + J_Kᵀμ|ᵢ/√M_ii over max(1, max |∇ℓᵢ|/√M_ii). Solver 2: the decrease that
+  /// its quadratic program promises still, over the objective.
+  double stationarity = 0.0;
+  double objective = 0.0;  ///< ½ gᵀR g + ℓ up to ℓ's constant
+};
+
+}  // namespace softgauss::gdd
