@@ -28,31 +28,29 @@ GddStatus ActiveSet::start(const Model& model, const ControlBox& box, Data& data
   badDof_ = -1;
   tried_.clear();
   path_.held.clear();
-  if (!cell_.start(model, box, data)) {
-    badDof_ = cell_.massFailedRow();
-    return GddStatus::notFinite;
-  }
-  const int n = cell_.columns();
+  cell_.setDriven(model, box);
   cell_.select(box.lower, lower_);
   cell_.select(box.upper, upper_);
-  const bool known = warm.gddValid && warm.control.size() == model.nv && warm.control.allFinite();
-  u_.setZero(n);
+  const bool known = warm.gddValid && warm.gddA.allFinite() && warm.control.size() == model.nv &&
+                     warm.control.allFinite();
+  u_.setZero(cell_.columns());
   if (known) cell_.select(warm.control, u_);
   u_ = u_.cwiseMax(lower_).cwiseMin(upper_);
   force_ = box.lower;  // where the box has no width
   cell_.spread(u_, force_);
 
   setAppliedForce(force_, data.forces);
-  const VectorX* guess = warm.gddValid ? &warm.gddA : (warm.valid ? &warm.a : nullptr);
+  const VectorX* guess = known ? &warm.gddA : (warm.valid ? &warm.a : nullptr);
   if (minimizeGauss(model, guess, data) == SolveStatus::notFinite) {
     badDof_ = data.stats.badDof;
     return GddStatus::notFinite;
   }
   report_.forwardIterations = data.forward.report.iterations;
   path_.a = data.forward.a;
-  bool changed = false;
-  data.constraints.setResidual(path_.a);
-  data.constraints.evaluate(changed);
+  if (!cell_.setInertia(data)) {
+    badDof_ = cell_.massFailedRow();
+    return GddStatus::notFinite;
+  }
   return GddStatus::converged;
 }
 
@@ -67,16 +65,17 @@ void ActiveSet::computeResidual(const Data& data) {
 bool ActiveSet::enterCell(const GoalCost& cost, Data& data) {
   Constraints& rows = data.constraints;
   ++report_.factorizations;
-  if (!cell_.enter(data)) return false;
-
-  // Rounding along the path is undone by a Newton step of forward dynamics, exact in a cell.
-  rows.setResidual(path_.a);
-  rows.evaluateInPlace();
-  computeResidual(data);
-  cell_.solve(residual_);
-  path_.a += residual_;
-  rows.setResidual(path_.a);
-  rows.evaluateInPlace();
+  if (report_.cells == 0 && data.forward.cellFactored) {
+    cell_.enterWith(data.forward.factor);
+  } else {
+    if (!cell_.enter(data)) return false;
+    // Rounding along the path is undone by a Newton step of forward dynamics, exact in a cell.
+    rows.setResidual(path_.a);
+    rows.evaluateInPlace();
+    computeResidual(data);
+    cell_.solve(residual_);
+    path_.a += residual_;
+  }
 
   constrained_.clear();
   for (int i = 0; i < path_.held.size(); ++i) {
@@ -227,13 +226,16 @@ ActiveSet::Next ActiveSet::leaveCell(Data& data) {
 
 /// a to rounding, the rows as they are there, and the report.
 void ActiveSet::finish(const ControlBox& box, const GoalCost& cost, Data& data) {
-  constexpr int kCorrections = 2;
+  constexpr int kCorrections = 3;
+  constexpr double kRounding = 1e-13;
+  const double scale =
+      std::max({1.0, data.forces.c.cwiseAbs().maxCoeff(), force_.cwiseAbs().maxCoeff()});
   bool changed = false;
   for (int k = 0;; ++k) {
     data.constraints.setResidual(path_.a);
     data.constraints.evaluate(changed);
     computeResidual(data);
-    if (k == kCorrections) break;
+    if (k == kCorrections || residual_.cwiseAbs().maxCoeff() <= kRounding * scale) break;
     cell_.solve(residual_);
     path_.a += residual_;
   }

@@ -12,16 +12,21 @@ void setSelection(const std::vector<int>& driven, int dofs, RowMajorMatrixX& X) 
 
 }  // namespace
 
-bool CellResponse::start(const Model& model, const ControlBox& box, const Data& data) {
+void CellResponse::setDriven(const Model& model, const ControlBox& box) {
   driven_.clear();
   for (int i = 0; i < model.nv; ++i)
     if (box.lower[i] < box.upper[i]) driven_.push_back(i);
-  if (!massFactor_.compute(data.inertia.M)) return false;
-  setSelection(driven_, model.nv, S_);
-  massFactor_.solve(S_);
+}
+
+bool CellResponse::setInertia(const Data& data) {
+  massFactor_ = data.forward.massFactored ? &data.forward.massFactor : &ownMassFactor_;
+  if (!data.forward.massFactored && !ownMassFactor_.compute(data.inertia.M)) return false;
+  const int n = data.inertia.M.size();
+  setSelection(driven_, n, S_);
+  massFactor_->solve(S_);
   forcePrice_.resize(columns(), columns());
   for (int i = 0; i < columns(); ++i) forcePrice_.row(i) = S_.row(driven_[i]);
-  MS_.resize(S_.rows(), S_.cols());
+  MS_.resize(n, columns());
   return true;
 }
 
@@ -29,12 +34,13 @@ bool CellResponse::enter(Data& data) {
   P_.resize(data.constraints.sparsity());
   P_.assign(data.inertia.M);
   data.constraints.addCurvature(P_);
-  return factor_.compute(P_);
+  factor_ = &ownFactor_;
+  return ownFactor_.compute(P_);
 }
 
 void CellResponse::computeHessian(const GoalCost& cost, const Data& data) {
-  setSelection(driven_, P_.size(), S_);
-  factor_.solve(S_);
+  setSelection(driven_, data.inertia.M.size(), S_);
+  factor_->solve(S_);
   K_ = forcePrice_;
   cost.addReducedCurvature(data.inertia.M, S_, MS_, K_);
 }

@@ -17,27 +17,37 @@ namespace softgauss::gdd {
 
 class CellResponse {
  public:
-  /// Takes B from the box and R from M. Returns false when M is not positive definite.
-  bool start(const Model& model, const ControlBox& box, const Data& data);
+  CellResponse() = default;
+  CellResponse(const CellResponse&) = delete;  // factors are pointed at
+  CellResponse& operator=(const CellResponse&) = delete;
+
+  /// Takes B from the box.
+  void setDriven(const Model& model, const ControlBox& box);
+  /// Takes R from M, after a forward solve. Returns false when M is not positive definite.
+  bool setInertia(const Data& data);
   /// P of the cell in which the rows are kept. Returns false when it cannot be factored.
   bool enter(Data& data);
+  /// P of the forward solve that has just ended in this cell.
+  void enterWith(const TreeFactor& factor) { factor_ = &factor; }
   /// S and K of this cell.
   void computeHessian(const GoalCost& cost, const Data& data);
 
   int columns() const { return static_cast<int>(driven_.size()); }
-  const std::vector<int>& driven() const { return driven_; }  ///< the dof of each column of B
-  void select(const VectorX& x, VectorX& y) const;            ///< y ← Bᵀx
-  void spread(const VectorX& u, VectorX& tau) const;          ///< tau ← B u on driven dofs
-  void solve(VectorX& x) const { factor_.solve(x); }          ///< x ← P⁻¹x
-  void multiplyR(VectorX& x) const { massFactor_.solve(x); }  ///< x ← R x
+  const std::vector<int>& driven() const { return driven_; }   ///< the dof of each column of B
+  void select(const VectorX& x, VectorX& y) const;             ///< y ← Bᵀx
+  void spread(const VectorX& u, VectorX& tau) const;           ///< tau ← B u on driven dofs
+  void solve(VectorX& x) const { factor_->solve(x); }          ///< x ← P⁻¹x
+  void multiplyR(VectorX& x) const { massFactor_->solve(x); }  ///< x ← R x
   const MatrixX& hessian() const { return K_; }
   /// pᵀBᵀR B p.
   double forceCurvature(const VectorX& p) const;
-  int massFailedRow() const { return massFactor_.failedRow(); }
+  int massFailedRow() const { return massFactor_->failedRow(); }
 
  private:
   std::vector<int> driven_;
-  TreeFactor massFactor_, factor_;
+  TreeFactor ownMassFactor_, ownFactor_;
+  const TreeFactor* massFactor_ = &ownMassFactor_;
+  const TreeFactor* factor_ = &ownFactor_;
   TreeMatrix P_;
   RowMajorMatrixX S_, MS_;
   MatrixX forcePrice_;  ///< BᵀR B

@@ -82,16 +82,16 @@ void GoalCost::addReducedCurvature(const TreeMatrix& M, const RowMajorMatrixX& S
     K.triangularView<Eigen::Lower>() += metricWeight_ * (S.transpose() * MS);
   }
   // One rank for each row of J.
-  VectorX row(S.rows()), reduced(S.cols());
+  reduced_.resize(S.cols());
   for (int i = 0; i < rows_.size(); ++i) {
     for (int k = 0; k < 3; ++k) {
       const double unit[3] = {k == 0 ? 1.0 : 0.0, k == 1 ? 1.0 : 0.0, k == 2 ? 1.0 : 0.0};
-      row.setZero();
-      rows_.addTransposed(i, unit, row);
-      reduced.setZero();
-      for (Eigen::Index j = 0; j < row.size(); ++j)
-        if (row[j] != 0.0) reduced += row[j] * S.row(j).transpose();
-      K.selfadjointView<Eigen::Lower>().rankUpdate(reduced, weight_[i]);
+      scratch_.setZero();
+      rows_.addTransposed(i, unit, scratch_);
+      reduced_.setZero();
+      for (Eigen::Index j = 0; j < scratch_.size(); ++j)
+        if (scratch_[j] != 0.0) reduced_ += scratch_[j] * S.row(j).transpose();
+      K.selfadjointView<Eigen::Lower>().rankUpdate(reduced_, weight_[i]);
     }
   }
 }

@@ -46,7 +46,7 @@ class GoalCost {
   std::vector<Vector3> target_;
   double metricWeight_ = 0.0;  ///< m
   VectorX metricOffset_;       ///< o
-  mutable VectorX scratch_;
+  mutable VectorX scratch_, reduced_;
 };
 
 }  // namespace softgauss::gdd

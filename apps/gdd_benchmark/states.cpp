@@ -28,6 +28,8 @@ const char* statusName(gdd::GddStatus status) {
       return "iterationLimit";
     case gdd::GddStatus::bend:
       return "bend";
+    case gdd::GddStatus::undecided:
+      return "undecided";
     case gdd::GddStatus::notFinite:
       return "notFinite";
   }

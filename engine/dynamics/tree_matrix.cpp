@@ -5,6 +5,8 @@
 #include <bit>
 #include <cmath>
 
+#include "engine/core/vector_clones.hpp"
+
 namespace softgauss {
 
 TreeSparsity::TreeSparsity(const Model& model) {
@@ -165,7 +167,8 @@ void TreeMatrix::multiply(const VectorX& x, VectorX& y) const {
   }
 }
 
-void TreeMatrix::multiply(const RowMajorMatrixX& X, RowMajorMatrixX& Y) const {
+SOFTGAUSS_VECTOR_CLONES void TreeMatrix::multiply(const RowMajorMatrixX& X,
+                                                  RowMajorMatrixX& Y) const {
   const int n = size(), columns = static_cast<int>(X.cols());
   for (int i = 0; i < n; ++i) {
     const double* a = row(i);
@@ -195,7 +198,7 @@ MatrixX TreeMatrix::dense() const {
   return A;
 }
 
-bool TreeFactor::compute(const TreeMatrix& A, const double* diagonal) {
+SOFTGAUSS_VECTOR_CLONES bool TreeFactor::compute(const TreeMatrix& A, const double* diagonal) {
   const TreeSparsity& pattern = A.sparsity();
   LD_.resize(pattern);
   LD_.assign(A);
@@ -272,7 +275,7 @@ void TreeFactor::solveLower(VectorX& x) const {
   }
 }
 
-void TreeFactor::solve(RowMajorMatrixX& X) const {
+SOFTGAUSS_VECTOR_CLONES void TreeFactor::solve(RowMajorMatrixX& X) const {
   const TreeSparsity& pattern = LD_.sparsity();
   const int n = size(), columns = static_cast<int>(X.cols());
   for (int k = n - 1; k >= 0; --k) {

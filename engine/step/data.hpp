@@ -22,6 +22,8 @@ struct ForwardSolution {
   TreeFactor factor;      ///< of P = M + Jᵀ∇²s J in the last cell, or of M
   TreeFactor massFactor;  ///< of M, or of M + h D where damping is implicit
   NewtonReport report;
+  bool massFactored = false;  ///< by the last solve, with M alone
+  bool cellFactored = false;  ///< `factor` is of the cell of the solution
 
   VectorX direction, Md, scale, start;  ///< scratch
   TreeMatrix P;

@@ -20,6 +20,7 @@ int firstNotFinite(const VectorX& x) {
 SolveStatus minimizeGauss(const Model& model, const VectorX* guess, Data& data) noexcept {
   ForwardSolution& s = data.forward;
   s.report = {};
+  s.massFactored = s.cellFactored = false;
   if (model.nv == 0) return SolveStatus::converged;
   const auto notFinite = [&] {
     data.stats.badDof = firstNotFinite(data.forces.net);
@@ -47,12 +48,14 @@ SolveStatus minimizeGauss(const Model& model, const VectorX* guess, Data& data) 
     data.stats.badDof = s.massFactor.failedRow();
     return s.report.status;
   }
+  s.massFactored = true;
   s.start = data.forces.net;
   s.massFactor.solve(s.start);
   const double smoothCost = objective.moveTo(s.start);
   if (warm && warmCost <= smoothCost) objective.moveTo(*guess);
   s.report = minimize(objective, model.options.tolerance, model.options.maxIterations, s.gradient,
                       s.direction);
+  s.cellFactored = s.report.factorizations > 0 && !objective.cellChanged();
   return finish();
 }
 

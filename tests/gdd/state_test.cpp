@@ -91,10 +91,10 @@ TEST(GddState, WarmStartThatIsNotFiniteIsAColdStart) {
   cold->state.warmstart.gddValid = false;
   ASSERT_NE(cold->step(), SolveStatus::notFinite);
   for (const double bad : {kNaN, kInfinity}) {
-    for (const bool multipliers : {false, true}) {
+    for (const bool control : {false, true}) {
       auto r = reachingHumanoid(0);
       r->state = good;
-      (multipliers ? r->state.warmstart.multipliers : r->state.warmstart.gddA)[4] = bad;
+      (control ? r->state.warmstart.control : r->state.warmstart.gddA)[4] = bad;
       ASSERT_NE(r->step(), SolveStatus::notFinite);
       EXPECT_EQ(r->state.v, cold->state.v);
       EXPECT_EQ(r->controller.control, cold->controller.control);
