@@ -64,10 +64,11 @@ void ActiveSet::computeResidual(const Data& data) {
 /// P, S, K and the sides of held rows, in the cell in which the rows are kept; a made exact in it.
 bool ActiveSet::enterCell(const GoalCost& cost, Data& data) {
   Constraints& rows = data.constraints;
-  ++report_.factorizations;
-  if (report_.cells == 0 && data.forward.cellFactored) {
+  const bool first = report_.cells == 0;
+  if (first && data.forward.cellFactored) {
     cell_.enterWith(data.forward.factor);
-  } else {
+  } else if (first || cell_.isWorn()) {
+    ++report_.factorizations;
     if (!cell_.enter(data)) return false;
     // Rounding along the path is undone by a Newton step of forward dynamics, exact in a cell.
     rows.setResidual(path_.a);
@@ -94,7 +95,7 @@ bool ActiveSet::enterCell(const GoalCost& cost, Data& data) {
     cell_.solve(adjoint_);
     cell_.select(adjoint_, h.side);
   }
-  cell_.computeHessian(cost, data);
+  cell_.computeHessian(cost);
   return true;
 }
 
@@ -218,9 +219,11 @@ ActiveSet::Next ActiveSet::leaveCell(Data& data) {
     }
     if (pattern == here) return Next::done;
   }
-  for (int k = 0; k < n; ++k)
-    if (((pattern ^ here) >> k) & 1)
-      data.constraints.enterPiece(row(k).knot, ((pattern >> k) & 1) != 0);
+  for (int k = 0; k < n; ++k) {
+    if ((((pattern ^ here) >> k) & 1) == 0) continue;
+    data.constraints.enterPiece(row(k).knot, ((pattern >> k) & 1) != 0);
+    cell_.cross(row(k).J, row(k).jump, adjoint_);
+  }
   return Next::cell;
 }
 

@@ -26,7 +26,7 @@ bool CellResponse::setInertia(const Data& data) {
   massFactor_->solve(S_);
   forcePrice_.resize(columns(), columns());
   for (int i = 0; i < columns(); ++i) forcePrice_.row(i) = S_.row(driven_[i]);
-  MS_.resize(n, columns());
+  rootS_.resize(n, columns());
   return true;
 }
 
@@ -34,15 +34,49 @@ bool CellResponse::enter(Data& data) {
   P_.resize(data.constraints.sparsity());
   P_.assign(data.inertia.M);
   data.constraints.addCurvature(P_);
-  factor_ = &ownFactor_;
+  enterWith(ownFactor_);
   return ownFactor_.compute(P_);
 }
 
-void CellResponse::computeHessian(const GoalCost& cost, const Data& data) {
-  setSelection(driven_, data.inertia.M.size(), S_);
-  factor_->solve(S_);
+void CellResponse::enterWith(const TreeFactor& factor) {
+  factor_ = &factor;
+  correctionCount_ = 0;
+  correctionsInS_ = -1;
+}
+
+void CellResponse::solve(VectorX& x) const {
+  if (correctionCount_ == 0) return factor_->solve(x);
+  scratch_ = x;
+  factor_->solve(x);
+  for (int k = 0; k < correctionCount_; ++k) {
+    const Correction& c = corrections_[k];
+    x -= c.scale * c.y.dot(scratch_) * c.y;
+  }
+}
+
+double CellResponse::cross(const VectorX& J, double jump, VectorX& PinvJ) {
+  PinvJ = J;
+  solve(PinvJ);
+  if (correctionCount_ == static_cast<int>(corrections_.size())) corrections_.emplace_back();
+  Correction& c = corrections_[correctionCount_++];
+  c.y = PinvJ;
+  select(c.y, c.By);
+  c.scale = jump / (1.0 + jump * J.dot(PinvJ));
+  return c.scale;
+}
+
+void CellResponse::computeHessian(const GoalCost& cost) {
+  if (correctionsInS_ < 0) {
+    setSelection(driven_, factor_->size(), S_);
+    factor_->solve(S_);
+    correctionsInS_ = 0;
+  }
+  for (; correctionsInS_ < correctionCount_; ++correctionsInS_) {
+    const Correction& c = corrections_[correctionsInS_];
+    S_.noalias() -= (c.scale * c.y) * c.By.transpose();
+  }
   K_ = forcePrice_;
-  cost.addReducedCurvature(data.inertia.M, S_, MS_, K_);
+  cost.addReducedCurvature(*massFactor_, S_, rootS_, K_);
 }
 
 void CellResponse::select(const VectorX& x, VectorX& y) const {

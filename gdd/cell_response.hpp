@@ -5,7 +5,9 @@
 ///
 ///   S = P⁻¹B,   K = BᵀR B + Sᵀ∇²ℓ S,   P = M + Jᵀ∇²s J,   R = M⁻¹
 ///
-/// B has a unit column for each dof that is driven. All columns are solved for at once.
+/// B has a unit column for each dof that is driven. All columns are solved for at once. Where a row
+/// changes its piece, P changes by Δs″ JᵀJ, and nothing is factored anew (T.62):
+///   P⁻¹ ← P⁻¹ − γ y yᵀ,   y = P⁻¹Jᵀ,   γ = Δs″/(1 + Δs″ J y),   S ← S − γ y (Bᵀy)ᵀ
 
 #include <vector>
 
@@ -25,33 +27,49 @@ class CellResponse {
   void setDriven(const Model& model, const ControlBox& box);
   /// Takes R from M, after a forward solve. Returns false when M is not positive definite.
   bool setInertia(const Data& data);
+
   /// P of the cell in which the rows are kept. Returns false when it cannot be factored.
   bool enter(Data& data);
   /// P of the forward solve that has just ended in this cell.
-  void enterWith(const TreeFactor& factor) { factor_ = &factor; }
-  /// S and K of this cell.
-  void computeHessian(const GoalCost& cost, const Data& data);
+  void enterWith(const TreeFactor& factor);
+  /// The next cell, in which the row J (nv) has `jump` more curvature. Returns γ, and P⁻¹Jᵀ of the
+  /// cell that is left.
+  double cross(const VectorX& J, double jump, VectorX& PinvJ);
+  /// Whether so many rows have been crossed that it is better to enter() anew.
+  bool isWorn() const { return correctionCount_ > kMaxCorrections; }
+  /// K of this cell.
+  void computeHessian(const GoalCost& cost);
 
   int columns() const { return static_cast<int>(driven_.size()); }
   const std::vector<int>& driven() const { return driven_; }   ///< the dof of each column of B
   void select(const VectorX& x, VectorX& y) const;             ///< y ← Bᵀx
   void spread(const VectorX& u, VectorX& tau) const;           ///< tau ← B u on driven dofs
-  void solve(VectorX& x) const { factor_->solve(x); }          ///< x ← P⁻¹x
+  void solve(VectorX& x) const;                                ///< x ← P⁻¹x
   void multiplyR(VectorX& x) const { massFactor_->solve(x); }  ///< x ← R x
-  const MatrixX& hessian() const { return K_; }
+  const MatrixX& hessian() const { return K_; }                ///< lower triangle
   /// pᵀBᵀR B p.
   double forceCurvature(const VectorX& p) const;
   int massFailedRow() const { return massFactor_->failedRow(); }
 
  private:
+  struct Correction {
+    VectorX y, By;  ///< P⁻¹Jᵀ, Bᵀ of it
+    double scale = 0.0;
+  };
+  static constexpr int kMaxCorrections = 16;
+
   std::vector<int> driven_;
   TreeFactor ownMassFactor_, ownFactor_;
   const TreeFactor* massFactor_ = &ownMassFactor_;
-  const TreeFactor* factor_ = &ownFactor_;
+  const TreeFactor* factor_ = &ownFactor_;  ///< of P before the corrections
+  std::vector<Correction> corrections_;     ///< the first correctionCount_ are in use
+  int correctionCount_ = 0;
+  int correctionsInS_ = 0;  ///< −1: S is not of this factor
   TreeMatrix P_;
-  RowMajorMatrixX S_, MS_;
+  RowMajorMatrixX S_, rootS_;
   MatrixX forcePrice_;  ///< BᵀR B
   MatrixX K_;
+  mutable VectorX scratch_;
 };
 
 }  // namespace softgauss::gdd

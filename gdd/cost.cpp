@@ -1,7 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gdd/cost.hpp"
 
+#include "engine/core/vector_clones.hpp"
+
 namespace softgauss::gdd {
+namespace {
+
+/// K ← K + scale · YᵀY, lower triangle: column i of K gains scale · Σ_k Y_ki Y_k,i…
+SOFTGAUSS_VECTOR_CLONES void addGram(const RowMajorMatrixX& Y, double scale, MatrixX& K) {
+  const int rows = static_cast<int>(Y.rows()), n = static_cast<int>(Y.cols());
+  for (int i = 0; i < n; ++i) {
+    double* column = K.data() + i * n;
+    int k = 0;
+    for (; k + 4 <= rows; k += 4) {
+      const double *y0 = Y.data() + k * n, *y1 = y0 + n, *y2 = y1 + n, *y3 = y2 + n;
+      const double s0 = scale * y0[i], s1 = scale * y1[i], s2 = scale * y2[i], s3 = scale * y3[i];
+      for (int j = i; j < n; ++j) column[j] += s0 * y0[j] + s1 * y1[j] + s2 * y2[j] + s3 * y3[j];
+    }
+    for (; k < rows; ++k) {
+      const double* y = Y.data() + k * n;
+      const double s = scale * y[i];
+      for (int j = i; j < n; ++j) column[j] += s * y[j];
+    }
+  }
+}
+
+}  // namespace
 
 void GoalCost::clear() {
   rows_.clear();
@@ -75,11 +99,11 @@ void GoalCost::addRowCurvature(TreeMatrix& H) {
   }
 }
 
-void GoalCost::addReducedCurvature(const TreeMatrix& M, const RowMajorMatrixX& S,
-                                   RowMajorMatrixX& MS, MatrixX& K) const {
+void GoalCost::addReducedCurvature(const TreeFactor& massFactor, const RowMajorMatrixX& S,
+                                   RowMajorMatrixX& rootS, MatrixX& K) const {
   if (metricWeight_ != 0.0) {
-    M.multiply(S, MS);
-    K.triangularView<Eigen::Lower>() += metricWeight_ * (S.transpose() * MS);
+    massFactor.multiplyRoot(S, rootS);
+    addGram(rootS, metricWeight_, K);
   }
   // One rank for each row of J.
   reduced_.resize(S.cols());

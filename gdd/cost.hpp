@@ -36,9 +36,10 @@ class GoalCost {
   double curvatureAlong(const VectorX& d, const VectorX& Md) const;
   /// H ← H + ∇²ℓ without the metric part m M.
   void addRowCurvature(TreeMatrix& H);
-  /// K ← K + Sᵀ∇²ℓ S, lower triangle, for S (nv × any). MS is scratch of the size of S.
-  void addReducedCurvature(const TreeMatrix& M, const RowMajorMatrixX& S, RowMajorMatrixX& MS,
-                           MatrixX& K) const;
+  /// K ← K + Sᵀ∇²ℓ S, lower triangle, for S (nv × any). `massFactor` is of M, rootS scratch of the
+  /// size of S.
+  void addReducedCurvature(const TreeFactor& massFactor, const RowMajorMatrixX& S,
+                           RowMajorMatrixX& rootS, MatrixX& K) const;
 
  private:
   BlockJacobian rows_;

@@ -12,15 +12,15 @@ constexpr double kArrival = 1.0 - 1e-6;
 }  // namespace
 
 ForwardPath::ForwardPath(const Model& model) {
-  for (VectorX* x : {&a, &rate_, &Ma_, &Mrate_, &gradient_, &J_}) *x = VectorX::Zero(model.nv);
+  for (VectorX* x : {&a, &rate_, &Ma_, &Mrate_, &gradient_, &J_, &PinvJ_})
+    *x = VectorX::Zero(model.nv);
 }
 
-PathEnd ForwardPath::follow(const PathStart& start, const CellResponse& cell, const GoalCost& cost,
+PathEnd ForwardPath::follow(const PathStart& start, CellResponse& cell, const GoalCost& cost,
                             const VectorX& rate, Data& data) {
   const TreeMatrix& M = data.inertia.M;
   Constraints& rows = data.constraints;
   rate_ = rate;
-  correctionCount_ = 0;
   crossed_.clear();
   rows.setRay(rate_);
   for (const HeldKnot& h : held)
@@ -63,24 +63,13 @@ bool ForwardPath::isBlocked(Knot knot) const {
 }
 
 /// (T.62)
-void ForwardPath::cross(const Crossing& crossing, const CellResponse& cell, Constraints& rows) {
+void ForwardPath::cross(const Crossing& crossing, CellResponse& cell, Constraints& rows) {
   rows.enterPiece(crossing.knot, crossing.rate > 0.0);
   crossed_.push_back(crossing.knot);
   J_.setZero();
   rows.addRow(crossing.knot.row, 1.0, J_);
-
-  if (correctionCount_ == static_cast<int>(corrections_.size())) corrections_.emplace_back();
-  VectorX& PinvJ = corrections_[correctionCount_].PinvJ;
-  PinvJ = J_;
-  cell.solve(PinvJ);
-  for (int k = 0; k < correctionCount_; ++k) {
-    const Correction& c = corrections_[k];
-    PinvJ -= c.scale * c.PinvJ.dot(J_) * c.PinvJ;
-  }
-  const double jump = crossing.curvatureJump;
-  corrections_[correctionCount_].scale = jump / (1.0 + jump * J_.dot(PinvJ));
-  rate_ -= corrections_[correctionCount_].scale * crossing.rate * PinvJ;
-  ++correctionCount_;
+  const double scale = cell.cross(J_, crossing.curvatureJump, PinvJ_);
+  rate_ -= scale * crossing.rate * PinvJ_;
   rows.setRay(rate_);
 }
 

@@ -40,22 +40,16 @@ class ForwardPath {
 
   /// Follows the path from the present point, where ȧ = rate; moves a and the rows along. Held rows
   /// with a multiplier stay at their knots within the present cell, or come to them at t = 1.
-  /// Afterwards `held` tells which rows are at knots then.
-  PathEnd follow(const PathStart& start, const CellResponse& cell, const GoalCost& cost,
+  /// Afterwards `cell` is that of the end, and `held` tells which rows are at knots.
+  PathEnd follow(const PathStart& start, CellResponse& cell, const GoalCost& cost,
                  const VectorX& rate, Data& data);
 
  private:
-  struct Correction {
-    VectorX PinvJ;
-    double scale = 0.0;  ///< Δs″/(1 + Δs″ J P⁻¹Jᵀ)
-  };
-  void cross(const Crossing& crossing, const CellResponse& cell, Constraints& rows);
+  void cross(const Crossing& crossing, CellResponse& cell, Constraints& rows);
   bool isBlocked(Knot knot) const;
   void findHeld(const Constraints& rows);
 
-  VectorX rate_, Ma_, Mrate_, gradient_, J_;
-  std::vector<Correction> corrections_;  ///< of P⁻¹, the first correctionCount_ are in use
-  int correctionCount_ = 0;
+  VectorX rate_, Ma_, Mrate_, gradient_, J_, PinvJ_;
   std::vector<Knot> crossed_;
 };
 

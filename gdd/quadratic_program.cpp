@@ -61,7 +61,7 @@ void QuadraticProgram::add(int constraint, double multiplier) {
   // Rotate the columns of J so that d has one entry below those of the active ones.
   const int n = static_cast<int>(p_.size()), m = static_cast<int>(active_.size());
   for (int i = n - 1; i > m; --i) {
-    const double a = d_[i - 1], b = d_[i], h = std::hypot(a, b);
+    const double a = d_[i - 1], b = d_[i], h = std::sqrt(a * a + b * b);
     if (b == 0.0) continue;
     const double c = a / h, s = b / h;
     d_[i - 1] = h;
@@ -86,7 +86,7 @@ void QuadraticProgram::drop(int place) {
   for (int i = place; i + 1 < m; ++i) R_.col(i).head(i + 2) = R_.col(i + 1).head(i + 2);
   // R is upper triangular but for one entry below the diagonal in each column from `place` on.
   for (int i = place; i + 1 < m; ++i) {
-    const double a = R_(i, i), b = R_(i + 1, i), h = std::hypot(a, b);
+    const double a = R_(i, i), b = R_(i + 1, i), h = std::sqrt(a * a + b * b);
     if (h == 0.0) continue;
     const double c = a / h, s = b / h;
     for (int k = i; k + 1 < m; ++k) {

@@ -167,29 +167,6 @@ void TreeMatrix::multiply(const VectorX& x, VectorX& y) const {
   }
 }
 
-SOFTGAUSS_VECTOR_CLONES void TreeMatrix::multiply(const RowMajorMatrixX& X,
-                                                  RowMajorMatrixX& Y) const {
-  const int n = size(), columns = static_cast<int>(X.cols());
-  for (int i = 0; i < n; ++i) {
-    const double* a = row(i);
-    const double* xi = X.data() + i * columns;
-    double* yi = Y.data() + i * columns;
-    for (int c = 0; c < columns; ++c) yi[c] = a[i] * xi[c];
-    for (const Segment* s = sparsity_->begin(i); s != sparsity_->end(i); ++s) {
-      const int end = std::min(s->end, i);
-      for (int j = s->begin; j < end; ++j) {
-        const double aij = a[j];
-        const double* xj = X.data() + j * columns;
-        double* yj = Y.data() + j * columns;
-        for (int c = 0; c < columns; ++c) {
-          yi[c] += aij * xj[c];
-          yj[c] += aij * xi[c];
-        }
-      }
-    }
-  }
-}
-
 MatrixX TreeMatrix::dense() const {
   MatrixX A = MatrixX::Zero(size(), size());
   for (int i = 0; i < size(); ++i)
@@ -302,6 +279,28 @@ SOFTGAUSS_VECTOR_CLONES void TreeFactor::solve(RowMajorMatrixX& X) const {
         for (int c = 0; c < columns; ++c) xk[c] -= l * xj[c];
       }
     }
+  }
+}
+
+SOFTGAUSS_VECTOR_CLONES void TreeFactor::multiplyRoot(const RowMajorMatrixX& X,
+                                                      RowMajorMatrixX& Y) const {
+  const TreeSparsity& pattern = LD_.sparsity();
+  const int n = size(), columns = static_cast<int>(X.cols());
+  for (int k = 0; k < n; ++k) {
+    const double* L = LD_.row(k);
+    const double* x = X.data() + k * columns;
+    double* y = Y.data() + k * columns;
+    for (int c = 0; c < columns; ++c) y[c] = x[c];
+    for (const Segment* s = pattern.begin(k); s != pattern.end(k); ++s) {
+      const int end = std::min(s->end, k);
+      for (int j = s->begin; j < end; ++j) {
+        const double* xj = X.data() + j * columns;
+        const double l = L[j];
+        for (int c = 0; c < columns; ++c) y[c] += l * xj[c];
+      }
+    }
+    const double root = std::sqrt(pivot_[k]);
+    for (int c = 0; c < columns; ++c) y[c] *= root;
   }
 }
 

@@ -84,8 +84,6 @@ class TreeMatrix {
   void add(const TreeMatrix& other, double scale = 1.0);
   /// y ← A x.
   void multiply(const VectorX& x, VectorX& y) const;
-  /// Y ← A X for many columns at once; rows of X and Y are contiguous.
-  void multiply(const RowMajorMatrixX& X, RowMajorMatrixX& Y) const;
   MatrixX dense() const;
 
  private:
@@ -103,6 +101,8 @@ class TreeFactor {
   void solve(VectorX& x) const;
   /// X ← A⁻¹ X for many columns at once; rows of X are contiguous.
   void solve(RowMajorMatrixX& X) const;
+  /// Y ← D^½ L X, so that YᵀY = XᵀA X.
+  void multiplyRoot(const RowMajorMatrixX& X, RowMajorMatrixX& Y) const;
   /// x ← L⁻ᵀ x, the first half of solve(): xᵀ A⁻¹ x = Σ x_k²/D_k afterwards.
   void solveTransposed(VectorX& x) const;
   /// x ← L⁻¹ x, the last half.
