@@ -7,6 +7,10 @@ void GoalCost::clear() {
   rows_.clear();
   weight_.clear();
   target_.clear();
+  denseWeight_.clear();
+  denseTarget_.clear();
+  dofWeight_.setZero();
+  dofOffset_.setZero();
   metricWeight_ = 0.0;
   metricOffset_.setZero();
 }
@@ -22,6 +26,24 @@ void GoalCost::addPoint(const Model& model, const Kinematics& k, const TreeSpars
   target_.push_back(target);
 }
 
+void GoalCost::addRows(const Eigen::Ref<const MatrixX>& J, double weight,
+                       const Eigen::Ref<const VectorX>& target) {
+  SOFTGAUSS_ASSERT(J.cols() == dofWeight_.size() && J.rows() == target.size());
+  const Eigen::Index used = static_cast<Eigen::Index>(denseWeight_.size());
+  if (dense_.cols() < used + J.rows())
+    dense_.conservativeResize(J.cols(), 2 * used + J.rows());  // room that later steps keep
+  dense_.middleCols(used, J.rows()) = J.transpose();
+  for (Eigen::Index i = 0; i < J.rows(); ++i) {
+    denseWeight_.push_back(weight);
+    denseTarget_.push_back(target[i]);
+  }
+}
+
+void GoalCost::addDof(int dof, double weight, double target) {
+  dofWeight_[dof] += weight;
+  dofOffset_[dof] -= weight * target;
+}
+
 void GoalCost::addMetric(double weight, const VectorX& target) {
   metricWeight_ += weight;
   metricOffset_ -= weight * target;
@@ -34,6 +56,11 @@ double GoalCost::value(const TreeMatrix& M, const VectorX& a, const VectorX& Ma)
     rows_.multiply(i, a, y.data());
     sum += 0.5 * weight_[i] * (y - target_[i]).squaredNorm();
   }
+  for (std::size_t i = 0; i < denseWeight_.size(); ++i) {
+    const double error = dense_.col(static_cast<Eigen::Index>(i)).dot(a) - denseTarget_[i];
+    sum += 0.5 * denseWeight_[i] * error * error;
+  }
+  sum += 0.5 * a.dot(dofWeight_.cwiseProduct(a)) + a.dot(dofOffset_);
   if (metricWeight_ != 0.0) {
     M.multiply(metricOffset_, scratch_);
     sum += 0.5 * metricWeight_ * a.dot(Ma) + a.dot(scratch_);
@@ -55,14 +82,23 @@ void GoalCost::gradient(const TreeMatrix& M, const VectorX& a, const VectorX& Ma
     const Vector3 slope = weight_[i] * (y - target_[i]);
     rows_.addTransposed(i, slope.data(), g);
   }
+  for (std::size_t i = 0; i < denseWeight_.size(); ++i) {
+    const auto J = dense_.col(static_cast<Eigen::Index>(i));
+    g += denseWeight_[i] * (J.dot(a) - denseTarget_[i]) * J;
+  }
+  g += dofWeight_.cwiseProduct(a) + dofOffset_;
 }
 
 double GoalCost::curvatureAlong(const VectorX& d, const VectorX& Md) const {
-  double sum = metricWeight_ * d.dot(Md);
+  double sum = metricWeight_ * d.dot(Md) + d.dot(dofWeight_.cwiseProduct(d));
   for (int i = 0; i < rows_.size(); ++i) {
     Vector3 y;
     rows_.multiply(i, d, y.data());
     sum += weight_[i] * y.squaredNorm();
+  }
+  for (std::size_t i = 0; i < denseWeight_.size(); ++i) {
+    const double rate = dense_.col(static_cast<Eigen::Index>(i)).dot(d);
+    sum += denseWeight_[i] * rate * rate;
   }
   return sum;
 }
@@ -73,6 +109,17 @@ void GoalCost::addRowCurvature(TreeMatrix& H) {
     const double diagonal[9] = {w, 0, 0, 0, w, 0, 0, 0, w};
     rows_.addCurvature(i, diagonal, H);
   }
+  const int n = static_cast<int>(dofWeight_.size());
+  for (std::size_t r = 0; r < denseWeight_.size(); ++r) {
+    const auto J = dense_.col(static_cast<Eigen::Index>(r));
+    for (int i = 0; i < n; ++i) {
+      const double scale = denseWeight_[r] * J[i];
+      if (scale == 0.0) continue;
+      double* row = H.row(i);
+      for (int j = 0; j <= i; ++j) row[j] += scale * J[j];
+    }
+  }
+  for (int i = 0; i < n; ++i) H.row(i)[i] += dofWeight_[i];
 }
 
 }  // namespace softgauss::gdd

@@ -18,7 +18,8 @@ SolveStatus GoalDirectedController::step(const Model& model, const Input& input,
   const Clock::time_point start = Clock::now();
   data.forces.c -= data.forces.tau;
   cost_.clear();
-  for (const auto& goal : goals) goal->addCost({model, state, data}, cost_);
+  for (const auto& goal : goals)
+    if (goal->actsAt(state.time)) goal->addCost({model, state, data}, cost_);
   report = solver.solve(model, cost_, box, data, state.warmstart);
   solveTime = std::chrono::duration<double>(Clock::now() - start).count();
   if (report.status == GddStatus::notFinite) {

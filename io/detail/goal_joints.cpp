@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Goals of joints: posture, joint_posture, acceleration, damping.
+
+#include <fmt/format.h>
+
+#include "gdd/goals/joints.hpp"
+#include "gdd/goals/posture.hpp"
+#include "gdd/goals/virtual_damping.hpp"
+#include "io/detail/goal_kinds.hpp"
+
+namespace softgauss::io::detail {
+namespace {
+
+/// The joints of the key `joints`, of which there must be one.
+std::vector<gdd::JointTarget> requiredJoints(const YamlMap& keys, const Model& model) {
+  const YamlMap::Entry& entry = keys.required("joints", "a map of joints, {joint: number}");
+  std::vector<gdd::JointTarget> targets;
+  for (const auto& [body, value] : readJoints(keys.map(entry), model))
+    targets.push_back({body, value});
+  if (targets.empty()) keys.fail(entry, "found an empty map, expected at least one joint");
+  return targets;
+}
+
+}  // namespace
+
+GoalPointer readPosture(const YamlMap& keys, const GoalScene& scene) {
+  auto goal = std::make_unique<gdd::Posture>(scene.initial.q);
+  keys.read("weight", goal->weight, Range::notNegative);
+  keys.read("stiffness", goal->stiffness, Range::notNegative);
+  keys.read("damping", goal->damping, Range::notNegative);
+  if (const auto* joints = keys.find("joints"))
+    for (const auto& [body, value] : readJoints(keys.map(*joints), scene.model))
+      goal->q[scene.model.bodies[static_cast<std::size_t>(body)].q] = value;
+  return goal;
+}
+
+GoalPointer readJointPosture(const YamlMap& keys, const GoalScene& scene) {
+  auto goal = std::make_unique<gdd::JointPosture>();
+  goal->targets = requiredJoints(keys, scene.model);
+  keys.read("weight", goal->weight, Range::notNegative);
+  keys.read("stiffness", goal->stiffness, Range::notNegative);
+  keys.read("damping", goal->damping, Range::notNegative);
+  return goal;
+}
+
+GoalPointer readAcceleration(const YamlMap& keys, const GoalScene& scene) {
+  auto goal = std::make_unique<gdd::JointAcceleration>();
+  goal->targets = requiredJoints(keys, scene.model);
+  keys.read("weight", goal->weight, Range::notNegative);
+  return goal;
+}
+
+GoalPointer readDamping(const YamlMap& keys, const GoalScene&) {
+  auto goal = std::make_unique<gdd::VirtualDamping>();
+  keys.read("weight", goal->weight, Range::notNegative);
+  keys.read("rate", goal->rate, Range::notNegative);
+  return goal;
+}
+
+}  // namespace softgauss::io::detail
