@@ -47,9 +47,14 @@ Transform initialPose(const GoalScene& scene, int frame);
 // ---- One function for each kind -----------------------------------------------------------------
 
 GoalPointer readReach(const YamlMap& keys, const GoalScene& scene);
+GoalPointer readLookAt(const YamlMap& keys, const GoalScene& scene);
+GoalPointer readHold(const YamlMap& keys, const GoalScene& scene);
 GoalPointer readPosture(const YamlMap& keys, const GoalScene& scene);
 GoalPointer readJointPosture(const YamlMap& keys, const GoalScene& scene);
 GoalPointer readAcceleration(const YamlMap& keys, const GoalScene& scene);
 GoalPointer readDamping(const YamlMap& keys, const GoalScene& scene);
+GoalPointer readCenterOfMass(const YamlMap& keys, const GoalScene& scene);
+GoalPointer readMomentum(const YamlMap& keys, const GoalScene& scene);
+GoalPointer readCapturePoint(const YamlMap& keys, const GoalScene& scene);
 
 }  // namespace softgauss::io::detail

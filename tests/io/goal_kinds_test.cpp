@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "engine/core/rotation.hpp"
+#include "engine/dynamics/energy.hpp"
 #include "gdd/gdd.hpp"
 #include "io/goals.hpp"
 #include "io/urdf.hpp"
@@ -103,6 +105,124 @@ TEST(JointGoalsInFiles, BadOnesAreRefused) {
   EXPECT_EQ(errorOf("acceleration: {joints: {shoulder: 1}, stiffness: 1}"),
             "'acceleration': key 'stiffness': found an unknown key, expected one of joints, "
             "weight, start, end");
+}
+
+TEST(LinkGoalsInFiles, APoseArrivesWithItsValues) {
+  const auto pose = readOne<gdd::Reach>(
+      "reach: {link: arm, target: [1, 2, 3], rpy: [0.1, 0.2, 0.3], weight: 5, rotation_weight: 6,"
+      " minimum_jerk: {}}");
+  ASSERT_TRUE(pose->R_WTarget);
+  EXPECT_EQ(*pose->R_WTarget, rpyRotation(Vector3(0.1, 0.2, 0.3)));
+  EXPECT_EQ(pose->weight, 5.0);
+  EXPECT_EQ(pose->rotationWeight, 6.0);
+  EXPECT_EQ(pose->metric, gdd::LinkMetric::euclidean);
+  Kinematics k(sampleModel());
+  computeKinematics(sampleModel(), sampleState(), k);
+  EXPECT_EQ(pose->minimumJerk->R_start, framePose(sampleModel(), k, pose->frame).R);
+
+  const auto turned = readOne<gdd::Reach>(
+      "reach: {link: arm, target: [1, 2, 3], quaternion: [0, 0, 0, 1], weight: 5}");
+  EXPECT_EQ(*turned->R_WTarget, Vector3(-1.0, -1.0, 1.0).asDiagonal().toDenseMatrix());
+  EXPECT_EQ(turned->rotationWeight, 0.05);
+
+  const auto consistent =
+      readOne<gdd::Reach>("reach: {link: arm, target: [1, 2, 3], metric: consistent}");
+  EXPECT_EQ(consistent->metric, gdd::LinkMetric::consistent);
+  EXPECT_EQ(consistent->weight, 1000.0);
+  EXPECT_EQ(consistent->rotationWeight, 1000.0);
+}
+
+TEST(LinkGoalsInFiles, LookAtAndHoldArriveWithTheirValues) {
+  const auto look = readOne<gdd::LookAt>(
+      "look_at: {link: arm, target: [1, 2, 3], axis: [0, 0, 2], point: [4, 5, 6], weight: 7,"
+      " stiffness: 8, damping: 9}");
+  EXPECT_EQ(look->axis_F, Vector3::UnitZ());
+  EXPECT_EQ(look->p_WTarget, Vector3(1.0, 2.0, 3.0));
+  EXPECT_EQ(look->p_FP, Vector3(4.0, 5.0, 6.0));
+  EXPECT_EQ(look->weight, 7.0);
+  EXPECT_EQ(look->stiffness, 8.0);
+  EXPECT_EQ(look->damping, 9.0);
+  EXPECT_EQ(readOne<gdd::LookAt>("look_at: {link: arm, target: [1, 2, 3]}")->axis_F,
+            Vector3::UnitX());
+
+  const auto whole = readOne<gdd::Hold>("hold: {link: arm, weight: 4, rate: 3}");
+  EXPECT_TRUE(whole->wholeLink);
+  EXPECT_EQ(whole->weight, 4.0);
+  EXPECT_EQ(whole->rotationWeight, 0.04);
+  EXPECT_EQ(whole->rate, 3.0);
+  const auto point = readOne<gdd::Hold>("hold: {link: arm, point: [1, 0, 0]}");
+  EXPECT_FALSE(point->wholeLink);
+  EXPECT_EQ(point->p_FP, Vector3::UnitX());
+}
+
+TEST(LinkGoalsInFiles, BadOnesAreRefused) {
+  const std::string reach = "reach: {link: arm, target: [1, 2, 3], ";
+  EXPECT_EQ(errorOf(reach + "rpy: [0, 0, 0], quaternion: [1, 0, 0, 0]}"),
+            "'reach': key 'quaternion': found beside rpy in line 2, expected one of them");
+  EXPECT_EQ(errorOf(reach + "quaternion: [1, 1, 0, 0]}"),
+            "'reach': key 'quaternion': found a list of 4, expected four numbers [w, x, y, z] of "
+            "length 1");
+  EXPECT_EQ(errorOf(reach + "rotation_weight: 1}"),
+            "'reach': key 'rotation_weight': found without an orientation, expected rpy or "
+            "quaternion beside it");
+  EXPECT_EQ(errorOf(reach + "metric: consistant}").substr(0, 41),
+            "'reach': key 'metric': found 'consistant'");
+  EXPECT_EQ(errorOf("look_at: {link: arm, target: [1, 2, 3], axis: [0, 0, 0]}"),
+            "'look_at': key 'axis': found a vector of length 0, expected a direction");
+  EXPECT_EQ(errorOf("look_at: {link: arm}"),
+            "'look_at': key 'target': found no such key, expected three numbers [x, y, z]");
+  EXPECT_EQ(errorOf("hold: {}"),
+            "'hold': key 'link': found no such key, expected the name of a link");
+  EXPECT_EQ(errorOf("hold: {link: arm, point: [0, 0, 0], rotation_weight: 1}"),
+            "'hold': key 'rotation_weight': found beside a point, expected the whole link to be "
+            "held");
+}
+
+TEST(BalanceGoalsInFiles, ArriveWithTheirValues) {
+  const auto centre = readOne<gdd::CenterOfMass>(
+      "center_of_mass: {link: arm, target: [1, 2, 3], axes: yx, weight: 4, stiffness: 5,"
+      " damping: 6}");
+  EXPECT_EQ(centre->p_WTarget, Vector3(1.0, 2.0, 3.0));
+  EXPECT_EQ(centre->axes, (std::array<bool, 3>{true, true, false}));
+  EXPECT_EQ(centre->weight, 4.0);
+  EXPECT_EQ(centre->stiffness, 5.0);
+  EXPECT_EQ(centre->damping, 6.0);
+  // Without a target it is to stay where it is at first.
+  Kinematics k(sampleModel());
+  computeKinematics(sampleModel(), sampleState(), k);
+  EXPECT_LT(
+      (readOne<gdd::CenterOfMass>("center_of_mass: {}")->p_WTarget - centerOfMass(sampleModel(), k))
+          .norm(),
+      1e-14);
+
+  const auto momentum = readOne<gdd::MomentumGoal>(
+      "momentum: {linear: [1, 0, 0], angular: [0, 2, 0], linear_weight: 3, angular_weight: 4,"
+      " rate: 5}");
+  EXPECT_EQ(momentum->linear, Vector3(1.0, 0.0, 0.0));
+  EXPECT_EQ(momentum->angular, Vector3(0.0, 2.0, 0.0));
+  EXPECT_EQ(momentum->linearWeight, 3.0);
+  EXPECT_EQ(momentum->angularWeight, 4.0);
+  EXPECT_EQ(momentum->rate, 5.0);
+
+  const auto capture =
+      readOne<gdd::CapturePoint>("capture_point: {target: [1, 2, 0], weight: 3, rate: 4}");
+  EXPECT_EQ(capture->p_WTarget, Vector3(1.0, 2.0, 0.0));
+  EXPECT_EQ(capture->weight, 3.0);
+  EXPECT_EQ(capture->rate, 4.0);
+}
+
+TEST(BalanceGoalsInFiles, BadOnesAreRefused) {
+  for (const char* const axes : {"xx", "w", "xyzx", "''"})
+    EXPECT_NE(errorOf(std::string("center_of_mass: {axes: ") + axes + "}").find("key 'axes'"),
+              std::string::npos)
+        << axes;
+  EXPECT_EQ(errorOf("center_of_mass: {link: amr}"),
+            "'center_of_mass': key 'link': found 'amr', expected a link of model 'sample', did "
+            "you mean 'arm'?");
+  EXPECT_EQ(errorOf("momentum: {rate: -1}"),
+            "'momentum': key 'rate': found '-1', expected a finite number >= 0");
+  EXPECT_EQ(errorOf("capture_point: {}"),
+            "'capture_point': key 'target': found no such key, expected three numbers [x, y, z]");
 }
 
 }  // namespace
