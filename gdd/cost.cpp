@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gdd/cost.hpp"
 
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
 namespace softgauss::gdd {
 
 void GoalCost::clear() {
@@ -11,6 +15,8 @@ void GoalCost::clear() {
   denseTarget_.clear();
   dofWeight_.setZero();
   dofOffset_.setZero();
+  forcePrice_.setZero();
+  functions_.clear();
   metricWeight_ = 0.0;
   metricOffset_.setZero();
 }
@@ -60,6 +66,7 @@ double GoalCost::value(const TreeMatrix& M, const VectorX& a, const VectorX& Ma)
     const double error = dense_.col(static_cast<Eigen::Index>(i)).dot(a) - denseTarget_[i];
     sum += 0.5 * denseWeight_[i] * error * error;
   }
+  if (hasFunctions()) sum += expansionValue(a);
   sum += 0.5 * a.dot(dofWeight_.cwiseProduct(a)) + a.dot(dofOffset_);
   if (metricWeight_ != 0.0) {
     M.multiply(metricOffset_, scratch_);
@@ -87,10 +94,12 @@ void GoalCost::gradient(const TreeMatrix& M, const VectorX& a, const VectorX& Ma
     g += denseWeight_[i] * (J.dot(a) - denseTarget_[i]) * J;
   }
   g += dofWeight_.cwiseProduct(a) + dofOffset_;
+  if (hasFunctions()) g += expansionSlope_ + expansionCurvature_ * (a - expandedAt_);
 }
 
 double GoalCost::curvatureAlong(const VectorX& d, const VectorX& Md) const {
   double sum = metricWeight_ * d.dot(Md) + d.dot(dofWeight_.cwiseProduct(d));
+  if (hasFunctions()) sum += d.dot(expansionCurvature_ * d);
   for (int i = 0; i < rows_.size(); ++i) {
     Vector3 y;
     rows_.multiply(i, d, y.data());
@@ -120,6 +129,62 @@ void GoalCost::addRowCurvature(TreeMatrix& H) {
     }
   }
   for (int i = 0; i < n; ++i) H.row(i)[i] += dofWeight_[i];
+  if (!hasFunctions()) return;
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j <= i; ++j) H.row(i)[j] += expansionCurvature_(i, j);
+}
+
+double GoalCost::functions(const VectorX& a, VectorX& gradient, MatrixX& hessian) {
+  const Eigen::Index n = a.size();
+  VectorX g = VectorX::Zero(n);
+  MatrixX H = MatrixX::Zero(n, n);
+  gradient.setZero(n);
+  hessian.setZero(n, n);
+  double sum = 0.0;
+  for (const Function& function : functions_) {
+    sum += function(a, g, H);
+    gradient += g;
+    hessian += H;
+  }
+  return sum;
+}
+
+bool GoalCost::expand(const TreeMatrix& M, const VectorX& a, double mu) {
+  expandedAt_ = a;
+  expansionStart_ = functions(a, expansionSlope_, expansionCurvature_);
+  if (!std::isfinite(expansionStart_) || !expansionSlope_.allFinite() ||
+      !expansionCurvature_.allFinite())
+    return false;
+  // ∇²φ = M X Λ XᵀM with XᵀM X = 1; Λ is kept above −0.9.
+  constexpr double kLeast = -0.9;
+  const MatrixX mass = M.dense();
+  const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixX> eigen(expansionCurvature_, mass);
+  if (eigen.eigenvalues().minCoeff() < kLeast) {
+    const MatrixX MX = mass * eigen.eigenvectors();
+    expansionCurvature_ = MX * eigen.eigenvalues().cwiseMax(kLeast).asDiagonal() * MX.transpose();
+  }
+  if (mu > 0.0) expansionCurvature_ += mu * mass;
+  return true;
+}
+
+double GoalCost::expansionValue(const VectorX& a) const {
+  const VectorX d = a - expandedAt_;
+  return expansionStart_ + expansionSlope_.dot(d) + 0.5 * d.dot(expansionCurvature_ * d);
+}
+
+double GoalCost::functionValue(const VectorX& a) {
+  VectorX gradient;
+  MatrixX hessian;
+  return functions(a, gradient, hessian);
+}
+
+double GoalCost::expansionError(const VectorX& a, const VectorX& scale) {
+  VectorX gradient;
+  MatrixX hessian;
+  functions(a, gradient, hessian);
+  const VectorX error = gradient - expansionSlope_ - expansionCurvature_ * (a - expandedAt_);
+  const double size = gradient.cwiseProduct(scale).cwiseAbs().maxCoeff();
+  return error.cwiseProduct(scale).cwiseAbs().maxCoeff() / std::max(1.0, size);
 }
 
 }  // namespace softgauss::gdd

@@ -8,7 +8,11 @@
 /// J: rows of a Jacobian block or any other rows, y: wished value less the bias J̇ v; D, e: of
 /// single dofs, D diagonal; m, o: the terms of virtual damping,
 /// ½ α (a + βv)ᵀM(a + βv) = ½ α aᵀMa + α β aᵀM v + const.
+///
+/// Functions that are no such sum enter by expansions of second order (expanded_solve.hpp). A price
+/// on single forces, ½ Σ W_i g_i(a)², is no function of a alone: the solver adds W to R.
 
+#include <functional>
 #include <vector>
 
 #include "engine/constraints/block_jacobian.hpp"
@@ -21,8 +25,12 @@ class GoalCost {
   explicit GoalCost(int dofs)
       : dofWeight_(VectorX::Zero(dofs)),
         dofOffset_(VectorX::Zero(dofs)),
+        forcePrice_(VectorX::Zero(dofs)),
         metricOffset_(VectorX::Zero(dofs)),
         scratch_(VectorX::Zero(dofs)) {}
+
+  /// Returns φ(a) and writes ∇φ (nv) and ∇²φ (nv × nv), which have their size.
+  using Function = std::function<double(const VectorX& a, VectorX& gradient, MatrixX& hessian)>;
 
   void clear();
   /// ½ weight |J a − target|² for the world acceleration J a of the point p_WP of `body`.
@@ -36,7 +44,22 @@ class GoalCost {
   /// ½ weight (a − target)ᵀ M (a − target), up to a constant.
   void addMetric(double weight, const VectorX& target);
 
+  /// ½ weight g_dof².
+  void addForcePrice(int dof, double weight) { forcePrice_[dof] += weight; }
+  /// φ(a).
+  void addFunction(Function function) { functions_.push_back(std::move(function)); }
+
   double metricWeight() const { return metricWeight_; }
+  const VectorX& forcePrice() const { return forcePrice_; }  ///< W (nv) [1/kg or 1/(kg m²)]
+
+  bool hasFunctions() const { return !functions_.empty(); }
+  /// From here on the functions count as their expansion m about a (T.52). Returns false when it is
+  /// not finite.
+  bool expand(const TreeMatrix& M, const VectorX& a, double mu);
+  double expansionValue(const VectorX& a) const;  ///< m(a)
+  double functionValue(const VectorX& a);         ///< φ(a)
+  /// max |∇φ − ∇m|ᵢ scaleᵢ over max(1, max |∇φ|ᵢ scaleᵢ) at a.
+  double expansionError(const VectorX& a, const VectorX& scale);
 
   /// ∇ℓ at a; Ma = M a.
   void gradient(const TreeMatrix& M, const VectorX& a, const VectorX& Ma, VectorX& g) const;
@@ -48,16 +71,23 @@ class GoalCost {
   void addRowCurvature(TreeMatrix& H);
 
  private:
+  double functions(const VectorX& a, VectorX& gradient, MatrixX& hessian);
+
   BlockJacobian rows_;
   std::vector<double> weight_;  ///< one a block
   std::vector<Vector3> target_;
   MatrixX dense_;  ///< (nv × room) one column a row of J; the first denseWeight_.size() are in use
   std::vector<double> denseWeight_;
   std::vector<double> denseTarget_;
-  VectorX dofWeight_;          ///< D
-  VectorX dofOffset_;          ///< e
-  double metricWeight_ = 0.0;  ///< m
-  VectorX metricOffset_;       ///< o
+  VectorX dofWeight_;   ///< D
+  VectorX dofOffset_;   ///< e
+  VectorX forcePrice_;  ///< W
+  std::vector<Function> functions_;
+  VectorX expandedAt_, expansionSlope_;  ///< a_k, ∇φ(a_k)
+  MatrixX expansionCurvature_;           ///< [∇²φ] + μ M
+  double expansionStart_ = 0.0;          ///< φ(a_k)
+  double metricWeight_ = 0.0;            ///< m
+  VectorX metricOffset_;                 ///< o
   mutable VectorX scratch_;
 };
 

@@ -10,6 +10,8 @@
 
 #include "gdd/goal_directed_step.hpp"
 #include "gdd/goals/balance.hpp"
+#include "gdd/goals/effort.hpp"
+#include "gdd/goals/functions.hpp"
 #include "gdd/goals/hold.hpp"
 #include "gdd/goals/joints.hpp"
 #include "gdd/goals/look_at.hpp"

@@ -6,7 +6,11 @@
 namespace softgauss::gdd {
 
 GoalDirectedController::GoalDirectedController(const Model& model)
-    : box(model), solver(model), control(VectorX::Zero(model.nv)), cost_(model.nv) {}
+    : box(model),
+      solver(model),
+      expansion(model),
+      control(VectorX::Zero(model.nv)),
+      cost_(model.nv) {}
 
 SolveStatus GoalDirectedController::step(const Model& model, const Input& input, State& state,
                                          Data& data, ContactSource* contacts) noexcept {
@@ -20,7 +24,7 @@ SolveStatus GoalDirectedController::step(const Model& model, const Input& input,
   cost_.clear();
   for (const auto& goal : goals)
     if (goal->actsAt(state.time)) goal->addCost({model, state, data}, cost_);
-  report = solver.solve(model, cost_, box, data, state.warmstart);
+  report = expansion.solve(solver, model, cost_, box, data, state.warmstart);
   solveTime = std::chrono::duration<double>(Clock::now() - start).count();
   if (report.status == GddStatus::notFinite) {
     data.stats.status = SolveStatus::notFinite;
@@ -28,10 +32,10 @@ SolveStatus GoalDirectedController::step(const Model& model, const Input& input,
     return data.stats.status;
   }
 
-  control = solver.force().cwiseMax(box.lower).cwiseMin(box.upper);
+  control = expansion.force().cwiseMax(box.lower).cwiseMin(box.upper);
   setAppliedForce(control, data.forces);
-  const SolveStatus status = advance(model, &solver.acceleration(), data, state);
-  if (status != SolveStatus::notFinite) solver.keepWarmStart(state.warmstart);
+  const SolveStatus status = advance(model, &expansion.acceleration(), data, state);
+  if (status != SolveStatus::notFinite) expansion.keepWarmStart(state.warmstart);
   return status;
 }
 

@@ -11,6 +11,7 @@
 
 #include "engine/step/step.hpp"
 #include "gdd/augmented_lagrangian.hpp"
+#include "gdd/expanded_solve.hpp"
 #include "gdd/goal.hpp"
 
 namespace softgauss::gdd {
@@ -23,6 +24,7 @@ class GoalDirectedController {
   std::vector<std::unique_ptr<Goal>> goals;
   ControlBox box;  ///< of all dofs; change it to change what the actuators can do
   AugmentedLagrangian solver;
+  ExpandedSolve expansion;  ///< for goals that are not quadratic
 
   VectorX control;         ///< u of the last step, 0 on unactuated dofs (nv) [N or N m]
   GddReport report;        ///< of the last step

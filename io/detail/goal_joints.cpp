@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Goals of joints: posture, joint_posture, acceleration, damping.
+/// Goals of joints: posture, joint_posture, acceleration, damping, effort.
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
+#include "gdd/goals/effort.hpp"
 #include "gdd/goals/joints.hpp"
 #include "gdd/goals/posture.hpp"
 #include "gdd/goals/virtual_damping.hpp"
 #include "io/detail/goal_kinds.hpp"
+#include "io/detail/text.hpp"
 
 namespace softgauss::io::detail {
 namespace {
@@ -54,6 +58,30 @@ GoalPointer readDamping(const YamlMap& keys, const GoalScene&) {
   auto goal = std::make_unique<gdd::VirtualDamping>();
   keys.read("weight", goal->weight, Range::notNegative);
   keys.read("rate", goal->rate, Range::notNegative);
+  return goal;
+}
+
+GoalPointer readEffort(const YamlMap& keys, const GoalScene& scene) {
+  const Model& model = scene.model;
+  auto goal = std::make_unique<gdd::Effort>(gdd::Effort::actuatedDofs(model));
+  keys.read("weight", goal->weight, Range::notNegative);
+  const YamlMap::Entry* entry = keys.find("joints");
+  if (!entry) return goal;
+  std::vector<std::string> names;
+  for (const int dof : goal->dofs)
+    names.push_back(model.jointNames[static_cast<std::size_t>(model.dofs[dof].body)]);
+  goal->dofs.clear();
+  for (const YamlValue& item : keys.list(*entry)) {
+    const int body = item.kind == YamlValue::Kind::text ? model.findJoint(item.text) : -1;
+    const int dof = body < 0 ? -1 : model.bodies[static_cast<std::size_t>(body)].v;
+    if (body < 0 || !model.dofs[static_cast<std::size_t>(dof)].actuated)
+      keys.fail(*entry, fmt::format("found {}, expected actuated joints of model '{}'{}",
+                                    item.described(), model.name, suggestion(item.text, names)));
+    if (std::find(goal->dofs.begin(), goal->dofs.end(), dof) != goal->dofs.end())
+      keys.fail(*entry, fmt::format("found {} twice, expected once", item.described()));
+    goal->dofs.push_back(dof);
+  }
+  if (goal->dofs.empty()) keys.fail(*entry, "found an empty list, expected at least one joint");
   return goal;
 }
 

@@ -17,6 +17,7 @@ const std::vector<GoalKind>& goalKinds() {
       {"joint_posture", {"joints", "weight", "stiffness", "damping"}, readJointPosture},
       {"acceleration", {"joints", "weight"}, readAcceleration},
       {"damping", {"weight", "rate"}, readDamping},
+      {"effort", {"joints", "weight"}, readEffort},
       {"center_of_mass",
        {"link", "target", "axes", "weight", "stiffness", "damping"},
        readCenterOfMass},

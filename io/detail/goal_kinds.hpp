@@ -53,6 +53,7 @@ GoalPointer readPosture(const YamlMap& keys, const GoalScene& scene);
 GoalPointer readJointPosture(const YamlMap& keys, const GoalScene& scene);
 GoalPointer readAcceleration(const YamlMap& keys, const GoalScene& scene);
 GoalPointer readDamping(const YamlMap& keys, const GoalScene& scene);
+GoalPointer readEffort(const YamlMap& keys, const GoalScene& scene);
 GoalPointer readCenterOfMass(const YamlMap& keys, const GoalScene& scene);
 GoalPointer readMomentum(const YamlMap& keys, const GoalScene& scene);
 GoalPointer readCapturePoint(const YamlMap& keys, const GoalScene& scene);

@@ -225,5 +225,27 @@ TEST(BalanceGoalsInFiles, BadOnesAreRefused) {
             "'capture_point': key 'target': found no such key, expected three numbers [x, y, z]");
 }
 
+TEST(EffortInFiles, IsOfTheActuatedJointsNamed) {
+  const auto all = readOne<gdd::Effort>("effort: {weight: 3}");
+  EXPECT_EQ(all->dofs, gdd::Effort::actuatedDofs(sampleModel()));
+  EXPECT_EQ(all->weight, 3.0);
+  const int dof =
+      sampleModel().bodies[static_cast<std::size_t>(sampleModel().findJoint("shoulder"))].v;
+  EXPECT_EQ(readOne<gdd::Effort>("effort: {joints: [shoulder]}")->dofs, std::vector<int>{dof});
+  EXPECT_EQ(errorOf("effort: {joints: [sholder]}"),
+            "'effort': key 'joints': found 'sholder', expected actuated joints of model 'sample', "
+            "did you mean 'shoulder'?");
+  EXPECT_EQ(errorOf("effort: {joints: [base]}").substr(0, 39),
+            "'effort': key 'joints': found 'base', e");
+  EXPECT_EQ(errorOf("effort: {joints: [shoulder, shoulder]}"),
+            "'effort': key 'joints': found 'shoulder' twice, expected once");
+  EXPECT_EQ(errorOf("effort: {joints: []}"),
+            "'effort': key 'joints': found an empty list, expected at least one joint");
+  EXPECT_EQ(errorOf("effort: {joints: [{a: 1}]}").substr(0, 36),
+            "'effort': key 'joints': found a map,");
+  EXPECT_EQ(errorOf("effort: {weight: -1}"),
+            "'effort': key 'weight': found '-1', expected a finite number >= 0");
+}
+
 }  // namespace
 }  // namespace softgauss::io
