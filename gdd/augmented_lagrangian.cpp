@@ -132,13 +132,15 @@ GddReport AugmentedLagrangian::solve(const Model& model, GoalCost& cost, const C
         ++report.iterations;
         continue;
       }
-      const bool feasible = report.violation <= options.violationTolerance * forceScale;
-      const bool noBetter = report.violation > 0.5 * lastViolation &&
-                            report.violation <= 1e2 * options.violationTolerance * forceScale;
+      // Distance from the bounds in force, also from inside, where a λ too large holds g off.
+      const double gap = (slope_ - lambda_).cwiseQuotient(rho_).cwiseAbs().maxCoeff();
+      const bool feasible = gap <= options.violationTolerance * forceScale;
+      const bool noBetter =
+          gap > 0.5 * lastViolation && gap <= 1e2 * options.violationTolerance * forceScale;
       if (feasible || noBetter) return end(held_.empty() ? GddStatus::converged : GddStatus::kink);
       if (report.dualUpdates == options.maxDualUpdates) return end(GddStatus::iterationLimit);
       lambda_ = slope_;
-      lastViolation = report.violation;
+      lastViolation = gap;
       ++report.dualUpdates;
       continue;
     }
