@@ -50,11 +50,6 @@ void GoalCost::addDof(int dof, double weight, double target) {
   dofOffset_[dof] -= weight * target;
 }
 
-void GoalCost::addMetric(double weight, const VectorX& target) {
-  metricWeight_ += weight;
-  metricOffset_ -= weight * target;
-}
-
 double GoalCost::value(const TreeMatrix& M, const VectorX& a, const VectorX& Ma) const {
   double sum = 0.0;
   for (int i = 0; i < rows_.size(); ++i) {
@@ -112,7 +107,7 @@ double GoalCost::curvatureAlong(const VectorX& d, const VectorX& Md) const {
   return sum;
 }
 
-void GoalCost::addRowCurvature(TreeMatrix& H) {
+void GoalCost::addQuadraticCurvature(TreeMatrix& H) {
   for (int i = 0; i < rows_.size(); ++i) {
     const double w = weight_[i];
     const double diagonal[9] = {w, 0, 0, 0, w, 0, 0, 0, w};
@@ -129,7 +124,12 @@ void GoalCost::addRowCurvature(TreeMatrix& H) {
     }
   }
   for (int i = 0; i < n; ++i) H.row(i)[i] += dofWeight_[i];
+}
+
+void GoalCost::addRowCurvature(TreeMatrix& H) {
+  addQuadraticCurvature(H);
   if (!hasFunctions()) return;
+  const int n = H.size();
   for (int i = 0; i < n; ++i)
     for (int j = 0; j <= i; ++j) H.row(i)[j] += expansionCurvature_(i, j);
 }
@@ -155,21 +155,28 @@ bool GoalCost::expand(const TreeMatrix& M, const VectorX& a, double mu) {
   if (!std::isfinite(expansionStart_) || !expansionSlope_.allFinite() ||
       !expansionCurvature_.allFinite())
     return false;
-  // ∇²φ = M X Λ XᵀM with XᵀM X = 1; Λ is kept above −0.9.
+  raiseCurvature(M, expansionCurvature_);
+  if (mu > 0.0) expansionCurvature_ += mu * M.dense();
+  return true;
+}
+
+void GoalCost::raiseCurvature(const TreeMatrix& M, MatrixX& H) {
   constexpr double kLeast = -0.9;
   const MatrixX mass = M.dense();
-  const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixX> eigen(expansionCurvature_, mass);
-  if (eigen.eigenvalues().minCoeff() < kLeast) {
-    const MatrixX MX = mass * eigen.eigenvectors();
-    expansionCurvature_ = MX * eigen.eigenvalues().cwiseMax(kLeast).asDiagonal() * MX.transpose();
-  }
-  if (mu > 0.0) expansionCurvature_ += mu * mass;
-  return true;
+  if (Eigen::LLT<MatrixX>(H - kLeast * mass).info() == Eigen::Success) return;
+  // H = M X Λ XᵀM with XᵀM X = 1.
+  const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixX> eigen(H, mass);
+  const MatrixX MX = mass * eigen.eigenvectors();
+  H = MX * eigen.eigenvalues().cwiseMax(kLeast).asDiagonal() * MX.transpose();
 }
 
 double GoalCost::expansionValue(const VectorX& a) const {
   const VectorX d = a - expandedAt_;
   return expansionStart_ + expansionSlope_.dot(d) + 0.5 * d.dot(expansionCurvature_ * d);
+}
+
+VectorX GoalCost::expansionGradient(const VectorX& a) const {
+  return expansionSlope_ + expansionCurvature_ * (a - expandedAt_);
 }
 
 double GoalCost::functionValue(const VectorX& a) {
@@ -182,7 +189,7 @@ double GoalCost::expansionError(const VectorX& a, const VectorX& scale) {
   VectorX gradient;
   MatrixX hessian;
   functions(a, gradient, hessian);
-  const VectorX error = gradient - expansionSlope_ - expansionCurvature_ * (a - expandedAt_);
+  const VectorX error = gradient - expansionGradient(a);
   const double size = gradient.cwiseProduct(scale).cwiseAbs().maxCoeff();
   return error.cwiseProduct(scale).cwiseAbs().maxCoeff() / std::max(1.0, size);
 }

@@ -11,14 +11,28 @@
 ///
 /// Functions that are no such sum enter by expansions of second order (expanded_solve.hpp). A price
 /// on single forces, ½ Σ W_i g_i(a)², is no function of a alone: the solver adds W to R.
+///
+/// Nothing here allocates in steady state, but what is for functions does.
 
 #include <functional>
 #include <vector>
 
 #include "engine/constraints/block_jacobian.hpp"
-#include "engine/dynamics/inertia.hpp"
+#include "engine/dynamics/centroidal.hpp"
 
 namespace softgauss::gdd {
+
+/// Matrices for goals to work in while they add their cost. They keep their memory from step to
+/// step, so that the step allocates nothing; what one goal leaves in them says nothing to the next.
+struct GoalWorkspace {
+  using Rows = Eigen::Matrix<double, 6, Eigen::Dynamic>;
+  Rows J, half, rows;  ///< (6 × nv)
+  VectorX dofs;        ///< (nv)
+  TreeFactor massFactor;
+  Centroidal centroidal;
+
+  explicit GoalWorkspace(int n) : J(6, n), half(6, n), rows(6, n), dofs(n) {}
+};
 
 class GoalCost {
  public:
@@ -27,7 +41,8 @@ class GoalCost {
         dofOffset_(VectorX::Zero(dofs)),
         forcePrice_(VectorX::Zero(dofs)),
         metricOffset_(VectorX::Zero(dofs)),
-        scratch_(VectorX::Zero(dofs)) {}
+        scratch_(VectorX::Zero(dofs)),
+        workspace_(dofs) {}
 
   /// Returns φ(a) and writes ∇φ (nv) and ∇²φ (nv × nv), which have their size.
   using Function = std::function<double(const VectorX& a, VectorX& gradient, MatrixX& hessian)>;
@@ -42,13 +57,18 @@ class GoalCost {
   /// ½ weight (a_dof − target)², up to a constant.
   void addDof(int dof, double weight, double target);
   /// ½ weight (a − target)ᵀ M (a − target), up to a constant.
-  void addMetric(double weight, const VectorX& target);
+  template <class Target>
+  void addMetric(double weight, const Eigen::MatrixBase<Target>& target) {
+    metricWeight_ += weight;
+    metricOffset_ -= weight * target;
+  }
 
   /// ½ weight g_dof².
   void addForcePrice(int dof, double weight) { forcePrice_[dof] += weight; }
   /// φ(a).
   void addFunction(Function function) { functions_.push_back(std::move(function)); }
 
+  GoalWorkspace& workspace() { return workspace_; }
   double metricWeight() const { return metricWeight_; }
   const VectorX& forcePrice() const { return forcePrice_; }  ///< W (nv) [1/kg or 1/(kg m²)]
 
@@ -56,8 +76,13 @@ class GoalCost {
   /// From here on the functions count as their expansion m about a (T.52). Returns false when it is
   /// not finite.
   bool expand(const TreeMatrix& M, const VectorX& a, double mu);
-  double expansionValue(const VectorX& a) const;  ///< m(a)
-  double functionValue(const VectorX& a);         ///< φ(a)
+  double expansionValue(const VectorX& a) const;      ///< m(a)
+  VectorX expansionGradient(const VectorX& a) const;  ///< ∇m(a)
+  double functionValue(const VectorX& a);             ///< φ(a)
+  /// φ(a); writes ∇φ (nv) and ∇²φ (nv × nv).
+  double functions(const VectorX& a, VectorX& gradient, MatrixX& hessian);
+  /// H ← H with its eigenvalues against M that are below −0.9 raised to that.
+  static void raiseCurvature(const TreeMatrix& M, MatrixX& H);
   /// max |∇φ − ∇m|ᵢ scaleᵢ over max(1, max |∇φ|ᵢ scaleᵢ) at a.
   double expansionError(const VectorX& a, const VectorX& scale);
 
@@ -69,10 +94,10 @@ class GoalCost {
   double curvatureAlong(const VectorX& d, const VectorX& Md) const;
   /// H ← H + ∇²ℓ without the metric part m M; H holds every pair of dofs.
   void addRowCurvature(TreeMatrix& H);
+  /// The same without functions.
+  void addQuadraticCurvature(TreeMatrix& H);
 
  private:
-  double functions(const VectorX& a, VectorX& gradient, MatrixX& hessian);
-
   BlockJacobian rows_;
   std::vector<double> weight_;  ///< one a block
   std::vector<Vector3> target_;
@@ -89,6 +114,7 @@ class GoalCost {
   double metricWeight_ = 0.0;            ///< m
   VectorX metricOffset_;                 ///< o
   mutable VectorX scratch_;
+  GoalWorkspace workspace_;
 };
 
 }  // namespace softgauss::gdd

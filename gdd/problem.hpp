@@ -33,7 +33,9 @@ struct ControlBox {
       if (!model.dofs[i].actuated) lower[i] = -kInfinity, upper[i] = kInfinity;
   }
   /// Distance of g from the box, largest component [N or N m].
-  double violation(const VectorX& g) const { return (g - clamp(g)).cwiseAbs().maxCoeff(); }
+  double violation(const VectorX& g) const {
+    return (g - g.cwiseMax(lower).cwiseMin(upper)).cwiseAbs().maxCoeff();
+  }
   VectorX clamp(const VectorX& g) const { return g.cwiseMax(lower).cwiseMin(upper); }
 };
 

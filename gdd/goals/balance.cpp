@@ -8,8 +8,7 @@
 namespace softgauss::gdd {
 namespace {
 
-Centroidal centroidalOf(const GoalContext& context, int robot) {
-  Centroidal c;
+const Centroidal& centroidalOf(const GoalContext& context, int robot, Centroidal& c) {
   computeCentroidal(context.model, context.data.kinematics, context.data.inertia, robot, c);
   return c;
 }
@@ -21,11 +20,11 @@ double massOf(const Model& model, int robot) {
   return mass;
 }
 
-/// ½ weight (row of the centre of mass's acceleration along `axis` − wished)².
+/// ½ weight (acceleration of the centre of mass along `axis` − wished)²: of m times that, the row
+/// of A.
 void addAxis(const Centroidal& c, int axis, double weight, double wished, GoalCost& cost) {
-  Eigen::Matrix<double, 1, 1> target;
-  target << wished - c.bias[axis] / c.mass;
-  cost.addRows(c.A.row(axis) / c.mass, weight, target);
+  const Eigen::Matrix<double, 1, 1> target(c.mass * wished - c.bias[axis]);
+  cost.addRows(c.A.middleRows(axis, 1), weight / (c.mass * c.mass), target);
 }
 
 /// Frequency of the linear inverted pendulum [1/s]; 0 where there is none.
@@ -48,7 +47,7 @@ CenterOfMass::CenterOfMass(const Model& model, int ofRobot, const Vector3& targe
     : robot(ofRobot), p_WTarget(target), weight(kReachWeightPerMass * massOf(model, robot)) {}
 
 void CenterOfMass::addCost(const GoalContext& context, GoalCost& cost) const {
-  const Centroidal c = centroidalOf(context, robot);
+  const Centroidal& c = centroidalOf(context, robot, cost.workspace().centroidal);
   const Vector3 wished = stiffness * (p_WTarget - c.p_WC) - damping * c.v_WC;
   for (int i = 0; i < 3; ++i)
     if (axes[static_cast<std::size_t>(i)]) addAxis(c, i, weight, wished[i], cost);
@@ -60,7 +59,7 @@ MomentumGoal::MomentumGoal(const Model& model, int ofRobot)
       angularWeight(10.0 / massOf(model, robot)) {}
 
 void MomentumGoal::addCost(const GoalContext& context, GoalCost& cost) const {
-  const Centroidal c = centroidalOf(context, robot);
+  const Centroidal& c = centroidalOf(context, robot, cost.workspace().centroidal);
   Vector6 wished;
   wished << linear, angular;
   wished = rate * (wished - c.momentum) - c.bias;
@@ -72,7 +71,8 @@ CapturePoint::CapturePoint(const Model& model, int ofRobot, const Vector3& targe
     : robot(ofRobot), p_WTarget(target), weight(kReachWeightPerMass * massOf(model, robot)) {}
 
 std::optional<Vector3> CapturePoint::position(const GoalContext& context) const {
-  const Centroidal c = centroidalOf(context, robot);
+  Centroidal c;
+  centroidalOf(context, robot, c);
   const double omega = pendulumRate(context, c.p_WC.z() - p_WTarget.z());
   if (omega == 0.0) return std::nullopt;
   const Vector3 point = c.p_WC + c.v_WC / omega;
@@ -80,7 +80,7 @@ std::optional<Vector3> CapturePoint::position(const GoalContext& context) const 
 }
 
 void CapturePoint::addCost(const GoalContext& context, GoalCost& cost) const {
-  const Centroidal c = centroidalOf(context, robot);
+  const Centroidal& c = centroidalOf(context, robot, cost.workspace().centroidal);
   const double z = c.p_WC.z() - p_WTarget.z();
   const double omega = pendulumRate(context, z);
   if (omega == 0.0) return;

@@ -10,7 +10,8 @@
 /// step. The next state is that of (19); the integrator's differs by damping (T.16).
 ///
 /// φ and V need not be quadratic, nor convex: see expanded_solve.hpp for how they are minimised.
-/// Functions are called several times a step; they must not throw.
+/// Functions are called up to some hundreds of times a step; they must not throw. With them the
+/// step allocates.
 
 #include <functional>
 

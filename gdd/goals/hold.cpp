@@ -16,7 +16,7 @@ void Hold::addCost(const GoalContext& context, GoalCost& cost) const {
   const int body = context.model.frames[frame].body;
   if (context.model.bodies[body].dofs == 0) return;  // fixed to the world
   const Vector3 p = framePose(context.model, context.data.kinematics, frame) * p_FP;
-  const LinkRows rows(context, body, p);
+  const LinkRows rows(context, body, p, cost.workspace());
   const Vector6 target = -rate * rows.velocity - rows.bias;
   cost.addRows(rows.J.topRows(3), weight, target.head(3));
   if (wholeLink) cost.addRows(rows.J.bottomRows(3), rotationWeight, target.tail(3));

@@ -8,41 +8,49 @@
 
 namespace softgauss::gdd {
 
-LinkRows::LinkRows(const GoalContext& context, int body, const Vector3& p_WP)
-    : J(6, context.model.nv) {
+LinkRows::LinkRows(const GoalContext& context, int body, const Vector3& p_WP, GoalWorkspace& work)
+    : J(work.J) {
   const Kinematics& k = context.data.kinematics;
-  Eigen::Matrix<double, 3, Eigen::Dynamic> part(3, context.model.nv);
-  pointJacobian(context.model, k, body, p_WP, part);
-  J.topRows(3) = part;
-  rotationJacobian(context.model, k, body, part);
-  J.bottomRows(3) = part;
+  pointJacobian(context.model, k, body, p_WP, J.topRows<3>());
+  rotationJacobian(context.model, k, body, J.bottomRows<3>());
   bias << pointBiasAcceleration(context.model, k, body, p_WP), k.A_bias[body].angular;
   velocity << pointVelocity(context.model, k, body, p_WP), k.V[body].angular;
 }
 
-void addConsistent(const GoalContext& context, const MatrixX& J, const VectorX& weights,
-                   const VectorX& target, GoalCost& cost) {
+void addConsistent(const GoalContext& context, const GoalWorkspace::Rows& J, const Vector6& weights,
+                   const Eigen::Ref<const VectorX>& target, GoalCost& cost) {
+  using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6>;  // not on the heap
   constexpr double kLeast = 1e-6;
-  TreeFactor factor;
+  GoalWorkspace& work = cost.workspace();
+  TreeFactor& factor = work.massFactor;
   if (!factor.compute(context.data.inertia.M)) return;  // the solver reports it
-  MatrixX half(J.cols(), J.rows());                     // M⁻¹Jᵀ
-  for (Eigen::Index i = 0; i < J.rows(); ++i) {
-    VectorX x = J.row(i);
-    factor.solve(x);
-    half.col(i) = x;
+  const Eigen::Index k = target.size(), n = J.cols();
+  // J M⁻¹Jᵀ = Σ over dofs of h hᵀ/D, h the columns of J L⁻¹, M = LᵀDL.
+  for (Eigen::Index i = 0; i < k; ++i) {
+    work.dofs = J.row(i);
+    factor.solveTransposed(work.dofs);
+    work.half.row(i) = work.dofs;
   }
-  MatrixX C = J * half;
-  VectorX scale(J.rows());
-  for (Eigen::Index i = 0; i < J.rows(); ++i)
-    scale[i] = C(i, i) > 0.0 ? 1.0 / std::sqrt(C(i, i)) : 0.0;
-  C = scale.asDiagonal() * C * scale.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<MatrixX> eigen(C);
-  const VectorX& values = eigen.eigenvalues();
-  const VectorX unit = scale.cwiseProduct(weights.cwiseSqrt());
-  for (Eigen::Index i = 0; i < values.size(); ++i) {
-    if (!(values[i] > kLeast * values[values.size() - 1])) continue;
-    const VectorX row = unit.cwiseProduct(eigen.eigenvectors().col(i)) / std::sqrt(values[i]);
-    cost.addRows(row.transpose() * J, 1.0, row.transpose() * target);
+  Small C = Small::Zero(k, k);
+  for (Eigen::Index dof = 0; dof < n; ++dof)
+    for (Eigen::Index i = 0; i < k; ++i)
+      for (Eigen::Index j = 0; j < k; ++j)
+        C(i, j) += work.half(i, dof) * work.half(j, dof) * factor.inversePivot(int(dof));
+  Vector6 scale = Vector6::Zero();
+  for (Eigen::Index i = 0; i < k; ++i)
+    if (C(i, i) > 0.0) scale[i] = 1.0 / std::sqrt(C(i, i));
+  C = (scale.head(k).asDiagonal() * C * scale.head(k).asDiagonal()).eval();
+  const Eigen::SelfAdjointEigenSolver<Small> eigen(C);
+  const auto& values = eigen.eigenvalues();
+  const Vector6 unit = scale.cwiseProduct(weights.cwiseSqrt());
+  for (Eigen::Index i = 0; i < k; ++i) {
+    if (!(values[i] > kLeast * values[k - 1])) continue;
+    Vector6 row = Vector6::Zero();
+    row.head(k) = unit.head(k).cwiseProduct(eigen.eigenvectors().col(i)) / std::sqrt(values[i]);
+    for (Eigen::Index dof = 0; dof < n; ++dof)
+      work.rows(0, dof) = row.head(k).dot(J.col(dof).head(k));
+    const Eigen::Matrix<double, 1, 1> wished(row.head(k).dot(target));
+    cost.addRows(work.rows.topRows(1), 1.0, wished);
   }
 }
 

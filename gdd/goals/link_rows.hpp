@@ -25,15 +25,17 @@ enum class LinkMetric {
 
 /// The rows of a point of a body and of the body's rotation, world axes.
 struct LinkRows {
-  MatrixX J;         ///< (6 × nv) of the point, then of the rotation
-  Vector6 bias;      ///< J̇ v
-  Vector6 velocity;  ///< J v
+  GoalWorkspace::Rows& J;  ///< (6 × nv) of the point, then of the rotation
+  Vector6 bias;            ///< J̇ v
+  Vector6 velocity;        ///< J v
 
-  LinkRows(const GoalContext& context, int body, const Vector3& p_WP);
+  /// Writes J into `work`.
+  LinkRows(const GoalContext& context, int body, const Vector3& p_WP, GoalWorkspace& work);
 };
 
-/// ½ (W½(J a − target))ᵀ (J M⁻¹Jᵀ)⁻¹ (W½(J a − target)), W = diag(weights).
-void addConsistent(const GoalContext& context, const MatrixX& J, const VectorX& weights,
-                   const VectorX& target, GoalCost& cost);
+/// ½ (W½(J a − target))ᵀ (J M⁻¹Jᵀ)⁻¹ (W½(J a − target)), W = diag(weights), for the first rows of
+/// J, at most 6, as many as targets.
+void addConsistent(const GoalContext& context, const GoalWorkspace::Rows& J, const Vector6& weights,
+                   const Eigen::Ref<const VectorX>& target, GoalCost& cost);
 
 }  // namespace softgauss::gdd

@@ -50,16 +50,21 @@ void LookAt::addCost(const GoalContext& context, GoalCost& cost) const {
   if (r < kNearest) return;
   const Vector3 d = (p_WTarget - p) / r;
 
-  const LinkRows rows(context, body, p);
+  const LinkRows rows(context, body, p, cost.workspace());
   const Vector3 v = rows.velocity.head(3), omega = rows.velocity.tail(3);
   const double rdot = -d.dot(v);
   const Vector3 ddot = (-v - rdot * d) / r;
   const Matrix3 Pi = Matrix3::Identity() - u * u.transpose();
   const Matrix3 across = skew(d) / r;  // ω̇ − α_d = ω̇ + across (p̈ + 2 ṙ ḋ)
   const Vector3 wished = stiffness * turn(u, d) - damping * (omega - d.cross(ddot));
-  const MatrixX J = Pi * (rows.J.bottomRows(3) + across * rows.J.topRows(3));
+  auto J = cost.workspace().rows.topRows(3);
+  for (Eigen::Index i = 0; i < J.cols(); ++i) {
+    const Vector3 point = rows.J.col(i).head<3>(), rotation = rows.J.col(i).tail<3>();
+    J.col(i) = Pi * (rotation + across * point);
+  }
   const Vector3 bias = rows.bias.tail(3) + across * (rows.bias.head(3) + 2.0 * rdot * ddot);
-  cost.addRows(J, weight, Pi * (wished - bias));
+  const Vector3 target = Pi * (wished - bias);
+  cost.addRows(J, weight, target);
 }
 
 }  // namespace softgauss::gdd

@@ -76,19 +76,16 @@ void Reach::addCost(const GoalContext& context, GoalCost& cost) const {
                   wished - pointBiasAcceleration(context.model, k, body, p));
     return;
   }
-  const LinkRows rows(context, body, p);
+  const LinkRows rows(context, body, p, cost.workspace());
   const int dim = R_WTarget ? 6 : 3;
-  VectorX weights(dim), target(dim);
-  weights.head(3).setConstant(weight);
-  target.head(3) = wishedAcceleration(time, p, rows.velocity.head(3));
-  if (R_WTarget) {
-    weights.tail(3).setConstant(rotationWeight);
-    target.tail(3) =
-        wishedRotation(time, framePose(context.model, k, frame).R, rows.velocity.tail(3));
-  }
-  target -= rows.bias.head(dim);
+  Vector6 weights, target = -rows.bias;
+  weights << Vector3::Constant(weight), Vector3::Constant(rotationWeight);
+  target.head<3>() += wishedAcceleration(time, p, rows.velocity.head<3>());
+  if (R_WTarget)
+    target.tail<3>() +=
+        wishedRotation(time, framePose(context.model, k, frame).R, rows.velocity.tail<3>());
   if (metric == LinkMetric::consistent) {
-    addConsistent(context, rows.J.topRows(dim), weights, target, cost);
+    addConsistent(context, rows.J, weights, target.head(dim), cost);
     return;
   }
   for (int i = 0; i < dim; i += 3)

@@ -140,7 +140,8 @@ TEST(ConsistentMetric, TheShareOfAWishDependsOnTheWeightAlone) {
     goal.weight = random.uniform(0.1, 10.0);
     const gdd::GoalContext context{arm.model, arm.state, *arm.data};
     const Vector3 p = goal.position(context);
-    const gdd::LinkRows rows(context, arm.model.frames[goal.frame].body, p);
+    gdd::GoalWorkspace work(7);
+    const gdd::LinkRows rows(context, arm.model.frames[goal.frame].body, p, work);
     const Vector3 wished = goal.stiffness * (goal.p_WTarget - p) -
                            goal.damping * rows.velocity.head<3>() - rows.bias.head<3>();
     const VectorX fall = arm.data->inertia.M.dense().llt().solve(-arm.data->forces.c);
