@@ -22,8 +22,8 @@ ActiveSet::ActiveSet(const Model& model) : path_(model) {
 }
 
 /// u of the last step, within the box, and a = f(u).
-GddStatus ActiveSet::start(const Model& model, const ControlBox& box, Data& data,
-                           const WarmStart& warm) {
+GddStatus ActiveSet::start(const Model& model, const GoalCost& cost, const ControlBox& box,
+                           Data& data, const WarmStart& warm) {
   report_ = {};
   badDof_ = -1;
   tried_.clear();
@@ -47,7 +47,7 @@ GddStatus ActiveSet::start(const Model& model, const ControlBox& box, Data& data
   }
   report_.forwardIterations = data.forward.report.iterations;
   path_.a = data.forward.a;
-  if (!cell_.setInertia(data)) {
+  if (!cell_.setInertia(data, cost)) {
     badDof_ = cell_.massFailedRow();
     return GddStatus::notFinite;
   }
@@ -105,8 +105,7 @@ bool ActiveSet::computeGradient(const GoalCost& cost, const Data& data) {
   cost.gradient(data.inertia.M, path_.a, Ma_, costGradient_);
   adjoint_ = costGradient_;
   cell_.solve(adjoint_);
-  Rforce_ = force_;
-  cell_.multiplyR(Rforce_);
+  cell_.multiplyR(force_, Rforce_);
   adjoint_ += Rforce_;
   cell_.select(adjoint_, gradient_);
   merit_ = 0.5 * force_.dot(Rforce_) + std::abs(cost.value(data.inertia.M, path_.a, Ma_));
@@ -244,8 +243,7 @@ void ActiveSet::finish(const ControlBox& box, const GoalCost& cost, Data& data) 
   }
   setAppliedForce(force_, data.forces);
   report_.violation = box.violation(force_ - residual_);
-  Rforce_ = force_;
-  cell_.multiplyR(Rforce_);
+  cell_.multiplyR(force_, Rforce_);
   report_.objective = 0.5 * force_.dot(Rforce_) + cost.value(data.inertia.M, path_.a, Ma_);
   report_.heldRows = path_.held.atKnots();
 }
@@ -259,7 +257,7 @@ GddReport ActiveSet::solve(const Model& model, GoalCost& cost, const ControlBox&
     return report_;
   };
   if (model.nv == 0) return report_ = {};
-  report_.status = start(model, box, data, warm);
+  report_.status = start(model, cost, box, data, warm);
   if (report_.status == GddStatus::notFinite) return report_;
   if (cell_.columns() == 0) {
     if (!cell_.enter(data)) return end(GddStatus::notFinite);
@@ -307,6 +305,7 @@ GddReport ActiveSet::solve(const Model& model, GoalCost& cost, const ControlBox&
 void ActiveSet::keepWarmStart(WarmStart& warm) const {
   warm.gddA = path_.a;
   warm.control = force_;
+  warm.multipliers.setZero(force_.size());
   warm.gddValid = true;
 }
 

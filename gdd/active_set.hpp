@@ -51,7 +51,8 @@ class ActiveSet {
  private:
   enum class Next { done, cell, undecided };
 
-  GddStatus start(const Model& model, const ControlBox& box, Data& data, const WarmStart& warm);
+  GddStatus start(const Model& model, const GoalCost& cost, const ControlBox& box, Data& data,
+                  const WarmStart& warm);
   void computeResidual(const Data& data);
   bool enterCell(const GoalCost& cost, Data& data);
   bool computeGradient(const GoalCost& cost, const Data& data);

@@ -26,15 +26,16 @@ void AugmentedLagrangian::evaluate(Data& data) {
 
 /// w and ∇Φ at the present point; false when not finite.
 bool AugmentedLagrangian::gradient(const GoalCost& cost, const ControlBox& box, Data& data) {
-  const BoundPenalty bounds{box, lambda_, rho_};
+  const BoundPenalty bounds{box, lambda_, rho_, &cost.forcePrice()};
   Rg_ = g_;
   massFactor_.solve(Rg_);
-  penalty_ = 0.0;
+  penalty_ = priced_ = 0.0;
   for (Eigen::Index i = 0; i < g_.size(); ++i) {
     const Jet psi = bounds.at(i, g_[i]);
     penalty_ += psi.value;
     w_[i] = Rg_[i] + psi.slope;
-    slope_[i] = psi.slope;
+    slope_[i] = psi.slope - bounds.price(i) * g_[i];
+    priced_ += 0.5 * bounds.price(i) * g_[i] * g_[i];
     boundsChanged_ |= curvature_[i] != psi.curvature;
     curvature_[i] = psi.curvature;
   }
@@ -92,7 +93,7 @@ GddReport AugmentedLagrangian::solve(const Model& model, GoalCost& cost, const C
   const TreeMatrix& M = data.inertia.M;
   if (!data.forces.c.allFinite() || !massFactor_.compute(M)) return end(GddStatus::notFinite);
   start(model, data, warm);
-  const BoundPenalty bounds{box, lambda_, rho_};
+  const BoundPenalty bounds{box, lambda_, rho_, &cost.forcePrice()};
   const double forceScale = std::max(1.0, data.forces.c.cwiseAbs().maxCoeff());
   double promised = kInfinity, lastViolation = kInfinity;
   bool wholeStep = false;  // the last step met no knot
@@ -100,7 +101,7 @@ GddReport AugmentedLagrangian::solve(const Model& model, GoalCost& cost, const C
   for (;;) {
     if (!gradient(cost, box, data)) return end(GddStatus::notFinite);
     report.violation = box.violation(g_);
-    report.objective = 0.5 * g_.dot(Rg_) + cost.value(M, a_, Ma_);
+    report.objective = 0.5 * g_.dot(Rg_) + priced_ + cost.value(M, a_, Ma_);
     if (report.iterations == options.maxIterations) return end(GddStatus::iterationLimit);
 
     // Direction in this cell.
@@ -131,13 +132,15 @@ GddReport AugmentedLagrangian::solve(const Model& model, GoalCost& cost, const C
         ++report.iterations;
         continue;
       }
-      const bool feasible = report.violation <= options.violationTolerance * forceScale;
-      const bool noBetter = report.violation > 0.5 * lastViolation &&
-                            report.violation <= 1e2 * options.violationTolerance * forceScale;
+      // Distance from the bounds in force, also from inside, where a λ too large holds g off.
+      const double gap = (slope_ - lambda_).cwiseQuotient(rho_).cwiseAbs().maxCoeff();
+      const bool feasible = gap <= options.violationTolerance * forceScale;
+      const bool noBetter =
+          gap > 0.5 * lastViolation && gap <= 1e2 * options.violationTolerance * forceScale;
       if (feasible || noBetter) return end(held_.empty() ? GddStatus::converged : GddStatus::kink);
       if (report.dualUpdates == options.maxDualUpdates) return end(GddStatus::iterationLimit);
       lambda_ = slope_;
-      lastViolation = report.violation;
+      lastViolation = gap;
       ++report.dualUpdates;
       continue;
     }

@@ -60,14 +60,15 @@ class AugmentedLagrangian {
 
   VectorX a_, g_, Ma_, Rg_;
   VectorX lambda_, rho_;
-  VectorX slope_, curvature_;  ///< ψ′, ψ″ (nv)
+  VectorX slope_, curvature_;  ///< ψ′ of the bounds alone, ψ″ with the price W (nv)
   VectorX w_, gradient_, costGradient_, direction_, Md_, scratch_;
   TreeFactor massFactor_;  ///< of M: R = M⁻¹
   GaussNewtonHessian hessian_;
   HeldRows held_;
   Ray ray_;
   CurvedRay curvedRay_;
-  double penalty_ = 0.0;       ///< Σ ψ
+  double penalty_ = 0.0;       ///< Σ ψ with the price
+  double priced_ = 0.0;        ///< ½ Σ W g²
   bool rowsChanged_ = true;    ///< a row changed its piece: P is out of date
   bool stale_ = true;          ///< P changed since H was factored
   bool boundsChanged_ = true;  ///< a bound changed its piece since H was factored

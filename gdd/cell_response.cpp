@@ -18,14 +18,18 @@ void CellResponse::setDriven(const Model& model, const ControlBox& box) {
     if (box.lower[i] < box.upper[i]) driven_.push_back(i);
 }
 
-bool CellResponse::setInertia(const Data& data) {
+bool CellResponse::setInertia(const Data& data, const GoalCost& cost) {
+  price_ = cost.forcePrice();
   massFactor_ = data.forward.massFactored ? &data.forward.massFactor : &ownMassFactor_;
   if (!data.forward.massFactored && !ownMassFactor_.compute(data.inertia.M)) return false;
   const int n = data.inertia.M.size();
   setSelection(driven_, n, S_);
   massFactor_->solve(S_);
   forcePrice_.resize(columns(), columns());
-  for (int i = 0; i < columns(); ++i) forcePrice_.row(i) = S_.row(driven_[i]);
+  for (int i = 0; i < columns(); ++i) {
+    forcePrice_.row(i) = S_.row(driven_[i]);
+    forcePrice_(i, i) += price_[driven_[i]];
+  }
   rootS_.resize(n, columns());
   return true;
 }
@@ -52,6 +56,12 @@ void CellResponse::solve(VectorX& x) const {
     const Correction& c = corrections_[k];
     x -= c.scale * c.y.dot(scratch_) * c.y;
   }
+}
+
+void CellResponse::multiplyR(const VectorX& x, VectorX& Rx) const {
+  Rx = x;
+  massFactor_->solve(Rx);
+  Rx += price_.cwiseProduct(x);
 }
 
 double CellResponse::cross(const VectorX& J, double jump, VectorX& PinvJ) {

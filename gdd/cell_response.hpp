@@ -3,10 +3,11 @@
 
 /// How acceleration answers control in one cell, and what that makes of the objective (T.60):
 ///
-///   S = P⁻¹B,   K = BᵀR B + Sᵀ∇²ℓ S,   P = M + Jᵀ∇²s J,   R = M⁻¹
+///   S = P⁻¹B,   K = BᵀR B + Sᵀ∇²ℓ S,   P = M + Jᵀ∇²s J,   R = M⁻¹ + W
 ///
-/// B has a unit column for each dof that is driven. All columns are solved for at once. Where a row
-/// changes its piece, P changes by Δs″ JᵀJ, and nothing is factored anew (T.62):
+/// W is the price of single forces. B has a unit column for each dof that is driven. All columns
+/// are solved for at once. Where a row changes its piece, P changes by Δs″ JᵀJ, and nothing is
+/// factored anew (T.62):
 ///   P⁻¹ ← P⁻¹ − γ y yᵀ,   y = P⁻¹Jᵀ,   γ = Δs″/(1 + Δs″ J y),   S ← S − γ y (Bᵀy)ᵀ
 
 #include <vector>
@@ -25,8 +26,9 @@ class CellResponse {
 
   /// Takes B from the box.
   void setDriven(const Model& model, const ControlBox& box);
-  /// Takes R from M, after a forward solve. Returns false when M is not positive definite.
-  bool setInertia(const Data& data);
+  /// Takes R from M and W from the cost, after a forward solve. Returns false when M is not
+  /// positive definite.
+  bool setInertia(const Data& data, const GoalCost& cost);
 
   /// P of the cell in which the rows are kept. Returns false when it cannot be factored.
   bool enter(Data& data);
@@ -41,12 +43,12 @@ class CellResponse {
   void computeHessian(const GoalCost& cost);
 
   int columns() const { return static_cast<int>(driven_.size()); }
-  const std::vector<int>& driven() const { return driven_; }   ///< the dof of each column of B
-  void select(const VectorX& x, VectorX& y) const;             ///< y ← Bᵀx
-  void spread(const VectorX& u, VectorX& tau) const;           ///< tau ← B u on driven dofs
-  void solve(VectorX& x) const;                                ///< x ← P⁻¹x
-  void multiplyR(VectorX& x) const { massFactor_->solve(x); }  ///< x ← R x
-  const MatrixX& hessian() const { return K_; }                ///< lower triangle
+  const std::vector<int>& driven() const { return driven_; }  ///< the dof of each column of B
+  void select(const VectorX& x, VectorX& y) const;            ///< y ← Bᵀx
+  void spread(const VectorX& u, VectorX& tau) const;          ///< tau ← B u on driven dofs
+  void solve(VectorX& x) const;                               ///< x ← P⁻¹x
+  void multiplyR(const VectorX& x, VectorX& Rx) const;        ///< Rx ← (R + W) x
+  const MatrixX& hessian() const { return K_; }               ///< lower triangle
   /// pᵀBᵀR B p.
   double forceCurvature(const VectorX& p) const;
   int massFailedRow() const { return massFactor_->failedRow(); }
@@ -67,6 +69,7 @@ class CellResponse {
   int correctionsInS_ = 0;  ///< −1: S is not of this factor
   TreeMatrix P_;
   RowMajorMatrixX S_, rootS_;
+  VectorX price_;       ///< W (nv)
   MatrixX forcePrice_;  ///< BᵀR B
   MatrixX K_;
   mutable VectorX scratch_;

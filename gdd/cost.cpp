@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gdd/cost.hpp"
 
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
 #include "engine/core/vector_clones.hpp"
 
 namespace softgauss::gdd {
@@ -31,6 +35,12 @@ void GoalCost::clear() {
   rows_.clear();
   weight_.clear();
   target_.clear();
+  denseWeight_.clear();
+  denseTarget_.clear();
+  dofWeight_.setZero();
+  dofOffset_.setZero();
+  forcePrice_.setZero();
+  functions_.clear();
   metricWeight_ = 0.0;
   metricOffset_.setZero();
 }
@@ -46,9 +56,22 @@ void GoalCost::addPoint(const Model& model, const Kinematics& k, const TreeSpars
   target_.push_back(target);
 }
 
-void GoalCost::addMetric(double weight, const VectorX& target) {
-  metricWeight_ += weight;
-  metricOffset_ -= weight * target;
+void GoalCost::addRows(const Eigen::Ref<const MatrixX>& J, double weight,
+                       const Eigen::Ref<const VectorX>& target) {
+  SOFTGAUSS_ASSERT(J.cols() == dofWeight_.size() && J.rows() == target.size());
+  const Eigen::Index used = static_cast<Eigen::Index>(denseWeight_.size());
+  if (dense_.cols() < used + J.rows())
+    dense_.conservativeResize(J.cols(), 2 * used + J.rows());  // room that later steps keep
+  dense_.middleCols(used, J.rows()) = J.transpose();
+  for (Eigen::Index i = 0; i < J.rows(); ++i) {
+    denseWeight_.push_back(weight);
+    denseTarget_.push_back(target[i]);
+  }
+}
+
+void GoalCost::addDof(int dof, double weight, double target) {
+  dofWeight_[dof] += weight;
+  dofOffset_[dof] -= weight * target;
 }
 
 double GoalCost::value(const TreeMatrix& M, const VectorX& a, const VectorX& Ma) const {
@@ -58,6 +81,12 @@ double GoalCost::value(const TreeMatrix& M, const VectorX& a, const VectorX& Ma)
     rows_.multiply(i, a, y.data());
     sum += 0.5 * weight_[i] * (y - target_[i]).squaredNorm();
   }
+  for (std::size_t i = 0; i < denseWeight_.size(); ++i) {
+    const double error = dense_.col(static_cast<Eigen::Index>(i)).dot(a) - denseTarget_[i];
+    sum += 0.5 * denseWeight_[i] * error * error;
+  }
+  if (hasFunctions()) sum += expansionValue(a);
+  sum += 0.5 * a.dot(dofWeight_.cwiseProduct(a)) + a.dot(dofOffset_);
   if (metricWeight_ != 0.0) {
     M.multiply(metricOffset_, scratch_);
     sum += 0.5 * metricWeight_ * a.dot(Ma) + a.dot(scratch_);
@@ -79,24 +108,114 @@ void GoalCost::gradient(const TreeMatrix& M, const VectorX& a, const VectorX& Ma
     const Vector3 slope = weight_[i] * (y - target_[i]);
     rows_.addTransposed(i, slope.data(), g);
   }
+  for (std::size_t i = 0; i < denseWeight_.size(); ++i) {
+    const auto J = dense_.col(static_cast<Eigen::Index>(i));
+    g += denseWeight_[i] * (J.dot(a) - denseTarget_[i]) * J;
+  }
+  g += dofWeight_.cwiseProduct(a) + dofOffset_;
+  if (hasFunctions()) g += expansionSlope_ + expansionCurvature_ * (a - expandedAt_);
 }
 
 double GoalCost::curvatureAlong(const VectorX& d, const VectorX& Md) const {
-  double sum = metricWeight_ * d.dot(Md);
+  double sum = metricWeight_ * d.dot(Md) + d.dot(dofWeight_.cwiseProduct(d));
+  if (hasFunctions()) sum += d.dot(expansionCurvature_ * d);
   for (int i = 0; i < rows_.size(); ++i) {
     Vector3 y;
     rows_.multiply(i, d, y.data());
     sum += weight_[i] * y.squaredNorm();
   }
+  for (std::size_t i = 0; i < denseWeight_.size(); ++i) {
+    const double rate = dense_.col(static_cast<Eigen::Index>(i)).dot(d);
+    sum += denseWeight_[i] * rate * rate;
+  }
   return sum;
 }
 
-void GoalCost::addRowCurvature(TreeMatrix& H) {
+void GoalCost::addQuadraticCurvature(TreeMatrix& H) {
   for (int i = 0; i < rows_.size(); ++i) {
     const double w = weight_[i];
     const double diagonal[9] = {w, 0, 0, 0, w, 0, 0, 0, w};
     rows_.addCurvature(i, diagonal, H);
   }
+  const int n = static_cast<int>(dofWeight_.size());
+  for (std::size_t r = 0; r < denseWeight_.size(); ++r) {
+    const auto J = dense_.col(static_cast<Eigen::Index>(r));
+    for (int i = 0; i < n; ++i) {
+      const double scale = denseWeight_[r] * J[i];
+      if (scale == 0.0) continue;
+      double* row = H.row(i);
+      for (int j = 0; j <= i; ++j) row[j] += scale * J[j];
+    }
+  }
+  for (int i = 0; i < n; ++i) H.row(i)[i] += dofWeight_[i];
+}
+
+void GoalCost::addRowCurvature(TreeMatrix& H) {
+  addQuadraticCurvature(H);
+  if (!hasFunctions()) return;
+  const int n = H.size();
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j <= i; ++j) H.row(i)[j] += expansionCurvature_(i, j);
+}
+
+double GoalCost::functions(const VectorX& a, VectorX& gradient, MatrixX& hessian) {
+  const Eigen::Index n = a.size();
+  VectorX g = VectorX::Zero(n);
+  MatrixX H = MatrixX::Zero(n, n);
+  gradient.setZero(n);
+  hessian.setZero(n, n);
+  double sum = 0.0;
+  for (const Function& function : functions_) {
+    sum += function(a, g, H);
+    gradient += g;
+    hessian += H;
+  }
+  return sum;
+}
+
+bool GoalCost::expand(const TreeMatrix& M, const VectorX& a, double mu) {
+  expandedAt_ = a;
+  expansionStart_ = functions(a, expansionSlope_, expansionCurvature_);
+  if (!std::isfinite(expansionStart_) || !expansionSlope_.allFinite() ||
+      !expansionCurvature_.allFinite())
+    return false;
+  raiseCurvature(M, expansionCurvature_);
+  if (mu > 0.0) expansionCurvature_ += mu * M.dense();
+  return true;
+}
+
+void GoalCost::raiseCurvature(const TreeMatrix& M, MatrixX& H) {
+  constexpr double kLeast = -0.9;
+  const MatrixX mass = M.dense();
+  if (Eigen::LLT<MatrixX>(H - kLeast * mass).info() == Eigen::Success) return;
+  // H = M X Λ XᵀM with XᵀM X = 1.
+  const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixX> eigen(H, mass);
+  const MatrixX MX = mass * eigen.eigenvectors();
+  H = MX * eigen.eigenvalues().cwiseMax(kLeast).asDiagonal() * MX.transpose();
+}
+
+double GoalCost::expansionValue(const VectorX& a) const {
+  const VectorX d = a - expandedAt_;
+  return expansionStart_ + expansionSlope_.dot(d) + 0.5 * d.dot(expansionCurvature_ * d);
+}
+
+VectorX GoalCost::expansionGradient(const VectorX& a) const {
+  return expansionSlope_ + expansionCurvature_ * (a - expandedAt_);
+}
+
+double GoalCost::functionValue(const VectorX& a) {
+  VectorX gradient;
+  MatrixX hessian;
+  return functions(a, gradient, hessian);
+}
+
+double GoalCost::expansionError(const VectorX& a, const VectorX& scale) {
+  VectorX gradient;
+  MatrixX hessian;
+  functions(a, gradient, hessian);
+  const VectorX error = gradient - expansionGradient(a);
+  const double size = gradient.cwiseProduct(scale).cwiseAbs().maxCoeff();
+  return error.cwiseProduct(scale).cwiseAbs().maxCoeff() / std::max(1.0, size);
 }
 
 void GoalCost::addReducedCurvature(const TreeFactor& massFactor, const RowMajorMatrixX& S,
@@ -105,19 +224,30 @@ void GoalCost::addReducedCurvature(const TreeFactor& massFactor, const RowMajorM
     massFactor.multiplyRoot(S, rootS);
     addGram(rootS, metricWeight_, K);
   }
-  // One rank for each row of J.
+  // One rank for each row of J, and for each dof.
   reduced_.resize(S.cols());
+  const auto addRank = [&](const auto& row, double weight) {
+    reduced_.setZero();
+    for (Eigen::Index j = 0; j < row.size(); ++j)
+      if (row[j] != 0.0) reduced_ += row[j] * S.row(j).transpose();
+    K.selfadjointView<Eigen::Lower>().rankUpdate(reduced_, weight);
+  };
   for (int i = 0; i < rows_.size(); ++i) {
     for (int k = 0; k < 3; ++k) {
       const double unit[3] = {k == 0 ? 1.0 : 0.0, k == 1 ? 1.0 : 0.0, k == 2 ? 1.0 : 0.0};
       scratch_.setZero();
       rows_.addTransposed(i, unit, scratch_);
-      reduced_.setZero();
-      for (Eigen::Index j = 0; j < scratch_.size(); ++j)
-        if (scratch_[j] != 0.0) reduced_ += scratch_[j] * S.row(j).transpose();
-      K.selfadjointView<Eigen::Lower>().rankUpdate(reduced_, weight_[i]);
+      addRank(scratch_, weight_[i]);
     }
   }
+  for (std::size_t i = 0; i < denseWeight_.size(); ++i)
+    addRank(dense_.col(static_cast<Eigen::Index>(i)), denseWeight_[i]);
+  for (Eigen::Index i = 0; i < dofWeight_.size(); ++i) {
+    if (dofWeight_[i] == 0.0) continue;
+    reduced_ = S.row(i).transpose();
+    K.selfadjointView<Eigen::Lower>().rankUpdate(reduced_, dofWeight_[i]);
+  }
+  if (hasFunctions()) K.triangularView<Eigen::Lower>() += S.transpose() * (expansionCurvature_ * S);
 }
 
 }  // namespace softgauss::gdd

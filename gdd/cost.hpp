@@ -4,29 +4,87 @@
 /// The cost ℓ(a) that goals put on the acceleration, equation (8) of the paper.
 ///
 /// Goals write residuals; ℓ is their weighted sum (T.21):
-///   ℓ(a) = Σ ½ w |J a − y|²  +  ½ m aᵀM a + aᵀM o
-/// J: rows of a Jacobian block, y: wished value less the bias J̇ v; m, o: the terms of virtual
-/// damping, ½ α (a + βv)ᵀM(a + βv) = ½ α aᵀMa + α β aᵀM v + const.
+///   ℓ(a) = Σ ½ w |J a − y|²  +  ½ aᵀD a + aᵀe  +  ½ m aᵀM a + aᵀM o
+/// J: rows of a Jacobian block or any other rows, y: wished value less the bias J̇ v; D, e: of
+/// single dofs, D diagonal; m, o: the terms of virtual damping,
+/// ½ α (a + βv)ᵀM(a + βv) = ½ α aᵀMa + α β aᵀM v + const.
+///
+/// Functions that are no such sum enter by expansions of second order (expanded_solve.hpp). A price
+/// on single forces, ½ Σ W_i g_i(a)², is no function of a alone: the solver adds W to R.
+///
+/// Nothing here allocates in steady state, but what is for functions does.
 
+#include <functional>
 #include <vector>
 
 #include "engine/constraints/block_jacobian.hpp"
-#include "engine/dynamics/inertia.hpp"
+#include "engine/dynamics/centroidal.hpp"
 
 namespace softgauss::gdd {
 
+/// Matrices for goals to work in while they add their cost. They keep their memory from step to
+/// step, so that the step allocates nothing; what one goal leaves in them says nothing to the next.
+struct GoalWorkspace {
+  using Rows = Eigen::Matrix<double, 6, Eigen::Dynamic>;
+  Rows J, half, rows;  ///< (6 × nv)
+  VectorX dofs;        ///< (nv)
+  TreeFactor massFactor;
+  Centroidal centroidal;
+
+  explicit GoalWorkspace(int n) : J(6, n), half(6, n), rows(6, n), dofs(n) {}
+};
+
 class GoalCost {
  public:
-  explicit GoalCost(int dofs) : metricOffset_(VectorX::Zero(dofs)), scratch_(VectorX::Zero(dofs)) {}
+  explicit GoalCost(int dofs)
+      : dofWeight_(VectorX::Zero(dofs)),
+        dofOffset_(VectorX::Zero(dofs)),
+        forcePrice_(VectorX::Zero(dofs)),
+        metricOffset_(VectorX::Zero(dofs)),
+        scratch_(VectorX::Zero(dofs)),
+        workspace_(dofs) {}
+
+  /// Returns φ(a) and writes ∇φ (nv) and ∇²φ (nv × nv), which have their size.
+  using Function = std::function<double(const VectorX& a, VectorX& gradient, MatrixX& hessian)>;
 
   void clear();
   /// ½ weight |J a − target|² for the world acceleration J a of the point p_WP of `body`.
   void addPoint(const Model& model, const Kinematics& k, const TreeSparsity& tree, int body,
                 const Vector3& p_WP, double weight, const Vector3& target);
+  /// ½ weight |J a − target|² for any rows J (k × nv).
+  void addRows(const Eigen::Ref<const MatrixX>& J, double weight,
+               const Eigen::Ref<const VectorX>& target);
+  /// ½ weight (a_dof − target)², up to a constant.
+  void addDof(int dof, double weight, double target);
   /// ½ weight (a − target)ᵀ M (a − target), up to a constant.
-  void addMetric(double weight, const VectorX& target);
+  template <class Target>
+  void addMetric(double weight, const Eigen::MatrixBase<Target>& target) {
+    metricWeight_ += weight;
+    metricOffset_ -= weight * target;
+  }
 
+  /// ½ weight g_dof².
+  void addForcePrice(int dof, double weight) { forcePrice_[dof] += weight; }
+  /// φ(a).
+  void addFunction(Function function) { functions_.push_back(std::move(function)); }
+
+  GoalWorkspace& workspace() { return workspace_; }
   double metricWeight() const { return metricWeight_; }
+  const VectorX& forcePrice() const { return forcePrice_; }  ///< W (nv) [1/kg or 1/(kg m²)]
+
+  bool hasFunctions() const { return !functions_.empty(); }
+  /// From here on the functions count as their expansion m about a (T.52). Returns false when it is
+  /// not finite.
+  bool expand(const TreeMatrix& M, const VectorX& a, double mu);
+  double expansionValue(const VectorX& a) const;      ///< m(a)
+  VectorX expansionGradient(const VectorX& a) const;  ///< ∇m(a)
+  double functionValue(const VectorX& a);             ///< φ(a)
+  /// φ(a); writes ∇φ (nv) and ∇²φ (nv × nv).
+  double functions(const VectorX& a, VectorX& gradient, MatrixX& hessian);
+  /// H ← H with its eigenvalues against M that are below −0.9 raised to that.
+  static void raiseCurvature(const TreeMatrix& M, MatrixX& H);
+  /// max |∇φ − ∇m|ᵢ scaleᵢ over max(1, max |∇φ|ᵢ scaleᵢ) at a.
+  double expansionError(const VectorX& a, const VectorX& scale);
 
   /// ∇ℓ at a; Ma = M a.
   void gradient(const TreeMatrix& M, const VectorX& a, const VectorX& Ma, VectorX& g) const;
@@ -34,8 +92,10 @@ class GoalCost {
   double value(const TreeMatrix& M, const VectorX& a, const VectorX& Ma) const;
   /// dᵀ∇²ℓ d; Md = M d.
   double curvatureAlong(const VectorX& d, const VectorX& Md) const;
-  /// H ← H + ∇²ℓ without the metric part m M.
+  /// H ← H + ∇²ℓ without the metric part m M; H holds every pair of dofs.
   void addRowCurvature(TreeMatrix& H);
+  /// The same without functions.
+  void addQuadraticCurvature(TreeMatrix& H);
   /// K ← K + Sᵀ∇²ℓ S, lower triangle, for S (nv × any). `massFactor` is of M, rootS scratch of the
   /// size of S.
   void addReducedCurvature(const TreeFactor& massFactor, const RowMajorMatrixX& S,
@@ -45,9 +105,20 @@ class GoalCost {
   BlockJacobian rows_;
   std::vector<double> weight_;  ///< one a block
   std::vector<Vector3> target_;
-  double metricWeight_ = 0.0;  ///< m
-  VectorX metricOffset_;       ///< o
+  MatrixX dense_;  ///< (nv × room) one column a row of J; the first denseWeight_.size() are in use
+  std::vector<double> denseWeight_;
+  std::vector<double> denseTarget_;
+  VectorX dofWeight_;   ///< D
+  VectorX dofOffset_;   ///< e
+  VectorX forcePrice_;  ///< W
+  std::vector<Function> functions_;
+  VectorX expandedAt_, expansionSlope_;  ///< a_k, ∇φ(a_k)
+  MatrixX expansionCurvature_;           ///< [∇²φ] + μ M
+  double expansionStart_ = 0.0;          ///< φ(a_k)
+  double metricWeight_ = 0.0;            ///< m
+  VectorX metricOffset_;                 ///< o
   mutable VectorX scratch_, reduced_;
+  GoalWorkspace workspace_;
 };
 
 }  // namespace softgauss::gdd

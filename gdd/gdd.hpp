@@ -9,6 +9,12 @@
 ///   controller.step(model, Input{}, state, data, &contacts);
 
 #include "gdd/goal_directed_step.hpp"
+#include "gdd/goals/balance.hpp"
+#include "gdd/goals/effort.hpp"
+#include "gdd/goals/functions.hpp"
+#include "gdd/goals/hold.hpp"
+#include "gdd/goals/joints.hpp"
+#include "gdd/goals/look_at.hpp"
 #include "gdd/goals/posture.hpp"
 #include "gdd/goals/reach.hpp"
 #include "gdd/goals/virtual_damping.hpp"

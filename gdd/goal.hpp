@@ -29,7 +29,11 @@ struct GoalMark {
 
 class Goal {
  public:
+  double startTime = -kInfinity;  ///< the goal acts from here on [s]
+  double endTime = kInfinity;     ///< and before this [s]
+
   virtual ~Goal() = default;
+  bool actsAt(double time) const { return startTime <= time && time < endTime; }
   /// As the summary names it, e.g. "reach right_hand".
   virtual std::string name() const = 0;
   /// Adds the cost of this goal at the present state.

@@ -9,9 +9,9 @@ GoalDirectedController::GoalDirectedController(const Model& model)
     : box(model),
       augmentedLagrangian(model),
       activeSet(model),
+      expansion(model),
       control(VectorX::Zero(model.nv)),
-      cost_(model.nv),
-      acceleration_(&activeSet.acceleration()) {}
+      cost_(model.nv) {}
 
 template <class Solver>
 SolveStatus GoalDirectedController::solveAndAdvance(Solver& used, const Model& model, State& state,
@@ -21,9 +21,9 @@ SolveStatus GoalDirectedController::solveAndAdvance(Solver& used, const Model& m
   // A disturbance is not the control's: it belongs to what the control has to cope with.
   data.forces.c -= data.forces.tau;
   cost_.clear();
-  for (const auto& goal : goals) goal->addCost({model, state, data}, cost_);
-  report = used.solve(model, cost_, box, data, state.warmstart);
-  acceleration_ = &used.acceleration();
+  for (const auto& goal : goals)
+    if (goal->actsAt(state.time)) goal->addCost({model, state, data}, cost_);
+  report = expansion.solve(used, model, cost_, box, data, state.warmstart);
   solveTime = std::chrono::duration<double>(Clock::now() - start).count();
   if (report.status == GddStatus::notFinite) {
     data.stats.status = SolveStatus::notFinite;
@@ -31,10 +31,10 @@ SolveStatus GoalDirectedController::solveAndAdvance(Solver& used, const Model& m
     return data.stats.status;
   }
 
-  control = box.clamp(used.force());
+  control = box.clamp(expansion.force());
   setAppliedForce(control, data.forces);
-  const SolveStatus status = advance(model, acceleration_, data, state);
-  if (status != SolveStatus::notFinite) used.keepWarmStart(state.warmstart);
+  const SolveStatus status = advance(model, &expansion.acceleration(), data, state);
+  if (status != SolveStatus::notFinite) expansion.keepWarmStart(state.warmstart);
   return status;
 }
 

@@ -13,6 +13,7 @@
 #include "engine/step/step.hpp"
 #include "gdd/active_set.hpp"
 #include "gdd/augmented_lagrangian.hpp"
+#include "gdd/expanded_solve.hpp"
 #include "gdd/goal.hpp"
 
 namespace softgauss::gdd {
@@ -32,6 +33,7 @@ class GoalDirectedController {
   GddSolver solver = GddSolver::activeSet;
   AugmentedLagrangian augmentedLagrangian;
   ActiveSet activeSet;
+  ExpandedSolve expansion;  ///< for goals that are not quadratic
 
   VectorX control;         ///< u of the last step, 0 on unactuated dofs (nv) [N or N m]
   GddReport report;        ///< of the last step
@@ -42,14 +44,13 @@ class GoalDirectedController {
   SolveStatus step(const Model& model, const Input& input, State& state, Data& data,
                    ContactSource* contacts) noexcept;
   /// Of the last GDD solve, before the final forward step (nv).
-  const VectorX& acceleration() const { return *acceleration_; }
+  const VectorX& acceleration() const { return expansion.acceleration(); }
 
  private:
   template <class Solver>
   SolveStatus solveAndAdvance(Solver& used, const Model& model, State& state, Data& data);
 
   GoalCost cost_;
-  const VectorX* acceleration_ = nullptr;
 };
 
 }  // namespace softgauss::gdd

@@ -27,8 +27,15 @@ struct ControlBox {
       upper[i] = free ? dof.effortUpper : 0.0;
     }
   }
+  /// Opens the box of every unactuated dof: root forces are then allowed, and applied.
+  void allowRootForces(const Model& model) {
+    for (int i = 0; i < model.nv; ++i)
+      if (!model.dofs[i].actuated) lower[i] = -kInfinity, upper[i] = kInfinity;
+  }
   /// Distance of g from the box, largest component [N or N m].
-  double violation(const VectorX& g) const { return (g - clamp(g)).cwiseAbs().maxCoeff(); }
+  double violation(const VectorX& g) const {
+    return (g - g.cwiseMax(lower).cwiseMin(upper)).cwiseAbs().maxCoeff();
+  }
   VectorX clamp(const VectorX& g) const { return g.cwiseMax(lower).cwiseMin(upper); }
 };
 

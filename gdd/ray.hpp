@@ -15,19 +15,24 @@
 
 namespace softgauss::gdd {
 
-/// The penalty ψ of the bounds (T.18).
+/// The penalty ψ of the bounds (T.18), and the price ½ W g² of single forces (T.50).
 struct BoundPenalty {
   const ControlBox& box;
   const VectorX& lambda;  ///< multipliers
   const VectorX& rho;
+  const VectorX* forcePrice = nullptr;  ///< W; null: none
 
-  /// ½ ρ (t − clamp t)², its slope and curvature in g_i. A bound just met has curvature 0.
+  double price(Eigen::Index i) const { return forcePrice ? (*forcePrice)[i] : 0.0; }
+
+  /// ½ ρ (t − clamp t)² + ½ W g², its slope and curvature in g_i. A bound just met has curvature 0.
   Jet at(Eigen::Index i, double g) const {
     const double t = g + lambda[i] / rho[i];
     const double lower = box.lower[i], upper = box.upper[i];
     const double over = t > upper ? t - upper : (t < lower ? t - lower : 0.0);
     const bool active = over != 0.0 || lower == upper;
-    return {0.5 * rho[i] * over * over, rho[i] * over, active ? rho[i] : 0.0};
+    const double W = price(i);
+    return {0.5 * rho[i] * over * over + 0.5 * W * g * g, rho[i] * over + W * g,
+            (active ? rho[i] : 0.0) + W};
   }
 };
 

@@ -58,7 +58,13 @@ void integratePosition(const Model& model, const VectorX& v, double h, VectorX& 
 }
 
 VectorX positionDifference(const Model& model, const VectorX& q0, const VectorX& q1) {
-  VectorX v = VectorX::Zero(model.nv);
+  VectorX v(model.nv);
+  positionDifference(model, q0, q1, v);
+  return v;
+}
+
+void positionDifference(const Model& model, const VectorX& q0, const VectorX& q1, VectorX& v) {
+  v.setZero();
   for (const Body& body : model.bodies) {
     if (body.joint == JointKind::floating) {
       v.segment<3>(body.v) = q1.segment<3>(body.q) - q0.segment<3>(body.q);
@@ -69,7 +75,6 @@ VectorX positionDifference(const Model& model, const VectorX& q0, const VectorX&
       v[body.v] = q1[body.q] - q0[body.q];
     }
   }
-  return v;
 }
 
 }  // namespace softgauss

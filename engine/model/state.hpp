@@ -53,5 +53,7 @@ void integratePosition(const Model& model, const VectorX& v, double h, VectorX& 
 
 /// The v with q1 = q0 ⊕ v (the inverse of integratePosition with h = 1).
 VectorX positionDifference(const Model& model, const VectorX& q0, const VectorX& q1);
+/// The same into v, which has its size.
+void positionDifference(const Model& model, const VectorX& q0, const VectorX& q1, VectorX& v);
 
 }  // namespace softgauss

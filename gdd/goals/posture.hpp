@@ -25,7 +25,8 @@ class Posture final : public Goal {
 
   std::string name() const override { return "posture"; }
   void addCost(const GoalContext& context, GoalCost& cost) const override {
-    const VectorX away = positionDifference(context.model, context.state.q, q);
+    VectorX& away = cost.workspace().dofs;
+    positionDifference(context.model, context.state.q, q, away);
     cost.addMetric(weight, stiffness * away - damping * context.state.v);
   }
 };

@@ -3,7 +3,25 @@
 
 #include <algorithm>
 
+#include "engine/core/rotation.hpp"
+
 namespace softgauss::gdd {
+namespace {
+
+/// The way along a minimum-jerk line, 0 to 1, with its rates.
+struct Way {
+  double s, sdot, sddot;
+
+  Way(const MinimumJerk& line, double time) {
+    const double T = line.duration;
+    const double x = std::clamp((time - line.startTime) / T, 0.0, 1.0);
+    s = x * x * x * (10.0 + x * (-15.0 + 6.0 * x));
+    sdot = 30.0 * x * x * (1.0 - x) * (1.0 - x) / T;
+    sddot = 60.0 * x * (1.0 - x) * (1.0 - 2.0 * x) / (T * T);
+  }
+};
+
+}  // namespace
 
 Reach::Reach(const Model& model, const std::string& linkName, const Vector3& target,
              const Vector3& point)
@@ -11,7 +29,8 @@ Reach::Reach(const Model& model, const std::string& linkName, const Vector3& tar
       frame(model.findFrame(linkName)),
       p_FP(point),
       p_WTarget(target),
-      weight(kReachWeightPerMass * model.totalMass()) {
+      weight(kReachWeightPerMass * model.totalMass()),
+      rotationWeight(kRotationWeightPerWeight * weight) {
   const std::string element = "goal 'reach " + linkName + "'";
   if (frame < 0) throw ModelError({}, element, "the model has no link of that name");
   if (!target.allFinite() || !point.allFinite())
@@ -26,25 +45,51 @@ std::optional<GoalMark> Reach::mark(const GoalContext& context) const {
   return GoalMark{frame, position(context), p_WTarget};
 }
 
+Vector3 Reach::wishedAcceleration(double time, const Vector3& p, const Vector3& v) const {
+  if (!minimumJerk) return stiffness * (p_WTarget - p) - damping * v;
+  const Way way(*minimumJerk, time);
+  const Vector3 line = p_WTarget - minimumJerk->p_start;
+  return way.sddot * line + stiffness * (minimumJerk->p_start + way.s * line - p) +
+         damping * (way.sdot * line - v);
+}
+
+Vector3 Reach::wishedRotation(double time, const Matrix3& R, const Vector3& omega) const {
+  const auto from = [](const Matrix3& A, const Matrix3& B) {  // rotation vector that turns A into B
+    return quaternionLog(Quaternion(Matrix3(B * A.transpose())));
+  };
+  if (!minimumJerk) return stiffness * from(R, *R_WTarget) - damping * omega;
+  const Way way(*minimumJerk, time);
+  const Vector3 turn = from(minimumJerk->R_start, *R_WTarget);
+  const Matrix3 now = quaternionExp(way.s * turn).toRotationMatrix() * minimumJerk->R_start;
+  return way.sddot * turn + stiffness * from(R, now) + damping * (way.sdot * turn - omega);
+}
+
 void Reach::addCost(const GoalContext& context, GoalCost& cost) const {
   const Kinematics& k = context.data.kinematics;
   const int body = context.model.frames[frame].body;
   if (context.model.bodies[body].dofs == 0) return;  // fixed to the world
   const Vector3 p = position(context);
-  const Vector3 v = pointVelocity(context.model, k, body, p);
-
-  Vector3 wished = stiffness * (p_WTarget - p) - damping * v;
-  if (minimumJerk) {
-    const double T = minimumJerk->duration;
-    const double s = std::clamp((context.state.time - minimumJerk->startTime) / T, 0.0, 1.0);
-    const Vector3 way = p_WTarget - minimumJerk->p_start;
-    const Vector3 r = minimumJerk->p_start + way * (s * s * s * (10.0 + s * (-15.0 + 6.0 * s)));
-    const Vector3 rdot = way * (30.0 * s * s * (1.0 - s) * (1.0 - s) / T);
-    const Vector3 rddot = way * (60.0 * s * (1.0 - s) * (1.0 - 2.0 * s) / (T * T));
-    wished = rddot + stiffness * (r - p) + damping * (rdot - v);
+  const double time = context.state.time;
+  if (!R_WTarget && metric == LinkMetric::euclidean) {
+    const Vector3 wished = wishedAcceleration(time, p, pointVelocity(context.model, k, body, p));
+    cost.addPoint(context.model, k, context.data.inertia.sparsity, body, p, weight,
+                  wished - pointBiasAcceleration(context.model, k, body, p));
+    return;
   }
-  const Vector3 target = wished - pointBiasAcceleration(context.model, k, body, p);
-  cost.addPoint(context.model, k, context.data.inertia.sparsity, body, p, weight, target);
+  const LinkRows rows(context, body, p, cost.workspace());
+  const int dim = R_WTarget ? 6 : 3;
+  Vector6 weights, target = -rows.bias;
+  weights << Vector3::Constant(weight), Vector3::Constant(rotationWeight);
+  target.head<3>() += wishedAcceleration(time, p, rows.velocity.head<3>());
+  if (R_WTarget)
+    target.tail<3>() +=
+        wishedRotation(time, framePose(context.model, k, frame).R, rows.velocity.tail<3>());
+  if (metric == LinkMetric::consistent) {
+    addConsistent(context, rows.J, weights, target.head(dim), cost);
+    return;
+  }
+  for (int i = 0; i < dim; i += 3)
+    cost.addRows(rows.J.middleRows(i, 3), weights[i], target.segment(i, 3));
 }
 
 }  // namespace softgauss::gdd

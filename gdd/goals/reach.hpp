@@ -1,38 +1,49 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// Spatial goal: a point P of a link seeks a place in the world, equation (11) of the paper.
+/// Spatial goal: a point P of a link seeks a place in the world, equation (11) of the paper; the
+/// link may seek an orientation too.
 ///
-///   ℓ(a) = ½ w |J a + J̇ v − a*|²                                                        (T.22)
+///   ℓ(a) = ½ w |J a + J̇ v − a*|² + ½ w_r |J_r a + J̇_r v − α*|²                           (T.22)
 /// with the wished acceleration of P from one of two laws, e = p* − p:
 ///   spring-damper   a* = k_p e − k_d ṗ
 ///   minimum jerk    a* = r̈(t) + k_p (r − p) + k_d (ṙ − ṗ)                                (T.23)
 /// r is the minimum-jerk line of Flash and Hogan (1985) from the start p₀, at rest, to p* in the
 /// duration T:  r = p₀ + (p* − p₀)(10 s³ − 15 s⁴ + 6 s⁵),  s = (t − t₀)/T in [0, 1].
+/// The angular acceleration α* follows the same laws with θ, the rotation vector of R* Rᵀ, for e,
+/// and ω for ṗ; along a minimum-jerk line the link turns about one axis                   (T.42)
+/// The metric may be the consistent one (T.43) instead of the Euclidean.
 
 #include <optional>
 
-#include "gdd/goal.hpp"
+#include "gdd/goals/link_rows.hpp"
 
 namespace softgauss::gdd {
 
 struct MinimumJerk {
-  Vector3 p_start = Vector3::Zero();  ///< p₀ [m]
-  double startTime = 0.0;             ///< t₀ [s]
-  double duration = 1.0;              ///< T [s]
+  Vector3 p_start = Vector3::Zero();      ///< p₀ [m]
+  double startTime = 0.0;                 ///< t₀ [s]
+  double duration = 1.0;                  ///< T [s]
+  Matrix3 R_start = Matrix3::Identity();  ///< orientation of the link at t₀, for an orientation
 };
 
 /// w over the mass of all moving bodies, by default: 100 kg for a humanoid of 40 kg. A fixed weight
 /// would ask a robot of 1 kg for accelerations that no time step can carry.
 inline constexpr double kReachWeightPerMass = 2.5;
 
+/// w_r over w by default [m²]: a link of radius of gyration 0.1 m.
+inline constexpr double kRotationWeightPerWeight = 0.01;
+
 class Reach final : public Goal {
  public:
-  std::string link;                        ///< for the name
-  int frame = 0;                           ///< index into Model::frames
-  Vector3 p_FP = Vector3::Zero();          ///< the point in the link's frame [m]
-  Vector3 p_WTarget = Vector3::Zero();     ///< p* [m]
-  double weight;                           ///< w [kg]; default 2.5 × the robot's mass
+  std::string link;                     ///< for the name
+  int frame = 0;                        ///< index into Model::frames
+  Vector3 p_FP = Vector3::Zero();       ///< the point in the link's frame [m]
+  Vector3 p_WTarget = Vector3::Zero();  ///< p* [m]
+  std::optional<Matrix3> R_WTarget;     ///< R*: orientation of the link; absent: any
+  double weight;                        ///< w [kg; - if consistent]; default 2.5 × the mass
+  double rotationWeight;                ///< w_r [kg m²; - if consistent]; default 0.01 m² × w
+  LinkMetric metric = LinkMetric::euclidean;
   double stiffness = 100.0;                ///< k_p [1/s²]
   double damping = 20.0;                   ///< k_d [1/s]
   std::optional<MinimumJerk> minimumJerk;  ///< absent: spring-damper
@@ -45,6 +56,10 @@ class Reach final : public Goal {
   void addCost(const GoalContext& context, GoalCost& cost) const override;
   std::optional<GoalMark> mark(const GoalContext& context) const override;
   Vector3 position(const GoalContext& context) const;
+
+ private:
+  Vector3 wishedAcceleration(double time, const Vector3& p, const Vector3& v) const;
+  Vector3 wishedRotation(double time, const Matrix3& R, const Vector3& omega) const;
 };
 
 }  // namespace softgauss::gdd

@@ -8,6 +8,7 @@
 #include <Eigen/Cholesky>
 
 #include "tests/gdd/gdd_scene.hpp"
+#include "tests/gdd/goal_check.hpp"
 #include "tests/support/matchers.hpp"
 
 namespace softgauss::test {
@@ -66,6 +67,31 @@ TEST(Box, SaturatedActuatorsSatisfyTheirConditions) {
   EXPECT_SMALL(worstViolation, 1e-8);
   EXPECT_GT(scenes, 80) << "the boxes are to be at work";
   EXPECT_GT(atBound, 200);
+}
+
+// Multipliers of the start that are too large hold forces inside the box, off bounds that they
+// should be at: within the box is not enough. An arm without unactuated dofs, whose forces would
+// show it.
+TEST(Box, ConditionsHoldWhereASolveStartsFromLargeMultipliers) {
+  double worstSign = 0.0;
+  int atBound = 0;
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    Random random(seed + 5);
+    GddScene s(drivenArm(seed));
+    s.addRandomGoals(random);
+    s.addRandomBox(random, 0.8);
+    s.solve();
+    WarmStart& warm = s.scene.state.warmstart;
+    s.solver->keepWarmStart(warm);
+    warm.multipliers *= random.uniform(1.5, 3.0);
+    const VectorX& a = s.solve();
+    EXPECT_EQ(s.report.status, gdd::GddStatus::converged) << "seed " << seed;
+    const Conditions at = conditionsAt(s.dense, a);
+    worstSign = std::max(worstSign, at.wrongSign);
+    atBound += at.atBound;
+  }
+  EXPECT_SMALL(worstSign, 1e-6);
+  EXPECT_GT(atBound, 100);
 }
 
 TEST(Box, ConditionsHoldBetweenContactsAndLimits) {

@@ -179,8 +179,8 @@ const BadGoal kBadGoals[] = {
      "bad.yaml:2: key 'gaols': found an unknown key, expected one of goals, did you mean 'goals'?"},
     {"UnknownKey", "weight: 7", "wieght: 7",
      "bad.yaml:4: goal 1 'reach': key 'wieght': found an unknown key, expected one of link, "
-     "target, "
-     "point, weight, stiffness, damping, minimum_jerk, did you mean 'weight'?"},
+     "target, point, rpy, quaternion, weight, rotation_weight, metric, stiffness, damping, "
+     "minimum_jerk, start, end, did you mean 'weight'?"},
     {"UnknownNestedKey", "duration: 1.5", "time: 1.5",
      "bad.yaml:5: goal 1 'reach': key 'minimum_jerk.time': found an unknown key, expected one of "
      "duration, start"},
@@ -263,11 +263,13 @@ const BadGoal kBadGoals[] = {
      "bad.yaml:5: goal 1 'reach': key 'minimum_jerk': found '1.5', expected a map {…}"},
     // Kinds
     {"UnknownKind", "posture:", "posutre:",
-     "bad.yaml:6: goal 2: found the unknown kind 'posutre', expected one of reach, posture, "
-     "damping, did you mean 'posture'?"},
+     "bad.yaml:6: goal 2: found the unknown kind 'posutre', expected one of reach, look_at, "
+     "hold, posture, joint_posture, acceleration, damping, effort, center_of_mass, momentum, "
+     "capture_point, did you mean 'posture'?"},
     {"GoalIsAWord", "- posture", "- damping\n  - posture",
-     "bad.yaml:6: goal 2: found 'damping', expected kind: {…}, the kind one of reach, posture, "
-     "damping"},
+     "bad.yaml:6: goal 2: found 'damping', expected kind: {…}, the kind one of reach, look_at, "
+     "hold, posture, joint_posture, acceleration, damping, effort, center_of_mass, momentum, "
+     "capture_point"},
     {"KeysNotIndented", "      weight: 0.5\n      rate: 3", "    weight: 0.5\n    rate: 3",
      "bad.yaml:7: goal 3: found 3 keys (damping, weight, rate), expected one, the kind, whose own "
      "keys are in {…} or indented below it"},

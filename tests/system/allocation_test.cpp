@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/gdd/robot_scene.hpp"
 #include "tests/support/allocation_guard.hpp"
 #include "tests/support/scene.hpp"
 
@@ -133,6 +134,63 @@ TEST(Allocation, NoneInTheStepWithEveryEffect) {
     EXPECT_GT(s.data->constraints.weld.rowCount(), 0);
     EXPECT_EQ(allocationsOfSteadySteps(s, 20), 0) << "seed " << seed;
   }
+}
+
+/// A humanoid that stands, with a goal of every kind that is quadratic.
+void addEveryQuadraticGoal(RobotScene& r) {
+  const auto add = [&](auto goal) {
+    r.controller.goals.push_back(std::make_unique<decltype(goal)>(std::move(goal)));
+  };
+  const Model& model = r.model;
+  const int robot = gdd::drivenRobot(model);
+  r.addDamping();
+  r.addPosture();
+  r.addReach("right_hand", Vector3(0.45, -0.25, 1.1));
+  gdd::Reach pose(model, "left_hand", Vector3(0.4, 0.25, 1.0));
+  pose.R_WTarget = Matrix3::Identity();
+  add(pose);
+  pose.metric = gdd::LinkMetric::consistent;
+  pose.weight = pose.rotationWeight = 10.0;
+  pose.minimumJerk = gdd::MinimumJerk{};
+  add(pose);
+  gdd::Hold foot(model, "left_foot"), toe(model, "right_foot");
+  toe.wholeLink = false;
+  add(foot);
+  add(toe);
+  add(gdd::LookAt(model, "head", Vector3(2.0, 0.5, 1.0)));
+  add(gdd::CenterOfMass(model, robot, Vector3(0.0, 0.0, 0.9)));
+  add(gdd::MomentumGoal(model, robot));
+  add(gdd::CapturePoint(model, robot, Vector3::Zero()));
+  const std::vector<int> driven = gdd::Effort::actuatedDofs(model);
+  const gdd::JointTarget joint{model.dofs[driven.front()].body, 0.3};
+  gdd::JointAcceleration acceleration;
+  acceleration.targets = {joint};
+  acceleration.weight = 1.0;
+  add(acceleration);
+  gdd::JointPosture posture;
+  posture.targets = {joint};
+  add(posture);
+  add(gdd::Effort(driven));
+}
+
+TEST(Allocation, NoneInTheGoalDirectedStepWithEveryQuadraticGoal) {
+  SKIP_WITHOUT_HOOK();
+  RobotScene r("humanoid");
+  addEveryQuadraticGoal(r);
+  const State start = r.state;
+  int contacts = 0;
+  const auto run = [&] {
+    for (int i = 0; i < 300; ++i) {
+      EXPECT_NE(r.step(), SolveStatus::notFinite);
+      contacts = std::max(contacts, r.data.stats.contacts);
+    }
+  };
+  run();
+  EXPECT_GT(contacts, 4);
+  r.state = start;
+  const AllocationGuard guard;
+  run();
+  EXPECT_EQ(guard.count(), 0);
 }
 
 TEST(Allocation, NoneInInverseDynamics) {

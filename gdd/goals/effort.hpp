@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Effort: what the control of chosen dofs costs besides the price of force ½ gᵀR g.
+///
+///   ½ Σ_i w ŵ_i g_i(a)²                                                                  (T.50)
+/// over the chosen dofs; ŵ_i is the dof's inverse inertia w_i of (T.12), constant, so that w is a
+/// plain number: with w = 1 a joint's force costs about twice what it costs anyway. g is the
+/// inverse dynamics, so this is no function of a alone but a term of the price, R + diag(w ŵ).
+///
+/// Over the unactuated dofs it prices root forces. That has an effect only where they are allowed:
+/// ControlBox::allowRootForces(). With w → ∞ the solution tends to that of g_z = 0, the paper's
+/// continuation; what is found at a finite w is applied as it is, root forces included.
+
+#include <string>
+#include <vector>
+
+#include "gdd/goal.hpp"
+
+namespace softgauss::gdd {
+
+class Effort final : public Goal {
+ public:
+  std::vector<int> dofs;  ///< that pay
+  double weight = 1.0;    ///< w [-]
+
+  explicit Effort(std::vector<int> chosen) : dofs(std::move(chosen)) {}
+  /// All actuated dofs; all others, whose forces are root forces.
+  static std::vector<int> actuatedDofs(const Model& model);
+  static std::vector<int> rootDofs(const Model& model);
+
+  std::string name() const override { return "effort"; }
+  void addCost(const GoalContext& context, GoalCost& cost) const override;
+};
+
+}  // namespace softgauss::gdd

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gdd/goals/hold.hpp"
+
+namespace softgauss::gdd {
+
+Hold::Hold(const Model& model, const std::string& linkName)
+    : link(linkName),
+      frame(model.findFrame(linkName)),
+      weight(kReachWeightPerMass * model.totalMass()),
+      rotationWeight(kRotationWeightPerWeight * weight) {
+  if (frame < 0)
+    throw ModelError({}, "goal 'hold " + linkName + "'", "the model has no link of that name");
+}
+
+void Hold::addCost(const GoalContext& context, GoalCost& cost) const {
+  const int body = context.model.frames[frame].body;
+  if (context.model.bodies[body].dofs == 0) return;  // fixed to the world
+  const Vector3 p = framePose(context.model, context.data.kinematics, frame) * p_FP;
+  const LinkRows rows(context, body, p, cost.workspace());
+  const Vector6 target = -rate * rows.velocity - rows.bias;
+  cost.addRows(rows.J.topRows(3), weight, target.head(3));
+  if (wholeLink) cost.addRows(rows.J.bottomRows(3), rotationWeight, target.tail(3));
+}
+
+}  // namespace softgauss::gdd

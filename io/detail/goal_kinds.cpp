@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/detail/goal_kinds.hpp"
+
+namespace softgauss::io::detail {
+
+const std::vector<GoalKind>& goalKinds() {
+  static const std::vector<GoalKind> kinds = {
+      {"reach",
+       {"link", "target", "point", "rpy", "quaternion", "weight", "rotation_weight", "metric",
+        "stiffness", "damping", "minimum_jerk"},
+       readReach},
+      {"look_at",
+       {"link", "target", "axis", "point", "weight", "stiffness", "damping"},
+       readLookAt},
+      {"hold", {"link", "point", "weight", "rotation_weight", "rate"}, readHold},
+      {"posture", {"weight", "stiffness", "damping", "joints"}, readPosture},
+      {"joint_posture", {"joints", "weight", "stiffness", "damping"}, readJointPosture},
+      {"acceleration", {"joints", "weight"}, readAcceleration},
+      {"damping", {"weight", "rate"}, readDamping},
+      {"effort", {"joints", "weight"}, readEffort},
+      {"center_of_mass",
+       {"link", "target", "axes", "weight", "stiffness", "damping"},
+       readCenterOfMass},
+      {"momentum",
+       {"link", "linear", "angular", "linear_weight", "angular_weight", "rate"},
+       readMomentum},
+      {"capture_point", {"link", "target", "weight", "rate"}, readCapturePoint},
+  };
+  return kinds;
+}
+
+}  // namespace softgauss::io::detail

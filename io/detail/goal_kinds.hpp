@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// The kinds of goal that a file may hold: for each its keys and what reads them.
+///
+/// To add a kind: write its function in one of the goal_*.cpp, name it and its keys in
+/// goal_kinds.cpp, and show it in docs/goals.md.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/model/state.hpp"
+#include "gdd/goal.hpp"
+#include "io/detail/yaml.hpp"
+
+namespace softgauss::io::detail {
+
+using GoalPointer = std::unique_ptr<gdd::Goal>;
+
+/// What the goals are about.
+struct GoalScene {
+  const Model& model;
+  const State& initial;
+};
+
+struct GoalKind {
+  std::string name;
+  std::vector<std::string> keys;  ///< without `start` and `end`, which every kind has
+  GoalPointer (*read)(const YamlMap& keys, const GoalScene& scene);
+};
+
+const std::vector<GoalKind>& goalKinds();
+
+// ---- goal_parts.cpp: what several kinds read ----------------------------------------------------
+
+/// The link that the entry names; it must move.
+std::string movingLink(const YamlMap& keys, const YamlMap::Entry& entry, const Model& model);
+
+/// The bodies that the joints of the map carry, in its order; each joint must have one degree of
+/// freedom.
+std::vector<std::pair<int, double>> readJoints(const YamlMap& joints, const Model& model);
+
+/// Pose of a frame in the initial state.
+Transform initialPose(const GoalScene& scene, int frame);
+
+// ---- One function for each kind -----------------------------------------------------------------
+
+GoalPointer readReach(const YamlMap& keys, const GoalScene& scene);
+GoalPointer readLookAt(const YamlMap& keys, const GoalScene& scene);
+GoalPointer readHold(const YamlMap& keys, const GoalScene& scene);
+GoalPointer readPosture(const YamlMap& keys, const GoalScene& scene);
+GoalPointer readJointPosture(const YamlMap& keys, const GoalScene& scene);
+GoalPointer readAcceleration(const YamlMap& keys, const GoalScene& scene);
+GoalPointer readDamping(const YamlMap& keys, const GoalScene& scene);
+GoalPointer readEffort(const YamlMap& keys, const GoalScene& scene);
+GoalPointer readCenterOfMass(const YamlMap& keys, const GoalScene& scene);
+GoalPointer readMomentum(const YamlMap& keys, const GoalScene& scene);
+GoalPointer readCapturePoint(const YamlMap& keys, const GoalScene& scene);
+
+}  // namespace softgauss::io::detail

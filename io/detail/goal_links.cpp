@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Goals of links: reach, look_at, hold.
+
+#include "gdd/goals/hold.hpp"
+#include "gdd/goals/look_at.hpp"
+#include "gdd/goals/reach.hpp"
+#include "io/detail/goal_kinds.hpp"
+#include "io/detail/scene_parts.hpp"
+
+namespace softgauss::io::detail {
+namespace {
+
+/// The line of Flash and Hogan from where the goal's point is at first.
+gdd::MinimumJerk readMinimumJerk(const YamlMap& keys, const gdd::Reach& goal,
+                                 const GoalScene& scene) {
+  keys.expectOnly({"duration", "start"});
+  gdd::MinimumJerk line;
+  keys.read("duration", line.duration, Range::positive);
+  keys.read("start", line.startTime, Range::any);
+  const Transform start = initialPose(scene, goal.frame);
+  line.p_start = start * goal.p_FP;
+  line.R_start = start.R;
+  return line;
+}
+
+/// Metric, weight and rotation weight of a reach, whose defaults depend on the first.
+void readWeights(const YamlMap& keys, gdd::Reach& goal) {
+  constexpr double kConsistentWeight = 1000.0;
+  const YamlMap::Entry* metric = keys.find("metric");
+  const bool consistent =
+      metric && keys.choice(*metric, {"euclidean", "consistent"}) == "consistent";
+  if (consistent) {
+    goal.metric = gdd::LinkMetric::consistent;
+    goal.weight = kConsistentWeight;
+  }
+  keys.read("weight", goal.weight, Range::notNegative);
+  goal.rotationWeight = (consistent ? 1.0 : gdd::kRotationWeightPerWeight) * goal.weight;
+  keys.read("rotation_weight", goal.rotationWeight, Range::notNegative);
+  const YamlMap::Entry* rotation = keys.find("rotation_weight");
+  if (rotation && !goal.R_WTarget)
+    keys.fail(*rotation, "found without an orientation, expected rpy or quaternion beside it");
+}
+
+std::string requiredLink(const YamlMap& keys, const Model& model) {
+  return movingLink(keys, keys.required("link", "the name of a link"), model);
+}
+
+Vector3 requiredTarget(const YamlMap& keys) {
+  return keys.vector3(keys.required("target", "three numbers [x, y, z]"));
+}
+
+}  // namespace
+
+GoalPointer readReach(const YamlMap& keys, const GoalScene& scene) {
+  const std::string link = requiredLink(keys, scene.model);
+  auto goal = std::make_unique<gdd::Reach>(scene.model, link, requiredTarget(keys));
+  keys.read("point", goal->p_FP);
+  if (keys.find("rpy") || keys.find("quaternion")) goal->R_WTarget = readPose(keys).R;
+  readWeights(keys, *goal);
+  keys.read("stiffness", goal->stiffness, Range::notNegative);
+  keys.read("damping", goal->damping, Range::notNegative);
+  if (const auto* line = keys.find("minimum_jerk"))
+    goal->minimumJerk = readMinimumJerk(keys.map(*line), *goal, scene);
+  return goal;
+}
+
+GoalPointer readLookAt(const YamlMap& keys, const GoalScene& scene) {
+  const std::string link = requiredLink(keys, scene.model);
+  const Vector3 target = requiredTarget(keys);
+  Vector3 axis = Vector3::UnitX();
+  keys.read("axis", axis);
+  if (axis.norm() == 0.0)
+    keys.fail(*keys.find("axis"), "found a vector of length 0, expected a direction");
+  auto goal = std::make_unique<gdd::LookAt>(scene.model, link, target, axis);
+  keys.read("point", goal->p_FP);
+  keys.read("weight", goal->weight, Range::notNegative);
+  keys.read("stiffness", goal->stiffness, Range::notNegative);
+  keys.read("damping", goal->damping, Range::notNegative);
+  return goal;
+}
+
+GoalPointer readHold(const YamlMap& keys, const GoalScene& scene) {
+  auto goal = std::make_unique<gdd::Hold>(scene.model, requiredLink(keys, scene.model));
+  goal->wholeLink = !keys.find("point");
+  keys.read("point", goal->p_FP);
+  keys.read("weight", goal->weight, Range::notNegative);
+  goal->rotationWeight = gdd::kRotationWeightPerWeight * goal->weight;
+  keys.read("rotation_weight", goal->rotationWeight, Range::notNegative);
+  const YamlMap::Entry* rotation = keys.find("rotation_weight");
+  if (rotation && !goal->wholeLink)
+    keys.fail(*rotation, "found beside a point, expected the whole link to be held");
+  keys.read("rate", goal->rate, Range::notNegative);
+  return goal;
+}
+
+}  // namespace softgauss::io::detail

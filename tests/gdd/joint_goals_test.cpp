@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Goals of chosen joints, and the times between which a goal acts.
+
+#include "tests/gdd/goal_check.hpp"
+#include "tests/gdd/robot_scene.hpp"
+
+namespace softgauss::test {
+namespace {
+
+/// Every other joint of one degree of freedom, with random targets.
+std::vector<gdd::JointTarget> randomTargets(const Model& model, Random& random) {
+  std::vector<gdd::JointTarget> targets;
+  for (int b = 1; b < model.bodyCount(); b += 2)
+    if (model.bodies[b].dofs == 1)
+      targets.push_back(gdd::jointTarget(model, model.jointNames[b], random.uniform(-2.0, 2.0)));
+  return targets;
+}
+
+TEST(JointGoals, KeepTheLawsOfCosts) {
+  expectLawsOfGoals([](const Scene& scene, Random& random) {
+    auto goal = std::make_unique<gdd::JointAcceleration>();
+    goal->targets = randomTargets(scene.model, random);
+    goal->weight = random.uniform(0.1, 1e3);
+    return goal;
+  });
+  expectLawsOfGoals([](const Scene& scene, Random& random) {
+    auto goal = std::make_unique<gdd::JointPosture>();
+    goal->targets = randomTargets(scene.model, random);
+    goal->weight = random.uniform(0.1, 1e3);
+    return goal;
+  });
+}
+
+// ½ w Σ M_ii (a_i − a*_i)², counted from a = 0.
+TEST(JointGoals, WeighTheInertiaThatTheJointMoves) {
+  const Scene scene = drivenArm(3);
+  Random random(3);
+  gdd::JointAcceleration goal;
+  goal.targets = randomTargets(scene.model, random);
+  goal.weight = 7.0;
+  ASSERT_GE(goal.targets.size(), 3u);
+  const VectorX a = random.vector(scene.model.nv, 5.0);
+  const MatrixX M = scene.data->inertia.M.dense();
+  double expected = 0.0;
+  for (const gdd::JointTarget& target : goal.targets) {
+    const int i = scene.model.bodies[target.body].v;
+    expected += 3.5 * M(i, i) * (std::pow(a[i] - target.value, 2) - std::pow(target.value, 2));
+  }
+  const GoalCheck check(scene, goal);
+  EXPECT_NEAR(check.value(a) - check.value(0.0 * a), expected, 1e-12 * std::abs(expected));
+}
+
+// A heavy goal of every joint leaves nothing to gravity: the arm does what it is told.
+TEST(JointGoals, JointsAccelerateAsTold) {
+  const Scene scene = drivenArm(5);
+  gdd::JointAcceleration goal;
+  goal.weight = 1e9;
+  for (int b = 1; b < scene.model.bodyCount(); ++b)
+    if (scene.model.bodies[b].dofs == 1)
+      goal.targets.push_back(gdd::jointTarget(scene.model, scene.model.jointNames[b], 0.1 * b));
+  const VectorX a = GoalCheck(scene, goal).solved();
+  for (const gdd::JointTarget& target : goal.targets)
+    EXPECT_NEAR(a[scene.model.bodies[target.body].v], target.value, 1e-4);
+}
+
+TEST(JointGoals, UnknownOrFloatingJointsAreRefused) {
+  const Scene scene = looseScene(1);
+  EXPECT_THROW(gdd::jointTarget(scene.model, "no such joint", 0.0), ModelError);
+  EXPECT_THROW(gdd::jointTarget(scene.model, scene.model.jointNames[0], kNaN), ModelError);
+}
+
+// One joint of the arm is led to a place; the others are told nothing but to be slow.
+TEST(JointGoals, OneJointIsLedToItsPlace) {
+  RobotScene r("arm");
+  int body = 1;
+  while (r.model.bodies[body].dofs != 1) ++body;
+  auto goal = std::make_unique<gdd::JointPosture>();
+  const double start = r.state.q[r.model.bodies[body].q];
+  goal->targets = {gdd::jointTarget(r.model, r.model.jointNames[body], start + 0.3)};
+  r.controller.goals.push_back(std::move(goal));
+  r.addDamping().weight = 10.0;
+  for (int i = 0; i < 1000; ++i) ASSERT_NE(r.step(), SolveStatus::notFinite);
+  EXPECT_NEAR(r.state.q[r.model.bodies[body].q], start + 0.3, 0.01);
+}
+
+// [start, end): the same run, step for step, as one whose goal is put in and taken out by hand.
+TEST(GoalTimes, AGoalActsFromItsStartUntilItsEnd) {
+  RobotScene timed("arm"), manual("arm");
+  const Vector3 target(0.5, 0.3, 0.5);
+  timed.addDamping();
+  manual.addDamping();
+  gdd::Reach& reach = timed.addReach("hand", target);
+  reach.startTime = 0.01;
+  reach.endTime = 0.03;
+  int acted = 0;
+  for (int i = 0; i < 30; ++i) {
+    const double t = manual.state.time;
+    const bool acts = t >= 0.01 && t < 0.03;
+    if (acts && manual.controller.goals.size() == 1) manual.addReach("hand", target);
+    if (!acts && manual.controller.goals.size() == 2) manual.controller.goals.pop_back();
+    acted += acts;
+    timed.step();
+    manual.step();
+    ASSERT_EQ(timed.state.q, manual.state.q) << "at " << t << " s";
+  }
+  EXPECT_NEAR(acted, 10, 1);
+}
+
+}  // namespace
+}  // namespace softgauss::test

@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The kinds of goal beyond reach, posture and damping: what their keys mean, and what is refused.
+
+#include <gtest/gtest.h>
+
+#include "engine/core/rotation.hpp"
+#include "engine/dynamics/energy.hpp"
+#include "gdd/gdd.hpp"
+#include "io/goals.hpp"
+#include "io/urdf.hpp"
+#include "sample_urdf.hpp"
+#include "temp_folder.hpp"
+
+namespace softgauss::io {
+namespace {
+
+using Goals = std::vector<std::unique_ptr<gdd::Goal>>;
+
+const Model& sampleModel() {
+  static const Model model = [] {
+    const TempFolder folder;
+    return loadUrdf(folder.write("sample.urdf", kSampleUrdf));
+  }();
+  return model;
+}
+
+/// Away from zero, so that references to it show.
+State sampleState() {
+  State state(sampleModel());
+  state.q.head<3>() = Vector3(0.3, -0.2, 1.0);
+  state.q.tail<1>()[0] = 0.4;
+  return state;
+}
+
+/// The goals of the items, each on a line of its own from line 2 on.
+Goals read(const std::string& items) {
+  const TempFolder folder;
+  return readGoals(folder.write("goals.yaml", "goals:\n" + items), sampleModel(), sampleState());
+}
+
+template <class Kind>
+std::unique_ptr<Kind> readOne(const std::string& item) {
+  Goals goals = read("  - " + item + "\n");
+  EXPECT_EQ(goals.size(), 1u);
+  Kind* kind = dynamic_cast<Kind*>(goals.at(0).release());
+  EXPECT_NE(kind, nullptr) << item;
+  return std::unique_ptr<Kind>(kind);
+}
+
+/// What reading the item ends in, after `goals.yaml:2: goal 1 `.
+std::string errorOf(const std::string& item) {
+  const std::string start = "goals.yaml:2: goal 1 ";
+  try {
+    read("  - " + item + "\n");
+  } catch (const ModelError& error) {
+    const std::string message = error.what();
+    const std::size_t at = message.find(start);
+    if (at == std::string::npos) return message;
+    return message.substr(at + start.size());
+  }
+  return "no error";
+}
+
+TEST(GoalTimesInFiles, AreOfEveryKind) {
+  const auto goal = readOne<gdd::VirtualDamping>("damping: {start: -1, end: 2.5}");
+  EXPECT_EQ(goal->startTime, -1.0);
+  EXPECT_EQ(goal->endTime, 2.5);
+  const auto forever = readOne<gdd::VirtualDamping>("damping: {}");
+  EXPECT_TRUE(forever->actsAt(-1e300) && forever->actsAt(1e300));
+  EXPECT_EQ(errorOf("damping: {start: 1, end: 1}"),
+            "'damping': key 'end': found 1 s, expected a time after the start at 1 s");
+  EXPECT_EQ(errorOf("damping: {end: .inf}"),
+            "'damping': key 'end': found '.inf', expected a finite number");
+}
+
+TEST(JointGoalsInFiles, ArriveWithTheirValues) {
+  const auto posture = readOne<gdd::JointPosture>(
+      "joint_posture: {joints: {shoulder: 0.8}, weight: 1, stiffness: 2, damping: 3}");
+  ASSERT_EQ(posture->targets.size(), 1u);
+  EXPECT_EQ(posture->targets[0].body, sampleModel().findJoint("shoulder"));
+  EXPECT_EQ(posture->targets[0].value, 0.8);
+  EXPECT_EQ(posture->weight, 1.0);
+  EXPECT_EQ(posture->stiffness, 2.0);
+  EXPECT_EQ(posture->damping, 3.0);
+  const auto acceleration =
+      readOne<gdd::JointAcceleration>("acceleration: {joints: {shoulder: -4}, weight: 5}");
+  ASSERT_EQ(acceleration->targets.size(), 1u);
+  EXPECT_EQ(acceleration->targets[0].value, -4.0);
+  EXPECT_EQ(acceleration->weight, 5.0);
+  EXPECT_EQ(readOne<gdd::JointAcceleration>("acceleration: {joints: {shoulder: 0}}")->weight,
+            gdd::JointAcceleration().weight);
+}
+
+TEST(JointGoalsInFiles, BadOnesAreRefused) {
+  EXPECT_EQ(errorOf("acceleration: {}"),
+            "'acceleration': key 'joints': found no such key, expected a map of joints, {joint: "
+            "number}");
+  EXPECT_EQ(errorOf("joint_posture: {joints: {}}"),
+            "'joint_posture': key 'joints': found an empty map, expected at least one joint");
+  EXPECT_EQ(errorOf("acceleration: {joints: {sholder: 1}}"),
+            "'acceleration': key 'joints.sholder': found an unknown joint, expected one of model "
+            "'sample', did you mean 'shoulder'?");
+  EXPECT_EQ(errorOf("acceleration: {joints: {shoulder: 1}, weight: -1}"),
+            "'acceleration': key 'weight': found '-1', expected a finite number >= 0");
+  EXPECT_EQ(errorOf("acceleration: {joints: {shoulder: 1}, stiffness: 1}"),
+            "'acceleration': key 'stiffness': found an unknown key, expected one of joints, "
+            "weight, start, end");
+}
+
+TEST(LinkGoalsInFiles, APoseArrivesWithItsValues) {
+  const auto pose = readOne<gdd::Reach>(
+      "reach: {link: arm, target: [1, 2, 3], rpy: [0.1, 0.2, 0.3], weight: 5, rotation_weight: 6,"
+      " minimum_jerk: {}}");
+  ASSERT_TRUE(pose->R_WTarget);
+  EXPECT_EQ(*pose->R_WTarget, rpyRotation(Vector3(0.1, 0.2, 0.3)));
+  EXPECT_EQ(pose->weight, 5.0);
+  EXPECT_EQ(pose->rotationWeight, 6.0);
+  EXPECT_EQ(pose->metric, gdd::LinkMetric::euclidean);
+  Kinematics k(sampleModel());
+  computeKinematics(sampleModel(), sampleState(), k);
+  EXPECT_EQ(pose->minimumJerk->R_start, framePose(sampleModel(), k, pose->frame).R);
+
+  const auto turned = readOne<gdd::Reach>(
+      "reach: {link: arm, target: [1, 2, 3], quaternion: [0, 0, 0, 1], weight: 5}");
+  EXPECT_EQ(*turned->R_WTarget, Vector3(-1.0, -1.0, 1.0).asDiagonal().toDenseMatrix());
+  EXPECT_EQ(turned->rotationWeight, 0.05);
+
+  const auto consistent =
+      readOne<gdd::Reach>("reach: {link: arm, target: [1, 2, 3], metric: consistent}");
+  EXPECT_EQ(consistent->metric, gdd::LinkMetric::consistent);
+  EXPECT_EQ(consistent->weight, 1000.0);
+  EXPECT_EQ(consistent->rotationWeight, 1000.0);
+}
+
+TEST(LinkGoalsInFiles, LookAtAndHoldArriveWithTheirValues) {
+  const auto look = readOne<gdd::LookAt>(
+      "look_at: {link: arm, target: [1, 2, 3], axis: [0, 0, 2], point: [4, 5, 6], weight: 7,"
+      " stiffness: 8, damping: 9}");
+  EXPECT_EQ(look->axis_F, Vector3::UnitZ());
+  EXPECT_EQ(look->p_WTarget, Vector3(1.0, 2.0, 3.0));
+  EXPECT_EQ(look->p_FP, Vector3(4.0, 5.0, 6.0));
+  EXPECT_EQ(look->weight, 7.0);
+  EXPECT_EQ(look->stiffness, 8.0);
+  EXPECT_EQ(look->damping, 9.0);
+  EXPECT_EQ(readOne<gdd::LookAt>("look_at: {link: arm, target: [1, 2, 3]}")->axis_F,
+            Vector3::UnitX());
+
+  const auto whole = readOne<gdd::Hold>("hold: {link: arm, weight: 4, rate: 3}");
+  EXPECT_TRUE(whole->wholeLink);
+  EXPECT_EQ(whole->weight, 4.0);
+  EXPECT_EQ(whole->rotationWeight, 0.04);
+  EXPECT_EQ(whole->rate, 3.0);
+  const auto point = readOne<gdd::Hold>("hold: {link: arm, point: [1, 0, 0]}");
+  EXPECT_FALSE(point->wholeLink);
+  EXPECT_EQ(point->p_FP, Vector3::UnitX());
+}
+
+TEST(LinkGoalsInFiles, BadOnesAreRefused) {
+  const std::string reach = "reach: {link: arm, target: [1, 2, 3], ";
+  EXPECT_EQ(errorOf(reach + "rpy: [0, 0, 0], quaternion: [1, 0, 0, 0]}"),
+            "'reach': key 'quaternion': found beside rpy in line 2, expected one of them");
+  EXPECT_EQ(errorOf(reach + "quaternion: [1, 1, 0, 0]}"),
+            "'reach': key 'quaternion': found a list of 4, expected four numbers [w, x, y, z] of "
+            "length 1");
+  EXPECT_EQ(errorOf(reach + "rotation_weight: 1}"),
+            "'reach': key 'rotation_weight': found without an orientation, expected rpy or "
+            "quaternion beside it");
+  EXPECT_EQ(errorOf(reach + "metric: consistant}").substr(0, 41),
+            "'reach': key 'metric': found 'consistant'");
+  EXPECT_EQ(errorOf("look_at: {link: arm, target: [1, 2, 3], axis: [0, 0, 0]}"),
+            "'look_at': key 'axis': found a vector of length 0, expected a direction");
+  EXPECT_EQ(errorOf("look_at: {link: arm}"),
+            "'look_at': key 'target': found no such key, expected three numbers [x, y, z]");
+  EXPECT_EQ(errorOf("hold: {}"),
+            "'hold': key 'link': found no such key, expected the name of a link");
+  EXPECT_EQ(errorOf("hold: {link: arm, point: [0, 0, 0], rotation_weight: 1}"),
+            "'hold': key 'rotation_weight': found beside a point, expected the whole link to be "
+            "held");
+}
+
+TEST(BalanceGoalsInFiles, ArriveWithTheirValues) {
+  const auto centre = readOne<gdd::CenterOfMass>(
+      "center_of_mass: {link: arm, target: [1, 2, 3], axes: yx, weight: 4, stiffness: 5,"
+      " damping: 6}");
+  EXPECT_EQ(centre->p_WTarget, Vector3(1.0, 2.0, 3.0));
+  EXPECT_EQ(centre->axes, (std::array<bool, 3>{true, true, false}));
+  EXPECT_EQ(centre->weight, 4.0);
+  EXPECT_EQ(centre->stiffness, 5.0);
+  EXPECT_EQ(centre->damping, 6.0);
+  // Without a target it is to stay where it is at first.
+  Kinematics k(sampleModel());
+  computeKinematics(sampleModel(), sampleState(), k);
+  EXPECT_LT(
+      (readOne<gdd::CenterOfMass>("center_of_mass: {}")->p_WTarget - centerOfMass(sampleModel(), k))
+          .norm(),
+      1e-14);
+
+  const auto momentum = readOne<gdd::MomentumGoal>(
+      "momentum: {linear: [1, 0, 0], angular: [0, 2, 0], linear_weight: 3, angular_weight: 4,"
+      " rate: 5}");
+  EXPECT_EQ(momentum->linear, Vector3(1.0, 0.0, 0.0));
+  EXPECT_EQ(momentum->angular, Vector3(0.0, 2.0, 0.0));
+  EXPECT_EQ(momentum->linearWeight, 3.0);
+  EXPECT_EQ(momentum->angularWeight, 4.0);
+  EXPECT_EQ(momentum->rate, 5.0);
+
+  const auto capture =
+      readOne<gdd::CapturePoint>("capture_point: {target: [1, 2, 0], weight: 3, rate: 4}");
+  EXPECT_EQ(capture->p_WTarget, Vector3(1.0, 2.0, 0.0));
+  EXPECT_EQ(capture->weight, 3.0);
+  EXPECT_EQ(capture->rate, 4.0);
+}
+
+TEST(BalanceGoalsInFiles, BadOnesAreRefused) {
+  for (const char* const axes : {"xx", "w", "xyzx", "''"})
+    EXPECT_NE(errorOf(std::string("center_of_mass: {axes: ") + axes + "}").find("key 'axes'"),
+              std::string::npos)
+        << axes;
+  EXPECT_EQ(errorOf("center_of_mass: {link: amr}"),
+            "'center_of_mass': key 'link': found 'amr', expected a link of model 'sample', did "
+            "you mean 'arm'?");
+  EXPECT_EQ(errorOf("momentum: {rate: -1}"),
+            "'momentum': key 'rate': found '-1', expected a finite number >= 0");
+  EXPECT_EQ(errorOf("capture_point: {}"),
+            "'capture_point': key 'target': found no such key, expected three numbers [x, y, z]");
+}
+
+TEST(EffortInFiles, IsOfTheActuatedJointsNamed) {
+  const auto all = readOne<gdd::Effort>("effort: {weight: 3}");
+  EXPECT_EQ(all->dofs, gdd::Effort::actuatedDofs(sampleModel()));
+  EXPECT_EQ(all->weight, 3.0);
+  const int dof =
+      sampleModel().bodies[static_cast<std::size_t>(sampleModel().findJoint("shoulder"))].v;
+  EXPECT_EQ(readOne<gdd::Effort>("effort: {joints: [shoulder]}")->dofs, std::vector<int>{dof});
+  EXPECT_EQ(errorOf("effort: {joints: [sholder]}"),
+            "'effort': key 'joints': found 'sholder', expected actuated joints of model 'sample', "
+            "did you mean 'shoulder'?");
+  EXPECT_EQ(errorOf("effort: {joints: [base]}").substr(0, 39),
+            "'effort': key 'joints': found 'base', e");
+  EXPECT_EQ(errorOf("effort: {joints: [shoulder, shoulder]}"),
+            "'effort': key 'joints': found 'shoulder' twice, expected once");
+  EXPECT_EQ(errorOf("effort: {joints: []}"),
+            "'effort': key 'joints': found an empty list, expected at least one joint");
+  EXPECT_EQ(errorOf("effort: {joints: [{a: 1}]}").substr(0, 36),
+            "'effort': key 'joints': found a map,");
+  EXPECT_EQ(errorOf("effort: {weight: -1}"),
+            "'effort': key 'weight': found '-1', expected a finite number >= 0");
+}
+
+}  // namespace
+}  // namespace softgauss::io
