@@ -21,9 +21,13 @@ struct RobotScene {
   gdd::GoalDirectedController controller;
   Input input;
 
-  /// A floating robot stands or lies on the ground.
-  explicit RobotScene(const std::string& robot)
-      : model(load(robot)), state(model), data(model), contacts(model), controller(model) {
+  /// A floating robot stands or lies on the ground. `fixtures` belong to the world.
+  explicit RobotScene(const std::string& robot, const std::vector<GeometrySpec>& fixtures = {})
+      : model(load(robot, fixtures)),
+        state(model),
+        data(model),
+        contacts(model),
+        controller(model) {
     Kinematics k(model);
     computeKinematics(model, state, k);
     const Body& root = model.bodies[model.trees[0].rootBody];
@@ -71,9 +75,10 @@ struct RobotScene {
   }
 
  private:
-  static Model load(const std::string& robot) {
+  static Model load(const std::string& robot, const std::vector<GeometrySpec>& fixtures) {
     ModelBuilder builder =
         io::readUrdf(std::string(SOFTGAUSS_SOURCE_DIR) + "/data/robots/" + robot + ".urdf");
+    for (const GeometrySpec& fixture : fixtures) builder.geometry(fixture);
     if (robot == "arm") return builder.build();
     GeometrySpec plane;
     plane.name = "ground";

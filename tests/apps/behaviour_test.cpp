@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What the commands of the docs make robots do, seen in the logs.
+
+#include "tests/apps/process.hpp"
+#include "tests/support/tolerance.hpp"
+
+namespace softgauss::test {
+namespace {
+
+/// The log of a run.
+Csv logOf(std::vector<std::string> arguments) {
+  const io::TempFolder folder;
+  const std::string log = folder.path() / "log.csv";
+  arguments.insert(arguments.end(), {"--log", log, "--quiet"});
+  const Outcome outcome = simulate(arguments);
+  EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+  return Csv(readFile(log));
+}
+
+double lowest(const Csv& log, const std::string& column, double from = 0.0) {
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < static_cast<int>(log.rows.size()); ++i)
+    if (log.number(i, "time_s") >= from) least = std::min(least, log.number(i, column));
+  return least;
+}
+
+TEST(Behaviour, HumanoidStandsAndReachesForTenSeconds) {
+  const Csv log = logOf({dataFile("robots/humanoid.urdf"), "--goals",
+                         dataFile("goals/stand_and_reach.yaml"), "--duration", "10"});
+  ASSERT_EQ(log.rows.size(), 5001u);
+  EXPECT_GT(lowest(log, "q:pelvis.z"), 0.9) << "it stands with the pelvis at 0.92 m";
+}
+
+// Half a second for the hand to close; then the ball hangs on the fingers alone.
+TEST(Behaviour, HandClosesOnABallAndHoldsItForFiveSeconds) {
+  const std::string scene = dataFile("scenes/hand_and_ball.yaml");
+  const Csv log = logOf({scene, "--duration", "6"});
+  const int last = static_cast<int>(log.rows.size()) - 1;
+  EXPECT_NEAR(log.number(last, "time_s"), 6.0, 1e-9);
+  EXPECT_GT(lowest(log, "q:ball.z"), 0.255) << "it does not drop from 0.26 m";
+  EXPECT_GE(lowest(log, "contacts", 0.8), 3.0) << "fingers on several sides";
+  // It rests: in the last four seconds it creeps by less than a millimetre.
+  for (const char* axis : {"q:ball.x", "q:ball.y", "q:ball.z"})
+    EXPECT_SMALL(log.number(last, axis) - log.number(1000, axis), 1e-3);
+}
+
+TEST(Behaviour, TheSameBallDropsFromAHandWithoutGoals) {
+  std::string text = readFile(dataFile("scenes/hand_and_ball.yaml"));
+  text.resize(text.find("goals:"));
+  const std::string urdf = "../robots/hand.urdf";
+  text.replace(text.find(urdf), urdf.size(), dataFile("robots/hand.urdf"));
+  const io::TempFolder folder;
+  const Csv log = logOf({folder.write("open.yaml", text), "--passive", "--duration", "1.2"});
+  EXPECT_LT(lowest(log, "q:ball.z"), 0.1);
+}
+
+}  // namespace
+}  // namespace softgauss::test

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// The solvers of goal directed dynamics, for tests that hold each of them to the same laws.
+
+#include <gtest/gtest.h>
+
+#include "gdd/augmented_lagrangian.hpp"
+
+namespace softgauss::test {
+
+using GddSolvers = testing::Types<gdd::AugmentedLagrangian>;
+
+}  // namespace softgauss::test
