@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// The optimal value function of a pendulum that is to stand upright, by value iteration on a grid.
+///
+///   q⁺ = q + h v,   v⁺ = v + h (u − c)/M,   c = m g l sin q + d v                          (19)
+///   V(q, v) = p(q, v) + min_u ½ u²/M + V(q⁺, v⁺),   p = κ (1 + cos q) + ½ κ_v v²           (21)
+///
+/// q = 0 hangs down. V is periodic in q and zero at rest upright. Between nodes it is a cubic in q
+/// times a cubic in v, with slopes by central differences (C¹), which is what the control acts on.
+
+#include <array>
+
+#include "engine/core/types.hpp"
+
+namespace softgauss::test {
+
+struct PendulumPlant {
+  double M = 1.0;                            ///< about the hinge [kg m²]
+  double gravity = 0.0;                      ///< m g l [N m]
+  double damping = 0.0;                      ///< d [N m s/rad]
+  double h = 0.02;                           ///< [s]
+  double angleCost = 20.0, speedCost = 0.1;  ///< κ, κ_v
+
+  double acceleration(double q, double v, double u) const;
+  double running(double q, double v, double u) const;
+};
+
+class PendulumValue {
+ public:
+  /// `angles` nodes around, an even number; `speeds` nodes over ± largest, an odd one.
+  PendulumValue(const PendulumPlant& plant, int angles, int speeds, double largest);
+
+  /// V with its first two derivatives in v.
+  void at(double q, double v, double& value, double& slope, double& curvature) const;
+  double at(double q, double v) const;
+  /// min_u of ½ u²/M + V(q⁺, v⁺), from a mesh of v⁺ refined to rounding; `u`: where.
+  double backup(double q, double v, double& u) const;
+
+ private:
+  /// Four neighbouring nodes, and what they count for in value, slope and curvature.
+  struct Stencil {
+    std::array<int, 4> node;
+    std::array<double, 4> value, slope, curvature;
+  };
+  static Stencil stencil(double x, int count, bool around);
+  Stencil angle(double q) const;
+  Stencil speed(double v) const;
+
+  PendulumPlant plant_;
+  double largest_, step_;
+  MatrixX V_;  ///< (speeds × angles)
+};
+
+}  // namespace softgauss::test
