@@ -21,6 +21,67 @@ ActiveSet::ActiveSet(const Model& model) : path_(model) {
     *x = VectorX::Zero(model.nv);
 }
 
+/// Takes u, within the box, as the present control and a = f(u). Returns F, ∞ if it is not finite.
+double ActiveSet::moveTo(const Model& model, const GoalCost& cost, const VectorX* guess,
+                         Data& data) {
+  u_ = u_.cwiseMax(lower_).cwiseMin(upper_);
+  cell_.spread(u_, force_);
+  setAppliedForce(force_, data.forces);
+  if (minimizeGauss(model, guess, data) == SolveStatus::notFinite) {
+    badDof_ = data.stats.badDof;
+    return kInfinity;
+  }
+  report_.forwardIterations += data.forward.report.iterations;
+  path_.a = data.forward.a;
+  if (!cell_.setInertia(data, cost)) {
+    badDof_ = cell_.massFailedRow();
+    return kInfinity;
+  }
+  return objective(cost, data);
+}
+
+double ActiveSet::objective(const GoalCost& cost, const Data& data) {
+  cell_.multiplyR(force_, Rforce_);
+  data.inertia.M.multiply(path_.a, Ma_);
+  return 0.5 * force_.dot(Rforce_) + cost.value(data.inertia.M, path_.a, Ma_);
+}
+
+/// Without a last step: the best of three controls. None; the one that would be best if there were
+/// no rows; and the one that makes the acceleration of the latter with the rows there are. Dry
+/// friction, say, hides from the first what a larger control would gain.
+void ActiveSet::chooseStart(const Model& model, const GoalCost& cost, Data& data) {
+  u_.setZero();
+  VectorX best = u_;
+  double least = moveTo(model, cost, nullptr, data);
+  const auto consider = [&] {
+    const double value = moveTo(model, cost, nullptr, data);
+    if (value < least) least = value, best = u_;
+  };
+  if (data.constraints.rowCount() > 0 && u_.size() > 0 && std::isfinite(least)) {
+    cell_.enterWith(data.forward.massFactor);
+    path_.a = force_ - data.forces.c;
+    cell_.solve(path_.a);
+    if (computeGradient(cost, data)) {
+      cell_.computeHessian(cost);
+      solveProgram();
+      u_ += program_.solution();
+      consider();
+      cell_.enterWith(data.forward.massFactor);
+      path_.a = force_ - data.forces.c;
+      cell_.solve(path_.a);
+      bool changed = false;
+      data.constraints.setResidual(path_.a);
+      data.constraints.evaluate(changed);
+      computeResidual(data);
+      residual_ = force_ - residual_;
+      cell_.select(residual_, u_);
+      consider();
+    }
+    report_.cells = 0;
+  }
+  u_ = best;
+}
+
 /// u of the last step, within the box, and a = f(u).
 GddStatus ActiveSet::start(const Model& model, const GoalCost& cost, const ControlBox& box,
                            Data& data, const WarmStart& warm) {
@@ -28,30 +89,21 @@ GddStatus ActiveSet::start(const Model& model, const GoalCost& cost, const Contr
   badDof_ = -1;
   tried_.clear();
   path_.held.clear();
+  constrained_.clear();
   cell_.setDriven(model, box);
   cell_.select(box.lower, lower_);
   cell_.select(box.upper, upper_);
+  u_.setZero(cell_.columns());
+  force_ = box.lower;  // where the box has no width
   const bool known = warm.gddValid && warm.gddA.allFinite() && warm.control.size() == model.nv &&
                      warm.control.allFinite();
-  u_.setZero(cell_.columns());
-  if (known) cell_.select(warm.control, u_);
-  u_ = u_.cwiseMax(lower_).cwiseMin(upper_);
-  force_ = box.lower;  // where the box has no width
-  cell_.spread(u_, force_);
-
-  setAppliedForce(force_, data.forces);
-  const VectorX* guess = known ? &warm.gddA : (warm.valid ? &warm.a : nullptr);
-  if (minimizeGauss(model, guess, data) == SolveStatus::notFinite) {
-    badDof_ = data.stats.badDof;
-    return GddStatus::notFinite;
-  }
-  report_.forwardIterations = data.forward.report.iterations;
-  path_.a = data.forward.a;
-  if (!cell_.setInertia(data, cost)) {
-    badDof_ = cell_.massFailedRow();
-    return GddStatus::notFinite;
-  }
-  return GddStatus::converged;
+  if (known)
+    cell_.select(warm.control, u_);
+  else
+    chooseStart(model, cost, data);
+  report_.forwardIterations = 0;
+  const double value = moveTo(model, cost, known ? &warm.gddA : nullptr, data);
+  return std::isfinite(value) ? GddStatus::converged : GddStatus::notFinite;
 }
 
 /// B u − g(a), with the rows as they were last evaluated.
@@ -112,7 +164,8 @@ bool ActiveSet::computeGradient(const GoalCost& cost, const Data& data) {
   return gradient_.allFinite() && std::isfinite(merit_);
 }
 
-/// The step p within the box and the sides of held rows; returns the decrease it promises.
+/// The step p within the box and the sides of held rows; returns the decrease it promises, −1 where
+/// rounding kept it from an answer.
 double ActiveSet::solveProgram() {
   ++report_.cells;
   stepLower_ = lower_ - u_;
@@ -126,12 +179,12 @@ double ActiveSet::solveProgram() {
     sides_.row(k) = path_.held[constrained_[k]].side.transpose();
     distances_[k] = path_.held[constrained_[k]].distance;
   }
-  if (!program_.setHessian(cell_.hessian())) return 0.0;
+  if (!program_.setHessian(cell_.hessian())) return -1.0;
   const bool solved =
       program_.minimize(gradient_, stepLower_, stepUpper_, sides_, distances_, rows);
   for (int k = 0; k < rows; ++k)
     path_.held[constrained_[k]].multiplier = program_.rowMultipliers()[k];
-  return solved ? program_.decrease() : 0.0;
+  return solved ? program_.decrease() : -1.0;
 }
 
 /// Moves along the path of the program's solution.
@@ -243,8 +296,7 @@ void ActiveSet::finish(const ControlBox& box, const GoalCost& cost, Data& data) 
   }
   setAppliedForce(force_, data.forces);
   report_.violation = box.violation(force_ - residual_);
-  cell_.multiplyR(force_, Rforce_);
-  report_.objective = 0.5 * force_.dot(Rforce_) + cost.value(data.inertia.M, path_.a, Ma_);
+  report_.objective = objective(cost, data);
   report_.heldRows = path_.held.atKnots();
 }
 
@@ -268,6 +320,7 @@ GddReport ActiveSet::solve(const Model& model, GoalCost& cost, const ControlBox&
   for (;;) {
     if (!enterCell(cost, data) || !computeGradient(cost, data)) return end(GddStatus::notFinite);
     double promised = solveProgram();
+    if (promised < 0.0) return end(GddStatus::undecided);
     const int heldBefore = held.atKnots();
     bool stationary = promised <= options.tolerance * merit_;
     if (!stationary) {
@@ -285,7 +338,7 @@ GddReport ActiveSet::solve(const Model& model, GoalCost& cost, const ControlBox&
         promised = remainingPromise();
         stationary = promised <= options.tolerance * merit_;
       } else {
-        stationary = !moved && held.atKnots() <= heldBefore;
+        stationary = !moved && path.crossings == 0 && held.atKnots() <= heldBefore;
       }
     }
     if (!stationary) continue;

@@ -53,6 +53,9 @@ class ActiveSet {
 
   GddStatus start(const Model& model, const GoalCost& cost, const ControlBox& box, Data& data,
                   const WarmStart& warm);
+  void chooseStart(const Model& model, const GoalCost& cost, Data& data);
+  double moveTo(const Model& model, const GoalCost& cost, const VectorX* guess, Data& data);
+  double objective(const GoalCost& cost, const Data& data);
   void computeResidual(const Data& data);
   bool enterCell(const GoalCost& cost, Data& data);
   bool computeGradient(const GoalCost& cost, const Data& data);
@@ -73,7 +76,7 @@ class ActiveSet {
   VectorX distances_;
   VectorX gradient_;        ///< q
   RowMajorMatrixX sides_;   ///< a row for each row held
-  VectorX force_, Rforce_;  ///< B u, R B u (nv)
+  VectorX force_, Rforce_;  ///< B u, (R + W) B u (nv)
   VectorX costGradient_, Ma_, adjoint_, residual_, rate_;
   double merit_ = 0.0;  ///< size of the objective
   GddReport report_;

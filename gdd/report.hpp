@@ -10,7 +10,8 @@ enum class GddStatus {
   kink,            ///< converged, with rows held at their knots
   iterationLimit,  ///< the best point so far
   bend,       ///< no descent along the direction, past a kink of an elliptic cone: not certified
-  undecided,  ///< at a kink of more dependent rows than the solver tries in all combinations
+  undecided,  ///< solver 2: at a kink of more dependent rows than it tries in all combinations, or
+              ///< where rounding keeps its quadratic program from an answer
   notFinite
 };
 

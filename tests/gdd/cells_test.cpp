@@ -7,7 +7,6 @@
 /// of the rest is the global minimum.
 
 #include <Eigen/LU>
-#include <cstdio>
 
 #include "tests/gdd/gdd_scene.hpp"
 #include "tests/support/matchers.hpp"
@@ -140,20 +139,16 @@ GddScene smallScene(std::uint64_t seed, int contacts, bool boxed, double weight,
   return s;
 }
 
-enum class Solver { augmentedLagrangian, activeSet };
-
 struct Tally {
-  Solver solver;
   int problems = 0, global = 0, kinks = 0, unfinished = 0;
   double worstGap = 0.0;
 
   void add(GddScene& s) {
     const double least = Enumeration(s.dense).globalMinimum();
-    const VectorX& a = solver == Solver::activeSet ? s.solveByActiveSet() : s.solve();
+    const VectorX& a = s.solve();
     ++problems;
     kinks += s.report.status == gdd::GddStatus::kink;
-    unfinished +=
-        s.report.status != gdd::GddStatus::converged && s.report.status != gdd::GddStatus::kink;
+    unfinished += s.report.status == gdd::GddStatus::iterationLimit;
     const VectorX g = s.dense.g(a);
     // ℓ ≥ 0 has no constant here: F is the sum of two squares, and a gap is a share of it.
     const double gap = (s.dense.objective(a) - least) / least;
@@ -165,52 +160,41 @@ struct Tally {
   double share() const { return static_cast<double>(global) / problems; }
 };
 
-Tally solveSmallProblems(Solver solver, int contacts, bool boxed, int count, int dry = 0) {
-  Tally tally{solver};
+Tally solveSmallProblems(int contacts, bool boxed, int count, int dry = 0) {
+  Tally tally;
   for (const double weight : {1.0, 100.0, 1000.0})
     for (int seed = 0; seed < count; ++seed) {
       GddScene s = smallScene(seed, contacts, boxed, weight, dry);
       tally.add(s);
     }
-  std::printf("%s: %d problems, %.1f %% global, worst gap %.2g, %d kinks, %d unfinished\n",
-              solver == Solver::activeSet ? "active set" : "augmented Lagrangian", tally.problems,
-              100.0 * tally.share(), tally.worstGap, tally.kinks, tally.unfinished);
   return tally;
 }
 
-class GddCells : public testing::TestWithParam<Solver> {};
-INSTANTIATE_TEST_SUITE_P(Both, GddCells,
-                         testing::Values(Solver::augmentedLagrangian, Solver::activeSet),
-                         [](const auto& each) {
-                           return each.param == Solver::activeSet ? "ActiveSet"
-                                                                  : "AugmentedLagrangian";
-                         });
-
 // What is asserted is modest: local minima are in the nature of the problem, and a bad one may cost
 // many times the best.
-TEST_P(GddCells, MostSmallProblemsAreSolvedGlobally) {
-  const Tally tally = solveSmallProblems(GetParam(), 1, false, 60);
+TEST(GddCells, MostSmallProblemsAreSolvedGlobally) {
+  const Tally tally = solveSmallProblems(1, false, 60);
   EXPECT_SMALL(1.0 - tally.share(), 0.1);
   EXPECT_SMALL(tally.worstGap, 20.0);
   EXPECT_LE(tally.unfinished, 2);
 }
 
-TEST_P(GddCells, MostSmallProblemsWithABoxAreSolvedGlobally) {
-  const Tally tally = solveSmallProblems(GetParam(), 1, true, 60);
+TEST(GddCells, MostSmallProblemsWithABoxAreSolvedGlobally) {
+  const Tally tally = solveSmallProblems(1, true, 60);
   EXPECT_SMALL(1.0 - tally.share(), 0.1);
   EXPECT_SMALL(tally.worstGap, 20.0);
   EXPECT_LE(tally.unfinished, 2);
 }
 
-TEST_P(GddCells, MostProblemsOfEightRowsAreSolvedGlobally) {
-  const Tally tally = solveSmallProblems(GetParam(), 2, false, 25);
+TEST(GddCells, MostProblemsOfEightRowsAreSolvedGlobally) {
+  const Tally tally = solveSmallProblems(2, false, 25);
   EXPECT_SMALL(1.0 - tally.share(), 0.15);
   EXPECT_SMALL(tally.worstGap, 20.0);
   EXPECT_LE(tally.unfinished, 2);
 }
 
-TEST_P(GddCells, MostSmallProblemsWithDryFrictionAreSolvedGlobally) {
-  const Tally tally = solveSmallProblems(GetParam(), 0, true, 60, 3);
+TEST(GddCells, MostSmallProblemsWithDryFrictionAreSolvedGlobally) {
+  const Tally tally = solveSmallProblems(0, true, 60, 3);
   EXPECT_SMALL(1.0 - tally.share(), 0.1);
   EXPECT_SMALL(tally.worstGap, 20.0);
   EXPECT_LE(tally.unfinished, 2);

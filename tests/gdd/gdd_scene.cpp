@@ -11,8 +11,7 @@ GddScene::GddScene(Scene s)
     : scene(std::move(s)),
       cost(scene.model.nv),
       box(scene.model),
-      solver(std::make_unique<gdd::AugmentedLagrangian>(scene.model)),
-      activeSet(std::make_unique<gdd::ActiveSet>(scene.model)) {
+      solver(std::make_unique<gdd::AugmentedLagrangian>(scene.model)) {
   const int n = scene.model.nv;
   const ConvexProblem physics = denseProblem(data());
   dense.M = physics.M;
@@ -86,12 +85,6 @@ const VectorX& GddScene::solve() {
   for (int i = 0; i < dofs(); ++i) dense.rho[i] = solver->options.penalty * data().weights.dof[i];
   matchBox();
   return solver->acceleration();
-}
-
-const VectorX& GddScene::solveByActiveSet() {
-  report = activeSet->solve(model(), cost, box, data(), scene.state.warmstart);
-  matchBox();
-  return activeSet->acceleration();
 }
 
 int GddScene::rowIndex(RowId id) const {

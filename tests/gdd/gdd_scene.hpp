@@ -17,7 +17,6 @@ class GddScene {
   gdd::GoalCost cost;
   gdd::ControlBox box;
   std::unique_ptr<gdd::AugmentedLagrangian> solver;
-  std::unique_ptr<gdd::ActiveSet> activeSet;
   gdd::GddReport report;
   DenseGdd dense;
 
@@ -38,8 +37,6 @@ class GddScene {
   /// Solves from the scene's warm start, cold unless a test has set one; takes the multipliers
   /// and penalties at the end over into `dense`.
   const VectorX& solve();
-  /// The same by solver 2.
-  const VectorX& solveByActiveSet();
 
   /// Place of a row in `dense`.
   int rowIndex(RowId id) const;

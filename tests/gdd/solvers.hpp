@@ -5,10 +5,11 @@
 
 #include <gtest/gtest.h>
 
+#include "gdd/active_set.hpp"
 #include "gdd/augmented_lagrangian.hpp"
 
 namespace softgauss::test {
 
-using GddSolvers = testing::Types<gdd::AugmentedLagrangian>;
+using GddSolvers = testing::Types<gdd::AugmentedLagrangian, gdd::ActiveSet>;
 
 }  // namespace softgauss::test
