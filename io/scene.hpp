@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "engine/model/state.hpp"
+#include "gdd/goal_directed_step.hpp"
 #include "io/urdf.hpp"
 #include "io/wrenches.hpp"
 
@@ -45,7 +46,8 @@ struct SceneFile {
 
   std::vector<TimedWrench> wrenches;
 
-  bool hasGoals = false;  ///< has a list that readGoals() reads
+  bool hasGoals = false;                    ///< has a list that readGoals() reads
+  std::optional<gdd::GddSolver> gddSolver;  ///< that follows them, where the file names one
 
   /// The state in which it starts, but for the heights of what stands on the ground. `model` was
   /// built by `builder`.

@@ -52,7 +52,7 @@ class Summary {
   // What only the caller knows.
   std::string version;
   std::string integrator = "semi-implicit-euler";
-  std::string gddSolver = "augmented-lagrangian";
+  std::string gddSolver = "active-set";
   std::string outcome = "completed";
   double wallSeconds = 0.0;
   double massKg = 0.0;  ///< of all links; preset to that of the moving bodies

@@ -13,8 +13,10 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "apps/gdd_benchmark/kink_picture.hpp"
 #include "apps/gdd_benchmark/report.hpp"
 #include "apps/gdd_benchmark/states.hpp"
+#include "io/replay/gnuplot.hpp"
 
 namespace {
 
@@ -27,7 +29,7 @@ struct BenchmarkOptions {
   std::vector<std::string> models = app::robotNames();
   std::vector<std::string> solvers = app::solverNames();
   std::string recorder = app::solverNames().front();
-  std::string file, states, robots = "data/robots";
+  std::string file, states, kink, robots = "data/robots";
   int stateCount = 70;
 };
 
@@ -59,6 +61,11 @@ void addOptions(CLI::App& parser, BenchmarkOptions& options) {
   parser.add_option("--state-count", options.stateCount, "how many states a file, default 70")
       ->check(CLI::Range(1, 1000000))
       ->needs(states);
+  parser
+      .add_option("--kink", options.kink,
+                  "draw the sharpest kink of the run to this .svg file with gnuplot (docs/gdd.md) "
+                  "and replay nothing; of one model and one weight")
+      ->excludes("--json");
   parser.add_option("--robots", options.robots, "folder of humanoid.urdf and hand.urdf")
       ->check(CLI::ExistingDirectory);
   parser.set_version_flag("--version", std::string("softgauss ") + SOFTGAUSS_VERSION);
@@ -81,6 +88,10 @@ nlohmann::ordered_json runAll(const BenchmarkOptions& options) {
       }
       if (!options.states.empty())
         app::writeStates(*robot, dataset, weight, options.stateCount, options.states);
+      if (!options.kink.empty()) {
+        app::drawKink(*robot, dataset, options.kink);
+        continue;
+      }
       app::Progress progress(fmt::format("{}, weight {:g}: replaying", name, weight));
       const app::Replay replay =
           app::replay(*robot, dataset, options.solvers, options.passes, progress);
@@ -104,6 +115,15 @@ int main(int argc, char** argv) {
     return parser.exit(success);
   } catch (const CLI::ParseError& error) {
     fmt::print(stderr, "gdd_benchmark: {}\ngdd_benchmark --help lists the options\n", error.what());
+    return 2;
+  }
+  if (!options.kink.empty() && options.models.size() * options.weights.size() != 1) {
+    fmt::print(stderr,
+               "gdd_benchmark: --kink draws one run; choose one of --models, one --weight\n");
+    return 2;
+  }
+  if (!options.kink.empty() && !io::hasGnuplot()) {
+    fmt::print(stderr, "gdd_benchmark: --kink: {}\n", io::kNoGnuplot);
     return 2;
   }
   try {

@@ -183,9 +183,12 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
                "friction without creep, by a second solve bounded by the first; inverse\n"
                "dynamics then miss the control by what the summary calls physics violation")
       ->group(simulation);
-  app.add_option("--gdd-solver", solver,
-                 "augmented-lagrangian (default): the paper's primal-dual Gauss-Newton solver")
-      ->check(CLI::IsMember({"augmented-lagrangian"}))
+  app.add_option(
+         "--gdd-solver", solver,
+         "active-set (default): over the controls, ends on the physics with a certificate;\n"
+         "augmented-lagrangian: the paper's primal-dual Gauss-Newton solver, slower with\n"
+         "strong goals; it also solves where contacts have elliptic cones")
+      ->check(CLI::IsMember({"active-set", "augmented-lagrangian"}))
       ->group(simulation);
   app.add_option("--compatibility", compatibility,
                  "none (default) or mujoco: as MuJoCo has it, Coriolis forces of the step's start")
@@ -234,6 +237,9 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
       throw UsageError("--base-height is for a floating base, and --base is fixed");
   }
   if (!cone.empty()) options.cone = cone == "elliptic" ? Cone::elliptic : Cone::pyramidal;
+  if (!solver.empty())
+    options.gddSolver =
+        solver == "active-set" ? gdd::GddSolver::activeSet : gdd::GddSolver::augmentedLagrangian;
   if (!compatibility.empty()) options.likeMujoco = compatibility == "mujoco";
   options.zeroEffortIsUnlimited = zeroEffort == "unlimited";
   if (!effects.empty()) options.effects = parseEffects(effects);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "engine/model/model_builder.hpp"
+#include "gdd/goal_directed_step.hpp"
 
 namespace softgauss::app {
 
@@ -35,8 +36,9 @@ struct SimulateOptions {
   bool zeroEffortIsUnlimited = false;
   bool noSlip = false;
   bool exactDiagonal = false;
-  std::optional<Cone> cone;        ///< absent: the scene's own, or pyramidal
-  std::optional<bool> likeMujoco;  ///< --compatibility
+  std::optional<Cone> cone;                 ///< absent: the scene's own, or pyramidal
+  std::optional<gdd::GddSolver> gddSolver;  ///< absent: the scene's own, or the active set
+  std::optional<bool> likeMujoco;           ///< --compatibility
   bool explain = false;
   bool quiet = false;
   std::filesystem::path log, summary, view, plot;

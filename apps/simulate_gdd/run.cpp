@@ -68,6 +68,7 @@ class Runner {
         wrenches_(scene.schedule),
         summary_(model_) {
     if (!options.passive && options.torques.empty()) controller_.goals = makeGoals(options, scene);
+    controller_.solver = scene.gddSolver;
     if (!options.torques.empty()) torques_ = io::TorqueTable::read(options.torques, model_);
     if (!options.log.empty()) log_.emplace(options.log, model_);
     summary_.version = SOFTGAUSS_VERSION;
@@ -140,6 +141,7 @@ class Runner {
                                    ? softgauss::step(model_, input_, state_, data_, &contacts_)
                                    : controller_.step(model_, input_, state_, data_, &contacts_);
     record_.stepUs = 1e6 * secondsSince(start);
+    if (!data_.constraints.piecewiseQuadratic()) ++stepsWithCones_;
     return status != SolveStatus::notFinite;
   }
 
@@ -205,11 +207,24 @@ class Runner {
         summary_.goals[place++].finalError = *error;
     for (std::string& unreached : verdict.unreached(summary_.goals))
       summary_.warnings.push_back(std::move(unreached));
+    tellSolver();
     summary_.finish(last);
     if (!options_.summary.empty()) summary_.write(options_.summary);
     const std::string error = replay_->finish(last, data_, summary_, reason);
     if (outputError_.empty()) outputError_ = error;
     if (!options_.quiet) fmt::print("{}{}", replay_->written(), summary_.table());
+  }
+
+  /// Which solver followed the goals. Steps in which cones touch are solver 1's.
+  void tellSolver() {
+    const bool cones = stepsWithCones_ > 0 && !controller_.goals.empty();
+    const bool chosen = controller_.solver == gdd::GddSolver::activeSet;
+    summary_.gddSolver = chosen && !cones ? "active-set" : "augmented-lagrangian";
+    if (chosen && cones && options_.gddSolver)
+      summary_.warnings.push_back(
+          fmt::format("active-set does not know elliptic cones: {} steps with such contacts were "
+                      "solved by augmented-lagrangian",
+                      stepsWithCones_));
   }
 
   const SimulateOptions& options_;
@@ -225,6 +240,7 @@ class Runner {
   std::optional<Replay> replay_;
   std::string outputError_;
   io::Summary summary_;
+  long stepsWithCones_ = 0;
   io::StepRecord record_;
   VectorX scratch_;
 };

@@ -117,6 +117,7 @@ void loadSceneFile(const SimulateOptions& options, Scene& scene) {
   scene.model = file.builder.build();
   scene.contents = file.contents;
   scene.hasGoals = file.hasGoals;
+  if (file.gddSolver) scene.gddSolver = *file.gddSolver;
   scene.materials = file.materials;
   scene.wrenches = file.wrenches;
   scene.schedule = io::WrenchSchedule(scene.model, file.wrenches);
@@ -137,6 +138,7 @@ std::unique_ptr<Scene> loadScene(const SimulateOptions& options) {
     loadSceneFile(options, *scene);
   else
     loadRobot(options, *scene);
+  if (options.gddSolver) scene->gddSolver = *options.gddSolver;
   checkSteps(options, scene->model.options.timestep);
   checkOutputs(options, scene->contents.files);
   if (scene->model.nv > kMostDofs)

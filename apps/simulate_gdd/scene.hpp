@@ -26,6 +26,7 @@ struct Scene {
   std::vector<io::TimedWrench> wrenches;
   io::WrenchSchedule schedule;  ///< of those
   bool hasGoals = false;        ///< the scene file holds goals
+  gdd::GddSolver gddSolver = gdd::GddSolver::activeSet;
 };
 
 /// Throws ModelError.

@@ -26,13 +26,17 @@ EffectSet readEffects(const YamlMap& map, const YamlMap::Entry& entry) {
 
 }  // namespace
 
-void readOptions(const YamlMap& map, Options& options) {
+void readOptions(const YamlMap& map, Options& options, std::optional<gdd::GddSolver>& solver) {
   map.expectOnly({"integrator", "cone", "no_slip", "exact_diagonal", "tolerance", "max_iterations",
-                  "impedance_ratio", "effects", "compatibility"});
+                  "impedance_ratio", "effects", "compatibility", "gdd_solver"});
   if (const auto* entry = map.find("integrator")) map.choice(*entry, {"semi-implicit-euler"});
   if (const auto* entry = map.find("cone"))
     options.cone = map.choice(*entry, {"pyramidal", "elliptic"}) == "elliptic" ? Cone::elliptic
                                                                                : Cone::pyramidal;
+  if (const auto* entry = map.find("gdd_solver"))
+    solver = map.choice(*entry, {"active-set", "augmented-lagrangian"}) == "active-set"
+                 ? gdd::GddSolver::activeSet
+                 : gdd::GddSolver::augmentedLagrangian;
   if (const auto* entry = map.find("no_slip")) options.noSlip = map.boolean(*entry);
   if (const auto* entry = map.find("exact_diagonal")) options.exactDiagonal = map.boolean(*entry);
   map.read("tolerance", options.tolerance, Range::notNegative);

@@ -3,12 +3,15 @@
 
 /// What holds for the whole scene.
 
+#include <optional>
+
 #include "engine/model/model.hpp"
+#include "gdd/goal_directed_step.hpp"
 #include "io/detail/yaml.hpp"
 
 namespace softgauss::io::detail {
 
 /// The map `options` of a scene: how it is solved, and which effects.
-void readOptions(const YamlMap& map, Options& options);
+void readOptions(const YamlMap& map, Options& options, std::optional<gdd::GddSolver>& solver);
 
 }  // namespace softgauss::io::detail

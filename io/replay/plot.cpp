@@ -2,20 +2,14 @@
 #include "io/replay/plot.hpp"
 
 #include <fmt/format.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cctype>
-#include <cerrno>
 #include <cmath>
-#include <cstdlib>
-#include <cstring>
-#include <stdexcept>
 
 #include "engine/core/check.hpp"
 #include "io/detail/text.hpp"
+#include "io/replay/gnuplot.hpp"
 
 namespace softgauss::io {
 namespace {
@@ -31,7 +25,6 @@ constexpr std::size_t kMostTogether = 6;  ///< curves in one panel
 constexpr int kMostEntries = 1200;        ///< no page shows more
 
 constexpr std::size_t kLongestSubtitle = 150;
-constexpr const char* kDrawing = "drawing.svg";
 
 // Colours that differ in print and for the colour-blind (Okabe and Ito).
 constexpr const char* kColours[] = {"#0072b2", "#d55e00", "#009e73",
@@ -124,7 +117,7 @@ class Script {
   void begin(const Recording& recording) {
     line("set terminal svg noenhanced size {},{} font 'Helvetica,11' background '#ffffff'", kWidth,
          height_);
-    line("set output '{}'", kDrawing);
+    line("set output '{}'", kGnuplotDrawing);
     line("set datafile missing 'NaN'");
     line("set multiplot");
     line("set border 3 linecolor '#666666'");
@@ -225,52 +218,6 @@ class Script {
   double top_ = 0.0;
 };
 
-/// A folder of its own, gone at the end.
-class ScratchFolder {
- public:
-  ScratchFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "softgauss-XXXXXX").string();
-    if (!mkdtemp(name.data()))
-      throw std::runtime_error(fmt::format("plot: no folder {}: {}", name, std::strerror(errno)));
-    path = name;
-  }
-  ~ScratchFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path, ignored);
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-  std::filesystem::path path;
-};
-
-/// The drawing that gnuplot makes of a script. It gets plain names in a folder of its own, no
-/// user's settings (-d) and no pipe, so neither names nor interrupts can confuse it.
-std::string drawn(const std::string& script) {
-  const ScratchFolder scratch;
-  detail::OutputFile file(scratch.path / "script", "plot");
-  file.write(script);
-  file.commit();
-
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addchdir_np(&actions, scratch.path.c_str());
-  char program[] = "gnuplot", plain[] = "-d", name[] = "script";
-  char* const arguments[] = {program, plain, name, nullptr};
-  pid_t child = 0;
-  const int error = posix_spawnp(&child, program, &actions, nullptr, arguments, environ);
-  posix_spawn_file_actions_destroy(&actions);
-  if (error != 0)
-    throw std::runtime_error(
-        fmt::format("plot: gnuplot cannot be started: {}", std::strerror(error)));
-  int status = 0;
-  while (waitpid(child, &status, 0) < 0 && errno == EINTR) continue;
-
-  const std::optional<std::string> svg = detail::readFile((scratch.path / kDrawing).string());
-  if (status != 0 || !svg || svg->find("</svg>") == std::string::npos)
-    throw std::runtime_error("plot: gnuplot failed; its message, if it had one, is above");
-  return *svg;
-}
-
 /// "Joint positions" in rad becomes joint_positions_rad.svg.
 std::string fileName(const CurveGroup& group) {
   std::string name;
@@ -297,8 +244,7 @@ Plot::Plot(const std::filesystem::path& target) : target_(target) {
   };
   if (!isFolder && target.extension() != ".svg")
     fail(fmt::format("extension '{}', expected .svg or a folder", target.extension().string()));
-  if (std::system("command -v gnuplot >/dev/null 2>&1") != 0)
-    fail("gnuplot was not found, expected it in the PATH (Debian: apt-get install gnuplot-nox)");
+  if (!hasGnuplot()) fail(kNoGnuplot);
   if (!isFolder) {
     file_.emplace(target, "plot");
     return;
@@ -311,7 +257,7 @@ Plot::Plot(const std::filesystem::path& target) : target_(target) {
 void Plot::write(const Recording& recording) {
   const std::vector<CurveGroup> groups = recording.plots();
   const auto fill = [](detail::OutputFile& file, const std::string& script) {
-    file.write(drawn(script));
+    file.write(gnuplotDrawing(script));
     file.commit();
   };
   if (file_) return fill(*file_, plotScript(recording, groups));

@@ -145,6 +145,7 @@ TEST(BadInput, CommandLinesThatCannotBeRun) {
       {{arm, "--passive", "--duration", "inf"}, "duration"},
       {{arm, "--passive", "--base", "flying"}, "flying"},
       {{arm, "--passive", "--integrator", "magic"}, "magic"},
+      {{arm, "--reach", "hand=0,0,0", "--gdd-solver", "both"}, "both"},
       {{arm, "--passive", "--effects", "gravity,magic"}, "magic"},
       {{arm, "--passive", "--ground", "deep"}, "deep"},
       {{body, "--passive", "--base-height", "high"}, "base-height"},

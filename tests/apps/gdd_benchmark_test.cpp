@@ -2,6 +2,7 @@
 /// gdd_benchmark on a few hundred records: it repeats itself, its replay takes the recorded steps,
 /// and its statistics stay where they are.
 
+#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "tests/apps/process.hpp"
@@ -91,6 +92,28 @@ TEST(GddBenchmark, StatisticsStayMet) {
     }
 }
 
+// F rises from the minimum on both sides, and not as a parabola does: its slopes there are not 0.
+TEST(GddBenchmark, DrawsAKinkOfTheRun) {
+  const io::TempFolder folder;
+  const std::string file = folder.path() / "kink.svg";
+  const Outcome outcome = runProgram(
+      "gdd_benchmark",
+      {"--models", "humanoid", "--records", "300", "--kink", file, "--robots", dataFile("robots")});
+  ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+  EXPECT_NE(readFile(file).find("</svg>"), std::string::npos);
+  const std::string words = "slopes up from the minimum: ";
+  const std::size_t at = outcome.out.find(words);
+  ASSERT_NE(at, std::string::npos) << outcome.out;
+  double stiff = 0.0, free = 0.0;
+  ASSERT_EQ(std::sscanf(outcome.out.c_str() + at + words.size(),
+                        "%lf towards the stiff side, %lf towards the free side", &stiff, &free),
+            2)
+      << outcome.out;
+  // Of a parabola they would be 0, but for rounding of 1e-16 F over the probe's 1e-3 N m.
+  EXPECT_GT(stiff, 1.0);
+  EXPECT_GT(free, 1.0);
+}
+
 TEST(GddBenchmark, InterruptGivesTheTablesOfWhatWasDone) {
   const io::TempFolder folder;
   const std::string file = folder.path() / "figures.json";
@@ -109,7 +132,8 @@ TEST(GddBenchmark, BadUsageIsToldAndNothingRuns) {
                                                     {"--weight", "-1"},
                                                     {"--solvers", "none"},
                                                     {"--robots", "nowhere"},
-                                                    {"--json", "/nowhere/figures.json"}}) {
+                                                    {"--json", "/nowhere/figures.json"},
+                                                    {"--kink", "several_models.svg"}}) {
     const Outcome outcome = runProgram("gdd_benchmark", arguments);
     EXPECT_EQ(outcome.exitCode, 2) << arguments[0];
     EXPECT_EQ(outcome.out, "") << arguments[0];

@@ -80,6 +80,71 @@ TEST(SceneRun, PairsOptionsAndWrenchesAct) {
     EXPECT_NE(told.out.find(words), std::string::npos) << words << "\n" << told.out;
 }
 
+/// gdd_solver and the warnings in the summary of a short run.
+std::pair<std::string, std::string> solverTold(std::vector<std::string> arguments) {
+  const io::TempFolder folder;
+  const std::string summary = folder.path() / "summary.json";
+  arguments.insert(arguments.end(), {"--duration", "0.02", "--summary", summary, "--quiet"});
+  const Outcome outcome = simulate(arguments);
+  EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+  const auto json = nlohmann::json::parse(readFile(summary));
+  return {json["options"]["gdd_solver"], json["warnings"].dump()};
+}
+
+TEST(SceneRun, FollowsGoalsWithTheSolverThatIsNamed) {
+  const io::TempFolder folder;
+  const std::string text = "robots: [{name: one, urdf: " + dataFile("robots/arm.urdf") +
+                           "}]\ngoals: [reach: {link: one/hand, target: [0.5, 0.3, 0.5]}]\n";
+  const std::string plain = folder.write("plain.yaml", text);
+  const std::string named =
+      folder.write("named.yaml", text + "options: {gdd_solver: augmented-lagrangian}\n");
+  EXPECT_EQ(solverTold({plain}).first, "active-set");
+  EXPECT_EQ(solverTold({named}).first, "augmented-lagrangian");
+  EXPECT_EQ(solverTold({named, "--gdd-solver", "active-set"}).first, "active-set");
+}
+
+// Only solver 1 updates multipliers, and only solver 2 ends on the physics; both find the control.
+TEST(SceneRun, SolversOfTheCommandLineAreTwo) {
+  const io::TempFolder folder;
+  const std::string log = folder.path() / "log.csv";
+  const auto run = [&](const std::string& solver) {
+    const Outcome outcome =
+        simulate({dataFile("robots/humanoid.urdf"), "--reach", "right_hand=0.45,-0.25,1.1",
+                  "--gdd-solver", solver, "--duration", "0.02", "--log", log, "--quiet"});
+    EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+    return Csv(readFile(log));
+  };
+  const Csv one = run("augmented-lagrangian"), two = run("active-set");
+  double updates = 0.0;
+  for (int i = 0; i < static_cast<int>(one.rows.size()); ++i) {
+    updates += one.number(i, "dual_updates");
+    EXPECT_EQ(two.number(i, "dual_updates"), 0.0);
+    for (const char* joint : {"right_elbow", "left_knee"}) {
+      const std::string column = std::string("u:") + joint;
+      // Solver 1 ends at a root force of up to 1e-7 N, and knees answer in kind.
+      EXPECT_NEAR(one.number(i, column), two.number(i, column), 1e-4) << i << ", " << column;
+    }
+  }
+  EXPECT_GT(updates, 0.0);
+}
+
+TEST(SceneRun, ConesAreSolverOnesAndTheSummarySaysSo) {
+  const std::vector<std::string> standing = {dataFile("robots/humanoid.urdf"), "--reach",
+                                             "right_hand=0.45,-0.25,1.1", "--cone", "elliptic"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), standing.begin(), standing.end());
+    return solverTold(more);
+  };
+  const char* const words = "active-set does not know elliptic cones";
+  const auto left = with({}), asked = with({"--gdd-solver", "active-set"});
+  EXPECT_EQ(left.first, "augmented-lagrangian");
+  EXPECT_EQ(left.second.find(words), std::string::npos) << left.second;
+  EXPECT_EQ(asked.first, "augmented-lagrangian");
+  EXPECT_NE(asked.second.find(words), std::string::npos) << asked.second;
+  // Nothing touches: nothing is left to solver 1.
+  EXPECT_EQ(with({"--base-height", "5", "--ground", "none"}).first, "active-set");
+}
+
 TEST(SceneRun, OptionsOfAUrdfAloneAreRefused) {
   const std::string scene = dataFile("scenes/two_arms.yaml");
   for (const auto& [option, value] :

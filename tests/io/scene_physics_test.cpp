@@ -100,16 +100,20 @@ TEST(SceneFile, GroundIsOfTheDefaultMaterial) {
 
 TEST(SceneFile, OptionsAreThoseOfTheModel) {
   const std::string robot = "robots: [{urdf: sample.urdf}]\n";
-  const Options plain = SceneFolder(robot).read().builder.options;
+  const io::SceneFile plainScene = SceneFolder(robot).read();
+  const Options& plain = plainScene.builder.options;
   EXPECT_EQ(plain.effects, EffectSet::all());
   EXPECT_TRUE(plain.midpointCoriolis);
-  const Options o =
+  EXPECT_EQ(plainScene.gddSolver, std::nullopt);
+  const io::SceneFile scene =
       SceneFolder(robot +
                   "options: {integrator: semi-implicit-euler, tolerance: 1e-9, max_iterations: 7,\n"
                   "  impedance_ratio: 4, effects: [gravity, joint_limit], compatibility: mujoco,\n"
-                  "  cone: elliptic, no_slip: true, exact_diagonal: true}\n")
-          .read()
-          .builder.options;
+                  "  cone: elliptic, no_slip: true, exact_diagonal: true,\n"
+                  "  gdd_solver: augmented-lagrangian}\n")
+          .read();
+  const Options& o = scene.builder.options;
+  EXPECT_EQ(scene.gddSolver, gdd::GddSolver::augmentedLagrangian);
   EXPECT_EQ(o.tolerance, 1e-9);
   EXPECT_EQ(o.maxIterations, 7);
   EXPECT_EQ(o.impedanceRatio, 4.0);
@@ -213,6 +217,8 @@ TEST(SceneFile, RefusalsOfPairsOptionsAndWrenches) {
       {ball + "options: [tolerance]", "key 'options': found a list"},
       {ball + "options: {cone: round}",
        "key 'options.cone': found 'round', expected one of pyramidal, elliptic"},
+      {ball + "options: {gdd_solver: both}",
+       "key 'options.gdd_solver': found 'both', expected one of active-set, augmented-lagrangian"},
       {"objects: [{name: b, sphere: {radius: 1e-200}}]", "is too small to have a volume"},
       {"a: &a [*a]", "an alias inside of what it stands for"},
       {ball + "options: {no_slip: 1}", "key 'options.no_slip': found"},

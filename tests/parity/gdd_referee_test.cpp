@@ -129,10 +129,11 @@ TEST(GddReferee, MujocoMovesAsOurForwardStep) {
   }
 }
 
-// The states are those of the present code: a solve that starts at what was found stays there.
+// The states are those of the present code: a solve that starts at what was found stays there, and
+// calls it a minimum.
 template <class Solver>
 class GddFound : public testing::Test {};
-using Solvers = testing::Types<gdd::AugmentedLagrangian>;
+using Solvers = testing::Types<gdd::AugmentedLagrangian, gdd::ActiveSet>;
 TYPED_TEST_SUITE(GddFound, Solvers);
 
 TYPED_TEST(GddFound, StaysWhatItWas) {
@@ -158,8 +159,11 @@ TYPED_TEST(GddFound, StaysWhatItWas) {
       WarmStart warm;
       warm.gddA = vectorOf(recorded.at("acceleration"));
       warm.multipliers = VectorX::Zero(model.nv);
+      warm.control = vectorOf(recorded.at("control"));
       warm.gddValid = true;
-      solver.solve(model, cost, box, data, warm);
+      const gdd::GddStatus status = solver.solve(model, cost, box, data, warm).status;
+      EXPECT_TRUE(status == gdd::GddStatus::converged || status == gdd::GddStatus::kink)
+          << trial.name << ", state " << i;
       EXPECT_SMALL(relativeDifference(box.clamp(solver.force()), vectorOf(recorded.at("control")),
                                       kSmallForce),
                    kStays)
