@@ -181,6 +181,7 @@ bool QuadraticProgram::minimize(const VectorX& q, const VectorX& lower, const Ve
   // −(½ pᵀKp + qᵀp), with Kp = −q + Aᵀν and νᵀA p = νᵀb: one product less, and no cancellation.
   decrease_ = -0.5 * q.dot(p_) - 0.5 * boundMultipliers_.dot(p_);
   for (int k = 0; k < rows; ++k) decrease_ += 0.5 * rowMultipliers_[k] * distance[k];
+  decrease_ = std::max(0.0, decrease_);
   return solved;
 }
 
