@@ -51,11 +51,11 @@ double ActiveSet::objective(const GoalCost& cost, const Data& data) {
 /// friction, say, hides from the first what a larger control would gain.
 void ActiveSet::chooseStart(const Model& model, const GoalCost& cost, Data& data) {
   u_.setZero();
-  VectorX best = u_;
+  best_ = u_;
   double least = moveTo(model, cost, nullptr, data);
   const auto consider = [&] {
     const double value = moveTo(model, cost, nullptr, data);
-    if (value < least) least = value, best = u_;
+    if (value < least) least = value, best_ = u_;
   };
   if (data.constraints.rowCount() > 0 && u_.size() > 0 && std::isfinite(least)) {
     cell_.enterWith(data.forward.massFactor);
@@ -79,7 +79,7 @@ void ActiveSet::chooseStart(const Model& model, const GoalCost& cost, Data& data
     }
     report_.cells = 0;
   }
-  u_ = best;
+  u_ = best_;
 }
 
 /// u of the last step, within the box, and a = f(u).
@@ -295,7 +295,8 @@ void ActiveSet::finish(const ControlBox& box, const GoalCost& cost, Data& data) 
     path_.a += residual_;
   }
   setAppliedForce(force_, data.forces);
-  report_.violation = box.violation(force_ - residual_);
+  rate_ = force_ - residual_;  // g(a)
+  report_.violation = box.violation(rate_);
   report_.objective = objective(cost, data);
   report_.heldRows = path_.held.atKnots();
 }

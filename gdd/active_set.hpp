@@ -70,7 +70,7 @@ class ActiveSet {
   ForwardPath path_;  ///< holds a and the rows at their knots
   std::vector<std::uint64_t>
       tried_;  ///< cells at this point that promise nothing, by their pattern
-  VectorX u_, lower_, upper_, stepLower_, stepUpper_;  ///< (columns of B)
+  VectorX u_, best_, lower_, upper_, stepLower_, stepUpper_;  ///< (columns of B)
   std::vector<int> constrained_;  ///< entries of path_.held that the program knows
   std::vector<int> atKnot_;       ///< entries of path_.held that are at knots
   VectorX distances_;

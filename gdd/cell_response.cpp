@@ -83,7 +83,7 @@ void CellResponse::computeHessian(const GoalCost& cost) {
   }
   for (; correctionsInS_ < correctionCount_; ++correctionsInS_) {
     const Correction& c = corrections_[correctionsInS_];
-    S_.noalias() -= (c.scale * c.y) * c.By.transpose();
+    for (Eigen::Index i = 0; i < S_.rows(); ++i) S_.row(i) -= c.scale * c.y[i] * c.By.transpose();
   }
   K_ = forcePrice_;
   cost.addReducedCurvature(*massFactor_, S_, rootS_, K_);
@@ -99,7 +99,8 @@ void CellResponse::spread(const VectorX& u, VectorX& tau) const {
 }
 
 double CellResponse::forceCurvature(const VectorX& p) const {
-  return p.dot(forcePrice_.selfadjointView<Eigen::Lower>() * p);
+  pricedStep_.noalias() = forcePrice_ * p;
+  return p.dot(pricedStep_);
 }
 
 }  // namespace softgauss::gdd

@@ -72,7 +72,7 @@ class CellResponse {
   VectorX price_;       ///< W (nv)
   MatrixX forcePrice_;  ///< BᵀR B
   MatrixX K_;
-  mutable VectorX scratch_;
+  mutable VectorX scratch_, pricedStep_;
 };
 
 }  // namespace softgauss::gdd

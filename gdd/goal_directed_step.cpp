@@ -31,7 +31,7 @@ SolveStatus GoalDirectedController::solveAndAdvance(Solver& used, const Model& m
     return data.stats.status;
   }
 
-  control = box.clamp(expansion.force());
+  control = expansion.force().cwiseMax(box.lower).cwiseMin(box.upper);
   setAppliedForce(control, data.forces);
   const SolveStatus status = advance(model, &expansion.acceleration(), data, state);
   if (status != SolveStatus::notFinite) expansion.keepWarmStart(state.warmstart);

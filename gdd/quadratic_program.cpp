@@ -136,8 +136,11 @@ bool QuadraticProgram::minimize(const VectorX& q, const VectorX& lower, const Ve
       // Direction in p, and the rate of the active multipliers.
       const double fresh = d_.tail(n - m).squaredNorm();
       const bool dependent = !(fresh > kDependent * d_.squaredNorm());
-      r_ = d_.head(m);
-      if (m > 0) R_.topLeftCorner(m, m).triangularView<Eigen::Upper>().solveInPlace(r_);
+      r_ = d_;
+      for (int k = m - 1; k >= 0; --k) {  // r ← R⁻¹d over the active ones
+        r_[k] /= R_(k, k);
+        r_.head(k) -= r_[k] * R_.col(k).head(k);
+      }
       double dual = kInfinity;
       int leaving = -1;
       for (int k = 0; k < m; ++k) {
@@ -166,7 +169,7 @@ bool QuadraticProgram::minimize(const VectorX& q, const VectorX& lower, const Ve
   }
 
   boundMultipliers_.setZero(n);
-  rowMultipliers_.setZero(rows);
+  rowMultipliers_.assign(static_cast<std::size_t>(rows), 0.0);
   for (std::size_t k = 0; k < active_.size(); ++k) {
     const int c = active_[k];
     const double multiplier = std::max(0.0, multiplier_[k]);

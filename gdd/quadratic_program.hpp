@@ -33,7 +33,7 @@ class QuadraticProgram {
   /// Kp + q = boundMultipliers + Nᵀ rowMultipliers; those of a lower bound are ≥ 0, of an upper ≤
   /// 0.
   const VectorX& boundMultipliers() const { return boundMultipliers_; }
-  const VectorX& rowMultipliers() const { return rowMultipliers_; }  ///< ≥ 0, 0 where not active
+  const std::vector<double>& rowMultipliers() const { return rowMultipliers_; }  ///< ≥ 0
 
  private:
   /// A constraint n·p ≥ b, by number: lower bounds, upper bounds, rows of N.
@@ -54,7 +54,8 @@ class QuadraticProgram {
   const RowMajorMatrixX* N_ = nullptr;
   const VectorX* distance_ = nullptr;
   int rows_ = 0;
-  VectorX p_, boundMultipliers_, rowMultipliers_;
+  VectorX p_, boundMultipliers_;
+  std::vector<double> rowMultipliers_;
   double decrease_ = 0.0;
   std::vector<double> norm_;  ///< of the rows of N
   std::vector<char> isActive_;
