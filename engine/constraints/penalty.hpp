@@ -7,8 +7,8 @@
 ///
 /// A penalty's pieces are numbered upwards from x = −∞; knot k lies between the pieces k and k + 1.
 /// s″ is D in one piece, the stiff one, and 0 in the others, the free ones. At a knot a row counts
-/// as free. The kernel is `in`, the polynomial of one piece; `at` picks the piece by x. A method that
-/// walks from cell to cell keeps the pieces itself, for at a knot rounding must not choose.
+/// as free. The kernel is `in`, the polynomial of one piece; `at` picks the piece by x. A method
+/// that walks from cell to cell keeps the pieces itself, for at a knot rounding must not choose.
 
 #include <concepts>
 

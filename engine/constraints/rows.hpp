@@ -135,8 +135,8 @@ class ScalarRows {
     }
   }
 
-  /// The first knot that x + α dx meets if it is sooner than `next`, counted from the piece in which
-  /// every row was; a row that is past its knot by rounding meets it at once.
+  /// The first knot that x + α dx meets if it is sooner than `next`, counted from the piece in
+  /// which every row was; a row that is past its knot by rounding meets it at once.
   void findNextCrossing(int kind, Crossing& next) const {
     if constexpr (Penalty::kKnots > 0) {
       for (std::size_t i = 0; i < x.size(); ++i) {

@@ -19,8 +19,9 @@ constexpr double kWeights[] = {1.0, 100.0, 1000.0};
 /// found are global; which one is, depends on the way.
 template <class Solver>
 struct Bounds {
-  /// Share of global minima at any weight.
-  static constexpr double globalShare = 0.89;
+  /// Share of global minima at any weight. Of the 1,500 problems of the long test solver 2 finds it
+  /// in 98 % at weight 1, in 92 % at 100 and in 94 % at 1,000.
+  static constexpr double globalShare = 0.92;
   /// The slope, as a share of the value over the size of a, that a certified point may have. A
   /// point with a way down has slopes about 1 and more; one that is exact, those of rounding.
   static constexpr double slope = 1e-5;
