@@ -58,17 +58,18 @@ void ActiveSet::chooseStart(const Model& model, const GoalCost& cost, Data& data
     if (value < least) least = value, best_ = u_;
   };
   if (data.constraints.rowCount() > 0 && u_.size() > 0 && std::isfinite(least)) {
-    cell_.enterWith(data.forward.massFactor);
-    path_.a = force_ - data.forces.c;
-    cell_.solve(path_.a);
+    const auto moveWithoutRows = [&] {
+      cell_.enterWith(data.forward.massFactor);
+      path_.a = force_ - data.forces.c;
+      cell_.solve(path_.a);
+    };
+    moveWithoutRows();
     if (computeGradient(cost, data)) {
       cell_.computeHessian(cost);
       solveProgram();
       u_ += program_.solution();
       consider();
-      cell_.enterWith(data.forward.massFactor);
-      path_.a = force_ - data.forces.c;
-      cell_.solve(path_.a);
+      moveWithoutRows();
       bool changed = false;
       data.constraints.setResidual(path_.a);
       data.constraints.evaluate(changed);

@@ -15,6 +15,9 @@
 ///
 /// Needs rows that are piecewise quadratic: no elliptic cones.
 
+#include <cstdint>
+#include <vector>
+
 #include "gdd/cell_response.hpp"
 #include "gdd/cost.hpp"
 #include "gdd/forward_path.hpp"
@@ -67,9 +70,8 @@ class ActiveSet {
 
   CellResponse cell_;
   QuadraticProgram program_;
-  ForwardPath path_;  ///< holds a and the rows at their knots
-  std::vector<std::uint64_t>
-      tried_;  ///< cells at this point that promise nothing, by their pattern
+  ForwardPath path_;                  ///< holds a and the rows at their knots
+  std::vector<std::uint64_t> tried_;  ///< patterns of cells here that promise nothing
   VectorX u_, best_, lower_, upper_, stepLower_, stepUpper_;  ///< (columns of B)
   std::vector<int> constrained_;  ///< entries of path_.held that the program knows
   std::vector<int> atKnot_;       ///< entries of path_.held that are at knots

@@ -6,7 +6,6 @@
 /// rows at knots several cells meet, one for each choice of sides.
 
 #include <algorithm>
-#include <utility>
 #include <vector>
 
 #include "engine/constraints/constraints.hpp"
@@ -30,7 +29,6 @@ struct HeldKnot {
 class HeldKnots {
  public:
   int size() const { return count_; }
-  bool empty() const { return count_ == 0; }
   HeldKnot& operator[](int i) { return knots_[i]; }
   const HeldKnot& operator[](int i) const { return knots_[i]; }
   HeldKnot* begin() { return knots_.data(); }
@@ -49,10 +47,6 @@ class HeldKnots {
     fresh.paths = 0;
     fresh.multiplier = 0.0;
     return fresh;
-  }
-  void release(int i) {
-    for (int k = i; k + 1 < count_; ++k) std::swap(knots_[k], knots_[k + 1]);
-    --count_;
   }
   int atKnots() const {
     return static_cast<int>(std::count_if(begin(), end(), [](const auto& h) { return h.atKnot; }));

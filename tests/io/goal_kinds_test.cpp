@@ -7,30 +7,11 @@
 #include "engine/dynamics/energy.hpp"
 #include "gdd/gdd.hpp"
 #include "io/goals.hpp"
-#include "io/urdf.hpp"
-#include "sample_urdf.hpp"
+#include "sample_goals.hpp"
 #include "temp_folder.hpp"
 
 namespace softgauss::io {
 namespace {
-
-using Goals = std::vector<std::unique_ptr<gdd::Goal>>;
-
-const Model& sampleModel() {
-  static const Model model = [] {
-    const TempFolder folder;
-    return loadUrdf(folder.write("sample.urdf", kSampleUrdf));
-  }();
-  return model;
-}
-
-/// Away from zero, so that references to it show.
-State sampleState() {
-  State state(sampleModel());
-  state.q.head<3>() = Vector3(0.3, -0.2, 1.0);
-  state.q.tail<1>()[0] = 0.4;
-  return state;
-}
 
 /// The goals of the items, each on a line of its own from line 2 on.
 Goals read(const std::string& items) {

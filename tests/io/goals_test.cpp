@@ -8,14 +8,11 @@
 #include <random>
 
 #include "gdd/gdd.hpp"
-#include "io/urdf.hpp"
-#include "sample_urdf.hpp"
+#include "sample_goals.hpp"
 #include "temp_folder.hpp"
 
 namespace softgauss::io {
 namespace {
-
-using Goals = std::vector<std::unique_ptr<gdd::Goal>>;
 
 /// Every kind with every key; lines 1 to 9.
 const std::string kSampleGoals = R"(# a comment
@@ -28,22 +25,6 @@ goals:
       weight: 0.5
       rate: 3
 )";
-
-const Model& sampleModel() {
-  static const Model model = [] {
-    const TempFolder folder;
-    return loadUrdf(folder.write("sample.urdf", kSampleUrdf));
-  }();
-  return model;
-}
-
-/// Away from zero, so that references to it show.
-State sampleState() {
-  State state(sampleModel());
-  state.q.head<3>() = Vector3(0.3, -0.2, 1.0);
-  state.q.tail<1>()[0] = 0.4;
-  return state;
-}
 
 Goals read(const std::string& text) {
   const TempFolder folder;
