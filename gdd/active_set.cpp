@@ -17,8 +17,7 @@ constexpr int kGuarded = 2;
 }  // namespace
 
 ActiveSet::ActiveSet(const Model& model) : path_(model) {
-  for (VectorX* x : {&force_, &Rforce_, &costGradient_, &Ma_, &adjoint_, &residual_, &rate_})
-    *x = VectorX::Zero(model.nv);
+  for (VectorX* x : {&force_, &Ma_, &adjoint_, &residual_, &rate_}) *x = VectorX::Zero(model.nv);
 }
 
 /// Takes u, within the box, as the present control and a = f(u). Returns F, ∞ if it is not finite.
@@ -32,18 +31,68 @@ double ActiveSet::moveTo(const Model& model, const GoalCost& cost, const VectorX
     return kInfinity;
   }
   report_.forwardIterations += data.forward.report.iterations;
+  const TreeFactor* massFactor = data.forward.massFactored ? &data.forward.massFactor : nullptr;
+  if (!ready_ && !setInertia(cost, massFactor, data)) return kInfinity;
+  ready_ = true;
+  entered_ = data.forward.cellFactored;
+  if (entered_) cell_.enterWith(data.forward.factor);
   path_.a = data.forward.a;
-  if (!cell_.setInertia(data, cost)) {
-    badDof_ = cell_.massFailedRow();
-    return kInfinity;
-  }
-  return objective(cost, data);
+  evaluateCost(cost, data);
+  computeEffortSlope();
+  return effort() + path_.value;
 }
 
-double ActiveSet::objective(const GoalCost& cost, const Data& data) {
-  cell_.multiplyR(force_, Rforce_);
+/// From the last step's a along the exact path to a = f(u), where few rows change their pieces on
+/// the way. Returns F, ∞ where it has not come there.
+double ActiveSet::moveAlongPath(const GoalCost& cost, const VectorX& a, Data& data) {
+  bool changed = false;
+  path_.a = a;
+  data.constraints.setResidual(path_.a);
+  data.constraints.evaluate(changed);
+  ++report_.factorizations;
+  if (!cell_.enter(data) || !setInertia(cost, nullptr, data)) return kInfinity;
+  computeResidual(data);
+  cell_.solve(residual_);
+  if (!path_.reach(residual_, cell_, data)) return kInfinity;
+  ready_ = entered_ = true;
+  evaluateCost(cost, data);
+  computeEffortSlope();
+  return effort() + path_.value;
+}
+
+/// ℓ and ∇ℓ at a.
+void ActiveSet::evaluateCost(const GoalCost& cost, const Data& data) {
   data.inertia.M.multiply(path_.a, Ma_);
-  return 0.5 * force_.dot(Rforce_) + cost.value(data.inertia.M, path_.a, Ma_);
+  cost.gradient(path_.a, Ma_, path_.slope);
+  path_.value = cost.value(path_.a, Ma_);
+}
+
+/// The gradient in u of ½ τᵀR τ, τ = B u + what is given.
+void ActiveSet::computeEffortSlope() {
+  cell_.multiplyForcePrice(u_, effortSlope_);
+  effortSlope_ += givenSlope_;
+}
+
+/// ½ τᵀR τ, by its gradient.
+double ActiveSet::effort() const {
+  return 0.5 * (u_.dot(effortSlope_) + u_.dot(givenSlope_)) + givenEffort_;
+}
+
+/// R, and what it makes of forces where the box has no width.
+bool ActiveSet::setInertia(const GoalCost& cost, const TreeFactor* massFactor, const Data& data) {
+  if (!cell_.setInertia(data, massFactor, cost)) {
+    badDof_ = cell_.massFailedRow();
+    return false;
+  }
+  givenEffort_ = 0.0;
+  givenSlope_.setZero(cell_.columns());
+  adjoint_ = force_;
+  for (const int dof : cell_.driven()) adjoint_[dof] = 0.0;
+  if ((adjoint_.array() == 0.0).all()) return true;
+  cell_.multiplyR(adjoint_, rate_);
+  givenEffort_ = 0.5 * adjoint_.dot(rate_);
+  cell_.select(rate_, givenSlope_);
+  return true;
 }
 
 /// Without a last step: the best of three controls. None; the one that would be best if there were
@@ -64,8 +113,10 @@ void ActiveSet::chooseStart(const Model& model, const GoalCost& cost, Data& data
       cell_.solve(path_.a);
     };
     moveWithoutRows();
-    if (computeGradient(cost, data)) {
-      cell_.computeHessian(cost);
+    evaluateCost(cost, data);
+    computeEffortSlope();
+    cell_.computeHessian();
+    if (computeGradient()) {
       solveProgram();
       u_ += program_.solution();
       consider();
@@ -79,17 +130,21 @@ void ActiveSet::chooseStart(const Model& model, const GoalCost& cost, Data& data
       consider();
     }
     report_.cells = 0;
+    entered_ = false;
   }
   u_ = best_;
 }
 
-/// u of the last step, within the box, and a = f(u).
+/// u of the last step, within the box, and a = f(u). Rows that were at knots are kept in their cell
+/// at first: most of them stay at their knots.
 GddStatus ActiveSet::start(const Model& model, const GoalCost& cost, const ControlBox& box,
                            Data& data, const WarmStart& warm) {
   report_ = {};
   badDof_ = -1;
+  ready_ = entered_ = false;
   tried_.clear();
   path_.held.clear();
+  knots_.clear();
   constrained_.clear();
   cell_.setDriven(model, box);
   cell_.select(box.lower, lower_);
@@ -103,7 +158,16 @@ GddStatus ActiveSet::start(const Model& model, const GoalCost& cost, const Contr
   else
     chooseStart(model, cost, data);
   report_.forwardIterations = 0;
-  const double value = moveTo(model, cost, known ? &warm.gddA : nullptr, data);
+  double value = kInfinity;
+  if (known) {
+    u_ = u_.cwiseMax(lower_).cwiseMin(upper_);
+    cell_.spread(u_, force_);
+    for (const KnotName& name : warm.knots)
+      if (const auto knot = data.constraints.find(name)) path_.held.entry(*knot).paths = kGuarded;
+    value = moveAlongPath(cost, warm.gddA, data);
+  }
+  if (!std::isfinite(value)) value = moveTo(model, cost, known ? &warm.gddA : nullptr, data);
+  setAppliedForce(force_, data.forces);
   return std::isfinite(value) ? GddStatus::converged : GddStatus::notFinite;
 }
 
@@ -117,10 +181,8 @@ void ActiveSet::computeResidual(const Data& data) {
 /// P, S, K and the sides of held rows, in the cell in which the rows are kept; a made exact in it.
 bool ActiveSet::enterCell(const GoalCost& cost, Data& data) {
   Constraints& rows = data.constraints;
-  const bool first = report_.cells == 0;
-  if (first && data.forward.cellFactored) {
-    cell_.enterWith(data.forward.factor);
-  } else if (first || cell_.isWorn()) {
+  if (!entered_ || cell_.isWorn()) {
+    entered_ = true;
     ++report_.factorizations;
     if (!cell_.enter(data)) return false;
     // Rounding along the path is undone by a Newton step of forward dynamics, exact in a cell.
@@ -129,8 +191,10 @@ bool ActiveSet::enterCell(const GoalCost& cost, Data& data) {
     computeResidual(data);
     cell_.solve(residual_);
     path_.a += residual_;
+    evaluateCost(cost, data);
   }
 
+  cell_.computeHessian();
   constrained_.clear();
   for (int i = 0; i < path_.held.size(); ++i) {
     HeldKnot& h = path_.held[i];
@@ -144,24 +208,17 @@ bool ActiveSet::enterCell(const GoalCost& cost, Data& data) {
     h.jump = -h.sign * rows.curvatureJump(h.knot);
     h.J.resize(force_.size());
     rows.knotGradient(h.knot, h.J);
-    adjoint_ = h.sign * h.J;
-    cell_.solve(adjoint_);
-    cell_.select(adjoint_, h.side);
+    cell_.multiplyTransposed(h.J, h.side);
+    h.side *= h.sign;
   }
-  cell_.computeHessian(cost);
   return true;
 }
 
 /// q = Bᵀ(R B u + P⁻¹∇ℓ); false when not finite.
-bool ActiveSet::computeGradient(const GoalCost& cost, const Data& data) {
-  data.inertia.M.multiply(path_.a, Ma_);
-  cost.gradient(data.inertia.M, path_.a, Ma_, costGradient_);
-  adjoint_ = costGradient_;
-  cell_.solve(adjoint_);
-  cell_.multiplyR(force_, Rforce_);
-  adjoint_ += Rforce_;
-  cell_.select(adjoint_, gradient_);
-  merit_ = 0.5 * force_.dot(Rforce_) + std::abs(cost.value(data.inertia.M, path_.a, Ma_));
+bool ActiveSet::computeGradient() {
+  cell_.multiplyTransposed(path_.slope, gradient_);
+  merit_ = effort() + std::abs(path_.value);
+  gradient_ += effortSlope_;
   return gradient_.allFinite() && std::isfinite(merit_);
 }
 
@@ -192,11 +249,10 @@ double ActiveSet::solveProgram() {
 PathEnd ActiveSet::followPath(const GoalCost& cost, Data& data) {
   const VectorX& p = program_.solution();
   PathStart start;
-  rate_.setZero();
-  cell_.spread(p, rate_);
-  start.forceSlope = rate_.dot(Rforce_);
-  start.forceCurvature = cell_.forceCurvature(p);
-  cell_.solve(rate_);
+  start.forceSlope = p.dot(effortSlope_);
+  cell_.multiplyForcePrice(p, best_);
+  start.forceCurvature = p.dot(best_);
+  cell_.multiply(p, rate_);
   start.tMax = kInfinity;
   for (Eigen::Index i = 0; i < p.size(); ++i) {
     if (p[i] == 0.0) continue;
@@ -206,6 +262,7 @@ PathEnd ActiveSet::followPath(const GoalCost& cost, Data& data) {
   for (const HeldKnot& h : path_.held)
     if (h.multiplier > 0.0 && !h.atKnot) start.tMax = 1.0;
   const PathEnd end = path_.follow(start, cell_, cost, rate_, data);
+  effortSlope_ += end.t * best_;
   u_ = (u_ + end.t * p).cwiseMax(lower_).cwiseMin(upper_);
   cell_.spread(u_, force_);
   return end;
@@ -239,7 +296,7 @@ ActiveSet::Next ActiveSet::leaveCell(Data& data) {
   if (!tried(here)) tried_.push_back(here);
 
   // w = P⁻¹(∇ℓ − Σ ν σ J): the same in all cells that share it.
-  adjoint_ = costGradient_;
+  adjoint_ = path_.slope;
   for (int k = 0; k < n; ++k) adjoint_ -= row(k).multiplier * row(k).sign * row(k).J;
   cell_.solve(adjoint_);
   int worst = -1;
@@ -275,7 +332,7 @@ ActiveSet::Next ActiveSet::leaveCell(Data& data) {
   for (int k = 0; k < n; ++k) {
     if ((((pattern ^ here) >> k) & 1) == 0) continue;
     data.constraints.enterPiece(row(k).knot, ((pattern >> k) & 1) != 0);
-    cell_.cross(row(k).J, row(k).jump, adjoint_);
+    cell_.cross(row(k).J, row(k).jump);
   }
   return Next::cell;
 }
@@ -298,8 +355,11 @@ void ActiveSet::finish(const ControlBox& box, const GoalCost& cost, Data& data) 
   setAppliedForce(force_, data.forces);
   rate_ = force_ - residual_;  // g(a)
   report_.violation = box.violation(rate_);
-  report_.objective = objective(cost, data);
+  report_.objective = effort() + cost.value(path_.a, Ma_);
   report_.heldRows = path_.held.atKnots();
+  knots_.clear();
+  for (const HeldKnot& held : path_.held)
+    if (held.atKnot) knots_.push_back(data.constraints.nameOf(held.knot));
 }
 
 GddReport ActiveSet::solve(const Model& model, GoalCost& cost, const ControlBox& box, Data& data,
@@ -320,7 +380,7 @@ GddReport ActiveSet::solve(const Model& model, GoalCost& cost, const ControlBox&
   HeldKnots& held = path_.held;
 
   for (;;) {
-    if (!enterCell(cost, data) || !computeGradient(cost, data)) return end(GddStatus::notFinite);
+    if (!enterCell(cost, data) || !computeGradient()) return end(GddStatus::notFinite);
     double promised = solveProgram();
     if (promised < 0.0) return end(GddStatus::undecided);
     const int heldBefore = held.atKnots();
@@ -336,7 +396,7 @@ GddReport ActiveSet::solve(const Model& model, GoalCost& cost, const ControlBox&
       if (moved || held.atKnots() > heldBefore) tried_.clear();
       if (moved && path.crossings == 0) {
         // Still in the cell: its minimum, if rounding has not spoilt it.
-        if (!computeGradient(cost, data)) return end(GddStatus::notFinite);
+        if (!computeGradient()) return end(GddStatus::notFinite);
         promised = remainingPromise();
         stationary = promised <= options.tolerance * merit_;
       } else {
@@ -361,6 +421,7 @@ void ActiveSet::keepWarmStart(WarmStart& warm) const {
   warm.gddA = path_.a;
   warm.control = force_;
   warm.multipliers.setZero(force_.size());
+  warm.knots = knots_;
   warm.gddValid = true;
 }
 

@@ -58,10 +58,14 @@ class ActiveSet {
                   const WarmStart& warm);
   void chooseStart(const Model& model, const GoalCost& cost, Data& data);
   double moveTo(const Model& model, const GoalCost& cost, const VectorX* guess, Data& data);
-  double objective(const GoalCost& cost, const Data& data);
+  double moveAlongPath(const GoalCost& cost, const VectorX& a, Data& data);
+  bool setInertia(const GoalCost& cost, const TreeFactor* massFactor, const Data& data);
+  void computeEffortSlope();
+  double effort() const;
   void computeResidual(const Data& data);
   bool enterCell(const GoalCost& cost, Data& data);
-  bool computeGradient(const GoalCost& cost, const Data& data);
+  void evaluateCost(const GoalCost& cost, const Data& data);
+  bool computeGradient();
   double solveProgram();
   PathEnd followPath(const GoalCost& cost, Data& data);
   double remainingPromise();
@@ -75,12 +79,18 @@ class ActiveSet {
   VectorX u_, best_, lower_, upper_, stepLower_, stepUpper_;  ///< (columns of B)
   std::vector<int> constrained_;  ///< entries of path_.held that the program knows
   std::vector<int> atKnot_;       ///< entries of path_.held that are at knots
+  std::vector<KnotName> knots_;   ///< at which the solution has rows
   VectorX distances_;
-  VectorX gradient_;        ///< q
-  RowMajorMatrixX sides_;   ///< a row for each row held
-  VectorX force_, Rforce_;  ///< B u, (R + W) B u (nv)
-  VectorX costGradient_, Ma_, adjoint_, residual_, rate_;
-  double merit_ = 0.0;  ///< size of the objective
+  VectorX gradient_;       ///< q
+  RowMajorMatrixX sides_;  ///< a row for each row held
+  VectorX effortSlope_;    ///< BᵀR B u, and of forces where the box has no width
+  VectorX givenSlope_;     ///< BᵀR of those forces alone
+  double givenEffort_ = 0.0;
+  VectorX force_;  ///< B u (nv)
+  VectorX Ma_, adjoint_, residual_, rate_;
+  double merit_ = 0.0;    ///< size of the objective
+  bool ready_ = false;    ///< R is that of this solve
+  bool entered_ = false;  ///< the response is that of the cell at a
   GddReport report_;
   int badDof_ = -1;
 };

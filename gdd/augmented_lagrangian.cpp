@@ -45,7 +45,7 @@ bool AugmentedLagrangian::gradient(const GoalCost& cost, const ControlBox& box, 
     stale_ = true;
   }
   hessian_.multiplyP(w_, gradient_);
-  cost.gradient(data.inertia.M, a_, Ma_, costGradient_);
+  cost.gradient(a_, Ma_, costGradient_);
   gradient_ += costGradient_;
   return gradient_.allFinite();
 }
@@ -101,7 +101,7 @@ GddReport AugmentedLagrangian::solve(const Model& model, GoalCost& cost, const C
   for (;;) {
     if (!gradient(cost, box, data)) return end(GddStatus::notFinite);
     report.violation = box.violation(g_);
-    report.objective = 0.5 * g_.dot(Rg_) + priced_ + cost.value(M, a_, Ma_);
+    report.objective = 0.5 * g_.dot(Rg_) + priced_ + cost.value(a_, Ma_);
     if (report.iterations == options.maxIterations) return end(GddStatus::iterationLimit);
 
     // Direction in this cell.
@@ -180,6 +180,7 @@ int AugmentedLagrangian::badDof() const {
 void AugmentedLagrangian::keepWarmStart(WarmStart& warm) const {
   warm.gddA = a_;
   warm.multipliers = lambda_;
+  warm.knots.clear();
   warm.gddValid = true;
 }
 

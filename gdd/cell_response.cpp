@@ -1,16 +1,63 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gdd/cell_response.hpp"
 
+#include <algorithm>
+
+#include "engine/core/vector_clones.hpp"
+
 namespace softgauss::gdd {
 namespace {
 
-/// X ← B.
-void setSelection(const std::vector<int>& driven, int dofs, RowMajorMatrixX& X) {
-  X.setZero(dofs, static_cast<Eigen::Index>(driven.size()));
-  for (std::size_t c = 0; c < driven.size(); ++c) X(driven[c], static_cast<Eigen::Index>(c)) = 1.0;
+/// K ← K − s bᵀ − b sᵀ, lower triangle (n × n).
+SOFTGAUSS_VECTOR_CLONES void subtractRankTwo(const double* s, const double* b, int n, double* K) {
+  for (int i = 0; i < n; ++i) {
+    double* column = K + i * n;
+    const double si = s[i], bi = b[i];
+    for (int j = i; j < n; ++j) column[j] -= si * b[j] + bi * s[j];
+  }
+}
+
+/// S ← S − scale · y sᵀ.
+SOFTGAUSS_VECTOR_CLONES void subtractRankOne(const double* y, const double* s, double scale,
+                                             RowMajorMatrixX& S) {
+  const int rows = static_cast<int>(S.rows()), columns = static_cast<int>(S.cols());
+  for (int i = 0; i < rows; ++i) {
+    double* row = S.data() + i * columns;
+    const double c = scale * y[i];
+    for (int j = 0; j < columns; ++j) row[j] -= c * s[j];
+  }
+}
+
+/// b ← Sᵀ x, S (rows × columns) by rows.
+SOFTGAUSS_VECTOR_CLONES void multiplyRows(const double* S, int rows, int columns, const double* x,
+                                          double* b) {
+  for (int j = 0; j < columns; ++j) b[j] = 0.0;
+  for (int i = 0; i < rows; ++i) {
+    const double* row = S + i * columns;
+    for (int j = 0; j < columns; ++j) b[j] += x[i] * row[j];
+  }
+}
+
+/// K ← K + c y yᵀ, lower triangle of the first n of `stride` rows, by columns.
+SOFTGAUSS_VECTOR_CLONES void addOuter(const double* y, double c, int n, int stride, double* K) {
+  for (int i = 0; i < n; ++i) {
+    const double s = c * y[i];
+    for (int j = i; j < n; ++j) K[i * stride + j] += s * y[j];
+  }
 }
 
 }  // namespace
+
+/// X ← B, and the range of each row.
+void CellResponse::setSelection(RowMajorMatrixX& X) {
+  const int n = M_->size(), count = columns();
+  X.setZero(n, count);
+  range_.assign(static_cast<std::size_t>(n), Segment{});
+  for (int c = 0; c < count; ++c) {
+    X(driven_[c], c) = 1.0;
+    range_[driven_[c]] = {c, c + 1};
+  }
+}
 
 void CellResponse::setDriven(const Model& model, const ControlBox& box) {
   driven_.clear();
@@ -18,20 +65,43 @@ void CellResponse::setDriven(const Model& model, const ControlBox& box) {
     if (box.lower[i] < box.upper[i]) driven_.push_back(i);
 }
 
-bool CellResponse::setInertia(const Data& data, const GoalCost& cost) {
+bool CellResponse::setInertia(const Data& data, const TreeFactor* massFactor,
+                              const GoalCost& cost) {
+  M_ = &data.inertia.M;
+  cost_ = &cost;
   price_ = cost.forcePrice();
-  massFactor_ = data.forward.massFactored ? &data.forward.massFactor : &ownMassFactor_;
-  if (!data.forward.massFactored && !ownMassFactor_.compute(data.inertia.M)) return false;
-  const int n = data.inertia.M.size();
-  setSelection(driven_, n, S_);
-  massFactor_->solve(S_);
-  forcePrice_.resize(columns(), columns());
-  for (int i = 0; i < columns(); ++i) {
-    forcePrice_.row(i) = S_.row(driven_[i]);
-    forcePrice_(i, i) += price_[driven_[i]];
-  }
-  rootS_.resize(n, columns());
+  massFactor_ = massFactor ? massFactor : &ownMassFactor_;
+  if (!massFactor && !ownMassFactor_.compute(data.inertia.M)) return false;
+  computeForcePrice();
   return true;
+}
+
+/// BᵀM⁻¹B = YᵀD⁻¹Y, Y = L⁻ᵀB, M = LᵀDL. Row k of Y has entries only where a column of B moves dof k
+/// or one that it carries.
+void CellResponse::computeForcePrice() {
+  const int count = columns();
+  RowMajorMatrixX& Y = rootS_;
+  setSelection(Y);
+  massFactor_->solveTransposed(Y, range_);
+  forcePrice_.setZero(count, count);
+  for (int k = 0; k < massFactor_->size(); ++k) {
+    const Segment r = range_[k];
+    if (r.begin < r.end)
+      addOuter(&Y(k, r.begin), massFactor_->inversePivot(k), r.end - r.begin, count,
+               &forcePrice_(r.begin, r.begin));
+  }
+  forcePrice_.triangularView<Eigen::StrictlyUpper>() = forcePrice_.transpose();
+  for (int i = 0; i < count; ++i) forcePrice_(i, i) += price_[driven_[i]];
+}
+
+void CellResponse::multiplyTransposed(const VectorX& x, VectorX& y) const {
+  y.resize(columns());
+  multiplyRows(S_.data(), static_cast<int>(S_.rows()), columns(), x.data(), y.data());
+}
+
+void CellResponse::multiplyForcePrice(const VectorX& p, VectorX& y) const {
+  y.resize(columns());
+  multiplyRows(forcePrice_.data(), columns(), columns(), p.data(), y.data());
 }
 
 bool CellResponse::enter(Data& data) {
@@ -64,29 +134,44 @@ void CellResponse::multiplyR(const VectorX& x, VectorX& Rx) const {
   Rx += price_.cwiseProduct(x);
 }
 
-double CellResponse::cross(const VectorX& J, double jump, VectorX& PinvJ) {
-  PinvJ = J;
-  solve(PinvJ);
+const CellResponse::Correction& CellResponse::cross(const VectorX& J, double jump) {
   if (correctionCount_ == static_cast<int>(corrections_.size())) corrections_.emplace_back();
-  Correction& c = corrections_[correctionCount_++];
-  c.y = PinvJ;
+  Correction& c = corrections_[correctionCount_];
+  c.y = J;
+  solve(c.y);
+  ++correctionCount_;
   select(c.y, c.By);
-  c.scale = jump / (1.0 + jump * J.dot(PinvJ));
-  return c.scale;
+  c.scale = jump / (1.0 + jump * J.dot(c.y));
+  if (correctionsInS_ >= 0) {
+    My_.resize(c.y.size());
+    M_->multiply(c.y, My_);
+    cost_->multiplyCurvature(c.y, My_, c.Hy);
+  }
+  return c;
 }
 
-void CellResponse::computeHessian(const GoalCost& cost) {
+void CellResponse::computeHessian() {
   if (correctionsInS_ < 0) {
-    setSelection(driven_, factor_->size(), S_);
-    factor_->solve(S_);
-    correctionsInS_ = 0;
+    setSelection(S_);
+    factor_->solve(S_, range_);
+    for (int k = 0; k < correctionCount_; ++k)
+      subtractRankOne(corrections_[k].y.data(), corrections_[k].By.data(), corrections_[k].scale,
+                      S_);
+    K_ = forcePrice_;
+    cost_->addReducedCurvature(*massFactor_, S_, rootS_, K_);
+    correctionsInS_ = correctionCount_;
   }
-  for (; correctionsInS_ < correctionCount_; ++correctionsInS_) {
-    const Correction& c = corrections_[correctionsInS_];
-    for (Eigen::Index i = 0; i < S_.rows(); ++i) S_.row(i) -= c.scale * c.y[i] * c.By.transpose();
-  }
-  K_ = forcePrice_;
-  cost.addReducedCurvature(*massFactor_, S_, rootS_, K_);
+  for (; correctionsInS_ < correctionCount_; ++correctionsInS_)
+    addToHessian(corrections_[correctionsInS_]);
+}
+
+/// K and S of the cell behind one more crossing.
+void CellResponse::addToHessian(const Correction& c) {
+  b_.resize(columns());
+  multiplyRows(S_.data(), static_cast<int>(S_.rows()), columns(), c.Hy.data(), b_.data());
+  b_ = c.scale * b_ - 0.5 * c.scale * c.scale * c.y.dot(c.Hy) * c.By;
+  subtractRankTwo(c.By.data(), b_.data(), columns(), K_.data());
+  subtractRankOne(c.y.data(), c.By.data(), c.scale, S_);
 }
 
 void CellResponse::select(const VectorX& x, VectorX& y) const {
@@ -96,11 +181,6 @@ void CellResponse::select(const VectorX& x, VectorX& y) const {
 
 void CellResponse::spread(const VectorX& u, VectorX& tau) const {
   for (int i = 0; i < columns(); ++i) tau[driven_[i]] = u[i];
-}
-
-double CellResponse::forceCurvature(const VectorX& p) const {
-  pricedStep_.noalias() = forcePrice_ * p;
-  return p.dot(pricedStep_);
 }
 
 }  // namespace softgauss::gdd

@@ -42,7 +42,7 @@ void GoalCost::clear() {
   forcePrice_.setZero();
   functions_.clear();
   metricWeight_ = 0.0;
-  metricOffset_.setZero();
+  metricSlope_.setZero();
 }
 
 void GoalCost::addPoint(const Model& model, const Kinematics& k, const TreeSparsity& tree, int body,
@@ -74,7 +74,7 @@ void GoalCost::addDof(int dof, double weight, double target) {
   dofOffset_[dof] -= weight * target;
 }
 
-double GoalCost::value(const TreeMatrix& M, const VectorX& a, const VectorX& Ma) const {
+double GoalCost::value(const VectorX& a, const VectorX& Ma) const {
   double sum = 0.0;
   for (int i = 0; i < rows_.size(); ++i) {
     Vector3 y;
@@ -87,21 +87,11 @@ double GoalCost::value(const TreeMatrix& M, const VectorX& a, const VectorX& Ma)
   }
   if (hasFunctions()) sum += expansionValue(a);
   sum += 0.5 * a.dot(dofWeight_.cwiseProduct(a)) + a.dot(dofOffset_);
-  if (metricWeight_ != 0.0) {
-    M.multiply(metricOffset_, scratch_);
-    sum += 0.5 * metricWeight_ * a.dot(Ma) + a.dot(scratch_);
-  }
-  return sum;
+  return sum + 0.5 * metricWeight_ * a.dot(Ma) + a.dot(metricSlope_);
 }
 
-void GoalCost::gradient(const TreeMatrix& M, const VectorX& a, const VectorX& Ma,
-                        VectorX& g) const {
-  if (metricWeight_ != 0.0) {
-    M.multiply(metricOffset_, scratch_);
-    g = metricWeight_ * Ma + scratch_;
-  } else {
-    g.setZero();
-  }
+void GoalCost::gradient(const VectorX& a, const VectorX& Ma, VectorX& g) const {
+  g = metricWeight_ * Ma + metricSlope_;
   for (int i = 0; i < rows_.size(); ++i) {
     Vector3 y;
     rows_.multiply(i, a, y.data());
@@ -114,6 +104,21 @@ void GoalCost::gradient(const TreeMatrix& M, const VectorX& a, const VectorX& Ma
   }
   g += dofWeight_.cwiseProduct(a) + dofOffset_;
   if (hasFunctions()) g += expansionSlope_ + expansionCurvature_ * (a - expandedAt_);
+}
+
+void GoalCost::multiplyCurvature(const VectorX& d, const VectorX& Md, VectorX& Hd) const {
+  Hd = metricWeight_ * Md + dofWeight_.cwiseProduct(d);
+  for (int i = 0; i < rows_.size(); ++i) {
+    Vector3 y;
+    rows_.multiply(i, d, y.data());
+    y *= weight_[i];
+    rows_.addTransposed(i, y.data(), Hd);
+  }
+  for (std::size_t i = 0; i < denseWeight_.size(); ++i) {
+    const auto J = dense_.col(static_cast<Eigen::Index>(i));
+    Hd += denseWeight_[i] * J.dot(d) * J;
+  }
+  if (hasFunctions()) Hd += expansionCurvature_ * d;
 }
 
 double GoalCost::curvatureAlong(const VectorX& d, const VectorX& Md) const {

@@ -40,7 +40,7 @@ class GoalCost {
       : dofWeight_(VectorX::Zero(dofs)),
         dofOffset_(VectorX::Zero(dofs)),
         forcePrice_(VectorX::Zero(dofs)),
-        metricOffset_(VectorX::Zero(dofs)),
+        metricSlope_(VectorX::Zero(dofs)),
         scratch_(VectorX::Zero(dofs)),
         workspace_(dofs) {}
 
@@ -58,9 +58,11 @@ class GoalCost {
   void addDof(int dof, double weight, double target);
   /// ½ weight (a − target)ᵀ M (a − target), up to a constant.
   template <class Target>
-  void addMetric(double weight, const Eigen::MatrixBase<Target>& target) {
+  void addMetric(double weight, const TreeMatrix& M, const Eigen::MatrixBase<Target>& target) {
     metricWeight_ += weight;
-    metricOffset_ -= weight * target;
+    workspace_.dofs = -weight * target;
+    M.multiply(workspace_.dofs, scratch_);
+    metricSlope_ += scratch_;
   }
 
   /// ½ weight g_dof².
@@ -87,9 +89,11 @@ class GoalCost {
   double expansionError(const VectorX& a, const VectorX& scale);
 
   /// ∇ℓ at a; Ma = M a.
-  void gradient(const TreeMatrix& M, const VectorX& a, const VectorX& Ma, VectorX& g) const;
+  void gradient(const VectorX& a, const VectorX& Ma, VectorX& g) const;
   /// ℓ(a) up to its constant.
-  double value(const TreeMatrix& M, const VectorX& a, const VectorX& Ma) const;
+  double value(const VectorX& a, const VectorX& Ma) const;
+  /// Hd ← ∇²ℓ d; Md = M d.
+  void multiplyCurvature(const VectorX& d, const VectorX& Md, VectorX& Hd) const;
   /// dᵀ∇²ℓ d; Md = M d.
   double curvatureAlong(const VectorX& d, const VectorX& Md) const;
   /// H ← H + ∇²ℓ without the metric part m M; H holds every pair of dofs.
@@ -116,7 +120,7 @@ class GoalCost {
   MatrixX expansionCurvature_;           ///< [∇²φ] + μ M
   double expansionStart_ = 0.0;          ///< φ(a_k)
   double metricWeight_ = 0.0;            ///< m
-  VectorX metricOffset_;                 ///< o
+  VectorX metricSlope_;                  ///< M o
   mutable VectorX scratch_, reduced_;
   GoalWorkspace workspace_;
 };

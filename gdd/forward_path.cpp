@@ -12,13 +12,11 @@ constexpr double kArrival = 1.0 - 1e-6;
 }  // namespace
 
 ForwardPath::ForwardPath(const Model& model) {
-  for (VectorX* x : {&a, &rate_, &Ma_, &Mrate_, &gradient_, &J_, &PinvJ_})
-    *x = VectorX::Zero(model.nv);
+  for (VectorX* x : {&a, &slope, &rate_, &Mrate_, &slopeRate_, &J_}) *x = VectorX::Zero(model.nv);
 }
 
 PathEnd ForwardPath::follow(const PathStart& start, CellResponse& cell, const GoalCost& cost,
                             const VectorX& rate, Data& data) {
-  const TreeMatrix& M = data.inertia.M;
   Constraints& rows = data.constraints;
   rate_ = rate;
   crossed_.clear();
@@ -27,14 +25,14 @@ PathEnd ForwardPath::follow(const PathStart& start, CellResponse& cell, const Go
     if (h.atKnot && h.multiplier > 0.0) rows.holdOnRay(h.knot.row);
 
   PathEnd end;
+  data.inertia.M.multiply(rate_, Mrate_);
+  cost.multiplyCurvature(rate_, Mrate_, slopeRate_);
   for (;;) {
-    M.multiply(a, Ma_);
-    cost.gradient(M, a, Ma_, gradient_);
-    const double slope = start.forceSlope + end.t * start.forceCurvature + gradient_.dot(rate_);
-    if (!(slope < 0.0)) break;
-    M.multiply(rate_, Mrate_);
-    const double curvature = start.forceCurvature + cost.curvatureAlong(rate_, Mrate_);
-    const double newton = curvature > 0.0 ? -slope / curvature : kInfinity;
+    const double costSlope = slope.dot(rate_), costCurvature = slopeRate_.dot(rate_);
+    const double descent = -(start.forceSlope + end.t * start.forceCurvature + costSlope);
+    if (!(descent > 0.0)) break;
+    const double curvature = start.forceCurvature + costCurvature;
+    const double newton = curvature > 0.0 ? descent / curvature : kInfinity;
     const double length = std::min(newton, start.tMax - end.t);
     const Crossing next = rows.nextCrossing();
     // What the program let come to its knot gets there at t = 1, and not past it.
@@ -43,11 +41,15 @@ PathEnd ForwardPath::follow(const PathStart& start, CellResponse& cell, const Go
     const bool crosses = next.alpha < length && !arrives;
     const double step = crosses ? next.alpha : length;
     a += step * rate_;
+    slope += step * slopeRate_;
+    value += step * (costSlope + 0.5 * step * costCurvature);
     rows.advance(step);
     end.t += step;
-    end.decrease -= step * (slope + 0.5 * step * curvature);
+    end.decrease += step * (descent - 0.5 * step * curvature);
     if (!crosses) break;
-    cross(next, cell, rows);
+    const CellResponse::Correction& c = cross(next, cell, rows);
+    slopeRate_ -= c.scale * next.rate * c.Hy;
+    crossed_.push_back(next.knot);
     ++end.crossings;
   }
   if (end.crossings == 0 && end.t > kArrival)
@@ -62,15 +64,34 @@ bool ForwardPath::isBlocked(Knot knot) const {
                      [&](const HeldKnot& h) { return h.multiplier > 0.0 && h.knot == knot; });
 }
 
+bool ForwardPath::reach(const VectorX& rate, CellResponse& cell, Data& data) {
+  constexpr int kMaxCrossings = 12;
+  Constraints& rows = data.constraints;
+  rate_ = rate;
+  rows.setRay(rate_);
+  double left = 1.0;
+  for (int crossings = 0;; ++crossings) {
+    const Crossing next = rows.nextCrossing();
+    const double step = std::min(next.alpha, left);
+    a += step * rate_;
+    rows.advance(step);
+    left -= step;
+    if (left == 0.0) return true;
+    if (crossings == kMaxCrossings) return false;
+    cross(next, cell, rows);
+  }
+}
+
 /// (T.62)
-void ForwardPath::cross(const Crossing& crossing, CellResponse& cell, Constraints& rows) {
+const CellResponse::Correction& ForwardPath::cross(const Crossing& crossing, CellResponse& cell,
+                                                   Constraints& rows) {
   rows.enterPiece(crossing.knot, crossing.rate > 0.0);
-  crossed_.push_back(crossing.knot);
   J_.setZero();
   rows.addRow(crossing.knot.row, 1.0, J_);
-  const double scale = cell.cross(J_, crossing.curvatureJump, PinvJ_);
-  rate_ -= scale * crossing.rate * PinvJ_;
+  const CellResponse::Correction& c = cell.cross(J_, crossing.curvatureJump);
+  rate_ -= c.scale * crossing.rate * c.y;
   rows.setRay(rate_);
+  return c;
 }
 
 /// Rows are put exactly at their knots, and no step leaves them there.

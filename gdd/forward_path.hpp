@@ -36,20 +36,27 @@ class ForwardPath {
   explicit ForwardPath(const Model& model);
 
   VectorX a;       ///< f(u), moved along the path
+  VectorX slope;   ///< ∇ℓ(a), moved along
+  double value;    ///< ℓ(a), moved along
   HeldKnots held;  ///< rows at knots, and all that paths have crossed
 
-  /// Follows the path from the present point, where ȧ = rate; moves a and the rows along. Held rows
-  /// with a multiplier stay at their knots within the present cell, or come to them at t = 1.
-  /// Afterwards `cell` is that of the end, and `held` tells which rows are at knots.
+  /// Follows the path from the present point, where ȧ = rate; moves a, ℓ, ∇ℓ and the rows along.
+  /// Held rows with a multiplier stay at their knots within the present cell, or come to them at t
+  /// = 1. Afterwards `cell` is that of the end, and `held` tells which rows are at knots.
   PathEnd follow(const PathStart& start, CellResponse& cell, const GoalCost& cost,
                  const VectorX& rate, Data& data);
 
+  /// Moves a and the rows along the path P ȧ = ρ from `rate` = P⁻¹ρ on, until g(a) has grown by ρ.
+  /// Returns false when it meets so many knots that Newton's method is the better way.
+  bool reach(const VectorX& rate, CellResponse& cell, Data& data);
+
  private:
-  void cross(const Crossing& crossing, CellResponse& cell, Constraints& rows);
+  const CellResponse::Correction& cross(const Crossing& crossing, CellResponse& cell,
+                                        Constraints& rows);
   bool isBlocked(Knot knot) const;
   void findHeld(const Constraints& rows);
 
-  VectorX rate_, Ma_, Mrate_, gradient_, J_, PinvJ_;
+  VectorX rate_, Mrate_, slopeRate_, J_;
   std::vector<Knot> crossed_;
 };
 

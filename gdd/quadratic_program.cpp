@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "engine/core/check.hpp"
+#include "engine/core/vector_clones.hpp"
 
 namespace softgauss::gdd {
 namespace {
@@ -14,11 +15,78 @@ constexpr double kFeasible = 1e-12;
 /// A normal of which less than this share (squared) is new depends on the active ones.
 constexpr double kDependent = 1e-18;
 
+/// y ← y − Σ_k c_k x_k for columns x_k = x + k·stride of length n, four at a time.
+[[gnu::always_inline]] inline void subtractColumns(const double* x, int stride, const double* c,
+                                                   int cStride, int count, int n, double* y) {
+  int k = 0;
+  for (; k + 4 <= count; k += 4) {
+    const double *x0 = x + k * stride, *x1 = x0 + stride, *x2 = x1 + stride, *x3 = x2 + stride;
+    const double c0 = c[k * cStride], c1 = c[(k + 1) * cStride], c2 = c[(k + 2) * cStride],
+                 c3 = c[(k + 3) * cStride];
+    for (int i = 0; i < n; ++i) y[i] -= c0 * x0[i] + c1 * x1[i] + c2 * x2[i] + c3 * x3[i];
+  }
+  for (; k < count; ++k) {
+    const double* xk = x + k * stride;
+    const double ck = c[k * cStride];
+    for (int i = 0; i < n; ++i) y[i] -= ck * xk[i];
+  }
+}
+
+/// The lower triangle of A (n × n, by columns) ← L with A = L Lᵀ; false where a pivot is not
+/// positive.
+SOFTGAUSS_VECTOR_CLONES bool factorCholesky(double* A, int n) {
+  for (int j = 0; j < n; ++j) {
+    double* column = A + j * n + j;
+    subtractColumns(A + j, n, A + j, n, j, n - j, column);
+    if (!(column[0] > 0.0)) return false;
+    const double inverse = 1.0 / std::sqrt(column[0]);
+    for (int i = 0; i < n - j; ++i) column[i] *= inverse;
+  }
+  return true;
+}
+
+/// X ← L⁻ᵀ, upper triangular, by columns; below it X must be zero.
+SOFTGAUSS_VECTOR_CLONES void invertTransposed(const double* L, int n, double* X) {
+  for (int j = 0; j < n; ++j) {
+    double* column = X + j * n;
+    for (int i = 0; i < j; ++i) column[i] = 0.0;
+    column[j] = 1.0;
+    subtractColumns(X, n, L + j, n, j, j, column);
+    const double inverse = 1.0 / L[j * n + j];
+    for (int i = 0; i <= j; ++i) column[i] *= inverse;
+  }
+}
+
+/// J ← J − z cᵀ for `count` columns.
+SOFTGAUSS_VECTOR_CLONES void subtractOuter(const double* z, const double* c, int n, int count,
+                                           double* J) {
+  for (int k = 0; k < count; ++k)
+    for (int i = 0; i < n; ++i) J[k * n + i] -= c[k] * z[i];
+}
+
+/// z ← J d over `count` columns.
+SOFTGAUSS_VECTOR_CLONES void multiplyColumns(const double* J, const double* d, int n, int count,
+                                             double* z) {
+  for (int i = 0; i < n; ++i) z[i] = 0.0;
+  subtractColumns(J, n, d, 1, count, n, z);
+  for (int i = 0; i < n; ++i) z[i] = -z[i];
+}
+
 }  // namespace
 
 bool QuadraticProgram::setHessian(const MatrixX& K) {
-  cholesky_.compute(K);
-  return cholesky_.info() == Eigen::Success;
+  L_ = K;
+  return factorCholesky(L_.data(), static_cast<int>(L_.rows()));
+}
+
+void QuadraticProgram::solveHessian(VectorX& x) const {
+  const Eigen::Index n = x.size();
+  for (Eigen::Index j = 0; j < n; ++j) {
+    x[j] /= L_(j, j);
+    x.tail(n - j - 1) -= x[j] * L_.col(j).tail(n - j - 1);
+  }
+  for (Eigen::Index j = n - 1; j >= 0; --j)
+    x[j] = (x[j] - L_.col(j).tail(n - j - 1).dot(x.tail(n - j - 1))) / L_(j, j);
 }
 
 double QuadraticProgram::slack(int constraint) const {
@@ -58,19 +126,17 @@ void QuadraticProgram::rotatedNormal(int constraint) {
 }
 
 void QuadraticProgram::add(int constraint, double multiplier) {
-  // Rotate the columns of J so that d has one entry below those of the active ones.
+  // Reflect the columns of J behind the active ones, J₂ ← J₂ (1 − 2 vvᵀ/vᵀv), so that of d = J₂ᵀn
+  // one entry is left. z = J₂ d is known.
   const int n = static_cast<int>(p_.size()), m = static_cast<int>(active_.size());
-  for (int i = n - 1; i > m; --i) {
-    const double a = d_[i - 1], b = d_[i], h = std::sqrt(a * a + b * b);
-    if (b == 0.0) continue;
-    const double c = a / h, s = b / h;
-    d_[i - 1] = h;
-    d_[i] = 0.0;
-    for (int k = 0; k < n; ++k) {
-      const double x = J_(k, i - 1), y = J_(k, i);
-      J_(k, i - 1) = c * x + s * y;
-      J_(k, i) = c * y - s * x;
-    }
+  const double length = d_.tail(n - m).norm();
+  const double left = d_[m] > 0.0 ? -length : length;
+  if (n - m > 1) {
+    z_ -= left * J_.col(m);  // J₂ v, v = d − left e₁
+    d_[m] -= left;
+    z_ /= length * std::abs(d_[m]);  // vᵀv = 2 length |v₁|
+    subtractOuter(z_.data(), d_.data() + m, n, n - m, J_.data() + m * n);
+    d_[m] = left;
   }
   R_.col(m).head(m + 1) = d_.head(m + 1);
   active_.push_back(constraint);
@@ -107,7 +173,7 @@ bool QuadraticProgram::minimize(const VectorX& q, const VectorX& lower, const Ve
   const int n = static_cast<int>(q.size());
   lower_ = &lower, upper_ = &upper, N_ = &N, distance_ = &distance, rows_ = rows;
   p_ = -q;
-  cholesky_.solveInPlace(p_);
+  solveHessian(p_);
   active_.clear();
   multiplier_.clear();
   isActive_.assign(static_cast<std::size_t>(2 * n + rows), 0);
@@ -120,8 +186,8 @@ bool QuadraticProgram::minimize(const VectorX& q, const VectorX& lower, const Ve
     if (violation.constraint < 0) break;
     const int entering = violation.constraint;
     if (!rotated) {
-      J_.setIdentity(n, n);
-      cholesky_.matrixU().solveInPlace(J_);
+      J_.setZero(n, n);
+      invertTransposed(L_.data(), n, J_.data());
       R_.resize(n, n);
       rotated = true;
     }
@@ -155,7 +221,8 @@ bool QuadraticProgram::minimize(const VectorX& q, const VectorX& lower, const Ve
         break;
       }
       if (!dependent) {
-        z_.noalias() = J_.rightCols(n - m) * d_.tail(n - m);
+        z_.resize(n);
+        multiplyColumns(J_.data() + m * n, d_.data() + m, n, n - m, z_.data());
         p_ += step * z_;
       }
       for (int k = 0; k < m; ++k) multiplier_[k] -= step * r_[k];

@@ -9,7 +9,6 @@
 /// one at a time, so linearly dependent rows of N do no harm: one that depends on active rows
 /// replaces one of them. Where no constraint is violated it costs one Cholesky solve.
 
-#include <Eigen/Cholesky>
 #include <vector>
 
 #include "engine/core/types.hpp"
@@ -21,7 +20,7 @@ class QuadraticProgram {
   /// Factors K; false when it is not positive definite.
   bool setHessian(const MatrixX& K);
   /// x ← K⁻¹ x.
-  void solveHessian(VectorX& x) const { cholesky_.solveInPlace(x); }
+  void solveHessian(VectorX& x) const;
 
   /// Solves for p = 0 feasible. Returns false where rounding kept it from an answer; p is then
   /// feasible up to rounding, but not optimal.
@@ -45,10 +44,11 @@ class QuadraticProgram {
   double slack(int constraint) const;
   /// z ← Jᵀ n, J = L⁻ᵀ Q.
   void rotatedNormal(int constraint);
+  /// Takes in the constraint whose d_ and z_ are at hand.
   void add(int constraint, double multiplier);
   void drop(int place);
 
-  Eigen::LLT<MatrixX> cholesky_;
+  MatrixX L_;  ///< K = L Lᵀ
   const VectorX* lower_ = nullptr;
   const VectorX* upper_ = nullptr;
   const RowMajorMatrixX* N_ = nullptr;
@@ -61,7 +61,8 @@ class QuadraticProgram {
   std::vector<char> isActive_;
   std::vector<int> active_;
   std::vector<double> multiplier_;
-  MatrixX J_, R_;
+  MatrixX J_;  ///< L⁻ᵀ Q: JᵀK J = 1, and of the active normals Jᵀn is upper triangular: R
+  MatrixX R_;
   VectorX d_, z_, r_;
 };
 

@@ -136,8 +136,8 @@ class KinkFinder {
   bool findDirections(Kink& kink) {
     data_.constraints.enterPiece(kink.knot, true);  // rounding must not choose
     cell_.setDriven(model_, box_);
-    if (!cell_.setInertia(data_, cost_) || !cell_.enter(data_)) return false;
-    cell_.computeHessian(cost_);
+    if (!cell_.setInertia(data_, nullptr, cost_) || !cell_.enter(data_)) return false;
+    cell_.computeHessian();
     VectorX J(model_.nv), n, u, lower, upper;
     data_.constraints.knotGradient(kink.knot, J);
     cell_.solve(J);
@@ -173,7 +173,7 @@ class KinkFinder {
     massFactor_.solve(price_);
     price_ += cost_.forcePrice().cwiseProduct(control);
     data_.inertia.M.multiply(data_.forward.a, Ma_);
-    return 0.5 * control.dot(price_) + cost_.value(data_.inertia.M, data_.forward.a, Ma_);
+    return 0.5 * control.dot(price_) + cost_.value(data_.forward.a, Ma_);
   }
 
   const Robot& robot_;

@@ -132,7 +132,7 @@ class Replayer {
     factor_.solve(scratch_);
     const double effort = 0.5 * control_.dot(scratch_);
     data_.inertia.M.multiply(data_.forward.a, scratch_);
-    const double goals = cost_.value(data_.inertia.M, data_.forward.a, scratch_);
+    const double goals = cost_.value(data_.forward.a, scratch_);
     data_.inertia.M.multiply(state.v, scratch_);
     const gdd::VirtualDamping damping;  // its constant, which the cost leaves out
     const double constant =

@@ -149,6 +149,31 @@ double Constraints::curvatureJump(Knot knot) const {
   return jump;
 }
 
+KnotName Constraints::nameOf(Knot knot) const {
+  KnotName name{.kind = knot.row.kind, .index = knot.index};
+  visitOne(*this, knot.row.kind, [&](const auto& c) {
+    if constexpr (requires { c.name(0); }) {
+      const RowName row = c.name(knot.row.row);
+      name.first = row.first;
+      name.second = row.second;
+      name.contact = row.contact;
+      name.direction = row.direction;
+    }
+  });
+  return name;
+}
+
+std::optional<Knot> Constraints::find(const KnotName& name) const {
+  std::optional<Knot> found;
+  const RowName wanted{name.first, name.second, name.contact, name.direction};
+  visitOne(*this, name.kind, [&](const auto& c) {
+    if constexpr (requires { c.name(0); })
+      for (int row = 0; row < c.rowCount() && !found; ++row)
+        if (c.name(row) == wanted) found = Knot{{name.kind, row}, name.index};
+  });
+  return found;
+}
+
 void Constraints::placeAtKnot(Knot knot, bool stiffSide) {
   visitOne(*this, knot.row.kind,
            [&](auto& c) { c.placeAtKnot(knot.row.row, knot.index, stiffSide); });

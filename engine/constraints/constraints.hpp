@@ -8,6 +8,7 @@
 /// an empty loop.
 
 #include <concepts>
+#include <optional>
 #include <vector>
 
 #include "engine/constraints/connection.hpp"
@@ -118,6 +119,10 @@ class Constraints {
   void knotGradient(Knot knot, VectorX& y) const;
   /// s″ above a knot less s″ below it.
   double curvatureJump(Knot knot) const;
+  /// The name by which find() has the knot again in a later step.
+  KnotName nameOf(Knot knot) const;
+  /// The knot of that name; nothing where its row does not exist now.
+  std::optional<Knot> find(const KnotName& name) const;
   /// Puts the row exactly at its knot, where it is free, or next to it on the stiff side.
   void placeAtKnot(Knot knot, bool stiffSide);
   /// Takes a row off the ray.

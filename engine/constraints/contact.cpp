@@ -98,7 +98,14 @@ ContactBlocks::FrameVector ContactBlocks::addBlock(const Assembly& in, int i, co
   const Model& model = in.model;
   const Contact& c = in.contacts.contacts[i];
   const Matrix3 R_WC = contactFrame(c);
-  made_.push_back({i, row, R_WC, touch.frictionDim, touch.friction});
+  // The contacts of a pair are neighbours in the set.
+  const std::vector<Contact>& all = in.contacts.contacts;
+  int place = 0;
+  while (place < i && all[i - place - 1].geometryA == c.geometryA &&
+         all[i - place - 1].geometryB == c.geometryB)
+    ++place;
+  made_.push_back(
+      {i, c.geometryA, c.geometryB, place, row, R_WC, touch.frictionDim, touch.friction});
 
   RelativeMotion motion;
   motion.bodyA = c.bodyA;

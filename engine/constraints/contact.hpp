@@ -17,6 +17,7 @@
 #include "engine/constraints/assembly.hpp"
 #include "engine/constraints/block_jacobian.hpp"
 #include "engine/constraints/impedance.hpp"
+#include "engine/constraints/rows.hpp"
 
 namespace softgauss {
 
@@ -45,6 +46,8 @@ std::optional<Touch> touchAt(const Assembly& in, int i);
 /// A contact that made rows.
 struct ContactRows {
   int contact = 0;                   ///< index into ContactSet::contacts
+  int geometryA = 0, geometryB = 0;  ///< that touch
+  int place = 0;                     ///< among the contacts of the two
   int row = 0;                       ///< first row
   Matrix3 R_WC;                      ///< columns n, t₁, t₂
   int frictionDim = 0;               ///< condim − 1; 0 when frictionless
@@ -54,6 +57,11 @@ struct ContactRows {
 /// Contacts of one kind, and how they move.
 class ContactBlocks {
  public:
+  /// Of row i of these contacts.
+  RowName name(int row) const {
+    const ContactRows& m = made_[contactOfRow_[row]];
+    return {m.geometryA, m.geometryB, m.place, row - m.row};
+  }
   /// Contacts with rows; contact i starts at row made()[i].row.
   const std::vector<ContactRows>& made() const { return made_; }
   void appendCouplings(std::vector<Segment>& segments, std::vector<int>& setEnd) const {

@@ -31,6 +31,7 @@ class DryFriction : public ScalarRows<Huber> {
   /// y ← y + scale · (row i of J)ᵀ.
   void addRow(int i, double scale, VectorX& y) const { y[dof_[i]] += scale; }
   int dof(int row) const { return dof_[row]; }
+  RowName name(int row) const { return {.first = dof_[row]}; }
 
  private:
   std::vector<int> dof_;

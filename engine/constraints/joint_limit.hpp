@@ -29,6 +29,7 @@ class JointLimit : public ScalarRows<HalfQuadratic> {
   /// y ← y + scale · (row i of J)ᵀ.
   void addRow(int i, double scale, VectorX& y) const { y[dof_[i]] += sign_[i] * scale; }
   int dof(int row) const { return dof_[row]; }
+  RowName name(int row) const { return {.first = dof_[row], .second = sign_[row] > 0.0 ? 0 : 1}; }
   double sign(int row) const { return sign_[row]; }
 
  private:

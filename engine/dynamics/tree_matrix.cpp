@@ -252,21 +252,39 @@ void TreeFactor::solveLower(VectorX& x) const {
   }
 }
 
-SOFTGAUSS_VECTOR_CLONES void TreeFactor::solve(RowMajorMatrixX& X) const {
+SOFTGAUSS_VECTOR_CLONES void TreeFactor::solveTransposed(RowMajorMatrixX& X,
+                                                         std::vector<Segment>& range) const {
   const TreeSparsity& pattern = LD_.sparsity();
-  const int n = size(), columns = static_cast<int>(X.cols());
-  for (int k = n - 1; k >= 0; --k) {
+  const int columns = static_cast<int>(X.cols());
+  for (int k = size() - 1; k >= 0; --k) {
     const double* L = LD_.row(k);
-    double* xk = X.data() + k * columns;
+    const Segment filled = range[k];
+    const double* xk = X.data() + k * columns;
+    if (filled.begin >= filled.end) continue;
     for (const Segment* s = pattern.begin(k); s != pattern.end(k); ++s) {
       const int end = std::min(s->end, k);
       for (int j = s->begin; j < end; ++j) {
         double* xj = X.data() + j * columns;
         const double l = L[j];
-        for (int c = 0; c < columns; ++c) xj[c] -= l * xk[c];
+        for (int c = filled.begin; c < filled.end; ++c) xj[c] -= l * xk[c];
+        Segment& to = range[j];
+        if (to.begin < to.end)
+          to = {std::min(to.begin, filled.begin), std::max(to.end, filled.end)};
+        else
+          to = filled;
       }
     }
-    for (int c = 0; c < columns; ++c) xk[c] *= inversePivot_[k];
+  }
+}
+
+SOFTGAUSS_VECTOR_CLONES void TreeFactor::solve(RowMajorMatrixX& X,
+                                               std::vector<Segment>& range) const {
+  solveTransposed(X, range);
+  const TreeSparsity& pattern = LD_.sparsity();
+  const int n = size(), columns = static_cast<int>(X.cols());
+  for (int k = 0; k < n; ++k) {
+    double* xk = X.data() + k * columns;
+    for (int c = range[k].begin; c < range[k].end; ++c) xk[c] *= inversePivot_[k];
   }
   for (int k = 1; k < n; ++k) {
     const double* L = LD_.row(k);

@@ -99,8 +99,11 @@ class TreeFactor {
   bool compute(const TreeMatrix& A, const double* diagonal = nullptr);
   /// x ← A⁻¹ x.
   void solve(VectorX& x) const;
-  /// X ← A⁻¹ X for many columns at once; rows of X are contiguous.
-  void solve(RowMajorMatrixX& X) const;
+  /// X ← A⁻¹ X for many columns at once; rows of X are contiguous. `range` of a row k holds the
+  /// columns in which it is not zero, before the call and, of L⁻ᵀX, after it.
+  void solve(RowMajorMatrixX& X, std::vector<Segment>& range) const;
+  /// X ← L⁻ᵀ X, the first half.
+  void solveTransposed(RowMajorMatrixX& X, std::vector<Segment>& range) const;
   /// Y ← D^½ L X, so that YᵀY = XᵀA X.
   void multiplyRoot(const RowMajorMatrixX& X, RowMajorMatrixX& Y) const;
   /// x ← L⁻ᵀ x, the first half of solve(): xᵀ A⁻¹ x = Σ x_k²/D_k afterwards.

@@ -12,15 +12,20 @@ Quaternion readQuaternion(const VectorX& q, int i) {
   return {q[i], q[i + 1], q[i + 2], q[i + 3]};  // w first
 }
 
-/// FNV-1a over the bytes of an array.
+/// FNV-1a over eight bytes.
+void mixBits(std::uint64_t& h, std::uint64_t bits) {
+  for (int byte = 0; byte < 8; ++byte) {
+    h ^= (bits >> (8 * byte)) & 0xffu;
+    h *= 0x100000001b3ull;
+  }
+}
+
+/// The same over an array.
 void mix(std::uint64_t& h, const double* data, Eigen::Index count) {
   for (Eigen::Index i = 0; i < count; ++i) {
     std::uint64_t bits;
     std::memcpy(&bits, data + i, sizeof bits);
-    for (int byte = 0; byte < 8; ++byte) {
-      h ^= (bits >> (8 * byte)) & 0xffu;
-      h *= 0x100000001b3ull;
-    }
+    mixBits(h, bits);
   }
 }
 
@@ -41,6 +46,9 @@ std::uint64_t hash(const State& state) {
   const double rest[] = {state.time, state.warmstart.valid ? 1.0 : 0.0,
                          state.warmstart.gddValid ? 1.0 : 0.0};
   mix(h, rest, 3);
+  for (const KnotName& k : state.warmstart.knots)
+    for (const int part : {k.kind, k.first, k.second, k.contact, k.direction, k.index})
+      mixBits(h, static_cast<std::uint64_t>(part));
   return h;
 }
 

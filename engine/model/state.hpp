@@ -12,12 +12,24 @@ namespace softgauss {
 
 /// Solutions of the last step, from which the next solve starts. They change the number of
 /// iterations, and the result only within the solver's tolerance.
+/// A knot of a constraint row's penalty, named so that the next step finds it again.
+struct KnotName {
+  int kind = 0;       ///< of constraint
+  int first = 0;      ///< what the row is of: a dof, or the geometries that touch
+  int second = 0;     ///< and the other one, or the end of a range
+  int contact = 0;    ///< among the contacts of the pair
+  int direction = 0;  ///< among the rows of the contact
+  int index = 0;      ///< among the knots of the row, upwards
+  bool operator==(const KnotName&) const = default;
+};
+
 struct WarmStart {
-  VectorX a;            ///< acceleration of the forward solve (nv)
-  VectorX gddA;         ///< acceleration of the GDD solve (nv)
-  VectorX multipliers;  ///< of g_z = 0 and of the control box, GDD solver 1 (nv)
-  VectorX control;      ///< of GDD solver 2 (nv) [N or N m]
-  bool valid = false;   ///< a is set
+  VectorX a;                    ///< acceleration of the forward solve (nv)
+  VectorX gddA;                 ///< acceleration of the GDD solve (nv)
+  VectorX multipliers;          ///< of g_z = 0 and of the control box, GDD solver 1 (nv)
+  VectorX control;              ///< of GDD solver 2 (nv) [N or N m]
+  std::vector<KnotName> knots;  ///< at which rows are, GDD solver 2
+  bool valid = false;           ///< a is set
   bool gddValid = false;
 };
 

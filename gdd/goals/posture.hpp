@@ -27,7 +27,7 @@ class Posture final : public Goal {
   void addCost(const GoalContext& context, GoalCost& cost) const override {
     VectorX& away = cost.workspace().dofs;
     positionDifference(context.model, context.state.q, q, away);
-    cost.addMetric(weight, stiffness * away - damping * context.state.v);
+    cost.addMetric(weight, context.data.inertia.M, stiffness * away - damping * context.state.v);
   }
 };
 

@@ -17,7 +17,7 @@ class VirtualDamping final : public Goal {
 
   std::string name() const override { return "damping"; }
   void addCost(const GoalContext& context, GoalCost& cost) const override {
-    cost.addMetric(weight, -rate * context.state.v);
+    cost.addMetric(weight, context.data.inertia.M, -rate * context.state.v);
   }
 };
 

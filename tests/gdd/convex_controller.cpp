@@ -29,7 +29,7 @@ ConvexControl convexControl(const Data& data, const gdd::GoalCost& cost, const g
   qp.s = VectorX::Zero(size);
   const auto slope = [&](const VectorX& a) {
     VectorX g(n);
-    cost.gradient(data.inertia.M, a, physics.M * a, g);
+    cost.gradient(a, physics.M * a, g);
     return g;
   };
   const VectorX atZero = slope(VectorX::Zero(n));

@@ -49,7 +49,7 @@ void GddScene::addPoint(int body, const Vector3& p_WP, double weight, const Vect
 }
 
 void GddScene::addMetric(double weight, const VectorX& target) {
-  cost.addMetric(weight, target);
+  cost.addMetric(weight, data().inertia.M, target);
   dense.metric += weight;
   dense.offset -= weight * target;
 }

@@ -21,10 +21,10 @@ class GoalCheck {
     goal.addCost({scene.model, scene.state, *scene.data}, cost_);
   }
 
-  double value(const VectorX& a) const { return cost_.value(M_, a, times(a)); }
+  double value(const VectorX& a) const { return cost_.value(a, times(a)); }
   VectorX gradient(const VectorX& a) const {
     VectorX g(a.size());
-    cost_.gradient(M_, a, times(a), g);
+    cost_.gradient(a, times(a), g);
     return g;
   }
   /// ∇²ℓ, as the solver adds it up.

@@ -152,7 +152,7 @@ TEST(GoalCost, ValueAndCurvatureAreThoseOfTheDenseFormula) {
     VectorX Mx(at.s.dofs());
     M.multiply(x, Mx);
     const double scale = d.goalCost(at.a) + 1.0;
-    worst = std::max(worst, std::abs(at.s.cost.value(M, x, Mx) - d.goalCost(x)) /
+    worst = std::max(worst, std::abs(at.s.cost.value(x, Mx) - d.goalCost(x)) /
                                 (std::abs(d.goalCost(x)) + scale));
     const double curvature = x.dot(d.goalHessian() * x);
     worst = std::max(worst, std::abs(at.s.cost.curvatureAlong(x, Mx) - curvature) / curvature);

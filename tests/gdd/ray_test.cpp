@@ -96,7 +96,7 @@ struct RayCase {
     const TreeMatrix& M = s.data().inertia.M;
     M.multiply(a, Ma);
     M.multiply(direction, Md);
-    s.cost.gradient(M, a, Ma, cost);
+    s.cost.gradient(a, Ma, cost);
     TreeFactor massFactor;
     massFactor.compute(M);
     s.data().constraints.setRay(direction);
