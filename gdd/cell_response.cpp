@@ -4,16 +4,17 @@
 #include <algorithm>
 
 #include "engine/core/vector_clones.hpp"
+#include "engine/core/vector_kernels.hpp"
 
 namespace softgauss::gdd {
 namespace {
 
-/// K ← K − s bᵀ − b sᵀ, lower triangle (n × n).
+/// K ← K − s bᵀ − b sᵀ, lower triangle by columns.
 SOFTGAUSS_VECTOR_CLONES void subtractRankTwo(const double* s, const double* b, int n, double* K) {
   for (int i = 0; i < n; ++i) {
-    double* column = K + i * n;
-    const double si = s[i], bi = b[i];
-    for (int j = i; j < n; ++j) column[j] -= si * b[j] + bi * s[j];
+    const int from = i & ~3;
+    addScaled(-s[i], b + from, n - from, K + i * n + from);
+    addScaled(-b[i], s + from, n - from, K + i * n + from);
   }
 }
 
@@ -21,28 +22,21 @@ SOFTGAUSS_VECTOR_CLONES void subtractRankTwo(const double* s, const double* b, i
 SOFTGAUSS_VECTOR_CLONES void subtractRankOne(const double* y, const double* s, double scale,
                                              RowMajorMatrixX& S) {
   const int rows = static_cast<int>(S.rows()), columns = static_cast<int>(S.cols());
-  for (int i = 0; i < rows; ++i) {
-    double* row = S.data() + i * columns;
-    const double c = scale * y[i];
-    for (int j = 0; j < columns; ++j) row[j] -= c * s[j];
-  }
+  for (int i = 0; i < rows; ++i) addScaled(-scale * y[i], s, columns, S.data() + i * columns);
 }
 
 /// b ← Sᵀ x, S (rows × columns) by rows.
 SOFTGAUSS_VECTOR_CLONES void multiplyRows(const double* S, int rows, int columns, const double* x,
                                           double* b) {
   for (int j = 0; j < columns; ++j) b[j] = 0.0;
-  for (int i = 0; i < rows; ++i) {
-    const double* row = S + i * columns;
-    for (int j = 0; j < columns; ++j) b[j] += x[i] * row[j];
-  }
+  addCombination(1.0, x, 1, S, columns, rows, columns, b);
 }
 
-/// K ← K + c y yᵀ, lower triangle of the first n of `stride` rows, by columns.
+/// K ← K + c y yᵀ, lower triangle of its first n columns, which are `stride` apart.
 SOFTGAUSS_VECTOR_CLONES void addOuter(const double* y, double c, int n, int stride, double* K) {
   for (int i = 0; i < n; ++i) {
-    const double s = c * y[i];
-    for (int j = i; j < n; ++j) K[i * stride + j] += s * y[j];
+    const int from = i & ~3;
+    addScaled(c * y[i], y + from, n - from, K + i * stride + from);
   }
 }
 
@@ -50,10 +44,10 @@ SOFTGAUSS_VECTOR_CLONES void addOuter(const double* y, double c, int n, int stri
 
 /// X ← B, and the range of each row.
 void CellResponse::setSelection(RowMajorMatrixX& X) {
-  const int n = M_->size(), count = columns();
-  X.setZero(n, count);
+  const int n = M_->size();
+  X.setZero(n, padded());
   range_.assign(static_cast<std::size_t>(n), Segment{});
-  for (int c = 0; c < count; ++c) {
+  for (int c = 0; c < columns(); ++c) {
     X(driven_[c], c) = 1.0;
     range_[driven_[c]] = {c, c + 1};
   }
@@ -79,7 +73,7 @@ bool CellResponse::setInertia(const Data& data, const TreeFactor* massFactor,
 /// BᵀM⁻¹B = YᵀD⁻¹Y, Y = L⁻ᵀB, M = LᵀDL. Row k of Y has entries only where a column of B moves dof k
 /// or one that it carries.
 void CellResponse::computeForcePrice() {
-  const int count = columns();
+  const int count = padded();
   RowMajorMatrixX& Y = rootS_;
   setSelection(Y);
   massFactor_->solveTransposed(Y, range_);
@@ -91,17 +85,19 @@ void CellResponse::computeForcePrice() {
                &forcePrice_(r.begin, r.begin));
   }
   forcePrice_.triangularView<Eigen::StrictlyUpper>() = forcePrice_.transpose();
-  for (int i = 0; i < count; ++i) forcePrice_(i, i) += price_[driven_[i]];
+  for (int i = 0; i < columns(); ++i) forcePrice_(i, i) += price_[driven_[i]];
 }
 
 void CellResponse::multiplyTransposed(const VectorX& x, VectorX& y) const {
-  y.resize(columns());
-  multiplyRows(S_.data(), static_cast<int>(S_.rows()), columns(), x.data(), y.data());
+  padded_.resize(padded());
+  multiplyRows(S_.data(), static_cast<int>(S_.rows()), padded(), x.data(), padded_.data());
+  y = padded_.head(columns());
 }
 
 void CellResponse::multiplyForcePrice(const VectorX& p, VectorX& y) const {
-  y.resize(columns());
-  multiplyRows(forcePrice_.data(), columns(), columns(), p.data(), y.data());
+  padded_.resize(padded());
+  multiplyRows(forcePrice_.data(), columns(), padded(), p.data(), padded_.data());
+  y = padded_.head(columns());
 }
 
 bool CellResponse::enter(Data& data) {
@@ -140,7 +136,8 @@ const CellResponse::Correction& CellResponse::cross(const VectorX& J, double jum
   c.y = J;
   solve(c.y);
   ++correctionCount_;
-  select(c.y, c.By);
+  c.By.setZero(padded());
+  for (int i = 0; i < columns(); ++i) c.By[i] = c.y[driven_[i]];
   c.scale = jump / (1.0 + jump * J.dot(c.y));
   if (correctionsInS_ >= 0) {
     My_.resize(c.y.size());
@@ -167,10 +164,10 @@ void CellResponse::computeHessian() {
 
 /// K and S of the cell behind one more crossing.
 void CellResponse::addToHessian(const Correction& c) {
-  b_.resize(columns());
-  multiplyRows(S_.data(), static_cast<int>(S_.rows()), columns(), c.Hy.data(), b_.data());
+  b_.resize(padded());
+  multiplyRows(S_.data(), static_cast<int>(S_.rows()), padded(), c.Hy.data(), b_.data());
   b_ = c.scale * b_ - 0.5 * c.scale * c.scale * c.y.dot(c.Hy) * c.By;
-  subtractRankTwo(c.By.data(), b_.data(), columns(), K_.data());
+  subtractRankTwo(c.By.data(), b_.data(), padded(), K_.data());
   subtractRankOne(c.y.data(), c.By.data(), c.scale, S_);
 }
 

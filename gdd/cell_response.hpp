@@ -13,6 +13,7 @@
 
 #include <vector>
 
+#include "engine/core/vector_kernels.hpp"
 #include "engine/step/data.hpp"
 #include "gdd/cost.hpp"
 #include "gdd/problem.hpp"
@@ -55,13 +56,14 @@ class CellResponse {
   void solve(VectorX& x) const;                               ///< x ← P⁻¹x
   /// y ← Sᵀx and a ← S p, after computeHessian().
   void multiplyTransposed(const VectorX& x, VectorX& y) const;
-  void multiply(const VectorX& p, VectorX& a) const { a.noalias() = S_ * p; }
-  void multiplyR(const VectorX& x, VectorX& Rx) const;          ///< Rx ← (R + W) x
-  void multiplyForcePrice(const VectorX& p, VectorX& y) const;  ///< y ← BᵀR B p
-  const MatrixX& hessian() const { return K_; }                 ///< lower triangle
+  void multiply(const VectorX& p, VectorX& a) const { a.noalias() = S_.leftCols(columns()) * p; }
+  void multiplyR(const VectorX& x, VectorX& Rx) const;                     ///< Rx ← (R + W) x
+  void multiplyForcePrice(const VectorX& p, VectorX& y) const;             ///< y ← BᵀR B p
+  auto hessian() const { return K_.topLeftCorner(columns(), columns()); }  ///< lower triangle
   int massFailedRow() const { return massFactor_->failedRow(); }
 
  private:
+  int padded() const { return paddedSize(columns()); }
   void setSelection(RowMajorMatrixX& X);
   void computeForcePrice();
   void addToHessian(const Correction& c);
@@ -79,12 +81,12 @@ class CellResponse {
   int correctionsInS_ = 0;  ///< −1: S is not of this factor
   TreeMatrix P_;
   RowMajorMatrixX S_, rootS_;   ///< S, and scratch of its size
-  std::vector<Segment> range_;  ///< columns of a row that are not zero
+  std::vector<Segment> range_;  ///< columns of a row of L⁻ᵀB that are not zero
   VectorX price_;               ///< W (nv)
   MatrixX forcePrice_;          ///< BᵀR B
   MatrixX K_;
   VectorX My_, b_;
-  mutable VectorX scratch_;
+  mutable VectorX scratch_, padded_;
 };
 
 }  // namespace softgauss::gdd

@@ -6,27 +6,37 @@
 #include <cmath>
 
 #include "engine/core/vector_clones.hpp"
+#include "engine/core/vector_kernels.hpp"
 
 namespace softgauss::gdd {
 namespace {
 
-/// K ← K + scale · YᵀY, lower triangle: column i of K gains scale · Σ_k Y_ki Y_k,i…
+/// K ← K + scale · YᵀY, lower triangle by columns (and what lies in its blocks of four): column i
+/// of K gains scale · Σ_k Y_ki Y_k,i…
 SOFTGAUSS_VECTOR_CLONES void addGram(const RowMajorMatrixX& Y, double scale, MatrixX& K) {
   const int rows = static_cast<int>(Y.rows()), n = static_cast<int>(Y.cols());
   for (int i = 0; i < n; ++i) {
-    double* column = K.data() + i * n;
-    int k = 0;
-    for (; k + 4 <= rows; k += 4) {
-      const double *y0 = Y.data() + k * n, *y1 = y0 + n, *y2 = y1 + n, *y3 = y2 + n;
-      const double s0 = scale * y0[i], s1 = scale * y1[i], s2 = scale * y2[i], s3 = scale * y3[i];
-      for (int j = i; j < n; ++j) column[j] += s0 * y0[j] + s1 * y1[j] + s2 * y2[j] + s3 * y3[j];
-    }
-    for (; k < rows; ++k) {
-      const double* y = Y.data() + k * n;
-      const double s = scale * y[i];
-      for (int j = i; j < n; ++j) column[j] += s * y[j];
-    }
+    const int from = i & ~3;
+    addCombination(scale, Y.data() + i, n, Y.data() + from, n, rows, n - from,
+                   K.data() + i * n + from);
   }
+}
+
+/// K ← K + scale · yyᵀ, the same part of it.
+SOFTGAUSS_VECTOR_CLONES void addRankOne(const double* y, double scale, MatrixX& K) {
+  const int n = static_cast<int>(K.rows());
+  for (int i = 0; i < n; ++i) {
+    const int from = i & ~3;
+    addScaled(scale * y[i], y + from, n - from, K.data() + i * n + from);
+  }
+}
+
+/// y ← Sᵀx.
+SOFTGAUSS_VECTOR_CLONES void multiplyTransposed(const RowMajorMatrixX& S, const double* x,
+                                                double* y) {
+  const int rows = static_cast<int>(S.rows()), n = static_cast<int>(S.cols());
+  for (int i = 0; i < n; ++i) y[i] = 0.0;
+  addCombination(1.0, x, 1, S.data(), n, rows, n, y);
 }
 
 }  // namespace
@@ -232,10 +242,8 @@ void GoalCost::addReducedCurvature(const TreeFactor& massFactor, const RowMajorM
   // One rank for each row of J, and for each dof.
   reduced_.resize(S.cols());
   const auto addRank = [&](const auto& row, double weight) {
-    reduced_.setZero();
-    for (Eigen::Index j = 0; j < row.size(); ++j)
-      if (row[j] != 0.0) reduced_ += row[j] * S.row(j).transpose();
-    K.selfadjointView<Eigen::Lower>().rankUpdate(reduced_, weight);
+    multiplyTransposed(S, row.data(), reduced_.data());
+    addRankOne(reduced_.data(), weight, K);
   };
   for (int i = 0; i < rows_.size(); ++i) {
     for (int k = 0; k < 3; ++k) {
@@ -249,8 +257,7 @@ void GoalCost::addReducedCurvature(const TreeFactor& massFactor, const RowMajorM
     addRank(dense_.col(static_cast<Eigen::Index>(i)), denseWeight_[i]);
   for (Eigen::Index i = 0; i < dofWeight_.size(); ++i) {
     if (dofWeight_[i] == 0.0) continue;
-    reduced_ = S.row(i).transpose();
-    K.selfadjointView<Eigen::Lower>().rankUpdate(reduced_, dofWeight_[i]);
+    addRankOne(&S(i, 0), dofWeight_[i], K);
   }
   if (hasFunctions()) K.triangularView<Eigen::Lower>() += S.transpose() * (expansionCurvature_ * S);
 }

@@ -100,8 +100,8 @@ class GoalCost {
   void addRowCurvature(TreeMatrix& H);
   /// The same without functions.
   void addQuadraticCurvature(TreeMatrix& H);
-  /// K ← K + Sᵀ∇²ℓ S, lower triangle, for S (nv × any). `massFactor` is of M, rootS scratch of the
-  /// size of S.
+  /// K ← K + Sᵀ∇²ℓ S, lower triangle, for S (nv × a multiple of four). `massFactor` is of M, rootS
+  /// scratch of the size of S.
   void addReducedCurvature(const TreeFactor& massFactor, const RowMajorMatrixX& S,
                            RowMajorMatrixX& rootS, MatrixX& K) const;
 

@@ -6,6 +6,7 @@
 
 #include "engine/core/check.hpp"
 #include "engine/core/vector_clones.hpp"
+#include "engine/core/vector_kernels.hpp"
 
 namespace softgauss::gdd {
 namespace {
@@ -15,78 +16,61 @@ constexpr double kFeasible = 1e-12;
 /// A normal of which less than this share (squared) is new depends on the active ones.
 constexpr double kDependent = 1e-18;
 
-/// y ← y − Σ_k c_k x_k for columns x_k = x + k·stride of length n, four at a time.
-[[gnu::always_inline]] inline void subtractColumns(const double* x, int stride, const double* c,
-                                                   int cStride, int count, int n, double* y) {
-  int k = 0;
-  for (; k + 4 <= count; k += 4) {
-    const double *x0 = x + k * stride, *x1 = x0 + stride, *x2 = x1 + stride, *x3 = x2 + stride;
-    const double c0 = c[k * cStride], c1 = c[(k + 1) * cStride], c2 = c[(k + 2) * cStride],
-                 c3 = c[(k + 3) * cStride];
-    for (int i = 0; i < n; ++i) y[i] -= c0 * x0[i] + c1 * x1[i] + c2 * x2[i] + c3 * x3[i];
-  }
-  for (; k < count; ++k) {
-    const double* xk = x + k * stride;
-    const double ck = c[k * cStride];
-    for (int i = 0; i < n; ++i) y[i] -= ck * xk[i];
-  }
-}
-
-/// The lower triangle of A (n × n, by columns) ← L with A = L Lᵀ; false where a pivot is not
-/// positive.
-SOFTGAUSS_VECTOR_CLONES bool factorCholesky(double* A, int n) {
+/// The lower triangle of A (n columns, `stride` apart) ← L with A = L Lᵀ; false where a pivot is
+/// not positive.
+SOFTGAUSS_VECTOR_CLONES bool factorCholesky(double* A, int n, int stride) {
   for (int j = 0; j < n; ++j) {
-    double* column = A + j * n + j;
-    subtractColumns(A + j, n, A + j, n, j, n - j, column);
-    if (!(column[0] > 0.0)) return false;
-    const double inverse = 1.0 / std::sqrt(column[0]);
-    for (int i = 0; i < n - j; ++i) column[i] *= inverse;
+    const int from = j & ~3;
+    double* column = A + j * stride;
+    addCombination(-1.0, A + j, stride, A + from, stride, j, stride - from, column + from);
+    if (!(column[j] > 0.0)) return false;
+    const double inverse = 1.0 / std::sqrt(column[j]);
+    for (int i = from; i < stride; ++i) column[i] *= inverse;
   }
   return true;
 }
 
-/// X ← L⁻ᵀ, upper triangular, by columns; below it X must be zero.
-SOFTGAUSS_VECTOR_CLONES void invertTransposed(const double* L, int n, double* X) {
+/// X ← L⁻ᵀ, upper triangular, by columns; X must be zero.
+SOFTGAUSS_VECTOR_CLONES void invertTransposed(const double* L, int n, int stride, double* X) {
   for (int j = 0; j < n; ++j) {
-    double* column = X + j * n;
-    for (int i = 0; i < j; ++i) column[i] = 0.0;
+    double* column = X + j * stride;
     column[j] = 1.0;
-    subtractColumns(X, n, L + j, n, j, j, column);
-    const double inverse = 1.0 / L[j * n + j];
+    addCombination(-1.0, L + j, stride, X, stride, j, paddedSize(j), column);
+    const double inverse = 1.0 / L[j * stride + j];
     for (int i = 0; i <= j; ++i) column[i] *= inverse;
   }
 }
 
 /// J ← J − z cᵀ for `count` columns.
-SOFTGAUSS_VECTOR_CLONES void subtractOuter(const double* z, const double* c, int n, int count,
+SOFTGAUSS_VECTOR_CLONES void subtractOuter(const double* z, const double* c, int count, int stride,
                                            double* J) {
-  for (int k = 0; k < count; ++k)
-    for (int i = 0; i < n; ++i) J[k * n + i] -= c[k] * z[i];
+  for (int k = 0; k < count; ++k) addScaled(-c[k], z, stride, J + k * stride);
 }
 
 /// z ← J d over `count` columns.
-SOFTGAUSS_VECTOR_CLONES void multiplyColumns(const double* J, const double* d, int n, int count,
-                                             double* z) {
-  for (int i = 0; i < n; ++i) z[i] = 0.0;
-  subtractColumns(J, n, d, 1, count, n, z);
-  for (int i = 0; i < n; ++i) z[i] = -z[i];
+SOFTGAUSS_VECTOR_CLONES void multiplyColumns(const double* J, const double* d, int count,
+                                             int stride, double* z) {
+  for (int i = 0; i < stride; ++i) z[i] = 0.0;
+  addCombination(1.0, d, 1, J, stride, count, stride, z);
 }
 
 }  // namespace
 
-bool QuadraticProgram::setHessian(const MatrixX& K) {
-  L_ = K;
-  return factorCholesky(L_.data(), static_cast<int>(L_.rows()));
+bool QuadraticProgram::setHessian(const Eigen::Ref<const MatrixX>& K) {
+  const int n = static_cast<int>(K.cols());
+  L_.setZero(paddedSize(n), n);
+  L_.topRows(n) = K;
+  return factorCholesky(L_.data(), n, paddedSize(n));
 }
 
 void QuadraticProgram::solveHessian(VectorX& x) const {
   const Eigen::Index n = x.size();
   for (Eigen::Index j = 0; j < n; ++j) {
     x[j] /= L_(j, j);
-    x.tail(n - j - 1) -= x[j] * L_.col(j).tail(n - j - 1);
+    x.tail(n - j - 1) -= x[j] * L_.col(j).segment(j + 1, n - j - 1);
   }
   for (Eigen::Index j = n - 1; j >= 0; --j)
-    x[j] = (x[j] - L_.col(j).tail(n - j - 1).dot(x.tail(n - j - 1))) / L_(j, j);
+    x[j] = (x[j] - L_.col(j).segment(j + 1, n - j - 1).dot(x.tail(n - j - 1))) / L_(j, j);
 }
 
 double QuadraticProgram::slack(int constraint) const {
@@ -122,20 +106,21 @@ void QuadraticProgram::rotatedNormal(int constraint) {
   else if (constraint < 2 * n)
     d_ = -J_.row(constraint - n).transpose();
   else
-    d_.noalias() = J_.transpose() * N_->row(constraint - 2 * n).transpose();
+    d_.noalias() = J_.topRows(n).transpose() * N_->row(constraint - 2 * n).transpose();
 }
 
 void QuadraticProgram::add(int constraint, double multiplier) {
   // Reflect the columns of J behind the active ones, J₂ ← J₂ (1 − 2 vvᵀ/vᵀv), so that of d = J₂ᵀn
   // one entry is left. z = J₂ d is known.
   const int n = static_cast<int>(p_.size()), m = static_cast<int>(active_.size());
+  const int stride = paddedSize(n);
   const double length = d_.tail(n - m).norm();
   const double left = d_[m] > 0.0 ? -length : length;
   if (n - m > 1) {
     z_ -= left * J_.col(m);  // J₂ v, v = d − left e₁
     d_[m] -= left;
     z_ /= length * std::abs(d_[m]);  // vᵀv = 2 length |v₁|
-    subtractOuter(z_.data(), d_.data() + m, n, n - m, J_.data() + m * n);
+    subtractOuter(z_.data(), d_.data() + m, n - m, stride, J_.data() + m * stride);
     d_[m] = left;
   }
   R_.col(m).head(m + 1) = d_.head(m + 1);
@@ -186,8 +171,8 @@ bool QuadraticProgram::minimize(const VectorX& q, const VectorX& lower, const Ve
     if (violation.constraint < 0) break;
     const int entering = violation.constraint;
     if (!rotated) {
-      J_.setZero(n, n);
-      invertTransposed(L_.data(), n, J_.data());
+      J_.setZero(paddedSize(n), n);
+      invertTransposed(L_.data(), n, paddedSize(n), J_.data());
       R_.resize(n, n);
       rotated = true;
     }
@@ -221,9 +206,9 @@ bool QuadraticProgram::minimize(const VectorX& q, const VectorX& lower, const Ve
         break;
       }
       if (!dependent) {
-        z_.resize(n);
-        multiplyColumns(J_.data() + m * n, d_.data() + m, n, n - m, z_.data());
-        p_ += step * z_;
+        z_.resize(J_.rows());
+        multiplyColumns(J_.col(m).data(), d_.data() + m, n - m, paddedSize(n), z_.data());
+        p_ += step * z_.head(n);
       }
       for (int k = 0; k < m; ++k) multiplier_[k] -= step * r_[k];
       enteringMultiplier += step;

@@ -18,7 +18,7 @@ namespace softgauss::gdd {
 class QuadraticProgram {
  public:
   /// Factors K; false when it is not positive definite.
-  bool setHessian(const MatrixX& K);
+  bool setHessian(const Eigen::Ref<const MatrixX>& K);
   /// x ← K⁻¹ x.
   void solveHessian(VectorX& x) const;
 
@@ -48,7 +48,7 @@ class QuadraticProgram {
   void add(int constraint, double multiplier);
   void drop(int place);
 
-  MatrixX L_;  ///< K = L Lᵀ
+  MatrixX L_;  ///< K = L Lᵀ; (padded × n)
   const VectorX* lower_ = nullptr;
   const VectorX* upper_ = nullptr;
   const RowMajorMatrixX* N_ = nullptr;

@@ -5,7 +5,9 @@
 #include <bit>
 #include <cmath>
 
+#include "engine/core/check.hpp"
 #include "engine/core/vector_clones.hpp"
+#include "engine/core/vector_kernels.hpp"
 
 namespace softgauss {
 
@@ -254,24 +256,23 @@ void TreeFactor::solveLower(VectorX& x) const {
 
 SOFTGAUSS_VECTOR_CLONES void TreeFactor::solveTransposed(RowMajorMatrixX& X,
                                                          std::vector<Segment>& range) const {
+  SOFTGAUSS_ASSERT(X.cols() % 4 == 0);
   const TreeSparsity& pattern = LD_.sparsity();
   const int columns = static_cast<int>(X.cols());
   for (int k = size() - 1; k >= 0; --k) {
     const double* L = LD_.row(k);
-    const Segment filled = range[k];
-    const double* xk = X.data() + k * columns;
-    if (filled.begin >= filled.end) continue;
+    const Segment from{range[k].begin & ~3, paddedSize(range[k].end)};
+    range[k] = from;
+    if (from.begin == from.end) continue;
+    const double* xk = X.data() + k * columns + from.begin;
     for (const Segment* s = pattern.begin(k); s != pattern.end(k); ++s) {
       const int end = std::min(s->end, k);
       for (int j = s->begin; j < end; ++j) {
-        double* xj = X.data() + j * columns;
-        const double l = L[j];
-        for (int c = filled.begin; c < filled.end; ++c) xj[c] -= l * xk[c];
+        addScaled(-L[j], xk, from.end - from.begin, X.data() + j * columns + from.begin);
         Segment& to = range[j];
-        if (to.begin < to.end)
-          to = {std::min(to.begin, filled.begin), std::max(to.end, filled.end)};
-        else
-          to = filled;
+        const bool empty = to.begin == to.end;
+        to.begin = empty ? from.begin : std::min(to.begin, from.begin);
+        to.end = std::max(to.end, from.end);
       }
     }
   }
@@ -288,20 +289,15 @@ SOFTGAUSS_VECTOR_CLONES void TreeFactor::solve(RowMajorMatrixX& X,
   }
   for (int k = 1; k < n; ++k) {
     const double* L = LD_.row(k);
-    double* xk = X.data() + k * columns;
-    for (const Segment* s = pattern.begin(k); s != pattern.end(k); ++s) {
-      const int end = std::min(s->end, k);
-      for (int j = s->begin; j < end; ++j) {
-        const double* xj = X.data() + j * columns;
-        const double l = L[j];
-        for (int c = 0; c < columns; ++c) xk[c] -= l * xj[c];
-      }
-    }
+    for (const Segment* s = pattern.begin(k); s != pattern.end(k); ++s)
+      addCombination(-1.0, L + s->begin, 1, X.data() + s->begin * columns, columns,
+                     std::min(s->end, k) - s->begin, columns, X.data() + k * columns);
   }
 }
 
 SOFTGAUSS_VECTOR_CLONES void TreeFactor::multiplyRoot(const RowMajorMatrixX& X,
                                                       RowMajorMatrixX& Y) const {
+  SOFTGAUSS_ASSERT(X.cols() % 4 == 0);
   const TreeSparsity& pattern = LD_.sparsity();
   const int n = size(), columns = static_cast<int>(X.cols());
   for (int k = 0; k < n; ++k) {
@@ -309,14 +305,9 @@ SOFTGAUSS_VECTOR_CLONES void TreeFactor::multiplyRoot(const RowMajorMatrixX& X,
     const double* x = X.data() + k * columns;
     double* y = Y.data() + k * columns;
     for (int c = 0; c < columns; ++c) y[c] = x[c];
-    for (const Segment* s = pattern.begin(k); s != pattern.end(k); ++s) {
-      const int end = std::min(s->end, k);
-      for (int j = s->begin; j < end; ++j) {
-        const double* xj = X.data() + j * columns;
-        const double l = L[j];
-        for (int c = 0; c < columns; ++c) y[c] += l * xj[c];
-      }
-    }
+    for (const Segment* s = pattern.begin(k); s != pattern.end(k); ++s)
+      addCombination(1.0, L + s->begin, 1, X.data() + s->begin * columns, columns,
+                     std::min(s->end, k) - s->begin, columns, y);
     const double root = std::sqrt(pivot_[k]);
     for (int c = 0; c < columns; ++c) y[c] *= root;
   }
