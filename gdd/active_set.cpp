@@ -5,170 +5,10 @@
 #include <bit>
 #include <cmath>
 
-#include "engine/step/forward.hpp"
-
 namespace softgauss::gdd {
-namespace {
-
-/// Paths that may cross a row freely. After that the program keeps it in its cell: where many rows
-/// meet, paths would else go back and forth between the same cells, ever shorter.
-constexpr int kGuarded = 2;
-
-}  // namespace
 
 ActiveSet::ActiveSet(const Model& model) : path_(model) {
   for (VectorX* x : {&force_, &Ma_, &adjoint_, &residual_, &rate_}) *x = VectorX::Zero(model.nv);
-}
-
-/// Takes u, within the box, as the present control and a = f(u). Returns F, ∞ if it is not finite.
-double ActiveSet::moveTo(const Model& model, const GoalCost& cost, const VectorX* guess,
-                         Data& data) {
-  u_ = u_.cwiseMax(lower_).cwiseMin(upper_);
-  cell_.spread(u_, force_);
-  setAppliedForce(force_, data.forces);
-  if (minimizeGauss(model, guess, data) == SolveStatus::notFinite) {
-    badDof_ = data.stats.badDof;
-    return kInfinity;
-  }
-  report_.forwardIterations += data.forward.report.iterations;
-  const TreeFactor* massFactor = data.forward.massFactored ? &data.forward.massFactor : nullptr;
-  if (!ready_ && !setInertia(cost, massFactor, data)) return kInfinity;
-  ready_ = true;
-  entered_ = data.forward.cellFactored;
-  if (entered_) cell_.enterWith(data.forward.factor);
-  path_.a = data.forward.a;
-  evaluateCost(cost, data);
-  computeEffortSlope();
-  return effort() + path_.value;
-}
-
-/// From the last step's a along the exact path to a = f(u), where few rows change their pieces on
-/// the way. Returns F, ∞ where it has not come there.
-double ActiveSet::moveAlongPath(const GoalCost& cost, const VectorX& a, Data& data) {
-  bool changed = false;
-  path_.a = a;
-  data.constraints.setResidual(path_.a);
-  data.constraints.evaluate(changed);
-  ++report_.factorizations;
-  if (!cell_.enter(data) || !setInertia(cost, nullptr, data)) return kInfinity;
-  computeResidual(data);
-  cell_.solve(residual_);
-  if (!path_.reach(residual_, cell_, data)) return kInfinity;
-  ready_ = entered_ = true;
-  evaluateCost(cost, data);
-  computeEffortSlope();
-  return effort() + path_.value;
-}
-
-/// ℓ and ∇ℓ at a.
-void ActiveSet::evaluateCost(const GoalCost& cost, const Data& data) {
-  data.inertia.M.multiply(path_.a, Ma_);
-  cost.gradient(path_.a, Ma_, path_.slope);
-  path_.value = cost.value(path_.a, Ma_);
-}
-
-/// The gradient in u of ½ τᵀR τ, τ = B u + what is given.
-void ActiveSet::computeEffortSlope() {
-  cell_.multiplyForcePrice(u_, effortSlope_);
-  effortSlope_ += givenSlope_;
-}
-
-/// ½ τᵀR τ, by its gradient.
-double ActiveSet::effort() const {
-  return 0.5 * (u_.dot(effortSlope_) + u_.dot(givenSlope_)) + givenEffort_;
-}
-
-/// R, and what it makes of forces where the box has no width.
-bool ActiveSet::setInertia(const GoalCost& cost, const TreeFactor* massFactor, const Data& data) {
-  if (!cell_.setInertia(data, massFactor, cost)) {
-    badDof_ = cell_.massFailedRow();
-    return false;
-  }
-  givenEffort_ = 0.0;
-  givenSlope_.setZero(cell_.columns());
-  adjoint_ = force_;
-  for (const int dof : cell_.driven()) adjoint_[dof] = 0.0;
-  if ((adjoint_.array() == 0.0).all()) return true;
-  cell_.multiplyR(adjoint_, rate_);
-  givenEffort_ = 0.5 * adjoint_.dot(rate_);
-  cell_.select(rate_, givenSlope_);
-  return true;
-}
-
-/// Without a last step: the best of three controls. None; the one that would be best if there were
-/// no rows; and the one that makes the acceleration of the latter with the rows there are. Dry
-/// friction, say, hides from the first what a larger control would gain.
-void ActiveSet::chooseStart(const Model& model, const GoalCost& cost, Data& data) {
-  u_.setZero();
-  best_ = u_;
-  double least = moveTo(model, cost, nullptr, data);
-  const auto consider = [&] {
-    const double value = moveTo(model, cost, nullptr, data);
-    if (value < least) least = value, best_ = u_;
-  };
-  if (data.constraints.rowCount() > 0 && u_.size() > 0 && std::isfinite(least)) {
-    const auto moveWithoutRows = [&] {
-      cell_.enterWith(data.forward.massFactor);
-      path_.a = force_ - data.forces.c;
-      cell_.solve(path_.a);
-    };
-    moveWithoutRows();
-    evaluateCost(cost, data);
-    computeEffortSlope();
-    cell_.computeHessian();
-    if (computeGradient()) {
-      solveProgram();
-      u_ += program_.solution();
-      consider();
-      moveWithoutRows();
-      bool changed = false;
-      data.constraints.setResidual(path_.a);
-      data.constraints.evaluate(changed);
-      computeResidual(data);
-      residual_ = force_ - residual_;
-      cell_.select(residual_, u_);
-      consider();
-    }
-    report_.cells = 0;
-    entered_ = false;
-  }
-  u_ = best_;
-}
-
-/// u of the last step, within the box, and a = f(u). Rows that were at knots are kept in their cell
-/// at first: most of them stay at their knots.
-GddStatus ActiveSet::start(const Model& model, const GoalCost& cost, const ControlBox& box,
-                           Data& data, const WarmStart& warm) {
-  report_ = {};
-  badDof_ = -1;
-  ready_ = entered_ = false;
-  tried_.clear();
-  path_.held.clear();
-  knots_.clear();
-  constrained_.clear();
-  cell_.setDriven(model, box);
-  cell_.select(box.lower, lower_);
-  cell_.select(box.upper, upper_);
-  u_.setZero(cell_.columns());
-  force_ = box.lower;  // where the box has no width
-  const bool known = warm.gddValid && warm.gddA.allFinite() && warm.control.size() == model.nv &&
-                     warm.control.allFinite();
-  if (known)
-    cell_.select(warm.control, u_);
-  else
-    chooseStart(model, cost, data);
-  report_.forwardIterations = 0;
-  double value = kInfinity;
-  if (known) {
-    u_ = u_.cwiseMax(lower_).cwiseMin(upper_);
-    cell_.spread(u_, force_);
-    for (const KnotName& name : warm.knots)
-      if (const auto knot = data.constraints.find(name)) path_.held.entry(*knot).paths = kGuarded;
-    value = moveAlongPath(cost, warm.gddA, data);
-  }
-  if (!std::isfinite(value)) value = moveTo(model, cost, known ? &warm.gddA : nullptr, data);
-  setAppliedForce(force_, data.forces);
-  return std::isfinite(value) ? GddStatus::converged : GddStatus::notFinite;
 }
 
 /// B u − g(a), with the rows as they were last evaluated.
@@ -362,33 +202,23 @@ void ActiveSet::finish(const ControlBox& box, const GoalCost& cost, Data& data) 
     if (held.atKnot) knots_.push_back(data.constraints.nameOf(held.knot));
 }
 
-GddReport ActiveSet::solve(const Model& model, GoalCost& cost, const ControlBox& box, Data& data,
-                           const WarmStart& warm) {
-  SOFTGAUSS_ASSERT(data.constraints.piecewiseQuadratic());
-  const auto end = [&](GddStatus status) {
-    report_.status = status;
-    if (status != GddStatus::notFinite) finish(box, cost, data);
-    return report_;
-  };
-  if (model.nv == 0) return report_ = {};
-  report_.status = start(model, cost, box, data, warm);
-  if (report_.status == GddStatus::notFinite) return report_;
-  if (cell_.columns() == 0) {
-    if (!cell_.enter(data)) return end(GddStatus::notFinite);
-    return end(GddStatus::converged);
-  }
+/// From where start() has put it. Gives up, with no status, where after some paths the cell still
+/// promises no F below `wanted`.
+std::optional<GddStatus> ActiveSet::descend(const GoalCost& cost, double wanted, Data& data) {
+  constexpr int kPatience = 2;
   HeldKnots& held = path_.held;
-
   for (;;) {
-    if (!enterCell(cost, data) || !computeGradient()) return end(GddStatus::notFinite);
+    if (!enterCell(cost, data) || !computeGradient()) return GddStatus::notFinite;
     double promised = solveProgram();
-    if (promised < 0.0) return end(GddStatus::undecided);
+    if (promised < 0.0) return GddStatus::undecided;
+    if (report_.iterations >= kPatience && effort() + path_.value - promised > wanted)
+      return std::nullopt;
     const int heldBefore = held.atKnots();
     bool stationary = promised <= options.tolerance * merit_;
     if (!stationary) {
       if (report_.iterations == options.maxIterations) {
         report_.stationarity = promised / merit_;
-        return end(GddStatus::iterationLimit);
+        return GddStatus::iterationLimit;
       }
       const PathEnd path = followPath(cost, data);
       ++report_.iterations;
@@ -396,7 +226,7 @@ GddReport ActiveSet::solve(const Model& model, GoalCost& cost, const ControlBox&
       if (moved || held.atKnots() > heldBefore) tried_.clear();
       if (moved && path.crossings == 0) {
         // Still in the cell: its minimum, if rounding has not spoilt it.
-        if (!computeGradient()) return end(GddStatus::notFinite);
+        if (!computeGradient()) return GddStatus::notFinite;
         promised = remainingPromise();
         stationary = promised <= options.tolerance * merit_;
       } else {
@@ -405,16 +235,80 @@ GddReport ActiveSet::solve(const Model& model, GoalCost& cost, const ControlBox&
     }
     if (!stationary) continue;
     report_.stationarity = promised / std::max(merit_, 1e-300);
-    if (held.atKnots() == 0) return end(GddStatus::converged);
+    if (held.atKnots() == 0) return GddStatus::converged;
     switch (leaveCell(data)) {
       case Next::done:
-        return end(GddStatus::kink);
+        return GddStatus::kink;
       case Next::undecided:
-        return end(GddStatus::undecided);
+        return GddStatus::undecided;
       case Next::cell:
         break;
     }
   }
+}
+
+GddReport ActiveSet::solve(const Model& model, GoalCost& cost, const ControlBox& box, Data& data,
+                           const WarmStart& warm) {
+  SOFTGAUSS_ASSERT(data.constraints.piecewiseQuadratic());
+  report_ = {};
+  age_ = 0;
+  if (model.nv == 0) return report_;
+  report_.status = start(model, cost, box, data, warm);
+  if (report_.status == GddStatus::notFinite) return report_;
+  if (cell_.columns() > 0)
+    report_.status = *descend(cost, kInfinity, data);
+  else if (!cell_.enter(data))
+    report_.status = GddStatus::notFinite;
+  if (report_.status == GddStatus::notFinite) return report_;
+  finish(box, cost, data);
+
+  const bool old = warm.gddValid && data.constraints.rowCount() > 0 && cell_.columns() > 0;
+  if (old) age_ = warm.gddAge + 1;
+  const int every = options.secondStartEvery;
+  if (!old || every == 0 || age_ < every) return report_;
+  age_ = 0;
+  startAgain(model, cost, box, data);
+  return report_;
+}
+
+/// A minimum is local, and a warm start stays with it: now and then looks from u = 0 for a better
+/// one, and takes that.
+void ActiveSet::startAgain(const Model& model, const GoalCost& cost, const ControlBox& box,
+                           Data& data) {
+  constexpr double kBetter = 1e-6;  // of F: less is no reason to leave
+  first_.a = path_.a;
+  first_.u = u_;
+  first_.knots = knots_;
+  first_.report = report_;
+  const double wanted = report_.objective - kBetter * merit_;
+  report_ = {};
+  tried_.clear();
+  path_.held.clear();
+  u_.setZero();
+  if (std::isfinite(moveTo(model, cost, nullptr, data))) {
+    const std::optional<GddStatus> status = descend(cost, wanted, data);
+    report_.status = status.value_or(GddStatus::notFinite);
+    if (report_.status != GddStatus::notFinite) finish(box, cost, data);
+  } else {
+    report_.status = GddStatus::notFinite;
+  }
+  const GddReport second = report_;
+  const bool better = second.status != GddStatus::notFinite && second.objective < wanted;
+  if (!better) {
+    bool changed = false;
+    report_ = first_.report;
+    path_.a = first_.a;
+    u_ = first_.u;
+    knots_ = first_.knots;
+    cell_.spread(u_, force_);
+    setAppliedForce(force_, data.forces);
+    data.constraints.setResidual(path_.a);
+    data.constraints.evaluate(changed);
+  }
+  const GddReport& other = better ? first_.report : second;
+  report_.iterations += other.iterations;
+  report_.cells += other.cells;
+  report_.factorizations += other.factorizations;
 }
 
 void ActiveSet::keepWarmStart(WarmStart& warm) const {
@@ -422,6 +316,7 @@ void ActiveSet::keepWarmStart(WarmStart& warm) const {
   warm.control = force_;
   warm.multipliers.setZero(force_.size());
   warm.knots = knots_;
+  warm.gddAge = age_;
   warm.gddValid = true;
 }
 

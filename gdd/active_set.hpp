@@ -16,6 +16,7 @@
 /// Needs rows that are piecewise quadratic: no elliptic cones.
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "gdd/cell_response.hpp"
@@ -30,7 +31,8 @@ namespace softgauss::gdd {
 struct ActiveSetOptions {
   double tolerance = 1e-12;  ///< of the decrease still promised, over the objective
   int maxIterations = 100;
-  int maxPatternRows = 6;  ///< dependent rows at their knots of which all 2^n cells are tried
+  int maxPatternRows = 6;     ///< dependent rows at their knots of which all 2^n cells are tried
+  int secondStartEvery = 16;  ///< solves from one search for a better minimum to the next; 0: none
 };
 
 class ActiveSet {
@@ -53,6 +55,14 @@ class ActiveSet {
 
  private:
   enum class Next { done, cell, undecided };
+  /// Paths that may cross a row freely. After that the program keeps it in its cell: where many
+  /// rows meet, paths would else go back and forth between the same cells, ever shorter.
+  static constexpr int kGuarded = 2;
+  struct Solution {
+    VectorX a, u;
+    std::vector<KnotName> knots;
+    GddReport report;
+  };
 
   GddStatus start(const Model& model, const GoalCost& cost, const ControlBox& box, Data& data,
                   const WarmStart& warm);
@@ -70,6 +80,8 @@ class ActiveSet {
   PathEnd followPath(const GoalCost& cost, Data& data);
   double remainingPromise();
   Next leaveCell(Data& data);
+  std::optional<GddStatus> descend(const GoalCost& cost, double wanted, Data& data);
+  void startAgain(const Model& model, const GoalCost& cost, const ControlBox& box, Data& data);
   void finish(const ControlBox& box, const GoalCost& cost, Data& data);
 
   CellResponse cell_;
@@ -92,6 +104,8 @@ class ActiveSet {
   bool ready_ = false;    ///< R is that of this solve
   bool entered_ = false;  ///< the response is that of the cell at a
   GddReport report_;
+  Solution first_;  ///< while another is looked for
+  int age_ = 0;     ///< solves since the last second start
   int badDof_ = -1;
 };
 

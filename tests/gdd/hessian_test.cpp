@@ -39,7 +39,7 @@ struct AtPoint {
     VectorX result(s.dofs()), Ma(s.dofs()), cost(s.dofs());
     hessian.multiplyP(w, result);
     s.data().inertia.M.multiply(a, Ma);
-    s.cost.gradient(s.data().inertia.M, a, Ma, cost);
+    s.cost.gradient(a, Ma, cost);
     return result + cost;
   }
 };

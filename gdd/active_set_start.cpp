@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include "engine/step/forward.hpp"
+#include "gdd/active_set.hpp"
+
+/// Where solver 2 starts from.
+
+namespace softgauss::gdd {
+
+/// Takes u, within the box, as the present control and a = f(u). Returns F, ∞ if it is not finite.
+double ActiveSet::moveTo(const Model& model, const GoalCost& cost, const VectorX* guess,
+                         Data& data) {
+  u_ = u_.cwiseMax(lower_).cwiseMin(upper_);
+  cell_.spread(u_, force_);
+  setAppliedForce(force_, data.forces);
+  if (minimizeGauss(model, guess, data) == SolveStatus::notFinite) {
+    badDof_ = data.stats.badDof;
+    return kInfinity;
+  }
+  report_.forwardIterations += data.forward.report.iterations;
+  const TreeFactor* massFactor = data.forward.massFactored ? &data.forward.massFactor : nullptr;
+  if (!ready_ && !setInertia(cost, massFactor, data)) return kInfinity;
+  ready_ = true;
+  entered_ = data.forward.cellFactored;
+  if (entered_) cell_.enterWith(data.forward.factor);
+  path_.a = data.forward.a;
+  evaluateCost(cost, data);
+  computeEffortSlope();
+  return effort() + path_.value;
+}
+
+/// From the last step's a along the exact path to a = f(u), where few rows change their pieces on
+/// the way. Returns F, ∞ where it has not come there.
+double ActiveSet::moveAlongPath(const GoalCost& cost, const VectorX& a, Data& data) {
+  bool changed = false;
+  path_.a = a;
+  data.constraints.setResidual(path_.a);
+  data.constraints.evaluate(changed);
+  ++report_.factorizations;
+  if (!cell_.enter(data) || !setInertia(cost, nullptr, data)) return kInfinity;
+  computeResidual(data);
+  cell_.solve(residual_);
+  if (!path_.reach(residual_, cell_, data)) return kInfinity;
+  ready_ = entered_ = true;
+  evaluateCost(cost, data);
+  computeEffortSlope();
+  return effort() + path_.value;
+}
+
+/// ℓ and ∇ℓ at a.
+void ActiveSet::evaluateCost(const GoalCost& cost, const Data& data) {
+  data.inertia.M.multiply(path_.a, Ma_);
+  cost.gradient(path_.a, Ma_, path_.slope);
+  path_.value = cost.value(path_.a, Ma_);
+}
+
+/// The gradient in u of ½ τᵀR τ, τ = B u + what is given.
+void ActiveSet::computeEffortSlope() {
+  cell_.multiplyForcePrice(u_, effortSlope_);
+  effortSlope_ += givenSlope_;
+}
+
+/// ½ τᵀR τ, by its gradient.
+double ActiveSet::effort() const {
+  return 0.5 * (u_.dot(effortSlope_) + u_.dot(givenSlope_)) + givenEffort_;
+}
+
+/// R, and what it makes of forces where the box has no width.
+bool ActiveSet::setInertia(const GoalCost& cost, const TreeFactor* massFactor, const Data& data) {
+  if (!cell_.setInertia(data, massFactor, cost)) {
+    badDof_ = cell_.massFailedRow();
+    return false;
+  }
+  givenEffort_ = 0.0;
+  givenSlope_.setZero(cell_.columns());
+  adjoint_ = force_;
+  for (const int dof : cell_.driven()) adjoint_[dof] = 0.0;
+  if ((adjoint_.array() == 0.0).all()) return true;
+  cell_.multiplyR(adjoint_, rate_);
+  givenEffort_ = 0.5 * adjoint_.dot(rate_);
+  cell_.select(rate_, givenSlope_);
+  return true;
+}
+
+/// Without a last step: the best of three controls. None; the one that would be best if there were
+/// no rows; and the one that makes the acceleration of the latter with the rows there are. Dry
+/// friction, say, hides from the first what a larger control would gain.
+void ActiveSet::chooseStart(const Model& model, const GoalCost& cost, Data& data) {
+  u_.setZero();
+  best_ = u_;
+  double least = moveTo(model, cost, nullptr, data);
+  const auto consider = [&] {
+    const double value = moveTo(model, cost, nullptr, data);
+    if (value < least) least = value, best_ = u_;
+  };
+  if (data.constraints.rowCount() > 0 && u_.size() > 0 && std::isfinite(least)) {
+    const auto moveWithoutRows = [&] {
+      cell_.enterWith(data.forward.massFactor);
+      path_.a = force_ - data.forces.c;
+      cell_.solve(path_.a);
+    };
+    moveWithoutRows();
+    evaluateCost(cost, data);
+    computeEffortSlope();
+    cell_.computeHessian();
+    if (computeGradient()) {
+      solveProgram();
+      u_ += program_.solution();
+      consider();
+      moveWithoutRows();
+      bool changed = false;
+      data.constraints.setResidual(path_.a);
+      data.constraints.evaluate(changed);
+      computeResidual(data);
+      residual_ = force_ - residual_;
+      cell_.select(residual_, u_);
+      consider();
+    }
+    report_.cells = 0;
+    entered_ = false;
+  }
+  u_ = best_;
+}
+
+/// u of the last step, within the box, and a = f(u). Rows that were at knots are kept in their cell
+/// at first: most of them stay at their knots.
+GddStatus ActiveSet::start(const Model& model, const GoalCost& cost, const ControlBox& box,
+                           Data& data, const WarmStart& warm) {
+  badDof_ = -1;
+  ready_ = entered_ = false;
+  tried_.clear();
+  path_.held.clear();
+  knots_.clear();
+  constrained_.clear();
+  cell_.setDriven(model, box);
+  cell_.select(box.lower, lower_);
+  cell_.select(box.upper, upper_);
+  u_.setZero(cell_.columns());
+  force_ = box.lower;  // where the box has no width
+  const bool known = warm.gddValid && warm.gddA.allFinite() && warm.control.size() == model.nv &&
+                     warm.control.allFinite();
+  if (known)
+    cell_.select(warm.control, u_);
+  else
+    chooseStart(model, cost, data);
+  report_.forwardIterations = 0;
+  double value = kInfinity;
+  if (known) {
+    u_ = u_.cwiseMax(lower_).cwiseMin(upper_);
+    cell_.spread(u_, force_);
+    for (const KnotName& name : warm.knots)
+      if (const auto knot = data.constraints.find(name)) path_.held.entry(*knot).paths = kGuarded;
+    value = moveAlongPath(cost, warm.gddA, data);
+  }
+  if (!std::isfinite(value)) value = moveTo(model, cost, known ? &warm.gddA : nullptr, data);
+  setAppliedForce(force_, data.forces);
+  return std::isfinite(value) ? GddStatus::converged : GddStatus::notFinite;
+}
+
+}  // namespace softgauss::gdd
