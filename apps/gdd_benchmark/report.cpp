@@ -97,7 +97,11 @@ std::string tables(const Robot& robot, const Dataset& dataset, const Replay& rep
   t.line("dual updates", cells([](auto& s) { return counts(s.dualUpdates); }), paper.dualUpdates);
   t.line("physics violation [N, N m]", cells([](auto& s) { return sizes(s.violation); }),
          paper.violation);
-  t.line("residual gradient, smooth minima", cells([](auto& s) { return sizes(s.smoothGradient); }),
+  t.line("smooth minima: iterations", cells([](auto& s) { return counts(s.smoothIterations); }),
+         paper.iterations);
+  t.line("smooth minima: violation", cells([](auto& s) { return sizes(s.smoothViolation); }),
+         paper.violation);
+  t.line("smooth minima: residual gradient", cells([](auto& s) { return sizes(s.smoothGradient); }),
          paper.gradient);
   t.line("minima that are kinks", cells([](auto& s) { return share(s.kinks); }), none);
   t.line("certified minima", cells([](auto& s) { return share(s.certified); }), none);
@@ -160,6 +164,8 @@ nlohmann::ordered_json figures(const Robot& robot, const Dataset& dataset, const
                               {"dual_updates", json(s.dualUpdates)},
                               {"gdd_violation", json(s.violation)},
                               {"smooth_stationarity", json(s.smoothGradient)},
+                              {"smooth_iterations", json(s.smoothIterations)},
+                              {"smooth_gdd_violation", json(s.smoothViolation)},
                               {"kinks", s.kinks},
                               {"certified", s.certified},
                               {"at_iteration_limit", s.atLimit},

@@ -23,8 +23,8 @@ Spread Spread::of(const std::vector<double>& values) {
 }
 
 SolverStatistics::SolverStatistics(const Replay& replay, const Replay::Solver& solver) {
-  std::vector<double> iterationsOf, dualsOf, violationOf, gradientOf, forwardOf, solveOf, finishOf,
-      stepOf, solveStepOf;
+  std::vector<double> iterationsOf, dualsOf, violationOf, gradientOf, smoothIterationsOf,
+      smoothViolationOf, forwardOf, solveOf, finishOf, stepOf, solveStepOf;
   for (std::size_t i = 0; i < solver.records.size(); ++i) {
     const Solved& r = solver.records[i];
     iterationsOf.push_back(r.report.iterations);
@@ -32,7 +32,11 @@ SolverStatistics::SolverStatistics(const Replay& replay, const Replay::Solver& s
     violationOf.push_back(r.report.violation);
     const bool smooth = r.report.status == gdd::GddStatus::converged;
     const bool kink = r.report.status == gdd::GddStatus::kink;
-    if (smooth) gradientOf.push_back(r.report.stationarity);
+    if (smooth) {
+      gradientOf.push_back(r.report.stationarity);
+      smoothIterationsOf.push_back(r.report.iterations);
+      smoothViolationOf.push_back(r.report.violation);
+    }
     kinks += kink;
     certified += smooth || kink;
     atLimit += r.report.status == gdd::GddStatus::iterationLimit;
@@ -50,6 +54,8 @@ SolverStatistics::SolverStatistics(const Replay& replay, const Replay::Solver& s
   dualUpdates = Spread::of(dualsOf);
   violation = Spread::of(violationOf);
   smoothGradient = Spread::of(gradientOf);
+  smoothIterations = Spread::of(smoothIterationsOf);
+  smoothViolation = Spread::of(smoothViolationOf);
   forwardIterations = Spread::of(forwardOf);
   solveUs = Spread::of(solveOf);
   finishUs = Spread::of(finishOf);

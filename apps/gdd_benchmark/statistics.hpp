@@ -20,13 +20,14 @@ struct Spread {
 /// What the paper's second table says of a solver, and what it leaves out.
 struct SolverStatistics {
   Spread iterations, dualUpdates;
-  Spread violation;          ///< GddReport::violation, before clamping [N or N m]
-  Spread smoothGradient;     ///< GddReport::stationarity where no row is held
-  Spread forwardIterations;  ///< of the final forward step
-  double kinks = 0.0;        ///< shares of the records
-  double certified = 0.0;    ///< converged, or a kink that no side of descends
-  int atLimit = 0;           ///< records that ended at the iteration limit
-  int unlikeRecorded = 0;    ///< records with another control than the recorded one
+  Spread violation;                          ///< GddReport::violation, before clamping [N or N m]
+  Spread smoothGradient;                     ///< GddReport::stationarity where no row is held
+  Spread smoothIterations, smoothViolation;  ///< of the same records
+  Spread forwardIterations;                  ///< of the final forward step
+  double kinks = 0.0;                        ///< shares of the records
+  double certified = 0.0;                    ///< converged, or a kink that no side of descends
+  int atLimit = 0;                           ///< records that ended at the iteration limit
+  int unlikeRecorded = 0;                    ///< records with another control than the recorded one
   Spread solveUs, finishUs;
   Spread stepUs;       ///< stages, solve and final forward step
   Spread solveStepUs;  ///< stages and solve

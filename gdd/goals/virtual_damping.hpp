@@ -3,22 +3,28 @@
 
 /// Virtual damping, equation (26) of the paper: tells the robot to stop moving.
 ///
-///   ℓ(a) = ½ α (a + β v)ᵀ M (a + β v)                                                   (T.24)
-/// M is the metric that matches the units of accelerations, as R = M⁻¹ does for forces.
+///   ℓ(a) = ½ α (a + β v)ᵀ W (a + β v),   W = M, or R = M⁻¹                               (T.24)
+/// M is the metric that matches the units of accelerations, as R = M⁻¹ does for forces. With R the
+/// heaviest motions are damped least.
 
 #include "gdd/goal.hpp"
 
 namespace softgauss::gdd {
 
+/// W of virtual damping.
+enum class DampingMetric {
+  inertia,        ///< M
+  inverseInertia  ///< R = M⁻¹
+};
+
 class VirtualDamping final : public Goal {
  public:
-  double weight = 0.1;  ///< α [-]
+  double weight = 0.1;  ///< α [-]; with M⁻¹ in the units of M²
   double rate = 10.0;   ///< β [1/s]
+  DampingMetric metric = DampingMetric::inertia;
 
   std::string name() const override { return "damping"; }
-  void addCost(const GoalContext& context, GoalCost& cost) const override {
-    cost.addMetric(weight, context.data.inertia.M, -rate * context.state.v);
-  }
+  void addCost(const GoalContext& context, GoalCost& cost) const override;
 };
 
 }  // namespace softgauss::gdd

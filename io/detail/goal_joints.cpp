@@ -58,6 +58,9 @@ GoalPointer readDamping(const YamlMap& keys, const GoalScene&) {
   auto goal = std::make_unique<gdd::VirtualDamping>();
   keys.read("weight", goal->weight, Range::notNegative);
   keys.read("rate", goal->rate, Range::notNegative);
+  const YamlMap::Entry* metric = keys.find("metric");
+  if (metric && keys.choice(*metric, {"inertia", "inverse_inertia"}) == "inverse_inertia")
+    goal->metric = gdd::DampingMetric::inverseInertia;
   return goal;
 }
 

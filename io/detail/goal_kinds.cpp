@@ -16,7 +16,7 @@ const std::vector<GoalKind>& goalKinds() {
       {"posture", {"weight", "stiffness", "damping", "joints"}, readPosture},
       {"joint_posture", {"joints", "weight", "stiffness", "damping"}, readJointPosture},
       {"acceleration", {"joints", "weight"}, readAcceleration},
-      {"damping", {"weight", "rate"}, readDamping},
+      {"damping", {"weight", "rate", "metric"}, readDamping},
       {"effort", {"joints", "weight"}, readEffort},
       {"center_of_mass",
        {"link", "target", "axes", "weight", "stiffness", "damping"},

@@ -83,6 +83,31 @@ TEST(JointGoals, OneJointIsLedToItsPlace) {
   EXPECT_NEAR(r.state.q[r.model.bodies[body].q], start + 0.3, 0.01);
 }
 
+// (T.24) with either metric is its formula, up to the constant, and its derivatives are its own.
+TEST(VirtualDamping, IsItsFormulaInBothMetrics) {
+  Random random(41);
+  const Scene scene = looseScene(7);
+  const int n = scene.model.nv;
+  const VectorX v = scene.state.v;
+  const MatrixX M = scene.data->inertia.M.dense();
+  for (const auto metric : {gdd::DampingMetric::inertia, gdd::DampingMetric::inverseInertia}) {
+    gdd::VirtualDamping goal;
+    goal.weight = 0.7;
+    goal.rate = 3.0;
+    goal.metric = metric;
+    GoalCheck check(scene, goal);
+    EXPECT_SMALL(check.differenceError(random), 1e-12);
+    const auto formula = [&](const VectorX& a) {
+      const VectorX e = a + 3.0 * v;
+      const VectorX We = metric == gdd::DampingMetric::inertia ? VectorX(M * e) : M.llt().solve(e);
+      return 0.35 * e.dot(We);
+    };
+    const VectorX a = random.vector(n, 10.0), zero = VectorX::Zero(n);
+    const double wanted = formula(a) - formula(zero), size = formula(a) + formula(zero);
+    EXPECT_SMALL((check.value(a) - check.value(zero) - wanted) / size, 1e-12);
+  }
+}
+
 // [start, end): the same run, step for step, as one whose goal is put in and taken out by hand.
 TEST(GoalTimes, AGoalActsFromItsStartUntilItsEnd) {
   RobotScene timed("arm"), manual("arm");

@@ -54,6 +54,14 @@ TEST(GoalTimesInFiles, AreOfEveryKind) {
             "'damping': key 'end': found '.inf', expected a finite number");
 }
 
+TEST(DampingInFiles, HasTwoMetrics) {
+  EXPECT_EQ(readOne<gdd::VirtualDamping>("damping: {}")->metric, gdd::DampingMetric::inertia);
+  EXPECT_EQ(readOne<gdd::VirtualDamping>("damping: {metric: inverse_inertia}")->metric,
+            gdd::DampingMetric::inverseInertia);
+  EXPECT_EQ(errorOf("damping: {metric: R}"),
+            "'damping': key 'metric': found 'R', expected 'inertia' or 'inverse_inertia'");
+}
+
 TEST(JointGoalsInFiles, ArriveWithTheirValues) {
   const auto posture = readOne<gdd::JointPosture>(
       "joint_posture: {joints: {shoulder: 0.8}, weight: 1, stiffness: 2, damping: 3}");
