@@ -251,7 +251,8 @@ GddReport ActiveSet::solve(const Model& model, GoalCost& cost, const ControlBox&
                            const WarmStart& warm) {
   SOFTGAUSS_ASSERT(data.constraints.piecewiseQuadratic());
   report_ = {};
-  age_ = 0;
+  searchAge_ = 0;
+  searchWait_ = 1;
   if (model.nv == 0) return report_;
   report_.status = start(model, cost, box, data, warm);
   if (report_.status == GddStatus::notFinite) return report_;
@@ -262,18 +263,20 @@ GddReport ActiveSet::solve(const Model& model, GoalCost& cost, const ControlBox&
   if (report_.status == GddStatus::notFinite) return report_;
   finish(box, cost, data);
 
-  const bool old = warm.gddValid && data.constraints.rowCount() > 0 && cell_.columns() > 0;
-  if (old) age_ = warm.gddAge + 1;
-  const int every = options.secondStartEvery;
-  if (!old || every == 0 || age_ < every) return report_;
-  age_ = 0;
-  startAgain(model, cost, box, data);
+  const bool canSearch = data.constraints.rowCount() > 0 && cell_.columns() > 0;
+  if (!warm.gddValid || !canSearch || options.longestSearchWait == 0) return report_;
+  searchAge_ = warm.gddSearchAge + 1;
+  searchWait_ = warm.gddSearchWait;
+  if (searchAge_ < searchWait_) return report_;
+  searchAge_ = 0;
+  const bool found = startAgain(model, cost, box, data);
+  searchWait_ = found ? 1 : std::min(2 * searchWait_, options.longestSearchWait);
   return report_;
 }
 
-/// A minimum is local, and a warm start stays with it: now and then looks from u = 0 for a better
-/// one, and takes that.
-void ActiveSet::startAgain(const Model& model, const GoalCost& cost, const ControlBox& box,
+/// A minimum is local, and a warm start stays with it: looks from u = 0 for a better one, and takes
+/// that. Returns whether it has found one.
+bool ActiveSet::startAgain(const Model& model, const GoalCost& cost, const ControlBox& box,
                            Data& data) {
   constexpr double kBetter = 1e-6;  // of F: less is no reason to leave
   first_.a = path_.a;
@@ -309,6 +312,7 @@ void ActiveSet::startAgain(const Model& model, const GoalCost& cost, const Contr
   report_.iterations += other.iterations;
   report_.cells += other.cells;
   report_.factorizations += other.factorizations;
+  return better;
 }
 
 void ActiveSet::keepWarmStart(WarmStart& warm) const {
@@ -316,7 +320,8 @@ void ActiveSet::keepWarmStart(WarmStart& warm) const {
   warm.control = force_;
   warm.multipliers.setZero(force_.size());
   warm.knots = knots_;
-  warm.gddAge = age_;
+  warm.gddSearchAge = searchAge_;
+  warm.gddSearchWait = searchWait_;
   warm.gddValid = true;
 }
 

@@ -31,8 +31,10 @@ namespace softgauss::gdd {
 struct ActiveSetOptions {
   double tolerance = 1e-12;  ///< of the decrease still promised, over the objective
   int maxIterations = 100;
-  int maxPatternRows = 6;     ///< dependent rows at their knots of which all 2^n cells are tried
-  int secondStartEvery = 16;  ///< solves from one search for a better minimum to the next; 0: none
+  int maxPatternRows = 6;  ///< dependent rows at their knots of which all 2^n cells are tried
+  /// A search for a better minimum follows the last one after 1, 2, 4 … solves, as many as this at
+  /// most; after 1 again when it has found one. 0: none.
+  int longestSearchWait = 16;
 };
 
 class ActiveSet {
@@ -81,7 +83,7 @@ class ActiveSet {
   double remainingPromise();
   Next leaveCell(Data& data);
   std::optional<GddStatus> descend(const GoalCost& cost, double wanted, Data& data);
-  void startAgain(const Model& model, const GoalCost& cost, const ControlBox& box, Data& data);
+  bool startAgain(const Model& model, const GoalCost& cost, const ControlBox& box, Data& data);
   void finish(const ControlBox& box, const GoalCost& cost, Data& data);
 
   CellResponse cell_;
@@ -104,8 +106,9 @@ class ActiveSet {
   bool ready_ = false;    ///< R is that of this solve
   bool entered_ = false;  ///< the response is that of the cell at a
   GddReport report_;
-  Solution first_;  ///< while another is looked for
-  int age_ = 0;     ///< solves since the last second start
+  Solution first_;      ///< while another is looked for
+  int searchAge_ = 0;   ///< WarmStart::gddSearchAge
+  int searchWait_ = 1;  ///< WarmStart::gddSearchWait
   int badDof_ = -1;
 };
 

@@ -32,11 +32,16 @@ SOFTGAUSS_VECTOR_CLONES void multiplyRows(const double* S, int rows, int columns
   addCombination(1.0, x, 1, S, columns, rows, columns, b);
 }
 
-/// K ← K + c y yᵀ, lower triangle of its first n columns, which are `stride` apart.
-SOFTGAUSS_VECTOR_CLONES void addOuter(const double* y, double c, int n, int stride, double* K) {
-  for (int i = 0; i < n; ++i) {
-    const int from = i & ~3;
-    addScaled(c * y[i], y + from, n - from, K + i * stride + from);
+/// K ← Σ_k c_k y_k y_kᵀ (n × n), y_k row k of Y, which is zero but in range k.
+SOFTGAUSS_VECTOR_CLONES void setWeightedGram(const RowMajorMatrixX& Y, const TreeFactor& factor,
+                                             const std::vector<Segment>& range, MatrixX& K) {
+  const int n = static_cast<int>(Y.cols());
+  for (int k = 0; k < static_cast<int>(Y.rows()); ++k) {
+    const Segment r = range[k];
+    const double* y = Y.data() + k * n;
+    for (int i = r.begin; i < r.end; ++i)
+      addScaled(factor.inversePivot(k) * y[i], y + r.begin, r.end - r.begin,
+                K.data() + i * n + r.begin);
   }
 }
 
@@ -78,13 +83,7 @@ void CellResponse::computeForcePrice() {
   setSelection(Y);
   massFactor_->solveTransposed(Y, range_);
   forcePrice_.setZero(count, count);
-  for (int k = 0; k < massFactor_->size(); ++k) {
-    const Segment r = range_[k];
-    if (r.begin < r.end)
-      addOuter(&Y(k, r.begin), massFactor_->inversePivot(k), r.end - r.begin, count,
-               &forcePrice_(r.begin, r.begin));
-  }
-  forcePrice_.triangularView<Eigen::StrictlyUpper>() = forcePrice_.transpose();
+  setWeightedGram(Y, *massFactor_, range_, forcePrice_);
   for (int i = 0; i < columns(); ++i) forcePrice_(i, i) += price_[driven_[i]];
 }
 

@@ -46,7 +46,8 @@ std::uint64_t hash(const State& state) {
   const double rest[] = {state.time, state.warmstart.valid ? 1.0 : 0.0,
                          state.warmstart.gddValid ? 1.0 : 0.0};
   mix(h, rest, 3);
-  mixBits(h, static_cast<std::uint64_t>(state.warmstart.gddAge));
+  mixBits(h, static_cast<std::uint64_t>(state.warmstart.gddSearchAge));
+  mixBits(h, static_cast<std::uint64_t>(state.warmstart.gddSearchWait));
   for (const KnotName& k : state.warmstart.knots)
     for (const int part : {k.kind, k.first, k.second, k.contact, k.direction, k.index})
       mixBits(h, static_cast<std::uint64_t>(part));

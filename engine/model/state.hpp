@@ -29,7 +29,8 @@ struct WarmStart {
   VectorX multipliers;          ///< of g_z = 0 and of the control box, GDD solver 1 (nv)
   VectorX control;              ///< of GDD solver 2 (nv) [N or N m]
   std::vector<KnotName> knots;  ///< at which rows are, GDD solver 2
-  int gddAge = 0;               ///< solves since GDD solver 2 last looked for a better minimum
+  int gddSearchAge = 0;         ///< solves since GDD solver 2 last looked for a better minimum
+  int gddSearchWait = 1;        ///< solves from that search to the next
   bool valid = false;           ///< a is set
   bool gddValid = false;
 };
