@@ -34,7 +34,7 @@ struct ActiveSetOptions {
   int maxPatternRows = 6;  ///< dependent rows at their knots of which all 2^n cells are tried
   /// A search for a better minimum follows the last one after 1, 2, 4 … solves, as many as this at
   /// most; after 1 again when it has found one. 0: none.
-  int longestSearchWait = 16;
+  int longestSearchWait = 32;
 };
 
 class ActiveSet {

@@ -35,8 +35,18 @@ SOFTGAUSS_VECTOR_CLONES void multiplyRows(const double* S, int rows, int columns
 /// K ← Σ_k c_k y_k y_kᵀ (n × n), y_k row k of Y, which is zero but in range k.
 SOFTGAUSS_VECTOR_CLONES void setWeightedGram(const RowMajorMatrixX& Y, const TreeFactor& factor,
                                              const std::vector<Segment>& range, MatrixX& K) {
-  const int n = static_cast<int>(Y.cols());
-  for (int k = 0; k < static_cast<int>(Y.rows()); ++k) {
+  const int n = static_cast<int>(Y.cols()), rows = static_cast<int>(Y.rows());
+  // The rows of a floating base come first, and all columns move them: four of them at a time.
+  int k = 0;
+  const auto full = [&](int row) { return range[row].begin == 0 && range[row].end == n; };
+  for (; k + 4 <= rows && full(k) && full(k + 1) && full(k + 2) && full(k + 3); k += 4) {
+    const double* y = Y.data() + k * n;
+    for (int i = 0; i < n; ++i)
+      addScaledFour(factor.inversePivot(k) * y[i], factor.inversePivot(k + 1) * y[n + i],
+                    factor.inversePivot(k + 2) * y[2 * n + i],
+                    factor.inversePivot(k + 3) * y[3 * n + i], y, n, n, K.data() + i * n);
+  }
+  for (; k < rows; ++k) {
     const Segment r = range[k];
     const double* y = Y.data() + k * n;
     for (int i = r.begin; i < r.end; ++i)

@@ -58,8 +58,9 @@ SOFTGAUSS_VECTOR_CLONES void multiplyColumns(const double* J, const double* d, i
 
 bool QuadraticProgram::setHessian(const Eigen::Ref<const MatrixX>& K) {
   const int n = static_cast<int>(K.cols());
-  L_.setZero(paddedSize(n), n);
+  L_.resize(paddedSize(n), n);
   L_.topRows(n) = K;
+  L_.bottomRows(paddedSize(n) - n).setZero();
   return factorCholesky(L_.data(), n, paddedSize(n));
 }
 
