@@ -15,7 +15,8 @@
 #include "engine/dynamics/jacobian.hpp"  // point and rotation Jacobians
 #include "engine/model/model_builder.hpp"
 #include "engine/model/state.hpp"
-#include "engine/step/forward.hpp"  // (13)
-#include "engine/step/inverse.hpp"  // (14), (15)
+#include "engine/step/effect_use.hpp"  // what each effect costs
+#include "engine/step/forward.hpp"     // (13)
+#include "engine/step/inverse.hpp"     // (14), (15)
 #include "engine/step/snapshot.hpp"
 #include "engine/step/step.hpp"

@@ -12,6 +12,7 @@
 
 #include <vector>
 
+#include "engine/core/memory.hpp"
 #include "engine/dynamics/kinematics.hpp"
 #include "engine/dynamics/tree_matrix.hpp"
 
@@ -59,6 +60,9 @@ class BlockJacobian {
 
   /// Appends the dof sets of blocks that couple two branches.
   void appendCouplings(std::vector<Segment>& segments, std::vector<int>& setEnd) const;
+
+  /// Memory held [bytes].
+  std::size_t bytes() const { return bytesOfAll(blocks_, segments_, values_, scratch_); }
 
  private:
   std::vector<JacobianBlock> blocks_;

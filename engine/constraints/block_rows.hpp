@@ -37,6 +37,8 @@ class BlockRows : public ScalarRows<Quadratic> {
     jacobian_.appendCouplings(segments, setEnd);
   }
 
+  std::size_t bytes() const { return ScalarRows::bytes() + jacobian_.bytes(); }
+
  protected:
   void clearBlocks() {
     jacobian_.clear();

@@ -11,18 +11,33 @@ bool same(const std::vector<Segment>& a, const std::vector<Segment>& b) {
                     [](Segment s, Segment t) { return s.begin == t.begin && s.end == t.end; });
 }
 
+bool isContact(int kind) {
+  return kind == static_cast<int>(RowKind::pyramid) ||
+         kind == static_cast<int>(RowKind::ellipticCone);
+}
+
 }  // namespace
 
 void Constraints::assemble(const Assembly& in) {
-  visit([&](auto& c) { c.assemble(in); });
+  active_ = RowKinds::none();
+  visitThese(*this, planned_, [&](auto& c, int kind) {
+    // Without contacts there is nothing to look at, but old rows to drop.
+    if (isContact(kind) && in.contacts.size() == 0 && c.rowCount() == 0) return;
+    ++calls_[kind];
+    c.assemble(in);
+    if (c.rowCount() > 0) active_.insert(kind);
+  });
+  if (active_.empty()) {
+    sparsity_ = &in.tree;
+    return;
+  }
 
   couplings_.clear();
   couplingEnd_.clear();
-  connection.appendCouplings(couplings_, couplingEnd_);
-  weld.appendCouplings(couplings_, couplingEnd_);
-  coupling.appendCouplings(couplings_, couplingEnd_);
-  contact.appendCouplings(couplings_, couplingEnd_);
-  ellipticContact.appendCouplings(couplings_, couplingEnd_);
+  visit([&](const auto& c) {
+    if constexpr (requires { c.appendCouplings(couplings_, couplingEnd_); })
+      c.appendCouplings(couplings_, couplingEnd_);
+  });
   if (couplings_.empty()) {
     sparsity_ = &in.tree;
     return;
@@ -46,7 +61,7 @@ void Constraints::setResidual(const VectorX& a) {
     c.multiply(a, c.x);
     for (std::size_t i = 0; i < c.x.size(); ++i) c.x[i] -= c.reference[i];
   });
-  ellipticContact.letGo();
+  if (active_.has(RowKind::ellipticCone)) ellipticContact.letGo();
 }
 
 void Constraints::setRay(const VectorX& d) {
@@ -83,20 +98,14 @@ void Constraints::addCurvature(TreeMatrix& P) {
 }
 
 void Constraints::findCrossings(std::vector<Crossing>& crossings) const {
-  int kind = 0;
-  visit([&](const auto& c) {
-    c.findCrossings(kind, crossings);
-    ++kind;
-  });
+  visit([&](const auto& c, int kind) { c.findCrossings(kind, crossings); });
 }
 
 Crossing Constraints::nextCrossing() const {
   Crossing next;
   next.alpha = kInfinity;
-  int kind = 0;
-  visit([&](const auto& c) {
+  visit([&](const auto& c, int kind) {
     if constexpr (requires { c.findNextCrossing(kind, next); }) c.findNextCrossing(kind, next);
-    ++kind;
   });
   return next;
 }

@@ -4,9 +4,10 @@
 /// Every soft constraint of the engine, and the operations that run over all of them:
 ///   s(Ja − r) of the extended Gauss principle (T.1), its force −Jᵀ∇s and curvature Jᵀ∇²s J.
 ///
-/// To add an effect: write its file, add a member, name it in visit(). A kind without rows costs
-/// an empty loop.
+/// To add an effect: write its file, add a member, name it in visitThese(). A kind that the plan
+/// does not have is never called; one without rows in this step is called once, to find that out.
 
+#include <array>
 #include <concepts>
 #include <optional>
 #include <vector>
@@ -18,6 +19,7 @@
 #include "engine/constraints/joint_limit.hpp"
 #include "engine/constraints/pyramidal_contact.hpp"
 #include "engine/constraints/weld.hpp"
+#include "engine/model/plan.hpp"
 
 namespace softgauss {
 
@@ -26,6 +28,7 @@ concept SoftConstraint = requires(C c, const Assembly& in, const VectorX& a, Vec
                                   std::vector<double>& y, TreeMatrix& P, bool& changed, Jet& jet,
                                   std::vector<Crossing>& crossings) {
   { c.rowCount() } -> std::convertible_to<int>;
+  { c.bytes() } -> std::convertible_to<std::size_t>;       // memory held
   c.assemble(in);                                          // rows, a_ref, D
   c.multiply(a, y);                                        // y = J a
   { c.evaluate(changed) } -> std::convertible_to<double>;  // cost; force, curvature
@@ -52,37 +55,40 @@ class Constraints {
   PyramidalContact contact;
   EllipticContact ellipticContact;
 
-  template <class F>
-  void visitAllButContacts(F&& f) {
-    f(connection);
-    f(weld);
-    f(coupling);
-    f(dryFriction);
-    f(jointLimit);
-  }
-  template <class F>
-  void visitAllButContacts(F&& f) const {
-    f(connection);
-    f(weld);
-    f(coupling);
-    f(dryFriction);
-    f(jointLimit);
-  }
+  Constraints() = default;
+  /// Only these kinds are ever called.
+  explicit Constraints(RowKinds planned) : planned_(planned) {}
+
+  /// Calls f with every kind that has rows in this step.
   template <class F>
   void visit(F&& f) {
-    visitAllButContacts(f);
-    f(contact);
-    f(ellipticContact);
+    visitThese(*this, active_, f);
   }
   template <class F>
   void visit(F&& f) const {
-    visitAllButContacts(f);
-    f(contact);
-    f(ellipticContact);
+    visitThese(*this, active_, f);
+  }
+  template <class F>
+  void visitAllButContacts(F&& f) {
+    visitJoints(*this, active_, f);
+  }
+  template <class F>
+  void visitAllButContacts(F&& f) const {
+    visitJoints(*this, active_, f);
+  }
+  /// Calls f with every kind, rows or not.
+  template <class F>
+  void visitAll(F&& f) const {
+    visitThese(*this, RowKinds::all(), f);
   }
 
   void assemble(const Assembly& in);
   int rowCount() const;
+  /// Kinds that may make rows, and those that have some in this step.
+  RowKinds planned() const { return planned_; }
+  RowKinds active() const { return active_; }
+  /// How often each kind was asked for its rows since the start.
+  const std::array<std::int64_t, kRowKinds>& calls() const { return calls_; }
   /// Pattern of P = M + Jᵀ∇²s J: the trees', or with fill-in where rows couple branches.
   const TreeSparsity& sparsity() const { return *sparsity_; }
 
@@ -131,15 +137,39 @@ class Constraints {
   MatrixX denseJacobian() const;
 
  private:
+  /// Calls f, with a kind or with a kind and its number, for each of `kinds`.
+  template <class Self, class F>
+  static void visitThese(Self& self, RowKinds kinds, F&& f) {
+    visitJoints(self, kinds, f);
+    call(self.contact, RowKind::pyramid, kinds, f);
+    call(self.ellipticContact, RowKind::ellipticCone, kinds, f);
+  }
+  /// The same for those that are no contacts.
+  template <class Self, class F>
+  static void visitJoints(Self& self, RowKinds kinds, F&& f) {
+    call(self.connection, RowKind::connection, kinds, f);
+    call(self.weld, RowKind::weld, kinds, f);
+    call(self.coupling, RowKind::coupling, kinds, f);
+    call(self.dryFriction, RowKind::dryFriction, kinds, f);
+    call(self.jointLimit, RowKind::jointLimit, kinds, f);
+  }
+  template <class C, class F>
+  static void call(C& c, RowKind kind, RowKinds kinds, F&& f) {
+    if (!kinds.has(kind)) return;
+    if constexpr (std::invocable<F, C&, int>)
+      f(c, static_cast<int>(kind));
+    else
+      f(c);
+  }
   /// Calls f with the effect of a row.
   template <class Self, class F>
   static void visitOne(Self& self, int kind, F&& f) {
-    int i = 0;
-    self.visit([&](auto& c) {
-      if (i++ == kind) f(c);
-    });
+    visitThese(self, RowKinds::none().with(static_cast<RowKind>(kind)), f);
   }
 
+  RowKinds planned_ = RowKinds::all();
+  RowKinds active_ = RowKinds::none();
+  std::array<std::int64_t, kRowKinds> calls_{};
   const TreeSparsity* sparsity_ = nullptr;
   TreeSparsity coupled_;
   std::vector<Segment> couplings_, lastCouplings_;

@@ -80,6 +80,8 @@ class ContactBlocks {
     return made_[i].R_WC * Vector3(y[3], y[4], y[5]);
   }
 
+  std::size_t bytes() const { return jacobian_.bytes() + bytesOfAll(made_, contactOfRow_); }
+
  protected:
   void clearBlocks() {
     jacobian_.clear();

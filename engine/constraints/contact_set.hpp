@@ -27,6 +27,7 @@ struct Contact {
 struct ContactSet {
   std::vector<Contact> contacts;
   std::int64_t growths = 0;       ///< times the capacity had to grow since construction
+  std::int64_t detections = 0;    ///< times that contacts were looked for since construction
   std::int64_t pairsTested = 0;   ///< exact pair tests of this step
   std::int64_t pairsSkipped = 0;  ///< pairs whose query failed in this step, see ContactSource
 

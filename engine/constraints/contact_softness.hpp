@@ -27,9 +27,6 @@ ContactSpring inNewtons(const ContactSpring& spring, double mass, double gravity
 /// that of slow motion.
 ContactSpring inSeries(const ContactSpring& a, const ContactSpring& b);
 
-/// Below this coefficient a cone degenerates: the contact is frictionless.
-inline constexpr double kSmallestFriction = 1e-5;
-
 /// Directions of friction that a contact has with the effects that are switched on: condim − 1; 0
 /// where it is frictionless. Rolling friction comes with torsional friction.
 int frictionDim(const Material& pair, const EffectSet& effects);

@@ -30,6 +30,7 @@ class DryFriction : public ScalarRows<Huber> {
   }
   /// y ← y + scale · (row i of J)ᵀ.
   void addRow(int i, double scale, VectorX& y) const { y[dof_[i]] += scale; }
+  std::size_t bytes() const { return ScalarRows::bytes() + bytesOf(dof_); }
   int dof(int row) const { return dof_[row]; }
   RowName name(int row) const { return {.first = dof_[row]}; }
 

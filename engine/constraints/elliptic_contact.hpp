@@ -56,6 +56,10 @@ class EllipticContact : public ContactBlocks {
   Vector3 moment(int i) const { return angularInWorld(i, frameForce(i)); }
 
   FrameVector frameForce(int i) const;
+  std::size_t bytes() const {
+    return ContactBlocks::bytes() +
+           bytesOfAll(reference, x, dx, f, df, cones_, perInertia_, zones_, placed_);
+  }
 
  private:
   /// Penalty of contact i at x; where it is not placed, `zone` is that of x.

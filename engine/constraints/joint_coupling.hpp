@@ -26,6 +26,8 @@ class CouplingRows : public ScalarRows<Quadratic> {
   /// Pairs of dofs on different branches.
   void appendCouplings(std::vector<Segment>& segments, std::vector<int>& setEnd) const;
 
+  std::size_t bytes() const { return ScalarRows::bytes() + bytesOf(pairs_); }
+
  private:
   struct Pair {
     int follower = 0;      ///< dof

@@ -28,6 +28,7 @@ class JointLimit : public ScalarRows<HalfQuadratic> {
   }
   /// y ← y + scale · (row i of J)ᵀ.
   void addRow(int i, double scale, VectorX& y) const { y[dof_[i]] += sign_[i] * scale; }
+  std::size_t bytes() const { return ScalarRows::bytes() + bytesOfAll(dof_, sign_); }
   int dof(int row) const { return dof_[row]; }
   RowName name(int row) const { return {.first = dof_[row], .second = sign_[row] > 0.0 ? 0 : 1}; }
   double sign(int row) const { return sign_[row]; }

@@ -30,6 +30,7 @@ class PyramidalContact : public ScalarRows<HalfQuadratic>, public ContactBlocks 
   /// the opposite.
   Vector3 moment(int i) const { return angularInWorld(i, inFrame(i, f)); }
 
+  std::size_t bytes() const { return ScalarRows::bytes() + ContactBlocks::bytes(); }
   /// The force at contact i in its frame.
   FrameVector frameForce(int i) const { return inFrame(i, f); }
 

@@ -18,6 +18,7 @@
 #include "engine/constraints/impedance.hpp"
 #include "engine/constraints/penalty.hpp"
 #include "engine/core/check.hpp"
+#include "engine/core/memory.hpp"
 
 namespace softgauss {
 
@@ -185,6 +186,11 @@ class ScalarRows {
     if (!stiffSide) return;
     const double step = std::max(kSmallest, kRelative * std::abs(x[row]));
     x[row] += s.curvatureJump(knot) > 0.0 ? step : -step;
+  }
+
+  /// Memory held [bytes].
+  std::size_t bytes() const {
+    return bytesOfAll(reference, D, perInertia, limit, x, dx, f, h, df, piece_);
   }
 
   void advance(double alpha) {

@@ -16,8 +16,12 @@ struct RneaWorkspace {
   std::vector<Motion> A;  ///< (bodies)
   std::vector<Force> F;   ///< (bodies) force transmitted by the joint
   RneaWorkspace() = default;
-  explicit RneaWorkspace(const Model& model)
-      : V(model.bodies.size()), A(model.bodies.size()), F(model.bodies.size()) {}
+  explicit RneaWorkspace(const Model& model) : RneaWorkspace(model, true, true) {}
+  /// Memory for computeBias(), and for what takes another velocity or acceleration.
+  RneaWorkspace(const Model& model, bool bias, bool otherVelocity)
+      : V(otherVelocity ? model.bodies.size() : 0),
+        A(otherVelocity ? model.bodies.size() : 0),
+        F(bias ? model.bodies.size() : 0) {}
 };
 
 /// Bias force b(q, v): gravity, Coriolis and centripetal terms, as options.effects has them.

@@ -7,15 +7,29 @@
 
 namespace softgauss {
 
-void computeSmoothForces(const Model& model, const State& state, const Input& input,
-                         const Kinematics& k, const MassMatrix& inertia, SmoothForces& stage) {
-  computeBias(model, k, inertia, stage.work, stage.bias);
+void computeSmoothForces(const Model& model, const Plan& plan, const State& state,
+                         const Input& input, const Kinematics& k, const MassMatrix& inertia,
+                         SmoothForces& stage) {
+  SmoothForces::Calls& calls = stage.calls;
+  if (plan.gravity || plan.coriolis) {  // else the bias stays zero
+    calls.gravity += plan.gravity;
+    calls.coriolis += plan.coriolis;
+    computeBias(model, k, inertia, stage.work, stage.bias);
+  }
   stage.c = stage.bias;
-  addDamping(model, state.v, stage.c);
-  addSprings(model, state.q, stage.c);
-  if (model.options.effects.has(Effect::externalWrench))
-    for (const ExternalWrench& wrench : input.wrenches)
+  if (plan.damped()) {
+    ++calls.damping;
+    addDamping(plan.damping, state.v, stage.c);
+  }
+  if (!plan.springs.empty()) {
+    ++calls.spring;
+    addSprings(plan.springs, state.q, stage.c);
+  }
+  if (plan.externalWrench)
+    for (const ExternalWrench& wrench : input.wrenches) {
+      ++calls.externalWrench;
       addExternalWrench(model, k, wrench, stage.c);
+    }
   if (input.tau.size() == model.nv)
     stage.tau = input.tau;
   else

@@ -10,29 +10,36 @@
 /// c is the paper's c(q, v): all that does not depend on the control or the acceleration.
 
 #include "engine/dynamics/rnea.hpp"
+#include "engine/model/plan.hpp"
 
 namespace softgauss {
 
 /// Stage written by computeSmoothForces().
 struct SmoothForces {
+  /// How often each was worked out since the start.
+  struct Calls {
+    std::int64_t gravity = 0, coriolis = 0, damping = 0, spring = 0, externalWrench = 0;
+  };
+
   VectorX bias;  ///< b (nv)
   VectorX c;     ///< (nv)
   VectorX tau;   ///< applied, as Input::tau (nv)
   VectorX net;   ///< τ − c: M a_s
   RneaWorkspace work;
+  Calls calls;
 
   SmoothForces() = default;
-  explicit SmoothForces(const Model& model)
+  SmoothForces(const Model& model, const Plan& plan)
       : bias(VectorX::Zero(model.nv)),
         c(VectorX::Zero(model.nv)),
         tau(VectorX::Zero(model.nv)),
         net(VectorX::Zero(model.nv)),
-        work(model) {}
+        work(model, plan.gravity || plan.coriolis, plan.midpoint) {}
 };
 
-void computeSmoothForces(const Model& model, const State& state, const Input& input,
-                         const Kinematics& kinematics, const MassMatrix& inertia,
-                         SmoothForces& stage);
+void computeSmoothForces(const Model& model, const Plan& plan, const State& state,
+                         const Input& input, const Kinematics& kinematics,
+                         const MassMatrix& inertia, SmoothForces& stage);
 
 /// Replaces the applied force, e.g. by a control that was found after the other forces.
 void setAppliedForce(const VectorX& tau, SmoothForces& stage);

@@ -5,17 +5,14 @@
 /// k (q − q_s) (T.31). The step takes it explicitly, as MuJoCo's does: h √(k/m) < 2 is needed, m
 /// being the inertia that the joint moves.
 
-#include "engine/model/state.hpp"
+#include <vector>
+
+#include "engine/model/plan.hpp"
 
 namespace softgauss {
 
-inline void addSprings(const Model& model, const VectorX& q, VectorX& c) {
-  if (!model.options.effects.has(Effect::spring)) return;
-  for (int i = 0; i < model.nv; ++i) {
-    const Dof& dof = model.dofs[i];
-    if (dof.stiffness != 0.0)
-      c[i] += dof.stiffness * (q[model.bodies[dof.body].q] - dof.springReference);
-  }
+inline void addSprings(const std::vector<Plan::Spring>& springs, const VectorX& q, VectorX& c) {
+  for (const Plan::Spring& s : springs) c[s.dof] += s.stiffness * (q[s.q] - s.reference);
 }
 
 }  // namespace softgauss

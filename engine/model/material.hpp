@@ -43,6 +43,9 @@ struct ContactSpring {
   bool operator==(const ContactSpring&) const = default;
 };
 
+/// Below this coefficient a cone degenerates: the contact is frictionless.
+inline constexpr double kSmallestFriction = 1e-5;
+
 /// Surface parameters of a geometry; a pair is mixed by the rules of constraints/contact.hpp.
 struct Material {
   double slidingFriction = 1.0;      ///< μ, Coulomb [-]

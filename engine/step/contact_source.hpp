@@ -13,11 +13,17 @@ class ContactSource {
  public:
   virtual ~ContactSource() = default;
 
+  /// Whether any two shapes may ever touch; where not, a step does not ask for contacts.
+  bool mayTouch() const { return mayTouch_; }
+
   /// Fills `contacts` (cleared first) with every point whose distance < margin of its pair, in an
   /// order that depends on the model and the poses alone. Throws nothing; a query that cannot be
   /// answered is counted in contacts.pairsSkipped.
   virtual void detect(const Model& model, const Kinematics& kinematics,
                       ContactSet& contacts) noexcept = 0;
+
+ protected:
+  bool mayTouch_ = true;
 };
 
 /// The same contacts at every step, for tests and for callers with a collision engine of their own.

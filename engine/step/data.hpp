@@ -52,12 +52,14 @@ struct StepStats {
   StepTimes times;
 };
 
-/// Owns all memory of a simulation thread. Copies of the model share nothing.
+/// Owns all memory of a simulation thread. Copies of the model share nothing. Holds for the model
+/// as it was at construction.
 struct Data {
   explicit Data(const Model& model);
   Data(const Data&) = delete;
   Data& operator=(const Data&) = delete;
 
+  const Plan plan;         ///< what runs
   InverseWeights weights;  ///< constants
   Kinematics kinematics;
   MassMatrix inertia;

@@ -15,7 +15,39 @@ int firstNotFinite(const VectorX& x) {
   return -1;
 }
 
+/// Without rows the minimiser is M⁻¹(τ − c): no iteration, no residual. False where M is singular.
+bool solveSmooth(Data& data) {
+  ForwardSolution& s = data.forward;
+  s.Ma = s.a = data.forces.net;
+  s.gradient.setZero();
+  if (!solveMass(data, nullptr, s.a)) return false;
+  if (!s.a.allFinite()) s.report.status = SolveStatus::notFinite;
+  return true;
+}
+
 }  // namespace
+
+bool solveMass(Data& data, const VectorX* diagonal, VectorX& x) {
+  ForwardSolution& s = data.forward;
+  const TreeMatrix& M = data.inertia.M;
+  if (data.plan.diagonal) {
+    for (int i = 0; i < M.size(); ++i) {
+      const double pivot = M.row(i)[i] + (diagonal ? (*diagonal)[i] : 0.0);
+      if (!(pivot > 0.0)) return false;
+      x[i] /= pivot;
+    }
+    return true;
+  }
+  if (diagonal || !s.massFactored) {
+    s.massFactored = !diagonal;
+    if (!s.massFactor.compute(M, diagonal ? diagonal->data() : nullptr)) {
+      s.massFactored = false;
+      return false;
+    }
+  }
+  s.massFactor.solve(x);
+  return true;
+}
 
 SolveStatus minimizeGauss(const Model& model, const VectorX* guess, Data& data) noexcept {
   ForwardSolution& s = data.forward;
@@ -27,11 +59,21 @@ SolveStatus minimizeGauss(const Model& model, const VectorX* guess, Data& data) 
     s.report.status = SolveStatus::notFinite;
     return s.report.status;
   };
+  const auto notPositive = [&] {
+    notFinite();
+    data.stats.badDof = s.massFactor.failedRow();
+    return s.report.status;
+  };
   const auto finish = [&] {
     if (s.report.status == SolveStatus::notFinite) data.stats.badDof = firstNotFinite(s.a);
     return s.report.status;
   };
   if (!data.forces.net.allFinite()) return notFinite();
+
+  if (data.constraints.active().empty()) {
+    if (!solveSmooth(data)) return notPositive();
+    return finish();
+  }
 
   GaussObjective objective(data.inertia, data.forces.net, data.constraints, s);
   // A warm start that solves the problem already (after GDD, at rest) ends it here.
@@ -43,11 +85,7 @@ SolveStatus minimizeGauss(const Model& model, const VectorX* guess, Data& data) 
     if (s.report.residual <= model.options.tolerance) return finish();
   }
   // Without rows the minimiser is M⁻¹(τ − c).
-  if (!s.massFactor.compute(data.inertia.M)) {
-    notFinite();
-    data.stats.badDof = s.massFactor.failedRow();
-    return s.report.status;
-  }
+  if (!s.massFactor.compute(data.inertia.M)) return notPositive();
   s.massFactored = true;
   s.start = data.forces.net;
   s.massFactor.solve(s.start);

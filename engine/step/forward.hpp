@@ -19,6 +19,10 @@ SolveStatus forwardDynamics(const Model& model, const VectorX* guess, Data& data
 /// (T.1) itself: forwardDynamics() without the second solve of Options::noSlip.
 SolveStatus minimizeGauss(const Model& model, const VectorX* guess, Data& data) noexcept;
 
+/// x ← (M + diagonal)⁻¹ x, `diagonal` null for M alone, whose factor is used where the last solve
+/// left it. False where a pivot is not positive.
+bool solveMass(Data& data, const VectorX* diagonal, VectorX& x);
+
 /// forwardDynamics() from the warm start of a state.
 inline SolveStatus forwardDynamics(const Model& model, const State& state, Data& data) noexcept {
   return forwardDynamics(model, state.warmstart.valid ? &state.warmstart.a : nullptr, data);

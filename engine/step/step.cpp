@@ -61,11 +61,13 @@ int worstDof(const Model& model, const Data& data, const State& state) {
 }  // namespace
 
 Data::Data(const Model& model)
-    : weights(model),
+    : plan(model),
+      weights(model),
       kinematics(model),
       inertia(model),
-      forces(model),
-      exactDiagonal(model.nv),
+      forces(model, plan),
+      constraints(plan.rows),
+      exactDiagonal(model.options.exactDiagonal ? model.nv : 0),
       acceleration(VectorX::Zero(model.nv)) {
   ForwardSolution& s = forward;
   for (VectorX* x : {&s.a, &s.Ma, &s.gradient, &s.direction, &s.Md, &s.scale, &s.start})
@@ -74,43 +76,51 @@ Data::Data(const Model& model)
   constraints.assemble({model, State(model), kinematics, contacts, weights, inertia.sparsity});
 }
 
+namespace {
+
+/// computeStages(); `clock` is when the last stage ended. A clock is read only after what has run.
 SolveStatus computeStages(const Model& model, const Input& input, const State& state, Data& data,
-                          ContactSource* contacts) noexcept {
+                          ContactSource* contacts, Clock::time_point& clock) noexcept {
+  SOFTGAUSS_ASSERT(data.plan.fits(model));
   data.stats = {};
   if (!finite(model, input, state)) {
     data.stats.status = SolveStatus::notFinite;
     data.stats.badDof = firstBadDof(model, input, state);
     return data.stats.status;
   }
-  Clock::time_point clock = Clock::now();
+  clock = Clock::now();
   computeKinematics(model, state, data.kinematics);
   computeMassMatrix(model, data.kinematics, data.inertia);
-  computeSmoothForces(model, state, input, data.kinematics, data.inertia, data.forces);
+  computeSmoothForces(model, data.plan, state, input, data.kinematics, data.inertia, data.forces);
   data.stats.times.kinematics = lap(clock);
 
-  if (contacts) {
+  if (contacts && contacts->mayTouch()) {
+    ++data.contacts.detections;
     contacts->detect(model, data.kinematics, data.contacts);
     data.stats.contacts = data.contacts.size();
     data.stats.pairsSkipped = data.contacts.pairsSkipped;
     for (const Contact& c : data.contacts.contacts)
       data.stats.maxPenetration = std::max(data.stats.maxPenetration, -c.distance);
+    data.stats.times.collision = lap(clock);
   } else {
     data.contacts.clear();
   }
-  data.stats.times.collision = lap(clock);
 
-  data.constraints.assemble(
-      {model, state, data.kinematics, data.contacts, data.weights, data.inertia.sparsity});
-  // A mass matrix that cannot be factored is found, and reported, by the solve.
-  if (model.options.exactDiagonal) data.exactDiagonal.apply(data.inertia.M, data.constraints);
-  data.sticking.clear();
-  data.stats.rows = data.constraints.rowCount();
-  data.stats.times.rows = lap(clock);
+  if (!data.plan.rows.empty()) {
+    data.constraints.assemble(
+        {model, state, data.kinematics, data.contacts, data.weights, data.inertia.sparsity});
+    // A mass matrix that cannot be factored is found, and reported, by the solve.
+    if (model.options.exactDiagonal && !data.constraints.active().empty())
+      data.exactDiagonal.apply(data.inertia.M, data.constraints);
+    if (model.options.noSlip) data.sticking.clear();
+    data.stats.rows = data.constraints.rowCount();
+    data.stats.times.rows = lap(clock);
+  }
   return SolveStatus::converged;
 }
 
-SolveStatus advance(const Model& model, const VectorX* guess, Data& data, State& state) noexcept {
-  Clock::time_point clock = Clock::now();
+SolveStatus advance(const Model& model, const VectorX* guess, Data& data, State& state,
+                    Clock::time_point& clock) noexcept {
   StepStats& stats = data.stats;
   stats.status = forwardDynamics(model, guess, data);
   stats.iterations = data.forward.report.iterations;
@@ -129,11 +139,25 @@ SolveStatus advance(const Model& model, const VectorX* guess, Data& data, State&
   return stats.status;
 }
 
+}  // namespace
+
+SolveStatus computeStages(const Model& model, const Input& input, const State& state, Data& data,
+                          ContactSource* contacts) noexcept {
+  Clock::time_point clock;
+  return computeStages(model, input, state, data, contacts, clock);
+}
+
+SolveStatus advance(const Model& model, const VectorX* guess, Data& data, State& state) noexcept {
+  Clock::time_point clock = Clock::now();
+  return advance(model, guess, data, state, clock);
+}
+
 SolveStatus step(const Model& model, const Input& input, State& state, Data& data,
                  ContactSource* contacts) noexcept {
-  if (computeStages(model, input, state, data, contacts) == SolveStatus::notFinite)
+  Clock::time_point clock;
+  if (computeStages(model, input, state, data, contacts, clock) == SolveStatus::notFinite)
     return SolveStatus::notFinite;
-  return advance(model, state.warmstart.valid ? &state.warmstart.a : nullptr, data, state);
+  return advance(model, state.warmstart.valid ? &state.warmstart.a : nullptr, data, state, clock);
 }
 
 }  // namespace softgauss

@@ -111,6 +111,7 @@ Scene randomScene(std::uint64_t seed, int contacts, const RandomTreeOptions& opt
   if (options.springs) addSprings(scene.model, Random(seed + 7000));
   if (options.contactMoments) addContactMoments(scene.model, Random(seed + 8000));
   if (options.equalities) addEqualities(scene, Random(seed + 6000));
+  scene.data = std::make_unique<Data>(scene.model);  // of the model as it is now
   scene.input.tau = random.vector(model.nv, 10.0);
   for (int i = 0; i < 2; ++i)
     scene.input.wrenches.push_back(

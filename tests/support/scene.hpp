@@ -26,13 +26,25 @@ struct Scene {
     input.tau = VectorX::Zero(model.nv);
   }
 
-  SolveStatus step() { return softgauss::step(model, input, state, *data, contacts.get()); }
+  SolveStatus step() {
+    renew();
+    return softgauss::step(model, input, state, *data, contacts.get());
+  }
   void steps(int count) {
     for (int i = 0; i < count; ++i) step();
   }
   /// Everything up to the rows, at the present state.
-  SolveStatus stages() { return computeStages(model, input, state, *data, contacts.get()); }
+  SolveStatus stages() {
+    renew();
+    return computeStages(model, input, state, *data, contacts.get());
+  }
   SolveStatus forward() { return forwardDynamics(model, state, *data); }
+
+ private:
+  /// Tests change options of a scene; then its data are made for another model.
+  void renew() {
+    if (!data->plan.fits(model)) data = std::make_unique<Data>(model);
+  }
 };
 
 /// A configuration anywhere on the manifold: joints with a range within 0.01 of one of its ends as

@@ -1,29 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/step/integrators/semi_implicit_euler.hpp"
 
-#include "engine/forces/damping.hpp"
+#include "engine/step/forward.hpp"
 
 namespace softgauss {
 
 bool semiImplicitEuler(const Model& model, Data& data, State& state) {
   const double h = model.options.timestep;
   ForwardSolution& s = data.forward;
-  const bool damped = hasDamping(model);
-  const bool midpoint =
-      model.options.midpointCoriolis && model.options.effects.has(Effect::coriolis);
+  const Plan& plan = data.plan;
+  const bool damped = plan.damped(), midpoint = plan.midpoint;
   data.acceleration = s.a;
   if (damped || midpoint) {
     // Right side M a, less what the Coriolis forces gain by mid-step.
-    data.inertia.M.multiply(s.a, s.Md);
+    VectorX& net = data.acceleration;
+    if (data.constraints.active().empty())
+      net = s.Ma;
+    else
+      data.inertia.M.multiply(s.a, net);
     if (midpoint) {
       s.start = state.v + 0.5 * h * s.a;
+      ++data.forces.calls.coriolis;
       computeBiasAt(model, data.kinematics, data.inertia, s.start, data.forces.work, s.direction);
-      s.Md -= s.direction - data.forces.bias;
+      net -= s.direction - data.forces.bias;
     }
-    for (int i = 0; i < model.nv; ++i) s.direction[i] = damped ? h * model.dofs[i].damping : 0.0;
-    if (!s.massFactor.compute(data.inertia.M, s.direction.data())) return false;
-    data.acceleration = s.Md;
-    s.massFactor.solve(data.acceleration);
+    if (damped) s.direction = h * plan.damping;
+    if (!solveMass(data, damped ? &s.direction : nullptr, net)) return false;
   }
   s.start = state.v + h * data.acceleration;
   if (!s.start.allFinite()) return false;

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// What a step of this model will run, found once from its elements and Options::effects.
+///
+/// The stages read the plan instead of looking for elements at every step: what is not in it is
+/// neither called nor given memory. It holds for the model that it was made from; Data makes it, so
+/// a model that is changed needs a new Data.
+
+#include <cstdint>
+#include <vector>
+
+#include "engine/model/model.hpp"
+
+namespace softgauss {
+
+/// The kinds of rows, in the order of Constraints::visit().
+enum class RowKind : std::uint8_t {
+  connection,
+  weld,
+  coupling,
+  dryFriction,
+  jointLimit,
+  pyramid,
+  ellipticCone
+};
+inline constexpr int kRowKinds = 7;
+
+/// A set of them.
+class RowKinds {
+ public:
+  static constexpr RowKinds all() { return RowKinds((1u << kRowKinds) - 1u); }
+  static constexpr RowKinds none() { return RowKinds(0u); }
+  constexpr bool has(int kind) const { return (bits_ >> kind) & 1u; }
+  constexpr bool has(RowKind kind) const { return has(static_cast<int>(kind)); }
+  constexpr void insert(int kind) { bits_ |= 1u << kind; }
+  constexpr void insert(RowKind kind) { insert(static_cast<int>(kind)); }
+  constexpr RowKinds with(RowKind kind) const {
+    return RowKinds(bits_ | 1u << static_cast<unsigned>(kind));
+  }
+  constexpr bool empty() const { return bits_ == 0u; }
+  constexpr bool operator==(const RowKinds&) const = default;
+
+ private:
+  explicit constexpr RowKinds(unsigned bits) : bits_(bits) {}
+  unsigned bits_;
+};
+
+struct Plan {
+  struct Spring {
+    int dof = 0;
+    int q = 0;               ///< of its joint
+    double stiffness = 0.0;  ///< [N m/rad or N/m]
+    double reference = 0.0;  ///< q at rest
+    bool operator==(const Spring&) const = default;
+  };
+
+  bool gravity = false;         ///< a gravity that is not zero
+  bool coriolis = false;        ///< a body that can turn
+  bool midpoint = false;        ///< Coriolis forces of mid-step, Options::midpointCoriolis
+  bool externalWrench = false;  ///< wrenches of Input count
+  bool diagonal = false;        ///< M is diagonal, and the step needs no factor where no row acts
+  VectorX damping;              ///< (nv) of the dofs; empty: none has any
+  std::vector<Spring> springs;
+  RowKinds rows = RowKinds::none();  ///< kinds of rows that may be made
+  /// Effects that run: what an element calls for and Options::effects has.
+  EffectSet effects = EffectSet::none();
+
+  Plan() = default;
+  explicit Plan(const Model& model);
+  bool damped() const { return damping.size() > 0; }
+  /// Whether the model still has the options that this was made from. For assertions.
+  bool fits(const Model& model) const;
+
+ private:
+  Options options_;
+};
+
+}  // namespace softgauss
