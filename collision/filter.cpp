@@ -68,7 +68,8 @@ Effect contactEffect(const Model& model, int bodyA, int bodyB) {
   return oneRobot ? Effect::selfCollision : Effect::objectContact;
 }
 
-PairFilter makePairFilter(const Model& model, const InitialDistance& initialDistance) {
+PairFilter makePairFilter(const Model& model, const InitialDistance& initialDistance,
+                          const StayApart& stayApart) {
   PairFilter filter;
   std::vector<int> parents;
   for (int b = 0; b < model.bodyCount(); ++b) parents.push_back(solidParent(model, b));
@@ -109,6 +110,10 @@ PairFilter makePairFilter(const Model& model, const InitialDistance& initialDist
         continue;
       }
       const GeometryPair pair = inOrder(model, i, j);
+      if (stayApart && stayApart(pair)) {
+        ++filter.apartPairs;
+        continue;
+      }
       candidates.push_back(pair);
       if (!mayOverlapByDesign(a, b)) continue;
       const double depth = -initialDistance(pair);

@@ -49,6 +49,7 @@ struct PairFilter {
   std::vector<ExcludedPair> excluded;  ///< adjacent and overlapping links, by link names
   std::int64_t rigidPairs = 0;         ///< left out as rigid
   std::int64_t effectOffPairs = 0;     ///< left out because their effect is off
+  std::int64_t apartPairs = 0;         ///< left out because no configuration brings them together
 };
 
 /// Overlap deeper than this [m] in the initial configuration counts. Fingers that are drawn closed
@@ -59,7 +60,11 @@ inline constexpr double kInitialOverlap = 1e-4;
 /// anything ≥ 0 otherwise.
 using InitialDistance = std::function<double(const GeometryPair&)>;
 
-PairFilter makePairFilter(const Model& model, const InitialDistance& initialDistance);
+/// Whether no configuration brings the two geometries within their margin.
+using StayApart = std::function<bool(const GeometryPair&)>;
+
+PairFilter makePairFilter(const Model& model, const InitialDistance& initialDistance,
+                          const StayApart& stayApart = nullptr);
 
 /// Whether a joint connects the bodies, looking through empty bodies; symmetric.
 bool areAdjacent(const Model& model, int bodyA, int bodyB);

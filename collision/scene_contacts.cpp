@@ -9,6 +9,7 @@
 #include "collision/detail/broadphase.hpp"
 #include "collision/detail/convex_pairs.hpp"
 #include "collision/primitive_pairs.hpp"
+#include "collision/reach.hpp"
 #include "engine/constraints/contact.hpp"
 #include "engine/model/state.hpp"
 
@@ -49,14 +50,21 @@ struct SceneContacts::Scene {
   enum class Turn : std::uint8_t { none, axis, full };
 
   explicit Scene(const Model& model);
-  void pose(const Kinematics& kinematics);
+  /// Poses of the geometries of some pair that move, or of all.
+  void pose(const Kinematics& kinematics, bool all = false);
+  void choosePosed();
+  void chooseSlack(const std::vector<GeometryPair>& pairs);
   void setPairs(const std::vector<GeometryPair>& pairs, int broadphasePairs);
   /// Exact test; false when it failed.
   bool test(int a, int b, double margin);
+  bool stayApart(int a, int b) const;
   void report(const Row& row, ContactSet& contacts);
-  void testPlanes(ContactSet& contacts);
-  void testAll(ContactSet& contacts);
-  void testNear(ContactSet& contacts);
+  /// Whether the bounding sphere of row.b is within the reach of row.a and `extra` [m].
+  bool within(const Row& row, double extra) const;
+  /// Whether the rows that are not near may have come near since findNear().
+  bool moved() const;
+  void findNear();
+  void sweep();
 
   const Model& model;
   std::map<const Mesh*, std::shared_ptr<const ConvexHull>> hulls;  ///< shared by equal meshes
@@ -65,6 +73,7 @@ struct SceneContacts::Scene {
   std::vector<Vector3> centreInG;  ///< of the bounding sphere
   std::vector<double> radius;
   std::vector<Turn> turn;
+  std::vector<int> posed;  ///< geometries whose pose a step needs anew
 
   std::vector<Transform> X_WG;
   std::vector<Vector3> centre;  ///< of the bounding sphere, world
@@ -77,7 +86,10 @@ struct SceneContacts::Scene {
   std::vector<int> movable;                        ///< geometries that are no planes
   std::vector<Vector3> movableCentre;
   std::vector<std::pair<int, int>> near;
-  std::vector<int> nearRows;
+  std::vector<int> nearPlaneRows, nearRows;  ///< within reach and slack at `reference`
+  double slack = 0.0;                        ///< [m]; 0: near rows are found at every step
+  std::vector<Vector3> reference;            ///< centres when they were found; empty: never
+  std::int64_t sweeps = 0;
   std::vector<int> firstRow;  ///< rows of geometry a are [firstRow[a], firstRow[a + 1])
 };
 
@@ -121,16 +133,19 @@ void SceneContacts::Scene::setPairs(const std::vector<GeometryPair>& pairs, int 
   }
   if (static_cast<int>(rows.size()) <= broadphasePairs) return;
 
+  std::vector<bool> paired(model.geometries.size(), false);
+  for (const Row& row : rows)
+    paired[static_cast<std::size_t>(row.a)] = paired[static_cast<std::size_t>(row.b)] = true;
   std::vector<double> radii;
   for (std::size_t i = 0; i < model.geometries.size(); ++i) {
-    if (model.geometries[i].shape.kind == ShapeKind::plane) continue;
+    if (!paired[i]) continue;
     movable.push_back(static_cast<int>(i));
     // At least half of each pair's margin: material margins add up.
     double margin = std::max(model.geometries[i].material.margin, 0.0);
     for (const ContactPair& pair : model.contactPairs)
       if (pair.geometryA == static_cast<int>(i) || pair.geometryB == static_cast<int>(i))
         margin = std::max(margin, 0.5 * pair.material.margin);
-    radii.push_back(radius[i] + margin);
+    radii.push_back(radius[i] + margin + 0.5 * slack);
   }
   movableCentre.resize(movable.size());
   broadphase = std::make_unique<detail::Broadphase>(radii);
@@ -141,8 +156,29 @@ void SceneContacts::Scene::setPairs(const std::vector<GeometryPair>& pairs, int 
     firstRow[g] = std::min(firstRow[g], firstRow[g + 1]);
 }
 
-void SceneContacts::Scene::pose(const Kinematics& kinematics) {
-  for (std::size_t i = 0; i < X_WG.size(); ++i) {
+/// A fifth of the mean radius of what may touch: small shapes keep few pairs near, and one that
+/// moves a metre in a second is looked for again after some tens of steps.
+void SceneContacts::Scene::chooseSlack(const std::vector<GeometryPair>& pairs) {
+  constexpr double kShare = 0.2;
+  double sum = 0.0;
+  for (const GeometryPair& pair : pairs) sum += radius[static_cast<std::size_t>(pair.b)];
+  slack = pairs.empty() ? 0.0 : kShare * sum / static_cast<double>(pairs.size());
+}
+
+/// Those of some pair, unless they are fixed to the world: their poses are known.
+void SceneContacts::Scene::choosePosed() {
+  std::vector<bool> paired(model.geometries.size(), false);
+  for (const std::vector<Row>* some : {&planeRows, &rows})
+    for (const Row& row : *some)
+      paired[static_cast<std::size_t>(row.a)] = paired[static_cast<std::size_t>(row.b)] = true;
+  for (std::size_t i = 0; i < paired.size(); ++i)
+    if (paired[i] && model.geometries[i].body != 0) posed.push_back(static_cast<int>(i));
+}
+
+void SceneContacts::Scene::pose(const Kinematics& kinematics, bool all) {
+  const std::size_t count = all ? X_WG.size() : posed.size();
+  for (std::size_t n = 0; n < count; ++n) {
+    const std::size_t i = all ? n : static_cast<std::size_t>(posed[n]);
     const Geometry& g = model.geometries[i];
     const Transform& X_WB = kinematics.X_WB[static_cast<std::size_t>(g.body)];
     Transform& X = X_WG[i];
@@ -168,6 +204,18 @@ bool SceneContacts::Scene::test(int a, int b, double margin) {
   return detail::convexConvex(colliders[i], X_WG[i], colliders[j], X_WG[j], margin, found);
 }
 
+bool SceneContacts::Scene::stayApart(int a, int b) const {
+  // Far above the rounding of positions; a contact that is this far off has no force.
+  constexpr double kRounding = 1e-9;
+  const auto ball = [&](int g) {
+    const auto i = static_cast<std::size_t>(g);
+    return Ball{model.geometries[i].X_BG * centreInG[i], radius[i]};
+  };
+  return leastDistance(model, model.geometries[static_cast<std::size_t>(a)], ball(a),
+                       model.geometries[static_cast<std::size_t>(b)],
+                       ball(b)) > pairMaterial(model, a, b).margin + kRounding;
+}
+
 void SceneContacts::Scene::report(const Row& row, ContactSet& contacts) {
   ++contacts.pairsTested;
   if (!test(row.a, row.b, row.margin)) {
@@ -189,30 +237,52 @@ void SceneContacts::Scene::report(const Row& row, ContactSet& contacts) {
   }
 }
 
-void SceneContacts::Scene::testPlanes(ContactSet& contacts) {
-  for (const Row& row : planeRows) {
+bool SceneContacts::Scene::within(const Row& row, double extra) const {
+  const Vector3& b = centre[static_cast<std::size_t>(row.b)];
+  const double reach = row.reach + extra;
+  if (model.geometries[static_cast<std::size_t>(row.a)].shape.kind == ShapeKind::plane) {
     const Transform& X_WP = X_WG[static_cast<std::size_t>(row.a)];
-    const double height = X_WP.R.col(2).dot(centre[static_cast<std::size_t>(row.b)] - X_WP.p);
-    if (height < row.reach) report(row, contacts);
+    return X_WP.R.col(2).dot(b - X_WP.p) < reach;
   }
+  return (b - centre[static_cast<std::size_t>(row.a)]).squaredNorm() < reach * reach;
 }
 
-void SceneContacts::Scene::testAll(ContactSet& contacts) {
-  for (const Row& row : rows) {
-    const Vector3& a = centre[static_cast<std::size_t>(row.a)];
-    const Vector3& b = centre[static_cast<std::size_t>(row.b)];
-    if ((b - a).squaredNorm() < row.reach * row.reach) report(row, contacts);
+bool SceneContacts::Scene::moved() const {
+  if (reference.empty()) return true;
+  // A little less than half the slack each: rounding of positions does not count.
+  const double allowed = 0.499 * slack;
+  for (const int g : posed) {
+    const auto i = static_cast<std::size_t>(g);
+    // Also where it is not finite.
+    if (!((centre[i] - reference[i]).squaredNorm() <= allowed * allowed)) return true;
   }
+  return false;
 }
 
-void SceneContacts::Scene::testNear(ContactSet& contacts) {
+void SceneContacts::Scene::findNear() {
+  ++sweeps;
+  nearPlaneRows.clear();
+  for (std::size_t r = 0; r < planeRows.size(); ++r) {
+    // A plane that moves may turn, which its own centre does not tell.
+    const bool moves = model.geometries[static_cast<std::size_t>(planeRows[r].a)].body != 0;
+    if (moves || within(planeRows[r], slack)) nearPlaneRows.push_back(static_cast<int>(r));
+  }
+  nearRows.clear();
+  if (broadphase)
+    sweep();
+  else
+    for (std::size_t r = 0; r < rows.size(); ++r)
+      if (within(rows[r], slack)) nearRows.push_back(static_cast<int>(r));
+  if (slack > 0.0) reference = centre;
+}
+
+void SceneContacts::Scene::sweep() {
   for (std::size_t k = 0; k < movable.size(); ++k)
     movableCentre[k] = centre[static_cast<std::size_t>(movable[k])];
   near.clear();
   broadphase->findNear(movableCentre, near);
 
   // Near pairs become rows of the filter, in its order; the others are filtered out.
-  nearRows.clear();
   for (const auto& [i, j] : near) {
     int a = movable[static_cast<std::size_t>(i)], b = movable[static_cast<std::size_t>(j)];
     const auto kind = [&](int g) {
@@ -223,31 +293,32 @@ void SceneContacts::Scene::testNear(ContactSet& contacts) {
     const auto last = rows.begin() + firstRow[static_cast<std::size_t>(a) + 1];
     const auto row =
         std::lower_bound(first, last, b, [](const Row& r, int value) { return r.b < value; });
-    if (row != last && row->b == b) nearRows.push_back(static_cast<int>(row - rows.begin()));
+    if (row != last && row->b == b && within(*row, slack))
+      nearRows.push_back(static_cast<int>(row - rows.begin()));
   }
   std::sort(nearRows.begin(), nearRows.end());
-  for (int r : nearRows) {
-    const Row& row = rows[static_cast<std::size_t>(r)];
-    const Vector3& a = centre[static_cast<std::size_t>(row.a)];
-    const Vector3& b = centre[static_cast<std::size_t>(row.b)];
-    if ((b - a).squaredNorm() < row.reach * row.reach) report(row, contacts);
-  }
 }
 
-SceneContacts::SceneContacts(const Model& model, int broadphasePairs)
+SceneContacts::SceneContacts(const Model& model, int broadphasePairs, bool pruning)
     : scene_(std::make_unique<Scene>(model)) {
   State initial(model);
   Kinematics kinematics(model);
   computeKinematics(model, initial, kinematics);
-  scene_->pose(kinematics);
-  filter_ = makePairFilter(model, [&](const GeometryPair& pair) {
-    double deepest = kInfinity;
-    if (scene_->test(pair.a, pair.b, 0.0))
-      for (int i = 0; i < scene_->found.count; ++i)
-        deepest = std::min(deepest, scene_->found[i].distance);
-    return deepest;
-  });
+  scene_->pose(kinematics, true);
+  filter_ = makePairFilter(
+      model,
+      [&](const GeometryPair& pair) {
+        double deepest = kInfinity;
+        if (scene_->test(pair.a, pair.b, 0.0))
+          for (int i = 0; i < scene_->found.count; ++i)
+            deepest = std::min(deepest, scene_->found[i].distance);
+        return deepest;
+      },
+      [&](const GeometryPair& pair) { return scene_->stayApart(pair.a, pair.b); });
+  if (pruning) scene_->chooseSlack(filter_.pairs);
   scene_->setPairs(filter_.pairs, broadphasePairs);
+  scene_->choosePosed();
+  mayTouch_ = !filter_.pairs.empty();
 }
 
 SceneContacts::~SceneContacts() = default;
@@ -255,13 +326,18 @@ SceneContacts::~SceneContacts() = default;
 void SceneContacts::detect(const Model&, const Kinematics& kinematics,
                            ContactSet& contacts) noexcept {
   contacts.clear();
-  scene_->pose(kinematics);
-  scene_->testPlanes(contacts);
-  if (scene_->broadphase)
-    scene_->testNear(contacts);
-  else
-    scene_->testAll(contacts);
+  Scene& scene = *scene_;
+  scene.pose(kinematics);
+  if (scene.moved()) scene.findNear();
+  for (const auto& [list, of] :
+       {std::pair(&scene.nearPlaneRows, &scene.planeRows), std::pair(&scene.nearRows, &scene.rows)})
+    for (const int r : *list) {
+      const Scene::Row& row = (*of)[static_cast<std::size_t>(r)];
+      if (scene.within(row, 0.0)) scene.report(row, contacts);
+    }
 }
+
+std::int64_t SceneContacts::sweeps() const { return scene_->sweeps; }
 
 const ConvexHull* SceneContacts::hull(int geometry) const {
   return scene_->hullOf[static_cast<std::size_t>(geometry)];

@@ -5,13 +5,16 @@
 ///
 /// Once per model: hulls of meshes, the pair filter, bounding spheres. Once per step: poses of the
 /// geometries, then every pair of the filter is rejected by its bounding spheres (or plane) or
-/// tested exactly. Scenes with more than kBroadphasePairs pairs first sweep for near ones instead
-/// of looping over all.
+/// tested exactly. Pairs whose spheres are far apart are set aside until some shape has moved half
+/// the slack between them, wherever the state that is asked about comes from: a step looks at the
+/// near ones only, and the contacts are the same bit for bit (docs/decisions/0023). Scenes with
+/// more than kBroadphasePairs pairs find the near ones by a sweep instead of a loop over all.
 ///
 /// Contacts appear in the order of the filter's pairs, A and B as there, and depend on the poses
 /// alone. Once its buffers have grown, detect() allocates nothing. A pair whose poses are not
 /// finite is counted in ContactSet::pairsSkipped.
 
+#include <cstdint>
 #include <memory>
 
 #include "collision/convex_hull.hpp"
@@ -27,7 +30,9 @@ class SceneContacts final : public ContactSource {
   static constexpr int kBroadphasePairs = 2000;
 
   /// Throws ModelError when a mesh has no surface. The model must outlive this object.
-  explicit SceneContacts(const Model& model, int broadphasePairs = kBroadphasePairs);
+  /// With `pruning` off every pair is looked at in every step.
+  explicit SceneContacts(const Model& model, int broadphasePairs = kBroadphasePairs,
+                         bool pruning = true);
   ~SceneContacts() override;
   SceneContacts(const SceneContacts&) = delete;
   SceneContacts& operator=(const SceneContacts&) = delete;
@@ -36,6 +41,8 @@ class SceneContacts final : public ContactSource {
   void detect(const Model& model, const Kinematics& kinematics,
               ContactSet& contacts) noexcept override;
 
+  /// How often the near pairs were looked for since the start.
+  std::int64_t sweeps() const;
   const PairFilter& filter() const { return filter_; }
   /// The hull that collides for a geometry that is a mesh; null for other shapes.
   const ConvexHull* hull(int geometry) const;
