@@ -149,6 +149,9 @@ std::string shapesText(const Model& model, const ExplainContext& context) {
   for (const FilteredPair& pair : context.filtered)
     byReason[pair.reason].push_back(fmt::format("{} - {}{}{}", pair.first, pair.second,
                                                 pair.detail.empty() ? "" : " ", pair.detail));
+  if (context.apartPairs > 0)
+    out += fmt::format("  {} never tested: out of each other's reach\n",
+                       counted(static_cast<std::size_t>(context.apartPairs), "pair"));
   for (const auto& [reason, pairs] : byReason) {
     out += fmt::format("  {} never tested: {}\n", counted(pairs.size(), "pair"), reason);
     for (const std::string& pair : pairs) out += fmt::format("    {}\n", pair);
@@ -173,8 +176,17 @@ std::string wrenchesText(const ExplainContext& context) {
 
 std::string effectsText(const Model& model, const ExplainContext& context) {
   detail::TextTable on, off;
-  for (const EffectNote& note : effectNotes(model, context.wrenches))
-    (note.on ? on : off).row({note.name, note.reason});
+  if (!context.costs.empty()) on.row({"", "rows", "memory", "a step", ""});
+  for (const EffectNote& note : effectNotes(model, context.wrenches)) {
+    if (!note.on || context.costs.empty()) {
+      (note.on ? on : off).row({note.name, note.reason});
+      continue;
+    }
+    const auto found = context.costs.find(note.name);
+    const EffectCost cost = found == context.costs.end() ? EffectCost{} : found->second;
+    on.row({note.name, std::to_string(cost.rows), fmt::format("{} B", cost.bytes),
+            found == context.costs.end() ? "-" : fmt::format("{:.2f} µs", cost.us), note.reason});
+  }
   return "effects that are simulated, and what calls them\n" + on.text() +
          "effects that are off, and why\n" + off.text();
 }

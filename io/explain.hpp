@@ -4,6 +4,8 @@
 /// Tells in plain text what was loaded, which effects are simulated and which element of the scene
 /// called each, and what is off and why.
 
+#include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -39,6 +41,13 @@ struct FilteredPair {
   std::string detail = {};  ///< of this pair, e.g. "by 3 mm"
 };
 
+/// What an effect took in a trial.
+struct EffectCost {
+  int rows = 0;           ///< most in a step
+  std::size_t bytes = 0;  ///< memory that it holds
+  double us = 0.0;        ///< of a step: with it less without it [µs], may be negative
+};
+
 /// What explain() is told besides the model.
 struct ExplainContext {
   std::optional<UrdfContents> contents;    ///< of the file, before links were merged
@@ -47,6 +56,8 @@ struct ExplainContext {
   std::vector<std::pair<int, int>> pairs;  ///< those pairs, as indices into Model::geometries
   std::vector<std::pair<std::string, Material>> materials;  ///< the surfaces that have a name
   std::vector<TimedWrench> wrenches;                        ///< that act from outside
+  std::map<std::string, EffectCost> costs;                  ///< by name of an effect; may be empty
+  std::int64_t apartPairs = 0;  ///< pairs of shapes that no configuration brings together
 };
 
 /// The part of explain() on contacts: for each pair of surfaces among `context.pairs`, what sinks

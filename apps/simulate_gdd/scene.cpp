@@ -7,6 +7,7 @@
 #include <cmath>
 #include <set>
 
+#include "apps/simulate_gdd/trial.hpp"
 #include "collision/lowest_point.hpp"
 #include "io/explain.hpp"
 #include "io/goals.hpp"
@@ -172,6 +173,8 @@ std::string explainScene(const Scene& scene) {
   context.testedPairs = static_cast<int>(filter.pairs.size());
   for (const collision::GeometryPair& pair : filter.pairs)
     context.pairs.emplace_back(pair.a, pair.b);
+  context.apartPairs = filter.apartPairs;
+  context.costs = tryEffects(scene);
   context.materials = scene.materials;
   for (const collision::ExcludedPair& pair : filter.excluded) {
     const bool adjacent = pair.reason == collision::ExclusionReason::adjacent;

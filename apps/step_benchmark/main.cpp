@@ -16,96 +16,19 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "collision/lowest_point.hpp"
-#include "collision/scene_contacts.hpp"
-#include "engine/engine.hpp"
-#include "gdd/gdd.hpp"
-#include "io/replay/recording.hpp"
-#include "io/urdf.hpp"
+#include "apps/step_benchmark/ladder.hpp"
+#include "apps/step_benchmark/scaling.hpp"
+#include "apps/step_benchmark/scenes.hpp"
 
 namespace {
 
 using namespace softgauss;
+using namespace softgauss::app;
 
 constexpr int kWarmUpSteps = 500;
 constexpr int kTimedSteps = 50;
 constexpr int kPieces = 20;
 constexpr int kRepetitions = 5;
-
-/// A model with all that steps it.
-struct Scene {
-  Model model;
-  std::unique_ptr<collision::SceneContacts> contacts;
-  State state;
-  std::unique_ptr<Data> data;
-  std::unique_ptr<gdd::GoalDirectedController> controller;  ///< null: passive
-  std::unique_ptr<io::Recording> recording;                 ///< of --view; null: none
-
-  void step() {
-    const SolveStatus status = controller
-                                   ? controller->step(model, {}, state, *data, contacts.get())
-                                   : softgauss::step(model, {}, state, *data, contacts.get());
-    if (status == SolveStatus::notFinite) throw std::runtime_error("the scene became non-finite");
-  }
-};
-
-std::unique_ptr<Scene> makeScene(ModelBuilder builder, bool ground) {
-  auto scene = std::make_unique<Scene>();
-  if (ground) {
-    GeometrySpec plane;
-    plane.name = "ground";
-    plane.link = "world";
-    plane.shape = Shape::plane();
-    builder.geometry(plane);
-  }
-  scene->model = builder.build();
-  scene->contacts = std::make_unique<collision::SceneContacts>(scene->model);
-  scene->data = std::make_unique<Data>(scene->model);
-  scene->state = State(scene->model);
-  const Body& root = scene->model.bodies[scene->model.trees.front().rootBody];
-  if (ground && root.joint == JointKind::floating) {
-    computeKinematics(scene->model, scene->state, scene->data->kinematics);
-    scene->state.q[root.q + 2] -= collision::lowestPoint(scene->model, scene->data->kinematics, 0);
-  }
-  return scene;
-}
-
-std::unique_ptr<Scene> makeRobot(const std::string& folder, const std::string& name, bool ground) {
-  return makeScene(io::readUrdf(folder + "/" + name + ".urdf"), ground);
-}
-
-/// A chain of n links of 0.1 m and 0.1 kg on hinges of alternating axes, hanging sideways.
-std::unique_ptr<Scene> makeChain(int links) {
-  ModelBuilder builder("chain");
-  LinkSpec link;
-  link.name = "world";
-  builder.link(link);
-  for (int i = 0; i < links; ++i) {
-    LinkSpec next;
-    next.name = fmt::format("link{}", i);
-    next.mass = 0.1;
-    next.com = Vector3(0.05, 0.0, 0.0);
-    next.I_Lcm = Vector3(2e-5, 1e-4, 1e-4).asDiagonal();
-    builder.link(next);
-    JointSpec joint;
-    joint.name = fmt::format("joint{}", i);
-    joint.type = JointType::revolute;
-    joint.parent = link.name;
-    joint.child = next.name;
-    joint.axis = i % 2 == 0 ? Vector3::UnitY() : Vector3::UnitZ();
-    if (i > 0) joint.X_PC.p = Vector3(0.1, 0.0, 0.0);
-    joint.damping = 0.01;
-    builder.joint(joint);
-    link = next;
-  }
-  return makeScene(std::move(builder), false);
-}
-
-void addReach(Scene& scene, const std::string& link, const Vector3& target) {
-  scene.controller = std::make_unique<gdd::GoalDirectedController>(scene.model);
-  scene.controller->goals.push_back(std::make_unique<gdd::Reach>(scene.model, link, target));
-  scene.controller->goals.push_back(std::make_unique<gdd::VirtualDamping>());
-}
 
 double median(std::vector<double>& values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -181,9 +104,47 @@ void timeScene(benchmark::State& state, const std::function<std::unique_ptr<Scen
     }
     state.SetIterationTime(1e-6 * median(values["step.us"]));
   }
+  double bytes = 0.0;
+  for (const EffectUse& use : effectUse(scene->model, *scene->data))
+    bytes += static_cast<double>(use.bytes);
+  values["effects.bytes"] = {bytes};
   // One step in eight makes a frame too, so here the mean counts.
   if (scene->recording) values["record.us"] = {recorder.mean()};
   for (auto& [name, column] : values) state.counters[name] = median(column);
+}
+
+/// The algorithms that a step of the arm cannot do without, and nothing between them: kinematics,
+/// M, bias forces, factor, solve; and those that the integrator adds, at mid-step.
+void timeBare(benchmark::State& state, const std::string& robots) {
+  const std::unique_ptr<Scene> scene = makeRung(robots, "arm_nothing");
+  const Model& model = scene->model;
+  Data& data = *scene->data;
+  TreeFactor factor;
+  VectorX bias = data.forces.bias, a = bias, gain = bias;
+  std::vector<double> bare, middle;
+  for (auto _ : state) {
+    for (int i = 0; i < kPieces * kTimedSteps; ++i) {
+      const auto start = std::chrono::steady_clock::now();
+      computeKinematics(model, scene->state, data.kinematics);
+      computeMassMatrix(model, data.kinematics, data.inertia);
+      computeBias(model, data.kinematics, data.inertia, data.forces.work, bias);
+      factor.compute(data.inertia.M);
+      a = -bias;
+      factor.solve(a);
+      const auto between = std::chrono::steady_clock::now();
+      gain = scene->state.v + 0.5 * model.options.timestep * a;
+      computeBiasAt(model, data.kinematics, data.inertia, gain, data.forces.work, bias);
+      gain = -bias;
+      factor.solve(gain);
+      const auto end = std::chrono::steady_clock::now();
+      benchmark::DoNotOptimize(gain.data());
+      bare.push_back(1e6 * std::chrono::duration<double>(between - start).count());
+      middle.push_back(1e6 * std::chrono::duration<double>(end - start).count());
+    }
+    state.SetIterationTime(1e-6 * median(bare));
+  }
+  state.counters["step.us"] = median(bare);
+  state.counters["with_midpoint.us"] = median(middle);
 }
 
 /// Collects the repetitions' counters and prints their medians.
@@ -249,11 +210,35 @@ int main(int argc, char** argv) {
         return scene;
       });
   add("chain100", kWarmUpSteps, [] { return makeChain(100); });
+  for (const Rung& rung : ladder(robots)) add("ladder_" + rung.name, 0, rung.make);
+  for (const Rung& rung : scaling(robots)) add("scaling_" + rung.name, 10, rung.make);
+  benchmark::RegisterBenchmark("ladder_arm_bare", [=](benchmark::State& s) { timeBare(s, robots); })
+      ->Iterations(1)
+      ->UseManualTime()
+      ->Repetitions(kRepetitions);
 
   try {
     nlohmann::ordered_json json;
     FlatReporter reporter(json);
     benchmark::RunSpecifiedBenchmarks(&reporter, filter);
+    std::map<std::string, double> figures;
+    for (const auto& [name, value] : json.items()) figures[name] = value.get<double>();
+    const auto derived = [&](const std::string& name, double value) {
+      json[name] = value;
+      fmt::print("{} {:.4g}\n", name, value);
+    };
+    // What each rung of the ladder adds to the one without its effect.
+    for (const auto& [name, value] : figures) {
+      const std::string suffix = ".step.us";
+      if (name.rfind("ladder_", 0) != 0 || name.find(suffix) == std::string::npos) continue;
+      const std::string rung = name.substr(0, name.size() - suffix.size());
+      const std::string base = rung.substr(0, rung.find('_', std::string("ladder_").size()));
+      const auto nothing = figures.find(base + "_nothing" + suffix);
+      if (nothing != figures.end() && nothing->first != name)
+        derived(rung + ".added.us", value - nothing->second);
+    }
+    for (const auto& [what, exponent] : exponents(figures))
+      derived("scaling_" + what + ".exponent", exponent);
     if (!file.empty()) std::ofstream(file) << json.dump(2) << '\n';
   } catch (const std::exception& error) {
     fmt::print(stderr, "step_benchmark: {}\n", error.what());

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/simulate_gdd/trial.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include "engine/engine.hpp"
+
+namespace softgauss::app {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr int kStates = 100;
+constexpr double kSeconds = 0.5;
+/// Steps at one state; the least time counts, as anything else that runs only adds to it.
+constexpr int kRepetitions = 3;
+
+double secondsSince(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// The scene with some of its effects.
+struct Variant {
+  explicit Variant(Model m) : model(std::move(m)), contacts(model), data(model) {}
+
+  /// Least wall time of a step from `state` [s], which is left alone.
+  double time(const State& state) {
+    double least = kInfinity;
+    for (int i = 0; i < kRepetitions; ++i) {
+      after = state;
+      const Clock::time_point start = Clock::now();
+      step(model, {}, after, data, &contacts);
+      least = std::min(least, secondsSince(start));
+    }
+    return least;
+  }
+
+  Model model;
+  collision::SceneContacts contacts;
+  Data data;
+  State after;
+};
+
+Model without(Model model, Effect effect) {
+  model.options.effects.remove(effect);
+  return model;
+}
+
+}  // namespace
+
+std::map<std::string, io::EffectCost> tryEffects(const Scene& scene) {
+  Variant all(scene.model);
+  std::map<std::string, io::EffectCost> costs;
+  std::map<Effect, std::unique_ptr<Variant>> variants;
+  for (const EffectName& e : kEffectNames)
+    if (all.data.plan.effects.has(e.effect))
+      variants[e.effect] = std::make_unique<Variant>(without(scene.model, e.effect));
+
+  const Clock::time_point start = Clock::now();
+  std::map<Effect, std::vector<double>> differences;
+  State state = scene.initial;
+  for (int i = 0; i < kStates && (i == 0 || secondsSince(start) < kSeconds); ++i) {
+    const double whole = all.time(state);
+    const std::array<EffectUse, kEffects> use = effectUse(all.model, all.data);
+    for (const auto& [effect, variant] : variants) {
+      differences[effect].push_back(whole - variant->time(state));
+      io::EffectCost& cost = costs[std::string(effectName(effect))];
+      cost.rows = std::max(cost.rows, use[static_cast<std::size_t>(effect)].rows);
+      cost.bytes = use[static_cast<std::size_t>(effect)].bytes;
+    }
+    if (all.data.stats.status == SolveStatus::notFinite) break;
+    state = all.after;
+  }
+  for (const auto& [effect, list] : differences)
+    costs[std::string(effectName(effect))].us = 1e6 * median(list);
+  return costs;
+}
+
+}  // namespace softgauss::app

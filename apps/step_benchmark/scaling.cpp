@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/step_benchmark/scaling.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <regex>
+
+#include "collision/lowest_point.hpp"
+#include "io/urdf.hpp"
+
+namespace softgauss::app {
+namespace {
+
+void addGround(ModelBuilder& builder) {
+  GeometrySpec plane;
+  plane.name = "ground";
+  plane.link = "world";
+  plane.shape = Shape::plane();
+  builder.geometry(plane);
+}
+
+std::unique_ptr<Scene> makeBoxes(int count, bool ground) {
+  ModelBuilder builder = freeBoxes(count, ground ? 0.1 - 1e-4 : 10.0);
+  if (ground) addGround(builder);
+  return makeScene(std::move(builder), false);
+}
+
+std::unique_ptr<Scene> makeHumanoids(const std::string& robots, int count) {
+  ModelBuilder one = io::readUrdf(robots + "/humanoid.urdf");
+  const Model alone = one.build();
+  Kinematics k(alone);
+  computeKinematics(alone, State(alone), k);
+  const double height = collision::lowestPoint(alone, k, 0);
+  ModelBuilder builder("humanoids");
+  for (int i = 0; i < count; ++i) {
+    one.base = BaseKind::floating;
+    one.X_WRoot.p = Vector3(2.0 * (i % 8), 2.0 * (i / 8), -height);
+    builder.add(one, fmt::format("humanoid{}", i));
+  }
+  addGround(builder);
+  return makeScene(std::move(builder), false);
+}
+
+}  // namespace
+
+std::vector<Rung> scaling(const std::string& robots) {
+  std::vector<Rung> rungs;
+  for (const int n : {10, 20, 40, 80, 160})
+    rungs.push_back({fmt::format("links_{}", n), [=] { return makeChain(n); }});
+  for (const int n : {4, 16, 64, 256})
+    rungs.push_back({fmt::format("bodies_{}", n), [=] { return makeBoxes(n, false); }});
+  for (const int n : {4, 16, 64, 256})
+    rungs.push_back({fmt::format("resting_{}", n), [=] { return makeBoxes(n, true); }});
+  for (const int n : {1, 2, 4, 8, 16})
+    rungs.push_back({fmt::format("robots_{}", n), [=] { return makeHumanoids(robots, n); }});
+  return rungs;
+}
+
+std::map<std::string, double> exponents(const std::map<std::string, double>& figures) {
+  struct Sums {
+    double n = 0, x = 0, y = 0, xx = 0, xy = 0;
+  };
+  static const std::regex name("scaling_([a-z]+)_([0-9]+)[.]step[.]us");
+  std::map<std::string, Sums> sums;
+  for (const auto& [key, us] : figures) {
+    std::smatch match;
+    if (!std::regex_match(key, match, name) || !(us > 0.0)) continue;
+    const double x = std::log(std::stod(match[2])), y = std::log(us);
+    Sums& s = sums[match[1]];
+    s.n += 1, s.x += x, s.y += y, s.xx += x * x, s.xy += x * y;
+  }
+  std::map<std::string, double> result;
+  for (const auto& [what, s] : sums)
+    if (s.n > 1) result[what] = (s.n * s.xy - s.x * s.y) / (s.n * s.xx - s.x * s.x);
+  return result;
+}
+
+}  // namespace softgauss::app

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// What is timed.
+
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+#include "collision/scene_contacts.hpp"
+#include "engine/engine.hpp"
+#include "gdd/gdd.hpp"
+#include "io/replay/recording.hpp"
+
+namespace softgauss::app {
+
+/// A model with all that steps it.
+struct Scene {
+  Model model;
+  std::unique_ptr<collision::SceneContacts> contacts;
+  State state;
+  std::unique_ptr<Data> data;
+  std::unique_ptr<gdd::GoalDirectedController> controller;  ///< null: passive
+  std::unique_ptr<io::Recording> recording;                 ///< of --view; null: none
+
+  void step() {
+    const SolveStatus status = controller
+                                   ? controller->step(model, {}, state, *data, contacts.get())
+                                   : softgauss::step(model, {}, state, *data, contacts.get());
+    if (status == SolveStatus::notFinite) throw std::runtime_error("the scene became non-finite");
+  }
+};
+
+/// At rest; with `ground`, a floating root stands on the plane z = 0.
+std::unique_ptr<Scene> makeScene(ModelBuilder builder, bool ground);
+
+/// folder/name.urdf.
+std::unique_ptr<Scene> makeRobot(const std::string& folder, const std::string& name, bool ground);
+
+/// A chain of n links of 0.1 m and 0.1 kg on hinges of alternating axes, hanging sideways.
+std::unique_ptr<Scene> makeChain(int links);
+
+/// Cubes of 0.2 m and 1 kg, free, 0.3 m apart in rows of five, their centres at `height` [m].
+ModelBuilder freeBoxes(int count, double height);
+
+/// A goal for a point of `link`, and virtual damping.
+void addReach(Scene& scene, const std::string& link, const Vector3& target);
+
+}  // namespace softgauss::app
