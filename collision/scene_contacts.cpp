@@ -44,6 +44,7 @@ struct SceneContacts::Scene {
     int a, b;
     double reach;   ///< bounding radii and margin together [m]
     double margin;  ///< sum of the two margins [m]
+    bool plane;     ///< a is one
   };
 
   /// How much of a geometry's orientation is ever read.
@@ -125,7 +126,7 @@ void SceneContacts::Scene::setPairs(const std::vector<GeometryPair>& pairs, int 
     const double reach = radius[static_cast<std::size_t>(pair.a)] +
                          radius[static_cast<std::size_t>(pair.b)] + margin;
     (a.shape.kind == ShapeKind::plane ? planeRows : rows)
-        .push_back({pair.a, pair.b, reach, margin});
+        .push_back({pair.a, pair.b, reach, margin, a.shape.kind == ShapeKind::plane});
     if (hasClosedForm(a.shape.kind, b.shape.kind)) continue;
     for (int g : {pair.a, pair.b})
       if (turn[static_cast<std::size_t>(g)] == Turn::axis)
@@ -240,7 +241,7 @@ void SceneContacts::Scene::report(const Row& row, ContactSet& contacts) {
 bool SceneContacts::Scene::within(const Row& row, double extra) const {
   const Vector3& b = centre[static_cast<std::size_t>(row.b)];
   const double reach = row.reach + extra;
-  if (model.geometries[static_cast<std::size_t>(row.a)].shape.kind == ShapeKind::plane) {
+  if (row.plane) {
     const Transform& X_WP = X_WG[static_cast<std::size_t>(row.a)];
     return X_WP.R.col(2).dot(b - X_WP.p) < reach;
   }
