@@ -117,15 +117,12 @@ class KinkFinder {
   /// The one row of a contact that is at its knot.
   bool findRow(Kink& kink) const {
     const PyramidalContact& contact = data_.constraints.contact;
-    int kind = 0, place = -1, found = 0;
-    data_.constraints.visit([&](const auto& rows) {
-      if (static_cast<const void*>(&rows) == &contact) place = kind;
-      ++kind;
-    });
+    constexpr int kPlace = static_cast<int>(RowKind::pyramid);
+    int found = 0;
     for (const ContactRows& made : contact.made())
       for (int i = made.row; i < made.row + std::max(1, 2 * made.frictionDim); ++i) {
         if (std::abs(contact.x[i]) > kAtKnot) continue;
-        kink.knot = {{place, i}, 0};
+        kink.knot = {{kPlace, i}, 0};
         kink.contact = made.contact;
         ++found;
       }

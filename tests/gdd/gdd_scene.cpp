@@ -88,9 +88,9 @@ const VectorX& GddScene::solve() {
 }
 
 int GddScene::rowIndex(RowId id) const {
-  int kind = 0, first = 0;
-  scene.data->constraints.visit([&](const auto& c) {
-    if (kind++ < id.kind) first += c.rowCount();
+  int first = 0;
+  scene.data->constraints.visit([&](const auto& c, int kind) {
+    if (kind < id.kind) first += c.rowCount();
   });
   return first + id.row;
 }
