@@ -15,22 +15,15 @@ MatrixX jacobianOf(const gdd::HeldRows& held, int dofs) {
   return J;
 }
 
-/// The place of the contacts among the effects.
-int contactKind(const Constraints& constraints) {
-  int kind = 0, contact = 0;
-  constraints.visit([&](const auto& c) {
-    if (static_cast<const void*>(&c) == &constraints.contact) contact = kind;
-    ++kind;
-  });
-  return contact;
-}
+/// The number of the pyramids among the kinds of rows.
+constexpr int kPyramids = static_cast<int>(RowKind::pyramid);
 
 /// The four edges of each of the first `contacts` frictional contacts.
 void holdContacts(const Constraints& constraints, int contacts, gdd::HeldRows& held) {
   for (const ContactRows& made : constraints.contact.made()) {
     if (made.frictionDim == 0) continue;
     if (contacts-- == 0) return;
-    for (int i = 0; i < 4; ++i) held.hold({{contactKind(constraints), made.row + i}}, constraints);
+    for (int i = 0; i < 4; ++i) held.hold({{kPyramids, made.row + i}}, constraints);
   }
 }
 
@@ -73,7 +66,7 @@ TEST(HeldRows, HoldingTwiceHoldsOnceAndReleaseForgets) {
   gdd::HeldRows held(s.dofs());
   const Constraints& constraints = s.data().constraints;
   ASSERT_GE(constraints.contact.rowCount(), 3);
-  const int kind = contactKind(constraints);
+  const int kind = kPyramids;
   for (const int row : {0, 1, 2, 1, 0}) held.hold({{kind, row}}, constraints);
   EXPECT_EQ(held.size(), 3);
   held.release(1);
