@@ -104,7 +104,7 @@ PathEnd ActiveSet::followPath(const GoalCost& cost, Data& data) {
   const PathEnd end = path_.follow(start, cell_, cost, rate_, data);
   effortSlope_ += end.t * best_;
   u_ = (u_ + end.t * p).cwiseMax(lower_).cwiseMin(upper_);
-  cell_.spread(u_, force_);
+  cell_.force(u_, force_);
   return end;
 }
 
@@ -303,7 +303,7 @@ bool ActiveSet::startAgain(const Model& model, const GoalCost& cost, const Contr
     path_.a = first_.a;
     u_ = first_.u;
     knots_ = first_.knots;
-    cell_.spread(u_, force_);
+    cell_.force(u_, force_);
     setAppliedForce(force_, data.forces);
     data.constraints.setResidual(path_.a);
     data.constraints.evaluate(changed);
@@ -317,7 +317,7 @@ bool ActiveSet::startAgain(const Model& model, const GoalCost& cost, const Contr
 
 void ActiveSet::keepWarmStart(WarmStart& warm) const {
   warm.gddA = path_.a;
-  warm.control = force_;
+  cell_.place(u_, warm.control);
   warm.multipliers.setZero(force_.size());
   warm.knots = knots_;
   warm.gddSearchAge = searchAge_;

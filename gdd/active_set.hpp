@@ -5,7 +5,7 @@
 ///
 /// The forward form (7) of the problem (T.60):
 ///   min_u  F(u) = ½ (B u)ᵀ R (B u) + ℓ(f(u))    subject to   lower ≤ u ≤ upper
-/// f = g⁻¹ is forward dynamics, B selects the dofs whose box is open. g_z = 0 holds by
+/// f = g⁻¹ is forward dynamics, B holds what the actuators pull (T.64). g_z = 0 holds by
 /// construction, and a = f(u) is exact at all times. In a cell f is affine, F quadratic and convex:
 ///   S = ∂a/∂u = P⁻¹B,   q = ∂F/∂u = Bᵀ(R B u + P⁻¹∇ℓ),   K = ∂²F/∂u² = BᵀR B + Sᵀ∇²ℓ S
 /// Each iteration minimises that quadratic within the box, and, for rows held at their knots, on

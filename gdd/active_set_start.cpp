@@ -13,7 +13,7 @@ namespace softgauss::gdd {
 double ActiveSet::moveTo(const Model& model, const GoalCost& cost, const VectorX* guess,
                          Data& data) {
   u_ = u_.cwiseMax(lower_).cwiseMin(upper_);
-  cell_.spread(u_, force_);
+  cell_.force(u_, force_);
   setAppliedForce(force_, data.forces);
   if (minimizeGauss(model, guess, data) == SolveStatus::notFinite) {
     badDof_ = data.stats.badDof;
@@ -75,11 +75,9 @@ bool ActiveSet::setInertia(const GoalCost& cost, const TreeFactor* massFactor, c
   }
   givenEffort_ = 0.0;
   givenSlope_.setZero(cell_.columns());
-  adjoint_ = force_;
-  for (const int dof : cell_.driven()) adjoint_[dof] = 0.0;
-  if ((adjoint_.array() == 0.0).all()) return true;
-  cell_.multiplyR(adjoint_, rate_);
-  givenEffort_ = 0.5 * adjoint_.dot(rate_);
+  if ((cell_.given().array() == 0.0).all()) return true;
+  cell_.multiplyR(cell_.given(), rate_);
+  givenEffort_ = 0.5 * cell_.given().dot(rate_);
   cell_.select(rate_, givenSlope_);
   return true;
 }
@@ -115,7 +113,7 @@ void ActiveSet::chooseStart(const Model& model, const GoalCost& cost, Data& data
       data.constraints.evaluate(changed);
       computeResidual(data);
       residual_ = force_ - residual_;
-      cell_.select(residual_, u_);
+      cell_.controls(residual_, u_);
       consider();
     }
     report_.cells = 0;
@@ -135,21 +133,20 @@ GddStatus ActiveSet::start(const Model& model, const GoalCost& cost, const Contr
   knots_.clear();
   constrained_.clear();
   cell_.setDriven(model, box);
-  cell_.select(box.lower, lower_);
-  cell_.select(box.upper, upper_);
+  cell_.pick(box.lower, lower_);
+  cell_.pick(box.upper, upper_);
   u_.setZero(cell_.columns());
-  force_ = box.lower;  // where the box has no width
   const bool known = warm.gddValid && warm.gddA.allFinite() && warm.control.size() == model.nv &&
                      warm.control.allFinite();
   if (known)
-    cell_.select(warm.control, u_);
+    cell_.pick(warm.control, u_);
   else
     chooseStart(model, cost, data);
   report_.forwardIterations = 0;
   double value = kInfinity;
   if (known) {
     u_ = u_.cwiseMax(lower_).cwiseMin(upper_);
-    cell_.spread(u_, force_);
+    cell_.force(u_, force_);
     for (const KnotName& name : warm.knots)
       if (const auto knot = data.constraints.find(name)) path_.held.entry(*knot).paths = kGuarded;
     value = moveAlongPath(cost, warm.gddA, data);

@@ -8,8 +8,8 @@ namespace softgauss::gdd {
 
 AugmentedLagrangian::AugmentedLagrangian(const Model& model)
     : hessian_(model), held_(model.nv), ray_(model), curvedRay_(model) {
-  for (VectorX* x : {&a_, &g_, &Ma_, &Rg_, &lambda_, &rho_, &slope_, &curvature_, &w_, &gradient_,
-                     &costGradient_, &direction_, &Md_, &scratch_})
+  for (VectorX* x : {&a_, &g_, &Ma_, &Rg_, &y_, &lambda_, &rho_, &slope_, &curvature_, &w_,
+                     &gradient_, &costGradient_, &direction_, &Md_, &scratch_})
     *x = VectorX::Zero(model.nv);
 }
 
@@ -25,20 +25,19 @@ void AugmentedLagrangian::evaluate(Data& data) {
 }
 
 /// w and ∇Φ at the present point; false when not finite.
-bool AugmentedLagrangian::gradient(const GoalCost& cost, const ControlBox& box, Data& data) {
-  const BoundPenalty bounds{box, lambda_, rho_, &cost.forcePrice()};
-  Rg_ = g_;
-  massFactor_.solve(Rg_);
-  penalty_ = priced_ = 0.0;
-  for (Eigen::Index i = 0; i < g_.size(); ++i) {
-    const Jet psi = bounds.at(i, g_[i]);
+bool AugmentedLagrangian::gradient(const BoundPenalty& bounds, const GoalCost& cost, Data& data) {
+  cost.price().multiply(massFactor_, g_, Rg_);
+  bounds.box.coordinates(g_, y_);
+  penalty_ = 0.0;
+  for (Eigen::Index i = 0; i < y_.size(); ++i) {
+    const Jet psi = bounds.at(i, y_[i]);
     penalty_ += psi.value;
-    w_[i] = Rg_[i] + psi.slope;
-    slope_[i] = psi.slope - bounds.price(i) * g_[i];
-    priced_ += 0.5 * bounds.price(i) * g_[i] * g_[i];
+    slope_[i] = psi.slope;
     boundsChanged_ |= curvature_[i] != psi.curvature;
     curvature_[i] = psi.curvature;
   }
+  w_ = Rg_;
+  bounds.box.addSlope(slope_, w_);
   if (rowsChanged_) {
     hessian_.setCell(data);
     rowsChanged_ = false;
@@ -66,8 +65,33 @@ double AugmentedLagrangian::stationarity(const VectorX& forceScale) {
   return scratch_.cwiseProduct(forceScale).cwiseAbs().maxCoeff() / std::max(1.0, scale);
 }
 
-void AugmentedLagrangian::start(const Model& model, Data& data, const WarmStart& warm) {
-  for (int i = 0; i < model.nv; ++i) rho_[i] = options.penalty * data.weights.dof[i];
+/// Distance from the bounds in force, as force, also from inside, where a λ too large holds y off.
+double AugmentedLagrangian::gap(const ControlBox& box) const {
+  double most = 0.0;
+  for (Eigen::Index i = 0; i < rho_.size(); ++i)
+    most = std::max(most, std::abs((slope_[i] - lambda_[i]) / rho_[i]) * box.size(i));
+  return most;
+}
+
+/// ρ as R has it: penalty · w, or more where R is larger; of a coordinate, along its column of T.
+void AugmentedLagrangian::setPenalties(const GoalCost& cost, const ControlBox& box,
+                                       const Data& data) {
+  scratch_ = Eigen::Map<const VectorX>(data.weights.dof.data(), rho_.size());
+  if (!cost.price().hasInverseMass()) {
+    w_ = cost.price().diagonal();
+    for (int k = 0; k < cost.price().directionCount(); ++k)
+      w_ += cost.price().direction(k).cwiseAbs2();
+    scratch_ = scratch_.cwiseMax(w_);
+  }
+  for (Eigen::Index i = 0; i < rho_.size(); ++i)
+    rho_[i] =
+        options.penalty *
+        (box.isPlain(i) ? scratch_[i] : box.transmission->T().col(i).cwiseAbs2().dot(scratch_));
+}
+
+void AugmentedLagrangian::start(const GoalCost& cost, const ControlBox& box, Data& data,
+                                const WarmStart& warm) {
+  setPenalties(cost, box, data);
   if (warm.gddValid && warm.gddA.allFinite() && warm.multipliers.allFinite()) {
     a_ = warm.gddA;
     lambda_ = warm.multipliers;
@@ -92,16 +116,16 @@ GddReport AugmentedLagrangian::solve(const Model& model, GoalCost& cost, const C
   if (model.nv == 0) return report;
   const TreeMatrix& M = data.inertia.M;
   if (!data.forces.c.allFinite() || !massFactor_.compute(M)) return end(GddStatus::notFinite);
-  start(model, data, warm);
-  const BoundPenalty bounds{box, lambda_, rho_, &cost.forcePrice()};
+  start(cost, box, data, warm);
+  const BoundPenalty bounds{box, lambda_, rho_, &cost.price()};
   const double forceScale = std::max(1.0, data.forces.c.cwiseAbs().maxCoeff());
   double promised = kInfinity, lastViolation = kInfinity;
   bool wholeStep = false;  // the last step met no knot
 
   for (;;) {
-    if (!gradient(cost, box, data)) return end(GddStatus::notFinite);
+    if (!gradient(bounds, cost, data)) return end(GddStatus::notFinite);
     report.violation = box.violation(g_);
-    report.objective = 0.5 * g_.dot(Rg_) + priced_ + cost.value(a_, Ma_);
+    report.objective = 0.5 * g_.dot(Rg_) + cost.value(a_, Ma_);
     if (report.iterations == options.maxIterations) return end(GddStatus::iterationLimit);
 
     // Direction in this cell.
@@ -109,7 +133,7 @@ GddReport AugmentedLagrangian::solve(const Model& model, GoalCost& cost, const C
     wholeStep = false;
     if (stale_ || boundsChanged_) {
       ++report.factorizations;
-      if (!hessian_.factorize(data, massFactor_, curvature_, cost))
+      if (!hessian_.factorize(data, massFactor_, curvature_, box, cost))
         return end(GddStatus::notFinite);
       stale_ = boundsChanged_ = false;
     }
@@ -132,15 +156,14 @@ GddReport AugmentedLagrangian::solve(const Model& model, GoalCost& cost, const C
         ++report.iterations;
         continue;
       }
-      // Distance from the bounds in force, also from inside, where a λ too large holds g off.
-      const double gap = (slope_ - lambda_).cwiseQuotient(rho_).cwiseAbs().maxCoeff();
-      const bool feasible = gap <= options.violationTolerance * forceScale;
+      const double off = gap(box);
+      const bool feasible = off <= options.violationTolerance * forceScale;
       const bool noBetter =
-          gap > 0.5 * lastViolation && gap <= 1e2 * options.violationTolerance * forceScale;
+          off > 0.5 * lastViolation && off <= 1e2 * options.violationTolerance * forceScale;
       if (feasible || noBetter) return end(held_.empty() ? GddStatus::converged : GddStatus::kink);
       if (report.dualUpdates == options.maxDualUpdates) return end(GddStatus::iterationLimit);
       lambda_ = slope_;
-      lastViolation = gap;
+      lastViolation = off;
       ++report.dualUpdates;
       continue;
     }

@@ -7,7 +7,8 @@
 ///   Φ(a) = ½ gᵀR g + ℓ(a) + Σᵢ ½ ρᵢ (tᵢ − clamp(tᵢ))²,   tᵢ = gᵢ + λᵢ/ρᵢ
 /// clamp is onto [lowerᵢ, upperᵢ]; with lower = upper = 0 the term is λ g + ½ ρ g² + const. With
 /// w = R g + ψ′(g), ψ′ᵢ = ρᵢ (tᵢ − clamp tᵢ), and P = ∂g/∂a (T.3), gradient and Gauss–Newton
-/// Hessian are those of (17) and (18) (T.19):
+/// Hessian are those of (17) and (18) (T.19); with actuators of any kind bounds are on y = C g, and
+/// Cᵀψ′(y), Cᵀψ″ C stand for ψ′, ψ″ (T.67):
 ///   ∇Φ = P w + ∇ℓ,   H = P (R + ψ″) P + ∇²ℓ
 /// Iterate: H d = −∇Φ; exact line search along d (ray.hpp); when the gradient has vanished, update
 /// λ ← ψ′(g) until the constraints hold. H is factored anew only where a row or a bound has
@@ -29,7 +30,7 @@ namespace softgauss::gdd {
 struct AugmentedLagrangianOptions {
   double penalty = 1e5;               ///< ρᵢ = penalty · (M⁻¹)ᵢᵢ at q0 [-]
   double gradientTolerance = 1e-8;    ///< scaled ∇Φ, see Report::stationarity
-  double violationTolerance = 1e-10;  ///< distance of g from its box, over max(1, |c|)
+  double violationTolerance = 1e-10;  ///< distance of y from its box, as force, over max(1, |c|)
   int maxIterations = 50;
   int maxDualUpdates = 20;
 };
@@ -52,23 +53,25 @@ class AugmentedLagrangian {
   const VectorX& force() const { return g_; }  ///< g(a): the control, before clamping
 
  private:
-  void start(const Model& model, Data& data, const WarmStart& warm);
+  void setPenalties(const GoalCost& cost, const ControlBox& box, const Data& data);
+  void start(const GoalCost& cost, const ControlBox& box, Data& data, const WarmStart& warm);
+  double gap(const ControlBox& box) const;
   void evaluate(Data& data);
-  bool gradient(const GoalCost& cost, const ControlBox& box, Data& data);
+  bool gradient(const BoundPenalty& bounds, const GoalCost& cost, Data& data);
   double direction();
   double stationarity(const VectorX& forceScale);
 
   VectorX a_, g_, Ma_, Rg_;
+  VectorX y_;  ///< C g
   VectorX lambda_, rho_;
-  VectorX slope_, curvature_;  ///< ψ′ of the bounds alone, ψ″ with the price W (nv)
+  VectorX slope_, curvature_;  ///< ψ′, ψ″ at y (nv)
   VectorX w_, gradient_, costGradient_, direction_, Md_, scratch_;
-  TreeFactor massFactor_;  ///< of M: R = M⁻¹
+  TreeFactor massFactor_;  ///< of M
   GaussNewtonHessian hessian_;
   HeldRows held_;
   Ray ray_;
   CurvedRay curvedRay_;
-  double penalty_ = 0.0;       ///< Σ ψ with the price
-  double priced_ = 0.0;        ///< ½ Σ W g²
+  double penalty_ = 0.0;       ///< Σ ψ
   bool rowsChanged_ = true;    ///< a row changed its piece: P is out of date
   bool stale_ = true;          ///< P changed since H was factored
   bool boundsChanged_ = true;  ///< a bound changed its piece since H was factored

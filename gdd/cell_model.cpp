@@ -29,14 +29,27 @@ void CellModel::set(GoalCost& cost, const ControlBox& box, Data& data, const Vec
   inverseDynamicsJacobian(data, sparse);
   P_ = sparse.dense();
   const MatrixX mass = M.dense();
-  Q_ = P_ * mass.llt().solve(P_);
+  const ForcePrice& price = cost.price();
+  if (price.hasInverseMass())
+    Q_ = P_ * mass.llt().solve(P_);
+  else
+    Q_.setZero(n, n);
+  // ½ c (x·g)²
+  const auto addForce = [&](const VectorX& x, double c) {
+    const VectorX Px = P_ * x;
+    Q_ += c * Px * Px.transpose();
+  };
+  for (int k = 0; k < price.directionCount(); ++k) addForce(price.direction(k), 1.0);
 
   const double scale = std::max(1.0, data.forces.c.cwiseAbs().maxCoeff());
   for (Eigen::Index i = 0; i < n; ++i) {
-    const bool bound =
-        g[i] >= box.upper[i] - kClose * scale || g[i] <= box.lower[i] + kClose * scale;
-    const double price = cost.forcePrice()[i] + (bound ? kHard * data.weights.dof[i] : 0.0);
-    if (price > 0.0) Q_ += price * P_.col(i) * P_.row(i);
+    const double y = box.coordinate(i, g), close = kClose * scale / box.size(i);
+    const bool bound = y >= box.upper[i] - close || y <= box.lower[i] + close;
+    const double hard = bound ? kHard * data.weights.dof[i] : 0.0;
+    const double single = price.diagonal()[i] + (box.isPlain(i) ? hard : 0.0);
+    if (single > 0.0) Q_ += single * P_.col(i) * P_.row(i);
+    if (bound && !box.isPlain(i))
+      addForce(box.transmission->C().row(i).transpose() * box.size(i), hard);
   }
   const TreeSparsity full = TreeSparsity::dense(static_cast<int>(n));
   TreeMatrix curvature;
@@ -87,7 +100,7 @@ const VectorX& CellModel::minimize(GoalCost& cost, const TreeMatrix& M) {
   for (int i = 0; i < kMaxSteps && std::isfinite(value); ++i) {
     Eigen::LLT<MatrixX> factor(Q_ + hessian);
     if (factor.info() != Eigen::Success) {
-      GoalCost::raiseCurvature(M, hessian);
+      cost.raiseCurvature(M, hessian);
       factor.compute(Q_ + hessian);
     }
     d = factor.solve(down);

@@ -6,10 +6,10 @@
 /// Let t solve it with m in the place of the functions φ. As long as no row and no bound changes
 /// its piece, all but φ is quadratic, and what else pulls at t is −∇m(t). So
 ///   q(x) = φ(x) − ∇m(t)ᵀ(x − t) + ½ (x − t)ᵀ Q (x − t)
-///   Q = P (M⁻¹ + W) P + ∇²ℓ + c_B P_BᵀP_B + c_K J_KᵀJ_K
-/// is the whole problem there, up to a constant; ∇²ℓ without φ, B: bounds that g is at, K: rows at
-/// their knots, with large c. Its minimum costs a few factorisations of n × n matrices, no solve.
-/// It is a guess for all of space, good where the cell at t is the cell of the solution.
+///   Q = P (R + W) P + ∇²ℓ + c_B P C_BᵀC_B P + c_K J_KᵀJ_K
+/// is the whole problem there, up to a constant; ∇²ℓ without φ, B: bounds that y = C g is at, K:
+/// rows at their knots, with large c. Its minimum costs a few factorisations of n × n matrices, no
+/// solve. It is a guess for all of space, good where the cell at t is the cell of the solution.
 
 #include "engine/step/data.hpp"
 #include "gdd/cost.hpp"

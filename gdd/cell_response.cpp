@@ -57,44 +57,75 @@ SOFTGAUSS_VECTOR_CLONES void setWeightedGram(const RowMajorMatrixX& Y, const Tre
 
 }  // namespace
 
+void CellResponse::setDriven(const Model& model, const ControlBox& box) {
+  driven_.clear();
+  fixed_ = box.lower;
+  for (int i = 0; i < model.nv; ++i)
+    if (box.lower[i] < box.upper[i]) driven_.push_back(i), fixed_[i] = 0.0;
+  transmission_ = box.transmission;
+  givenForce_ = fixed_;
+  if (!transmission_) return;
+  B_.resize(model.nv, columns());
+  for (int c = 0; c < columns(); ++c) B_.col(c) = transmission_->T().col(driven_[c]);
+  givenForce_.noalias() = transmission_->T() * fixed_;
+}
+
 /// X ← B, and the range of each row.
-void CellResponse::setSelection(RowMajorMatrixX& X) {
+void CellResponse::setColumns(RowMajorMatrixX& X) {
   const int n = M_->size();
   X.setZero(n, padded());
   range_.assign(static_cast<std::size_t>(n), Segment{});
+  const auto set = [&](int dof, int c, double x) {
+    X(dof, c) = x;
+    Segment& range = range_[dof];
+    if (range.begin == range.end) range.begin = c;
+    range.end = c + 1;
+  };
   for (int c = 0; c < columns(); ++c) {
-    X(driven_[c], c) = 1.0;
-    range_[driven_[c]] = {c, c + 1};
+    if (!transmission_) {
+      set(driven_[c], c, 1.0);
+      continue;
+    }
+    for (int i = 0; i < n; ++i)
+      if (B_(i, c) != 0.0) set(i, c, B_(i, c));
   }
-}
-
-void CellResponse::setDriven(const Model& model, const ControlBox& box) {
-  driven_.clear();
-  for (int i = 0; i < model.nv; ++i)
-    if (box.lower[i] < box.upper[i]) driven_.push_back(i);
 }
 
 bool CellResponse::setInertia(const Data& data, const TreeFactor* massFactor,
                               const GoalCost& cost) {
   M_ = &data.inertia.M;
   cost_ = &cost;
-  price_ = cost.forcePrice();
+  price_ = cost.price();
   massFactor_ = massFactor ? massFactor : &ownMassFactor_;
   if (!massFactor && !ownMassFactor_.compute(data.inertia.M)) return false;
   computeForcePrice();
   return true;
 }
 
-/// BᵀM⁻¹B = YᵀD⁻¹Y, Y = L⁻ᵀB, M = LᵀDL. Row k of Y has entries only where a column of B moves dof k
-/// or one that it carries.
+/// BᵀR B, its part of M⁻¹ as BᵀM⁻¹B = YᵀD⁻¹Y, Y = L⁻ᵀB, M = LᵀDL. Row k of Y has entries only where
+/// a column of B moves dof k or one that it carries.
 void CellResponse::computeForcePrice() {
   const int count = padded();
   RowMajorMatrixX& Y = rootS_;
-  setSelection(Y);
-  massFactor_->solveTransposed(Y, range_);
   forcePrice_.setZero(count, count);
-  setWeightedGram(Y, *massFactor_, range_, forcePrice_);
-  for (int i = 0; i < columns(); ++i) forcePrice_(i, i) += price_[driven_[i]];
+  if (price_.hasInverseMass()) {
+    setColumns(Y);
+    massFactor_->solveTransposed(Y, range_);
+    setWeightedGram(Y, *massFactor_, range_, forcePrice_);
+  }
+  const int n = columns();
+  if (transmission_) {
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; j < n; ++j)
+        forcePrice_(i, j) += B_.col(i).cwiseProduct(price_.diagonal()).dot(B_.col(j));
+  } else {
+    for (int i = 0; i < n; ++i) forcePrice_(i, i) += price_.diagonal()[driven_[i]];
+  }
+  for (int k = 0; k < price_.directionCount(); ++k) {
+    scratch_ = price_.direction(k);
+    select(scratch_, pull_);
+    forcePrice_.topLeftCorner(n, n).noalias() += pull_ * pull_.transpose();
+  }
 }
 
 void CellResponse::multiplyTransposed(const VectorX& x, VectorX& y) const {
@@ -134,9 +165,7 @@ void CellResponse::solve(VectorX& x) const {
 }
 
 void CellResponse::multiplyR(const VectorX& x, VectorX& Rx) const {
-  Rx = x;
-  massFactor_->solve(Rx);
-  Rx += price_.cwiseProduct(x);
+  price_.multiply(*massFactor_, x, Rx);
 }
 
 const CellResponse::Correction& CellResponse::cross(const VectorX& J, double jump) {
@@ -146,7 +175,10 @@ const CellResponse::Correction& CellResponse::cross(const VectorX& J, double jum
   solve(c.y);
   ++correctionCount_;
   c.By.setZero(padded());
-  for (int i = 0; i < columns(); ++i) c.By[i] = c.y[driven_[i]];
+  if (transmission_)
+    c.By.head(columns()).noalias() = B_.transpose() * c.y;
+  else
+    for (int i = 0; i < columns(); ++i) c.By[i] = c.y[driven_[i]];
   c.scale = jump / (1.0 + jump * J.dot(c.y));
   if (correctionsInS_ >= 0) {
     My_.resize(c.y.size());
@@ -158,7 +190,7 @@ const CellResponse::Correction& CellResponse::cross(const VectorX& J, double jum
 
 void CellResponse::computeHessian() {
   if (correctionsInS_ < 0) {
-    setSelection(S_);
+    setColumns(S_);
     factor_->solve(S_, range_);
     for (int k = 0; k < correctionCount_; ++k)
       subtractRankOne(corrections_[k].y.data(), corrections_[k].By.data(), corrections_[k].scale,
@@ -181,12 +213,38 @@ void CellResponse::addToHessian(const Correction& c) {
 }
 
 void CellResponse::select(const VectorX& x, VectorX& y) const {
-  y.resize(columns());
-  for (int i = 0; i < columns(); ++i) y[i] = x[driven_[i]];
+  if (!transmission_) return pick(x, y);
+  y.noalias() = B_.transpose() * x;
 }
 
 void CellResponse::spread(const VectorX& u, VectorX& tau) const {
+  if (transmission_) {
+    tau.noalias() = B_ * u;
+    return;
+  }
   for (int i = 0; i < columns(); ++i) tau[driven_[i]] = u[i];
+}
+
+void CellResponse::force(const VectorX& u, VectorX& tau) const {
+  if (!transmission_) return place(u, tau);
+  tau = givenForce_;
+  tau.noalias() += B_ * u;
+}
+
+void CellResponse::pick(const VectorX& y, VectorX& u) const {
+  u.resize(columns());
+  for (int i = 0; i < columns(); ++i) u[i] = y[driven_[i]];
+}
+
+void CellResponse::place(const VectorX& u, VectorX& y) const {
+  y = fixed_;
+  for (int i = 0; i < columns(); ++i) y[driven_[i]] = u[i];
+}
+
+void CellResponse::controls(const VectorX& tau, VectorX& u) const {
+  if (!transmission_) return pick(tau, u);
+  u.resize(columns());
+  for (int i = 0; i < columns(); ++i) u[i] = transmission_->C().row(driven_[i]).dot(tau);
 }
 
 }  // namespace softgauss::gdd

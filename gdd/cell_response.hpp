@@ -3,11 +3,11 @@
 
 /// How acceleration answers control in one cell, and what that makes of the objective (T.60):
 ///
-///   S = P⁻¹B,   K = BᵀR B + Sᵀ∇²ℓ S,   P = M + Jᵀ∇²s J,   R = M⁻¹ + W
+///   S = P⁻¹B,   K = BᵀR B + Sᵀ∇²ℓ S,   P = M + Jᵀ∇²s J
 ///
-/// W is the price of single forces. B has a unit column for each dof that is driven. All columns
-/// are solved for at once. Where a row changes its piece, P changes by Δs″ JᵀJ, and nothing is
-/// factored anew (T.62):
+/// R holds the prices W. B has a column for each coordinate of force whose box is open
+/// (problem.hpp): a unit column where that is the force on a dof. All columns are solved for at
+/// once. Where a row changes its piece, P changes by Δs″ JᵀJ, and nothing is factored anew (T.62):
 ///   P⁻¹ ← P⁻¹ − γ y yᵀ,   y = P⁻¹Jᵀ,   γ = Δs″/(1 + Δs″ J y),   S ← S − γ y sᵀ,   s = Bᵀy
 ///   K ← K − s bᵀ − b sᵀ,   b = γ Sᵀ∇²ℓ y − ½ γ² (yᵀ∇²ℓ y) s
 
@@ -28,8 +28,8 @@ class CellResponse {
 
   /// Takes B from the box.
   void setDriven(const Model& model, const ControlBox& box);
-  /// Takes R from M, and W and ∇²ℓ from the cost; both must stay. `massFactor`, of M, may be null.
-  /// Returns false when M is not positive definite.
+  /// Takes R from the cost and M, and ∇²ℓ from the cost; M and the cost must stay. `massFactor`, of
+  /// M, may be null. Returns false when M is not positive definite.
   bool setInertia(const Data& data, const TreeFactor* massFactor, const GoalCost& cost);
 
   /// P of the cell in which the rows are kept. Returns false when it cannot be factored.
@@ -50,27 +50,35 @@ class CellResponse {
   void computeHessian();
 
   int columns() const { return static_cast<int>(driven_.size()); }
-  const std::vector<int>& driven() const { return driven_; }  ///< the dof of each column of B
+  const std::vector<int>& driven() const { return driven_; }  ///< the coordinate of each column
   void select(const VectorX& x, VectorX& y) const;            ///< y ← Bᵀx
-  void spread(const VectorX& u, VectorX& tau) const;          ///< tau ← B u on driven dofs
-  void solve(VectorX& x) const;                               ///< x ← P⁻¹x
+  void spread(const VectorX& u, VectorX& tau) const;          ///< tau ← B u where B has entries
+  void force(const VectorX& u, VectorX& tau) const;           ///< tau ← B u + given()
+  const VectorX& given() const { return givenForce_; }        ///< the force that the box fixes (nv)
+  void pick(const VectorX& y, VectorX& u) const;   ///< u ← the driven ones of all coordinates
+  void place(const VectorX& u, VectorX& y) const;  ///< y ← u and what the box fixes (nv)
+  void controls(const VectorX& tau, VectorX& u) const;  ///< u ← B⁺ tau
+  void solve(VectorX& x) const;                         ///< x ← P⁻¹x
   /// y ← Sᵀx and a ← S p, after computeHessian().
   void multiplyTransposed(const VectorX& x, VectorX& y) const;
   void multiply(const VectorX& p, VectorX& a) const { a.noalias() = S_.leftCols(columns()) * p; }
-  void multiplyR(const VectorX& x, VectorX& Rx) const;                     ///< Rx ← (R + W) x
+  void multiplyR(const VectorX& x, VectorX& Rx) const;                     ///< Rx ← R x
   void multiplyForcePrice(const VectorX& p, VectorX& y) const;             ///< y ← BᵀR B p
   auto hessian() const { return K_.topLeftCorner(columns(), columns()); }  ///< lower triangle
   int massFailedRow() const { return massFactor_->failedRow(); }
 
  private:
   int padded() const { return paddedSize(columns()); }
-  void setSelection(RowMajorMatrixX& X);
+  void setColumns(RowMajorMatrixX& X);
   void computeForcePrice();
   void addToHessian(const Correction& c);
 
   static constexpr int kMaxCorrections = 16;
 
   std::vector<int> driven_;
+  std::shared_ptr<const Transmission> transmission_;  ///< null: B selects
+  MatrixX B_;                                         ///< empty where B selects
+  VectorX fixed_, givenForce_;  ///< coordinates that the box fixes, else 0; the force they make
   TreeFactor ownMassFactor_, ownFactor_;
   const TreeFactor* massFactor_ = &ownMassFactor_;
   const TreeMatrix* M_ = nullptr;
@@ -82,11 +90,12 @@ class CellResponse {
   TreeMatrix P_;
   RowMajorMatrixX S_, rootS_;   ///< S, and scratch of its size
   std::vector<Segment> range_;  ///< columns of a row of L⁻ᵀB that are not zero
-  VectorX price_;               ///< W (nv)
+  ForcePrice price_;            ///< R
   MatrixX forcePrice_;          ///< BᵀR B
   MatrixX K_;
   VectorX My_, b_;
   mutable VectorX scratch_, padded_;
+  VectorX pull_;
 };
 
 }  // namespace softgauss::gdd

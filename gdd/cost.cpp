@@ -41,7 +41,7 @@ SOFTGAUSS_VECTOR_CLONES void multiplyTransposed(const RowMajorMatrixX& S, const 
 
 }  // namespace
 
-void GoalCost::clear() {
+void GoalCost::clear(const ForceMetric& R) {
   rows_.clear();
   weight_.clear();
   target_.clear();
@@ -49,7 +49,7 @@ void GoalCost::clear() {
   denseTarget_.clear();
   dofWeight_.setZero();
   dofOffset_.setZero();
-  forcePrice_.setZero();
+  price_.set(R);
   functions_.clear();
   metricWeight_ = 0.0;
   metricSlope_.setZero();
@@ -199,14 +199,21 @@ bool GoalCost::expand(const TreeMatrix& M, const VectorX& a, double mu) {
   return true;
 }
 
-void GoalCost::raiseCurvature(const TreeMatrix& M, MatrixX& H) {
-  constexpr double kLeast = -0.9;
+void GoalCost::raiseCurvature(const TreeMatrix& M, MatrixX& H) const {
+  constexpr double kShare = 0.9;
   const MatrixX mass = M.dense();
-  if (Eigen::LLT<MatrixX>(H - kLeast * mass).info() == Eigen::Success) return;
+  double least = -kShare;
+  if (!price_.hasInverseMass()) {
+    // R − σ M⁻¹ ⪰ 0 is LᵀR L ⪰ σ with M = L Lᵀ.
+    const MatrixX L = Eigen::LLT<MatrixX>(mass).matrixL();
+    const MatrixX seen = L.transpose() * price_.dense() * L;
+    least *= std::min(1.0, Eigen::SelfAdjointEigenSolver<MatrixX>(seen).eigenvalues().minCoeff());
+  }
+  if (Eigen::LLT<MatrixX>(H - least * mass).info() == Eigen::Success) return;
   // H = M X Λ XᵀM with XᵀM X = 1.
   const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixX> eigen(H, mass);
   const MatrixX MX = mass * eigen.eigenvectors();
-  H = MX * eigen.eigenvalues().cwiseMax(kLeast).asDiagonal() * MX.transpose();
+  H = MX * eigen.eigenvalues().cwiseMax(least).asDiagonal() * MX.transpose();
 }
 
 double GoalCost::expansionValue(const VectorX& a) const {

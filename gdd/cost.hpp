@@ -9,8 +9,9 @@
 /// single dofs, D diagonal; m, o: the terms of virtual damping,
 /// ½ α (a + βv)ᵀM(a + βv) = ½ α aᵀMa + α β aᵀM v + const.
 ///
-/// Functions that are no such sum enter by expansions of second order (expanded_solve.hpp). A price
-/// on single forces, ½ Σ W_i g_i(a)², is no function of a alone: the solver adds W to R.
+/// Functions that are no such sum enter by expansions of second order (expanded_solve.hpp). The
+/// price of force, ½ gᵀ(R + W) g, is no function of a alone: R is given, goals add W
+/// (force_price.hpp).
 ///
 /// Nothing here allocates in steady state, but what is for functions does.
 
@@ -19,6 +20,7 @@
 
 #include "engine/constraints/block_jacobian.hpp"
 #include "engine/dynamics/centroidal.hpp"
+#include "gdd/force_price.hpp"
 
 namespace softgauss::gdd {
 
@@ -39,7 +41,7 @@ class GoalCost {
   explicit GoalCost(int dofs)
       : dofWeight_(VectorX::Zero(dofs)),
         dofOffset_(VectorX::Zero(dofs)),
-        forcePrice_(VectorX::Zero(dofs)),
+        price_(dofs),
         metricSlope_(VectorX::Zero(dofs)),
         scratch_(VectorX::Zero(dofs)),
         workspace_(dofs) {}
@@ -47,7 +49,8 @@ class GoalCost {
   /// Returns φ(a) and writes ∇φ (nv) and ∇²φ (nv × nv), which have their size.
   using Function = std::function<double(const VectorX& a, VectorX& gradient, MatrixX& hessian)>;
 
-  void clear();
+  /// No goals; force costs ½ gᵀR g.
+  void clear(const ForceMetric& R = {});
   /// ½ weight |J a − target|² for the world acceleration J a of the point p_WP of `body`.
   void addPoint(const Model& model, const Kinematics& k, const TreeSparsity& tree, int body,
                 const Vector3& p_WP, double weight, const Vector3& target);
@@ -66,13 +69,15 @@ class GoalCost {
   }
 
   /// ½ weight g_dof².
-  void addForcePrice(int dof, double weight) { forcePrice_[dof] += weight; }
+  void addForcePrice(int dof, double weight) { price_.add(dof, weight); }
+  /// ½ weight (c·g)².
+  void addForcePrice(const Eigen::Ref<const VectorX>& c, double weight) { price_.add(c, weight); }
   /// φ(a).
   void addFunction(Function function) { functions_.push_back(std::move(function)); }
 
   GoalWorkspace& workspace() { return workspace_; }
   double metricWeight() const { return metricWeight_; }
-  const VectorX& forcePrice() const { return forcePrice_; }  ///< W (nv) [1/kg or 1/(kg m²)]
+  const ForcePrice& price() const { return price_; }  ///< R + W
 
   bool hasFunctions() const { return !functions_.empty(); }
   /// From here on the functions count as their expansion m about a (T.52). Returns false when it is
@@ -83,8 +88,9 @@ class GoalCost {
   double functionValue(const VectorX& a);             ///< φ(a)
   /// φ(a); writes ∇φ (nv) and ∇²φ (nv × nv).
   double functions(const VectorX& a, VectorX& gradient, MatrixX& hessian);
-  /// H ← H with its eigenvalues against M that are below −0.9 raised to that.
-  static void raiseCurvature(const TreeMatrix& M, MatrixX& H);
+  /// H ← H with its eigenvalues against M that are below −0.9 σ raised to that. Where R is M⁻¹,
+  /// σ = 1; else σ ≤ 1 is the largest number with R ⪰ σ M⁻¹, so that P R P ⪰ σ P M⁻¹P ⪰ σ M.
+  void raiseCurvature(const TreeMatrix& M, MatrixX& H) const;
   /// max |∇φ − ∇m|ᵢ scaleᵢ over max(1, max |∇φ|ᵢ scaleᵢ) at a.
   double expansionError(const VectorX& a, const VectorX& scale);
 
@@ -112,9 +118,9 @@ class GoalCost {
   MatrixX dense_;  ///< (nv × room) one column a row of J; the first denseWeight_.size() are in use
   std::vector<double> denseWeight_;
   std::vector<double> denseTarget_;
-  VectorX dofWeight_;   ///< D
-  VectorX dofOffset_;   ///< e
-  VectorX forcePrice_;  ///< W
+  VectorX dofWeight_;  ///< D
+  VectorX dofOffset_;  ///< e
+  ForcePrice price_;   ///< R + W
   std::vector<Function> functions_;
   VectorX expandedAt_, expansionSlope_;  ///< a_k, ∇φ(a_k)
   MatrixX expansionCurvature_;           ///< [∇²φ] + μ M

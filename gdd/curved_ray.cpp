@@ -10,6 +10,8 @@ CurvedRay::CurvedRay(const Model& model)
     : base_(VectorX::Zero(model.nv)),
       g_(VectorX::Zero(model.nv)),
       rate_(VectorX::Zero(model.nv)),
+      y_(VectorX::Zero(model.nv)),
+      yRate_(VectorX::Zero(model.nv)),
       Rg_(VectorX::Zero(model.nv)) {}
 
 RayResult CurvedRay::minimize(Constraints& constraints, const TreeFactor& massFactor,
@@ -40,14 +42,15 @@ RayResult CurvedRay::minimize(Constraints& constraints, const TreeFactor& massFa
     rate_ = -Md;
     constraints.addForceRate(rate_);
     rate_ = -rate_;
-    Rg_ = g_;
-    massFactor.solve(Rg_);
+    bounds.multiplyR(massFactor, g_, Rg_);
+    bounds.box.coordinates(g_, y_);
+    bounds.box.coordinates(rate_, yRate_);
     Jet jet{0.5 * g_.dot(Rg_) + alpha * (costSlope + 0.5 * alpha * costCurvature),
             Rg_.dot(rate_) + costSlope + alpha * costCurvature, 0.0};
-    for (Eigen::Index i = 0; i < g_.size(); ++i) {
-      const Jet psi = bounds.at(i, g_[i]);
+    for (Eigen::Index i = 0; i < y_.size(); ++i) {
+      const Jet psi = bounds.at(i, y_[i]);
       jet.value += psi.value;
-      jet.slope += psi.slope * rate_[i];
+      jet.slope += psi.slope * yRate_[i];
     }
     return jet;
   };

@@ -25,7 +25,7 @@ class CurvedRay {
                      double costSlope, double costCurvature);
 
  private:
-  VectorX base_, g_, rate_, Rg_;
+  VectorX base_, g_, rate_, y_, yRate_, Rg_;
   std::vector<Crossing> crossings_;
 };
 

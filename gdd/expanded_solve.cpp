@@ -17,8 +17,8 @@ double ExpandedSolve::boundsPull(const ControlBox& box, const VectorX& g, const 
   double sum = 0.0;
   for (Eigen::Index i = 0; i < g.size(); ++i) {
     const double lambda = next_.multipliers[i];
-    const double past = g[i] - (lambda > 0.0 ? box.upper[i] : box.lower[i]);
-    if (std::abs(past) <= close) sum += lambda * past;
+    const double past = box.coordinate(i, g) - (lambda > 0.0 ? box.upper[i] : box.lower[i]);
+    if (std::abs(past) * box.size(i) <= close) sum += lambda * past;
   }
   return sum;
 }

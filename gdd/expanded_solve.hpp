@@ -142,7 +142,7 @@ class ExpandedSolve {
     to.factorizations += from.factorizations;
   }
   static VectorX freeAcceleration(const Data& data);
-  /// Σ λ_i (g_i − its bound) over the bounds that g is at in the last trial.
+  /// Σ λ_i (y_i − its bound) over the bounds that y = C g is at in the last trial.
   double boundsPull(const ControlBox& box, const VectorX& g, const Data& data) const;
 
   VectorX a_, force_;

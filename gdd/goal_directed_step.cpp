@@ -11,7 +11,8 @@ GoalDirectedController::GoalDirectedController(const Model& model)
       activeSet(model),
       expansion(model),
       control(VectorX::Zero(model.nv)),
-      cost_(model.nv) {}
+      cost_(model.nv),
+      coordinates_(VectorX::Zero(model.nv)) {}
 
 template <class Solver>
 SolveStatus GoalDirectedController::solveAndAdvance(Solver& used, const Model& model, State& state,
@@ -20,7 +21,7 @@ SolveStatus GoalDirectedController::solveAndAdvance(Solver& used, const Model& m
   const Clock::time_point start = Clock::now();
   // A disturbance is not the control's: it belongs to what the control has to cope with.
   data.forces.c -= data.forces.tau;
-  cost_.clear();
+  cost_.clear(forceMetric);
   for (const auto& goal : goals)
     if (goal->actsAt(state.time)) goal->addCost({model, state, data}, cost_);
   report = expansion.solve(used, model, cost_, box, data, state.warmstart);
@@ -31,7 +32,8 @@ SolveStatus GoalDirectedController::solveAndAdvance(Solver& used, const Model& m
     return data.stats.status;
   }
 
-  control = expansion.force().cwiseMax(box.lower).cwiseMin(box.upper);
+  box.clamp(expansion.force(), control, coordinates_);
+  box.commands(coordinates_, commands);
   setAppliedForce(control, data.forces);
   const SolveStatus status = advance(model, &expansion.acceleration(), data, state);
   if (status != SolveStatus::notFinite) expansion.keepWarmStart(state.warmstart);

@@ -4,7 +4,7 @@
 /// Goal directed dynamics: a step whose control is found from goals (figure 1 of the paper).
 ///
 /// Solve (T.17) for the acceleration that the goals want and the actuators can cause; clamp the
-/// control g_u(a) to its box; run forward dynamics from that acceleration; integrate. Solver 2 ends
+/// control to its box; run forward dynamics from that acceleration; integrate. Solver 2 ends
 /// on the physics: it clamps nothing, and forward dynamics has nothing left to do.
 
 #include <memory>
@@ -29,14 +29,16 @@ class GoalDirectedController {
   explicit GoalDirectedController(const Model& model);
 
   std::vector<std::unique_ptr<Goal>> goals;
-  ControlBox box;  ///< of all dofs; change it to change what the actuators can do
+  ControlBox box;  ///< what the actuators can do; change it, or give them gears and couplings
+  ForceMetric forceMetric;  ///< R, M⁻¹ unless set
   GddSolver solver = GddSolver::activeSet;
   AugmentedLagrangian augmentedLagrangian;
   ActiveSet activeSet;
   ExpandedSolve expansion;  ///< for goals that are not quadratic
 
-  VectorX control;         ///< u of the last step, 0 on unactuated dofs (nv) [N or N m]
-  GddReport report;        ///< of the last step
+  VectorX control;   ///< τ = B u of the last step, 0 on unactuated dofs (nv) [N or N m]
+  VectorX commands;  ///< u of the last step, of the actuators of box.transmission, in their order
+  GddReport report;  ///< of the last step
   double solveTime = 0.0;  ///< wall time of the last GDD solve [s]
 
   /// One step. `input` acts besides the control (disturbances). On SolveStatus::notFinite the
@@ -51,6 +53,7 @@ class GoalDirectedController {
   SolveStatus solveAndAdvance(Solver& used, const Model& model, State& state, Data& data);
 
   GoalCost cost_;
+  VectorX coordinates_;  ///< y of the control (nv)
 };
 
 }  // namespace softgauss::gdd

@@ -26,7 +26,10 @@ void addGramRow(const double* B, int rows, int stride, int i, int count, double*
 }  // namespace
 
 GaussNewtonHessian::GaussNewtonHessian(const Model& model)
-    : dense_(TreeSparsity::dense(model.nv)), compact_(model.dofs.size(), -1) {
+    : dense_(TreeSparsity::dense(model.nv)),
+      compact_(model.dofs.size(), -1),
+      force_(VectorX::Zero(model.nv)),
+      row_(VectorX::Zero(model.nv)) {
   H_.resize(dense_);
 }
 
@@ -41,14 +44,19 @@ void GaussNewtonHessian::setCell(Data& data) {
 }
 
 bool GaussNewtonHessian::factorize(const Data& data, const TreeFactor& massFactor,
-                                   const VectorX& boundCurvature, GoalCost& cost) {
-  // (1 + m) M + 2 G
+                                   const VectorX& boundCurvature, const ControlBox& box,
+                                   GoalCost& cost) {
   const int n = H_.size();
   H_.setZero();
-  H_.add(data.inertia.M, 1.0 + cost.metricWeight());
-  H_.add(G_, 2.0);
-  addReflectedContacts(data, massFactor);
-  addBounds(boundCurvature);
+  if (cost.price().hasInverseMass()) {
+    // (1 + m) M + 2 G
+    H_.add(data.inertia.M, 1.0 + cost.metricWeight());
+    H_.add(G_, 2.0);
+    addReflectedContacts(data, massFactor);
+  } else {
+    H_.add(data.inertia.M, cost.metricWeight());
+  }
+  addForceTerms(boundCurvature, box, cost.price());
   cost.addRowCurvature(H_);
   return n == 0 || factor_.compute(H_);
 }
@@ -109,25 +117,41 @@ void GaussNewtonHessian::addReflectedContacts(const Data& data, const TreeFactor
   }
 }
 
-void GaussNewtonHessian::addBounds(const VectorX& boundCurvature) {
-  // One full row √ψ″ P_i for every bound in force.
+/// H gains one rank √c P x for each force x that costs ½ c (x·g)².
+void GaussNewtonHessian::addForceTerms(const VectorX& boundCurvature, const ControlBox& box,
+                                       const ForcePrice& price) {
   const int n = P_.size();
-  boundRows_.clear();
+  forceRows_.clear();
   for (int i = 0; i < n; ++i) {
-    if (boundCurvature[i] == 0.0) continue;
-    const std::size_t first = boundRows_.size();
-    boundRows_.resize(first + static_cast<std::size_t>(n), 0.0);
-    double* b = boundRows_.data() + first;
-    const double root = std::sqrt(boundCurvature[i]);
-    for (const Segment* s = P_.sparsity().begin(i); s != P_.sparsity().end(i); ++s)
-      for (int j = s->begin; j < s->end; ++j) b[j] = root * P_.row(i)[j];
-    for (int k = i + 1; k < n; ++k)
-      for (const Segment* s = P_.sparsity().begin(k); s != P_.sparsity().end(k); ++s)
-        if (s->begin <= i && i < s->end) b[k] = root * P_.row(k)[i];
+    const bool plain = box.isPlain(i);
+    const double curvature = price.diagonal()[i] + (plain ? boundCurvature[i] : 0.0);
+    if (curvature != 0.0) addForceRow(i, curvature);
+    if (plain || boundCurvature[i] == 0.0) continue;
+    addForceRow(box.transmission->C().row(i).transpose(), boundCurvature[i]);
   }
-  if (boundRows_.empty()) return;
-  const int bounds = static_cast<int>(boundRows_.size()) / n;
-  for (int i = 0; i < n; ++i) addGramRow(boundRows_.data(), bounds, n, i, i + 1, H_.row(i));
+  for (int k = 0; k < price.directionCount(); ++k) addForceRow(price.direction(k), 1.0);
+  if (forceRows_.empty()) return;
+  const int rows = static_cast<int>(forceRows_.size()) / n;
+  for (int i = 0; i < n; ++i) addGramRow(forceRows_.data(), rows, n, i, i + 1, H_.row(i));
+}
+
+void GaussNewtonHessian::addForceRow(int dof, double curvature) {
+  const int n = P_.size();
+  const std::size_t first = forceRows_.size();
+  forceRows_.resize(first + static_cast<std::size_t>(n), 0.0);
+  double* b = forceRows_.data() + first;
+  const double root = std::sqrt(curvature);
+  for (const Segment* s = P_.sparsity().begin(dof); s != P_.sparsity().end(dof); ++s)
+    for (int j = s->begin; j < s->end; ++j) b[j] = root * P_.row(dof)[j];
+  for (int k = dof + 1; k < n; ++k)
+    for (const Segment* s = P_.sparsity().begin(k); s != P_.sparsity().end(k); ++s)
+      if (s->begin <= dof && dof < s->end) b[k] = root * P_.row(k)[dof];
+}
+
+void GaussNewtonHessian::addForceRow(const Eigen::Ref<const VectorX>& force, double curvature) {
+  force_ = std::sqrt(curvature) * force;
+  P_.multiply(force_, row_);
+  forceRows_.insert(forceRows_.end(), row_.begin(), row_.end());
 }
 
 }  // namespace softgauss::gdd

@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// The Gauss–Newton Hessian of (T.19) for R = M⁻¹, assembled without an n³ product:
+/// The Gauss–Newton Hessian of (T.19), for R = M⁻¹ assembled without an n³ product:
 ///
 ///   H = P M⁻¹ P + P ψ″ P + ∇²ℓ,   P = M + G,   G = Jᵀ∇²s J
 ///   P M⁻¹ P = M + 2 G + Cᵀ D⁻¹ C,   C = L⁻ᵀ G,   M = LᵀDL                              (T.20)
 ///
 /// C is non-zero only at the dofs that active rows move, and P ψ″ P has one rank-one term for each
-/// bound that is in force.
+/// bound that is in force, of a coordinate y_i = C_i g the term P C_iᵀ ψ″ C_i P. Prices of forces
+/// are such terms too, and so is any other R, column by column (force_price.hpp).
 
 #include <vector>
 
 #include "engine/step/data.hpp"
 #include "gdd/cost.hpp"
+#include "gdd/problem.hpp"
 
 namespace softgauss::gdd {
 
@@ -24,9 +26,10 @@ class GaussNewtonHessian {
 
   /// G and P = M + G of the cell in which the rows were last evaluated.
   void setCell(Data& data);
-  /// Factors H. `massFactor` is of M. Returns false when H is not positive definite.
+  /// Factors H. `massFactor` is of M, `boundCurvature` ψ″ of every coordinate. Returns false when
+  /// H is not positive definite.
   bool factorize(const Data& data, const TreeFactor& massFactor, const VectorX& boundCurvature,
-                 GoalCost& cost);
+                 const ControlBox& box, GoalCost& cost);
   /// x ← H⁻¹ x.
   void solve(VectorX& x) const { factor_.solve(x); }
   /// y ← P x.
@@ -34,7 +37,9 @@ class GaussNewtonHessian {
 
  private:
   void addReflectedContacts(const Data& data, const TreeFactor& massFactor);
-  void addBounds(const VectorX& boundCurvature);
+  void addForceTerms(const VectorX& boundCurvature, const ControlBox& box, const ForcePrice& price);
+  void addForceRow(int dof, double curvature);
+  void addForceRow(const Eigen::Ref<const VectorX>& force, double curvature);
 
   TreeMatrix P_, G_;
   TreeSparsity dense_;  ///< all dofs coupled
@@ -44,7 +49,8 @@ class GaussNewtonHessian {
   std::vector<int> compact_;  ///< dof → place in touched_, or −1
   std::vector<double> C_;     ///< rows of length touched_.size()
   std::vector<double> gram_;
-  std::vector<double> boundRows_;
+  std::vector<double> forceRows_;  ///< √ψ″ C_i P and the like, each of length n
+  VectorX force_, row_;
 };
 
 }  // namespace softgauss::gdd

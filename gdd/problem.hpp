@@ -3,40 +3,102 @@
 
 /// The goal directed dynamics problem in its inverse form, equation (8) of the paper:
 ///
-///   min_a  ½ g(a)ᵀ R g(a) + ℓ(a)   subject to  lower ≤ g(a) ≤ upper,   R = M⁻¹            (T.17)
+///   min_a  ½ g(a)ᵀ R g(a) + ℓ(a)   subject to  lower ≤ y ≤ upper,  g(a) = T y               (T.17)
 ///
-/// g is the inverse dynamics (T.2). An unactuated dof has lower = upper = 0 (the paper's g_z = 0),
-/// an actuated one its effort box, or no bound. A solution is an acceleration that the actuators
-/// can cause, with contact forces that the physics agrees to.
+/// g is the inverse dynamics (T.2), y its coordinates: commands u of actuators, and forces z that
+/// no actuator causes (T.65). T is the identity unless actuators have gears or drive several dofs.
+/// A coordinate without an actuator has lower = upper = 0 (the paper's g_z = 0), a command its
+/// effort box, or no bound. A solution is an acceleration that the actuators can cause, with
+/// contact forces that the physics agrees to.
+
+#include <memory>
 
 #include "engine/model/model.hpp"
+#include "gdd/transmission.hpp"
 
 namespace softgauss::gdd {
 
 struct ControlBox {
-  VectorX lower;  ///< (nv) [N or N m]
+  VectorX lower;  ///< (nv) of y [N or N m, or the unit of a command]
   VectorX upper;
+  std::shared_ptr<const Transmission> transmission;  ///< null: y = g, τ is selected by the box
 
   ControlBox() = default;
+  /// One actuator for each actuated dof, with the effort of its joint.
   explicit ControlBox(const Model& model) : lower(model.nv), upper(model.nv) {
     const bool actuation = model.options.effects.has(Effect::actuation);
     for (int i = 0; i < model.nv; ++i) {
-      const Dof& dof = model.dofs[i];
+      const Dof& dof = model.dofs[static_cast<std::size_t>(i)];
       const bool free = actuation && dof.actuated;
       lower[i] = free ? dof.effortLower : 0.0;
       upper[i] = free ? dof.effortUpper : 0.0;
     }
   }
-  /// Opens the box of every unactuated dof: root forces are then allowed, and applied.
+  /// These actuators. A dof that none of them pulls keeps its own, if it has one; of one that they
+  /// pull, the joint's effort is no bound any more. Throws ModelError as Transmission does.
+  ControlBox(const Model& model, std::vector<Actuator> actuators);
+
+  /// Opens the box of every force that no actuator causes: root forces are then allowed, and
+  /// applied.
   void allowRootForces(const Model& model) {
     for (int i = 0; i < model.nv; ++i)
-      if (!model.dofs[i].actuated) lower[i] = -kInfinity, upper[i] = kInfinity;
+      if (isRootForce(model, i)) lower[i] = -kInfinity, upper[i] = kInfinity;
   }
-  /// Distance of g from the box, largest component [N or N m].
+  /// Whether coordinate i is a root force, one of z.
+  bool isRootForce(const Model& model, int i) const {
+    if (transmission && transmission->pulls(i)) return transmission->isRootForce(i);
+    return !model.dofs[static_cast<std::size_t>(i)].actuated;
+  }
+  /// Whether coordinate i is the force on dof i.
+  bool isPlain(Eigen::Index i) const {
+    return !transmission || transmission->isPlain(static_cast<int>(i));
+  }
+  /// y_i of the force g.
+  double coordinate(Eigen::Index i, const VectorX& g) const {
+    return isPlain(i) ? g[i] : transmission->C().row(i).dot(g);
+  }
+  /// y ← C g, all coordinates of the force g.
+  void coordinates(const VectorX& g, VectorX& y) const {
+    y = g;
+    if (!transmission) return;
+    for (Eigen::Index i = 0; i < g.size(); ++i) y[i] = coordinate(i, g);
+  }
+  /// x ← x + Cᵀ s: a slope in y as a slope in g.
+  void addSlope(const VectorX& s, VectorX& x) const {
+    if (!transmission)
+      x += s;
+    else
+      x.noalias() += transmission->C().transpose() * s;
+  }
+  /// The largest force on a dof that coordinate i = 1 makes.
+  double size(Eigen::Index i) const {
+    return transmission ? transmission->size(static_cast<int>(i)) : 1.0;
+  }
+
+  /// How far coordinates of g are outside their bounds, as the force that this makes; the largest
+  /// [N or N m].
   double violation(const VectorX& g) const {
-    return (g - g.cwiseMax(lower).cwiseMin(upper)).cwiseAbs().maxCoeff();
+    double most = 0.0;
+    for (Eigen::Index i = 0; i < g.size(); ++i) {
+      const double y = coordinate(i, g);
+      const double over = std::abs(y - std::min(std::max(y, lower[i]), upper[i])) * size(i);
+      if (!(over <= most)) most = over;  // NaN stays
+    }
+    return most;
   }
-  VectorX clamp(const VectorX& g) const { return g.cwiseMax(lower).cwiseMin(upper); }
+  /// tau ← the force within the box that has the coordinates of g, clamped; y ← those.
+  void clamp(const VectorX& g, VectorX& tau, VectorX& y) const;
+  VectorX clamp(const VectorX& g) const {
+    VectorX tau, y;
+    clamp(g, tau, y);
+    return tau;
+  }
+  /// Commands of the actuators of the transmission, in their order, from all coordinates y.
+  void commands(const VectorX& y, VectorX& u) const {
+    u.resize(transmission ? static_cast<Eigen::Index>(transmission->actuators().size()) : 0);
+    for (Eigen::Index k = 0; k < u.size(); ++k)
+      u[k] = y[transmission->coordinateOf(static_cast<int>(k))];
+  }
 };
 
 }  // namespace softgauss::gdd

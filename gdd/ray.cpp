@@ -10,10 +10,10 @@ namespace softgauss::gdd {
 
 Jet Ray::slopeAt(const BoundPenalty& bounds, double tau) const {
   Jet jet{0.0, smoothSlope_ + tau * smoothCurvature_, smoothCurvature_};
-  for (Eigen::Index i = 0; i < g_.size(); ++i) {
-    const Jet psi = bounds.at(i, g_[i] + tau * rate_[i]);
-    jet.slope += psi.slope * rate_[i];
-    jet.curvature += psi.curvature * rate_[i] * rate_[i];
+  for (Eigen::Index i = 0; i < y_.size(); ++i) {
+    const Jet psi = bounds.at(i, y_[i] + tau * yRate_[i]);
+    jet.slope += psi.slope * yRate_[i];
+    jet.curvature += psi.curvature * yRate_[i] * yRate_[i];
   }
   return jet;
 }
@@ -34,8 +34,9 @@ RayResult Ray::minimize(const Constraints& constraints, const TreeFactor& massFa
   rate_ = rate;
   for (;;) {
     // The quadratic of this interval.
-    Rrate_ = rate_;
-    massFactor.solve(Rrate_);
+    bounds.multiplyR(massFactor, rate_, Rrate_);
+    bounds.box.coordinates(g_, y_);
+    bounds.box.coordinates(rate_, yRate_);
     smoothSlope_ = g_.dot(Rrate_) + costSlope + result.alpha * costCurvature;
     smoothCurvature_ = rate_.dot(Rrate_) + costCurvature;
     const double length = crossings_.empty() ? kInfinity : crossings_.front().alpha - result.alpha;

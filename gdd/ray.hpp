@@ -4,35 +4,38 @@
 /// Exact line search for the augmented Lagrangian Φ along a + α d (T.18).
 ///
 /// Between two knots of the rows g is affine in α, so Φ is convex there and piecewise quadratic,
-/// its only pieces being those of the bounds. The search walks from knot to knot: the rate dg/dα
-/// gains s″-jump · ẋ · Jᵀ at each. It ends at the first local minimum: inside an interval, or at a
-/// knot past which the slope is not negative (a kink).
+/// its only pieces being those of the bounds, which are on y = C g. The search walks from knot to
+/// knot: the rate dg/dα gains s″-jump · ẋ · Jᵀ at each. It ends at the first local minimum: inside
+/// an interval, or at a knot past which the slope is not negative (a kink).
 
 #include <vector>
 
 #include "engine/step/data.hpp"
+#include "gdd/force_price.hpp"
 #include "gdd/problem.hpp"
 
 namespace softgauss::gdd {
 
-/// The penalty ψ of the bounds (T.18), and the price ½ W g² of single forces (T.50).
+/// The penalty ψ of the bounds on y (T.18), and the price R + W of force.
 struct BoundPenalty {
   const ControlBox& box;
   const VectorX& lambda;  ///< multipliers
   const VectorX& rho;
-  const VectorX* forcePrice = nullptr;  ///< W; null: none
+  const ForcePrice* price = nullptr;  ///< null: M⁻¹ alone
 
-  double price(Eigen::Index i) const { return forcePrice ? (*forcePrice)[i] : 0.0; }
-
-  /// ½ ρ (t − clamp t)² + ½ W g², its slope and curvature in g_i. A bound just met has curvature 0.
-  Jet at(Eigen::Index i, double g) const {
-    const double t = g + lambda[i] / rho[i];
+  /// Rx ← (R + W) x.
+  void multiplyR(const TreeFactor& massFactor, const VectorX& x, VectorX& Rx) const {
+    if (price) return price->multiply(massFactor, x, Rx);
+    Rx = x;
+    massFactor.solve(Rx);
+  }
+  /// ½ ρ (t − clamp t)², its slope and curvature in y_i. A bound just met has curvature 0.
+  Jet at(Eigen::Index i, double y) const {
+    const double t = y + lambda[i] / rho[i];
     const double lower = box.lower[i], upper = box.upper[i];
     const double over = t > upper ? t - upper : (t < lower ? t - lower : 0.0);
     const bool active = over != 0.0 || lower == upper;
-    const double W = price(i);
-    return {0.5 * rho[i] * over * over + 0.5 * W * g * g, rho[i] * over + W * g,
-            (active ? rho[i] : 0.0) + W};
+    return {0.5 * rho[i] * over * over, rho[i] * over, active ? rho[i] : 0.0};
   }
 };
 
@@ -49,6 +52,8 @@ class Ray {
   explicit Ray(const Model& model)
       : g_(VectorX::Zero(model.nv)),
         rate_(VectorX::Zero(model.nv)),
+        y_(VectorX::Zero(model.nv)),
+        yRate_(VectorX::Zero(model.nv)),
         Rrate_(VectorX::Zero(model.nv)) {}
 
   /// g: inverse dynamics at α = 0; rate: P d; costSlope, costCurvature: of ℓ along d. The rows'
@@ -60,8 +65,9 @@ class Ray {
  private:
   Jet slopeAt(const BoundPenalty& bounds, double tau) const;
 
-  VectorX g_, rate_, Rrate_;
-  double smoothSlope_ = 0.0, smoothCurvature_ = 0.0;  ///< of ½ gᵀR g + ℓ at the interval's start
+  VectorX g_, rate_, y_, yRate_, Rrate_;
+  double smoothSlope_ = 0.0,
+         smoothCurvature_ = 0.0;  ///< of ½ gᵀ(R + W) g + ℓ at the interval's start
   std::vector<Crossing> crossings_;
 };
 

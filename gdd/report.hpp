@@ -23,11 +23,11 @@ struct GddReport {
   int cells = 0;              ///< solver 2: cells in which a quadratic program was solved
   int heldRows = 0;           ///< rows at their knots at the end
   int forwardIterations = 0;  ///< solver 2: Newton iterations of its one forward solve
-  double violation = 0.0;     ///< distance of g(a) from its box [N or N m]
+  double violation = 0.0;     ///< distance of y(a) from its box, as force [N or N m]
   /// Solver 1: max |∇Φ + J_Kᵀμ|ᵢ/√M_ii over max(1, max |∇ℓᵢ|/√M_ii). Solver 2: the decrease that
   /// its quadratic program promises still, over the objective.
   double stationarity = 0.0;
-  double objective = 0.0;  ///< ½ gᵀR g + ℓ up to ℓ's constant
+  double objective = 0.0;  ///< ½ gᵀ(R + W) g + ℓ up to ℓ's constant
 };
 
 }  // namespace softgauss::gdd

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "io/detail/text.hpp"
 #include "io/detail/text_table.hpp"
@@ -63,9 +64,12 @@ std::string headText(const Model& model, const ExplainContext& context) {
   return out;
 }
 
-std::string jointsText(const Model& model) {
+std::string jointsText(const Model& model, const ExplainContext& context) {
   std::map<int, const JointRange*> ranges;
   for (const JointRange& range : model.ranges) ranges[range.body] = &range;
+  std::set<std::string> driven;
+  for (const SceneActuator& actuator : context.actuators)
+    for (const auto& [joint, coefficient] : actuator.joints) driven.insert(joint);
   detail::TextTable table;
   table.row({"joint", "kind", "moves", "range", "start", "effort", "damping", "friction"});
   for (int b = 1; b < model.bodyCount(); ++b) {
@@ -83,7 +87,8 @@ std::string jointsText(const Model& model) {
                                      : fmt::format("{:.4g} .. {:.4g} {}", range->second->lower,
                                                    range->second->upper, turns ? "rad" : "m"),
                detail::shortNumber(model.q0[body.q]),
-               !dof.actuated ? "not actuated"
+               driven.count(joint) ? "by actuators"
+               : !dof.actuated     ? "not actuated"
                : std::isinf(dof.effortUpper)
                    ? "no box"
                    : fmt::format("{:.4g} {}", dof.effortUpper, turns ? "N m" : "N"),
@@ -159,6 +164,21 @@ std::string shapesText(const Model& model, const ExplainContext& context) {
   return out;
 }
 
+std::string actuatorsText(const ExplainContext& context) {
+  if (context.actuators.empty()) return {};
+  detail::TextTable table;
+  table.row({"actuator", "drives, by the force per command", "bounds of the command"});
+  for (const SceneActuator& actuator : context.actuators) {
+    std::string joints;
+    for (const auto& [joint, coefficient] : actuator.joints)
+      joints += fmt::format("{}{} {:.4g}", joints.empty() ? "" : ", ", joint, coefficient);
+    const bool bounded = std::isfinite(actuator.lower) || std::isfinite(actuator.upper);
+    table.row({actuator.name, joints,
+               bounded ? fmt::format("{:.4g} .. {:.4g}", actuator.lower, actuator.upper) : "-"});
+  }
+  return "actuators\n" + table.text();
+}
+
 std::string wrenchesText(const ExplainContext& context) {
   if (context.wrenches.empty()) return {};
   const auto vector = [](const Vector3& x, const char* unit) {
@@ -200,7 +220,8 @@ std::string explain(const Model& model, const ExplainContext& context) {
     out += text;
   };
   section(headText(model, context));
-  section(jointsText(model));
+  section(jointsText(model, context));
+  section(actuatorsText(context));
   section(framesText(model));
   section(shapesText(model, context));
   section(softnessText(model, context));

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "engine/model/model.hpp"
+#include "io/actuators.hpp"
 #include "io/urdf.hpp"
 #include "io/wrenches.hpp"
 
@@ -58,6 +59,7 @@ struct ExplainContext {
   std::vector<TimedWrench> wrenches;                        ///< that act from outside
   std::map<std::string, EffectCost> costs;                  ///< by name of an effect; may be empty
   std::int64_t apartPairs = 0;  ///< pairs of shapes that no configuration brings together
+  std::vector<SceneActuator> actuators;  ///< that drive joints through gears and couplings
 };
 
 /// The part of explain() on contacts: for each pair of surfaces among `context.pairs`, what sinks

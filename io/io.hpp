@@ -3,6 +3,7 @@
 
 /// softgauss::io: robots in, logs and summaries out.
 
+#include "io/actuators.hpp"
 #include "io/explain.hpp"
 #include "io/goals.hpp"
 #include "io/log.hpp"

@@ -9,6 +9,7 @@
 #include "engine/core/check.hpp"
 #include "engine/core/rotation.hpp"
 #include "engine/model/mass_properties.hpp"
+#include "io/detail/scene_actuators.hpp"
 #include "io/detail/scene_constraints.hpp"
 #include "io/detail/scene_options.hpp"
 #include "io/detail/scene_parts.hpp"
@@ -35,7 +36,7 @@ class SceneReader {
 
   SceneFile read() {
     top_.expectOnly({"name", "timestep", "gravity", "ground", "materials", "robots", "objects",
-                     "constraints", "pairs", "wrenches", "options", "goals"});
+                     "actuators", "constraints", "pairs", "wrenches", "options", "goals"});
     std::string name = std::filesystem::path(top_.file()).stem().string();
     if (const auto* entry = top_.find("name")) name = top_.name(*entry);
     scene_.builder = ModelBuilder(name);
@@ -63,6 +64,11 @@ class SceneReader {
     };
     forEach("robots", "robot", [&](const YamlMap& map) { readRobot(map); });
     forEach("objects", "object", [&](const YamlMap& map) { readObject(map); });
+    std::set<std::string> actuatorNames;
+    forEach("actuators", "actuator", [&](const YamlMap& map) {
+      scene_.actuators.push_back(detail::readActuator(map, scene_.builder, actuatorNames));
+    });
+    detail::expectIndependent(scene_.actuators);
     if (const auto* entry = top_.find("constraints")) {
       std::size_t number = 0;
       for (const YamlValue& item : top_.list(*entry))

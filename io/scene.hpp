@@ -16,6 +16,7 @@
 
 #include "engine/model/state.hpp"
 #include "gdd/goal_directed_step.hpp"
+#include "io/actuators.hpp"
 #include "io/urdf.hpp"
 #include "io/wrenches.hpp"
 
@@ -45,6 +46,7 @@ struct SceneFile {
   std::vector<std::pair<std::string, double>> velocities;  ///< of scalar joints [rad/s or m/s]
 
   std::vector<TimedWrench> wrenches;
+  std::vector<SceneActuator> actuators;  ///< controlBox() makes them a box of controls
 
   bool hasGoals = false;                    ///< has a list that readGoals() reads
   std::optional<gdd::GddSolver> gddSolver;  ///< that follows them, where the file names one

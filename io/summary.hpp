@@ -6,6 +6,7 @@
 /// Percentiles are by nearest rank: p95 is the smallest value that at least 95 % of the steps do
 /// not exceed. Numbers that are not finite are null in JSON.
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <utility>
@@ -40,6 +41,8 @@ class Summary {
   /// are read.
   void addStep(const StepRecord& record);
   void finish(const StepRecord& finalState);
+  /// A command of an actuator as a share of its bound.
+  void addControlRatio(double ratio) { maxControlRatio_ = std::max(maxControlRatio_, ratio); }
 
   std::string json() const;
   /// Throws ModelError if the file cannot be written.

@@ -166,9 +166,7 @@ class KinkFinder {
     bool changed = false;
     data_.constraints.setResidual(data_.forward.a);
     data_.constraints.evaluate(changed);
-    price_ = control;
-    massFactor_.solve(price_);
-    price_ += cost_.forcePrice().cwiseProduct(control);
+    cost_.price().multiply(massFactor_, control, price_);
     data_.inertia.M.multiply(data_.forward.a, Ma_);
     return 0.5 * control.dot(price_) + cost_.value(data_.forward.a, Ma_);
   }

@@ -69,6 +69,7 @@ class Runner {
         summary_(model_) {
     if (!options.passive && options.torques.empty()) controller_.goals = makeGoals(options, scene);
     controller_.solver = scene.gddSolver;
+    controller_.box = io::controlBox(model_, scene.actuators);
     if (!options.torques.empty()) torques_ = io::TorqueTable::read(options.torques, model_);
     if (!options.log.empty()) log_.emplace(options.log, model_);
     summary_.version = SOFTGAUSS_VERSION;
@@ -89,7 +90,7 @@ class Runner {
     const auto steps =
         static_cast<long>(std::ceil(options_.duration / model_.options.timestep - 1e-9));
     Progress progress(options_.duration, options_.quiet);
-    Verdict verdict(model_);
+    Verdict verdict(model_, controller_.box);
     ExitCode code = kDone;
     // From here on an interrupt ends the run in order; a second one ends it at once.
     struct sigaction action = {};
@@ -105,7 +106,7 @@ class Runner {
         code = kCannotContinue;
       } else {
         record();
-        verdict.observe(record_.u, state_);
+        verdict.observe(record_.u, controller_.commands, state_);
         progress.show(state_.time, secondsSince(start));
       }
     }
@@ -165,6 +166,13 @@ class Runner {
     record_.maxPenetration = stats.maxPenetration;
     writeLog(record_);
     summary_.addStep(record_);
+    for (Eigen::Index k = 0; k < controller_.commands.size(); ++k) {
+      const gdd::Actuator& actuator =
+          controller_.box.transmission->actuators()[static_cast<std::size_t>(k)];
+      const double bound = std::max(-actuator.lower, actuator.upper);
+      if (std::isfinite(bound) && bound > 0.0)
+        summary_.addControlRatio(std::abs(controller_.commands[k]) / bound);
+    }
     replay_->addStep(record_, data_);
   }
 

@@ -121,6 +121,7 @@ void loadSceneFile(const SimulateOptions& options, Scene& scene) {
   if (file.gddSolver) scene.gddSolver = *file.gddSolver;
   scene.materials = file.materials;
   scene.wrenches = file.wrenches;
+  scene.actuators = file.actuators;
   scene.schedule = io::WrenchSchedule(scene.model, file.wrenches);
   scene.initial = file.initialState(scene.model);
   setJointPositions(options, scene.model, scene.initial);
@@ -169,6 +170,7 @@ std::string explainScene(const Scene& scene) {
   io::ExplainContext context;
   context.contents = scene.contents;
   context.wrenches = scene.wrenches;
+  context.actuators = scene.actuators;
   const collision::PairFilter& filter = scene.contacts->filter();
   context.testedPairs = static_cast<int>(filter.pairs.size());
   for (const collision::GeometryPair& pair : filter.pairs)

@@ -11,6 +11,7 @@
 #include "apps/simulate_gdd/options.hpp"
 #include "collision/scene_contacts.hpp"
 #include "gdd/gdd.hpp"
+#include "io/actuators.hpp"
 #include "io/urdf.hpp"
 #include "io/wrenches.hpp"
 
@@ -25,7 +26,8 @@ struct Scene {
   std::vector<std::pair<std::string, Material>> materials = {{"default", Material{}}};
   std::vector<io::TimedWrench> wrenches;
   io::WrenchSchedule schedule;  ///< of those
-  bool hasGoals = false;        ///< the scene file holds goals
+  std::vector<io::SceneActuator> actuators;
+  bool hasGoals = false;  ///< the scene file holds goals
   gdd::GddSolver gddSolver = gdd::GddSolver::activeSet;
 };
 

@@ -25,13 +25,22 @@ std::string list(const std::vector<std::string>& names) {
 
 }  // namespace
 
-Verdict::Verdict(const Model& model) : model_(model), saturated_(VectorX::Zero(model.nv)) {}
+Verdict::Verdict(const Model& model, const gdd::ControlBox& box)
+    : model_(model), box_(box), saturated_(VectorX::Zero(model.nv)) {
+  if (box.transmission)
+    full_ = VectorX::Zero(static_cast<Eigen::Index>(box.transmission->actuators().size()));
+}
 
-void Verdict::observe(const VectorX& u, const State& state) {
+void Verdict::observe(const VectorX& tau, const VectorX& commands, const State& state) {
   const double forget = std::exp(-model_.options.timestep / kMemory);
+  for (Eigen::Index k = 0; k < commands.size(); ++k) {
+    const gdd::Actuator& actuator = box_.transmission->actuators()[static_cast<std::size_t>(k)];
+    const bool full = commands[k] <= actuator.lower || commands[k] >= actuator.upper;
+    full_[k] = forget * full_[k] + (1.0 - forget) * (full ? 1.0 : 0.0);
+  }
   for (int i = 0; i < model_.nv; ++i) {
     const Dof& dof = model_.dofs[i];
-    const bool full = dof.actuated && (u[i] <= dof.effortLower || u[i] >= dof.effortUpper);
+    const bool full = dof.actuated && (tau[i] <= dof.effortLower || tau[i] >= dof.effortUpper);
     saturated_[i] = forget * saturated_[i] + (1.0 - forget) * (full ? 1.0 : 0.0);
   }
   speed_ = state.v;
@@ -45,6 +54,9 @@ std::string Verdict::heldBack() const {
     anyActuated |= model_.dofs[i].actuated;
     if (saturated_[i] > 0.2) weak.push_back(model_.jointNames[model_.dofs[i].body]);
   }
+  for (Eigen::Index k = 0; k < full_.size(); ++k)
+    if (full_[k] > 0.2)
+      weak.push_back(box_.transmission->actuators()[static_cast<std::size_t>(k)].name);
   if (!anyActuated) return "no joint is actuated";
   for (const JointRange& range : model_.ranges) {
     const double q = q_[model_.bodies[range.body].q];

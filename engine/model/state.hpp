@@ -27,7 +27,7 @@ struct WarmStart {
   VectorX a;                    ///< acceleration of the forward solve (nv)
   VectorX gddA;                 ///< acceleration of the GDD solve (nv)
   VectorX multipliers;          ///< of g_z = 0 and of the control box, GDD solver 1 (nv)
-  VectorX control;              ///< of GDD solver 2 (nv) [N or N m]
+  VectorX control;              ///< of GDD solver 2, coordinates y of its force (nv)
   std::vector<KnotName> knots;  ///< at which rows are, GDD solver 2
   int gddSearchAge = 0;         ///< solves since GDD solver 2 last looked for a better minimum
   int gddSearchWait = 1;        ///< solves from that search to the next

@@ -16,8 +16,31 @@ std::vector<int> dofsThat(const Model& model, bool actuated) {
 std::vector<int> Effort::actuatedDofs(const Model& model) { return dofsThat(model, true); }
 std::vector<int> Effort::rootDofs(const Model& model) { return dofsThat(model, false); }
 
+Effort Effort::rootForces(const Model& model, const ControlBox& box) {
+  Effort effort({});
+  for (int i = 0; i < model.nv; ++i) {
+    if (!box.isRootForce(model, i)) continue;
+    if (box.isPlain(i)) {
+      effort.dofs.push_back(i);
+      continue;
+    }
+    const Eigen::Index k = effort.directions.cols();
+    effort.directions.conservativeResize(model.nv, k + 1);
+    effort.directions.col(k) = box.transmission->C().row(i).transpose();
+  }
+  return effort;
+}
+
 void Effort::addCost(const GoalContext& context, GoalCost& cost) const {
-  for (const int i : dofs) cost.addForcePrice(i, weight * context.data.weights.dof[i]);
+  const std::vector<double>& inverseInertia = context.data.weights.dof;
+  for (const int i : dofs)
+    cost.addForcePrice(i, weight * inverseInertia[static_cast<std::size_t>(i)]);
+  for (Eigen::Index k = 0; k < directions.cols(); ++k) {
+    double share = 0.0;
+    for (Eigen::Index i = 0; i < directions.rows(); ++i)
+      share += directions(i, k) * directions(i, k) * inverseInertia[static_cast<std::size_t>(i)];
+    cost.addForcePrice(directions.col(k), weight * share);
+  }
 }
 
 }  // namespace softgauss::gdd

@@ -145,6 +145,34 @@ TEST(SceneRun, ConesAreSolverOnesAndTheSummarySaysSo) {
   EXPECT_EQ(with({"--base-height", "5", "--ground", "none"}).first, "active-set");
 }
 
+// Two motors with a gear of 40 share two joints: what either joint gets, the other does not. Both
+// solvers bring the hand there with motors at their bounds on the way.
+TEST(SceneRun, ADifferentialWristStaysWithinItsMotors) {
+  const io::TempFolder folder;
+  for (const char* solver : {"active-set", "augmented-lagrangian"}) {
+    const std::string log = folder.path() / "log.csv", summary = folder.path() / "summary.json";
+    const Outcome outcome =
+        simulate({dataFile("scenes/differential_wrist.yaml"), "--duration", "3", "--gdd-solver",
+                  solver, "--log", log, "--summary", summary, "--quiet"});
+    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    const Csv csv((readFile(log)));
+    double left = 0.0, right = 0.0, violation = 0.0;
+    for (int row = 0; row + 1 < static_cast<int>(csv.rows.size()); ++row) {
+      const double bend = csv.number(row, "u:wrist_pitch"), turn = csv.number(row, "u:flange_roll");
+      left = std::max(left, std::abs(bend + turn) / 80.0);
+      right = std::max(right, std::abs(bend - turn) / 80.0);
+      violation = std::max(violation, csv.number(row, "physics_violation"));
+    }
+    EXPECT_LE(left, 0.1 * (1.0 + 1e-12)) << solver;
+    EXPECT_LE(right, 0.1 * (1.0 + 1e-12)) << solver;
+    EXPECT_GT(std::max(left, right), 0.1 * (1.0 - 1e-12)) << solver << ": the bounds are to be met";
+    EXPECT_LT(violation, 1e-9);
+    const auto json = nlohmann::json::parse(readFile(summary));
+    EXPECT_NEAR(double{json["max_control_ratio"]}, 1.0, 1e-12);
+    EXPECT_LT(double{json["goals"][0]["final_error_m"]}, 0.02) << solver;
+  }
+}
+
 TEST(SceneRun, OptionsOfAUrdfAloneAreRefused) {
   const std::string scene = dataFile("scenes/two_arms.yaml");
   for (const auto& [option, value] :

@@ -60,6 +60,9 @@ class Search {
     const MatrixX PMinv = P * d_.Minv;
     qp.H = PMinv * P + goalHessian_;
     qp.s = PMinv * offset + goalSlope_;
+    // The coordinates on which the bounds are: y = D a + e.
+    const MatrixX D = d_.C.size() == 0 ? P : MatrixX(d_.C * P);
+    const VectorX e = d_.coordinates(offset);
     const double constant = 0.5 * offset.dot(d_.Minv * offset) + goalConstant_;
 
     std::vector<std::pair<VectorX, double>> inequalities;  // row · a ≥ bound
@@ -70,12 +73,12 @@ class Search {
     equalities = 0;
     for (int i = 0; i < n; ++i) {
       if (d_.lower[i] == d_.upper[i]) {
-        qp.E.row(equalities) = P.row(i);
-        qp.e[equalities++] = d_.lower[i] - offset[i];
+        qp.E.row(equalities) = D.row(i);
+        qp.e[equalities++] = d_.lower[i] - e[i];
         continue;
       }
-      if (std::isfinite(d_.lower[i])) inequalities.emplace_back(P.row(i), d_.lower[i] - offset[i]);
-      if (std::isfinite(d_.upper[i])) inequalities.emplace_back(-P.row(i), offset[i] - d_.upper[i]);
+      if (std::isfinite(d_.lower[i])) inequalities.emplace_back(D.row(i), d_.lower[i] - e[i]);
+      if (std::isfinite(d_.upper[i])) inequalities.emplace_back(-D.row(i), e[i] - d_.upper[i]);
     }
     for (int i = 0; i < d_.rows(); ++i) {
       const VectorX J = d_.J.row(i);

@@ -46,9 +46,15 @@ VectorX DenseGdd::objectiveGradient(const VectorX& a) const {
 }
 
 VectorX DenseGdd::penaltySlope(const VectorX& g) const {
+  const VectorX slope = coordinateSlope(g);
+  return C.size() == 0 ? slope : VectorX(C.transpose() * slope);
+}
+
+VectorX DenseGdd::coordinateSlope(const VectorX& g) const {
   VectorX slope(g.size());
+  const VectorX place = coordinates(g);
   for (Eigen::Index i = 0; i < g.size(); ++i) {
-    const double t = g[i] + lambda[i] / rho[i];
+    const double t = place[i] + lambda[i] / rho[i];
     slope[i] = rho[i] * (t - std::clamp(t, lower[i], upper[i]));
   }
   return slope;
@@ -56,8 +62,9 @@ VectorX DenseGdd::penaltySlope(const VectorX& g) const {
 
 VectorX DenseGdd::penaltyCurvature(const VectorX& g) const {
   VectorX curvature(g.size());
+  const VectorX place = coordinates(g);
   for (Eigen::Index i = 0; i < g.size(); ++i) {
-    const double t = g[i] + lambda[i] / rho[i];
+    const double t = place[i] + lambda[i] / rho[i];
     const bool inside = lower[i] < upper[i] && t >= lower[i] && t <= upper[i];
     curvature[i] = inside ? 0.0 : rho[i];
   }
@@ -65,7 +72,7 @@ VectorX DenseGdd::penaltyCurvature(const VectorX& g) const {
 }
 
 double DenseGdd::augmented(const VectorX& a) const {
-  const VectorX slope = penaltySlope(g(a));
+  const VectorX slope = coordinateSlope(g(a));
   return objective(a) + 0.5 * slope.dot(slope.cwiseQuotient(rho));
 }
 
@@ -77,12 +84,16 @@ VectorX DenseGdd::augmentedGradient(const VectorX& a) const {
 MatrixX DenseGdd::gaussNewtonHessian(const VectorX& a) const {
   const MatrixX slope = P(a);
   MatrixX weight = Minv;
-  weight.diagonal() += penaltyCurvature(g(a));
+  const VectorX curvature = penaltyCurvature(g(a));
+  if (C.size() == 0)
+    weight.diagonal() += curvature;
+  else
+    weight += C.transpose() * curvature.asDiagonal() * C;
   return slope * weight * slope + goalHessian();
 }
 
 double DenseGdd::violation(const VectorX& a) const {
-  const VectorX force = g(a);
+  const VectorX force = coordinates(g(a));
   return (force - force.cwiseMax(lower).cwiseMin(upper)).cwiseAbs().maxCoeff();
 }
 

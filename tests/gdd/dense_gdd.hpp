@@ -5,8 +5,8 @@
 /// oracle for everything in gdd/.
 ///
 ///   g(a) = M a + c − Jᵀf,  f = D (a_ref − J a), bounded                                   (T.2)
-///   F(a) = ½ gᵀM⁻¹g + ℓ(a),  ℓ(a) = ½ Σ w (A a − y)² + ½ m aᵀM a + aᵀM o                (T.17)
-///   Φ(a) = F(a) + Σ ½ ρ (t − clamp t)²,  t = g + λ/ρ                                    (T.18)
+///   F(a) = ½ gᵀR g + ℓ(a),  ℓ(a) = ½ Σ w (A a − y)² + ½ m aᵀM a + aᵀM o                (T.17)
+///   Φ(a) = F(a) + Σ ½ ρ (t − clamp t)²,  t = C g + λ/ρ                                (T.18)
 
 #include "engine/core/types.hpp"
 
@@ -14,7 +14,8 @@ namespace softgauss::test {
 
 struct DenseGdd {
   MatrixX M;
-  MatrixX Minv;
+  MatrixX Minv;  ///< R, M⁻¹ unless a test puts another there
+  MatrixX C;     ///< coordinates of force on which the bounds are; empty: the identity
   VectorX c;
   MatrixX J;  ///< rows of contacts and limits
   VectorX aRef, D;
@@ -51,10 +52,15 @@ struct DenseGdd {
   /// P (M⁻¹ + ψ″) P + ∇²ℓ.
   MatrixX gaussNewtonHessian(const VectorX& a) const;
 
+  VectorX coordinates(const VectorX& g) const { return C.size() == 0 ? g : VectorX(C * g); }
+  /// Of Σ ψ: in g; in each coordinate.
   VectorX penaltySlope(const VectorX& g) const;
   VectorX penaltyCurvature(const VectorX& g) const;
-  /// Distance of g(a) from the box.
+  /// Distance of C g(a) from the box.
   double violation(const VectorX& a) const;
+
+ private:
+  VectorX coordinateSlope(const VectorX& g) const;
 };
 
 }  // namespace softgauss::test

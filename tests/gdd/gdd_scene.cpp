@@ -33,6 +33,7 @@ GddScene::GddScene(Scene s)
 void GddScene::matchBox() {
   dense.lower = box.lower;
   dense.upper = box.upper;
+  dense.C = box.transmission ? box.transmission->C() : MatrixX();
 }
 
 void GddScene::addPoint(int body, const Vector3& p_WP, double weight, const Vector3& target) {
@@ -70,6 +71,41 @@ void GddScene::addRandomBox(Random& random, double share, double largest) {
     box.upper[i] = random.uniform(0.1, 1.0) * largest;
     box.lower[i] = -random.uniform(0.1, 1.0) * largest;
   }
+  matchBox();
+}
+
+void GddScene::addRandomActuators(Random& random, bool tendons, double largest) {
+  std::vector<int> driven;
+  for (int i = 0; i < dofs(); ++i)
+    if (box.lower[i] < box.upper[i]) driven.push_back(i);
+  std::vector<gdd::Actuator> actuators;
+  const auto coefficient = [&] {
+    return (random.chance(0.5) ? 1.0 : -1.0) * random.uniform(0.3, 3.0);
+  };
+  const auto add = [&](std::vector<gdd::Actuator::Pull> pulls) {
+    gdd::Actuator& actuator = actuators.emplace_back();
+    actuator.name = "motor" + std::to_string(actuators.size());
+    actuator.pulls = std::move(pulls);
+    if (random.chance(0.2)) return;
+    actuator.lower = -random.uniform(0.1, 1.0) * largest;
+    actuator.upper = random.uniform(0.1, 1.0) * largest;
+  };
+  for (std::size_t k = 0; k < driven.size();) {
+    if (k + 1 == driven.size() || random.chance(0.3)) {
+      if (random.chance(0.7)) add({{driven[k], coefficient()}});  // else its own
+      k += 1;
+      continue;
+    }
+    const int i = driven[k], j = driven[k + 1];
+    k += 2;
+    add({{i, coefficient()}, {j, coefficient()}});
+    if (tendons && random.chance(0.5)) continue;
+    // Of the other sense, so that the two are far from parallel.
+    const auto& first = actuators.back().pulls;
+    add({{i, first[0].coefficient * random.uniform(0.5, 2.0)},
+         {j, -first[1].coefficient * random.uniform(0.5, 2.0)}});
+  }
+  box = gdd::ControlBox(model(), std::move(actuators));
   matchBox();
 }
 

@@ -31,6 +31,9 @@ class GddScene {
   void addRandomGoals(Random& random);
   /// Gives actuated dofs a box about 0, with probability `share`.
   void addRandomBox(Random& random, double share, double largest = 10.0);
+  /// Gives the driven dofs other actuators: gears, differentials of two dofs, and, where `tendons`,
+  /// single actuators that pull two dofs; most with bounds of about `largest`.
+  void addRandomActuators(Random& random, bool tendons, double largest = 10.0);
   /// Multipliers and penalties such as the solver has them.
   void randomMultipliers(Random& random, double scale);
 
@@ -44,8 +47,7 @@ class GddScene {
   Data& data() { return *scene.data; }
   const Model& model() const { return scene.model; }
   int dofs() const { return scene.model.nv; }
-
- private:
+  /// Takes the box over into `dense`.
   void matchBox();
 };
 

@@ -157,6 +157,21 @@ class GlobalMinimum : public testing::Test {
     }
   }
 
+  /// The same with gears, differentials and tendons in the place of single joints.
+  void coupledChains(int contacts, int count) {
+    for (const double weight : kWeights) {
+      Tally tally;
+      for (int seed = 0; seed < count; ++seed) {
+        GddScene s = chainScene(seed, contacts);
+        addGoal(s, seed, weight);
+        Random random(seed + 17);
+        s.addRandomActuators(random, true, 5.0);
+        addTo<Solver>(tally, s, globalMinimum(s.dense));
+      }
+      finish("coupled chain, rows " + std::to_string(4 * contacts), weight, tally);
+    }
+  }
+
   void trees(int count, bool boxed) {
     for (const double weight : kWeights) {
       Tally tally;
@@ -205,6 +220,8 @@ TYPED_TEST(GlobalMinimum, IsMostlyFoundWithEightRows) { this->chains(2, 15, fals
 TYPED_TEST(GlobalMinimum, IsMostlyFoundWithTwelveRows) { this->chains(3, 4, false); }
 TYPED_TEST(GlobalMinimum, IsMostlyFoundOnTrees) { this->trees(15, false); }
 TYPED_TEST(GlobalMinimum, IsMostlyFoundOnTreesWithABox) { this->trees(15, true); }
+
+TYPED_TEST(GlobalMinimum, IsMostlyFoundWithCoupledActuators) { this->coupledChains(1, 40); }
 
 TYPED_TEST(GlobalMinimum, LongIsMostlyFound) {
   this->chains(2, 100, true);

@@ -9,7 +9,8 @@
 namespace softgauss::test {
 namespace {
 
-/// A random scene at a random acceleration near the unconstrained one, rows evaluated there.
+/// A random scene at a random acceleration near the unconstrained one, rows evaluated there. Every
+/// third has gears, differentials and tendons, and every sixth another price of force.
 struct AtPoint {
   GddScene s;
   VectorX a;
@@ -18,10 +19,23 @@ struct AtPoint {
 
   explicit AtPoint(std::uint64_t seed) : s(lawGddScene(seed, 5)), hessian(s.model()) {
     Random random(seed + 5000);
+    if (seed % 3 == 0) s.addRandomActuators(random, true);
+    if (seed % 6 == 0) {
+      s.dense.Minv = MatrixX(random.vector(s.dofs(), 1.0).cwiseAbs2().asDiagonal());
+      s.dense.Minv.diagonal().array() += 0.1;
+      s.cost.clear(gdd::ForceMetric::diagonal(s.dense.Minv.diagonal()));
+      Random goals(seed + 6000);
+      s.dense.A.resize(0, s.dofs());
+      s.dense.y.resize(0);
+      s.dense.w.resize(0);
+      s.dense.metric = 0.0;
+      s.dense.offset.setZero();
+      s.addRandomGoals(goals);
+    }
     s.randomMultipliers(random, 5.0);
     // Penalties of the size of R, so that no term drowns the others.
     s.dense.rho *= 1e-5;
-    a = s.dense.Minv * -s.dense.c + random.vector(s.dofs(), 20.0);
+    a = -s.dense.M.llt().solve(s.dense.c) + random.vector(s.dofs(), 20.0);
     VectorX unused(s.dofs());
     inverseDynamics(s.model(), a, s.data(), unused);
     massFactor.compute(s.data().inertia.M);
@@ -33,9 +47,11 @@ struct AtPoint {
     VectorX g(s.dofs());
     inverseDynamics(s.model(), a, s.data(), g);
     const gdd::BoundPenalty bounds{s.box, s.dense.lambda, s.dense.rho};
-    VectorX w = g;
-    massFactor.solve(w);
-    for (int i = 0; i < s.dofs(); ++i) w[i] += bounds.at(i, g[i]).slope;
+    VectorX w(s.dofs()), y(s.dofs()), slope(s.dofs());
+    s.cost.price().multiply(massFactor, g, w);
+    s.box.coordinates(g, y);
+    for (int i = 0; i < s.dofs(); ++i) slope[i] = bounds.at(i, y[i]).slope;
+    s.box.addSlope(slope, w);
     VectorX result(s.dofs()), Ma(s.dofs()), cost(s.dofs());
     hessian.multiplyP(w, result);
     s.data().inertia.M.multiply(a, Ma);
@@ -46,8 +62,8 @@ struct AtPoint {
 
 /// Half the way along ±e_i to the nearest knot of a row or of a bound.
 double safeStep(const DenseGdd& d, const VectorX& a, int i) {
-  const VectorX x = d.residual(a), t = d.g(a) + d.lambda.cwiseQuotient(d.rho);
-  const VectorX rate = d.P(a).col(i);
+  const VectorX x = d.residual(a), t = d.coordinates(d.g(a)) + d.lambda.cwiseQuotient(d.rho);
+  const VectorX rate = d.coordinates(d.P(a).col(i));
   double nearest = 2.0;
   const auto meet = [&](double distance, double speed) {
     if (speed != 0.0) nearest = std::min(nearest, std::abs(distance / speed));
@@ -93,13 +109,16 @@ TEST(GddGradient, PenaltyHasTheDenseValueSlopeAndCurvature) {
     AtPoint at(seed);
     const DenseGdd& d = at.s.dense;
     const gdd::BoundPenalty bounds{at.s.box, d.lambda, d.rho};
-    const VectorX g = d.g(at.a), slope = d.penaltySlope(g), curvature = d.penaltyCurvature(g);
+    const VectorX g = d.g(at.a), y = d.coordinates(g), curvature = d.penaltyCurvature(g);
+    VectorX slope(at.s.dofs()), sum = VectorX::Zero(at.s.dofs());
     for (int i = 0; i < at.s.dofs(); ++i) {
-      const Jet psi = bounds.at(i, g[i]);
-      EXPECT_NEAR(psi.slope, slope[i], 1e-12 * std::abs(slope[i]));
+      const Jet psi = bounds.at(i, y[i]);
+      slope[i] = psi.slope;
       EXPECT_EQ(psi.curvature, curvature[i]);
       EXPECT_NEAR(psi.value, 0.5 * slope[i] * slope[i] / d.rho[i], 1e-12 * psi.value);
     }
+    at.s.box.addSlope(slope, sum);
+    EXPECT_APPROX(sum, d.penaltySlope(g), 1e-12);
   }
 }
 
@@ -110,7 +129,7 @@ TEST(GddHessian, SolveInvertsTheDenseFormula) {
     AtPoint at(seed);
     const DenseGdd& d = at.s.dense;
     const VectorX curvature = d.penaltyCurvature(d.g(at.a));
-    ASSERT_TRUE(at.hessian.factorize(at.s.data(), at.massFactor, curvature, at.s.cost));
+    ASSERT_TRUE(at.hessian.factorize(at.s.data(), at.massFactor, curvature, at.s.box, at.s.cost));
     const MatrixX H = d.gaussNewtonHessian(at.a);
     Random random(seed);
     const VectorX b = H * random.vector(at.s.dofs(), 1.0);

@@ -193,6 +193,35 @@ TEST(Allocation, NoneInTheGoalDirectedStepWithEveryQuadraticGoal) {
   EXPECT_EQ(guard.count(), 0);
 }
 
+// Gears, differentials and a tendon in the place of the joints' own motors, and another price.
+TEST(Allocation, NoneInTheGoalDirectedStepWithCoupledActuators) {
+  SKIP_WITHOUT_HOOK();
+  for (const gdd::GddSolver solver :
+       {gdd::GddSolver::activeSet, gdd::GddSolver::augmentedLagrangian}) {
+    RobotScene r("humanoid");
+    addEveryQuadraticGoal(r);
+    const std::vector<int> driven = gdd::Effort::actuatedDofs(r.model);
+    r.controller.solver = solver;
+    r.controller.box = gdd::ControlBox(
+        r.model,
+        {{.name = "left", .pulls = {{driven[0], 30.0}, {driven[1], 30.0}}, .lower = -3, .upper = 3},
+         {.name = "right", .pulls = {{driven[0], 30.0}, {driven[1], -30.0}}},
+         {.name = "gear", .pulls = {{driven[2], 50.0}}, .lower = -2, .upper = 2},
+         {.name = "tendon", .pulls = {{driven[3], 1.0}, {driven[4], 0.5}}}});
+    r.controller.goals.push_back(
+        std::make_unique<gdd::Effort>(gdd::Effort::rootForces(r.model, r.controller.box)));
+    const State start = r.state;
+    const auto run = [&] {
+      for (int i = 0; i < 100; ++i) EXPECT_NE(r.step(), SolveStatus::notFinite);
+    };
+    run();
+    r.state = start;
+    const AllocationGuard guard;
+    run();
+    EXPECT_EQ(guard.count(), 0);
+  }
+}
+
 TEST(Allocation, NoneInInverseDynamics) {
   SKIP_WITHOUT_HOOK();
   Scene s = thrownHumanoid();

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gdd/problem.hpp"
+
+namespace softgauss::gdd {
+
+ControlBox::ControlBox(const Model& model, std::vector<Actuator> actuators) : ControlBox(model) {
+  transmission = std::make_shared<const Transmission>(model.nv, std::move(actuators));
+  const bool actuation = model.options.effects.has(Effect::actuation);
+  for (int i = 0; i < model.nv; ++i)
+    if (transmission->pulls(i)) lower[i] = upper[i] = 0.0;
+  for (std::size_t k = 0; actuation && k < transmission->actuators().size(); ++k) {
+    const int i = transmission->coordinateOf(static_cast<int>(k));
+    lower[i] = transmission->actuators()[k].lower;
+    upper[i] = transmission->actuators()[k].upper;
+  }
+}
+
+void ControlBox::clamp(const VectorX& g, VectorX& tau, VectorX& y) const {
+  coordinates(g, y);
+  tau = g;
+  bool inside = true;
+  for (Eigen::Index i = 0; i < y.size(); ++i) {
+    const double clamped = std::min(std::max(y[i], lower[i]), upper[i]);
+    inside &= clamped == y[i];
+    y[i] = clamped;
+  }
+  if (inside) return;
+  if (transmission)
+    tau.noalias() = transmission->T() * y;
+  else
+    tau = y;
+}
+
+}  // namespace softgauss::gdd

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// The list `actuators` of a scene.
+
+#include <set>
+
+#include "engine/model/model_builder.hpp"
+#include "io/actuators.hpp"
+#include "io/detail/yaml.hpp"
+
+namespace softgauss::io::detail {
+
+/// One item of `actuators`. Its joints are those of the scene, by name; they lose the effort limit
+/// of their own, and are actuated even if that was 0. `names` are taken, and gain this one.
+SceneActuator readActuator(const YamlMap& map, ModelBuilder& builder, std::set<std::string>& names);
+
+/// Throws ModelError, naming file, line and actuators, where they are not linearly independent.
+void expectIndependent(const std::vector<SceneActuator>& actuators);
+
+}  // namespace softgauss::io::detail
