@@ -51,13 +51,26 @@ bool ActiveSet::enterCell(const GoalCost& cost, Data& data) {
     cell_.multiplyTransposed(h.J, h.side);
     h.side *= h.sign;
   }
+  if (forces_.active()) {
+    forces_.setJacobian(rows, data.inertia.M.size());
+    cell_.addToHessian(forces_);
+  }
   return true;
 }
 
+/// ∇ℓ at a in the cell in which the rows are kept: with that of contact forces (T.54).
+const VectorX& ActiveSet::costSlope(Data& data) {
+  if (!forces_.active()) return path_.slope;
+  evaluateForces(data);
+  costSlope_ = path_.slope;
+  forces_.addGradient(data.constraints, costSlope_);
+  return costSlope_;
+}
+
 /// q = Bᵀ(R B u + P⁻¹∇ℓ); false when not finite.
-bool ActiveSet::computeGradient() {
-  cell_.multiplyTransposed(path_.slope, gradient_);
-  merit_ = effort() + std::abs(path_.value);
+bool ActiveSet::computeGradient(Data& data) {
+  cell_.multiplyTransposed(costSlope(data), gradient_);
+  merit_ = effort() + std::abs(path_.value) + forces_.value();
   gradient_ += effortSlope_;
   return gradient_.allFinite() && std::isfinite(merit_);
 }
@@ -101,7 +114,7 @@ PathEnd ActiveSet::followPath(const GoalCost& cost, Data& data) {
   start.tMax = std::max(1.0, start.tMax);
   for (const HeldKnot& h : path_.held)
     if (h.multiplier > 0.0 && !h.atKnot) start.tMax = 1.0;
-  const PathEnd end = path_.follow(start, cell_, cost, rate_, data);
+  const PathEnd end = path_.follow(start, cell_, cost, forces_, rate_, data);
   effortSlope_ += end.t * best_;
   u_ = (u_ + end.t * p).cwiseMax(lower_).cwiseMin(upper_);
   cell_.force(u_, force_);
@@ -119,7 +132,7 @@ double ActiveSet::remainingPromise() {
   return 0.5 * stepLower_.dot(stepUpper_);
 }
 
-/// (T.63). Stationary in this cell: looks for one beside it that descends, and enters it.
+/// (T.63), (T.56). Stationary in this cell: looks for one beside it that descends, and enters it.
 ActiveSet::Next ActiveSet::leaveCell(Data& data) {
   constexpr double kTolerance = 1e-9;
   atKnot_.clear();
@@ -136,7 +149,7 @@ ActiveSet::Next ActiveSet::leaveCell(Data& data) {
   if (!tried(here)) tried_.push_back(here);
 
   // w = P⁻¹(∇ℓ − Σ ν σ J): the same in all cells that share it.
-  adjoint_ = path_.slope;
+  adjoint_ = costSlope(data);
   for (int k = 0; k < n; ++k) adjoint_ -= row(k).multiplier * row(k).sign * row(k).J;
   cell_.solve(adjoint_);
   int worst = -1;
@@ -144,7 +157,8 @@ ActiveSet::Next ActiveSet::leaveCell(Data& data) {
   bool settled = true;
   for (int k = 0; k < n; ++k) {
     const HeldKnot& h = row(k);
-    const double change = h.sign * h.jump * h.J.dot(adjoint_);
+    const double pull = forces_.pull(h.knot, data.constraints);
+    const double change = h.sign * h.jump * (h.J.dot(adjoint_) + pull);
     const double other = change - h.multiplier;
     const double tolerance = kTolerance * (std::abs(change) + h.multiplier);
     if (other >= -tolerance) continue;
@@ -195,7 +209,8 @@ void ActiveSet::finish(const ControlBox& box, const GoalCost& cost, Data& data) 
   setAppliedForce(force_, data.forces);
   rate_ = force_ - residual_;  // g(a)
   report_.violation = box.violation(rate_);
-  report_.objective = effort() + cost.value(path_.a, Ma_);
+  forces_.evaluate(data.constraints);
+  report_.objective = effort() + cost.value(path_.a, Ma_) + forces_.value();
   report_.heldRows = path_.held.atKnots();
   knots_.clear();
   for (const HeldKnot& held : path_.held)
@@ -208,10 +223,11 @@ std::optional<GddStatus> ActiveSet::descend(const GoalCost& cost, double wanted,
   constexpr int kPatience = 2;
   HeldKnots& held = path_.held;
   for (;;) {
-    if (!enterCell(cost, data) || !computeGradient()) return GddStatus::notFinite;
+    if (!enterCell(cost, data) || !computeGradient(data)) return GddStatus::notFinite;
     double promised = solveProgram();
     if (promised < 0.0) return GddStatus::undecided;
-    if (report_.iterations >= kPatience && effort() + path_.value - promised > wanted)
+    if (report_.iterations >= kPatience &&
+        effort() + path_.value + forces_.value() - promised > wanted)
       return std::nullopt;
     const int heldBefore = held.atKnots();
     bool stationary = promised <= options.tolerance * merit_;
@@ -226,7 +242,7 @@ std::optional<GddStatus> ActiveSet::descend(const GoalCost& cost, double wanted,
       if (moved || held.atKnots() > heldBefore) tried_.clear();
       if (moved && path.crossings == 0) {
         // Still in the cell: its minimum, if rounding has not spoilt it.
-        if (!computeGradient()) return GddStatus::notFinite;
+        if (!computeGradient(data)) return GddStatus::notFinite;
         promised = remainingPromise();
         stationary = promised <= options.tolerance * merit_;
       } else {

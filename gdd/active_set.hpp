@@ -77,7 +77,9 @@ class ActiveSet {
   void computeResidual(const Data& data);
   bool enterCell(const GoalCost& cost, Data& data);
   void evaluateCost(const GoalCost& cost, const Data& data);
-  bool computeGradient();
+  void evaluateForces(Data& data);
+  const VectorX& costSlope(Data& data);
+  bool computeGradient(Data& data);
   double solveProgram();
   PathEnd followPath(const GoalCost& cost, Data& data);
   double remainingPromise();
@@ -89,6 +91,8 @@ class ActiveSet {
   CellResponse cell_;
   QuadraticProgram program_;
   ForwardPath path_;                  ///< holds a and the rows at their knots
+  ForceTerms forces_;                 ///< ℓ_f, which path_ is without
+  VectorX costSlope_;                 ///< ∇ℓ with that of ℓ_f (nv)
   std::vector<std::uint64_t> tried_;  ///< patterns of cells here that promise nothing
   VectorX u_, best_, lower_, upper_, stepLower_, stepUpper_;  ///< (columns of B)
   std::vector<int> constrained_;  ///< entries of path_.held that the program knows

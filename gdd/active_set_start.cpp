@@ -28,7 +28,8 @@ double ActiveSet::moveTo(const Model& model, const GoalCost& cost, const VectorX
   path_.a = data.forward.a;
   evaluateCost(cost, data);
   computeEffortSlope();
-  return effort() + path_.value;
+  evaluateForces(data);
+  return effort() + path_.value + forces_.value();
 }
 
 /// From the last step's a along the exact path to a = f(u), where few rows change their pieces on
@@ -46,7 +47,8 @@ double ActiveSet::moveAlongPath(const GoalCost& cost, const VectorX& a, Data& da
   ready_ = entered_ = true;
   evaluateCost(cost, data);
   computeEffortSlope();
-  return effort() + path_.value;
+  evaluateForces(data);
+  return effort() + path_.value + forces_.value();
 }
 
 /// ℓ and ∇ℓ at a.
@@ -54,6 +56,13 @@ void ActiveSet::evaluateCost(const GoalCost& cost, const Data& data) {
   data.inertia.M.multiply(path_.a, Ma_);
   cost.gradient(path_.a, Ma_, path_.slope);
   path_.value = cost.value(path_.a, Ma_);
+}
+
+/// Contact forces at a, with every row in the piece in which it is kept.
+void ActiveSet::evaluateForces(Data& data) {
+  if (!forces_.active()) return;
+  data.constraints.evaluateInPlace();
+  forces_.evaluate(data.constraints);
 }
 
 /// The gradient in u of ½ τᵀR τ, τ = B u + what is given.
@@ -103,7 +112,10 @@ void ActiveSet::chooseStart(const Model& model, const GoalCost& cost, Data& data
     evaluateCost(cost, data);
     computeEffortSlope();
     cell_.computeHessian();
-    if (computeGradient()) {
+    forces_.forget();
+    const bool finite = computeGradient(data);
+    forces_.setCost(cost.forces());
+    if (finite) {
       solveProgram();
       u_ += program_.solution();
       consider();
@@ -128,6 +140,7 @@ GddStatus ActiveSet::start(const Model& model, const GoalCost& cost, const Contr
                            Data& data, const WarmStart& warm) {
   badDof_ = -1;
   ready_ = entered_ = false;
+  forces_.setCost(cost.forces());
   tried_.clear();
   path_.held.clear();
   knots_.clear();

@@ -45,6 +45,10 @@ bool AugmentedLagrangian::gradient(const BoundPenalty& bounds, const GoalCost& c
   }
   hessian_.multiplyP(w_, gradient_);
   cost.gradient(a_, Ma_, costGradient_);
+  if (forces_.active()) {
+    forces_.evaluate(data.constraints);
+    forces_.addGradient(data.constraints, costGradient_);
+  }
   gradient_ += costGradient_;
   return gradient_.allFinite();
 }
@@ -101,6 +105,7 @@ void AugmentedLagrangian::start(const GoalCost& cost, const ControlBox& box, Dat
     massFactor_.solve(a_);
   }
   held_.clear();
+  forces_.setCost(cost.forces());
   rowsChanged_ = boundsChanged_ = stale_ = true;
   curvature_.setConstant(-1.0);
   evaluate(data);
@@ -125,7 +130,7 @@ GddReport AugmentedLagrangian::solve(const Model& model, GoalCost& cost, const C
   for (;;) {
     if (!gradient(bounds, cost, data)) return end(GddStatus::notFinite);
     report.violation = box.violation(g_);
-    report.objective = 0.5 * g_.dot(Rg_) + cost.value(a_, Ma_);
+    report.objective = 0.5 * g_.dot(Rg_) + cost.value(a_, Ma_) + forces_.value();
     if (report.iterations == options.maxIterations) return end(GddStatus::iterationLimit);
 
     // Direction in this cell.
@@ -133,7 +138,7 @@ GddReport AugmentedLagrangian::solve(const Model& model, GoalCost& cost, const C
     wholeStep = false;
     if (stale_ || boundsChanged_) {
       ++report.factorizations;
-      if (!hessian_.factorize(data, massFactor_, curvature_, box, cost))
+      if (!hessian_.factorize(data, massFactor_, curvature_, box, cost, forces_))
         return end(GddStatus::notFinite);
       stale_ = boundsChanged_ = false;
     }
@@ -146,7 +151,7 @@ GddReport AugmentedLagrangian::solve(const Model& model, GoalCost& cost, const C
     const bool rounding = decrement <= 1e-14 * merit || (sameCell && decrement > 0.01 * promised);
     if (report.stationarity <= options.gradientTolerance || rounding) {
       bool towardsStiff = false;
-      const int leaving = held_.leaving(w_, towardsStiff);
+      const int leaving = held_.leaving(w_, forces_, data.constraints, towardsStiff);
       if (leaving >= 0) {
         if (towardsStiff) {
           data.constraints.placeAtKnot(held_[leaving].knot, true);
@@ -173,13 +178,18 @@ GddReport AugmentedLagrangian::solve(const Model& model, GoalCost& cost, const C
     held_.holdOnRay(data.constraints);
     hessian_.multiplyP(direction_, scratch_);
     M.multiply(direction_, Md_);
-    const double costSlope = costGradient_.dot(direction_);
+    double costSlope = costGradient_.dot(direction_);
+    if (forces_.active()) {
+      data.constraints.setForceRate();
+      forces_.setRate(data.constraints);
+      costSlope -= forces_.slope();
+    }
     const double costCurvature = cost.curvatureAlong(direction_, Md_);
     const RayResult ray = data.constraints.piecewiseQuadratic()
                               ? ray_.minimize(data.constraints, massFactor_, bounds, g_, scratch_,
-                                              costSlope, costCurvature)
+                                              costSlope, costCurvature, forces_)
                               : curvedRay_.minimize(data.constraints, massFactor_, bounds, g_, Md_,
-                                                    costSlope, costCurvature);
+                                                    costSlope, costCurvature, forces_);
     if (ray.bend && ray.alpha * decrement <= 1e-10 * merit) {
       evaluate(data);
       return end(GddStatus::bend);

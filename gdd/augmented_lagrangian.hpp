@@ -69,6 +69,7 @@ class AugmentedLagrangian {
   TreeFactor massFactor_;  ///< of M
   GaussNewtonHessian hessian_;
   HeldRows held_;
+  ForceTerms forces_;
   Ray ray_;
   CurvedRay curvedRay_;
   double penalty_ = 0.0;       ///< Σ ψ

@@ -57,6 +57,9 @@ void CellModel::set(GoalCost& cost, const ControlBox& box, Data& data, const Vec
   curvature.setZero();
   curvature.add(M, cost.metricWeight());
   cost.addQuadraticCurvature(curvature);
+  forces_.setCost(cost.forces());
+  forces_.setJacobian(data.constraints, static_cast<int>(n));
+  forces_.addCurvature(curvature);
   Q_ += curvature.dense();
   addKinks(data.constraints, mass);
 }

@@ -31,6 +31,7 @@ class CellModel {
   MatrixX P_, Q_;
   VectorX t_, slope_, x_;  ///< t, ∇m(t), the minimum
   std::vector<Crossing> crossings_;
+  ForceTerms forces_;
 };
 
 }  // namespace softgauss::gdd

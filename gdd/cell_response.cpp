@@ -188,7 +188,14 @@ const CellResponse::Correction& CellResponse::cross(const VectorX& J, double jum
   return c;
 }
 
+void CellResponse::addToHessian(ForceTerms& forces) {
+  forceK_ = K_;
+  forces.addReducedCurvature(S_, forceK_);
+  withForces_ = true;
+}
+
 void CellResponse::computeHessian() {
+  withForces_ = false;
   if (correctionsInS_ < 0) {
     setColumns(S_);
     factor_->solve(S_, range_);

@@ -46,8 +46,11 @@ class CellResponse {
   const Correction& cross(const VectorX& J, double jump);
   /// Whether so many rows have been crossed that it is better to enter() anew.
   bool isWorn() const { return correctionCount_ > kMaxCorrections; }
-  /// K of this cell.
+  /// K of this cell, without ℓ_f.
   void computeHessian();
+  /// Adds what ℓ_f makes of K in the cell in which `forces` has its Jacobian, until K is computed
+  /// anew.
+  void addToHessian(ForceTerms& forces);
 
   int columns() const { return static_cast<int>(driven_.size()); }
   const std::vector<int>& driven() const { return driven_; }  ///< the coordinate of each column
@@ -62,9 +65,10 @@ class CellResponse {
   /// y ← Sᵀx and a ← S p, after computeHessian().
   void multiplyTransposed(const VectorX& x, VectorX& y) const;
   void multiply(const VectorX& p, VectorX& a) const { a.noalias() = S_.leftCols(columns()) * p; }
-  void multiplyR(const VectorX& x, VectorX& Rx) const;                     ///< Rx ← R x
-  void multiplyForcePrice(const VectorX& p, VectorX& y) const;             ///< y ← BᵀR B p
-  auto hessian() const { return K_.topLeftCorner(columns(), columns()); }  ///< lower triangle
+  void multiplyR(const VectorX& x, VectorX& Rx) const;          ///< Rx ← R x
+  void multiplyForcePrice(const VectorX& p, VectorX& y) const;  ///< y ← BᵀR B p
+  /// Lower triangle.
+  auto hessian() const { return (withForces_ ? forceK_ : K_).topLeftCorner(columns(), columns()); }
   int massFailedRow() const { return massFactor_->failedRow(); }
 
  private:
@@ -93,6 +97,8 @@ class CellResponse {
   ForcePrice price_;            ///< R
   MatrixX forcePrice_;          ///< BᵀR B
   MatrixX K_;
+  MatrixX forceK_;  ///< K_ with ℓ_f
+  bool withForces_ = false;
   VectorX My_, b_;
   mutable VectorX scratch_, padded_;
   VectorX pull_;

@@ -51,6 +51,7 @@ void GoalCost::clear(const ForceMetric& R) {
   dofOffset_.setZero();
   price_.set(R);
   functions_.clear();
+  forces_.clear();
   metricWeight_ = 0.0;
   metricSlope_.setZero();
 }

@@ -11,7 +11,8 @@
 ///
 /// Functions that are no such sum enter by expansions of second order (expanded_solve.hpp). The
 /// price of force, ½ gᵀ(R + W) g, is no function of a alone: R is given, goals add W
-/// (force_price.hpp).
+/// (force_price.hpp). What goals want of contact forces is kept apart (force_cost.hpp): value(),
+/// gradient() and the curvatures here are without it.
 ///
 /// Nothing here allocates in steady state, but what is for functions does.
 
@@ -20,6 +21,7 @@
 
 #include "engine/constraints/block_jacobian.hpp"
 #include "engine/dynamics/centroidal.hpp"
+#include "gdd/force_cost.hpp"
 #include "gdd/force_price.hpp"
 
 namespace softgauss::gdd {
@@ -75,6 +77,10 @@ class GoalCost {
   /// φ(a).
   void addFunction(Function function) { functions_.push_back(std::move(function)); }
 
+  /// What goals want of contact forces.
+  ForceCost& forces() { return forces_; }
+  const ForceCost& forces() const { return forces_; }
+
   GoalWorkspace& workspace() { return workspace_; }
   double metricWeight() const { return metricWeight_; }
   const ForcePrice& price() const { return price_; }  ///< R + W
@@ -121,6 +127,7 @@ class GoalCost {
   VectorX dofWeight_;  ///< D
   VectorX dofOffset_;  ///< e
   ForcePrice price_;   ///< R + W
+  ForceCost forces_;
   std::vector<Function> functions_;
   VectorX expandedAt_, expansionSlope_;  ///< a_k, ∇φ(a_k)
   MatrixX expansionCurvature_;           ///< [∇²φ] + μ M

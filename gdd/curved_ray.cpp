@@ -16,7 +16,7 @@ CurvedRay::CurvedRay(const Model& model)
 
 RayResult CurvedRay::minimize(Constraints& constraints, const TreeFactor& massFactor,
                               const BoundPenalty& bounds, const VectorX& g, const VectorX& Md,
-                              double costSlope, double costCurvature) {
+                              double costSlope, double costCurvature, ForceTerms& forces) {
   constexpr int kMaxEvaluations = 100;
   constexpr double kSlope = 1e-9;      // at the result, of that at the start
   constexpr double kRounding = 1e-14;  // of Φ
@@ -47,6 +47,12 @@ RayResult CurvedRay::minimize(Constraints& constraints, const TreeFactor& massFa
     bounds.box.coordinates(rate_, yRate_);
     Jet jet{0.5 * g_.dot(Rg_) + alpha * (costSlope + 0.5 * alpha * costCurvature),
             Rg_.dot(rate_) + costSlope + alpha * costCurvature, 0.0};
+    if (forces.active()) {
+      forces.evaluate(constraints);
+      forces.setRate(constraints);
+      jet.value += forces.value();
+      jet.slope += forces.slope();
+    }
     for (Eigen::Index i = 0; i < y_.size(); ++i) {
       const Jet psi = bounds.at(i, y_[i]);
       jet.value += psi.value;

@@ -18,11 +18,12 @@ class CurvedRay {
  public:
   explicit CurvedRay(const Model& model);
 
-  /// g: inverse dynamics at α = 0; Md: M d; costSlope, costCurvature: of ℓ along d. The rows must
-  /// be evaluated and their ray set; they are left somewhere on the ray.
+  /// g: inverse dynamics at α = 0; Md: M d; costSlope, costCurvature: of ℓ along d, without the
+  /// cost of contact forces: `forces` has that. The rows must be evaluated and their ray set; they
+  /// are left somewhere on the ray.
   RayResult minimize(Constraints& constraints, const TreeFactor& massFactor,
                      const BoundPenalty& bounds, const VectorX& g, const VectorX& Md,
-                     double costSlope, double costCurvature);
+                     double costSlope, double costCurvature, ForceTerms& forces);
 
  private:
   VectorX base_, g_, rate_, y_, yRate_, Rg_;

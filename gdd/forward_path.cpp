@@ -16,7 +16,7 @@ ForwardPath::ForwardPath(const Model& model) {
 }
 
 PathEnd ForwardPath::follow(const PathStart& start, CellResponse& cell, const GoalCost& cost,
-                            const VectorX& rate, Data& data) {
+                            ForceTerms& forces, const VectorX& rate, Data& data) {
   Constraints& rows = data.constraints;
   rate_ = rate;
   crossed_.clear();
@@ -29,9 +29,17 @@ PathEnd ForwardPath::follow(const PathStart& start, CellResponse& cell, const Go
   cost.multiplyCurvature(rate_, Mrate_, slopeRate_);
   for (;;) {
     const double costSlope = slope.dot(rate_), costCurvature = slopeRate_.dot(rate_);
-    const double descent = -(start.forceSlope + end.t * start.forceCurvature + costSlope);
+    double descent = -(start.forceSlope + end.t * start.forceCurvature + costSlope);
+    double curvature = start.forceCurvature + costCurvature;
+    if (forces.active()) {
+      rows.evaluateInPlace();
+      rows.setForceRate();
+      forces.evaluate(rows);
+      forces.setRate(rows);
+      descent -= forces.slope();
+      curvature += forces.curvature();
+    }
     if (!(descent > 0.0)) break;
-    const double curvature = start.forceCurvature + costCurvature;
     const double newton = curvature > 0.0 ? descent / curvature : kInfinity;
     const double length = std::min(newton, start.tMax - end.t);
     const Crossing next = rows.nextCrossing();

@@ -36,15 +36,16 @@ class ForwardPath {
   explicit ForwardPath(const Model& model);
 
   VectorX a;       ///< f(u), moved along the path
-  VectorX slope;   ///< ∇ℓ(a), moved along
-  double value;    ///< ℓ(a), moved along
+  VectorX slope;   ///< ∇ℓ(a) without contact forces, moved along
+  double value;    ///< ℓ(a) likewise
   HeldKnots held;  ///< rows at knots, and all that paths have crossed
 
   /// Follows the path from the present point, where ȧ = rate; moves a, ℓ, ∇ℓ and the rows along.
   /// Held rows with a multiplier stay at their knots within the present cell, or come to them at t
   /// = 1. Afterwards `cell` is that of the end, and `held` tells which rows are at knots.
+  /// `forces` has what contact forces cost; it is left somewhere on the path.
   PathEnd follow(const PathStart& start, CellResponse& cell, const GoalCost& cost,
-                 const VectorX& rate, Data& data);
+                 ForceTerms& forces, const VectorX& rate, Data& data);
 
   /// Moves a and the rows along the path P ȧ = ρ from `rate` = P⁻¹ρ on, until g(a) has grown by ρ.
   /// Returns false when it meets so many knots that Newton's method is the better way.

@@ -10,6 +10,8 @@
 
 #include "gdd/goal_directed_step.hpp"
 #include "gdd/goals/balance.hpp"
+#include "gdd/goals/center_of_pressure.hpp"
+#include "gdd/goals/contact_force.hpp"
 #include "gdd/goals/effort.hpp"
 #include "gdd/goals/functions.hpp"
 #include "gdd/goals/hold.hpp"

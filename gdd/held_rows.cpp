@@ -73,7 +73,8 @@ void HeldRows::projectPrepared(VectorX& d) {
   }
 }
 
-int HeldRows::leaving(const VectorX& w, bool& towardsStiff) const {
+int HeldRows::leaving(const VectorX& w, const ForceTerms& forces, const Constraints& constraints,
+                      bool& towardsStiff) const {
   // Descent per unit of the row's own residual, in units of the jump it would face.
   constexpr double kTolerance = 1e-9;
   int worst = -1;
@@ -81,7 +82,8 @@ int HeldRows::leaving(const VectorX& w, bool& towardsStiff) const {
   for (int i = 0; i < count_; ++i) {
     const Row& row = rows_[i];
     // Of the gradient, from the free to the stiff side, as if the free side were above.
-    const double jump = -row.jump * row.J.dot(w), sign = row.jump < 0.0 ? 1.0 : -1.0;
+    const double jump = -row.jump * (row.J.dot(w) - forces.pull(row.knot, constraints)),
+                 sign = row.jump < 0.0 ? 1.0 : -1.0;
     const double free = sign * row.multiplier, stiff = jump - free;
     const double tolerance = kTolerance * (std::abs(jump) + std::abs(row.multiplier));
     if (free > std::max(most, tolerance)) most = free, worst = i, towardsStiff = false;

@@ -15,7 +15,7 @@
 
 #include <vector>
 
-#include "engine/constraints/constraints.hpp"
+#include "gdd/force_cost.hpp"
 
 namespace softgauss::gdd {
 
@@ -55,8 +55,10 @@ class HeldRows {
     projectPrepared(d);
   }
 
-  /// The row that most wants to leave, or −1; `towardsStiff` tells to which side.
-  int leaving(const VectorX& w, bool& towardsStiff) const;
+  /// The row that most wants to leave, or −1; `towardsStiff` tells to which side. A cost on contact
+  /// forces takes the row's pull π from J_r w (T.56).
+  int leaving(const VectorX& w, const ForceTerms& forces, const Constraints& constraints,
+              bool& towardsStiff) const;
 
  private:
   void projectPrepared(VectorX& d);

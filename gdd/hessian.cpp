@@ -45,7 +45,7 @@ void GaussNewtonHessian::setCell(Data& data) {
 
 bool GaussNewtonHessian::factorize(const Data& data, const TreeFactor& massFactor,
                                    const VectorX& boundCurvature, const ControlBox& box,
-                                   GoalCost& cost) {
+                                   GoalCost& cost, ForceTerms& forces) {
   const int n = H_.size();
   H_.setZero();
   if (cost.price().hasInverseMass()) {
@@ -58,6 +58,10 @@ bool GaussNewtonHessian::factorize(const Data& data, const TreeFactor& massFacto
   }
   addForceTerms(boundCurvature, box, cost.price());
   cost.addRowCurvature(H_);
+  if (forces.active()) {
+    forces.setJacobian(data.constraints, n);
+    forces.addCurvature(H_);
+  }
   return n == 0 || factor_.compute(H_);
 }
 

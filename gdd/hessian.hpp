@@ -26,10 +26,10 @@ class GaussNewtonHessian {
 
   /// G and P = M + G of the cell in which the rows were last evaluated.
   void setCell(Data& data);
-  /// Factors H. `massFactor` is of M, `boundCurvature` ψ″ of every coordinate. Returns false when
-  /// H is not positive definite.
+  /// Factors H, with ∇²ℓ of contact forces in this cell. `massFactor` is of M, `boundCurvature` ψ″
+  /// of every coordinate. Returns false when H is not positive definite.
   bool factorize(const Data& data, const TreeFactor& massFactor, const VectorX& boundCurvature,
-                 const ControlBox& box, GoalCost& cost);
+                 const ControlBox& box, GoalCost& cost, ForceTerms& forces);
   /// x ← H⁻¹ x.
   void solve(VectorX& x) const { factor_.solve(x); }
   /// y ← P x.

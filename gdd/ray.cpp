@@ -20,7 +20,7 @@ Jet Ray::slopeAt(const BoundPenalty& bounds, double tau) const {
 
 RayResult Ray::minimize(const Constraints& constraints, const TreeFactor& massFactor,
                         const BoundPenalty& bounds, const VectorX& g, const VectorX& rate,
-                        double costSlope, double costCurvature) {
+                        double costSlope, double costCurvature, ForceTerms& forces) {
   crossings_.clear();
   constraints.findCrossings(crossings_);
   const auto later = [](const Crossing& a, const Crossing& b) {
@@ -39,6 +39,10 @@ RayResult Ray::minimize(const Constraints& constraints, const TreeFactor& massFa
     bounds.box.coordinates(rate_, yRate_);
     smoothSlope_ = g_.dot(Rrate_) + costSlope + result.alpha * costCurvature;
     smoothCurvature_ = rate_.dot(Rrate_) + costCurvature;
+    if (forces.active()) {
+      smoothSlope_ += forces.slope();
+      smoothCurvature_ += forces.curvature();
+    }
     const double length = crossings_.empty() ? kInfinity : crossings_.front().alpha - result.alpha;
     const Jet start = slopeAt(bounds, 0.0);
     if (!(start.slope < 0.0)) {
@@ -59,6 +63,8 @@ RayResult Ray::minimize(const Constraints& constraints, const TreeFactor& massFa
     crossings_.pop_back();
     g_ += length * rate_;
     constraints.addRow(crossing.knot.row, crossing.curvatureJump * crossing.rate, rate_);
+    forces.advance(length);
+    forces.cross(crossing, constraints);
     result.alpha = crossing.alpha;
     result.last = crossing.knot;
     ++result.crossings;

@@ -5,12 +5,14 @@
 ///
 /// Between two knots of the rows g is affine in α, so Φ is convex there and piecewise quadratic,
 /// its only pieces being those of the bounds, which are on y = C g. The search walks from knot to
-/// knot: the rate dg/dα gains s″-jump · ẋ · Jᵀ at each. It ends at the first local minimum: inside
-/// an interval, or at a knot past which the slope is not negative (a kink).
+/// knot: the rate dg/dα gains s″-jump · ẋ · Jᵀ at each, and the rates of contact forces change
+/// alike. It ends at the first local minimum: inside an interval, or at a knot past which the slope
+/// is not negative (a kink).
 
 #include <vector>
 
 #include "engine/step/data.hpp"
+#include "gdd/force_cost.hpp"
 #include "gdd/force_price.hpp"
 #include "gdd/problem.hpp"
 
@@ -56,11 +58,12 @@ class Ray {
         yRate_(VectorX::Zero(model.nv)),
         Rrate_(VectorX::Zero(model.nv)) {}
 
-  /// g: inverse dynamics at α = 0; rate: P d; costSlope, costCurvature: of ℓ along d. The rows'
-  /// ray must be set (Constraints::setRay).
+  /// g: inverse dynamics at α = 0; rate: P d; costSlope, costCurvature: of ℓ along d, without the
+  /// cost of contact forces: `forces` has that, with its rate. The rows' ray must be set
+  /// (Constraints::setRay).
   RayResult minimize(const Constraints& constraints, const TreeFactor& massFactor,
                      const BoundPenalty& bounds, const VectorX& g, const VectorX& rate,
-                     double costSlope, double costCurvature);
+                     double costSlope, double costCurvature, ForceTerms& forces);
 
  private:
   Jet slopeAt(const BoundPenalty& bounds, double tau) const;

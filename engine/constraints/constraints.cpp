@@ -86,6 +86,10 @@ void Constraints::addForce(VectorX& tau) const {
   visit([&](const auto& c) { c.addTransposed(c.f, tau); });
 }
 
+void Constraints::setForceRate() {
+  visit([](auto& c) { c.setForceRate(); });
+}
+
 void Constraints::addForceRate(VectorX& tau) {
   visit([&](auto& c) {
     c.setForceRate();

@@ -82,6 +82,20 @@ class Constraints {
     visitThese(*this, RowKinds::all(), f);
   }
 
+  /// Calls f with the contacts, of pyramidal cones and then of elliptic ones.
+  template <class F>
+  void visitContacts(F&& f) const {
+    f(contact);
+    f(ellipticContact);
+  }
+  /// Calls f with the contacts among which the row is; does nothing where it is no contact's.
+  template <class F>
+  void visitContactsOf(RowId id, F&& f) const {
+    visitOne(*this, id.kind, [&](const auto& c) {
+      if constexpr (requires { c.knotInFrame(0, 0); }) f(c);
+    });
+  }
+
   void assemble(const Assembly& in);
   int rowCount() const;
   /// Kinds that may make rows, and those that have some in this step.
@@ -102,7 +116,9 @@ class Constraints {
   void along(double alpha, Jet& jet) const;
   void advance(double alpha);
   void addForce(VectorX& tau) const;
-  /// Adds the rate of that force along the ray, −Jᵀ∇²s dx, at the present residual.
+  /// df ← −∇²s dx: the rates of the rows' forces along the ray, at the present residual.
+  void setForceRate();
+  /// Adds the rate of that force along the ray, −Jᵀ∇²s dx.
   void addForceRate(VectorX& tau);
   void addCurvature(TreeMatrix& P);
   /// Whether s is a sum of piecewise quadratics at present, so that findCrossings() is complete.

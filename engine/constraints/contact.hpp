@@ -79,6 +79,8 @@ class ContactBlocks {
   Vector3 angularInWorld(int i, const FrameVector& y) const {
     return made_[i].R_WC * Vector3(y[3], y[4], y[5]);
   }
+  /// Place in made() of the contact that has this row.
+  int contactOfRow(int row) const { return contactOfRow_[row]; }
 
   std::size_t bytes() const { return jacobian_.bytes() + bytesOfAll(made_, contactOfRow_); }
 

@@ -97,6 +97,19 @@ ContactBlocks::FrameVector EllipticContact::frameForce(int i) const {
   return frame;
 }
 
+ContactBlocks::FrameVector EllipticContact::frameForceRate(int i) const {
+  FrameVector frame{};
+  std::copy_n(df.data() + made_[i].row, cones_[i].dim, frame.data());
+  return frame;
+}
+
+int EllipticContact::frameCurvature(int i, double* H) const {
+  double force[EllipticCone::kMaxDim];
+  ConeZone zone;
+  evaluate(static_cast<std::size_t>(i), x.data() + made_[i].row, force, H, zone);
+  return cones_[i].dim;
+}
+
 void EllipticContact::addTransposed(const std::vector<double>& y, VectorX& tau) const {
   for (int i = 0; i < static_cast<int>(made_.size()); ++i)
     if (zones_[i] != ConeZone::top) jacobian_.addTransposed(i, y.data() + made_[i].row, tau);
@@ -161,12 +174,17 @@ double EllipticContact::curvatureJump(int row, int) const {
   return -cones_[contactOfRow_[row]].stiffness();
 }
 
-void EllipticContact::addKnotGradient(int row, int knot, double scale, VectorX& y) const {
-  const int i = contactOfRow_[row];
+ContactBlocks::FrameVector EllipticContact::knotInFrame(int row, int knot) const {
+  const EllipticCone& cone = cones_[contactOfRow_[row]];
   FrameVector gradient{};
-  cones_[i].knotGradient(cones_[i].point(x.data() + row), knot, gradient.data());
+  cone.knotGradient(cone.point(x.data() + row), knot, gradient.data());
+  return gradient;
+}
+
+void EllipticContact::addKnotGradient(int row, int knot, double scale, VectorX& y) const {
+  FrameVector gradient = knotInFrame(row, knot);
   for (double& entry : gradient) entry *= scale;
-  jacobian_.addTransposed(i, gradient.data(), y);
+  jacobian_.addTransposed(contactOfRow_[row], gradient.data(), y);
 }
 
 void EllipticContact::placeAtKnot(int row, int knot, bool stiffSide) {

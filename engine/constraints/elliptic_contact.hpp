@@ -16,6 +16,8 @@ namespace softgauss {
 
 class EllipticContact : public ContactBlocks {
  public:
+  static constexpr Cone kCone = Cone::elliptic;
+
   std::vector<double> reference;  ///< a_ref
   std::vector<double> x;          ///< residual at the present acceleration
   std::vector<double> dx;         ///< J d
@@ -60,6 +62,13 @@ class EllipticContact : public ContactBlocks {
     return ContactBlocks::bytes() +
            bytesOfAll(reference, x, dx, f, df, cones_, perInertia_, zones_, placed_);
   }
+  /// Its rate along the search direction, after setForceRate().
+  FrameVector frameForceRate(int i) const;
+  /// H ← ∇²s of contact i in its frame (dim × dim, row-major), so that ∂(frame force)/∂a = −H J.
+  /// Returns dim.
+  int frameCurvature(int i, double* H) const;
+  /// Gradient of what vanishes at the knot, in the frame of the contact.
+  FrameVector knotInFrame(int row, int knot) const;
 
  private:
   /// Penalty of contact i at x; where it is not placed, `zone` is that of x.

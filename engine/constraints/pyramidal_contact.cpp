@@ -66,33 +66,47 @@ void PyramidalContact::addTransposed(const std::vector<double>& y, VectorX& tau)
   }
 }
 
+int PyramidalContact::frameCurvature(int i, double* H) const {
+  const double* e = h.data() + made_[i].row;
+  const int pairs = made_[i].frictionDim, dim = pairs + 1;
+  if (pairs == 0) {
+    H[0] = e[0];
+    return 1;
+  }
+  // Σ over edges of D (1, ±μ_k e_k)(1, ±μ_k e_k)ᵀ.
+  std::fill_n(H, dim * dim, 0.0);
+  for (int k = 0; k < pairs; ++k) {
+    const double mu = made_[i].friction[k], sum = e[2 * k] + e[2 * k + 1];
+    H[0] = H[0] + e[2 * k] + e[2 * k + 1];
+    H[k + 1] = H[(k + 1) * dim] = mu * (e[2 * k] - e[2 * k + 1]);
+    H[(k + 1) * dim + k + 1] = mu * mu * sum;
+  }
+  return dim;
+}
+
 void PyramidalContact::addCurvature(TreeMatrix& P) {
-  for (std::size_t i = 0; i < made_.size(); ++i) {
-    const double* e = h.data() + made_[i].row;
-    const int pairs = made_[i].frictionDim, dim = pairs + 1;
-    if (pairs == 0) {
-      if (e[0] != 0.0) jacobian_.addCurvature(static_cast<int>(i), e, P);
-      continue;
-    }
-    // Σ over edges of D (1, ±μ_k e_k)(1, ±μ_k e_k)ᵀ.
-    double H[36];
-    std::fill_n(H, dim * dim, 0.0);
-    for (int k = 0; k < pairs; ++k) {
-      const double mu = made_[i].friction[k], sum = e[2 * k] + e[2 * k + 1];
-      H[0] = H[0] + e[2 * k] + e[2 * k + 1];
-      H[k + 1] = H[(k + 1) * dim] = mu * (e[2 * k] - e[2 * k + 1]);
-      H[(k + 1) * dim + k + 1] = mu * mu * sum;
-    }
-    if (H[0] != 0.0) jacobian_.addCurvature(static_cast<int>(i), H, P);
+  double H[36];
+  for (int i = 0; i < static_cast<int>(made_.size()); ++i) {
+    frameCurvature(i, H);
+    if (H[0] != 0.0) jacobian_.addCurvature(i, H, P);
   }
 }
 
-void PyramidalContact::addRow(int row, double scale, VectorX& y) const {
-  const int i = contactOfRow_[row], edge = row - made_[i].row;
+ContactBlocks::FrameVector PyramidalContact::rowInFrame(int row, double scale) const {
+  const ContactRows& made = made_[contactOfRow_[row]];
+  const int edge = row - made.row;
   FrameVector frame = {scale};
-  if (made_[i].frictionDim > 0)
-    frame[1 + edge / 2] = scale * (edge % 2 == 0 ? 1.0 : -1.0) * made_[i].friction[edge / 2];
-  jacobian_.addTransposed(i, frame.data(), y);
+  if (made.frictionDim > 0)
+    frame[1 + edge / 2] = scale * (edge % 2 == 0 ? 1.0 : -1.0) * made.friction[edge / 2];
+  return frame;
+}
+
+ContactBlocks::FrameVector PyramidalContact::knotInFrame(int row, int) const {
+  return rowInFrame(row, 1.0);
+}
+
+void PyramidalContact::addRow(int row, double scale, VectorX& y) const {
+  jacobian_.addTransposed(contactOfRow_[row], rowInFrame(row, scale).data(), y);
 }
 
 }  // namespace softgauss

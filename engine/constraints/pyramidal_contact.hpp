@@ -17,6 +17,8 @@ namespace softgauss {
 
 class PyramidalContact : public ScalarRows<HalfQuadratic>, public ContactBlocks {
  public:
+  static constexpr Cone kCone = Cone::pyramidal;
+
   void assemble(const Assembly& in);
   void multiply(const VectorX& a, std::vector<double>& y) const;
   void addTransposed(const std::vector<double>& y, VectorX& tau) const;
@@ -33,8 +35,17 @@ class PyramidalContact : public ScalarRows<HalfQuadratic>, public ContactBlocks 
   std::size_t bytes() const { return ScalarRows::bytes() + ContactBlocks::bytes(); }
   /// The force at contact i in its frame.
   FrameVector frameForce(int i) const { return inFrame(i, f); }
+  /// Its rate along the search direction, after setForceRate().
+  FrameVector frameForceRate(int i) const { return inFrame(i, df); }
+  /// H ← ∇²s of contact i in its frame (dim × dim, row-major), so that ∂(frame force)/∂a = −H J.
+  /// Returns dim.
+  int frameCurvature(int i, double* H) const;
+  /// A row in the frame of its contact: x = row · y − a_ref, and the same of its knot.
+  FrameVector knotInFrame(int row, int knot) const;
 
  private:
+  /// scale · row of J, by the frame of its contact.
+  FrameVector rowInFrame(int row, double scale) const;
   /// Sum over the edges of contact i of `y` times the edge.
   FrameVector inFrame(int i, const std::vector<double>& y) const;
 };

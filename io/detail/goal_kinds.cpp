@@ -25,6 +25,8 @@ const std::vector<GoalKind>& goalKinds() {
        {"link", "linear", "angular", "linear_weight", "angular_weight", "rate"},
        readMomentum},
       {"capture_point", {"link", "target", "weight", "rate"}, readCapturePoint},
+      {"contact_force", {"link", "force", "axes", "by", "weight"}, readContactForce},
+      {"center_of_pressure", {"target", "link", "links", "weight"}, readCenterOfPressure},
   };
   return kinds;
 }

@@ -6,6 +6,7 @@
 /// To add a kind: write its function in one of the goal_*.cpp, name it and its keys in
 /// goal_kinds.cpp, and show it in docs/goals.md.
 
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -41,6 +42,12 @@ std::string movingLink(const YamlMap& keys, const YamlMap::Entry& entry, const M
 /// freedom.
 std::vector<std::pair<int, double>> readJoints(const YamlMap& joints, const Model& model);
 
+/// The robot of the key `link`; without it the first that has an actuated joint.
+int readRobot(const YamlMap& keys, const Model& model);
+
+/// Some of the letters x, y, z.
+std::array<bool, 3> readAxes(const YamlMap& keys, const YamlMap::Entry& entry);
+
 /// Pose of a frame in the initial state.
 Transform initialPose(const GoalScene& scene, int frame);
 
@@ -57,5 +64,7 @@ GoalPointer readEffort(const YamlMap& keys, const GoalScene& scene);
 GoalPointer readCenterOfMass(const YamlMap& keys, const GoalScene& scene);
 GoalPointer readMomentum(const YamlMap& keys, const GoalScene& scene);
 GoalPointer readCapturePoint(const YamlMap& keys, const GoalScene& scene);
+GoalPointer readContactForce(const YamlMap& keys, const GoalScene& scene);
+GoalPointer readCenterOfPressure(const YamlMap& keys, const GoalScene& scene);
 
 }  // namespace softgauss::io::detail

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "engine/dynamics/kinematics.hpp"
+#include "gdd/goals/balance.hpp"
 #include "io/detail/goal_kinds.hpp"
 #include "io/detail/text.hpp"
 
@@ -49,6 +52,31 @@ Transform initialPose(const GoalScene& scene, int frame) {
   Kinematics kinematics(scene.model);
   computeKinematics(scene.model, scene.initial, kinematics);
   return framePose(scene.model, kinematics, frame);
+}
+
+int readRobot(const YamlMap& keys, const Model& model) {
+  const bool driven = std::any_of(model.dofs.begin(), model.dofs.end(),
+                                  [](const Dof& dof) { return dof.actuated; });
+  if (driven && !keys.find("link")) return gdd::drivenRobot(model);
+  const YamlMap::Entry& entry =
+      keys.required("link", "a link of the robot meant, as no joint is actuated");
+  const int frame = model.findFrame(movingLink(keys, entry, model));
+  const Frame& link = model.frames[static_cast<std::size_t>(frame)];
+  return model.bodies[static_cast<std::size_t>(link.body)].robot;
+}
+
+std::array<bool, 3> readAxes(const YamlMap& keys, const YamlMap::Entry& entry) {
+  const std::string letters = keys.name(entry);
+  std::array<bool, 3> axes{};
+  bool good = !letters.empty();
+  for (const char letter : letters) {
+    good = good && letter >= 'x' && letter <= 'z' && !axes[static_cast<std::size_t>(letter - 'x')];
+    if (good) axes[static_cast<std::size_t>(letter - 'x')] = true;
+  }
+  if (!good)
+    keys.fail(entry, fmt::format("found {}, expected some of the letters x, y, z, each once",
+                                 quotedText(letters)));
+  return axes;
 }
 
 }  // namespace softgauss::io::detail

@@ -13,8 +13,10 @@ class Search {
   Search(const DenseGdd& d, const VectorX* center, const VectorX* radius)
       : d_(d), center_(center), radius_(radius), pieces_(d.rows()) {
     goalHessian_ = d.goalHessian();
-    goalSlope_ = d.goalGradient(VectorX::Zero(d.dofs()));
-    goalConstant_ = d.goalCost(VectorX::Zero(d.dofs()));
+    DenseGdd plain = d;  // contact forces are affine in a cell only
+    plain.B.resize(0, d.rows());
+    goalSlope_ = plain.goalGradient(VectorX::Zero(d.dofs()));
+    goalConstant_ = plain.goalCost(VectorX::Zero(d.dofs()));
   }
 
   CellMinimum run() {
@@ -63,7 +65,8 @@ class Search {
     // The coordinates on which the bounds are: y = D a + e.
     const MatrixX D = d_.C.size() == 0 ? P : MatrixX(d_.C * P);
     const VectorX e = d_.coordinates(offset);
-    const double constant = 0.5 * offset.dot(d_.Minv * offset) + goalConstant_;
+    double constant = 0.5 * offset.dot(d_.Minv * offset) + goalConstant_;
+    if (d_.B.rows() > 0) constant += addForces(qp);
 
     std::vector<std::pair<VectorX, double>> inequalities;  // row · a ≥ bound
     int equalities = 0;
@@ -106,6 +109,23 @@ class Search {
     if (value >= best_.value) return;
     best_.value = value;
     best_.a = *a;
+  }
+
+  /// ℓ_f = ½ |G a + e₀|² by its weights in the present pattern; returns its value at a = 0.
+  double addForces(ConvexQp& qp) const {
+    std::vector<bool> stiff;
+    VectorX f(d_.rows());
+    for (int i = 0; i < d_.rows(); ++i) {
+      stiff.push_back(pieces_[i] == Piece::stiff);
+      f[i] = stiff[i]                     ? d_.D[i] * d_.aRef[i]
+             : pieces_[i] == Piece::above ? d_.forceLower[i]
+                                          : d_.forceUpper[i];
+    }
+    const MatrixX G = d_.forceJacobian(stiff);
+    const VectorX e = d_.B * f - d_.yf;
+    qp.H += G.transpose() * d_.wf.asDiagonal() * G;
+    qp.s += G.transpose() * d_.wf.cwiseProduct(e);
+    return 0.5 * e.dot(d_.wf.cwiseProduct(e));
   }
 
   const DenseGdd& d_;

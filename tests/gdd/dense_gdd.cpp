@@ -5,12 +5,14 @@
 
 namespace softgauss::test {
 
-VectorX DenseGdd::g(const VectorX& a) const {
+VectorX DenseGdd::force(const VectorX& a) const {
   VectorX force(rows());
   for (int i = 0; i < rows(); ++i)
     force[i] = std::clamp(D[i] * (aRef[i] - J.row(i).dot(a)), forceLower[i], forceUpper[i]);
-  return M * a + c - J.transpose() * force;
+  return force;
 }
+
+VectorX DenseGdd::g(const VectorX& a) const { return M * a + c - J.transpose() * force(a); }
 
 MatrixX DenseGdd::P(const VectorX& a) const {
   MatrixX sum = M;
@@ -27,11 +29,39 @@ bool DenseGdd::stiff(int i, double x, double dx, double width) const {
 
 double DenseGdd::goalCost(const VectorX& a) const {
   const VectorX error = A * a - y;
-  return 0.5 * error.dot(w.cwiseProduct(error)) + 0.5 * metric * a.dot(M * a) + a.dot(M * offset);
+  double cost =
+      0.5 * error.dot(w.cwiseProduct(error)) + 0.5 * metric * a.dot(M * a) + a.dot(M * offset);
+  if (B.rows() > 0) {
+    const VectorX forceError = B * force(a) - yf;
+    cost += 0.5 * forceError.dot(wf.cwiseProduct(forceError));
+  }
+  return cost;
 }
 
-VectorX DenseGdd::goalGradient(const VectorX& a) const {
-  return A.transpose() * w.cwiseProduct(A * a - y) + M * (metric * a + offset);
+VectorX DenseGdd::goalGradient(const VectorX& a, const std::vector<bool>& stiff) const {
+  VectorX gradient = A.transpose() * w.cwiseProduct(A * a - y) + M * (metric * a + offset);
+  if (B.rows() > 0)
+    gradient += forceJacobian(stiff).transpose() * wf.cwiseProduct(B * force(a) - yf);
+  return gradient;
+}
+
+std::vector<bool> DenseGdd::stiffRows(const VectorX& a) const {
+  std::vector<bool> all;
+  for (int i = 0; i < rows(); ++i) all.push_back(stiff(i, J.row(i).dot(a) - aRef[i]));
+  return all;
+}
+
+MatrixX DenseGdd::forceJacobian(const std::vector<bool>& stiff) const {
+  MatrixX sum = MatrixX::Zero(B.rows(), dofs());
+  for (int i = 0; i < rows(); ++i)
+    if (stiff[i]) sum -= D[i] * B.col(i) * J.row(i);
+  return sum;
+}
+
+MatrixX DenseGdd::forceHessian(const VectorX& a) const {
+  if (B.rows() == 0) return MatrixX::Zero(dofs(), dofs());
+  const MatrixX G = forceJacobian(stiffRows(a));
+  return G.transpose() * wf.asDiagonal() * G;
 }
 
 MatrixX DenseGdd::goalHessian() const { return A.transpose() * w.asDiagonal() * A + metric * M; }
@@ -89,7 +119,7 @@ MatrixX DenseGdd::gaussNewtonHessian(const VectorX& a) const {
     weight.diagonal() += curvature;
   else
     weight += C.transpose() * curvature.asDiagonal() * C;
-  return slope * weight * slope + goalHessian();
+  return slope * weight * slope + goalHessian() + forceHessian(a);
 }
 
 double DenseGdd::violation(const VectorX& a) const {

@@ -5,8 +5,11 @@
 /// oracle for everything in gdd/.
 ///
 ///   g(a) = M a + c − Jᵀf,  f = D (a_ref − J a), bounded                                   (T.2)
-///   F(a) = ½ gᵀR g + ℓ(a),  ℓ(a) = ½ Σ w (A a − y)² + ½ m aᵀM a + aᵀM o                (T.17)
+///   F(a) = ½ gᵀR g + ℓ(a),  ℓ(a) = ½ Σ w (A a − y)² + ½ m aᵀM a + aᵀM o + ℓ_f          (T.17)
+///   ℓ_f(a) = ½ Σ w_f (B f − y_f)²                                                       (T.53)
 ///   Φ(a) = F(a) + Σ ½ ρ (t − clamp t)²,  t = C g + λ/ρ                                (T.18)
+
+#include <vector>
 
 #include "engine/core/types.hpp"
 
@@ -24,12 +27,15 @@ struct DenseGdd {
   VectorX y, w;
   double metric = 0.0;  ///< m
   VectorX offset;       ///< o
+  MatrixX B;            ///< (any × rows) of goals of contact forces
+  VectorX yf, wf;
   VectorX lower, upper, lambda, rho;
 
   int dofs() const { return static_cast<int>(M.rows()); }
   int rows() const { return static_cast<int>(J.rows()); }
 
   VectorX residual(const VectorX& a) const { return J * a - aRef; }
+  VectorX force(const VectorX& a) const;  ///< f
   VectorX g(const VectorX& a) const;
   /// M + Jᵀ D J over the stiff rows: those with f within its bounds.
   MatrixX P(const VectorX& a) const;
@@ -39,9 +45,15 @@ struct DenseGdd {
   /// Whether row i is stiff at x, or, within `width` of a knot, just past it along dx.
   bool stiff(int i, double x, double dx = 0.0, double width = 0.0) const;
 
+  std::vector<bool> stiffRows(const VectorX& a) const;
   double goalCost(const VectorX& a) const;
-  VectorX goalGradient(const VectorX& a) const;
-  MatrixX goalHessian() const;
+  VectorX goalGradient(const VectorX& a) const { return goalGradient(a, stiffRows(a)); }
+  /// The same where row i counts as stiff if stiff[i], whatever a says.
+  VectorX goalGradient(const VectorX& a, const std::vector<bool>& stiff) const;
+  MatrixX goalHessian() const;  ///< without ℓ_f
+  /// ∂(B f)/∂a where the row i is stiff if stiff[i].
+  MatrixX forceJacobian(const std::vector<bool>& stiff) const;
+  MatrixX forceHessian(const VectorX& a) const;  ///< of ℓ_f in the cell
 
   /// F: what the solver's report calls the objective.
   double objective(const VectorX& a) const;

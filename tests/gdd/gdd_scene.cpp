@@ -55,6 +55,54 @@ void GddScene::addMetric(double weight, const VectorX& target) {
   dense.offset -= weight * target;
 }
 
+void GddScene::addForce(double weight, const Vector3& target,
+                        const std::vector<std::pair<int, gdd::ForceCost::Map>>& contacts) {
+  cost.forces().add(weight, target);
+  const Eigen::Index before = dense.B.rows();
+  const MatrixX old = dense.B;
+  dense.B.setZero(before + 3, dense.rows());
+  if (before > 0) dense.B.topRows(before) = old;
+  dense.yf.conservativeResize(before + 3);
+  dense.yf.tail(3) = target;
+  dense.wf.conservativeResize(before + 3);
+  dense.wf.tail(3).setConstant(weight);
+  const PyramidalContact& made = data().constraints.contact;
+  const int first = dense.rows() - made.rowCount();  // the last of the kinds in use
+  for (const auto& [i, C] : contacts) {
+    cost.forces().addContact(Cone::pyramidal, i, C);
+    const ContactRows& rows = made.made()[i];
+    // Edge ± of direction k: f along the normal, ± μ_k f along k.
+    for (int edge = 0; edge < std::max(1, 2 * rows.frictionDim); ++edge) {
+      auto column = dense.B.col(first + rows.row + edge);
+      column.tail(3) += C.col(0);
+      if (rows.frictionDim == 0) continue;
+      const int k = edge / 2;
+      column.tail(3) += (edge % 2 == 0 ? 1.0 : -1.0) * rows.friction[k] * C.col(k + 1);
+    }
+  }
+}
+
+void GddScene::addRandomForces(Random& random) {
+  constexpr double kWeights[] = {0.01, 0.1, 1.0};
+  const int made = static_cast<int>(data().constraints.contact.made().size());
+  if (made == 0) return;
+  for (int goal = 0; goal < 2; ++goal) {
+    std::vector<std::pair<int, gdd::ForceCost::Map>> contacts;
+    for (int i = 0; i < made; ++i) {
+      if (!contacts.empty() && random.chance(0.5)) continue;
+      gdd::ForceCost::Map C;
+      for (int column = 0; column < 6; ++column) C.col(column) = random.vector3(1.0);
+      contacts.emplace_back(i, C);
+    }
+    addForce(kWeights[random.index(3)], random.vector3(20.0), contacts);
+  }
+}
+
+void GddScene::removeForces() {
+  cost.forces().clear();
+  dense.B.resize(0, dense.rows());
+}
+
 void GddScene::addRandomGoals(Random& random) {
   constexpr double kWeights[] = {1.0, 30.0, 1000.0};
   for (int i = 0; i < 2; ++i) {
@@ -144,7 +192,10 @@ GddScene lawGddScene(std::uint64_t seed, int contacts, double boxShare) {
   RandomTreeOptions options;
   options.dryFriction = options.equalities = options.springs = options.contactMoments =
       seed % 2 == 1;
-  return randomGddScene(seed, contacts, boxShare, options);
+  GddScene s = randomGddScene(seed, contacts, boxShare, options);
+  Random random(seed + 8000);
+  if (seed % 3 == 2) s.addRandomForces(random);
+  return s;
 }
 
 }  // namespace softgauss::test

@@ -27,6 +27,12 @@ class GddScene {
   void addPoint(int body, const Vector3& p_WP, double weight, const Vector3& target);
   /// ½ weight (a − target)ᵀM(a − target), in both forms.
   void addMetric(double weight, const VectorX& target);
+  /// ½ weight |Σ C F − target|² over the frictional contacts of pyramids named, in both forms.
+  void addForce(double weight, const Vector3& target,
+                const std::vector<std::pair<int, gdd::ForceCost::Map>>& contacts);
+  /// Two goals of random wrenches of random contacts; none where nothing touches.
+  void addRandomForces(Random& random);
+  void removeForces();
   /// A few random points, and virtual damping as often as not.
   void addRandomGoals(Random& random);
   /// Gives actuated dofs a box about 0, with probability `share`.
@@ -55,7 +61,7 @@ class GddScene {
 GddScene randomGddScene(std::uint64_t seed, int contacts, double boxShare = 0.5,
                         const RandomTreeOptions& options = {});
 
-/// The same with the other soft effects for odd seeds.
+/// The same with the other soft effects for odd seeds, and goals of contact forces for every third.
 GddScene lawGddScene(std::uint64_t seed, int contacts, double boxShare = 0.5);
 
 }  // namespace softgauss::test

@@ -22,6 +22,8 @@ struct Bounds {
   /// Share of global minima at any weight. Of the 1,500 problems of the long test solver 2 finds it
   /// in 98 % at weight 1, in 92 % at 100 and in 94 % at 1,000.
   static constexpr double globalShare = 0.92;
+  /// The same with goals of contact forces: 95.0 % of the 900 of their long test.
+  static constexpr double forceShare = 0.95;
   /// The slope, as a share of the value over the size of a, that a certified point may have. A
   /// point with a way down has slopes about 1 and more; one that is exact, those of rounding.
   static constexpr double slope = 1e-5;
@@ -33,6 +35,7 @@ struct Bounds {
 template <>
 struct Bounds<gdd::AugmentedLagrangian> {
   static constexpr double globalShare = 0.936;
+  static constexpr double forceShare = 0.911;  ///< 91.1 % of 900
   static constexpr double slope = 0.3;
 };
 
@@ -140,8 +143,8 @@ void tell(const std::string& what, double weight, const Tally& t) {
 template <class Solver>
 class GlobalMinimum : public testing::Test {
  protected:
-  /// Chains with 4 to 4 · `contacts` rows.
-  void chains(int contacts, int count, bool boxed) {
+  /// Chains with 4 to 4 · `contacts` rows; `forces`: with goals of contact forces.
+  void chains(int contacts, int count, bool boxed, bool forces = false) {
     for (const double weight : kWeights) {
       Tally tally;
       for (int seed = 0; seed < count; ++seed) {
@@ -149,11 +152,13 @@ class GlobalMinimum : public testing::Test {
         addGoal(s, seed, weight);
         Random random(seed + 17);
         if (boxed) s.addRandomBox(random, 0.6, 5.0);
+        if (forces) s.addRandomForces(random);
         ASSERT_LE(s.dense.rows(), kMostRows);
         addTo<Solver>(tally, s, globalMinimum(s.dense));
       }
-      finish((boxed ? "boxed chain, rows " : "chain, rows ") + std::to_string(4 * contacts), weight,
-             tally);
+      finish((boxed ? "boxed chain, rows " : "chain, rows ") + std::to_string(4 * contacts) +
+                 (forces ? ", goals of forces" : ""),
+             weight, tally, forces ? Bounds<Solver>::forceShare : Bounds<Solver>::globalShare);
     }
   }
 
@@ -184,7 +189,7 @@ class GlobalMinimum : public testing::Test {
         if (boxed) s.addRandomBox(random, 0.6, 5.0);
         addTo<Solver>(tally, s, globalMinimum(s.dense));
       }
-      finish(boxed ? "boxed tree" : "tree", weight, tally);
+      finish(boxed ? "boxed tree" : "tree", weight, tally, Bounds<Solver>::globalShare);
     }
   }
 
@@ -198,12 +203,11 @@ class GlobalMinimum : public testing::Test {
   }
 
   // A family of `problems` may miss the share by three standard deviations of its count.
-  void finish(const std::string& what, double weight, const Tally& t) {
+  void finish(const std::string& what, double weight, const Tally& t, double share) {
     tell(what, weight, t);
     total_ += t;
-    constexpr double kShare = Bounds<Solver>::globalShare;
-    const double deviation = std::sqrt(kShare * (1.0 - kShare) / t.problems);
-    EXPECT_GE(t.globalShare(), kShare - 3.0 * deviation) << what << ", weight " << weight;
+    const double deviation = std::sqrt(share * (1.0 - share) / t.problems);
+    EXPECT_GE(t.globalShare(), share - 3.0 * deviation) << what << ", weight " << weight;
     EXPECT_EQ(t.local, t.claimed) << "certified, yet a cell next to it has less: " << what;
     EXPECT_GE(t.claimed, 0.95 * t.problems) << what << ", weight " << weight;
   }
@@ -218,10 +222,22 @@ TYPED_TEST(GlobalMinimum, IsMostlyFoundWithFourRows) { this->chains(1, 40, false
 TYPED_TEST(GlobalMinimum, IsMostlyFoundWithFourRowsAndABox) { this->chains(1, 40, true); }
 TYPED_TEST(GlobalMinimum, IsMostlyFoundWithEightRows) { this->chains(2, 15, false); }
 TYPED_TEST(GlobalMinimum, IsMostlyFoundWithTwelveRows) { this->chains(3, 4, false); }
+TYPED_TEST(GlobalMinimum, IsMostlyFoundWithGoalsOfForces) {
+  this->chains(1, 40, false, true);
+  this->chains(2, 40, true, true);
+}
 TYPED_TEST(GlobalMinimum, IsMostlyFoundOnTrees) { this->trees(15, false); }
 TYPED_TEST(GlobalMinimum, IsMostlyFoundOnTreesWithABox) { this->trees(15, true); }
 
 TYPED_TEST(GlobalMinimum, IsMostlyFoundWithCoupledActuators) { this->coupledChains(1, 40); }
+
+// Not with 12 rows: in one of these problems rounding keeps the oracle from an end.
+TYPED_TEST(GlobalMinimum, LongIsMostlyFoundWithGoalsOfForces) {
+  this->chains(1, 100, true, true);
+  this->chains(2, 100, true, true);
+  this->chains(2, 100, false, true);
+  tell("all", 0.0, this->total_);
+}
 
 TYPED_TEST(GlobalMinimum, LongIsMostlyFound) {
   this->chains(2, 100, true);

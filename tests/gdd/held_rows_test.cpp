@@ -91,10 +91,12 @@ double slopeTowards(const DenseGdd& s, const VectorX& a, const VectorX& d, doubl
   const VectorX g = s.g(a), w = s.Minv * g + s.penaltySlope(g);
   const VectorX x = s.residual(a), dx = s.J * d;
   VectorX rate = s.M * d;
+  std::vector<bool> stiff;
   for (int i = 0; i < s.rows(); ++i) {
-    if (s.stiff(i, x[i], dx[i], width)) rate += s.D[i] * dx[i] * s.J.row(i).transpose();
+    stiff.push_back(s.stiff(i, x[i], dx[i], width));
+    if (stiff[i]) rate += s.D[i] * dx[i] * s.J.row(i).transpose();
   }
-  return w.dot(rate) + s.goalGradient(a).dot(d);
+  return w.dot(rate) + s.goalGradient(a, stiff).dot(d);
 }
 
 // Directional stationarity: Φ falls to no side, neither along random directions nor along those

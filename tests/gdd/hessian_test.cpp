@@ -17,8 +17,10 @@ struct AtPoint {
   gdd::GaussNewtonHessian hessian;
   TreeFactor massFactor;
 
-  explicit AtPoint(std::uint64_t seed) : s(lawGddScene(seed, 5)), hessian(s.model()) {
+  explicit AtPoint(std::uint64_t seed, bool withForces = true)
+      : s(lawGddScene(seed, 5)), hessian(s.model()) {
     Random random(seed + 5000);
+    if (!withForces || seed % 6 == 0) s.removeForces();
     if (seed % 3 == 0) s.addRandomActuators(random, true);
     if (seed % 6 == 0) {
       s.dense.Minv = MatrixX(random.vector(s.dofs(), 1.0).cwiseAbs2().asDiagonal());
@@ -42,6 +44,13 @@ struct AtPoint {
     hessian.setCell(s.data());
   }
 
+  gdd::ForceTerms forces() {
+    gdd::ForceTerms terms;
+    terms.setCost(s.cost.forces());
+    terms.evaluate(s.data().constraints);
+    return terms;
+  }
+
   /// ∇Φ as the solver composes it.
   VectorX gradient() {
     VectorX g(s.dofs());
@@ -56,6 +65,7 @@ struct AtPoint {
     hessian.multiplyP(w, result);
     s.data().inertia.M.multiply(a, Ma);
     s.cost.gradient(a, Ma, cost);
+    forces().addGradient(s.data().constraints, cost);
     return result + cost;
   }
 };
@@ -129,7 +139,9 @@ TEST(GddHessian, SolveInvertsTheDenseFormula) {
     AtPoint at(seed);
     const DenseGdd& d = at.s.dense;
     const VectorX curvature = d.penaltyCurvature(d.g(at.a));
-    ASSERT_TRUE(at.hessian.factorize(at.s.data(), at.massFactor, curvature, at.s.box, at.s.cost));
+    gdd::ForceTerms forces = at.forces();
+    ASSERT_TRUE(
+        at.hessian.factorize(at.s.data(), at.massFactor, curvature, at.s.box, at.s.cost, forces));
     const MatrixX H = d.gaussNewtonHessian(at.a);
     Random random(seed);
     const VectorX b = H * random.vector(at.s.dofs(), 1.0);
@@ -163,7 +175,7 @@ TEST(GddHessian, MultipliesByTheJacobianOfInverseDynamics) {
 TEST(GoalCost, ValueAndCurvatureAreThoseOfTheDenseFormula) {
   double worst = 0.0;
   for (int seed = 0; seed < 60; ++seed) {
-    AtPoint at(seed);
+    AtPoint at(seed, false);
     const DenseGdd& d = at.s.dense;
     Random random(seed);
     const VectorX x = random.vector(at.s.dofs(), 10.0);

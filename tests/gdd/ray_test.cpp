@@ -100,9 +100,14 @@ struct RayCase {
     TreeFactor massFactor;
     massFactor.compute(M);
     s.data().constraints.setRay(direction);
+    s.data().constraints.setForceRate();
+    gdd::ForceTerms forces;
+    forces.setCost(s.cost.forces());
+    forces.evaluate(s.data().constraints);
+    forces.setRate(s.data().constraints);
     gdd::Ray ray(s.model());
     result = ray.minimize(s.data().constraints, massFactor, {s.box, s.dense.lambda, s.dense.rho}, g,
-                          rate, cost.dot(direction), s.cost.curvatureAlong(direction, Md));
+                          rate, cost.dot(direction), s.cost.curvatureAlong(direction, Md), forces);
   }
 };
 
@@ -187,9 +192,10 @@ TEST(Ray, PassesBothKnotsOfDryFriction) {
     inverseDynamics(scene.model, a, *scene.data, g);
     EXPECT_EQ(g[0], m * a[0] - limit * direction);
     scene.data->constraints.setRay(d);
+    gdd::ForceTerms none;
     const gdd::RayResult result =
         ray.minimize(constraints, massFactor, {box, lambda, rho}, g, m * d,
-                     w * (a[0] - wish * direction) * d[0], w * d[0] * d[0]);
+                     w * (a[0] - wish * direction) * d[0], w * d[0] * d[0], none);
     // ½ g²/m + ½ w (a − wish)² with g = m a + f_max.
     const double best = direction * (w * wish - limit) / (m + w);
     EXPECT_EQ(result.crossings, 2);

@@ -59,7 +59,7 @@ TEST(DampingInFiles, HasTwoMetrics) {
   EXPECT_EQ(readOne<gdd::VirtualDamping>("damping: {metric: inverse_inertia}")->metric,
             gdd::DampingMetric::inverseInertia);
   EXPECT_EQ(errorOf("damping: {metric: R}"),
-            "'damping': key 'metric': found 'R', expected 'inertia' or 'inverse_inertia'");
+            "'damping': key 'metric': found 'R', expected one of inertia, inverse_inertia");
 }
 
 TEST(JointGoalsInFiles, ArriveWithTheirValues) {
@@ -234,6 +234,68 @@ TEST(EffortInFiles, IsOfTheActuatedJointsNamed) {
             "'effort': key 'joints': found a map,");
   EXPECT_EQ(errorOf("effort: {weight: -1}"),
             "'effort': key 'weight': found '-1', expected a finite number >= 0");
+}
+
+TEST(ContactGoalsInFiles, AForceArrivesWithItsValues) {
+  const auto goal = readOne<gdd::ContactForce>(
+      "contact_force: {link: arm, force: [1, 2, 3], axes: zx, by: base, weight: 4}");
+  EXPECT_EQ(goal->link, "arm");
+  EXPECT_EQ(goal->force, Vector3(1.0, 2.0, 3.0));
+  EXPECT_EQ(goal->axes, (std::array<bool, 3>{true, false, true}));
+  EXPECT_EQ(goal->weight, 4.0);
+  // The geometries of the sample: that of base, that of arm.
+  EXPECT_EQ(goal->contacts.on, (std::vector<char>{0, 1}));
+  EXPECT_EQ(goal->contacts.by, (std::vector<char>{1, 0}));
+  const auto plain = readOne<gdd::ContactForce>("contact_force: {link: arm, force: [1, 2, 3]}");
+  EXPECT_EQ(plain->axes, (std::array<bool, 3>{true, true, true}));
+  EXPECT_EQ(plain->weight, gdd::ContactForce(sampleModel(), "arm", Vector3::Zero()).weight);
+  EXPECT_EQ(plain->contacts.by, (std::vector<char>{1, 0}));
+  const auto ground =
+      readOne<gdd::ContactForce>("contact_force: {link: arm, force: [1, 2, 3], by: world}");
+  EXPECT_EQ(ground->contacts.by, (std::vector<char>{0, 0})) << "nothing of it is fixed";
+}
+
+TEST(ContactGoalsInFiles, APressureArrivesWithItsValues) {
+  const auto goal =
+      readOne<gdd::CenterOfPressure>("center_of_pressure: {target: [1, 2, 3], weight: 4}");
+  EXPECT_EQ(goal->p_WTarget, Vector3(1.0, 2.0, 3.0));
+  EXPECT_EQ(goal->n_W, Vector3::UnitZ());
+  EXPECT_EQ(goal->weight, 4.0);
+  EXPECT_EQ(goal->contacts.on, (std::vector<char>{1, 1}));
+  const auto foot =
+      readOne<gdd::CenterOfPressure>("center_of_pressure: {target: [1, 2, 3], links: [arm]}");
+  EXPECT_EQ(foot->contacts.on, (std::vector<char>{0, 1}));
+  EXPECT_EQ(foot->weight, gdd::CenterOfPressure(sampleModel(), 0, Vector3::Zero()).weight);
+}
+
+TEST(ContactGoalsInFiles, BadOnesAreRefused) {
+  const std::string force = "contact_force: {link: arm, force: [1, 2, 3]";
+  EXPECT_EQ(errorOf("contact_force: {link: arm}"),
+            "'contact_force': key 'force': found no such key, expected three numbers [x, y, z]");
+  EXPECT_EQ(errorOf("contact_force: {link: amr, force: [1, 2, 3]}"),
+            "'contact_force': key 'link': found 'amr', expected a link of model 'sample', did you "
+            "mean 'arm'?");
+  EXPECT_EQ(errorOf(force + ", by: bass}"),
+            "'contact_force': key 'by': found 'bass', expected world or a link of model 'sample' "
+            "with collision geometry, did you mean 'base'?");
+  EXPECT_EQ(errorOf(force + ", by: arm}"),
+            "'contact_force': key 'by': found the link itself, expected world or another link");
+  EXPECT_EQ(errorOf(force + ", weight: -1}"),
+            "'contact_force': key 'weight': found '-1', expected a finite number >= 0");
+  EXPECT_NE(errorOf(force + ", axes: xx}").find("key 'axes'"), std::string::npos);
+  const std::string pressure = "center_of_pressure: {target: [1, 2, 3]";
+  EXPECT_EQ(errorOf("center_of_pressure: {}"),
+            "'center_of_pressure': key 'target': found no such key, expected three numbers [x, y, "
+            "z]");
+  EXPECT_EQ(errorOf(pressure + ", links: [amr]}"),
+            "'center_of_pressure': key 'links': found 'amr', expected links that move of model "
+            "'sample' with collision geometry, did you mean 'arm'?");
+  EXPECT_EQ(errorOf(pressure + ", links: [arm, arm]}"),
+            "'center_of_pressure': key 'links': found 'arm' twice, expected once");
+  EXPECT_EQ(errorOf(pressure + ", links: []}"),
+            "'center_of_pressure': key 'links': found an empty list, expected at least one link");
+  EXPECT_EQ(errorOf(pressure + ", link: arm, links: [arm]}"),
+            "'center_of_pressure': key 'links': found beside link, expected one of them");
 }
 
 }  // namespace

@@ -118,6 +118,8 @@ TEST(Goals, OfTheProjectFitItsRobots) {
   const std::filesystem::path data = std::filesystem::path(SOFTGAUSS_SOURCE_DIR) / "data";
   const Model humanoid = loadUrdf(data / "robots/humanoid.urdf");
   EXPECT_EQ(readGoals(data / "goals/stand_and_reach.yaml", humanoid, State(humanoid)).size(), 2u);
+  EXPECT_EQ(readGoals(data / "goals/shift_weight.yaml", humanoid, State(humanoid)).size(), 5u);
+  EXPECT_EQ(readGoals(data / "goals/move_pressure.yaml", humanoid, State(humanoid)).size(), 5u);
   const Model arm = loadUrdf(data / "robots/arm.urdf");
   EXPECT_EQ(readGoals(data / "goals/arm_reach.yaml", arm, State(arm)).size(), 2u);
 }
@@ -255,7 +257,7 @@ const BadGoal kBadGoals[] = {
      "bad.yaml:7: goal 3: found 3 keys (damping, weight, rate), expected one, the kind, whose own "
      "keys are in {…} or indented below it"},
     {"KindWithoutKeys", "      weight: 0.5\n      rate: 3\n", "",
-     "bad.yaml:7: goal 3 'damping': found nothing, expected a map {…} with keys of weight, rate"},
+     "bad.yaml:7: goal 3 'damping': found nothing, expected a map {…} with keys of weight, rate, metric"},
     {"EmptyGoal", "- posture", "- {}\n  - posture",
      "bad.yaml:6: goal 2: found 0 keys (), expected one, the kind, whose own keys are in {…} or "
      "indented below it"},

@@ -171,6 +171,10 @@ void addEveryQuadraticGoal(RobotScene& r) {
   posture.targets = {joint};
   add(posture);
   add(gdd::Effort(driven));
+  gdd::ContactForce force(model, "left_foot", Vector3(0.0, 0.0, 200.0));
+  force.countOnly(model, "world");
+  add(force);
+  add(gdd::CenterOfPressure(model, robot, Vector3::Zero()));
 }
 
 TEST(Allocation, NoneInTheGoalDirectedStepWithEveryQuadraticGoal) {

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gdd/force_cost.hpp"
+
+#include <type_traits>
+
+namespace softgauss::gdd {
+namespace {
+
+Eigen::Map<const Vector6> asVector(const ContactBlocks::FrameVector& frame) {
+  return Eigen::Map<const Vector6>(frame.data());
+}
+
+/// tau ← tau − J_iᵀ H_i y for a vector y in the frame of contact i.
+template <class Contacts>
+void subtractThroughContact(const Contacts& contacts, int i, const Vector6& y, VectorX& tau) {
+  double H[36];
+  const int dim = contacts.frameCurvature(i, H);
+  double force[6];
+  bool any = false;
+  for (int k = 0; k < dim; ++k) {
+    force[k] = 0.0;
+    for (int l = 0; l < dim; ++l) force[k] -= H[k * dim + l] * y[l];
+    any |= force[k] != 0.0;
+  }
+  if (any) contacts.jacobian().addTransposed(i, force, tau);
+}
+
+}  // namespace
+
+/// Calls f with every part of the cost and the contacts of its kind.
+template <class F>
+void ForceTerms::visitParts(const Constraints& rows, F&& f) const {
+  rows.visitContacts([&](const auto& contacts) {
+    for (const ForceCost::Part& part : cost_->parts())
+      if (part.cone == contacts.kCone) f(part, contacts);
+  });
+}
+
+void ForceTerms::setCost(const ForceCost& cost) {
+  cost_ = cost.empty() ? nullptr : &cost;
+  if (!cost_) return;
+  error_.resize(cost.residuals().size());
+  rate_.resize(cost.residuals().size());
+}
+
+void ForceTerms::evaluate(const Constraints& rows) {
+  if (!cost_) return;
+  for (std::size_t j = 0; j < error_.size(); ++j) error_[j] = -cost_->residuals()[j].target;
+  visitParts(rows, [&](const ForceCost::Part& part, const auto& contacts) {
+    error_[part.residual] += part.map * asVector(contacts.frameForce(part.contact));
+  });
+}
+
+double ForceTerms::value() const {
+  double sum = 0.0;
+  if (!cost_) return sum;
+  for (std::size_t j = 0; j < error_.size(); ++j)
+    sum += 0.5 * cost_->residuals()[j].weight * error_[j].squaredNorm();
+  return sum;
+}
+
+void ForceTerms::addGradient(const Constraints& rows, VectorX& g) const {
+  if (!cost_) return;
+  visitParts(rows, [&](const ForceCost::Part& part, const auto& contacts) {
+    const double w = cost_->residuals()[part.residual].weight;
+    const Vector6 pull = w * (part.map.transpose() * error_[part.residual]);
+    subtractThroughContact(contacts, part.contact, pull, g);
+  });
+}
+
+double ForceTerms::pull(Knot knot, const Constraints& rows) const {
+  double sum = 0.0;
+  if (!cost_) return sum;
+  rows.visitContactsOf(knot.row, [&](const auto& contacts) {
+    const int contact = contacts.contactOfRow(knot.row.row);
+    const auto row = contacts.knotInFrame(knot.row.row, knot.index);
+    for (const ForceCost::Part& part : cost_->parts())
+      if (part.cone == contacts.kCone && part.contact == contact)
+        sum += cost_->residuals()[part.residual].weight *
+               error_[part.residual].dot(part.map * asVector(row));
+  });
+  return sum;
+}
+
+void ForceTerms::setRate(const Constraints& rows) {
+  if (!cost_) return;
+  for (Vector3& rate : rate_) rate.setZero();
+  visitParts(rows, [&](const ForceCost::Part& part, const auto& contacts) {
+    rate_[part.residual] += part.map * asVector(contacts.frameForceRate(part.contact));
+  });
+}
+
+double ForceTerms::slope() const {
+  double sum = 0.0;
+  if (!cost_) return sum;
+  for (std::size_t j = 0; j < error_.size(); ++j)
+    sum += cost_->residuals()[j].weight * error_[j].dot(rate_[j]);
+  return sum;
+}
+
+double ForceTerms::curvature() const {
+  double sum = 0.0;
+  if (!cost_) return sum;
+  for (std::size_t j = 0; j < rate_.size(); ++j)
+    sum += cost_->residuals()[j].weight * rate_[j].squaredNorm();
+  return sum;
+}
+
+void ForceTerms::advance(double length) {
+  if (!cost_) return;
+  for (std::size_t j = 0; j < error_.size(); ++j) error_[j] += length * rate_[j];
+}
+
+void ForceTerms::cross(const Crossing& crossing, const Constraints& rows) {
+  if (!cost_) return;
+  const RowId row = crossing.knot.row;
+  rows.visitContactsOf(row, [&](const auto& contacts) {
+    const int contact = contacts.contactOfRow(row.row);
+    const auto edge = contacts.knotInFrame(row.row, crossing.knot.index);
+    for (const ForceCost::Part& part : cost_->parts())
+      if (part.cone == contacts.kCone && part.contact == contact)
+        rate_[part.residual] -=
+            crossing.curvatureJump * crossing.rate * (part.map * asVector(edge));
+  });
+}
+
+void ForceTerms::setJacobian(const Constraints& rows, int dofs) {
+  if (!cost_) return;
+  while (jacobian_.size() < 3 * error_.size()) jacobian_.emplace_back();
+  for (std::size_t r = 0; r < 3 * error_.size(); ++r) jacobian_[r].setZero(dofs);
+  visitParts(rows, [&](const ForceCost::Part& part, const auto& contacts) {
+    for (int k = 0; k < 3; ++k) {
+      const Vector6 row = part.map.row(k);
+      subtractThroughContact(contacts, part.contact, row, jacobian_[3 * part.residual + k]);
+    }
+  });
+}
+
+void ForceTerms::addCurvature(TreeMatrix& H) const {
+  if (!cost_) return;
+  for (std::size_t r = 0; r < 3 * error_.size(); ++r) {
+    const VectorX& G = jacobian_[r];
+    for (Eigen::Index i = 0; i < G.size(); ++i) {
+      const double scale = cost_->residuals()[r / 3].weight * G[i];
+      if (scale == 0.0) continue;
+      double* row = H.row(static_cast<int>(i));
+      for (Eigen::Index j = 0; j <= i; ++j) row[j] += scale * G[j];
+    }
+  }
+}
+
+void ForceTerms::addReducedCurvature(const RowMajorMatrixX& S, MatrixX& K) {
+  if (!cost_) return;
+  reduced_.resize(S.cols());
+  for (std::size_t r = 0; r < 3 * error_.size(); ++r) {
+    const VectorX& G = jacobian_[r];
+    reduced_.setZero();
+    for (Eigen::Index i = 0; i < G.size(); ++i)
+      if (G[i] != 0.0) reduced_ += G[i] * S.row(i).transpose();
+    K.selfadjointView<Eigen::Lower>().rankUpdate(reduced_, cost_->residuals()[r / 3].weight);
+  }
+}
+
+}  // namespace softgauss::gdd
