@@ -50,8 +50,6 @@ void TreeSparsity::finishRow(int row, int firstColumn) {
 void TreeSparsity::finish() {
   // Transpose: for every column the rows below the diagonal, as ranges.
   const int n = size();
-  serial_ = true;
-  for (int i = 0; i < n; ++i) serial_ = serial_ && begin(i)->begin == 0 && begin(i)->end == i + 1;
   columns_.clear();
   columnBegin_.assign(1, 0);
   cursor_.assign(static_cast<std::size_t>(n), 0);

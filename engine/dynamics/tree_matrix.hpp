@@ -45,8 +45,6 @@ class TreeSparsity {
   /// Position of entry (row, 0) in the value array; entries exist for columns in the segments.
   std::ptrdiff_t offset(int row) const { return offset_[row]; }
   std::size_t storage() const { return storage_; }
-  /// Whether every row holds all columns before it, as on a chain: then loops need no segments.
-  bool serial() const { return serial_; }
 
   /// This pattern plus all products of the given dof sets, closed under elimination. `couplings`
   /// lists sets of dofs, each as segments ascending; sets are separated by `setEnd`.
@@ -63,7 +61,6 @@ class TreeSparsity {
   std::vector<Segment> columns_;  ///< the pattern by columns, diagonal excluded
   std::vector<int> columnBegin_;
   std::size_t storage_ = 0;
-  bool serial_ = false;
   std::vector<std::uint64_t> bits_;  ///< scratch of couple(): one bitset per row
   std::vector<std::size_t> cursor_;  ///< scratch of finish()
 };
