@@ -7,7 +7,7 @@
 /// geometries, then every pair of the filter is rejected by its bounding spheres (or plane) or
 /// tested exactly. Pairs whose spheres are far apart are set aside until some shape has moved half
 /// the slack between them, wherever the state that is asked about comes from: a step looks at the
-/// near ones only, and the contacts are the same bit for bit (docs/decisions/0023). Scenes with
+/// near ones only, and the contacts are the same bit for bit (docs/decisions/0022). Scenes with
 /// more than kBroadphasePairs pairs find the near ones by a sweep instead of a loop over all.
 ///
 /// Contacts appear in the order of the filter's pairs, A and B as there, and depend on the poses

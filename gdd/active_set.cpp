@@ -225,6 +225,10 @@ std::optional<GddStatus> ActiveSet::descend(const GoalCost& cost, double wanted,
   for (;;) {
     if (!enterCell(cost, data) || !computeGradient(data)) return GddStatus::notFinite;
     double promised = solveProgram();
+    if (promised < 0.0 && !cell_.isFresh()) {
+      entered_ = false;  // corrections have cost K too many digits
+      continue;
+    }
     if (promised < 0.0) return GddStatus::undecided;
     if (report_.iterations >= kPatience &&
         effort() + path_.value + forces_.value() - promised > wanted)
@@ -279,11 +283,13 @@ GddReport ActiveSet::solve(const Model& model, GoalCost& cost, const ControlBox&
   if (report_.status == GddStatus::notFinite) return report_;
   finish(box, cost, data);
 
-  const bool canSearch = data.constraints.rowCount() > 0 && cell_.columns() > 0;
-  if (!warm.gddValid || !canSearch || options.longestSearchWait == 0) return report_;
-  searchAge_ = warm.gddSearchAge + 1;
+  if (!known_) return report_;  // a cold start has looked
+  searchAge_ = warm.gddSearchAge;
   searchWait_ = warm.gddSearchWait;
-  if (searchAge_ < searchWait_) return report_;
+  // An expansion of functions is good near its point alone.
+  const bool canSearch =
+      data.constraints.rowCount() > 0 && cell_.columns() > 0 && !cost.hasFunctions();
+  if (!canSearch || options.longestSearchWait == 0 || ++searchAge_ < searchWait_) return report_;
   searchAge_ = 0;
   const bool found = startAgain(model, cost, box, data);
   searchWait_ = found ? 1 : std::min(2 * searchWait_, options.longestSearchWait);
@@ -295,6 +301,9 @@ GddReport ActiveSet::solve(const Model& model, GoalCost& cost, const ControlBox&
 bool ActiveSet::startAgain(const Model& model, const GoalCost& cost, const ControlBox& box,
                            Data& data) {
   constexpr double kBetter = 1e-6;  // of F: less is no reason to leave
+  const auto certified = [](const GddReport& report) {
+    return report.status == GddStatus::converged || report.status == GddStatus::kink;
+  };
   first_.a = path_.a;
   first_.u = u_;
   first_.knots = knots_;
@@ -312,9 +321,13 @@ bool ActiveSet::startAgain(const Model& model, const GoalCost& cost, const Contr
     report_.status = GddStatus::notFinite;
   }
   const GddReport second = report_;
-  const bool better = second.status != GddStatus::notFinite && second.objective < wanted;
+  const bool sound =
+      certified(second) || (second.status != GddStatus::notFinite && !certified(first_.report));
+  const bool better = sound && second.objective < wanted;
   if (!better) {
     bool changed = false;
+    badDof_ = -1;
+    data.stats.badDof = -1;
     report_ = first_.report;
     path_.a = first_.a;
     u_ = first_.u;
@@ -328,6 +341,7 @@ bool ActiveSet::startAgain(const Model& model, const GoalCost& cost, const Contr
   report_.iterations += other.iterations;
   report_.cells += other.cells;
   report_.factorizations += other.factorizations;
+  report_.forwardIterations += other.forwardIterations;
   return better;
 }
 

@@ -107,6 +107,7 @@ class ActiveSet {
   VectorX force_;  ///< B u (nv)
   VectorX Ma_, adjoint_, residual_, rate_;
   double merit_ = 0.0;    ///< size of the objective
+  bool known_ = false;    ///< started from a last step
   bool ready_ = false;    ///< R is that of this solve
   bool entered_ = false;  ///< the response is that of the cell at a
   GddReport report_;

@@ -149,22 +149,22 @@ GddStatus ActiveSet::start(const Model& model, const GoalCost& cost, const Contr
   cell_.pick(box.lower, lower_);
   cell_.pick(box.upper, upper_);
   u_.setZero(cell_.columns());
-  const bool known = warm.gddValid && warm.gddA.allFinite() && warm.control.size() == model.nv &&
-                     warm.control.allFinite();
-  if (known)
+  known_ = warm.gddValid && warm.gddA.allFinite() && warm.control.size() == model.nv &&
+           warm.control.allFinite();
+  if (known_)
     cell_.pick(warm.control, u_);
   else
     chooseStart(model, cost, data);
   report_.forwardIterations = 0;
   double value = kInfinity;
-  if (known) {
+  if (known_) {
     u_ = u_.cwiseMax(lower_).cwiseMin(upper_);
     cell_.force(u_, force_);
     for (const KnotName& name : warm.knots)
       if (const auto knot = data.constraints.find(name)) path_.held.entry(*knot).paths = kGuarded;
     value = moveAlongPath(cost, warm.gddA, data);
   }
-  if (!std::isfinite(value)) value = moveTo(model, cost, known ? &warm.gddA : nullptr, data);
+  if (!std::isfinite(value)) value = moveTo(model, cost, known_ ? &warm.gddA : nullptr, data);
   setAppliedForce(force_, data.forces);
   return std::isfinite(value) ? GddStatus::converged : GddStatus::notFinite;
 }

@@ -53,11 +53,11 @@ class CellResponse {
   void addToHessian(ForceTerms& forces);
 
   int columns() const { return static_cast<int>(driven_.size()); }
-  const std::vector<int>& driven() const { return driven_; }  ///< the coordinate of each column
-  void select(const VectorX& x, VectorX& y) const;            ///< y ← Bᵀx
-  void spread(const VectorX& u, VectorX& tau) const;          ///< tau ← B u where B has entries
-  void force(const VectorX& u, VectorX& tau) const;           ///< tau ← B u + given()
-  const VectorX& given() const { return givenForce_; }        ///< the force that the box fixes (nv)
+  bool isFresh() const { return correctionCount_ == 0; }  ///< no row has been crossed
+  void select(const VectorX& x, VectorX& y) const;        ///< y ← Bᵀx
+  void spread(const VectorX& u, VectorX& tau) const;      ///< tau ← B u where B has entries
+  void force(const VectorX& u, VectorX& tau) const;       ///< tau ← B u + given()
+  const VectorX& given() const { return givenForce_; }    ///< the force that the box fixes (nv)
   void pick(const VectorX& y, VectorX& u) const;   ///< u ← the driven ones of all coordinates
   void place(const VectorX& u, VectorX& y) const;  ///< y ← u and what the box fixes (nv)
   void controls(const VectorX& tau, VectorX& u) const;  ///< u ← B⁺ tau

@@ -126,6 +126,9 @@ class ExpandedSolve {
     warm.gddA = warm_.gddA;
     warm.multipliers = warm_.multipliers;
     warm.control = warm_.control;
+    warm.knots = warm_.knots;
+    warm.gddSearchAge = warm_.gddSearchAge;
+    warm.gddSearchWait = warm_.gddSearchWait;
     warm.gddValid = true;
   }
 
@@ -140,6 +143,8 @@ class ExpandedSolve {
     to.iterations += from.iterations;
     to.dualUpdates += from.dualUpdates;
     to.factorizations += from.factorizations;
+    to.cells += from.cells;
+    to.forwardIterations += from.forwardIterations;
   }
   static VectorX freeAcceleration(const Data& data);
   /// Σ λ_i (y_i − its bound) over the bounds that y = C g is at in the last trial.

@@ -131,7 +131,8 @@ void GaussNewtonHessian::addForceTerms(const VectorX& boundCurvature, const Cont
     const double curvature = price.diagonal()[i] + (plain ? boundCurvature[i] : 0.0);
     if (curvature != 0.0) addForceRow(i, curvature);
     if (plain || boundCurvature[i] == 0.0) continue;
-    addForceRow(box.transmission->C().row(i).transpose(), boundCurvature[i]);
+    force_ = box.transmission->C().row(i).transpose();
+    addForceRow(force_, boundCurvature[i]);
   }
   for (int k = 0; k < price.directionCount(); ++k) addForceRow(price.direction(k), 1.0);
   if (forceRows_.empty()) return;

@@ -10,9 +10,9 @@
 
 namespace softgauss {
 
-/// Solutions of the last step, from which the next solve starts. They change the number of
-/// iterations, and the result only within the solver's tolerance.
-/// A knot of a constraint row's penalty, named so that the next step finds it again.
+/// A knot of a constraint row's penalty, named so that the next step finds it again. Rows are known
+/// by what they are of, not by their place among the rows, which changes from step to step as
+/// contacts come and go.
 struct KnotName {
   int kind = 0;       ///< of constraint
   int first = 0;      ///< what the row is of: a dof, or the geometries that touch
@@ -22,7 +22,7 @@ struct KnotName {
   int index = 0;      ///< among the knots of the row, upwards
   bool operator==(const KnotName&) const = default;
 };
-
+/// Solutions of the last step, from which the next solve starts: they may choose a local minimum.
 struct WarmStart {
   VectorX a;                    ///< acceleration of the forward solve (nv)
   VectorX gddA;                 ///< acceleration of the GDD solve (nv)

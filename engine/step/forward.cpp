@@ -33,7 +33,10 @@ bool solveMass(Data& data, const VectorX* diagonal, VectorX& x) {
   if (data.plan.diagonal) {
     for (int i = 0; i < M.size(); ++i) {
       const double pivot = M.row(i)[i] + (diagonal ? (*diagonal)[i] : 0.0);
-      if (!(pivot > 0.0)) return false;
+      if (!(pivot > 0.0)) {
+        data.stats.badDof = i;
+        return false;
+      }
       x[i] /= pivot;
     }
     return true;
@@ -42,6 +45,7 @@ bool solveMass(Data& data, const VectorX* diagonal, VectorX& x) {
     s.massFactored = !diagonal;
     if (!s.massFactor.compute(M, diagonal ? diagonal->data() : nullptr)) {
       s.massFactored = false;
+      data.stats.badDof = s.massFactor.failedRow();
       return false;
     }
   }
@@ -59,9 +63,8 @@ SolveStatus minimizeGauss(const Model& model, const VectorX* guess, Data& data) 
     s.report.status = SolveStatus::notFinite;
     return s.report.status;
   };
-  const auto notPositive = [&] {
-    notFinite();
-    data.stats.badDof = s.massFactor.failedRow();
+  const auto notPositive = [&] {  // solveMass() has named the dof
+    s.report.status = SolveStatus::notFinite;
     return s.report.status;
   };
   const auto finish = [&] {
@@ -85,7 +88,10 @@ SolveStatus minimizeGauss(const Model& model, const VectorX* guess, Data& data) 
     if (s.report.residual <= model.options.tolerance) return finish();
   }
   // Without rows the minimiser is M⁻¹(τ − c).
-  if (!s.massFactor.compute(data.inertia.M)) return notPositive();
+  if (!s.massFactor.compute(data.inertia.M)) {
+    data.stats.badDof = s.massFactor.failedRow();
+    return notPositive();
+  }
   s.massFactored = true;
   s.start = data.forces.net;
   s.massFactor.solve(s.start);

@@ -37,6 +37,27 @@ TEST(GddState, CopiedStateContinuesWithTheSameBits) {
   }
 }
 
+// The knots of a kink, by names that find them again, and when to look for a better minimum.
+TEST(GddState, KnotsAndSearchesAreKeptFromStepToStep) {
+  auto r = reachingHumanoid(0);
+  const WarmStart& warm = r->state.warmstart;
+  int kinks = 0, longestWait = 0;
+  for (int i = 0; i < 200; ++i) {
+    ASSERT_NE(r->step(), SolveStatus::notFinite);
+    ASSERT_EQ(static_cast<int>(warm.knots.size()), r->controller.report.heldRows);
+    for (const KnotName& name : warm.knots) {
+      const auto knot = r->data.constraints.find(name);
+      ASSERT_TRUE(knot.has_value());
+      EXPECT_EQ(r->data.constraints.nameOf(*knot), name);
+    }
+    kinks += warm.knots.empty() ? 0 : 1;
+    longestWait = std::max(longestWait, warm.gddSearchWait);
+  }
+  EXPECT_GT(kinks, 0);
+  EXPECT_GT(longestWait, 1);
+  EXPECT_LE(longestWait, r->controller.activeSet.options.longestSearchWait);
+}
+
 /// The step refuses, and leaves the state as it was.
 void expectRefused(RobotScene& r) {
   const State before = r.state;
