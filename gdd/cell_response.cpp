@@ -203,6 +203,7 @@ void CellResponse::computeHessian() {
       subtractRankOne(corrections_[k].y.data(), corrections_[k].By.data(), corrections_[k].scale,
                       S_);
     K_ = forcePrice_;
+    rootS_.resize(S_.rows(), S_.cols());
     cost_->addReducedCurvature(*massFactor_, S_, rootS_, K_);
     correctionsInS_ = correctionCount_;
   }

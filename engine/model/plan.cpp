@@ -108,6 +108,14 @@ Plan::Plan(const Model& model) : options_(model.options) {
 
 bool Plan::fits(const Model& model) const {
   const Options &now = model.options, &then = options_;
+  for (int i = 0; i < model.nv; ++i) {
+    const Dof& dof = model.dofs[i];
+    if (dof.dryFriction != 0.0 && now.effects.has(Effect::dryFriction) &&
+        !rows.has(RowKind::dryFriction))
+      return false;
+    const double planned = damped() ? damping[i] : 0.0;
+    if (now.effects.has(Effect::damping) && dof.damping != planned) return false;
+  }
   return now.effects == then.effects && now.gravity == then.gravity &&
          now.midpointCoriolis == then.midpointCoriolis && now.cone == then.cone &&
          now.exactDiagonal == then.exactDiagonal;

@@ -69,7 +69,7 @@ struct Plan {
   Plan() = default;
   explicit Plan(const Model& model);
   bool damped() const { return damping.size() > 0; }
-  /// Whether the model still has the options that this was made from. For assertions.
+  /// Whether the model still has the options, dampings and dry friction of this. For assertions.
   bool fits(const Model& model) const;
 
  private:

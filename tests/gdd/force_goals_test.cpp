@@ -56,6 +56,7 @@ struct OnItsFeet {
   OnItsFeet(std::uint64_t seed, Cone cone) : r("humanoid") {
     Random random(seed + 77);
     r.model.options.cone = cone;
+    r.renew();
     r.state.q[2] -= 0.001;
     r.state.v = random.vector(r.model.nv, 0.1);
     EXPECT_NE(computeStages(r.model, r.input, r.state, r.data, &r.contacts),

@@ -173,7 +173,8 @@ class GlobalMinimum : public testing::Test {
         s.addRandomActuators(random, true, 5.0);
         addTo<Solver>(tally, s, globalMinimum(s.dense));
       }
-      finish("coupled chain, rows " + std::to_string(4 * contacts), weight, tally);
+      finish("coupled chain, rows " + std::to_string(4 * contacts), weight, tally,
+             Bounds<Solver>::globalShare);
     }
   }
 

@@ -4,6 +4,7 @@
 /// The robots of data/robots with a controller, as simulate_gdd sets them up.
 
 #include <cmath>
+#include <memory>
 
 #include "collision/lowest_point.hpp"
 #include "collision/scene_contacts.hpp"
@@ -54,7 +55,16 @@ struct RobotScene {
     return posture;
   }
 
-  SolveStatus step() { return controller.step(model, input, state, data, &contacts); }
+  /// Where a test has changed the model: data for the new one.
+  void renew() {
+    if (data.plan.fits(model)) return;
+    std::destroy_at(&data);
+    std::construct_at(&data, model);
+  }
+  SolveStatus step() {
+    renew();
+    return controller.step(model, input, state, data, &contacts);
+  }
 
   Vector3 position(const std::string& link) {
     Kinematics k(model);

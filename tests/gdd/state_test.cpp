@@ -40,6 +40,7 @@ TEST(GddState, CopiedStateContinuesWithTheSameBits) {
 // The knots of a kink, by names that find them again, and when to look for a better minimum.
 TEST(GddState, KnotsAndSearchesAreKeptFromStepToStep) {
   auto r = reachingHumanoid(0);
+  r->addReach("left_hand", {0.9, 0.5, 1.4}).weight = 3000.0;  // out of reach: it stumbles
   const WarmStart& warm = r->state.warmstart;
   int kinks = 0, longestWait = 0;
   for (int i = 0; i < 200; ++i) {

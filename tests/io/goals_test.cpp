@@ -119,7 +119,7 @@ TEST(Goals, OfTheProjectFitItsRobots) {
   const Model humanoid = loadUrdf(data / "robots/humanoid.urdf");
   EXPECT_EQ(readGoals(data / "goals/stand_and_reach.yaml", humanoid, State(humanoid)).size(), 2u);
   EXPECT_EQ(readGoals(data / "goals/shift_weight.yaml", humanoid, State(humanoid)).size(), 5u);
-  EXPECT_EQ(readGoals(data / "goals/move_pressure.yaml", humanoid, State(humanoid)).size(), 5u);
+  EXPECT_EQ(readGoals(data / "goals/move_pressure.yaml", humanoid, State(humanoid)).size(), 4u);
   const Model arm = loadUrdf(data / "robots/arm.urdf");
   EXPECT_EQ(readGoals(data / "goals/arm_reach.yaml", arm, State(arm)).size(), 2u);
 }
@@ -248,16 +248,17 @@ const BadGoal kBadGoals[] = {
     {"UnknownKind", "posture:", "posutre:",
      "bad.yaml:6: goal 2: found the unknown kind 'posutre', expected one of reach, look_at, "
      "hold, posture, joint_posture, acceleration, damping, effort, center_of_mass, momentum, "
-     "capture_point, did you mean 'posture'?"},
+     "capture_point, contact_force, center_of_pressure, did you mean 'posture'?"},
     {"GoalIsAWord", "- posture", "- damping\n  - posture",
      "bad.yaml:6: goal 2: found 'damping', expected kind: {…}, the kind one of reach, look_at, "
      "hold, posture, joint_posture, acceleration, damping, effort, center_of_mass, momentum, "
-     "capture_point"},
+     "capture_point, contact_force, center_of_pressure"},
     {"KeysNotIndented", "      weight: 0.5\n      rate: 3", "    weight: 0.5\n    rate: 3",
      "bad.yaml:7: goal 3: found 3 keys (damping, weight, rate), expected one, the kind, whose own "
      "keys are in {…} or indented below it"},
     {"KindWithoutKeys", "      weight: 0.5\n      rate: 3\n", "",
-     "bad.yaml:7: goal 3 'damping': found nothing, expected a map {…} with keys of weight, rate, metric"},
+     "bad.yaml:7: goal 3 'damping': found nothing, expected a map {…} with keys of weight, rate, "
+     "metric"},
     {"EmptyGoal", "- posture", "- {}\n  - posture",
      "bad.yaml:6: goal 2: found 0 keys (), expected one, the kind, whose own keys are in {…} or "
      "indented below it"},
