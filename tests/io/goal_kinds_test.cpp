@@ -59,7 +59,7 @@ TEST(DampingInFiles, HasTwoMetrics) {
   EXPECT_EQ(readOne<gdd::VirtualDamping>("damping: {metric: inverse_inertia}")->metric,
             gdd::DampingMetric::inverseInertia);
   EXPECT_EQ(errorOf("damping: {metric: R}"),
-            "'damping': key 'metric': found 'R', expected 'inertia' or 'inverse_inertia'");
+            "'damping': key 'metric': found 'R', expected one of inertia, inverse_inertia");
 }
 
 TEST(JointGoalsInFiles, ArriveWithTheirValues) {

@@ -255,7 +255,7 @@ const BadGoal kBadGoals[] = {
      "bad.yaml:7: goal 3: found 3 keys (damping, weight, rate), expected one, the kind, whose own "
      "keys are in {…} or indented below it"},
     {"KindWithoutKeys", "      weight: 0.5\n      rate: 3\n", "",
-     "bad.yaml:7: goal 3 'damping': found nothing, expected a map {…} with keys of weight, rate"},
+     "bad.yaml:7: goal 3 'damping': found nothing, expected a map {…} with keys of weight, rate, metric"},
     {"EmptyGoal", "- posture", "- {}\n  - posture",
      "bad.yaml:6: goal 2: found 0 keys (), expected one, the kind, whose own keys are in {…} or "
      "indented below it"},
