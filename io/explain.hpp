@@ -58,7 +58,7 @@ struct ExplainContext {
   std::vector<std::pair<std::string, Material>> materials;  ///< the surfaces that have a name
   std::vector<TimedWrench> wrenches;                        ///< that act from outside
   std::map<std::string, EffectCost> costs;                  ///< by name of an effect; may be empty
-  std::int64_t apartPairs = 0;  ///< pairs of shapes that no configuration brings together
+  std::int64_t apartPairs = 0;           ///< pairs of shapes that no configuration brings together
   std::vector<SceneActuator> actuators;  ///< that drive joints through gears and couplings
 };
 
