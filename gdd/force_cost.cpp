@@ -10,6 +10,14 @@ Eigen::Map<const Vector6> asVector(const ContactBlocks::FrameVector& frame) {
   return Eigen::Map<const Vector6>(frame.data());
 }
 
+/// Σ_j w_j x_j·y_j over the residuals.
+double weightedSum(const ForceCost& cost, const std::vector<Vector3>& x,
+                   const std::vector<Vector3>& y) {
+  double sum = 0.0;
+  for (std::size_t j = 0; j < x.size(); ++j) sum += cost.residuals()[j].weight * x[j].dot(y[j]);
+  return sum;
+}
+
 /// tau ← tau − J_iᵀ H_i y for a vector y in the frame of contact i.
 template <class Contacts>
 void subtractThroughContact(const Contacts& contacts, int i, const Vector6& y, VectorX& tau) {
@@ -51,13 +59,7 @@ void ForceTerms::evaluate(const Constraints& rows) {
   });
 }
 
-double ForceTerms::value() const {
-  double sum = 0.0;
-  if (!cost_) return sum;
-  for (std::size_t j = 0; j < error_.size(); ++j)
-    sum += 0.5 * cost_->residuals()[j].weight * error_[j].squaredNorm();
-  return sum;
-}
+double ForceTerms::value() const { return cost_ ? 0.5 * weightedSum(*cost_, error_, error_) : 0.0; }
 
 void ForceTerms::addGradient(const Constraints& rows, VectorX& g) const {
   if (!cost_) return;
@@ -90,21 +92,9 @@ void ForceTerms::setRate(const Constraints& rows) {
   });
 }
 
-double ForceTerms::slope() const {
-  double sum = 0.0;
-  if (!cost_) return sum;
-  for (std::size_t j = 0; j < error_.size(); ++j)
-    sum += cost_->residuals()[j].weight * error_[j].dot(rate_[j]);
-  return sum;
-}
+double ForceTerms::slope() const { return cost_ ? weightedSum(*cost_, error_, rate_) : 0.0; }
 
-double ForceTerms::curvature() const {
-  double sum = 0.0;
-  if (!cost_) return sum;
-  for (std::size_t j = 0; j < rate_.size(); ++j)
-    sum += cost_->residuals()[j].weight * rate_[j].squaredNorm();
-  return sum;
-}
+double ForceTerms::curvature() const { return cost_ ? weightedSum(*cost_, rate_, rate_) : 0.0; }
 
 void ForceTerms::advance(double length) {
   if (!cost_) return;

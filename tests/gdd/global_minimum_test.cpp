@@ -145,39 +145,24 @@ class GlobalMinimum : public testing::Test {
  protected:
   /// Chains with 4 to 4 · `contacts` rows; `forces`: with goals of contact forces.
   void chains(int contacts, int count, bool boxed, bool forces = false) {
-    for (const double weight : kWeights) {
-      Tally tally;
-      for (int seed = 0; seed < count; ++seed) {
-        GddScene s = chainScene(seed, contacts);
-        addGoal(s, seed, weight);
-        Random random(seed + 17);
-        if (boxed) s.addRandomBox(random, 0.6, 5.0);
-        if (forces) s.addRandomForces(random);
-        ASSERT_LE(s.dense.rows(), kMostRows);
-        addTo<Solver>(tally, s, globalMinimum(s.dense));
-      }
-      finish((boxed ? "boxed chain, rows " : "chain, rows ") + std::to_string(4 * contacts) +
-                 (forces ? ", goals of forces" : ""),
-             weight, tally,
-             forces ? std::min(Bounds<Solver>::forceShare, Bounds<Solver>::globalShare)
-                    : Bounds<Solver>::globalShare);
-    }
+    const auto prepare = [&](GddScene& s, Random& random) {
+      if (boxed) s.addRandomBox(random, 0.6, 5.0);
+      if (forces) s.addRandomForces(random);
+    };
+    family((boxed ? "boxed chain, rows " : "chain, rows ") + std::to_string(4 * contacts) +
+               (forces ? ", goals of forces" : ""),
+           contacts, count, prepare,
+           forces ? std::min(Bounds<Solver>::forceShare, Bounds<Solver>::globalShare)
+                  : Bounds<Solver>::globalShare);
   }
 
   /// The same with gears, differentials and tendons in the place of single joints.
   void coupledChains(int contacts, int count) {
-    for (const double weight : kWeights) {
-      Tally tally;
-      for (int seed = 0; seed < count; ++seed) {
-        GddScene s = chainScene(seed, contacts);
-        addGoal(s, seed, weight);
-        Random random(seed + 17);
-        s.addRandomActuators(random, true, 5.0);
-        addTo<Solver>(tally, s, globalMinimum(s.dense));
-      }
-      finish("coupled chain, rows " + std::to_string(4 * contacts), weight, tally,
-             Bounds<Solver>::globalShare);
-    }
+    const auto prepare = [](GddScene& s, Random& random) {
+      s.addRandomActuators(random, true, 5.0);
+    };
+    family("coupled chain, rows " + std::to_string(4 * contacts), contacts, count, prepare,
+           Bounds<Solver>::globalShare);
   }
 
   void trees(int count, bool boxed) {
@@ -197,6 +182,23 @@ class GlobalMinimum : public testing::Test {
   }
 
  private:
+  /// `count` chains at each weight; `prepare` adds to a scene what the family is about.
+  template <class Prepare>
+  void family(const std::string& what, int contacts, int count, Prepare&& prepare, double share) {
+    for (const double weight : kWeights) {
+      Tally tally;
+      for (int seed = 0; seed < count; ++seed) {
+        GddScene s = chainScene(seed, contacts);
+        addGoal(s, seed, weight);
+        Random random(seed + 17);
+        prepare(s, random);
+        ASSERT_LE(s.dense.rows(), kMostRows);
+        addTo<Solver>(tally, s, globalMinimum(s.dense));
+      }
+      finish(what, weight, tally, share);
+    }
+  }
+
   static void addGoal(GddScene& s, int seed, double weight) {
     Random random(seed + 29);
     const int body = s.model().bodyCount() - 1;
