@@ -121,17 +121,6 @@ PathEnd ActiveSet::followPath(const GoalCost& cost, Data& data) {
   return end;
 }
 
-/// What the program would promise after a step that stayed in its cell, by the multipliers it had:
-/// ½ ρᵀK⁻¹ρ, ρ what they leave of the gradient.
-double ActiveSet::remainingPromise() {
-  stepLower_ = gradient_ - program_.boundMultipliers();
-  for (const HeldKnot& h : path_.held)
-    if (h.multiplier > 0.0) stepLower_ -= h.multiplier * h.side;
-  stepUpper_ = stepLower_;
-  program_.solveHessian(stepUpper_);
-  return 0.5 * stepLower_.dot(stepUpper_);
-}
-
 /// (T.63), (T.56). Stationary in this cell: looks for one beside it that descends, and enters it.
 ActiveSet::Next ActiveSet::leaveCell(Data& data) {
   constexpr double kTolerance = 1e-9;
@@ -247,7 +236,7 @@ std::optional<GddStatus> ActiveSet::descend(const GoalCost& cost, double wanted,
       if (moved && path.crossings == 0) {
         // Still in the cell: its minimum, if rounding has not spoilt it.
         if (!computeGradient(data)) return GddStatus::notFinite;
-        promised = remainingPromise();
+        promised = program_.promise(gradient_);
         stationary = promised <= options.tolerance * merit_;
       } else {
         stationary = !moved && path.crossings == 0 && held.atKnots() <= heldBefore;

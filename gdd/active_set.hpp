@@ -82,7 +82,6 @@ class ActiveSet {
   bool computeGradient(Data& data);
   double solveProgram();
   PathEnd followPath(const GoalCost& cost, Data& data);
-  double remainingPromise();
   Next leaveCell(Data& data);
   std::optional<GddStatus> descend(const GoalCost& cost, double wanted, Data& data);
   bool startAgain(const Model& model, const GoalCost& cost, const ControlBox& box, Data& data);

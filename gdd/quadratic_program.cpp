@@ -11,33 +11,19 @@
 namespace softgauss::gdd {
 namespace {
 
-/// Of |p|, for rows; of the bound, for bounds: what rounding may violate.
+/// Of the bound, and of the largest p on the way: what rounding may violate.
 constexpr double kFeasible = 1e-12;
 /// A normal of which less than this share (squared) is new depends on the active ones.
 constexpr double kDependent = 1e-18;
 
-/// The lower triangle of A (n columns, `stride` apart) ← L with A = L Lᵀ; false where a pivot is
-/// not positive.
-SOFTGAUSS_VECTOR_CLONES bool factorCholesky(double* A, int n, int stride) {
-  for (int j = 0; j < n; ++j) {
-    const int from = j & ~3;
-    double* column = A + j * stride;
-    addCombination(-1.0, A + j, stride, A + from, stride, j, stride - from, column + from);
-    if (!(column[j] > 0.0)) return false;
-    const double inverse = 1.0 / std::sqrt(column[j]);
-    for (int i = from; i < stride; ++i) column[i] *= inverse;
-  }
-  return true;
-}
-
 /// X ← L⁻ᵀ, upper triangular, by columns; X must be zero.
-SOFTGAUSS_VECTOR_CLONES void invertTransposed(const double* L, int n, int stride, double* X) {
+SOFTGAUSS_VECTOR_CLONES void invertTransposed(const double* L, int n, int stride,
+                                              const double* inverse, double* X) {
   for (int j = 0; j < n; ++j) {
     double* column = X + j * stride;
     column[j] = 1.0;
     addCombination(-1.0, L + j, stride, X, stride, j, paddedSize(j), column);
-    const double inverse = 1.0 / L[j * stride + j];
-    for (int i = 0; i <= j; ++i) column[i] *= inverse;
+    for (int i = 0; i <= j; ++i) column[i] *= inverse[j];
   }
 }
 
@@ -56,30 +42,12 @@ SOFTGAUSS_VECTOR_CLONES void multiplyColumns(const double* J, const double* d, i
 
 }  // namespace
 
-bool QuadraticProgram::setHessian(const Eigen::Ref<const MatrixX>& K) {
-  const int n = static_cast<int>(K.cols());
-  L_.resize(paddedSize(n), n);
-  L_.topRows(n) = K;
-  L_.bottomRows(paddedSize(n) - n).setZero();
-  return factorCholesky(L_.data(), n, paddedSize(n));
-}
-
-void QuadraticProgram::solveHessian(VectorX& x) const {
-  const Eigen::Index n = x.size();
-  for (Eigen::Index j = 0; j < n; ++j) {
-    x[j] /= L_(j, j);
-    x.tail(n - j - 1) -= x[j] * L_.col(j).segment(j + 1, n - j - 1);
-  }
-  for (Eigen::Index j = n - 1; j >= 0; --j)
-    x[j] = (x[j] - L_.col(j).segment(j + 1, n - j - 1).dot(x.tail(n - j - 1))) / L_(j, j);
-}
-
 double QuadraticProgram::slack(int constraint) const {
   const int n = static_cast<int>(p_.size());
-  if (constraint < n) return p_[constraint] - (*lower_)[constraint];
-  if (constraint < 2 * n) return (*upper_)[constraint - n] - p_[constraint - n];
+  if (constraint < n) return p_[constraint] - (*program_.lower)[constraint];
+  if (constraint < 2 * n) return (*program_.upper)[constraint - n] - p_[constraint - n];
   const int k = constraint - 2 * n;
-  return N_->row(k).dot(p_) + (*distance_)[k];
+  return program_.N->row(k).dot(p_) + (*program_.distance)[k];
 }
 
 QuadraticProgram::Violation QuadraticProgram::mostViolated() const {
@@ -90,13 +58,14 @@ QuadraticProgram::Violation QuadraticProgram::mostViolated() const {
       most = {constraint, amount};
   };
   for (int i = 0; i < n; ++i) {
-    consider(i, (*lower_)[i] - p_[i], kFeasible * std::abs((*lower_)[i]));
-    consider(n + i, p_[i] - (*upper_)[i], kFeasible * std::abs((*upper_)[i]));
+    const double lower = (*program_.lower)[i], upper = (*program_.upper)[i];
+    consider(i, lower - p_[i], kFeasible * std::max(size_, std::abs(lower)));
+    consider(n + i, p_[i] - upper, kFeasible * std::max(size_, std::abs(upper)));
   }
-  const double size = p_.norm();
-  for (int k = 0; k < rows_; ++k)
+  for (int k = 0; k < program_.rows; ++k)
     if (norm_[k] > 0.0)
-      consider(2 * n + k, -(N_->row(k).dot(p_) + (*distance_)[k]) / norm_[k], kFeasible * size);
+      consider(2 * n + k, -(program_.N->row(k).dot(p_) + (*program_.distance)[k]) / norm_[k],
+               kFeasible * size_);
   return most;
 }
 
@@ -107,7 +76,7 @@ void QuadraticProgram::rotatedNormal(int constraint) {
   else if (constraint < 2 * n)
     d_ = -J_.row(constraint - n).transpose();
   else
-    d_.noalias() = J_.topRows(n).transpose() * N_->row(constraint - 2 * n).transpose();
+    d_.noalias() = J_.topRows(n).transpose() * program_.N->row(constraint - 2 * n).transpose();
 }
 
 void QuadraticProgram::add(int constraint, double multiplier) {
@@ -156,10 +125,57 @@ void QuadraticProgram::drop(int place) {
 
 bool QuadraticProgram::minimize(const VectorX& q, const VectorX& lower, const VectorX& upper,
                                 const RowMajorMatrixX& N, const VectorX& distance, int rows) {
+  program_ = {&q, &lower, &upper, &N, &distance, rows};
   const int n = static_cast<int>(q.size());
-  lower_ = &lower, upper_ = &upper, N_ = &N, distance_ = &distance, rows_ = rows;
-  p_ = -q;
-  solveHessian(p_);
+  bool solved = face_.minimize(factor_, program_);
+  if (solved) {
+    p_ = Eigen::Map<const VectorX>(face_.solution().data(), n);
+    active_ = face_.active();
+    multiplier_ = face_.multipliers();
+  } else {
+    solved = minimizeByDual(program_);
+  }
+  boundMultipliers_.setZero(n);
+  rowMultipliers_.assign(static_cast<std::size_t>(rows), 0.0);
+  for (std::size_t k = 0; k < active_.size(); ++k) {
+    const int c = active_[k];
+    const double multiplier = std::max(0.0, multiplier_[k]);
+    if (c < n)
+      boundMultipliers_[c] = multiplier, p_[c] = lower[c];
+    else if (c < 2 * n)
+      boundMultipliers_[c - n] = -multiplier, p_[c - n] = upper[c - n];
+    else
+      rowMultipliers_[c - 2 * n] = multiplier;
+  }
+  p_ = p_.cwiseMax(lower).cwiseMin(upper);
+  // −(½ pᵀKp + qᵀp), with Kp = −q + Aᵀν and νᵀA p = νᵀb: one product less, and no cancellation.
+  decrease_ = -0.5 * q.dot(p_) - 0.5 * boundMultipliers_.dot(p_);
+  for (int k = 0; k < rows; ++k) decrease_ += 0.5 * rowMultipliers_[k] * distance[k];
+  decrease_ = std::max(0.0, decrease_);
+  return solved;
+}
+
+double QuadraticProgram::promise(const VectorX& q) const {
+  const int n = factor_.size();
+  scratch_.assign(static_cast<std::size_t>(factor_.stride()), 0.0);
+  Eigen::Map<VectorX> left(scratch_.data(), n);  // ρ, then L⁻¹ρ
+  left = q - boundMultipliers_;
+  for (int k = 0; k < program_.rows; ++k)
+    if (rowMultipliers_[k] > 0.0) left -= rowMultipliers_[k] * program_.N->row(k).transpose();
+  factor_.solveLower(scratch_.data());
+  return 0.5 * left.squaredNorm();
+}
+
+bool QuadraticProgram::minimizeByDual(const ProgramData& program) {
+  const VectorX& q = *program.q;
+  const RowMajorMatrixX& N = *program.N;
+  const int n = static_cast<int>(q.size()), rows = program.rows;
+  scratch_.assign(static_cast<std::size_t>(factor_.stride()), 0.0);
+  Eigen::Map<VectorX>(scratch_.data(), n) = -q;
+  factor_.solveLower(scratch_.data());
+  factor_.solveTransposed(scratch_.data());
+  p_ = Eigen::Map<VectorX>(scratch_.data(), n);
+  size_ = p_.norm();
   active_.clear();
   multiplier_.clear();
   isActive_.assign(static_cast<std::size_t>(2 * n + rows), 0);
@@ -173,7 +189,7 @@ bool QuadraticProgram::minimize(const VectorX& q, const VectorX& lower, const Ve
     const int entering = violation.constraint;
     if (!rotated) {
       J_.setZero(paddedSize(n), n);
-      invertTransposed(L_.data(), n, paddedSize(n), J_.data());
+      invertTransposed(factor_.L(), n, paddedSize(n), factor_.inverse(), J_.data());
       R_.resize(n, n);
       rotated = true;
     }
@@ -210,6 +226,7 @@ bool QuadraticProgram::minimize(const VectorX& q, const VectorX& lower, const Ve
         z_.resize(J_.rows());
         multiplyColumns(J_.col(m).data(), d_.data() + m, n - m, paddedSize(n), z_.data());
         p_ += step * z_.head(n);
+        size_ = std::max(size_, p_.norm());
       }
       for (int k = 0; k < m; ++k) multiplier_[k] -= step * r_[k];
       enteringMultiplier += step;
@@ -220,24 +237,6 @@ bool QuadraticProgram::minimize(const VectorX& q, const VectorX& lower, const Ve
       drop(leaving);
     }
   }
-
-  boundMultipliers_.setZero(n);
-  rowMultipliers_.assign(static_cast<std::size_t>(rows), 0.0);
-  for (std::size_t k = 0; k < active_.size(); ++k) {
-    const int c = active_[k];
-    const double multiplier = std::max(0.0, multiplier_[k]);
-    if (c < n)
-      boundMultipliers_[c] = multiplier, p_[c] = lower[c];
-    else if (c < 2 * n)
-      boundMultipliers_[c - n] = -multiplier, p_[c - n] = upper[c - n];
-    else
-      rowMultipliers_[c - 2 * n] = multiplier;
-  }
-  p_ = p_.cwiseMax(lower).cwiseMin(upper);
-  // −(½ pᵀKp + qᵀp), with Kp = −q + Aᵀν and νᵀA p = νᵀb: one product less, and no cancellation.
-  decrease_ = -0.5 * q.dot(p_) - 0.5 * boundMultipliers_.dot(p_);
-  for (int k = 0; k < rows; ++k) decrease_ += 0.5 * rowMultipliers_[k] * distance[k];
-  decrease_ = std::max(0.0, decrease_);
   return solved;
 }
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// Inner loops of dense algebra over rows whose length is a multiple of four: they compile to whole
-/// vectors, without tails. Each element is treated apart, so that every instruction set gives the
-/// same bits. For functions marked with SOFTGAUSS_VECTOR_CLONES, into which they are inlined.
+/// Inner loops of dense algebra by blocks of four. Most are over rows whose length is a multiple of
+/// four: they compile to whole vectors, without tails. Each element, or each fourth of a sum, is
+/// treated apart, so that every instruction set gives the same bits. For functions marked with
+/// SOFTGAUSS_VECTOR_CLONES, into which they are inlined.
 
 namespace softgauss {
 
@@ -15,6 +16,14 @@ constexpr int paddedSize(int n) { return (n + 3) & ~3; }
                                              double* __restrict y) {
   for (int i = 0; i < n; i += 4)
     for (int k = 0; k < 4; ++k) y[i + k] += c * x[i + k];
+}
+
+/// x·y.
+[[gnu::always_inline]] inline double dot(const double* x, const double* y, int n) {
+  double sum[4] = {0.0, 0.0, 0.0, 0.0};
+  for (int i = 0; i < n; i += 4)
+    for (int k = 0; k < 4; ++k) sum[k] += x[i + k] * y[i + k];
+  return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
 
 /// y ← y + c₀ x₀ + c₁ x₁ + c₂ x₂ + c₃ x₃ for rows x that lie `stride` apart.

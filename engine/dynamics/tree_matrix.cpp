@@ -233,6 +233,7 @@ void TreeFactor::solveTransposed(VectorX& x) const {
   for (int k = size() - 1; k > 0; --k) {
     const double* L = LD_.row(k);
     const double xk = x[k];
+    if (xk == 0.0) continue;  // a row of a Jacobian has few entries
     for (const Segment* s = pattern.begin(k); s != pattern.end(k); ++s) {
       const int end = std::min(s->end, k);
       for (int j = s->begin; j < end; ++j) x[j] -= L[j] * xk;

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gdd/program_face.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/core/vector_clones.hpp"
+
+namespace softgauss::gdd {
+namespace {
+
+/// Of |p|, |q|: what rounding may violate.
+constexpr double kRounding = 1e-13;
+/// A constraint of which less than this share (squared) is new depends on the others.
+constexpr double kDependent = 1e-12;
+
+SOFTGAUSS_VECTOR_CLONES double dotPadded(const double* x, const double* y, int n) {
+  return dot(x, y, n);
+}
+
+/// g_k ← w·w_k for `count` rows of W.
+SOFTGAUSS_VECTOR_CLONES void multiplyRows(const double* W, int count, int stride, const double* w,
+                                          double* g) {
+  for (int k = 0; k < count; ++k) g[k] = dot(W + k * stride, w, stride);
+}
+
+/// y ← y + Σ_k c_k w_k.
+SOFTGAUSS_VECTOR_CLONES void addRows(const double* W, int count, int stride, const double* c,
+                                     double* y) {
+  addCombination(1.0, c, 1, W, stride, count, stride, y);
+}
+
+double largest(const double* x, int n) {
+  double most = 0.0;
+  for (int i = 0; i < n; ++i) most = std::max(most, std::abs(x[i]));
+  return most;
+}
+
+}  // namespace
+
+/// Takes in a constraint: its w.
+void ProgramFace::addNormal(const PaddedCholesky& factor, const ProgramData& program,
+                            int constraint) {
+  const int n = factor.size(), stride = factor.stride();
+  const std::size_t used = active_.size() * static_cast<std::size_t>(stride);
+  if (W_.size() < used + stride) W_.resize(used + stride);
+  double* w = W_.data() + used;
+  std::fill(w, w + stride, 0.0);
+  double size = 1.0;
+  if (constraint < n) {
+    w[constraint] = 1.0;
+    b_.push_back((*program.lower)[constraint]);
+  } else if (constraint < 2 * n) {
+    w[constraint - n] = -1.0;
+    b_.push_back(-(*program.upper)[constraint - n]);
+  } else {
+    const int row = constraint - 2 * n;
+    std::copy_n(&(*program.N)(row, 0), n, w);
+    size = std::sqrt(dotPadded(w, w, stride));
+    b_.push_back(-(*program.distance)[row]);
+  }
+  factor.solveLower(w);
+  active_.push_back(constraint);
+  size_.push_back(size);
+  isActive_[constraint] = 1;
+}
+
+/// ν ← G⁻¹ν by Cholesky, G's lower triangle in rows; false where constraints depend on one another.
+bool ProgramFace::solveMultipliers() {
+  const int m = static_cast<int>(active_.size());
+  for (int a = 0; a < m; ++a) {
+    double* row = G_.data() + a * m;
+    const double whole = row[a];
+    for (int b = 0; b <= a; ++b) {
+      const double* other = G_.data() + b * m;
+      for (int c = 0; c < b; ++c) row[b] -= row[c] * other[c];
+      if (b < a) row[b] *= other[b];  // the diagonal holds inverses
+    }
+    if (!(row[a] > kDependent * whole)) return false;
+    row[a] = 1.0 / std::sqrt(row[a]);
+    for (int b = 0; b < a; ++b) nu_[a] -= row[b] * nu_[b];
+    nu_[a] *= row[a];
+  }
+  for (int a = m - 1; a >= 0; --a) {
+    nu_[a] *= G_[a * m + a];
+    for (int b = 0; b < a; ++b) nu_[b] -= G_[a * m + b] * nu_[a];
+  }
+  return true;
+}
+
+/// p and ν on the present face.
+bool ProgramFace::solveFace(const PaddedCholesky& factor, const ProgramData& program) {
+  const int n = factor.size(), stride = factor.stride();
+  const int m = static_cast<int>(active_.size());
+  if (m > n) return false;
+  G_.resize(static_cast<std::size_t>(m) * m);
+  nu_.resize(static_cast<std::size_t>(m));
+  for (int a = 0; a < m; ++a)
+    multiplyRows(W_.data(), a + 1, stride, W_.data() + a * stride, G_.data() + a * m);
+  multiplyRows(W_.data(), m, stride, y_.data(), nu_.data());
+  for (int a = 0; a < m; ++a) nu_[a] = b_[a] - nu_[a];
+  if (!solveMultipliers()) return false;
+  p_ = y_;
+  addRows(W_.data(), m, stride, nu_.data(), p_.data());
+  factor.solveTransposed(p_.data());
+  for (const int c : active_) {
+    if (c < n)
+      p_[c] = (*program.lower)[c];
+    else if (c < 2 * n)
+      p_[c - n] = (*program.upper)[c - n];
+  }
+  return true;
+}
+
+/// Drops what pulls and takes in what is violated; whether anything has changed.
+bool ProgramFace::changeFace(const PaddedCholesky& factor, const ProgramData& program) {
+  const int n = factor.size(), stride = factor.stride();
+  const double size = kRounding * largest(p_.data(), n);
+  int kept = 0;
+  const int before = static_cast<int>(active_.size());
+  for (int a = 0; a < before; ++a) {
+    if (nu_[a] * size_[a] < -kRounding * force_) {
+      isActive_[active_[a]] = 0;
+      continue;
+    }
+    if (kept != a) {
+      std::copy_n(W_.data() + a * stride, stride, W_.data() + kept * stride);
+      active_[kept] = active_[a], b_[kept] = b_[a], size_[kept] = size_[a];
+    }
+    ++kept;
+  }
+  active_.resize(kept), b_.resize(kept), size_.resize(kept);
+  bool changed = kept != before;
+  // What was dropped is on its bound, and violates nothing.
+  const auto take = [&](int constraint) {
+    if (isActive_[constraint]) return;
+    addNormal(factor, program, constraint);
+    changed = true;
+  };
+  for (int i = 0; i < n; ++i) {
+    if (p_[i] < (*program.lower)[i] - size) take(i);
+    if (p_[i] > (*program.upper)[i] + size) take(n + i);
+  }
+  for (int k = 0; k < program.rows; ++k) {
+    if (isActive_[2 * n + k]) continue;
+    const auto N = program.N->row(k);
+    double sum = (*program.distance)[k], square = 0.0;
+    for (int i = 0; i < n; ++i) sum += N[i] * p_[i], square += N[i] * N[i];
+    if (sum < -size * std::sqrt(n * square)) take(2 * n + k);
+  }
+  return changed;
+}
+
+bool ProgramFace::minimize(const PaddedCholesky& factor, const ProgramData& program) {
+  constexpr int kMaxRounds = 8;
+  const int n = factor.size(), stride = factor.stride();
+  y_.assign(static_cast<std::size_t>(stride), 0.0);
+  for (int i = 0; i < n; ++i) y_[i] = -(*program.q)[i];
+  force_ = largest(y_.data(), n);
+  factor.solveLower(y_.data());
+  isActive_.assign(static_cast<std::size_t>(program.count()), 0);
+  active_.clear(), b_.clear(), size_.clear();
+  for (int i = 0; i < n; ++i) {
+    if ((*program.lower)[i] == 0.0) addNormal(factor, program, i);
+    if ((*program.upper)[i] == 0.0) addNormal(factor, program, n + i);
+  }
+  for (int k = 0; k < program.rows; ++k) addNormal(factor, program, 2 * n + k);
+  for (int round = 0; round < kMaxRounds; ++round) {
+    if (!solveFace(factor, program)) return false;
+    if (changeFace(factor, program)) continue;
+    for (double& nu : nu_) nu = std::max(0.0, nu);
+    return true;
+  }
+  return false;
+}
+
+}  // namespace softgauss::gdd
