@@ -218,7 +218,10 @@ std::optional<GddStatus> ActiveSet::descend(const GoalCost& cost, double wanted,
       entered_ = false;  // corrections have cost K too many digits
       continue;
     }
-    if (promised < 0.0) return GddStatus::undecided;
+    if (promised < 0.0) {
+      report_.stationarity = 1.0;  // nobody knows
+      return GddStatus::undecided;
+    }
     if (report_.iterations >= kPatience &&
         effort() + path_.value + forces_.value() - promised > wanted)
       return std::nullopt;

@@ -113,6 +113,23 @@ void AugmentedLagrangian::start(const GoalCost& cost, const ControlBox& box, Dat
 
 GddReport AugmentedLagrangian::solve(const Model& model, GoalCost& cost, const ControlBox& box,
                                      Data& data, const WarmStart& warm) {
+  GddReport report = minimizeFrom(model, cost, box, data, warm);
+  if (report.status != GddStatus::notFinite || !warm.gddValid || massFactor_.failedRow() >= 0 ||
+      !data.forces.c.allFinite())
+    return report;
+  // Multipliers that an unfinished solve left may make a matrix that cannot be factored.
+  const GddReport first = report;
+  report = minimizeFrom(model, cost, box, data, WarmStart{});
+  report.iterations += first.iterations;
+  report.dualUpdates += first.dualUpdates;
+  report.factorizations += first.factorizations;
+  report.restarts = 1;
+  return report;
+}
+
+GddReport AugmentedLagrangian::minimizeFrom(const Model& model, GoalCost& cost,
+                                            const ControlBox& box, Data& data,
+                                            const WarmStart& warm) {
   GddReport report;
   const auto end = [&](GddStatus status) {
     report.status = status;

@@ -53,6 +53,8 @@ class AugmentedLagrangian {
   const VectorX& force() const { return g_; }  ///< g(a): the control, before clamping
 
  private:
+  GddReport minimizeFrom(const Model& model, GoalCost& cost, const ControlBox& box, Data& data,
+                         const WarmStart& warm);
   void setPenalties(const GoalCost& cost, const ControlBox& box, const Data& data);
   void start(const GoalCost& cost, const ControlBox& box, Data& data, const WarmStart& warm);
   double gap(const ControlBox& box) const;

@@ -37,12 +37,19 @@ class ForceCost {
   void clear() {
     residuals_.clear();
     parts_.clear();
+    pending_ = false;
   }
   bool empty() const { return residuals_.empty(); }
-  /// ½ weight |Σ C F − target|², with contacts that addContact() names afterwards.
-  void add(double weight, const Vector3& target) { residuals_.push_back({weight, target}); }
+  /// ½ weight |Σ C F − target|², with contacts that addContact() names afterwards. Without any it
+  /// is a constant, and left out.
+  void add(double weight, const Vector3& target) {
+    next_ = {weight, target};
+    pending_ = true;
+  }
   /// A contact of the residual added last.
   void addContact(Cone cone, int contact, const Map& C) {
+    if (pending_) residuals_.push_back(next_);
+    pending_ = false;
     parts_.push_back({static_cast<int>(residuals_.size()) - 1, cone, contact, C});
   }
 
@@ -52,6 +59,8 @@ class ForceCost {
  private:
   std::vector<Residual> residuals_;
   std::vector<Part> parts_;
+  Residual next_;
+  bool pending_ = false;  ///< next_ has no contact yet
 };
 
 /// ℓ_f where a solver is: e, its rate along a ray, its Jacobian in a cell. Without a cost, or with

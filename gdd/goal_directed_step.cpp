@@ -15,8 +15,9 @@ GoalDirectedController::GoalDirectedController(const Model& model)
       coordinates_(VectorX::Zero(model.nv)) {}
 
 template <class Solver>
-SolveStatus GoalDirectedController::solveAndAdvance(Solver& used, const Model& model, State& state,
-                                                    Data& data) {
+SolveStatus GoalDirectedController::solveAndAdvance(Solver& used, const Model& model,
+                                                    const Input& input, State& state, Data& data,
+                                                    ContactSource* contacts) {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point start = Clock::now();
   // A disturbance is not the control's: it belongs to what the control has to cope with.
@@ -35,7 +36,13 @@ SolveStatus GoalDirectedController::solveAndAdvance(Solver& used, const Model& m
   box.clamp(expansion.force(), control, coordinates_);
   box.commands(coordinates_, commands);
   setAppliedForce(control, data.forces);
-  const SolveStatus status = advance(model, &expansion.acceleration(), data, state);
+  if (data.stages) {  // an integrator that looks at the dynamics again
+    held_.tau = control;
+    if (input.tau.size() == model.nv) held_.tau += input.tau;
+    held_.wrenches = input.wrenches;
+  }
+  const SolveStatus status =
+      advance(model, held_, contacts, &expansion.acceleration(), data, state);
   if (status != SolveStatus::notFinite) expansion.keepWarmStart(state.warmstart);
   return status;
 }
@@ -45,8 +52,8 @@ SolveStatus GoalDirectedController::step(const Model& model, const Input& input,
   if (computeStages(model, input, state, data, contacts) == SolveStatus::notFinite)
     return SolveStatus::notFinite;
   if (solver == GddSolver::activeSet && data.constraints.piecewiseQuadratic())
-    return solveAndAdvance(activeSet, model, state, data);
-  return solveAndAdvance(augmentedLagrangian, model, state, data);
+    return solveAndAdvance(activeSet, model, input, state, data, contacts);
+  return solveAndAdvance(augmentedLagrangian, model, input, state, data, contacts);
 }
 
 }  // namespace softgauss::gdd

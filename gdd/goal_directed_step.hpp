@@ -50,10 +50,12 @@ class GoalDirectedController {
 
  private:
   template <class Solver>
-  SolveStatus solveAndAdvance(Solver& used, const Model& model, State& state, Data& data);
+  SolveStatus solveAndAdvance(Solver& used, const Model& model, const Input& input, State& state,
+                              Data& data, ContactSource* contacts);
 
   GoalCost cost_;
   VectorX coordinates_;  ///< y of the control (nv)
+  Input held_;           ///< over the step, where the integrator asks for it
 };
 
 }  // namespace softgauss::gdd

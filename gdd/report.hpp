@@ -22,10 +22,11 @@ struct GddReport {
   int factorizations = 0;
   int cells = 0;              ///< solver 2: cells in which a quadratic program was solved
   int heldRows = 0;           ///< rows at their knots at the end
+  int restarts = 0;           ///< solver 1: cold, after a warm start that it could not factor
   int forwardIterations = 0;  ///< solver 2: Newton iterations of its one forward solve
   double violation = 0.0;     ///< distance of y(a) from its box, as force [N or N m]
   /// Solver 1: max |∇Φ + J_Kᵀμ|ᵢ/√M_ii over max(1, max |∇ℓᵢ|/√M_ii). Solver 2: the decrease that
-  /// its quadratic program promises still, over the objective.
+  /// its quadratic program promises still, over the objective; 1 where that has no answer.
   double stationarity = 0.0;
   double objective = 0.0;  ///< ½ gᵀ(R + W) g + ℓ up to ℓ's constant
 };

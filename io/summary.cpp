@@ -50,7 +50,8 @@ double Series::mean() const {
 }
 
 Summary::Summary(const Model& model)
-    : massKg(model.totalMass()),
+    : integrator(integratorName(model.options.integrator)),
+      massKg(model.totalMass()),
       warnings(model.warnings),
       modelName_(model.name),
       links_(static_cast<int>(model.frames.size())),
@@ -135,6 +136,13 @@ std::string Summary::json() const {
       {"physics_violation", spreadOf(physicsViolation_)},
       {"gdd_violation", spreadOf(gddViolation_)},
       {"stationarity", spreadOf(stationarity_)},
+      {"gdd_minima",
+       {{"certified", gdd.certified},
+        {"kinks", gdd.kinks},
+        {"iteration_limit", gdd.iterationLimit},
+        {"bend", gdd.bend},
+        {"undecided", gdd.undecided},
+        {"restarts", gdd.restarts}}},
       {"goals", goalList},
       {"energy_J", {{"initial", initialEnergy_}, {"final", finalEnergy_}}},
       {"max_penetration_m", maxPenetration_},

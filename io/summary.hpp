@@ -22,6 +22,25 @@ struct GoalOutcome {
   std::string name;           ///< e.g. "reach right_hand"
   double initialError = 0.0;  ///< [m]
   double finalError = 0.0;    ///< [m]
+
+  /// Share of the way that was covered; negative when it moved away. A goal that was there at the
+  /// start, to a millimetre, has 1 cm to lose.
+  double nearer() const {
+    constexpr double kThere = 1e-3, kToLose = 1e-2;
+    return 1.0 - finalError / (initialError < kThere ? kToLose : initialError);
+  }
+};
+
+/// How the solves of goals ended, over the steps.
+struct GddOutcomes {
+  long certified = 0;       ///< minima of one cell, with a certificate
+  long kinks = 0;           ///< minima at knots, with a certificate
+  long iterationLimit = 0;  ///< the best that was found, no certificate
+  long bend = 0;            ///< at a kink of an elliptic cone, no certificate
+  long undecided = 0;       ///< rounding or too many rows at knots kept it from a certificate
+  long restarts = 0;        ///< solves that were begun again without their warm start
+  long all() const { return certified + kinks + iterationLimit + bend + undecided; }
+  long uncertified() const { return iterationLimit + bend + undecided; }
 };
 
 /// Values of one quantity over the steps.
@@ -54,13 +73,14 @@ class Summary {
 
   // What only the caller knows.
   std::string version;
-  std::string integrator = "semi-implicit-euler";
+  std::string integrator;  ///< preset to the model's
   std::string gddSolver = "active-set";
   std::string outcome = "completed";
   double wallSeconds = 0.0;
   double massKg = 0.0;  ///< of all links; preset to that of the moving bodies
   std::vector<std::string> effects;
   std::vector<GoalOutcome> goals;
+  GddOutcomes gdd;
   std::vector<std::string> warnings;  ///< preset to the model's
 
   double simulatedSeconds() const { return endTime_ - startTime_; }

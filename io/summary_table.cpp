@@ -29,11 +29,7 @@ void addRow(std::string& out, const char* what, const char* unit, const Series& 
 
 std::string millimetres(double metres) { return fmt::format("{:.3g} mm", 1e3 * metres); }
 
-/// Share of the way to the goal that was covered [%]; negative when it moved away.
-double percentNearer(const GoalOutcome& goal) {
-  if (goal.initialError <= 0.0) return goal.finalError <= 0.0 ? 100.0 : 0.0;
-  return 100.0 * (1.0 - goal.finalError / goal.initialError);
-}
+double percentNearer(const GoalOutcome& goal) { return 100.0 * goal.nearer(); }
 
 std::string verdict(const std::string& outcome, const std::vector<GoalOutcome>& goals) {
   if (goals.empty()) return outcome;
@@ -74,6 +70,10 @@ std::string Summary::table() const {
     addRow(out, "GDD violation", "N, N m", gddViolation_);
     addRow(out, "stationarity", "", stationarity_);
   }
+  if (gdd.all() > 0)
+    add(fmt::format("  minima of goals: {:.4g} % certified, {:.3g} % of all at kinks",
+                    100.0 * static_cast<double>(gdd.certified + gdd.kinks) / gdd.all(),
+                    100.0 * static_cast<double>(gdd.kinks) / gdd.all()));
   add("");
   add(fmt::format("  energy {:.4g} J to {:.4g} J; deepest penetration {}; largest control {}",
                   initialEnergy_, finalEnergy_, millimetres(maxPenetration_),

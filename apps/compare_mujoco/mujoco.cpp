@@ -36,6 +36,17 @@ int Mujoco::nq() const { return memory_->model->nq; }
 int Mujoco::nv() const { return memory_->model->nv; }
 void Mujoco::setTolerance(double tolerance) { memory_->model->opt.tolerance = tolerance; }
 
+bool Mujoco::setIntegrator(const std::string& name) {
+  int& integrator = memory_->model->opt.integrator;
+  if (name == "Euler") return integrator = mjINT_EULER, true;
+  if (name == "RK4") return integrator = mjINT_RK4, true;
+  if (name == "implicit") return integrator = mjINT_IMPLICIT, true;
+#if mjVERSION_HEADER >= 233
+  if (name == "implicitfast") return integrator = mjINT_IMPLICITFAST, true;
+#endif
+  return false;
+}
+
 void Mujoco::set(const State& state, const VectorX& tau) {
   mjData* const d = memory_->data;
   Eigen::Map<VectorX>(d->qpos, nq()) = state.q;
@@ -65,6 +76,7 @@ void Mujoco::inverse() { mj_inverse(memory_->model, memory_->data); }
 void Mujoco::step() { mj_step(memory_->model, memory_->data); }
 
 VectorX Mujoco::q() const { return vectorOf(memory_->data->qpos, nq()); }
+VectorX Mujoco::v() const { return vectorOf(memory_->data->qvel, nv()); }
 VectorX Mujoco::acceleration() const { return vectorOf(memory_->data->qacc, nv()); }
 VectorX Mujoco::inverseForce() const { return vectorOf(memory_->data->qfrc_inverse, nv()); }
 

@@ -24,6 +24,9 @@ class Mujoco {
   int nv() const;
   /// Tolerance of the solver; 0 lets it run until nothing improves.
   void setTolerance(double tolerance);
+  /// "Euler", "RK4", "implicit" or, where this version has it, "implicitfast". False where it is
+  /// unknown.
+  bool setIntegrator(const std::string& name);
   /// State and applied force of the next call. Its warm start is left alone.
   void set(const State& state, const VectorX& tau);
   void setForce(const VectorX& tau);
@@ -36,6 +39,7 @@ class Mujoco {
   void step();
 
   VectorX q() const;
+  VectorX v() const;
   VectorX acceleration() const;  ///< of the last forward()
   VectorX inverseForce() const;  ///< of the last inverse()
   /// Contacts of the last forward(), inverse() or step(), as our engine takes them. Each of these

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "apps/gdd_benchmark/contestant.hpp"
-#include "apps/gdd_benchmark/progress.hpp"
 #include "apps/gdd_benchmark/scripted_operator.hpp"
+#include "apps/shared/progress.hpp"
 #include "collision/scene_contacts.hpp"
 #include "engine/engine.hpp"
 

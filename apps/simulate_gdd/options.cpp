@@ -167,9 +167,19 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
       ->group(simulation);
   app.add_option("--timestep", options.timestep, "step [s], default 0.002 or as the scene says")
       ->group(simulation);
-  app.add_option("--integrator", integrator,
-                 "semi-implicit-euler (default): order 1, one solve a step, implicit joint damping")
-      ->check(CLI::IsMember({"semi-implicit-euler"}))
+  std::vector<std::string> integrators;
+  std::string integratorHelp;
+  for (const IntegratorName& i : kIntegratorNames) {
+    integratorHelp += std::string(integrators.empty() ? "" : ";\n") + std::string(i.name) +
+                      (integrators.empty() ? " (default): " : ": ") + std::string(i.description);
+    integrators.emplace_back(i.name);
+  }
+  app.add_option("--integrator", integrator, integratorHelp)
+      ->check(CLI::IsMember(integrators))
+      ->group(simulation);
+  app.add_option("--integration-tolerance", options.integrationTolerance,
+                 "largest error that a step of dormand-prince leaves [m or rad], default 1e-6")
+      ->check(CLI::PositiveNumber)
       ->group(simulation);
   app.add_option("--cone", cone,
                  "pyramidal (default): friction pyramids, piecewise quadratic, the fastest;\n"
@@ -236,6 +246,7 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
     if (base == "fixed")
       throw UsageError("--base-height is for a floating base, and --base is fixed");
   }
+  if (!integrator.empty()) options.integrator = integratorFromName(integrator);
   if (!cone.empty()) options.cone = cone == "elliptic" ? Cone::elliptic : Cone::pyramidal;
   if (!solver.empty())
     options.gddSolver =

@@ -38,7 +38,9 @@ struct SimulateOptions {
   bool exactDiagonal = false;
   std::optional<Cone> cone;                 ///< absent: the scene's own, or pyramidal
   std::optional<gdd::GddSolver> gddSolver;  ///< absent: the scene's own, or the active set
-  std::optional<bool> likeMujoco;           ///< --compatibility
+  std::optional<Integrator> integrator;
+  std::optional<double> integrationTolerance;
+  std::optional<bool> likeMujoco;  ///< --compatibility
   bool explain = false;
   bool quiet = false;
   std::filesystem::path log, summary, view, plot;

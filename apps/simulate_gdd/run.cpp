@@ -166,6 +166,7 @@ class Runner {
     record_.maxPenetration = stats.maxPenetration;
     writeLog(record_);
     summary_.addStep(record_);
+    if (gdd) count(controller_.report);
     for (Eigen::Index k = 0; k < controller_.commands.size(); ++k) {
       const gdd::Actuator& actuator =
           controller_.box.transmission->actuators()[static_cast<std::size_t>(k)];
@@ -174,6 +175,30 @@ class Runner {
         summary_.addControlRatio(std::abs(controller_.commands[k]) / bound);
     }
     replay_->addStep(record_, data_);
+  }
+
+  void count(const gdd::GddReport& report) {
+    io::GddOutcomes& outcomes = summary_.gdd;
+    outcomes.restarts += report.restarts;
+    switch (report.status) {
+      case gdd::GddStatus::converged:
+        ++outcomes.certified;
+        break;
+      case gdd::GddStatus::kink:
+        ++outcomes.kinks;
+        break;
+      case gdd::GddStatus::iterationLimit:
+        ++outcomes.iterationLimit;
+        break;
+      case gdd::GddStatus::bend:
+        ++outcomes.bend;
+        break;
+      case gdd::GddStatus::undecided:
+        ++outcomes.undecided;
+        break;
+      case gdd::GddStatus::notFinite:
+        break;
+    }
   }
 
   /// A log that cannot be written does not keep the rest of the run from being reported.
@@ -216,6 +241,7 @@ class Runner {
     for (std::string& unreached : verdict.unreached(summary_.goals))
       summary_.warnings.push_back(std::move(unreached));
     tellSolver();
+    tellMinima();
     summary_.finish(last);
     if (!options_.summary.empty()) summary_.write(options_.summary);
     const std::string error = replay_->finish(last, data_, summary_, reason);
@@ -233,6 +259,16 @@ class Runner {
           fmt::format("active-set does not know elliptic cones: {} steps with such contacts were "
                       "solved by augmented-lagrangian",
                       stepsWithCones_));
+  }
+
+  /// Controls without a certificate are the best that was found, and may be poor.
+  void tellMinima() {
+    const io::GddOutcomes& g = summary_.gdd;
+    if (g.uncertified() == 0) return;
+    summary_.warnings.push_back(fmt::format(
+        "{} of {} steps took the best control that was found, without a certificate that it is a "
+        "minimum: {} at the iteration limit, {} at a bend of an elliptic cone, {} undecided",
+        g.uncertified(), g.all(), g.iterationLimit, g.bend, g.undecided));
   }
 
   const SimulateOptions& options_;

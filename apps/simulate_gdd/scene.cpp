@@ -71,6 +71,9 @@ void setOptions(const SimulateOptions& options, ModelBuilder& builder) {
   if (options.timestep) builder.options.timestep = *options.timestep;
   if (options.exactDiagonal) builder.options.exactDiagonal = true;
   if (options.noSlip) builder.options.noSlip = true;
+  if (options.integrator) builder.options.integrator = *options.integrator;
+  if (options.integrationTolerance)
+    builder.options.integrationTolerance = *options.integrationTolerance;
   if (options.cone) builder.options.cone = *options.cone;
   if (options.effects) builder.options.effects = *options.effects;
   if (options.likeMujoco) builder.options.midpointCoriolis = !*options.likeMujoco;

@@ -77,7 +77,7 @@ std::vector<std::string> Verdict::unreached(const std::vector<io::GoalOutcome>& 
   std::vector<std::string> sentences;
   if (q_.size() == 0) return sentences;
   for (const io::GoalOutcome& goal : goals) {
-    if (goal.finalError <= (1.0 - kReachedShare) * goal.initialError) continue;
+    if (goal.nearer() >= kReachedShare) continue;
     sentences.push_back(fmt::format("goal '{}' not reached ({:.3g} m left of {:.3g} m): {}",
                                     goal.name, goal.finalError, goal.initialError, heldBack()));
   }

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/core/check.hpp"
@@ -95,10 +96,45 @@ enum class Cone : std::uint8_t {
 };
 
 /// Choices that hold for the whole simulation.
+/// How a step moves the state on; one file each in step/integrators.
+enum class Integrator : std::uint8_t {
+  semiImplicitEuler,  ///< order 1, one solve, implicit damping (semi_implicit_euler.hpp)
+  rungeKutta4,        ///< order 4, four solves (runge_kutta.hpp)
+  dormandPrince       ///< order 5 with error control, six solves or more (runge_kutta.hpp)
+};
+
+struct IntegratorName {
+  Integrator integrator;
+  std::string_view name;         ///< as on the command line, in files and in the summary
+  std::string_view description;  ///< what it does and costs, one line
+};
+
+inline constexpr IntegratorName kIntegratorNames[] = {
+    {Integrator::semiImplicitEuler, "semi-implicit-euler",
+     "order 1, one solve a step, implicit joint damping"},
+    {Integrator::rungeKutta4, "runge-kutta-4",
+     "order 4 in smooth motion, four solves a step, explicit damping"},
+    {Integrator::dormandPrince, "dormand-prince",
+     "order 5, six solves or more, steps divided until an error estimate is met"},
+};
+
+inline std::optional<Integrator> integratorFromName(std::string_view name) {
+  for (const IntegratorName& i : kIntegratorNames)
+    if (i.name == name) return i.integrator;
+  return std::nullopt;
+}
+
+inline std::string_view integratorName(Integrator integrator) {
+  return kIntegratorNames[static_cast<int>(integrator)].name;
+}
+
 struct Options {
   double timestep = 0.002;                     ///< h [s]
   Vector3 gravity = Vector3(0.0, 0.0, -9.81);  ///< [m/s²], world
   EffectSet effects = EffectSet::all();        ///< which effects may be simulated
+  Integrator integrator = Integrator::semiImplicitEuler;
+  /// Largest error of a step that an integrator with error control leaves [m or rad].
+  double integrationTolerance = 1e-6;
   bool midpointCoriolis = true;                ///< see integrators/semi_implicit_euler.hpp
   Cone cone = Cone::pyramidal;                 ///< of contacts with friction
   double impedanceRatio = 1.0;                 ///< impratio: friction against normal impedance

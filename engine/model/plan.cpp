@@ -61,7 +61,8 @@ Plan::Plan(const Model& model) : options_(model.options) {
                  std::any_of(model.bodies.begin(), model.bodies.end(), [](const Body& body) {
                    return body.joint == JointKind::revolute || body.joint == JointKind::floating;
                  }));
-  midpoint = coriolis && model.options.midpointCoriolis;
+  midpoint = coriolis && model.options.midpointCoriolis &&
+             model.options.integrator == Integrator::semiImplicitEuler;
   if (run(Effect::damping, anyDof([](const Dof& d) { return d.damping > 0.0; }))) {
     damping.resize(model.nv);
     for (int i = 0; i < model.nv; ++i) damping[i] = model.dofs[i].damping;
@@ -117,7 +118,7 @@ bool Plan::fits(const Model& model) const {
     if (now.effects.has(Effect::damping) && dof.damping != planned) return false;
   }
   return now.effects == then.effects && now.gravity == then.gravity &&
-         now.midpointCoriolis == then.midpointCoriolis && now.cone == then.cone &&
+         now.midpointCoriolis == then.midpointCoriolis && now.integrator == then.integrator && now.cone == then.cone &&
          now.exactDiagonal == then.exactDiagonal;
 }
 

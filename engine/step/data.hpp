@@ -5,6 +5,7 @@
 /// algorithms take the stages they need, so a signature is the data flow (docs/the_step.md).
 
 #include <cstdint>
+#include <memory>
 
 #include "engine/constraints/constraints.hpp"
 #include "engine/constraints/exact_diagonal.hpp"
@@ -48,14 +49,24 @@ struct StepStats {
   double residual = 0.0;        ///< of the forward solve, scaled
   double maxPenetration = 0.0;  ///< deepest overlap of a contact [m], ≥ 0
   std::int64_t pairsSkipped = 0;
-  int badDof = -1;  ///< with SolveStatus::notFinite: the first dof that is not finite
+  int evaluations = 0;  ///< of forward dynamics by a Runge–Kutta integrator
+  int substeps = 0;     ///< into which it has divided the step
+  int rejections = 0;   ///< parts of the step that it has tried and shortened
+  int jumps = 0;        ///< shortest parts that were taken in spite of their estimate
+  int badDof = -1;      ///< with SolveStatus::notFinite: the first dof that is not finite
   StepTimes times;
 };
+
+struct IntegratorStages;
 
 /// Owns all memory of a simulation thread. Copies of the model share nothing. Holds for the model
 /// as it was at construction.
 struct Data {
   explicit Data(const Model& model);
+  /// Without what integrates: to evaluate the dynamics with.
+  struct Evaluation {};
+  Data(const Model& model, Evaluation);
+  ~Data();
   Data(const Data&) = delete;
   Data& operator=(const Data&) = delete;
 
@@ -69,7 +80,8 @@ struct Data {
   ExactDiagonal exactDiagonal;
   StickingFriction sticking;  ///< with Options::noSlip: friction of the last solve, else empty
   ForwardSolution forward;
-  VectorX acceleration;  ///< discrete, (v⁺ − v)/h (nv)
+  VectorX acceleration;                      ///< discrete, (v⁺ − v)/h (nv)
+  std::unique_ptr<IntegratorStages> stages;  ///< null where the integrator needs one solve
   StepStats stats;
 };
 

@@ -6,7 +6,9 @@
 #include <cmath>
 
 #include "engine/step/forward.hpp"
+#include "engine/step/integrators/runge_kutta.hpp"
 #include "engine/step/integrators/semi_implicit_euler.hpp"
+#include "engine/step/integrators/stages.hpp"
 
 namespace softgauss {
 namespace {
@@ -60,7 +62,14 @@ int worstDof(const Model& model, const Data& data, const State& state) {
 
 }  // namespace
 
-Data::Data(const Model& model)
+Data::~Data() = default;
+
+Data::Data(const Model& model) : Data(model, Evaluation{}) {
+  if (model.options.integrator != Integrator::semiImplicitEuler)
+    stages = std::make_unique<IntegratorStages>(model);
+}
+
+Data::Data(const Model& model, Evaluation)
     : plan(model),
       weights(model),
       kinematics(model),
@@ -119,7 +128,21 @@ SolveStatus computeStages(const Model& model, const Input& input, const State& s
   return SolveStatus::converged;
 }
 
-SolveStatus advance(const Model& model, const VectorX* guess, Data& data, State& state,
+bool integrate(const Model& model, const Input& held, ContactSource* contacts, Data& data,
+               State& state) noexcept {
+  switch (model.options.integrator) {
+    case Integrator::semiImplicitEuler:
+      return semiImplicitEuler(model, data, state);
+    case Integrator::rungeKutta4:
+      return rungeKutta(kRungeKutta4, model, held, contacts, data, state);
+    case Integrator::dormandPrince:
+      return rungeKutta(kDormandPrince, model, held, contacts, data, state);
+  }
+  return false;
+}
+
+SolveStatus advance(const Model& model, const Input& held, ContactSource* contacts,
+                    const VectorX* guess, Data& data, State& state,
                     Clock::time_point& clock) noexcept {
   StepStats& stats = data.stats;
   stats.status = forwardDynamics(model, guess, data);
@@ -127,7 +150,7 @@ SolveStatus advance(const Model& model, const VectorX* guess, Data& data, State&
   stats.factorizations = data.forward.report.factorizations;
   stats.residual = data.forward.report.residual;
   stats.times.solve = lap(clock);
-  if (stats.status != SolveStatus::notFinite && !semiImplicitEuler(model, data, state))
+  if (stats.status != SolveStatus::notFinite && !integrate(model, held, contacts, data, state))
     stats.status = SolveStatus::notFinite;
   if (stats.status == SolveStatus::notFinite) {
     stats.badDof = worstDof(model, data, state);
@@ -147,9 +170,10 @@ SolveStatus computeStages(const Model& model, const Input& input, const State& s
   return computeStages(model, input, state, data, contacts, clock);
 }
 
-SolveStatus advance(const Model& model, const VectorX* guess, Data& data, State& state) noexcept {
+SolveStatus advance(const Model& model, const Input& held, ContactSource* contacts,
+                    const VectorX* guess, Data& data, State& state) noexcept {
   Clock::time_point clock = Clock::now();
-  return advance(model, guess, data, state, clock);
+  return advance(model, held, contacts, guess, data, state, clock);
 }
 
 SolveStatus step(const Model& model, const Input& input, State& state, Data& data,
@@ -157,7 +181,8 @@ SolveStatus step(const Model& model, const Input& input, State& state, Data& dat
   Clock::time_point clock;
   if (computeStages(model, input, state, data, contacts, clock) == SolveStatus::notFinite)
     return SolveStatus::notFinite;
-  return advance(model, state.warmstart.valid ? &state.warmstart.a : nullptr, data, state, clock);
+  return advance(model, input, contacts, state.warmstart.valid ? &state.warmstart.a : nullptr, data,
+                 state, clock);
 }
 
 }  // namespace softgauss

@@ -15,8 +15,11 @@ SolveStatus computeStages(const Model& model, const Input& input, const State& s
 
 /// forwardDynamics for data.forces.net, then the integrator, which advances the state by
 /// options.timestep. `guess` starts the solve (null: none); the result is the next warm start.
+/// `held` and `contacts`: what is applied over the whole step, and where contacts come from, for
+/// integrators that evaluate the dynamics again within it.
 /// On SolveStatus::notFinite the state is left as it was.
-SolveStatus advance(const Model& model, const VectorX* guess, Data& data, State& state) noexcept;
+SolveStatus advance(const Model& model, const Input& held, ContactSource* contacts,
+                    const VectorX* guess, Data& data, State& state) noexcept;
 
 /// computeStages, then advance. `contacts` may be null: nothing collides. On
 /// SolveStatus::notFinite the state is left as it was, data.stats tells the dof. Other statuses

@@ -54,6 +54,7 @@ Transform initialPose(const GoalScene& scene, int frame);
 // ---- One function for each kind -----------------------------------------------------------------
 
 GoalPointer readReach(const YamlMap& keys, const GoalScene& scene);
+GoalPointer readLinkAcceleration(const YamlMap& keys, const GoalScene& scene);
 GoalPointer readLookAt(const YamlMap& keys, const GoalScene& scene);
 GoalPointer readHold(const YamlMap& keys, const GoalScene& scene);
 GoalPointer readPosture(const YamlMap& keys, const GoalScene& scene);

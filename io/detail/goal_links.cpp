@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Goals of links: reach, look_at, hold.
+/// Goals of links: reach, link_acceleration, look_at, hold.
 
 #include "gdd/goals/hold.hpp"
+#include "gdd/goals/link_acceleration.hpp"
 #include "gdd/goals/look_at.hpp"
 #include "gdd/goals/reach.hpp"
 #include "io/detail/goal_kinds.hpp"
@@ -23,8 +24,10 @@ gdd::MinimumJerk readMinimumJerk(const YamlMap& keys, const gdd::Reach& goal,
   return line;
 }
 
-/// Metric, weight and rotation weight of a reach, whose defaults depend on the first.
-void readWeights(const YamlMap& keys, gdd::Reach& goal) {
+/// Metric, weight and rotation weight of a goal, whose defaults depend on the first. `turns`: it
+/// asks for a rotation; `how` a file says so.
+template <class Goal>
+void readWeights(const YamlMap& keys, bool turns, const std::string& how, Goal& goal) {
   constexpr double kConsistentWeight = 1000.0;
   const YamlMap::Entry* metric = keys.find("metric");
   const bool consistent =
@@ -37,8 +40,7 @@ void readWeights(const YamlMap& keys, gdd::Reach& goal) {
   goal.rotationWeight = (consistent ? 1.0 : gdd::kRotationWeightPerWeight) * goal.weight;
   keys.read("rotation_weight", goal.rotationWeight, Range::notNegative);
   const YamlMap::Entry* rotation = keys.find("rotation_weight");
-  if (rotation && !goal.R_WTarget)
-    keys.fail(*rotation, "found without an orientation, expected rpy or quaternion beside it");
+  if (rotation && !turns) keys.fail(*rotation, how);
 }
 
 std::string requiredLink(const YamlMap& keys, const Model& model) {
@@ -56,11 +58,23 @@ GoalPointer readReach(const YamlMap& keys, const GoalScene& scene) {
   auto goal = std::make_unique<gdd::Reach>(scene.model, link, requiredTarget(keys));
   keys.read("point", goal->p_FP);
   if (keys.find("rpy") || keys.find("quaternion")) goal->R_WTarget = readPose(keys).R;
-  readWeights(keys, *goal);
+  readWeights(keys, goal->R_WTarget.has_value(),
+              "found without an orientation, expected rpy or quaternion beside it", *goal);
   keys.read("stiffness", goal->stiffness, Range::notNegative);
   keys.read("damping", goal->damping, Range::notNegative);
   if (const auto* line = keys.find("minimum_jerk"))
     goal->minimumJerk = readMinimumJerk(keys.map(*line), *goal, scene);
+  return goal;
+}
+
+GoalPointer readLinkAcceleration(const YamlMap& keys, const GoalScene& scene) {
+  const std::string link = requiredLink(keys, scene.model);
+  const Vector3 linear = keys.vector3(keys.required("linear", "three numbers [x, y, z]"));
+  auto goal = std::make_unique<gdd::LinkAcceleration>(scene.model, link, linear);
+  keys.read("point", goal->p_FP);
+  if (const auto* entry = keys.find("angular")) goal->angular = keys.vector3(*entry);
+  readWeights(keys, goal->angular.has_value(),
+              "found without a rotation, expected angular beside it", *goal);
   return goal;
 }
 

@@ -27,9 +27,15 @@ EffectSet readEffects(const YamlMap& map, const YamlMap::Entry& entry) {
 }  // namespace
 
 void readOptions(const YamlMap& map, Options& options, std::optional<gdd::GddSolver>& solver) {
-  map.expectOnly({"integrator", "cone", "no_slip", "exact_diagonal", "tolerance", "max_iterations",
-                  "impedance_ratio", "effects", "compatibility", "gdd_solver"});
-  if (const auto* entry = map.find("integrator")) map.choice(*entry, {"semi-implicit-euler"});
+  map.expectOnly({"integrator", "integration_tolerance", "cone", "no_slip", "exact_diagonal",
+                  "tolerance", "max_iterations", "impedance_ratio", "effects", "compatibility",
+                  "gdd_solver"});
+  if (const auto* entry = map.find("integrator")) {
+    std::vector<std::string> names;
+    for (const IntegratorName& i : kIntegratorNames) names.emplace_back(i.name);
+    options.integrator = *integratorFromName(map.choice(*entry, names));
+  }
+  map.read("integration_tolerance", options.integrationTolerance, Range::positive);
   if (const auto* entry = map.find("cone"))
     options.cone = map.choice(*entry, {"pyramidal", "elliptic"}) == "elliptic" ? Cone::elliptic
                                                                                : Cone::pyramidal;

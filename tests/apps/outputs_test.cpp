@@ -169,6 +169,7 @@ TEST(SummaryFile, HasTheKeysOfTheInterfaceAndNoOthers) {
                              "physics_violation",
                              "gdd_violation",
                              "stationarity",
+                             "gdd_minima",
                              "goals",
                              "energy_J",
                              "max_penetration_m",

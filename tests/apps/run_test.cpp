@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "engine/model/model.hpp"
 #include "tests/apps/process.hpp"
 
 namespace softgauss::test {
@@ -17,12 +18,30 @@ TEST(Run, HelpAndVersionAreDone) {
     EXPECT_EQ(outcome.err, "");
   }
   const std::string help = simulate({"--help"}).out;
-  for (const char* option :
-       {"--base",          "--base-height", "--ground",     "--duration",     "--timestep",
-        "--integrator",    "--cone",        "--gdd-solver", "--reach",        "--goals",
-        "--compatibility", "--passive",     "--torques",    "--q0",           "--effects",
-        "--explain",       "--log",         "--summary",    "--package-path", "--quiet",
-        "--view",          "--plot",        "--version"})
+  for (const char* option : {"--base",
+                             "--base-height",
+                             "--ground",
+                             "--duration",
+                             "--timestep",
+                             "--integrator",
+                             "--integration-tolerance",
+                             "--cone",
+                             "--gdd-solver",
+                             "--reach",
+                             "--goals",
+                             "--compatibility",
+                             "--passive",
+                             "--torques",
+                             "--q0",
+                             "--effects",
+                             "--explain",
+                             "--log",
+                             "--summary",
+                             "--package-path",
+                             "--quiet",
+                             "--view",
+                             "--plot",
+                             "--version"})
     EXPECT_NE(help.find(option), std::string::npos) << option;
 }
 
@@ -55,6 +74,34 @@ TEST(Run, OptionsOfTheSceneAreObeyed) {
   // Nothing but gravity: it falls, and no joint moves.
   EXPECT_NEAR(csv.number(10, "v:" + base + ".vz"), -9.81 * 0.01, 1e-9);
   EXPECT_NEAR(csv.number(10, "v:left_knee"), 0.0, 1e-9);
+}
+
+// GDD with each: the control is held over the step.
+TEST(Run, EveryIntegratorRunsUnderGoals) {
+  for (const IntegratorName& i : kIntegratorNames) {
+    const std::string name(i.name);
+    const io::TempFolder folder;
+    const std::string summary = folder.path() / "summary.json";
+    const Outcome outcome = simulate({dataFile("robots/humanoid.urdf"), "--duration", "0.2",
+                                      "--integrator", name, "--summary", summary, "--quiet"});
+    ASSERT_EQ(outcome.exitCode, 0) << name << ": " << outcome.err;
+    const nlohmann::json json = nlohmann::json::parse(readFile(summary));
+    EXPECT_EQ(json["options"]["integrator"], name);
+    EXPECT_EQ(json["steps"], 100);
+    EXPECT_GT(json["gdd_minima"]["certified"].get<int>() + json["gdd_minima"]["kinks"].get<int>(),
+              95)
+        << name;
+  }
+  const Outcome wrong = simulate({dataFile("robots/arm.urdf"), "--integrator", "euler"});
+  EXPECT_EQ(wrong.exitCode, 2);
+}
+
+// Solver 1 finds few certificates among elliptic cones. The run goes on, and says how it went.
+TEST(Run, EllipticConesUnderAGoalEndInOrder) {
+  const Outcome outcome = simulate({dataFile("robots/humanoid.urdf"), "--cone", "elliptic",
+                                    "--reach", "right_hand=0.3,-0.5,0.5", "--duration", "1.2"});
+  EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("without a certificate"), std::string::npos) << outcome.out;
 }
 
 // A simulation that blows up says so, and leaves a log up to the last good step.

@@ -96,6 +96,24 @@ TEST(HardGoals, WeakActuatorsDoWhatTheyCan) {
 }
 
 // The arm is 0.96 m long from its shoulder: stretched towards the place, it leaves the rest.
+// Multipliers that an unfinished solve has left must not end the run.
+TEST(HardGoals, SolverOneBeginsAnewWhereItsWarmStartOverflows) {
+  RobotScene r("arm");
+  r.addReach("hand", Vector3(0.4, 0.2, 0.5));
+  r.addDamping();
+  r.controller.solver = gdd::GddSolver::augmentedLagrangian;
+  ASSERT_EQ(r.step(), SolveStatus::converged);
+  const State before = r.state;
+  ASSERT_EQ(r.step(), SolveStatus::converged);
+  EXPECT_EQ(r.controller.report.restarts, 0);
+  const VectorX q = r.state.q;
+  r.state = before;
+  r.state.warmstart.multipliers.setConstant(1e308);
+  ASSERT_EQ(r.step(), SolveStatus::converged);
+  EXPECT_EQ(r.controller.report.restarts, 1);
+  EXPECT_SMALL((r.state.q - q).norm(), 1e-9);
+}
+
 TEST(HardGoals, APlaceOutOfReachIsPointedAt) {
   const Vector3 target(1.5, 0.6, 0.8);
   for (const double weight : {1e2, 1e4, 1e6}) {

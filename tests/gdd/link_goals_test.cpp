@@ -39,6 +39,13 @@ TEST(LinkGoals, KeepTheLawsOfCosts) {
     if (random.chance(0.5)) goal->R_WTarget.reset();
     return goal;
   });
+  expectLawsOfGoals([](const Scene& s, Random& random) {
+    auto goal = std::make_unique<gdd::LinkAcceleration>(s.model, randomLinkName(s.model, random),
+                                                        random.vector3(5.0), random.vector3(0.2));
+    if (random.chance(0.5)) goal->angular = random.vector3(5.0);
+    if (random.chance(0.5)) goal->metric = gdd::LinkMetric::consistent;
+    return goal;
+  });
   expectLawsOfGoals([](const Scene& s, Random& random) { return randomLookAt(s.model, random); });
   expectLawsOfGoals([](const Scene& s, Random& random) {
     auto goal = std::make_unique<gdd::Hold>(s.model, randomLinkName(s.model, random));
@@ -91,6 +98,21 @@ TEST(PoseGoal, WeighsTheAccelerationsOfPointAndLink) {
         0.5 * goal->rotationWeight *
             (at.angularAcceleration(goal->frame) - wishedTurn).squaredNorm();
     EXPECT_SMALL(GoalCheck(at.scene, *goal).value(at.a) / expected - 1.0, kDifference) << seed;
+  }
+}
+
+TEST(LinkAccelerationGoal, WeighsTheAccelerationsThatAreAskedFor) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    AtAcceleration at(seed);
+    gdd::LinkAcceleration goal(at.scene.model, randomLinkName(at.scene.model, at.random),
+                               at.random.vector3(5.0), at.random.vector3(0.2));
+    goal.angular = at.random.vector3(5.0);
+    const double expected =
+        0.5 * goal.weight *
+            (at.pointAcceleration(goal.frame, goal.p_FP) - goal.linear).squaredNorm() +
+        0.5 * goal.rotationWeight *
+            (at.angularAcceleration(goal.frame) - *goal.angular).squaredNorm();
+    EXPECT_SMALL(GoalCheck(at.scene, goal).value(at.a) / expected - 1.0, kDifference) << seed;
   }
 }
 

@@ -54,6 +54,26 @@ TEST(GoalTimesInFiles, AreOfEveryKind) {
             "'damping': key 'end': found '.inf', expected a finite number");
 }
 
+TEST(LinkAccelerationInFiles, ArrivesWithItsValues) {
+  const auto goal = readOne<gdd::LinkAcceleration>(
+      "link_acceleration: {link: arm, linear: [1, 2, 3], angular: [4, 5, 6], point: [7, 8, 9],"
+      " weight: 10, rotation_weight: 11, metric: consistent}");
+  EXPECT_EQ(goal->link, "arm");
+  EXPECT_EQ(goal->linear, Vector3(1, 2, 3));
+  ASSERT_TRUE(goal->angular);
+  EXPECT_EQ(*goal->angular, Vector3(4, 5, 6));
+  EXPECT_EQ(goal->p_FP, Vector3(7, 8, 9));
+  EXPECT_EQ(goal->weight, 10.0);
+  EXPECT_EQ(goal->rotationWeight, 11.0);
+  EXPECT_EQ(goal->metric, gdd::LinkMetric::consistent);
+  EXPECT_FALSE(
+      readOne<gdd::LinkAcceleration>("link_acceleration: {link: arm, linear: [1, 2, 3]}")->angular);
+  EXPECT_EQ(
+      errorOf("link_acceleration: {link: arm, linear: [1, 2, 3], rotation_weight: 1}"),
+      "'link_acceleration': key 'rotation_weight': found without a rotation, expected angular "
+      "beside it");
+}
+
 TEST(DampingInFiles, HasTwoMetrics) {
   EXPECT_EQ(readOne<gdd::VirtualDamping>("damping: {}")->metric, gdd::DampingMetric::inertia);
   EXPECT_EQ(readOne<gdd::VirtualDamping>("damping: {metric: inverse_inertia}")->metric,

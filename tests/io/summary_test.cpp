@@ -83,6 +83,7 @@ TEST(Summary, HasTheKeysOfTheInterfaceInOrder) {
                                 "physics_violation",
                                 "gdd_violation",
                                 "stationarity",
+                                "gdd_minima",
                                 "goals",
                                 "energy_J",
                                 "max_penetration_m",
@@ -144,6 +145,15 @@ TEST(Summary, IsWrittenOrRefused) {
   summary.write(folder.path() / "s.json");
   EXPECT_GT(std::filesystem::file_size(folder.path() / "s.json"), 100u);
   EXPECT_THROW(summary.write(folder.path() / "none" / "s.json"), ModelError);
+}
+
+// A goal that was reached at the start is not lost by a share of next to nothing.
+TEST(GoalOutcome, AGoalThatWasThereHasACentimetreToLose) {
+  EXPECT_EQ((GoalOutcome{"", 0.5, 0.05}.nearer()), 0.9);
+  EXPECT_EQ((GoalOutcome{"", 0.1, 0.2}.nearer()), -1.0);
+  EXPECT_EQ((GoalOutcome{"", 5e-13, 0.001}.nearer()), 0.9);
+  EXPECT_EQ((GoalOutcome{"", 0.0, 0.0}.nearer()), 1.0);
+  EXPECT_EQ((GoalOutcome{"", 0.0, 0.03}.nearer()), -2.0);
 }
 
 TEST(SummaryTable, EndsInAVerdict) {

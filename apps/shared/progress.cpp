@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/gdd_benchmark/progress.hpp"
+#include "apps/shared/progress.hpp"
 
 #include <fmt/format.h>
 #include <signal.h>

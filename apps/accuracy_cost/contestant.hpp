@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Engines behind one call, so that they run the same problems alternately in one process.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "apps/accuracy_cost/problem.hpp"
+
+namespace softgauss::app {
+
+/// One curve of a picture: everything but the step size.
+struct Method {
+  std::string engine;      ///< "softgauss" or "mujoco"
+  std::string integrator;  ///< its name there
+  std::string label;       ///< of the curve
+  Cone cone = Cone::pyramidal;
+  double tolerance = 0.0;             ///< of the solver; 0: the engine's default
+  double integrationTolerance = 0.0;  ///< of an integrator with error control; 0: none
+  bool warmStart = true;
+
+  bool operator==(const Method&) const = default;
+};
+
+/// A problem in an engine with a method and a step size.
+class Contestant {
+ public:
+  virtual ~Contestant() = default;
+  virtual const Model& model() const = 0;
+  /// Begins there, cold.
+  virtual void start(const State& state) = 0;
+  /// Takes so many steps under τ (nv); empty: none. False where the state is no longer finite.
+  virtual bool advance(const VectorX& tau, int steps) = 0;
+  virtual const State& state() = 0;
+  /// Deepest overlap of a contact since start() [m]; 0 where the engine does not tell.
+  virtual double penetration() const { return 0.0; }
+};
+
+/// MuJoCo's methods, none where it was not found when this was built.
+std::vector<Method> mujocoMethods(const Problem& problem);
+std::unique_ptr<Contestant> makeMujoco(const Problem& problem, const Method& method, double h);
+
+/// Of the engine; `h` divides kPeriod.
+std::unique_ptr<Contestant> makeContestant(const Problem& problem, const Method& method, double h);
+
+/// What can be compared for a problem: ours, then MuJoCo's where it was found.
+std::vector<Method> methodsFor(const Problem& problem);
+
+/// What a method is compared with, where no closed form is: the most accurate method of the same
+/// model. Without contact that is ours for every engine; with contact each engine and each kind of
+/// cone is a model of its own.
+Method referenceMethod(const Problem& problem, const Method& method);
+
+}  // namespace softgauss::app

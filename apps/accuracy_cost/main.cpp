@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+/// accuracy_cost: what accuracy costs in time.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <iostream>
+
+#include "apps/accuracy_cost/pictures.hpp"
+#include "apps/accuracy_cost/study.hpp"
+#include "apps/accuracy_cost/table.hpp"
+#include "apps/shared/progress.hpp"
+
+namespace softgauss::app {
+namespace {
+
+struct Arguments {
+  std::vector<std::string> scenes;
+  std::string out = "accuracy", robots = "data/robots";
+  StudyOptions study;
+};
+
+std::string figure(double x) { return std::isfinite(x) ? fmt::format("{:.3g}", x) : "not finite"; }
+
+void print(const Problem& problem, const std::vector<Result>& results) {
+  fmt::print("\n{}: {}\n{:<40} {:>10} {:>10} {:>11} {:>10} {:>10}\n", problem.name, problem.title,
+             "", "step [ms]", "error [m]", "angle [rad]", "drift", "s per s");
+  for (const Result& r : results) {
+    if (r.problem != problem.name) continue;
+    fmt::print("{:<40} {:>10.4g} {:>10} {:>11} {:>10} {:>10}\n", r.method.label, 1e3 * r.h,
+               figure(r.error), figure(r.orientation),
+               problem.passive ? figure(r.energyDrift) : "-", figure(r.time));
+  }
+}
+
+/// All step sizes of all methods of a problem that the table does not have yet.
+void run(const Problem& problem, const Arguments& arguments, ResultTable& table) {
+  Study study(problem, arguments.study);
+  const std::vector<Method> methods = methodsFor(problem);
+  Progress progress(problem.name);
+  long done = 0;
+  const int fewest = problem.contact ? kFewestContactSteps : kFewestSteps;
+  const long all = (problem.contact ? 7 : 9) * static_cast<long>(methods.size());
+  for (int steps = kMostSteps; steps >= fewest; steps /= 2) {
+    const double h = kPeriod / steps;
+    std::vector<Result> results;
+    for (const Method& method : methods) {
+      progress.show(done++, all);
+      if (interrupted()) return;
+      if (table.has(problem.name, method, h)) continue;
+      if (!study.prepare(method)) {
+        progress.clear();
+        fmt::print("{}: the reference of '{}' is not finite\n", problem.name, method.label);
+        continue;
+      }
+      results.push_back(study.measure(method, h));
+    }
+    study.measureTimes(results);
+    for (const Result& result : results) table.add(result);
+  }
+}
+
+int main(int argc, char** argv) {
+  Arguments arguments;
+  CLI::App app("What accuracy costs in time: error against CPU time per simulated second.");
+  app.set_version_flag("--version", SOFTGAUSS_VERSION);
+  app.add_option("--scene", arguments.scenes, "problems to run, default all; repeatable")
+      ->type_name("NAME");
+  app.add_option("--out", arguments.out,
+                 "folder of the table, the pictures and the page; a run that was interrupted goes "
+                 "on there")
+      ->type_name("DIR");
+  app.add_option("--robots", arguments.robots, "folder of arm.urdf, hand.urdf, humanoid.urdf")
+      ->type_name("DIR");
+  app.add_option("--repeats", arguments.study.repeats,
+                 "how often each time is measured; the least counts")
+      ->check(CLI::Range(1, 100));
+  bool list = false;
+  app.add_flag("--list", list, "name the problems and end");
+  CLI11_PARSE(app, argc, argv);
+
+  std::vector<Problem> problems = allProblems(arguments.robots);
+  if (list) {
+    for (const Problem& p : problems) fmt::print("{:<22} {}\n", p.name, p.title);
+    return 0;
+  }
+  for (const std::string& name : arguments.scenes) {
+    if (std::any_of(problems.begin(), problems.end(),
+                    [&](const Problem& p) { return p.name == name; }))
+      continue;
+    fmt::print(stderr, "accuracy_cost: no problem '{}'; --list names them\n", name);
+    return 2;
+  }
+  if (!arguments.scenes.empty())
+    std::erase_if(problems, [&](const Problem& p) {
+      return std::find(arguments.scenes.begin(), arguments.scenes.end(), p.name) ==
+             arguments.scenes.end();
+    });
+
+  try {
+    catchInterrupts();
+    std::filesystem::create_directories(arguments.out);
+    ResultTable table(std::filesystem::path(arguments.out) / "accuracy_cost.csv");
+    for (const Problem& problem : problems) {
+      run(problem, arguments, table);
+      print(problem, table.results());
+      if (interrupted()) break;
+    }
+    writePictures(arguments.out, problems, table.results());
+    return interrupted() ? 130 : 0;
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "accuracy_cost: {}\n", e.what());
+    return 2;
+  }
+}
+
+}  // namespace
+}  // namespace softgauss::app
+
+int main(int argc, char** argv) { return softgauss::app::main(argc, argv); }

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "apps/accuracy_cost/contestant.hpp"
+
+namespace softgauss::app {
+namespace {
+
+constexpr const char* kMujocoEuler = "mujoco-euler";  ///< T.16 without its middle of the step
+
+class Ours final : public Contestant {
+ public:
+  Ours(const Problem& problem, const Method& method, double h)
+      : warmStart_(method.warmStart),
+        model_(build(problem, method, h)),
+        contacts_(model_),
+        data_(model_),
+        state_(model_) {}
+
+  const Model& model() const override { return model_; }
+  const State& state() override { return state_; }
+  double penetration() const override { return penetration_; }
+
+  void start(const State& state) override {
+    state_.q = state.q;
+    state_.v = state.v;
+    state_.time = state.time;
+    state_.warmstart = State(model_).warmstart;
+    penetration_ = 0.0;
+  }
+
+  bool advance(const VectorX& tau, int steps) override {
+    input_.tau = tau;
+    for (int i = 0; i < steps; ++i) {
+      if (!warmStart_) state_.warmstart.valid = false;
+      if (step(model_, input_, state_, data_, &contacts_) == SolveStatus::notFinite) return false;
+      penetration_ = std::max(penetration_, data_.stats.maxPenetration);
+    }
+    return true;
+  }
+
+ private:
+  static Model build(const Problem& problem, const Method& method, double h) {
+    ModelBuilder builder = problem.build();
+    builder.options.timestep = h;
+    builder.options.cone = method.cone;
+    if (method.tolerance > 0.0) builder.options.tolerance = method.tolerance;
+    if (method.integrator == kMujocoEuler)
+      builder.options.midpointCoriolis = false;
+    else
+      builder.options.integrator = integratorFromName(method.integrator).value();
+    // A period has many steps: each may leave its share of the error.
+    if (method.integrationTolerance > 0.0)
+      builder.options.integrationTolerance = method.integrationTolerance;
+    return builder.build();
+  }
+
+  bool warmStart_;
+  Model model_;
+  collision::SceneContacts contacts_;
+  Data data_;
+  State state_;
+  Input input_;
+  double penetration_ = 0.0;
+};
+
+}  // namespace
+
+std::unique_ptr<Contestant> makeContestant(const Problem& problem, const Method& method, double h) {
+  if (method.engine == "mujoco") return makeMujoco(problem, method, h);
+  return std::make_unique<Ours>(problem, method, h);
+}
+
+Method referenceMethod(const Problem& problem, const Method& method) {
+  Method reference{"softgauss", "runge-kutta-4", "reference"};
+  if (!problem.contact) return reference;
+  if (method.engine == "mujoco") return {"mujoco", "Euler", "reference"};
+  reference.cone = method.cone;
+  return reference;
+}
+
+std::vector<Method> methodsFor(const Problem& problem) {
+  std::vector<Method> methods{{"softgauss", "semi-implicit-euler", "semi-implicit Euler"},
+                              {"softgauss", kMujocoEuler, "semi-implicit Euler as MuJoCo's"},
+                              {"softgauss", "runge-kutta-4", "Runge-Kutta 4"}};
+  Method adaptive{"softgauss", "dormand-prince", ""};
+  for (const double tolerance : {1e-5, 1e-8, 1e-11}) {
+    adaptive.integrationTolerance = tolerance;
+    adaptive.label = fmt::format("Dormand-Prince to {:.0e}", tolerance);
+    methods.push_back(adaptive);
+  }
+  if (problem.contact) {
+    Method elliptic = methods.front();
+    elliptic.cone = Cone::elliptic;
+    elliptic.label = "semi-implicit Euler, elliptic cones";
+    methods.push_back(elliptic);
+  }
+  for (Method& method : mujocoMethods(problem)) methods.push_back(std::move(method));
+  return methods;
+}
+
+}  // namespace softgauss::app

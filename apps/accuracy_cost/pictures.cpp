@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/accuracy_cost/pictures.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "io/replay/gnuplot.hpp"
+
+namespace softgauss::app {
+namespace {
+
+constexpr const char* kDataPlace = "/*RESULTS*/null";
+const std::array<const char*, 8> kColours = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
+                                             "#e69f00", "#56b4e9", "#8c6d31", "#000000"};
+
+void write(const std::filesystem::path& file, const std::string& text) {
+  std::ofstream out(file);
+  if (!(out << text << std::flush)) throw std::runtime_error("cannot write " + file.string());
+}
+
+/// Results of a problem, by method, in the order in which methods appear.
+std::vector<std::vector<Result>> curvesOf(const std::string& problem,
+                                          const std::vector<Result>& results) {
+  std::vector<std::vector<Result>> curves;
+  for (const Result& r : results) {
+    if (r.problem != problem || !std::isfinite(r.error) || !std::isfinite(r.time)) continue;
+    const auto same = [&](const std::vector<Result>& c) { return c.front().method == r.method; };
+    const auto curve = std::find_if(curves.begin(), curves.end(), same);
+    if (curve == curves.end())
+      curves.push_back({r});
+    else
+      curve->push_back(r);
+  }
+  for (std::vector<Result>& curve : curves)
+    std::sort(curve.begin(), curve.end(),
+              [](const Result& a, const Result& b) { return a.h < b.h; });
+  return curves;
+}
+
+std::string script(const Problem& problem, const std::vector<std::vector<Result>>& curves) {
+  std::string text;
+  const auto add = [&](const std::string& line) { text += line + "\n"; };
+  double reference = 0.0;
+  for (std::size_t k = 0; k < curves.size(); ++k) {
+    add(fmt::format("$curve{} << END", k));
+    for (const Result& r : curves[k]) {
+      add(fmt::format("{:.6g} {:.6g}", r.time, std::max(r.error, 1e-17)));
+      reference = std::max(reference, r.referenceError);
+    }
+    add("END");
+  }
+  add("set terminal svg noenhanced size 760,520 font 'Helvetica,12' background '#ffffff'");
+  add(fmt::format("set output '{}'", io::kGnuplotDrawing));
+  add(fmt::format("set title '{}' font 'Helvetica-Bold,13'", problem.title));
+  add("set logscale xy; set format x '%g'");
+  add("set format y '%.0e'");
+  add("set border 3 linecolor '#666666'; set tics nomirror scale 0.5 textcolor '#333333'");
+  add("set grid linecolor '#e2e2e2' linetype 1 linewidth 0.5");
+  add("set xlabel 'CPU seconds per simulated second'");
+  add(problem.contact ? "set ylabel 'error after up to 64 ms [m]'" : "set ylabel 'error [m]'");
+  add("set key below");
+  std::string plot = "plot ";
+  for (std::size_t k = 0; k < curves.size(); ++k) {
+    const Method& method = curves[k].front().method;
+    plot += fmt::format(
+        "{}$curve{} using 1:2 with linespoints pointtype 7 pointsize 0.5 linewidth 1.8 dashtype {} "
+        "linecolor '{}' title \"{}\"",
+        k == 0 ? "" : ", ", k, method.engine == "mujoco" ? 2 : 1, kColours[k % kColours.size()],
+        method.label);
+  }
+  if (reference > 0.0)
+    plot += fmt::format(", {:.6g} linecolor '#999999' dashtype 3 title 'two references differ'",
+                        reference);
+  add(plot);
+  add("unset output");
+  return text;
+}
+
+nlohmann::ordered_json json(const Problem& problem,
+                            const std::vector<std::vector<Result>>& curves) {
+  nlohmann::ordered_json out{{"name", problem.name},         {"title", problem.title},
+                             {"contact", problem.contact},   {"passive", problem.passive},
+                             {"exact", bool(problem.exact)}, {"curves", nlohmann::json::array()}};
+  for (const std::vector<Result>& curve : curves) {
+    const Method& m = curve.front().method;
+    nlohmann::ordered_json points = nlohmann::json::array();
+    for (const Result& r : curve)
+      points.push_back({{"h", r.h},
+                        {"error", r.error},
+                        {"orientation", r.orientation},
+                        {"time", r.time},
+                        {"drift", r.energyDrift},
+                        {"penetration", r.penetration},
+                        {"overshoot", r.overshoot},
+                        {"reference", r.referenceError}});
+    out["curves"].push_back({{"engine", m.engine}, {"label", m.label}, {"points", points}});
+  }
+  return out;
+}
+
+}  // namespace
+
+void writePictures(const std::filesystem::path& folder, const std::vector<Problem>& problems,
+                   const std::vector<Result>& results) {
+  const bool draw = io::hasGnuplot();
+  if (!draw) fmt::print(stderr, "accuracy_cost: no pictures: {}\n", io::kNoGnuplot);
+  nlohmann::ordered_json data = nlohmann::json::array();
+  for (const Problem& problem : problems) {
+    const std::vector<std::vector<Result>> curves = curvesOf(problem.name, results);
+    if (curves.empty()) continue;
+    if (draw) write(folder / (problem.name + ".svg"), io::gnuplotDrawing(script(problem, curves)));
+    data.push_back(json(problem, curves));
+  }
+  std::string page = pageTemplate();
+  const std::size_t place = page.find(kDataPlace);
+  if (place == std::string::npos) throw std::logic_error("the page has no place for its data");
+  page.replace(place, std::string(kDataPlace).size(), data.dump());
+  write(folder / "accuracy_cost.html", page);
+}
+
+}  // namespace softgauss::app

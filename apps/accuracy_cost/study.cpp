@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/accuracy_cost/study.hpp"
+
+#include <time.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/dynamics/energy.hpp"
+
+namespace softgauss::app {
+namespace {
+
+/// Steps a period of the two references. The finer one is the reference.
+constexpr int kReferenceSteps = 1024;
+/// And where every step makes contacts.
+constexpr int kContactReferenceSteps = 1024;
+
+double cpuSeconds() {
+  timespec t;
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+int stepsOf(double h) { return static_cast<int>(std::lround(kPeriod / h)); }
+
+double overshoot(const Model& model, const State& state) {
+  double most = 0.0;
+  for (const JointRange& range : model.ranges) {
+    const double q = state.q[model.bodies[range.body].q];
+    most = std::max({most, range.lower - q, q - range.upper});
+  }
+  return most;
+}
+
+}  // namespace
+
+Study::Study(const Problem& problem, StudyOptions options) : problem_(problem), options_(options) {}
+
+State Study::initialState(const Model& model) const {
+  State state(model);
+  if (problem_.start) problem_.start(model, state);
+  return state;
+}
+
+VectorX Study::force(const Model& model, double time) const {
+  VectorX tau = VectorX::Zero(model.nv);
+  if (problem_.force) problem_.force(model, time, tau);
+  return tau;
+}
+
+/// States at the ends of periods; ends early where one is not finite.
+std::vector<State> Study::run(Contestant& contestant, const State& start, int periods,
+                              int steps) const {
+  std::vector<State> samples;
+  contestant.start(start);
+  for (int k = 0; k < periods; ++k) {
+    const double time = start.time + k * kPeriod;
+    if (!contestant.advance(force(contestant.model(), time), steps)) break;
+    samples.push_back(contestant.state());
+    samples.back().time = time + kPeriod;
+  }
+  return samples;
+}
+
+bool Study::prepare(const Method& method) {
+  const Method reference = referenceMethod(problem_, method);
+  if (!windows_.empty() && reference == referenceOf_) return true;
+  referenceOf_ = reference;
+  windows_.clear();
+  const int steps = problem_.contact ? kContactReferenceSteps : kReferenceSteps;
+  const auto fine = makeContestant(problem_, reference, kPeriod / steps);
+  const auto coarse = makeContestant(problem_, reference, 2.0 * kPeriod / steps);
+  const Model& model = fine->model();
+
+  // Where windows start: on the motion at a step that is good enough to choose states by.
+  std::vector<State> starts{initialState(model)};
+  if (problem_.windows > 1) {
+    const auto scout = makeContestant(problem_, reference, kPeriod / 64);
+    const std::vector<State> states = run(*scout, starts.front(), problem_.periods, 64);
+    if (static_cast<int>(states.size()) < problem_.periods) return false;
+    starts.clear();
+    for (int w = 0; w < problem_.windows; ++w)
+      starts.push_back(states[(w + 1) * (problem_.periods - 1) / problem_.windows]);
+  }
+  LinkPoses a(model), b(model);
+  double sum = 0.0;
+  int count = 0;
+  for (const State& start : starts) {
+    Window window;
+    window.start = start;
+    if (problem_.exact) {
+      for (int k = 1; k <= problem_.windowPeriods; ++k) {
+        State state = start;
+        state.time = start.time + k * kPeriod;
+        problem_.exact(model, state.time, state);
+        window.samples.push_back(state);
+      }
+    } else {
+      window.samples = run(*fine, start, problem_.windowPeriods, steps);
+      const std::vector<State> other = run(*coarse, start, problem_.windowPeriods, steps / 2);
+      if (static_cast<int>(std::min(window.samples.size(), other.size())) < problem_.windowPeriods)
+        return false;
+      for (int k = 0; k < problem_.windowPeriods; ++k) {
+        a.set(window.samples[k]);
+        b.set(other[k]);
+        sum += std::pow(a.against(b).total, 2);
+        ++count;
+      }
+    }
+    windows_.push_back(std::move(window));
+  }
+  referenceError_ = count > 0 ? std::sqrt(sum / count) : 0.0;
+  return true;
+}
+
+Result Study::measure(const Method& method, double h) {
+  Result result;
+  result.problem = problem_.name;
+  result.method = method;
+  result.h = h;
+  result.referenceError = referenceError_;
+  const auto contestant = makeContestant(problem_, method, h);
+  const Model& model = contestant->model();
+  LinkPoses pose(model), reference(model);
+  Kinematics kinematics(model);
+  const auto energy = [&](const State& state) {
+    computeKinematics(model, state, kinematics);
+    return computeEnergy(model, kinematics, state.q, state.v);
+  };
+  double sum = 0.0, turned = 0.0, kinetic = 0.0;
+  int count = 0;
+  for (const Window& window : windows_) {
+    const std::vector<State> states =
+        run(*contestant, window.start, problem_.windowPeriods, stepsOf(h));
+    result.penetration = std::max(result.penetration, contestant->penetration());
+    if (states.size() < window.samples.size()) {
+      result.error = result.orientation = std::numeric_limits<double>::infinity();
+      return result;
+    }
+    for (std::size_t k = 0; k < states.size(); ++k) {
+      pose.set(states[k]);
+      reference.set(window.samples[k]);
+      const PoseError error = pose.against(reference);
+      sum += error.total * error.total;
+      turned += error.orientation * error.orientation;
+      ++count;
+      // Drift is what the reference does not do: dampers and contacts may take energy.
+      const Energy own = energy(states[k]), right = energy(window.samples[k]);
+      kinetic = std::max(kinetic, right.kinetic);
+      result.energyDrift = std::max(result.energyDrift, std::abs(own.total() - right.total()));
+      result.overshoot = std::max(result.overshoot, overshoot(model, states[k]));
+    }
+  }
+  result.error = std::sqrt(sum / count);
+  result.orientation = std::sqrt(turned / count);
+  result.energyDrift = kinetic > 0.0 ? result.energyDrift / kinetic : 0.0;
+  return result;
+}
+
+void Study::measureTimes(std::vector<Result>& results) {
+  std::vector<std::unique_ptr<Contestant>> contestants;
+  for (Result& r : results) {
+    contestants.push_back(makeContestant(problem_, r.method, r.h));
+    r.time = std::numeric_limits<double>::infinity();
+  }
+  const double simulated = problem_.windowPeriods * kPeriod * static_cast<double>(windows_.size());
+  for (int repeat = 0; repeat < options_.repeats; ++repeat) {
+    for (std::size_t i = 0; i < results.size(); ++i) {
+      if (!std::isfinite(results[i].error)) continue;
+      Contestant& contestant = *contestants[i];
+      double spent = 0.0;
+      int rounds = 0;
+      do {
+        for (const Window& window : windows_) {
+          contestant.start(window.start);
+          for (int k = 0; k < problem_.windowPeriods; ++k) {
+            const VectorX tau = force(contestant.model(), window.start.time + k * kPeriod);
+            const double begin = cpuSeconds();
+            contestant.advance(tau, stepsOf(results[i].h));
+            spent += cpuSeconds() - begin;
+          }
+        }
+        ++rounds;
+      } while (spent < options_.minTime && rounds < 1000);
+      results[i].time = std::min(results[i].time, spent / (rounds * simulated));
+    }
+  }
+}
+
+}  // namespace softgauss::app

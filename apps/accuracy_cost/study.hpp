@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Error and time of every method and step size on a problem.
+///
+/// A problem is cut into windows, each from a state of the reference; every contestant starts each
+/// window there, and is compared with the reference at the end of every period. A smooth problem
+/// has one window, the whole motion. The reference is the closed form where there is one, else the
+/// most accurate method at the smallest step; a second reference at twice that step tells how good
+/// it is. With other cones, or in another engine, contact is another model: such a method is
+/// compared with its own reference, which says how far it is from its own limit.
+
+#include <functional>
+#include <optional>
+
+#include "apps/accuracy_cost/contestant.hpp"
+#include "apps/accuracy_cost/pose_error.hpp"
+
+namespace softgauss::app {
+
+/// One marker of a picture.
+struct Result {
+  std::string problem;
+  Method method;
+  double h = 0.0;            ///< [s]
+  double error = 0.0;        ///< root mean square over windows and periods [m]; ∞: not finite
+  double orientation = 0.0;  ///< the same of angles [rad]
+  double time = 0.0;         ///< CPU seconds per simulated second
+  double energyDrift = 0.0;  ///< largest gain or loss over the largest kinetic energy, if passive
+  double penetration = 0.0;  ///< deepest [m]
+  double overshoot = 0.0;    ///< beyond a joint's limit, largest [rad or m]
+  double referenceError = 0.0;  ///< by which two references differ [m]
+};
+
+struct StudyOptions {
+  double minTime = 0.05;  ///< CPU seconds at least that a time is measured over
+  int repeats = 3;        ///< of which the least is taken
+};
+
+class Study {
+ public:
+  Study(const Problem& problem, StudyOptions options);
+
+  /// The references of a method's model; false where even they are not finite.
+  bool prepare(const Method& method);
+  /// Measures a method at a step size, after prepare(). Times are measured by measureTimes().
+  Result measure(const Method& method, double h);
+  /// Fills in the times of results of one step size, run in turns.
+  void measureTimes(std::vector<Result>& results);
+
+ private:
+  struct Window {
+    State start;
+    std::vector<State> samples;  ///< at the end of each period
+  };
+  std::vector<State> run(Contestant& contestant, const State& start, int periods, int steps) const;
+  State initialState(const Model& model) const;
+  VectorX force(const Model& model, double time) const;
+
+  Problem problem_;
+  StudyOptions options_;
+  Method referenceOf_;
+  std::vector<Window> windows_;
+  double referenceError_ = 0.0;
+};
+
+}  // namespace softgauss::app

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Results as a CSV file, which an interrupted run continues.
+
+#include <filesystem>
+#include <fstream>
+#include <vector>
+
+#include "apps/accuracy_cost/study.hpp"
+
+namespace softgauss::app {
+
+class ResultTable {
+ public:
+  /// Reads what the file holds, and appends to it. A file of another version of the table is kept
+  /// beside it, with `.old`. Throws std::runtime_error when it cannot be written.
+  explicit ResultTable(std::filesystem::path file);
+
+  bool has(const std::string& problem, const Method& method, double h) const;
+  void add(const Result& result);
+  const std::vector<Result>& results() const { return results_; }
+
+ private:
+  std::vector<Result> results_;
+  std::ofstream out_;
+};
+
+}  // namespace softgauss::app

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <stdexcept>
+
+#include "apps/accuracy_cost/contestant.hpp"
+
+#ifdef SOFTGAUSS_WITH_MUJOCO
+#include "apps/compare_mujoco/mjcf.hpp"
+#include "apps/compare_mujoco/mujoco.hpp"
+#endif
+
+namespace softgauss::app {
+
+#ifdef SOFTGAUSS_WITH_MUJOCO
+namespace {
+
+/// The same model, written by us as MuJoCo's.
+class Theirs final : public Contestant {
+ public:
+  Theirs(const Problem& problem, const Method& method, double h)
+      : model_(build(problem, h)),
+        mujoco_(mjcfOf(model_, collision::SceneContacts(model_).filter())),
+        state_(model_) {
+    if (!mujoco_.setIntegrator(method.integrator))
+      throw std::logic_error("no integrator '" + method.integrator + "' in MuJoCo");
+  }
+
+  const Model& model() const override { return model_; }
+  const State& state() override {
+    state_.q = mujoco_.q();
+    state_.v = mujoco_.v();
+    return state_;
+  }
+
+  void start(const State& state) override {
+    const VectorX none = VectorX::Zero(model_.nv);
+    mujoco_.set(state, none);
+    mujoco_.setWarmStart(none);
+  }
+
+  bool advance(const VectorX& tau, int steps) override {
+    if (tau.size() > 0) mujoco_.setForce(tau);
+    for (int i = 0; i < steps; ++i) mujoco_.step();
+    // It starts anew where it has found a state that is not finite, and warns.
+    return mujoco_.firstWarning().empty() && mujoco_.q().allFinite();
+  }
+
+ private:
+  static Model build(const Problem& problem, double h) {
+    ModelBuilder builder = problem.build();
+    builder.options.timestep = h;
+    return builder.build();
+  }
+
+  Model model_;
+  Mujoco mujoco_;
+  State state_;
+};
+
+}  // namespace
+
+std::vector<Method> mujocoMethods(const Problem&) {
+  std::vector<Method> methods;
+  for (const char* integrator : {"Euler", "RK4", "implicit"})
+    methods.push_back({"mujoco", integrator, std::string("MuJoCo ") + integrator});
+  return methods;
+}
+
+std::unique_ptr<Contestant> makeMujoco(const Problem& problem, const Method& method, double h) {
+  return std::make_unique<Theirs>(problem, method, h);
+}
+
+#else
+
+std::vector<Method> mujocoMethods(const Problem&) { return {}; }
+
+std::unique_ptr<Contestant> makeMujoco(const Problem&, const Method&, double) {
+  throw std::logic_error("MuJoCo was not found when this was built");
+}
+
+#endif
+
+}  // namespace softgauss::app

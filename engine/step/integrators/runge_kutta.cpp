@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/step/integrators/runge_kutta.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/core/rotation.hpp"
+#include "engine/step/forward.hpp"
+#include "engine/step/integrators/stages.hpp"
+#include "engine/step/step.hpp"
+
+namespace softgauss {
+namespace {
+
+/// φ̇ of (T.101).
+void displacementRate(const Model& model, const VectorX& phi, const VectorX& v, VectorX& rate) {
+  rate = v;
+  for (const Tree& tree : model.trees) {
+    const Body& root = model.bodies[tree.rootBody];
+    if (root.joint != JointKind::floating) continue;
+    const int i = root.v + 3;
+    rate.segment<3>(i) = rotationRate(phi.segment<3>(i), v.segment<3>(i));
+  }
+}
+
+/// k_i at (q₀ ⊕ φ, v): forward dynamics there. False where it is not finite.
+bool evaluate(const Model& model, ContactSource* contacts, IntegratorStages& s, int i,
+              const VectorX& guess, StepStats& stats) {
+  Data& data = s.data;
+  if (computeStages(model, s.input, s.state, data, contacts) == SolveStatus::notFinite)
+    return false;
+  const SolveStatus status = forwardDynamics(model, &guess, data);
+  ++stats.evaluations;
+  stats.iterations += data.forward.report.iterations;
+  stats.factorizations += data.forward.report.factorizations;
+  stats.residual = std::max(stats.residual, data.forward.report.residual);
+  stats.maxPenetration = std::max(stats.maxPenetration, data.stats.maxPenetration);
+  if (status == SolveStatus::notFinite) return false;
+  if (status != SolveStatus::converged) stats.status = status;
+  s.acceleration[i] = data.forward.a;
+  displacementRate(model, s.phi, s.state.v, s.rate[i]);
+  return true;
+}
+
+/// Σ_i c_i k_i, h times.
+void combine(double h, const double* c, int count, const std::vector<VectorX>& k, VectorX& sum) {
+  sum.setZero();
+  for (int i = 0; i < count; ++i)
+    if (c[i] != 0.0) sum += (h * c[i]) * k[i];
+}
+
+/// One part of the step, of length h, from s.from; its first k is there. The result is in s.state.
+/// Returns the largest error over `tolerance`; ∞ where a stage is not finite.
+double part(const Tableau& t, const Model& model, ContactSource* contacts, double h,
+            double tolerance, IntegratorStages& s, StepStats& stats) {
+  for (int i = 1; i <= t.stages; ++i) {
+    const bool last = i == t.stages;
+    if (last && t.lastIsNext) break;  // the last stage is y⁺
+    const double* c = last ? t.b.data() : t.a[i].data();
+    combine(h, c, i, s.rate, s.phi);
+    combine(h, c, i, s.acceleration, s.state.v);
+    s.state.v += s.from.v;
+    s.state.q = s.from.q;
+    integratePosition(model, s.phi, 1.0, s.state.q);
+    if (!s.state.q.allFinite() || !s.state.v.allFinite()) return kInfinity;
+    if (!last && !evaluate(model, contacts, s, i, s.acceleration[i - 1], stats)) return kInfinity;
+  }
+  if (!t.embedded) return 0.0;
+  combine(h, t.e.data(), t.stages, s.rate, s.phi);
+  double error = s.phi.cwiseAbs().maxCoeff();
+  combine(h, t.e.data(), t.stages, s.acceleration, s.phi);
+  error = std::max(error, h * s.phi.cwiseAbs().maxCoeff());
+  return error / tolerance;
+}
+
+}  // namespace
+
+bool rungeKutta(const Tableau& t, const Model& model, const Input& input, ContactSource* contacts,
+                Data& data, State& state) noexcept {
+  constexpr double kShortest = 1.0 / 512.0;  // of the step
+  constexpr double kSafety = 0.9, kLeastFactor = 0.2, kMostFactor = 5.0;
+  const double h = model.options.timestep;
+  IntegratorStages& s = *data.stages;
+  StepStats& stats = data.stats;
+  s.input.tau = input.tau;
+  s.input.wrenches = input.wrenches;
+  s.from.q = state.q;
+  s.from.v = state.v;
+  s.state.time = state.time;
+  s.acceleration[0] = data.forward.a;
+  s.phi.setZero();
+  displacementRate(model, s.phi, state.v, s.rate[0]);
+  ++stats.evaluations;
+
+  double done = 0.0, length = h;
+  while (done < h) {
+    const bool closes = done + length >= h * (1.0 - 1e-12);
+    if (closes) length = h - done;
+    const double tolerance = model.options.integrationTolerance * length / h;
+    const double error = part(t, model, contacts, length, tolerance, s, stats);
+    const bool shortest = !t.embedded || length <= kShortest * h;
+    if (!std::isfinite(error) && shortest) return false;
+    const double factor =
+        std::isfinite(error) && error > 0.0
+            ? std::clamp(kSafety * std::pow(error, -1.0 / t.order), kLeastFactor, kMostFactor)
+        : error == 0.0 ? kMostFactor
+                       : kLeastFactor;
+    if (error > 1.0 && !shortest) {
+      ++stats.rejections;
+      length = std::max(length * factor, kShortest * h);
+      continue;
+    }
+    stats.jumps += error > 1.0;
+    ++stats.substeps;
+    done = closes ? h : done + length;
+    length = std::max(length * factor, kShortest * h);
+    s.from.q = s.state.q;
+    s.from.v = s.state.v;
+    if (done == h) break;
+    // The next part's first k: the last one of this, with φ counted from the new origin.
+    s.acceleration[0] = s.acceleration[t.stages - 1];
+    s.phi.setZero();
+    displacementRate(model, s.phi, s.from.v, s.rate[0]);
+  }
+  data.acceleration = (s.from.v - state.v) / h;
+  state.q = s.from.q;
+  state.v = s.from.v;
+  state.time += h;
+  return true;
+}
+
+}  // namespace softgauss

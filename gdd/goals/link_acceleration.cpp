@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gdd/goals/link_acceleration.hpp"
+
+#include "gdd/goals/reach.hpp"
+
+namespace softgauss::gdd {
+
+LinkAcceleration::LinkAcceleration(const Model& model, const std::string& linkName,
+                                   const Vector3& wished, const Vector3& point)
+    : link(linkName),
+      frame(model.findFrame(linkName)),
+      p_FP(point),
+      linear(wished),
+      weight(kReachWeightPerMass * model.totalMass()),
+      rotationWeight(kRotationWeightPerWeight * weight) {
+  const std::string element = "goal 'acceleration of " + linkName + "'";
+  if (frame < 0) throw ModelError({}, element, "the model has no link of that name");
+  if (!wished.allFinite() || !point.allFinite())
+    throw ModelError({}, element, "acceleration or point is not finite");
+}
+
+void LinkAcceleration::addCost(const GoalContext& context, GoalCost& cost) const {
+  const Kinematics& k = context.data.kinematics;
+  const int body = context.model.frames[frame].body;
+  if (context.model.bodies[body].dofs == 0) return;  // fixed to the world
+  const LinkRows rows(context, body, framePose(context.model, k, frame) * p_FP, cost.workspace());
+  const int dim = angular ? 6 : 3;
+  Vector6 weights, target = -rows.bias;
+  weights << Vector3::Constant(weight), Vector3::Constant(rotationWeight);
+  target.head<3>() += linear;
+  if (angular) target.tail<3>() += *angular;
+  if (metric == LinkMetric::consistent) {
+    addConsistent(context, rows.J, weights, target.head(dim), cost);
+    return;
+  }
+  for (int i = 0; i < dim; i += 3)
+    cost.addRows(rows.J.middleRows(i, 3), weights[i], target.segment(i, 3));
+}
+
+}  // namespace softgauss::gdd

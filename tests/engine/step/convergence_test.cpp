@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Integrators have the order that they are said to have, in position and in orientation.
+
+#include <cmath>
+
+#include "engine/core/rotation.hpp"
+#include "engine/engine.hpp"
+#include "tests/support/matchers.hpp"
+#include "tests/support/sample_models.hpp"
+
+namespace softgauss::test {
+namespace {
+
+/// Slope of log y over log x by least squares.
+double fittedOrder(const std::vector<double>& x, const std::vector<double>& y) {
+  double sx = 0, sy = 0, sxx = 0, sxy = 0;
+  const double n = static_cast<double>(x.size());
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double a = std::log(x[i]), b = std::log(y[i]);
+    sx += a, sy += b, sxx += a * a, sxy += a * b;
+  }
+  return (n * sxy - sx * sy) / (n * sxx - sx * sx);
+}
+
+/// States after each quarter of the duration.
+std::vector<State> run(ModelBuilder builder, const State& start, Integrator integrator,
+                       double duration, int steps, StepStats* stats = nullptr) {
+  builder.options.integrator = integrator;
+  builder.options.timestep = duration / steps;
+  const Model model = builder.build();
+  Data data(model);
+  State state = start;
+  std::vector<State> quarters;
+  for (int i = 0; i < steps; ++i) {
+    EXPECT_EQ(step(model, {}, state, data, nullptr), SolveStatus::converged);
+    if (stats) {
+      stats->evaluations += data.stats.evaluations;
+      stats->substeps += data.stats.substeps;
+    }
+    if (4 * (i + 1) % steps == 0) quarters.push_back(state);
+  }
+  return quarters;
+}
+
+/// A free body with a middle axis and two hinges that carry links: position, orientation and
+/// joints, all coupled by Coriolis forces. In gravity.
+ModelBuilder tumblingTree() {
+  ModelBuilder builder = freeBody(boxLink("body", 1.0, {0.05, 0.1, 0.2}, {0.01, 0.02, 0.0}));
+  builder.link(boxLink("arm", 0.5, {0.02, 0.02, 0.1}, {0, 0, -0.1}));
+  builder.link(boxLink("hand", 0.3, {0.02, 0.03, 0.05}, {0, 0.02, -0.05}));
+  builder.joint(jointSpec("shoulder", JointType::continuous, "body", "arm",
+                          {Matrix3::Identity(), Vector3(0.05, 0, 0.1)}, Vector3::UnitY()));
+  builder.joint(jointSpec("wrist", JointType::continuous, "arm", "hand",
+                          {Matrix3::Identity(), Vector3(0, 0, -0.2)}, Vector3::UnitX()));
+  return builder;
+}
+
+State tumblingStart(const Model& model) {
+  State state(model);
+  state.v << 0.3, -0.2, 0.5, 8.0, 12.0, 6.0, 9.0, -8.0;
+  return state;
+}
+
+struct Difference {
+  double position = 0.0, orientation = 0.0;
+};
+
+/// Root mean squares over the quarters, so that no error is small by chance of its sign.
+Difference difference(const Model& model, const std::vector<State>& a,
+                      const std::vector<State>& b) {
+  Difference sum;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const VectorX d = positionDifference(model, a[i].q, b[i].q);
+    sum.position += d.head<3>().squaredNorm() + d.tail<2>().squaredNorm();
+    sum.orientation += d.segment<3>(3).squaredNorm();
+  }
+  return {std::sqrt(sum.position), std::sqrt(sum.orientation)};
+}
+
+/// Orders in position and orientation, fitted over the step sizes.
+Difference orders(const ModelBuilder& builder, Integrator integrator,
+                  const std::vector<int>& steps) {
+  constexpr double kDuration = 0.5;
+  const Model model = builder.build();
+  const State start = tumblingStart(model);
+  const std::vector<State> exact = run(builder, start, Integrator::rungeKutta4, kDuration, 8192);
+  std::vector<double> h, position, orientation;
+  for (const int count : steps) {
+    StepStats stats;
+    const Difference d =
+        difference(model, run(builder, start, integrator, kDuration, count, &stats), exact);
+    if (integrator == Integrator::dormandPrince) {
+      EXPECT_EQ(stats.substeps, count);
+    }
+    h.push_back(kDuration / count);
+    position.push_back(d.position);
+    orientation.push_back(d.orientation);
+  }
+  return {fittedOrder(h, position), fittedOrder(h, orientation)};
+}
+
+struct Case {
+  Integrator integrator;
+  double order;
+  std::vector<int> steps;
+};
+
+class Convergence : public testing::TestWithParam<Case> {};
+
+// In 0.5 s the body turns by about 8 rad. 0.2: these step sizes are not yet the limit.
+TEST_P(Convergence, OrderIsAsSaid) {
+  const Case& c = GetParam();
+  ModelBuilder builder = tumblingTree();
+  builder.options.integrationTolerance = 1e3;  // no step is divided
+  const Difference order = orders(builder, c.integrator, c.steps);
+  EXPECT_NEAR(order.position, c.order, 0.2);
+  EXPECT_NEAR(order.orientation, c.order, 0.2);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Integrators, Convergence,
+    testing::Values(Case{Integrator::semiImplicitEuler, 1.0, {1024, 2048, 4096, 8192}},
+                    Case{Integrator::rungeKutta4, 4.0, {128, 256, 512, 1024}},
+                    Case{Integrator::dormandPrince, 5.0, {128, 192, 256, 384, 512}}),
+    [](const auto& info) {
+      std::string name(integratorName(info.param.integrator));
+      std::erase(name, '-');
+      return name;
+    });
+
+// Errors of the parts add up: at most the tolerance a step, and in this scene they stay below it.
+TEST(RungeKutta, DormandPrinceKeepsItsTolerance) {
+  ModelBuilder builder = tumblingTree();
+  const Model model = builder.build();
+  const State start = tumblingStart(model);
+  const std::vector<State> exact = run(builder, start, Integrator::rungeKutta4, 0.5, 8192);
+  int before = 0;
+  for (const double tolerance : {1e-5, 1e-7, 1e-9}) {
+    builder.options.integrationTolerance = tolerance;
+    StepStats stats;
+    const Difference d =
+        difference(model, run(builder, start, Integrator::dormandPrince, 0.5, 4, &stats), exact);
+    // Four steps, and Coriolis forces that spread an error by less than a factor of ten.
+    EXPECT_LT(d.position, 50.0 * tolerance);
+    EXPECT_LT(d.orientation, 50.0 * tolerance);
+    EXPECT_GT(stats.substeps, before);
+    before = stats.substeps;
+  }
+}
+
+// A step that several stages make is still a function of the state alone.
+TEST(RungeKutta, SameStateSameBits) {
+  for (const Integrator integrator : {Integrator::rungeKutta4, Integrator::dormandPrince}) {
+    const ModelBuilder builder = tumblingTree();
+    const Model model = builder.build();
+    const State start = tumblingStart(model);
+    const State once = run(builder, start, integrator, 0.2, 40).back();
+    const State half = run(builder, start, integrator, 0.1, 20).back();
+    const State twice = run(builder, half, integrator, 0.1, 20).back();
+    EXPECT_EQ(hash(once), hash(twice));
+  }
+}
+
+// A state in which a later stage overflows is left as it was.
+TEST(RungeKutta, AStepThatOverflowsLeavesTheState) {
+  ModelBuilder builder = tumblingTree();
+  builder.options.integrator = Integrator::rungeKutta4;
+  const Model model = builder.build();
+  Data data(model);
+  State state = tumblingStart(model);
+  state.v[4] = 1e160;
+  const std::uint64_t before = hash(state);
+  EXPECT_EQ(step(model, {}, state, data, nullptr), SolveStatus::notFinite);
+  EXPECT_EQ(hash(state), before);
+}
+
+}  // namespace
+}  // namespace softgauss::test
