@@ -82,8 +82,9 @@ TEST(Run, EveryIntegratorRunsUnderGoals) {
     const std::string name(i.name);
     const io::TempFolder folder;
     const std::string summary = folder.path() / "summary.json";
-    const Outcome outcome = simulate({dataFile("robots/humanoid.urdf"), "--duration", "0.2",
-                                      "--integrator", name, "--summary", summary, "--quiet"});
+    const Outcome outcome =
+        simulate({dataFile("robots/humanoid.urdf"), "--reach", "right_hand=0.4,-0.2,1.1",
+                  "--duration", "0.2", "--integrator", name, "--summary", summary, "--quiet"});
     ASSERT_EQ(outcome.exitCode, 0) << name << ": " << outcome.err;
     const nlohmann::json json = nlohmann::json::parse(readFile(summary));
     EXPECT_EQ(json["options"]["integrator"], name);
