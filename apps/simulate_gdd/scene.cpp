@@ -73,7 +73,8 @@ void setOptions(const SimulateOptions& options, ModelBuilder& builder) {
   if (options.noSlip) builder.options.noSlip = true;
   if (options.cone) builder.options.cone = *options.cone;
   if (options.effects) builder.options.effects = *options.effects;
-  if (options.likeMujoco) builder.options.midpointCoriolis = !*options.likeMujoco;
+  if (options.likeMujoco)
+    builder.options.midpointCoriolis = builder.options.carriedLoad = !*options.likeMujoco;
 }
 
 io::UrdfOptions urdfOptions(const SimulateOptions& options) {

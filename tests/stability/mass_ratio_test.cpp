@@ -26,9 +26,43 @@ void carries(double load, double timestep, Cone cone) {
 }
 
 TEST(MassRatio, LightBoxCarriesHeavyBox) {
-  for (const double load : {1.0, 10.0})
+  for (const double load : {1.0, 10.0, 100.0, 1000.0, 10000.0})
     for (const double timestep : kSteps)
       for (const Cone cone : kCones) carries(load, timestep, cone);
+}
+
+/// Two fingers of 10 g on slides, and a cube between their pads, which touch it.
+ModelBuilder gripper(double load) {
+  ModelBuilder builder("gripper");
+  builder.base = BaseKind::fixed;
+  builder.link(emptyLink("world"));
+  for (const double side : {-1.0, 1.0}) {
+    const std::string name = side < 0.0 ? "left" : "right";
+    builder.link(boxLink(name, 0.01, Vector3(0.01, 0.05, 0.05)));
+    builder.joint(jointSpec(name + "_slide", JointType::prismatic, "world", name,
+                            {Matrix3::Identity(), Vector3(0.1099 * side, 0, 1.0)},
+                            Vector3(-side, 0, 0)));
+    builder.geometry(geometrySpec(name, Shape::box(Vector3(0.01, 0.05, 0.05)), 1.0));
+  }
+  addBody(builder, "load", Shape::box(Vector3::Constant(0.1)), load,
+          {Matrix3::Identity(), Vector3(0, 0, 1.0)});
+  return builder;
+}
+
+// Friction holds 3 times the weight of 10 kg. What a soft friction
+// slips in 10 s must leave half of the pad of 0.1 m.
+TEST(MassRatio, LightGripperHoldsHeavyLoad) {
+  for (const double timestep : {0.002, 0.005, 0.01})
+    for (const Cone cone : kCones) {
+      Trial t("10 g fingers hold 10 kg", with(gripper(10.0), timestep, cone));
+      t.input.tau.head(2).setConstant(150.0);
+      t.run(1.0);
+      const Vector3 begun = t.origin("load");
+      t.run(4.0);
+      t.expect("slip", (t.origin("load") - begun).norm() / 4.0, 5e-3, "m/s");
+      t.expect("penetration at rest", t.data->stats.maxPenetration, 2e-3, "m");
+      t.expect("tilt", tilt(t, "load"), 1e-2, "rad");
+    }
 }
 
 TEST(MassRatio, SameBits) {
