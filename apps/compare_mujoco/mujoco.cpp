@@ -65,6 +65,7 @@ void Mujoco::inverse() { mj_inverse(memory_->model, memory_->data); }
 void Mujoco::step() { mj_step(memory_->model, memory_->data); }
 
 VectorX Mujoco::q() const { return vectorOf(memory_->data->qpos, nq()); }
+VectorX Mujoco::v() const { return vectorOf(memory_->data->qvel, nv()); }
 VectorX Mujoco::acceleration() const { return vectorOf(memory_->data->qacc, nv()); }
 VectorX Mujoco::inverseForce() const { return vectorOf(memory_->data->qfrc_inverse, nv()); }
 

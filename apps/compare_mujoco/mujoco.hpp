@@ -36,6 +36,7 @@ class Mujoco {
   void step();
 
   VectorX q() const;
+  VectorX v() const;
   VectorX acceleration() const;  ///< of the last forward()
   VectorX inverseForce() const;  ///< of the last inverse()
   /// Contacts of the last forward(), inverse() or step(), as our engine takes them. Each of these
