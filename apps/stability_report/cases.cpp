@@ -115,7 +115,10 @@ std::vector<HardCase> hardCases() {
   constexpr double kWeight = 9.81;
   return {
       {"boxes_1_on_1", "1 kg on 1 kg", 5.0, {overlapAtRest(0.5), tiltOf("upper", 0.1)}},
-      {"boxes_1000_on_1", "1000 kg on 1 kg", 5.0, {overlapAtRest(2.0), tiltOf("upper", 0.1)}},
+      {"boxes_1000_on_1",
+       "1000 kg on 1 kg",
+       5.0,
+       {overlapAtRest(2.0), sinks("upper", 2.0), tiltOf("upper", 0.1)}},
       {"tower_20",
        "tower of 20",
        10.0,

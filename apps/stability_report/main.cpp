@@ -156,7 +156,7 @@ void draw(const std::filesystem::path& file, const HardCase& hard, std::size_t f
       "set terminal svg size 640,360 font 'sans-serif,13' background 'white'\n"
       "set output '{}'\nset title \"{}\"\nset xlabel \"time [s]\"\nset ylabel \"{} [{}]\"\n"
       "set grid lc rgb '#dddddd'\nset key top left\n{}\n",
-      io::kGnuplotDrawing, hard.title, f.name, f.unit, limits);
+      io::kGnuplotDrawing, hard.title, f.name.substr(0, f.name.find(" at rest")), f.unit, limits);
   std::string plot;
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const auto& [name, outcome] = runs[i];
@@ -178,9 +178,9 @@ struct Picture {
   std::size_t figure;
   const char* limits;
 };
-constexpr Picture kPictures[] = {{"boxes_1000_on_1", 0, "set xrange [0:1]"},
+constexpr Picture kPictures[] = {{"boxes_1000_on_1", 0, "set xrange [0:1]; set yrange [-5:160]"},
                                  {"tower_20", 1, "set yrange [0:60]"},
-                                 {"chain_100_heavy", 0, "set yrange [-20:20]"}};
+                                 {"top", 0, "set yrange [-20:40]"}};
 
 void report(const std::filesystem::path& scenes, const std::filesystem::path& page,
             const std::filesystem::path& pictures) {
