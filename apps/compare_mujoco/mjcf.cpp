@@ -8,6 +8,7 @@
 #include <set>
 
 #include "engine/constraints/contact.hpp"
+#include "engine/dynamics/kinematics.hpp"
 
 namespace softgauss::app {
 namespace {
@@ -22,6 +23,9 @@ std::string pose(const Transform& X) {
   return fmt::format("pos=\"{}\" quat=\"{:.17g} {:.17g} {:.17g} {:.17g}\"", text(X.p), q.w(), q.x(),
                      q.y(), q.z());
 }
+
+/// Points of a connection that are nearer than this coincide [m].
+constexpr double kTogether = 1e-9;
 
 /// A reference that is given directly is a solref of two negative numbers.
 std::string softness(const Impedance& i, const char* suffix = "") {
@@ -47,9 +51,8 @@ class Writer {
   }
 
   std::string write() {
-    if (!model_.connections.empty() || !model_.welds.empty())
-      throw ModelError({}, "model '" + model_.name + "'",
-                       "has connections or welds, expected none");
+    if (!model_.welds.empty())
+      throw ModelError({}, "model '" + model_.name + "'", "has welds, expected none");
     const Options& o = model_.options;
     const bool gravity = o.effects.has(Effect::gravity);
     line("<mujoco model=\"comparison\">");
@@ -64,13 +67,15 @@ class Writer {
     line("</worldbody>");
     line("<contact>");
     for (const auto& [a, b] : excluded_)
-      line("<exclude body1=\"{}\" body2=\"b{}\"/>", a == 0 ? "world" : fmt::format("b{}", a), b);
+      line("<exclude body1=\"{}\" body2=\"b{}\"/>", bodyName(a), b);
     if (listsPairs_)
       for (const collision::GeometryPair& pair : filter_.pairs) writePair(pair);
     line("</contact>");
     line("<equality>");
     if (o.effects.has(Effect::equality))
       for (const JointCoupling& coupling : model_.couplings) writeCoupling(coupling);
+    if (o.effects.has(Effect::equality))
+      for (const Connection& connection : model_.connections) writeConnection(connection);
     line("</equality>");
     line("</mujoco>");
     return std::move(out_);
@@ -137,6 +142,25 @@ class Writer {
     line("<joint joint1=\"j{}\" {} polycoef=\"{} {} {} {} {}\" {}/>", c.follower, leader,
          text(p[0]), text(p[1]), text(p[2]), text(p[3]), text(p[4]), softness(c.impedance));
   }
+
+  /// MuJoCo finds the point of the second body itself, where the first one's is with all joints at
+  /// zero; so the two must meet there.
+  void writeConnection(const Connection& c) {
+    State zero(model_);
+    for (const Body& body : model_.bodies)
+      if (body.dofs == 1) zero.q[body.q] = 0.0;
+    Kinematics k(model_);
+    computeKinematics(model_, zero, k);
+    const double apart = (k.X_WB[idx(c.bodyA)] * c.p_AP - k.X_WB[idx(c.bodyB)] * c.p_BP).norm();
+    if (!(apart < kTogether))
+      throw ModelError({}, "model '" + model_.name + "'",
+                       fmt::format("has a connection whose points are {:.3g} m apart with all "
+                                   "joints at zero, expected less than {:g} m",
+                                   apart, kTogether));
+    line("<connect body1=\"{}\" body2=\"{}\" anchor=\"{}\" {}/>", bodyName(c.bodyA),
+         bodyName(c.bodyB), text(c.p_AP), softness(c.impedance));
+  }
+  static std::string bodyName(int b) { return b == 0 ? "world" : fmt::format("b{}", b); }
 
   void writeGeometry(int g) {
     const Geometry& geometry = model_.geometries[idx(g)];

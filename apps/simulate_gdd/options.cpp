@@ -200,8 +200,10 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
          "strong goals; it also solves where contacts have elliptic cones")
       ->check(CLI::IsMember({"active-set", "augmented-lagrangian"}))
       ->group(simulation);
-  app.add_option("--compatibility", compatibility,
-                 "none (default) or mujoco: as MuJoCo has it, Coriolis forces of the step's start")
+  app.add_option(
+         "--compatibility", compatibility,
+         "none (default) or mujoco: as MuJoCo has it, Coriolis forces of the step's start and\n"
+         "contacts that do not know what they carry")
       ->check(CLI::IsMember({"none", "mujoco"}))
       ->group(simulation);
 

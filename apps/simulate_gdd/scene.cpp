@@ -12,6 +12,7 @@
 #include "io/explain.hpp"
 #include "io/goals.hpp"
 #include "io/scene.hpp"
+#include "io/step_warnings.hpp"
 
 namespace softgauss::app {
 namespace {
@@ -76,7 +77,8 @@ void setOptions(const SimulateOptions& options, ModelBuilder& builder) {
     builder.options.integrationTolerance = *options.integrationTolerance;
   if (options.cone) builder.options.cone = *options.cone;
   if (options.effects) builder.options.effects = *options.effects;
-  if (options.likeMujoco) builder.options.midpointCoriolis = !*options.likeMujoco;
+  if (options.likeMujoco)
+    builder.options.midpointCoriolis = builder.options.carriedLoad = !*options.likeMujoco;
 }
 
 io::UrdfOptions urdfOptions(const SimulateOptions& options) {
@@ -135,6 +137,16 @@ void loadSceneFile(const SimulateOptions& options, Scene& scene) {
   standOnGround(scene.model, *ground, &standing, scene.initial);
 }
 
+/// What the step cannot carry from this start.
+void addStepWarnings(Scene& scene) {
+  Kinematics k(scene.model);
+  computeKinematics(scene.model, scene.initial, k);
+  ContactSet touching;
+  scene.contacts->detect(scene.model, k, touching);
+  for (std::string& warning : io::stepWarnings(scene.model, touching))
+    scene.model.warnings.push_back(std::move(warning));
+}
+
 }  // namespace
 
 std::unique_ptr<Scene> loadScene(const SimulateOptions& options) {
@@ -151,6 +163,7 @@ std::unique_ptr<Scene> loadScene(const SimulateOptions& options) {
         {options.model.string(), 0}, "model '" + scene->model.name + "'",
         fmt::format("has {} degrees of freedom, expected at most {}", scene->model.nv, kMostDofs));
   scene->contacts = std::make_unique<collision::SceneContacts>(scene->model);
+  addStepWarnings(*scene);
   return scene;
 }
 

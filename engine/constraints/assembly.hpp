@@ -3,6 +3,7 @@
 
 /// What an effect may read when it makes its rows.
 
+#include "engine/constraints/carried_load.hpp"
 #include "engine/constraints/contact_set.hpp"
 #include "engine/constraints/inverse_weight.hpp"
 #include "engine/dynamics/kinematics.hpp"
@@ -16,7 +17,8 @@ struct Assembly {
   const Kinematics& kinematics;
   const ContactSet& contacts;
   const InverseWeights& weights;
-  const TreeSparsity& tree;  ///< pattern of M: row i lists the dofs that move body(i)
+  const TreeSparsity& tree;           ///< pattern of M: row i lists the dofs that move body(i)
+  const CarriedLoad* load = nullptr;  ///< null: contacts know of no load
 };
 
 }  // namespace softgauss

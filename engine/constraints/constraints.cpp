@@ -18,7 +18,12 @@ bool isContact(int kind) {
 
 }  // namespace
 
-void Constraints::assemble(const Assembly& in) {
+void Constraints::assemble(const Assembly& given) {
+  Assembly in = given;
+  if (in.model.options.carriedLoad && in.contacts.size() > 0) {
+    load_.assemble(in.model, in.contacts, in.weights);
+    in.load = &load_;
+  }
   active_ = RowKinds::none();
   visitThese(*this, planned_, [&](auto& c, int kind) {
     // Without contacts there is nothing to look at, but old rows to drop.

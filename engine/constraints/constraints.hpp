@@ -186,6 +186,7 @@ class Constraints {
   RowKinds planned_ = RowKinds::all();
   RowKinds active_ = RowKinds::none();
   std::array<std::int64_t, kRowKinds> calls_{};
+  CarriedLoad load_;
   const TreeSparsity* sparsity_ = nullptr;
   TreeSparsity coupled_;
   std::vector<Segment> couplings_, lastCouplings_;

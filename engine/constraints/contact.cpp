@@ -81,9 +81,13 @@ std::optional<Touch> touchAt(const Assembly& in, int i) {
   touch.distance = c.distance - material.margin;
   if (touch.distance >= 0.0) return std::nullopt;  // NaN makes rows, so that the solve reports it
   touch.frictionDim = frictionDim(material, model.options.effects);
-  touch.softness = contactSoftness(
-      material, touch.frictionDim, touch.distance,
-      in.weights.translation[c.bodyA] + in.weights.translation[c.bodyB], model.options);
+  double weight = in.weights.translation[c.bodyA] + in.weights.translation[c.bodyB];
+  if (const double load = in.load ? in.load->of(model, c) : 0.0; load * weight > 1.0) {
+    if (!material.spring) touch.hardening = load * weight;
+    weight = 1.0 / load;
+  }
+  touch.softness =
+      contactSoftness(material, touch.frictionDim, touch.distance, weight, model.options);
   if (touch.frictionDim > 0) {
     const double mu = material.slidingFriction;
     const double spin = std::max(material.torsionalFriction, kSmallestFriction);
@@ -104,8 +108,8 @@ ContactBlocks::FrameVector ContactBlocks::addBlock(const Assembly& in, int i, co
   while (place < i && all[i - place - 1].geometryA == c.geometryA &&
          all[i - place - 1].geometryB == c.geometryB)
     ++place;
-  made_.push_back(
-      {i, c.geometryA, c.geometryB, place, row, R_WC, touch.frictionDim, touch.friction});
+  made_.push_back({i, c.geometryA, c.geometryB, place, row, R_WC, touch.frictionDim, touch.friction,
+                   touch.hardening});
 
   RelativeMotion motion;
   motion.bodyA = c.bodyA;

@@ -35,6 +35,7 @@ struct Touch {
   double distance = 0.0;             ///< r: that of the contact less the margin, < 0 [m]
   int frictionDim = 0;               ///< condim − 1; 0 when frictionless
   Softness softness;                 ///< of an edge, or of the row along the normal
+  double hardening = 1.0;            ///< of it by the load it carries (T.80): (w_A + w_B)/A, ≥ 1
   std::array<double, 5> friction{};  ///< μ_k of frictionDim directions
 
   double mu() const { return friction[0]; }  ///< of sliding; 0 when frictionless
@@ -52,6 +53,7 @@ struct ContactRows {
   Matrix3 R_WC;                      ///< columns n, t₁, t₂
   int frictionDim = 0;               ///< condim − 1; 0 when frictionless
   std::array<double, 5> friction{};  ///< μ_k
+  double hardening = 1.0;            ///< Touch::hardening
 };
 
 /// Contacts of one kind, and how they move.

@@ -138,10 +138,11 @@ struct Options {
   bool midpointCoriolis = true;                ///< see integrators/semi_implicit_euler.hpp
   Cone cone = Cone::pyramidal;                 ///< of contacts with friction
   double impedanceRatio = 1.0;                 ///< impratio: friction against normal impedance
-  bool exactDiagonal = false;                  ///< see constraints/exact_diagonal.hpp
-  bool noSlip = false;                         ///< friction without creep (step/no_slip.hpp)
-  int maxIterations = 100;                     ///< Newton
-  double tolerance = 1e-12;                    ///< Newton: scaled gradient, see solver/newton.hpp
+  bool carriedLoad = true;     ///< contacts as hard as their load, see constraints/carried_load.hpp
+  bool exactDiagonal = false;  ///< see constraints/exact_diagonal.hpp
+  bool noSlip = false;         ///< friction without creep (step/no_slip.hpp)
+  int maxIterations = 100;     ///< Newton
+  double tolerance = 1e-12;    ///< Newton: scaled gradient, see solver/newton.hpp
 };
 
 struct Model {

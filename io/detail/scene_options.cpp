@@ -56,7 +56,8 @@ void readOptions(const YamlMap& map, Options& options, std::optional<gdd::GddSol
   map.read("impedance_ratio", options.impedanceRatio, Range::positive);
   if (const auto* entry = map.find("effects")) options.effects = readEffects(map, *entry);
   if (const auto* entry = map.find("compatibility"))
-    options.midpointCoriolis = map.choice(*entry, {"none", "mujoco"}) == "none";
+    options.midpointCoriolis = options.carriedLoad =
+        map.choice(*entry, {"none", "mujoco"}) == "none";
 }
 
 }  // namespace softgauss::io::detail

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/step_warnings.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "engine/constraints/contact.hpp"
+#include "engine/constraints/inverse_weight.hpp"
+
+namespace softgauss::io {
+namespace {
+
+constexpr double kFarthestDrive = M_PI;    // h² u w [rad or m]
+constexpr double kFastestSpring = 1.0;     // h √(k w)
+constexpr double kHardestDamping = 100.0;  // h d w
+constexpr int kMostTold = 8;               // of one kind
+
+std::size_t idx(int i) { return static_cast<std::size_t>(i); }
+
+/// Warnings of one kind: the first ones, and how many more there are.
+class Kind {
+ public:
+  explicit Kind(std::vector<std::string>& all) : all_(all) {}
+  ~Kind() {
+    if (count_ > kMostTold) all_.push_back(fmt::format("… and {} more", count_ - kMostTold));
+  }
+  Kind(const Kind&) = delete;
+  Kind& operator=(const Kind&) = delete;
+  void add(std::string text) {
+    if (++count_ <= kMostTold) all_.push_back(std::move(text));
+  }
+
+ private:
+  std::vector<std::string>& all_;
+  int count_ = 0;
+};
+
+void joints(const Model& model, std::vector<std::string>& out) {
+  const double h = model.options.timestep;
+  const EffectSet& effects = model.options.effects;
+  const InverseWeights weights(model);
+  Kind springs(out), dampings(out), drives(out);
+  for (int i = 0; i < model.nv; ++i) {
+    const Dof& dof = model.dofs[idx(i)];
+    const double w = weights.dof[idx(i)];
+    const std::string& joint = model.jointNames[idx(dof.body)];
+    if (const double swing = h * std::sqrt(std::max(0.0, dof.stiffness * w));
+        swing > kFastestSpring && effects.has(Effect::spring))
+      springs.add(fmt::format(
+          "joint '{}': its spring of {:g} on an inertia of {:.3g} swings by {:.3g} rad in a step "
+          "of "
+          "{:g} s, expected at most {:g}; try a step below {:.2g} s, armature above {:.2g}, or a "
+          "softer spring",
+          joint, dof.stiffness, 1.0 / w, swing, h, kFastestSpring, h * kFastestSpring / swing,
+          dof.stiffness * h * h));
+    if (const double stop = h * dof.damping * w;
+        stop > kHardestDamping && effects.has(Effect::damping))
+      dampings.add(fmt::format(
+          "joint '{}': its damping of {:g} on an inertia of {:.3g} is {:.3g} times what stops it "
+          "in "
+          "a step of {:g} s, expected at most {:g}; the joint hardly moves; try armature, or less "
+          "damping",
+          joint, dof.damping, 1.0 / w, stop, h, kHardestDamping));
+    const double effort = std::max(-dof.effortLower, dof.effortUpper);
+    if (const double way = h * h * effort * w;
+        dof.actuated && std::isfinite(effort) && way > kFarthestDrive)
+      drives.add(fmt::format(
+          "joint '{}': its effort of {:g} on an inertia of {:.3g} moves it by {:.3g} rad or m in "
+          "the "
+          "first step of {:g} s, expected at most {:.3g}; try armature above {:.2g}, or the effort "
+          "that "
+          "the actuator has",
+          joint, effort, 1.0 / w, way, h, kFarthestDrive, h * h * effort / kFarthestDrive));
+  }
+}
+
+void reference(const Impedance& p, const std::string& what, double h, Kind& out) {
+  if (!p.direct) {
+    if (p.timeConstant < 2.0 * h)
+      out.add(
+          fmt::format("{}: its time constant of {:g} s counts as {:g} s, two steps; try a step "
+                      "of {:.2g} s",
+                      what, p.timeConstant, 2.0 * h, 0.5 * p.timeConstant));
+    return;
+  }
+  const double K = p.direct->stiffness, B = p.direct->damping;
+  if (h * h * K + 2.0 * h * B > 4.0)
+    out.add(
+        fmt::format("{}: its reference of {:g}/s² and {:g}/s grows in steps of {:g} s; try a "
+                    "step below {:.2g} s, or lower numbers",
+                    what, K, B, h, K > 0.0 ? (std::sqrt(B * B + 4.0 * K) - B) / K : 2.0 / B));
+}
+
+void references(const Model& model, std::vector<std::string>& out) {
+  const double h = model.options.timestep;
+  Kind kind(out);
+  std::vector<Material> seen;
+  for (const Geometry& g : model.geometries) {
+    if (g.material.spring || std::find(seen.begin(), seen.end(), g.material) != seen.end())
+      continue;
+    seen.push_back(g.material);
+    reference(g.material.impedance, fmt::format("surface of '{}'", g.name), h, kind);
+  }
+  for (const JointRange& range : model.ranges)
+    reference(range.impedance,
+              fmt::format("range of joint '{}'", model.jointNames[idx(range.body)]), h, kind);
+  for (const Connection& c : model.connections)
+    reference(c.impedance,
+              fmt::format("connection of '{}' and '{}'", model.bodyNames[idx(c.bodyA)],
+                          model.bodyNames[idx(c.bodyB)]),
+              h, kind);
+}
+
+void overlaps(const Model& model, const ContactSet& touching, std::vector<std::string>& out) {
+  std::map<std::pair<int, int>, double> deepest;
+  for (const Contact& c : touching.contacts)
+    if (-c.distance > kToldOverlap) {
+      double& depth = deepest[{c.geometryA, c.geometryB}];
+      depth = std::max(depth, -c.distance);
+    }
+  std::vector<std::pair<double, std::pair<int, int>>> order;
+  for (const auto& [pair, depth] : deepest) order.emplace_back(-depth, pair);
+  std::sort(order.begin(), order.end());
+  Kind kind(out);
+  for (const auto& [depth, pair] : order) {
+    const Material m = pairMaterial(model, pair.first, pair.second);
+    const double time = std::max(m.impedance.timeConstant, 2.0 * model.options.timestep);
+    std::string speed;
+    if (!m.spring && !m.impedance.direct)
+      speed = fmt::format(" and leave each other with up to {:.2g} m/s", -depth / time);
+    kind.add(
+        fmt::format("'{}' and '{}' overlap by {:.3g} mm at the start{}; try another start, or "
+                    "larger distances",
+                    model.geometries[idx(pair.first)].name, model.geometries[idx(pair.second)].name,
+                    -1e3 * depth, speed));
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> stepWarnings(const Model& model, const ContactSet& touching) {
+  std::vector<std::string> out;
+  joints(model, out);
+  references(model, out);
+  overlaps(model, touching, out);
+  return out;
+}
+
+}  // namespace softgauss::io

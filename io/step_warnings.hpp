@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// What the step cannot carry, told before the first one: springs and references that are faster
+/// than it, surfaces that it softens, shapes that overlap at the start. Each warning names the
+/// joint, the surface or the pair, with its number against that of the step, and says what to try.
+///
+/// With w_i the inverse inertia of a dof (T.12) and h the step:
+///   spring       h √(k w_i) > 1          it swings by more than a radian in a step
+///   damping      h d w_i > 100           it stops the joint within the step, whatever drives it
+///   effort       h² u w_i > π            it turns by half a turn in the first step
+///   reference    h² K + 2 h B > 4        (T.35): a step of h makes it grow
+///   time constant below 2 h              (T.11): it counts as 2 h
+
+#include <string>
+#include <vector>
+
+#include "engine/constraints/contact_set.hpp"
+#include "engine/model/model.hpp"
+
+namespace softgauss::io {
+
+/// Shapes that overlap by less at the start are not told of [m].
+inline constexpr double kToldOverlap = 1e-3;
+
+/// `touching` are the contacts of the state in which the run starts.
+std::vector<std::string> stepWarnings(const Model& model, const ContactSet& touching);
+
+}  // namespace softgauss::io

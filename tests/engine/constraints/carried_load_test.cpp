@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/constraints/carried_load.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/matchers.hpp"
+#include "tests/support/scene.hpp"
+
+namespace softgauss::test {
+namespace {
+
+/// Free spheres of these masses [kg], body i + 1 in tree i, and a contact for each pair of bodies.
+struct Island {
+  Model model;
+  InverseWeights weights;
+  ContactSet contacts;
+  CarriedLoad load;
+
+  Island(const std::vector<double>& masses, const std::vector<std::pair<int, int>>& touching)
+      : model(spheres(masses)), weights(model) {
+    for (const auto& [a, b] : touching) {
+      Contact c;
+      c.bodyA = a, c.bodyB = b;
+      contacts.add(c);
+    }
+    load.assemble(model, contacts, weights);
+  }
+  static Model spheres(const std::vector<double>& masses) {
+    ModelBuilder builder("spheres");
+    builder.base = BaseKind::floating;
+    for (std::size_t i = 0; i < masses.size(); ++i)
+      builder.link(sphereLink("ball" + std::to_string(i), masses[i], 0.1));
+    return builder.build();
+  }
+  double of(int contact) const { return load.of(model, contacts.contacts[contact]); }
+};
+
+// 1 kg carries 10 kg, which carries 100 kg: each contact carries what is not its own.
+TEST(CarriedLoad, IsTheIslandLessTheLighterOfTheTwo) {
+  const Island tower({1.0, 10.0, 100.0}, {{0, 1}, {1, 2}, {2, 3}});
+  EXPECT_SMALL(tower.of(0) - 110.0, 1e-12);
+  EXPECT_SMALL(tower.of(1) - 110.0, 1e-12);
+  EXPECT_SMALL(tower.of(2) - 101.0, 1e-12);
+}
+
+TEST(CarriedLoad, EndsWhereTreesDoNotTouch) {
+  // Two towers on the ground; the ground joins nothing.
+  const Island towers({1.0, 10.0, 2.0, 5.0, 7.0}, {{0, 1}, {1, 2}, {0, 3}, {3, 4}, {0, 5}});
+  EXPECT_SMALL(towers.of(0) - 10.0, 1e-12);
+  EXPECT_SMALL(towers.of(2) - 5.0, 1e-12);
+  EXPECT_EQ(towers.of(4), 0.0);
+  EXPECT_EQ(Island({1.0, 10.0}, {{0, 1}, {0, 2}}).of(1), 0.0);
+}
+
+// L is symmetric in the order of contacts and of their bodies.
+TEST(CarriedLoad, DoesNotDependOnOrder) {
+  Random random(3);
+  for (int seed = 0; seed < 20; ++seed) {
+    std::vector<double> masses;
+    for (int i = 0; i < 8; ++i) masses.push_back(random.uniform(0.1, 10.0));
+    std::vector<std::pair<int, int>> touching, turned;
+    for (int i = 0; i < 9; ++i) {
+      const int a = random.index(9), b = (a + 1 + random.index(8)) % 9;
+      touching.emplace_back(a, b);
+      turned.insert(turned.begin(), {b, a});
+    }
+    const Island one(masses, touching), other(masses, turned);
+    for (int i = 0; i < 9; ++i) EXPECT_SMALL(one.of(i) - other.of(8 - i), 1e-12);
+  }
+}
+
+/// D of all rows of contacts, with loads or without.
+std::vector<double> stiffnesses(Scene& scene, bool carried) {
+  scene.model.options.carriedLoad = carried;
+  scene.stages();
+  return scene.data->constraints.contact.D;
+}
+
+// A robot that touches the world and itself is as it was, bit for bit.
+TEST(CarriedLoad, LeavesALoneRobotAsItIs) {
+  Scene scene(humanoid().build(), std::make_shared<FixedContacts>());
+  auto& points = static_cast<FixedContacts&>(*scene.contacts).points;
+  Random random(5);
+  computeKinematics(scene.model, scene.state, scene.data->kinematics);
+  points = randomContacts(scene.model, scene.data->kinematics, random, 20).points;
+  const std::vector<double> with = stiffnesses(scene, true);
+  EXPECT_GT(with.size(), 20u);
+  EXPECT_EQ(with, stiffnesses(scene, false));
+}
+
+// Between trees no row becomes softer, and some become harder.
+TEST(CarriedLoad, OnlyStiffens) {
+  int harder = 0, rows = 0;
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    Scene scene = randomScene(seed, 12);
+    const std::vector<double> with = stiffnesses(scene, true), without = stiffnesses(scene, false);
+    ASSERT_EQ(with.size(), without.size());
+    for (std::size_t i = 0; i < with.size(); ++i) {
+      EXPECT_GE(with[i], without[i] * (1.0 - 1e-12));
+      harder += with[i] > 1.01 * without[i];
+      ++rows;
+    }
+  }
+  EXPECT_GT(harder, rows / 20);
+  EXPECT_LT(harder, rows);
+}
+
+}  // namespace
+}  // namespace softgauss::test

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/step_warnings.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/sample_models.hpp"
+
+namespace softgauss::test {
+namespace {
+
+/// The warnings of a pendulum of 1 kg at 0.5 m after `change`.
+template <class Change>
+std::vector<std::string> warningsOf(Change&& change, const ContactSet& touching = {}) {
+  ModelBuilder builder = pendulum(0.5, 1.0, 0.05);
+  builder.geometry(groundSpec(1.0));
+  builder.geometry(geometrySpec("bob", Shape::sphere(0.05)));
+  change(*builder.findJoint("hinge"));
+  Model model = builder.build();
+  return io::stepWarnings(model, touching);
+}
+
+void expectOne(const std::vector<std::string>& warnings, const std::string& first,
+               const std::string& second) {
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].find(first), std::string::npos) << warnings[0];
+  EXPECT_NE(warnings[0].find(second), std::string::npos) << warnings[0];
+}
+
+TEST(StepWarnings, AreSilentWhereTheStepCarriesAll) {
+  EXPECT_TRUE(warningsOf([](JointSpec& j) { j.stiffness = 100.0, j.damping = 10.0; }).empty());
+}
+
+// The inertia is 0.25 kg m² and a little; at 2 ms it carries springs up to 62,500 N m/rad.
+TEST(StepWarnings, NameTheSpringThatIsFasterThanTheStep) {
+  expectOne(warningsOf([](JointSpec& j) { j.stiffness = 1e6; }), "joint 'hinge': its spring",
+            "try a step below 0.0005 s");
+  EXPECT_TRUE(warningsOf([](JointSpec& j) { j.stiffness = 60000.0; }).empty());
+}
+
+TEST(StepWarnings, NameTheDampingThatStopsItsJoint) {
+  expectOne(warningsOf([](JointSpec& j) { j.damping = 1e5; }), "joint 'hinge': its damping",
+            "expected at most 100");
+}
+
+// 5 % of an effort of 10⁶ N m is what a comparison of engines swings by; the joint would turn by
+// 16 rad in the first step.
+TEST(StepWarnings, NameTheEffortThatOutrunsTheStep) {
+  expectOne(warningsOf([](JointSpec& j) { j.effort = 1e6; }), "joint 'hinge': its effort",
+            "try armature above 1.3,");
+  EXPECT_TRUE(warningsOf([](JointSpec& j) { j.effort = 1e4; }).empty());
+}
+
+TEST(StepWarnings, NameTheSurfaceThatIsFasterThanTheStep) {
+  Model model = sphereOnPlane(0.1, 1.0, 1.0).build();
+  for (Geometry& g : model.geometries)
+    if (g.body != 0) g.material.impedance.timeConstant = 0.001;
+  expectOne(io::stepWarnings(model, {}), "surface of '", "counts as 0.004 s");
+  for (Geometry& g : model.geometries)
+    if (g.body != 0) g.material.impedance.direct = ReferenceSpring{2e6, 100.0};
+  expectOne(io::stepWarnings(model, {}), "surface of '", "grows in steps of 0.002 s");
+}
+
+TEST(StepWarnings, NameThePairThatOverlapsAtTheStart) {
+  const auto nothing = [](JointSpec&) {};
+  ContactSet touching;
+  Contact c;
+  c.geometryA = 0, c.geometryB = 1, c.bodyB = 1;
+  c.distance = -0.05;
+  touching.add(c);
+  expectOne(warningsOf(nothing, touching), "overlap by 50 mm", "up to 2.5 m/s");
+  touching.contacts[0].distance = -0.5e-3;
+  EXPECT_TRUE(warningsOf(nothing, touching).empty());
+}
+
+}  // namespace
+}  // namespace softgauss::test

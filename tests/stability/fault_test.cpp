@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Family 9: what is not finite is reported, leaves the state as it was, and is forgotten.
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <memory>
+
+#include "gdd/gdd.hpp"
+#include "tests/stability/scenes.hpp"
+
+namespace softgauss::test {
+namespace {
+
+constexpr double kFaults[] = {std::numeric_limits<double>::quiet_NaN(),
+                              std::numeric_limits<double>::infinity(),
+                              -std::numeric_limits<double>::infinity()};
+
+/// A humanoid that falls, watched by a copy that knows of no fault.
+struct Pair {
+  Model model = humanoid().build();
+  collision::SceneContacts contacts{model}, otherContacts{model};
+  Data data{model}, otherData{model};
+  State state{model}, other{model};
+  Input input;
+
+  Pair() {
+    input.tau = VectorX::Zero(model.nv);
+    input.wrenches.push_back({1, {Vector3(1, 2, 3), Vector3(10, 20, 30)}});
+  }
+  SolveStatus faulty(const Input& in, State& s) { return step(model, in, s, data, &contacts); }
+  /// Both go on, to the same bits.
+  void goOn() {
+    EXPECT_NE(step(model, input, state, data, &contacts), SolveStatus::notFinite);
+    EXPECT_NE(step(model, input, other, otherData, &otherContacts), SolveStatus::notFinite);
+    EXPECT_EQ(hash(state), hash(other));
+  }
+};
+
+TEST(Fault, InputsAreRefusedAndForgotten) {
+  Pair pair;
+  int refused = 0;
+  for (int i = 0; i < 300; ++i) {
+    Input bad = pair.input;
+    const double fault = kFaults[i % 3];
+    if (i % 2 == 0)
+      bad.tau[(7 * i) % pair.model.nv] = fault;
+    else
+      (i % 4 == 1 ? bad.wrenches[0].F_Bo_W.force : bad.wrenches[0].F_Bo_W.moment)[i % 3] = fault;
+    const std::uint64_t before = hash(pair.state);
+    refused += pair.faulty(bad, pair.state) == SolveStatus::notFinite;
+    EXPECT_EQ(hash(pair.state), before);
+    pair.goOn();
+  }
+  EXPECT_EQ(refused, 300);
+}
+
+TEST(Fault, StatesAreRefusedAndForgotten) {
+  Pair pair;
+  for (int i = 0; i < 300; ++i) {
+    State bad = pair.state;
+    (i % 2 == 0 ? bad.q : bad.v)[(5 * i) % pair.model.nv] = kFaults[i % 3];
+    const std::uint64_t before = hash(bad);
+    EXPECT_EQ(pair.faulty(pair.input, bad), SolveStatus::notFinite);
+    EXPECT_EQ(hash(bad), before);
+    EXPECT_GE(pair.data.stats.badDof, 0);
+    pair.goOn();
+  }
+}
+
+// A warm start is a guess: one that is not finite costs iterations and nothing else.
+TEST(Fault, WarmStartsAreGuesses) {
+  Pair pair;
+  for (int i = 0; i < 300; ++i) {
+    pair.goOn();
+    if (i % 10 != 9) continue;
+    State bad = pair.state;
+    bad.warmstart.a[(3 * i) % pair.model.nv] = kFaults[(i / 10) % 3];
+    ASSERT_EQ(pair.faulty(pair.input, bad), SolveStatus::converged);
+    State good = pair.state;
+    ASSERT_EQ(pair.faulty(pair.input, good), SolveStatus::converged);
+    EXPECT_SMALL((bad.v - good.v).cwiseAbs().maxCoeff(), 1e-9);
+  }
+}
+
+// A goal whose target is not finite.
+TEST(Fault, GoalsAreRefusedAndForgotten) {
+  for (const gdd::GddSolver solver :
+       {gdd::GddSolver::activeSet, gdd::GddSolver::augmentedLagrangian}) {
+    const Model model = humanoid().build();
+    collision::SceneContacts contacts(model);
+    Data data(model);
+    State state(model);
+    gdd::GoalDirectedController controller(model);
+    controller.solver = solver;
+    const Vector3 target(0.3, 0.2, 1.2);
+    auto owned = std::make_unique<gdd::Reach>(model, model.frames.back().name, target);
+    gdd::Reach& reach = *owned;
+    controller.goals.push_back(std::move(owned));
+    controller.goals.push_back(std::make_unique<gdd::VirtualDamping>());
+    for (int i = 0; i < 60; ++i) {
+      if (i % 3 == 0) {
+        reach.p_WTarget[i % 2] = kFaults[(i / 3) % 3];
+        const std::uint64_t before = hash(state);
+        EXPECT_EQ(controller.step(model, {}, state, data, &contacts), SolveStatus::notFinite);
+        EXPECT_EQ(hash(state), before);
+        reach.p_WTarget = target;
+      }
+      EXPECT_NE(controller.step(model, {}, state, data, &contacts), SolveStatus::notFinite);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace softgauss::test

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Family 1: light bodies under heavy ones.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/stability/scenes.hpp"
+
+namespace softgauss::test {
+namespace {
+
+// MuJoCo 3.12: 0.21 mm for 1 kg on 1 kg; 1,000 kg sinks through 10 cm and topples.
+void carries(double load, double timestep, Cone cone) {
+  Trial t(std::to_string(static_cast<int>(load)) + " kg on 1 kg",
+          with(tower({1.0, load}), timestep, cone));
+  t.mayGain = 1e-9 * load * 9.81;  // a nanometre of the load's height: rounding
+  t.run(3.0);
+  // 2 mm, and the depth goes with the square of the time constant, which is at least two steps.
+  const double depth = 2e-3 * std::pow(std::max(1.0, 2.0 * timestep / 0.02), 2.0);
+  // A body falls for a step before the one below stops it, and for another one on a moving support.
+  t.expect("landing", t.deepest, depth + 3.0 * 9.81 * timestep * timestep, "m");
+  t.expect("penetration at rest", t.data->stats.maxPenetration, depth, "m");
+  t.expect("tilt", tilt(t, "box1"), 1e-3, "rad");
+  t.expect("speed at rest", t.state.v.cwiseAbs().maxCoeff(), 1e-4, "m/s");
+}
+
+TEST(MassRatio, LightBoxCarriesHeavyBox) {
+  for (const double load : {1.0, 10.0, 100.0, 1000.0, 10000.0})
+    for (const double timestep : kSteps)
+      for (const Cone cone : kCones) carries(load, timestep, cone);
+}
+
+/// Two fingers of 10 g on slides, and a cube between their pads, which touch it.
+ModelBuilder gripper(double load) {
+  ModelBuilder builder("gripper");
+  builder.base = BaseKind::fixed;
+  builder.link(emptyLink("world"));
+  for (const double side : {-1.0, 1.0}) {
+    const std::string name = side < 0.0 ? "left" : "right";
+    builder.link(boxLink(name, 0.01, Vector3(0.01, 0.05, 0.05)));
+    builder.joint(jointSpec(name + "_slide", JointType::prismatic, "world", name,
+                            {Matrix3::Identity(), Vector3(0.1099 * side, 0, 1.0)},
+                            Vector3(-side, 0, 0)));
+    builder.geometry(geometrySpec(name, Shape::box(Vector3(0.01, 0.05, 0.05)), 1.0));
+  }
+  addBody(builder, "load", Shape::box(Vector3::Constant(0.1)), load,
+          {Matrix3::Identity(), Vector3(0, 0, 1.0)});
+  return builder;
+}
+
+// Friction holds 3 times the weight of 10 kg. What a soft friction
+// slips in 10 s must leave half of the pad of 0.1 m.
+TEST(MassRatio, LightGripperHoldsHeavyLoad) {
+  for (const double timestep : {0.002, 0.005, 0.01})
+    for (const Cone cone : kCones) {
+      Trial t("10 g fingers hold 10 kg", with(gripper(10.0), timestep, cone));
+      t.input.tau.head(2).setConstant(150.0);
+      t.run(1.0);
+      const Vector3 begun = t.origin("load");
+      t.run(4.0);
+      t.expect("slip", (t.origin("load") - begun).norm() / 4.0, 5e-3, "m/s");
+      t.expect("penetration at rest", t.data->stats.maxPenetration, 2e-3, "m");
+      t.expect("tilt", tilt(t, "load"), 1e-2, "rad");
+    }
+}
+
+TEST(MassRatio, SameBits) {
+  expectSameBits([] {
+    Trial t("1000 kg on 1 kg", tower({1.0, 1000.0}));
+    t.run(0.2);
+    return hash(t.state);
+  });
+}
+
+}  // namespace
+}  // namespace softgauss::test

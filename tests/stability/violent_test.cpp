@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Family 6: deep overlaps, hard impacts, forces without measure.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/stability/scenes.hpp"
+
+namespace softgauss::test {
+namespace {
+
+constexpr double kTimeConstant = 0.02;  // of the default contact [s]
+
+/// With steps h the reference motion is no faster than 2 h.
+double timeConstant(double timestep) { return std::max(kTimeConstant, 2.0 * timestep); }
+
+// Half inside the ground, or inside each other: the critically damped reference motion from the
+// depth r has the speed r/(e t_c) at most; two bodies share it. The bound is that of the issue,
+// r/t_c.
+TEST(Violent, OverlapsLeaveSlowly) {
+  for (const bool pair : {false, true})
+    for (const double timestep : kSteps)
+      for (const Cone cone : kCones) {
+        ModelBuilder builder("overlap");
+        if (!pair) builder.geometry(groundSpec(1.0));
+        builder.options.gravity.setZero();
+        for (const double z : pair ? std::vector{0.0, 0.1} : std::vector{0.0})
+          addBody(builder, "box" + std::to_string(z > 0.0), Shape::box(Vector3::Constant(0.1)), 1.0,
+                  {Matrix3::Identity(), Vector3(0, 0, z)});
+        Trial t(pair ? "two bodies half overlapped" : "half in the ground",
+                with(builder, timestep, cone));
+        t.run(2.0);
+        t.expect("fastest", t.fastest, 0.1 / timeConstant(timestep), "m/s");
+        const double apart =
+            pair ? (t.origin("box1") - t.origin("box0")).norm() - 0.2 : t.state.q[2] - 0.1;
+        t.expect("still inside", std::min(0.0, apart), 1e-3, "m");
+        t.expect("speed at the end", t.state.v.cwiseAbs().maxCoeff(), 0.1 / timeConstant(timestep),
+                 "m/s");
+      }
+}
+
+// At 100 m/s: the reference motion goes v t_c/e deep, and no further than v t_c, but for the step's
+// way in which it arrives.
+TEST(Violent, ImpactAtHundredMetresPerSecond) {
+  for (const double timestep : kSteps)
+    for (const Cone cone : kCones) {
+      ModelBuilder builder("impact");
+      builder.geometry(groundSpec(1.0));
+      addBody(builder, "box", Shape::box(Vector3(0.1, 0.08, 0.05)), 1.0,
+              {Matrix3::Identity(), Vector3(0, 0, 1.0)});
+      Trial t("impact at 100 m/s", with(builder, timestep, cone));
+      t.state.v[2] = -100.0;
+      t.state.v.segment<3>(3) = Vector3(1.0, 2.0, 3.0);
+      t.mayGain = 1e-6 * 5000.0;
+      t.run(5.0);
+      t.expect("deepest", t.deepest, 100.0 * (timeConstant(timestep) + timestep), "m");
+      if (timestep > 0.01) continue;  // a box that rocks in steps of 20 ms does not rest by then
+      t.expect("speed at rest", t.state.v.cwiseAbs().maxCoeff(), 1e-3, "m/s");
+      t.expect("penetration at rest", t.data->stats.maxPenetration, 1e-3, "m");
+    }
+}
+
+// A hinge slams into its limit at 100 rad/s.
+TEST(Violent, JointSlamsIntoItsLimit) {
+  for (const double timestep : kSteps) {
+    ModelBuilder builder = pendulum(0.5, 1.0, 0.05);
+    JointSpec& hinge = *builder.findJoint("hinge");
+    hinge.type = JointType::revolute;
+    hinge.lower = -1.0, hinge.upper = 1.0;
+    Trial t("limit at 100 rad/s", with(builder, timestep));
+    t.state.v[0] = 100.0;
+    // A semi-implicit step has the energy to order h: the power of the weight over one step.
+    t.mayGain = timestep * 9.81 * 0.5 * 100.0;
+    double past = 0.0;
+    t.run(10.0, [&] { past = std::max(past, std::abs(t.state.q[0]) - 1.0); });
+    t.expect("past the limit", past, 100.0 * (timeConstant(timestep) + timestep), "rad");
+    t.expect("energy after", t.energy().kinetic, 0.02 * 0.5 * 0.25 * 1e4, "J");
+  }
+}
+
+// A rod that slides with its tip ahead, where Coulomb's law has no or several answers.
+TEST(Violent, PainlevesRod) {
+  for (const double friction : {0.5, 1.5, 3.0})
+    for (const double timestep : {0.0005, 0.002, 0.01})
+      for (const Cone cone : kCones) {
+        ModelBuilder builder("rod");
+        builder.geometry(groundSpec(friction));
+        const double angle = 0.4;  // from the vertical, the tip ahead
+        const Eigen::AngleAxisd turn(-angle, Vector3::UnitY());
+        addBody(builder, "rod", Shape::capsule(0.01, 0.5), 1.0,
+                {turn.toRotationMatrix(), Vector3(0, 0, 0.5 * std::cos(angle) + 0.01)}, friction);
+        Trial t("Painlevé's rod, mu " + std::to_string(friction), with(builder, timestep, cone));
+        t.state.v[0] = 5.0;
+        t.mayGain = 1e-3 * t.energy().kinetic;
+        t.run(8.0);
+        t.expect("fastest", t.state.v.head<3>().norm(), 5.0, "m/s");
+        t.expect("off the ground", std::abs(t.state.q[2]), 0.1, "m");
+      }
+}
+
+// A ball that bounces ever lower: it rests after its last bounce, and never rises above its start.
+TEST(Violent, LastBounces) {
+  for (const double timestep : {0.0005, 0.002, 0.01}) {
+    ModelBuilder builder = sphereOnPlane(0.1, 1.0, 0.5);
+    builder.X_WRoot.p.z() = 1.1;
+    Model model = with(builder, timestep).build();
+    for (Geometry& g : model.geometries)
+      if (g.body != 0) g.material.spring = ContactSpring{2500.0, 0.0, 0.0, 0.1222};
+    Trial t("last bounces", std::move(model));
+    t.mayGain = 1e-6 * 10.8;
+    t.run(10.0);
+    t.expect("speed at rest", t.state.v.cwiseAbs().maxCoeff(), 1e-6, "m/s");
+    t.expect("off the depth of rest", std::abs(t.state.q[2] - (0.1 - 9.81 / 2500.0)), 1e-6, "m");
+  }
+}
+
+// 10⁶ N m on every joint of a free humanoid for a tenth of a second: either it goes on with finite
+// numbers, or the step says that it cannot and leaves the state as it was.
+TEST(Violent, ForcesWithoutMeasure) {
+  for (const double timestep : {0.0005, 0.002, 0.01}) {
+    Model model = with(humanoid(), timestep).build();
+    collision::SceneContacts contacts(model);
+    Data data(model);
+    State state(model);
+    Input input;
+    int refused = 0;
+    for (int i = 0; i < static_cast<int>(0.1 / timestep) && refused == 0; ++i) {
+      input.tau = VectorX::Zero(model.nv);
+      input.tau.tail(model.nv - 6).setConstant(i % 2 == 0 ? 1e6 : -1e6);
+      const std::uint64_t before = hash(state);
+      if (step(model, input, state, data, &contacts) == SolveStatus::notFinite) {
+        ++refused;
+        EXPECT_EQ(hash(state), before);
+        EXPECT_GE(data.stats.badDof, 0);
+      } else {
+        EXPECT_TRUE(state.q.allFinite() && state.v.allFinite());
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace softgauss::test
