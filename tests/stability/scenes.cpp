@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/stability/scenes.hpp"
+
+#include <cmath>
+
+namespace softgauss::test {
+namespace {
+
+Matrix3 inertiaOf(const Shape& s, double mass) {
+  const double r2 = s.radius * s.radius;
+  switch (s.kind) {
+    case ShapeKind::sphere:
+      return Matrix3::Identity() * 0.4 * mass * r2;
+    case ShapeKind::cylinder:
+    case ShapeKind::capsule: {  // a capsule as the cylinder that holds it
+      const double half = s.halfLength + (s.kind == ShapeKind::capsule ? s.radius : 0.0);
+      const double across = mass * (0.25 * r2 + half * half / 3.0);
+      return Vector3(across, across, 0.5 * mass * r2).asDiagonal();
+    }
+    default: {
+      const Vector3 square = s.halfExtents.cwiseAbs2();
+      return Vector3(Vector3::Constant(square.sum()) - square).asDiagonal() * Matrix3::Identity() *
+             (mass / 3.0);
+    }
+  }
+}
+
+}  // namespace
+
+void addBody(ModelBuilder& builder, const std::string& name, const Shape& shape, double mass,
+             const Transform& X_WB, double friction) {
+  LinkSpec link;
+  link.name = name;
+  link.mass = mass;
+  link.I_Lcm = inertiaOf(shape, mass);
+  ModelBuilder one(name);
+  one.base = BaseKind::floating;
+  one.X_WRoot = X_WB;
+  one.link(link);
+  one.geometry(geometrySpec(name, shape, friction));
+  builder.add(one, "");
+}
+
+ModelBuilder tower(const std::vector<double>& masses) {
+  constexpr double kHalf = 0.1;
+  ModelBuilder builder("tower");
+  builder.geometry(groundSpec(1.0));
+  for (std::size_t i = 0; i < masses.size(); ++i)
+    addBody(builder, "box" + std::to_string(i), Shape::box(Vector3::Constant(kHalf)), masses[i],
+            {Matrix3::Identity(), Vector3(0, 0, (2.0 * static_cast<double>(i) + 1.0) * kHalf)});
+  return builder;
+}
+
+double tilt(Trial& trial, const std::string& link) {
+  return std::acos(std::min(1.0, trial.rotation(link)(2, 2)));
+}
+
+}  // namespace softgauss::test
