@@ -41,6 +41,18 @@ inline Vector3 quaternionLog(const Quaternion& q) {
   return scale * v;
 }
 
+/// φ̇ = dexp⁻¹_φ(ω) of R = R₀ exp(φ) that turns with ω in its own axes (T.92):
+///   φ̇ = ω + ½ φ × ω + (1 − ½ θ cot ½θ)/θ² φ × (φ × ω),   θ = |φ| < 2π
+inline Vector3 rotationRate(const Vector3& phi, const Vector3& omega) {
+  const double angle2 = phi.squaredNorm();
+  const double half = 0.5 * std::sqrt(angle2);
+  // 1/12 + θ²/720 + θ⁴/30240; below 0.02 rad the next term is under 1e-16.
+  const double scale = angle2 < 4e-4 ? 1.0 / 12.0 + angle2 / 720.0 + angle2 * angle2 / 30240.0
+                                     : (1.0 - half * std::cos(half) / std::sin(half)) / angle2;
+  const Vector3 turn = phi.cross(omega);
+  return omega + 0.5 * turn + scale * phi.cross(turn);
+}
+
 /// Rotation by `angle` [rad] about the unit vector `axis` (Rodrigues).
 inline Matrix3 axisRotation(const Vector3& axis, double angle) {
   const double s = std::sin(angle), c = std::cos(angle), t = 1.0 - c;

@@ -40,6 +40,9 @@ struct State {
   VectorX q;          ///< configuration (nq)
   VectorX v;          ///< generalised velocity (nv)
   double time = 0.0;  ///< [s]
+  /// (trees) 1 where v is the velocity at `time`, as a tree that is followed within its steps
+  /// leaves it; 0 where it is that of semi-implicit Euler, half a step behind. Empty: 0 for all.
+  std::vector<std::uint8_t> followed;
   WarmStart warmstart;
 
   State() = default;

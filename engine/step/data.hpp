@@ -11,6 +11,7 @@
 #include "engine/constraints/sticking_friction.hpp"
 #include "engine/forces/forces.hpp"
 #include "engine/solver/newton.hpp"
+#include "engine/step/integrators/followed_trees.hpp"
 
 namespace softgauss {
 
@@ -48,7 +49,10 @@ struct StepStats {
   double residual = 0.0;        ///< of the forward solve, scaled
   double maxPenetration = 0.0;  ///< deepest overlap of a contact [m], ≥ 0
   std::int64_t pairsSkipped = 0;
-  int badDof = -1;  ///< with SolveStatus::notFinite: the first dof that is not finite
+  int followedTrees = 0;   ///< whose free motion was followed within the step (T.93)
+  int substeps = 0;        ///< that this took, over all trees
+  int abandonedTrees = 0;  ///< that needed more sub-steps than allowed and took (T.16) instead
+  int badDof = -1;         ///< with SolveStatus::notFinite: the first dof that is not finite
   StepTimes times;
 };
 
@@ -69,7 +73,8 @@ struct Data {
   ExactDiagonal exactDiagonal;
   StickingFriction sticking;  ///< with Options::noSlip: friction of the last solve, else empty
   ForwardSolution forward;
-  VectorX acceleration;  ///< discrete, (v⁺ − v)/h (nv)
+  FollowedTrees followed;  ///< of the integrator; empty without Coriolis forces of mid-step
+  VectorX acceleration;    ///< discrete, (v⁺ − v)/h (nv)
   StepStats stats;
 };
 
