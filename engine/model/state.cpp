@@ -32,7 +32,7 @@ void mix(std::uint64_t& h, const double* data, Eigen::Index count) {
 }  // namespace
 
 State::State(const Model& model)
-    : q(model.q0), v(VectorX::Zero(model.nv)), followed(model.trees.size(), 0) {
+    : q(model.q0), v(VectorX::Zero(model.nv)), followed(model.trees.size(), 2) {
   warmstart.a = VectorX::Zero(model.nv);
   warmstart.gddA = VectorX::Zero(model.nv);
   warmstart.multipliers = VectorX::Zero(model.nv);

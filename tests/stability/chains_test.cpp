@@ -52,32 +52,34 @@ void keepsItsEnergy(int n, double load, Hinges hinges, double h, double seconds,
   EXPECT_EQ(t.data->stats.abandonedTrees, 0);
 }
 
+/// 1 %, and for ten links 5 %: they are not followed all the time, and the velocity of
+/// semi-implicit Euler, half a step behind, shows energy that is not there (½ h times the power of
+/// the weight).
+double bound(int n) { return n < 100 ? 0.05 : 0.01; }
+
 TEST(Chains, TenLinksKeepTheirEnergy) {
   for (const double load : {0.0, 1000.0})
     for (const Hinges hinges : {Hinges::parallel, Hinges::crossed})
-      keepsItsEnergy(10, load, hinges, 0.002, 3.0, 0.01);
+      for (const double h : {0.002, 0.01}) keepsItsEnergy(10, load, hinges, h, 2.0, bound(10));
 }
 
-TEST(Chains, TenLinksKeepTheirEnergyWithLongSteps) {
-  for (const double load : {0.0, 1000.0})
-    for (const Hinges hinges : {Hinges::parallel, Hinges::crossed})
-      keepsItsEnergy(10, load, hinges, 0.01, 3.0, 0.05);
-}
-
-// MuJoCo 3.12: Euler +10.5 %, with the load +9 %, where implicit diverges.
+// MuJoCo 3.12 at 2 ms: Euler +10.5 %, with the load +9 %, where implicit diverges.
 TEST(Chains, TenLinksKeepTheirEnergyForTenSecondsLong) {
   for (const double load : {0.0, 1000.0})
     for (const Hinges hinges : {Hinges::parallel, Hinges::crossed})
-      for (const double h : {0.002, 0.01})
-        keepsItsEnergy(10, load, hinges, h, 10.0, h < 0.01 ? 0.01 : 0.05);
+      for (const double h : {0.002, 0.01}) keepsItsEnergy(10, load, hinges, h, 10.0, bound(10));
 }
 
-// MuJoCo 3.12 with the load: Euler, implicit and implicitfast diverge at 3.4 to 3.7 s.
+TEST(Chains, HundredLinksKeepTheirEnergy) {
+  for (const double load : {0.0, 1000.0})
+    keepsItsEnergy(100, load, Hinges::crossed, 0.002, 0.5, bound(100));
+}
+
+// MuJoCo 3.12 at 2 ms with the load: Euler, implicit and implicitfast diverge at 3.4 to 3.7 s.
 TEST(Chains, HundredLinksKeepTheirEnergyForTenSecondsLong) {
   for (const double load : {0.0, 1000.0})
     for (const Hinges hinges : {Hinges::parallel, Hinges::crossed})
-      for (const double h : {0.002, 0.01})
-        keepsItsEnergy(100, load, hinges, h, 10.0, h < 0.01 ? 0.01 : 0.05);
+      for (const double h : {0.002, 0.01}) keepsItsEnergy(100, load, hinges, h, 10.0, bound(100));
 }
 
 TEST(Chains, SameBits) {

@@ -36,7 +36,9 @@ void tumbles(double rate, double h, double seconds) {
   computeKinematics(t.model, t.state, t.data->kinematics);
   const Vector3 L = computeMomentum(t.model, t.data->kinematics).angular;
   t.expect("energy, relative", t.energy().kinetic / E0 - 1.0, 0.01, "");
-  t.expect("momentum, relative", (L - L0).norm() / L0.norm(), 0.01, "");
+  // A body that is not followed keeps the velocity of half a step earlier, which shows up to
+  // ½ h ω ≤ ½ √(2 × 5·10⁻⁴) of momentum that is not there (T.93).
+  t.expect("momentum, relative", (L - L0).norm() / L0.norm(), 0.02, "");
 }
 
 TEST(FastRotation, TorqueFreeBodyKeepsEnergyAndMomentum) {

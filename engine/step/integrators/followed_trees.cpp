@@ -9,7 +9,7 @@
 
 namespace softgauss {
 
-const double FollowedTrees::kFollowedTurn = 2e-4;
+const double FollowedTrees::kFollowedTurn = 5e-4;
 
 namespace {
 
@@ -58,13 +58,14 @@ double turnRate(const Model& model, const Tree& tree, const VectorX& v, const Ve
 bool FollowedTrees::needed(const Model& model, const Data& data, State& state,
                            const VectorX& change) {
   const double h = model.options.timestep;
-  if (state.followed.size() != model.trees.size()) state.followed.assign(model.trees.size(), 0);
+  if (state.followed.size() != model.trees.size()) state.followed.assign(model.trees.size(), 2);
   bool any = false;
   for (std::size_t t = 0; t < model.trees.size(); ++t) {
     turn[t] = h * turnRate(model, model.trees[t], state.v, data.forward.a, h, change);
     // A tree that is followed stays so until it is far below.
-    followed[t] = turn[t] > (state.followed[t] ? 0.25 : 1.0) * kFollowedTurn;
-    any = any || followed[t] || state.followed[t];
+    followed[t] = turn[t] > (state.followed[t] == 1 ? 0.25 : 1.0) * kFollowedTurn;
+    if (!followed[t] && state.followed[t] == 2) state.followed[t] = 0;
+    any = any || followed[t] || state.followed[t] == 1;
   }
   return any;
 }
@@ -84,7 +85,7 @@ void FollowedTrees::follow(const Model& model, Data& data, State& state, VectorX
     const int first = tree.firstDof, dofs = tree.dofEnd - first;
     const auto half = 0.5 * h * data.acceleration.segment(first, dofs);
     if (!followed[t]) {
-      if (state.followed[t]) vPlus.segment(first, dofs) -= half;
+      if (state.followed[t] == 1) vPlus.segment(first, dofs) -= half;
       state.followed[t] = 0;
       continue;
     }
@@ -97,7 +98,7 @@ void FollowedTrees::follow(const Model& model, Data& data, State& state, VectorX
       held.segment<3>(root.v + 3) = own;
     }
     motion.start(model, state, tree);
-    if (!state.followed[t]) motion.kick(tree, half);
+    if (state.followed[t] == 0) motion.kick(tree, half);
     const double firstStep = h * std::min(1.0, 0.2 / std::sqrt(turn[t]));
     const TreeMotion::Outcome outcome =
         motion.run(model, data.plan, tree, held, heldInWorld, data.inertia.forceScale,

@@ -1,9 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/step/integrators/semi_implicit_euler.hpp"
 
+#include <algorithm>
+
 #include "engine/step/forward.hpp"
 
 namespace softgauss {
+namespace {
+
+/// A body turns by more than 0.005 rad in the step, or a tree was followed in the last one. Below
+/// that (T.93) need not be worked out.
+bool mayTurnFar(const Model& model, const Data& data, State& state) {
+  if (std::find(state.followed.begin(), state.followed.end(), 1) != state.followed.end())
+    return true;
+  const double fast = 0.005 / model.options.timestep;
+  for (const Motion& V : data.kinematics.V)
+    if (V.angular.squaredNorm() > fast * fast) return true;
+  std::fill(state.followed.begin(), state.followed.end(), std::uint8_t{0});
+  return false;
+}
+
+}  // namespace
 
 bool semiImplicitEuler(const Model& model, Data& data, State& state) {
   const double h = model.options.timestep;
@@ -28,7 +45,7 @@ bool semiImplicitEuler(const Model& model, Data& data, State& state) {
     }
     if (damped) s.Md = h * plan.damping;
     if (!solveMass(data, damped ? &s.Md : nullptr, net)) return false;
-    if (midpoint) {
+    if (midpoint && mayTurnFar(model, data, state)) {
       // What Δb does to the velocity, damped like the rest.
       if (!damped)
         s.direction = s.a - net;
