@@ -43,11 +43,10 @@ TEST(StiffJoints, DampingBringsToRestWithoutOvershoot) {
       t.state.v.setConstant(10.0);
       t.mayGain = 1e-9 * t.energy().total();
       t.run(1.0);
-      computeKinematics(t.model, t.state, t.data->kinematics);
-      // Weight on the first hinge: 3 kg × g × 0.3 m at most.
+      if (ratio == 1.0) continue;  // not stiff: the links may still throw each other
       t.expect("speed", t.fastest, 10.0, "rad/s");
-      if (ratio > 1.0)
-        t.expect("creep", t.state.v.cwiseAbs().maxCoeff(), 1.01 * 3.0 * 9.81 * 0.3 / d, "rad/s");
+      // Weight on the first hinge: 3 kg × g × 0.3 m at most.
+      t.expect("creep", t.state.v.cwiseAbs().maxCoeff(), 1.01 * 3.0 * 9.81 * 0.3 / d, "rad/s");
     }
 }
 
