@@ -47,9 +47,8 @@ inline Vector3 rotationRate(const Vector3& phi, const Vector3& omega) {
   const double angle2 = phi.squaredNorm();
   const double half = 0.5 * std::sqrt(angle2);
   // 1/12 + θ²/720 + θ⁴/30240; below 0.02 rad the next term is under 1e-16.
-  const double scale = angle2 < 4e-4
-                           ? 1.0 / 12.0 + angle2 / 720.0 + angle2 * angle2 / 30240.0
-                           : (1.0 - half * std::cos(half) / std::sin(half)) / angle2;
+  const double scale = angle2 < 4e-4 ? 1.0 / 12.0 + angle2 / 720.0 + angle2 * angle2 / 30240.0
+                                     : (1.0 - half * std::cos(half) / std::sin(half)) / angle2;
   const Vector3 turn = phi.cross(omega);
   return omega + 0.5 * turn + scale * phi.cross(turn);
 }

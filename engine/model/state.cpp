@@ -31,7 +31,8 @@ void mix(std::uint64_t& h, const double* data, Eigen::Index count) {
 
 }  // namespace
 
-State::State(const Model& model) : q(model.q0), v(VectorX::Zero(model.nv)) {
+State::State(const Model& model)
+    : q(model.q0), v(VectorX::Zero(model.nv)), followed(model.trees.size(), 2) {
   warmstart.a = VectorX::Zero(model.nv);
   warmstart.gddA = VectorX::Zero(model.nv);
   warmstart.multipliers = VectorX::Zero(model.nv);
@@ -51,6 +52,8 @@ std::uint64_t hash(const State& state) {
   for (const KnotName& k : state.warmstart.knots)
     for (const int part : {k.kind, k.first, k.second, k.contact, k.direction, k.index})
       mixBits(h, static_cast<std::uint64_t>(part));
+  for (const std::uint8_t flag : state.followed)
+    if (flag) mixBits(h, flag);
   return h;
 }
 

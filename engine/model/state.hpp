@@ -40,6 +40,9 @@ struct State {
   VectorX q;          ///< configuration (nq)
   VectorX v;          ///< generalised velocity (nv)
   double time = 0.0;  ///< [s]
+  /// (trees) 1: v is the velocity at `time`, a tree that is followed in its steps leaves it so; 0:
+  /// that of semi-implicit Euler, half a step behind; 2: as given, to be taken as either.
+  std::vector<std::uint8_t> followed;
   WarmStart warmstart;
 
   State() = default;

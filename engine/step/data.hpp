@@ -12,6 +12,7 @@
 #include "engine/constraints/sticking_friction.hpp"
 #include "engine/forces/forces.hpp"
 #include "engine/solver/newton.hpp"
+#include "engine/step/integrators/followed_trees.hpp"
 
 namespace softgauss {
 
@@ -49,11 +50,13 @@ struct StepStats {
   double residual = 0.0;        ///< of the forward solve, scaled
   double maxPenetration = 0.0;  ///< deepest overlap of a contact [m], ≥ 0
   std::int64_t pairsSkipped = 0;
-  int evaluations = 0;  ///< of forward dynamics by a Runge–Kutta integrator
-  int substeps = 0;     ///< into which it has divided the step
-  int rejections = 0;   ///< parts of the step that it has tried and shortened
-  int jumps = 0;        ///< shortest parts that were taken in spite of their estimate
-  int badDof = -1;      ///< with SolveStatus::notFinite: the first dof that is not finite
+  int followedTrees = 0;   ///< whose free motion was followed within the step (T.93)
+  int abandonedTrees = 0;  ///< that needed more sub-steps than allowed and took (T.16) instead
+  int substeps = 0;        ///< of followed trees, over all of them; of a Runge–Kutta integrator
+  int evaluations = 0;     ///< of forward dynamics by a Runge–Kutta integrator
+  int rejections = 0;      ///< parts of the step that it has tried and shortened
+  int jumps = 0;           ///< shortest parts that were taken in spite of their estimate
+  int badDof = -1;         ///< with SolveStatus::notFinite: the first dof that is not finite
   StepTimes times;
 };
 
@@ -80,7 +83,8 @@ struct Data {
   ExactDiagonal exactDiagonal;
   StickingFriction sticking;  ///< with Options::noSlip: friction of the last solve, else empty
   ForwardSolution forward;
-  VectorX acceleration;                      ///< discrete, (v⁺ − v)/h (nv)
+  FollowedTrees followed;  ///< of the integrator; empty without Coriolis forces of mid-step
+  VectorX acceleration;    ///< discrete, (v⁺ − v)/h (nv)
   std::unique_ptr<IntegratorStages> stages;  ///< null where the integrator needs one solve
   StepStats stats;
 };

@@ -77,6 +77,7 @@ Data::Data(const Model& model, Evaluation)
       forces(model, plan),
       constraints(plan.rows),
       exactDiagonal(model.options.exactDiagonal ? model.nv : 0),
+      followed(plan.midpoint ? FollowedTrees(model) : FollowedTrees()),
       acceleration(VectorX::Zero(model.nv)) {
   ForwardSolution& s = forward;
   for (VectorX* x : {&s.a, &s.Ma, &s.gradient, &s.direction, &s.Md, &s.scale, &s.start})

@@ -78,7 +78,6 @@ double part(const Tableau& t, const Model& model, ContactSource* contacts, doubl
 bool rungeKutta(const Tableau& t, const Model& model, const Input& input, ContactSource* contacts,
                 Data& data, State& state) noexcept {
   constexpr double kShortest = 1.0 / 512.0;  // of the step
-  constexpr double kSafety = 0.9, kLeastFactor = 0.2, kMostFactor = 5.0;
   const double h = model.options.timestep;
   IntegratorStages& s = *data.stages;
   StepStats& stats = data.stats;
@@ -100,11 +99,7 @@ bool rungeKutta(const Tableau& t, const Model& model, const Input& input, Contac
     const double error = part(t, model, contacts, length, tolerance, s, stats);
     const bool shortest = !t.embedded || length <= kShortest * h;
     if (!std::isfinite(error) && shortest) return false;
-    const double factor =
-        std::isfinite(error) && error > 0.0
-            ? std::clamp(kSafety * std::pow(error, -1.0 / t.order), kLeastFactor, kMostFactor)
-        : error == 0.0 ? kMostFactor
-                       : kLeastFactor;
+    const double factor = stepFactor(error, t.order);
     if (error > 1.0 && !shortest) {
       ++stats.rejections;
       length = std::max(length * factor, kShortest * h);

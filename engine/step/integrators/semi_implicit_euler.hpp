@@ -9,7 +9,8 @@
 /// and without Coriolis forces a' = a. Order 1. The second term (Options::midpointCoriolis) takes
 /// the Coriolis and gyroscopic forces at the middle of the step: taken at its start they feed a
 /// body that turns at ω with energy at the relative rate h ω², and fast joints diverge. Without it
-/// the step is MuJoCo's Euler.
+/// the step is MuJoCo's Euler. Trees that turn far in the step are followed through it
+/// (followed_trees.hpp).
 
 #include "engine/step/data.hpp"
 

@@ -7,7 +7,9 @@
 ///
 /// e is the difference to a second result of lower order; it estimates the error of that one.
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace softgauss {
 
@@ -46,5 +48,14 @@ inline constexpr Tableau kDormandPrince{
      -1.0 / 40.0},
     true,
     true};
+
+/// What the next step is longer by after an error of `ratio` times the tolerance; the least where
+/// that is not a number.
+inline double stepFactor(double ratio, int order) {
+  constexpr double kSafety = 0.9, kLeast = 0.2, kMost = 5.0;
+  if (!std::isfinite(ratio)) return kLeast;
+  if (!(ratio > 0.0)) return kMost;
+  return std::clamp(kSafety * std::pow(ratio, -1.0 / order), kLeast, kMost);
+}
 
 }  // namespace softgauss

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/step/integrators/followed_trees.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/core/memory.hpp"
+#include "engine/step/data.hpp"
+
+namespace softgauss {
+
+const double FollowedTrees::kFollowedTurn = 5e-4;
+
+namespace {
+
+/// √(2 × kinetic energy) of a tree by its largest part: max_i (|v_i| + h |a_i|) √M_ii.
+double speedOf(const Tree& tree, const Data& data, const VectorX& v, double h) {
+  double speed = 0.0;
+  for (int i = tree.firstDof; i < tree.dofEnd; ++i)
+    speed = std::max(
+        speed, (std::abs(v[i]) + h * std::abs(data.forward.a[i])) / data.inertia.forceScale[i]);
+  return speed;
+}
+
+/// How many entries of q a tree has.
+int coordinates(const Model& model, const Tree& tree) {
+  return tree.dofEnd - tree.firstDof +
+         (model.bodies[tree.rootBody].joint == JointKind::floating ? 1 : 0);
+}
+
+/// (T.93), without the factor h.
+double turnRate(const Model& model, const Tree& tree, const VectorX& v, const VectorX& a, double h,
+                const VectorX& change) {
+  double changes[2] = {0.0, 0.0}, speeds[2] = {0.0, 0.0};  // turning, sliding
+  const auto add = [&](int kind, int begin, int end) {
+    for (int i = begin; i < end; ++i) {
+      changes[kind] = std::max(changes[kind], std::abs(change[i]));
+      speeds[kind] = std::max(speeds[kind], std::abs(v[i]) + h * std::abs(a[i]));
+    }
+  };
+  for (int b = tree.rootBody; b < tree.bodyEnd; ++b) {
+    const Body& body = model.bodies[b];
+    if (body.joint == JointKind::floating) {
+      add(1, body.v, body.v + 3);
+      add(0, body.v + 3, body.v + 6);
+    } else {
+      add(body.joint == JointKind::prismatic ? 1 : 0, body.v, body.v + 1);
+    }
+  }
+  double rate = 0.0;
+  for (const int kind : {0, 1})
+    if (changes[kind] > 0.0) rate = std::max(rate, changes[kind] / speeds[kind]);
+  return rate;
+}
+
+/// Rows push the tree. Half a step of what they do is no part of how v is understood: an impact
+/// would get half as much again, and the other body would not.
+bool isPushed(const Tree& tree, const Data& data, const VectorX& push) {
+  constexpr double kRounding = 1e-9;
+  for (int i = tree.firstDof; i < tree.dofEnd; ++i)
+    if (std::abs(push[i]) > kRounding * std::max(1.0, std::abs(data.forces.net[i]))) return true;
+  return false;
+}
+
+}  // namespace
+
+bool FollowedTrees::needed(const Model& model, const Data& data, State& state,
+                           const VectorX& change) {
+  const double h = model.options.timestep;
+  if (state.followed.size() != model.trees.size()) state.followed.assign(model.trees.size(), 2);
+  bool any = false;
+  for (std::size_t t = 0; t < model.trees.size(); ++t) {
+    turn[t] = h * turnRate(model, model.trees[t], state.v, data.forward.a, h, change);
+    // A tree that is followed stays so until it is far below.
+    followed[t] = turn[t] > (state.followed[t] == 1 ? 0.25 : 1.0) * kFollowedTurn;
+    if (!followed[t] && state.followed[t] == 2) state.followed[t] = 0;
+    any = any || followed[t] || state.followed[t] == 1;
+  }
+  return any;
+}
+
+void FollowedTrees::follow(const Model& model, Data& data, State& state, VectorX& held,
+                           VectorX& vPlus) {
+  const double h = model.options.timestep;
+  // Q = M a + b + K (q − q_s) − h D a′: applied, constraint and damping forces of the step.
+  data.inertia.M.multiply(data.forward.a, held);
+  push = held - data.forces.net;  // Jᵀf
+  held += data.forces.bias;
+  for (const Plan::Spring& spring : data.plan.springs)
+    held[spring.dof] += spring.stiffness * (state.q[spring.q] - spring.reference);
+  if (data.plan.damped()) held -= h * data.plan.damping.cwiseProduct(data.acceleration);
+
+  for (std::size_t t = 0; t < model.trees.size(); ++t) {
+    const Tree& tree = model.trees[t];
+    const int first = tree.firstDof, dofs = tree.dofEnd - first;
+    const auto half = 0.5 * h * data.acceleration.segment(first, dofs);
+    const bool free = !isPushed(tree, data, push);
+    if (!followed[t]) {
+      if (state.followed[t] == 1 && free) vPlus.segment(first, dofs) -= half;
+      state.followed[t] = 0;
+      continue;
+    }
+    const Body& root = model.bodies[tree.rootBody];
+    Vector3 heldInWorld = Vector3::Zero();
+    if (root.joint == JointKind::floating) {
+      // Moments on the root that are not applied in its axes are of the world.
+      const Vector3 own = data.forces.tau.segment<3>(root.v + 3);
+      heldInWorld = data.kinematics.X_WB[tree.rootBody].R * (held.segment<3>(root.v + 3) - own);
+      held.segment<3>(root.v + 3) = own;
+    }
+    motion.start(model, state, tree);
+    if (state.followed[t] == 0 && free) motion.kick(tree, half);
+    const double firstStep = h * std::min(1.0, 0.2 / std::sqrt(turn[t]));
+    const TreeMotion::Outcome outcome =
+        motion.run(model, data.plan, tree, held, heldInWorld, data.inertia.forceScale,
+                   speedOf(tree, data, state.v, h), h, firstStep);
+    data.stats.substeps += motion.substeps();
+    if (outcome != TreeMotion::Outcome::done) {
+      ++data.stats.abandonedTrees;
+      followed[t] = 0;
+      state.followed[t] = 0;
+      continue;
+    }
+    ++data.stats.followedTrees;
+    state.followed[t] = 1;
+    vPlus.segment(first, dofs) = motion.v().segment(first, dofs);
+    const int count = coordinates(model, tree);
+    q.segment(root.q, count) = motion.q().segment(root.q, count);
+  }
+}
+
+void FollowedTrees::copyPositions(const Model& model, VectorX& qPlus) const {
+  for (std::size_t t = 0; t < model.trees.size(); ++t) {
+    if (!followed[t]) continue;
+    const Tree& tree = model.trees[t];
+    const int first = model.bodies[tree.rootBody].q, count = coordinates(model, tree);
+    qPlus.segment(first, count) = q.segment(first, count);
+  }
+}
+
+std::size_t FollowedTrees::bytes() const {
+  return bytesOfAll(turn, followed, push, q) + motion.bytes();
+}
+
+}  // namespace softgauss
