@@ -94,7 +94,7 @@ std::vector<Method> methodsFor(const Problem& problem) {
   if (problem.contact) {
     Method elliptic = methods.front();
     elliptic.cone = Cone::elliptic;
-    elliptic.label = "semi-implicit Euler, elliptic cones";
+    elliptic.label = "semi-implicit Euler with elliptic cones";
     methods.push_back(elliptic);
   }
   for (Method& method : mujocoMethods(problem)) methods.push_back(std::move(method));

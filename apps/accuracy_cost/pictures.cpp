@@ -16,8 +16,9 @@ namespace softgauss::app {
 namespace {
 
 constexpr const char* kDataPlace = "/*RESULTS*/null";
-const std::array<const char*, 8> kColours = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
-                                             "#e69f00", "#56b4e9", "#8c6d31", "#000000"};
+const std::array<const char*, 10> kColours = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
+                                              "#e69f00", "#56b4e9", "#8c6d31", "#000000",
+                                              "#7b3294", "#999999"};
 
 void write(const std::filesystem::path& file, const std::string& text) {
   std::ofstream out(file);

@@ -86,7 +86,9 @@ Dataset recordRun(const Robot& robot, Contestant& recorder, int records, double 
                                report.status, data.stats.contacts,
                                static_cast<int>(dataset.goals.size()) - 1});
     setAppliedForce(dataset.records.back().control, data.forces);
-    if (advance(model, &recorder.acceleration(), data, state) == SolveStatus::notFinite) fail();
+    if (advance(model, {}, robot.contacts.get(), &recorder.acceleration(), data, state) ==
+        SolveStatus::notFinite)
+      fail();
     recorder.keepWarmStart(state.warmstart);
   }
   return dataset;

@@ -135,9 +135,9 @@ struct Options {
   Integrator integrator = Integrator::semiImplicitEuler;
   /// Largest error of a step that an integrator with error control leaves [m or rad].
   double integrationTolerance = 1e-6;
-  bool midpointCoriolis = true;                ///< see integrators/semi_implicit_euler.hpp
-  Cone cone = Cone::pyramidal;                 ///< of contacts with friction
-  double impedanceRatio = 1.0;                 ///< impratio: friction against normal impedance
+  bool midpointCoriolis = true;  ///< see integrators/semi_implicit_euler.hpp
+  Cone cone = Cone::pyramidal;   ///< of contacts with friction
+  double impedanceRatio = 1.0;   ///< impratio: friction against normal impedance
   bool carriedLoad = true;     ///< contacts as hard as their load, see constraints/carried_load.hpp
   bool exactDiagonal = false;  ///< see constraints/exact_diagonal.hpp
   bool noSlip = false;         ///< friction without creep (step/no_slip.hpp)

@@ -118,8 +118,8 @@ bool Plan::fits(const Model& model) const {
     if (now.effects.has(Effect::damping) && dof.damping != planned) return false;
   }
   return now.effects == then.effects && now.gravity == then.gravity &&
-         now.midpointCoriolis == then.midpointCoriolis && now.integrator == then.integrator && now.cone == then.cone &&
-         now.exactDiagonal == then.exactDiagonal;
+         now.midpointCoriolis == then.midpointCoriolis && now.integrator == then.integrator &&
+         now.cone == then.cone && now.exactDiagonal == then.exactDiagonal;
 }
 
 }  // namespace softgauss

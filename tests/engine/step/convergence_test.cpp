@@ -122,8 +122,8 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(Case{Integrator::semiImplicitEuler, 1.0, {1024, 2048, 4096, 8192}},
                     Case{Integrator::rungeKutta4, 4.0, {128, 256, 512, 1024}},
                     Case{Integrator::dormandPrince, 5.0, {128, 192, 256, 384, 512}}),
-    [](const auto& info) {
-      std::string name(integratorName(info.param.integrator));
+    [](const auto& instance) {
+      std::string name(integratorName(instance.param.integrator));
       std::erase(name, '-');
       return name;
     });
