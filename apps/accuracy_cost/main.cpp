@@ -78,6 +78,9 @@ int main(int argc, char** argv) {
   app.add_option("--repeats", arguments.study.repeats,
                  "how often each time is measured; the least counts")
       ->check(CLI::Range(1, 100));
+  app.add_option("--min-time", arguments.study.minTime,
+                 "CPU time that each measurement takes at least [s]")
+      ->check(CLI::NonNegativeNumber);
   bool list = false;
   app.add_flag("--list", list, "name the problems and end");
   CLI11_PARSE(app, argc, argv);

@@ -33,7 +33,8 @@ Problem pendulum() {
     bob.com = Vector3(0, 0, -kLength);
     bob.I_Lcm = 0.4 * kMass * kRadius * kRadius * Matrix3::Identity();
     builder.link(named("world")).link(bob);
-    builder.joint(joint("hinge", JointType::continuous, "world", "bob", Vector3::UnitY(), {}));
+    builder.joint(
+        joint("hinge", JointType::continuous, "world", "bob", Vector3::UnitY(), Vector3::Zero()));
     return builder;
   };
   p.start = [](const Model&, State& state) { state.q[0] = kStart; };
@@ -61,7 +62,8 @@ Problem springMassDamper() {
     ModelBuilder builder("spring");
     builder.options.effects.remove(Effect::gravity);
     builder.link(named("world")).link(boxLink("mass", kMass, {0.05, 0.05, 0.05}));
-    JointSpec slide = joint("slide", JointType::prismatic, "world", "mass", Vector3::UnitX(), {});
+    JointSpec slide =
+        joint("slide", JointType::prismatic, "world", "mass", Vector3::UnitX(), Vector3::Zero());
     slide.stiffness = kStiffness;
     slide.damping = kDamping;
     builder.joint(slide);
@@ -118,13 +120,15 @@ Problem top() {
     body.com = Vector3(0, 0, kHeight);
     body.I_Lcm = Vector3(8e-4, 8e-4, 1.2e-3).asDiagonal();
     builder.link(body);
-    builder.joint(joint("phi", JointType::continuous, "world", "precession", Vector3::UnitZ(), {}));
+    builder.joint(joint("phi", JointType::continuous, "world", "precession", Vector3::UnitZ(),
+                        Vector3::Zero()));
     // At zero it is tilted, for where the axes of precession and spin are parallel M is singular.
-    JointSpec theta =
-        joint("theta", JointType::continuous, "precession", "tilt", Vector3::UnitX(), {});
+    JointSpec theta = joint("theta", JointType::continuous, "precession", "tilt", Vector3::UnitX(),
+                            Vector3::Zero());
     theta.X_PC.R = Eigen::AngleAxisd(kTilt, Vector3::UnitX()).toRotationMatrix();
     builder.joint(theta);
-    builder.joint(joint("psi", JointType::continuous, "tilt", "top", Vector3::UnitZ(), {}));
+    builder.joint(
+        joint("psi", JointType::continuous, "tilt", "top", Vector3::UnitZ(), Vector3::Zero()));
     return builder;
   };
   p.start = [](const Model&, State& state) { state.v[2] = kSpin; };

@@ -36,17 +36,6 @@ int Mujoco::nq() const { return memory_->model->nq; }
 int Mujoco::nv() const { return memory_->model->nv; }
 void Mujoco::setTolerance(double tolerance) { memory_->model->opt.tolerance = tolerance; }
 
-bool Mujoco::setIntegrator(const std::string& name) {
-  int& integrator = memory_->model->opt.integrator;
-  if (name == "Euler") return integrator = mjINT_EULER, true;
-  if (name == "RK4") return integrator = mjINT_RK4, true;
-  if (name == "implicit") return integrator = mjINT_IMPLICIT, true;
-#if mjVERSION_HEADER >= 233
-  if (name == "implicitfast") return integrator = mjINT_IMPLICITFAST, true;
-#endif
-  return false;
-}
-
 void Mujoco::set(const State& state, const VectorX& tau) {
   mjData* const d = memory_->data;
   Eigen::Map<VectorX>(d->qpos, nq()) = state.q;

@@ -24,9 +24,6 @@ class Mujoco {
   int nv() const;
   /// Tolerance of the solver; 0 lets it run until nothing improves.
   void setTolerance(double tolerance);
-  /// "Euler", "RK4", "implicit" or, where this version has it, "implicitfast". False where it is
-  /// unknown.
-  bool setIntegrator(const std::string& name);
   /// State and applied force of the next call. Its warm start is left alone.
   void set(const State& state, const VectorX& tau);
   void setForce(const VectorX& tau);

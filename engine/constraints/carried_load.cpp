@@ -26,6 +26,8 @@ void CarriedLoad::assemble(const Model& model, const ContactSet& contacts,
     for (const int body : {c.bodyA, c.bodyB}) {
       const int tree = treeOf(body);
       if (tree < 0) continue;
+      const Body& base = model.bodies[model.trees[tree].rootBody];
+      if (base.joint != JointKind::floating) continue;  // the world carries it
       const double most = model.trees[tree].mass, w = weights.translation[body];
       mass_[tree] = std::max(mass_[tree], w * most > 1.0 ? 1.0 / w : most);
     }

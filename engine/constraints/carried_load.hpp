@@ -3,8 +3,9 @@
 
 /// What a contact carries besides its own two bodies, from the graph of contacts alone (T.80).
 ///
-/// Trees that touch each other, not counting the world, are an island. A tree T counts in it with
-/// the largest inertia that a contact feels on one of its bodies,
+/// Trees that touch each other, not counting the world, are an island. A tree T on a free base
+/// counts in it with the largest inertia that a contact feels on one of its bodies, others with
+/// none,
 ///   m_T = min(mass of T, max over touched bodies B of 1/w_B)
 /// and a contact between the trees S and T has to carry
 ///   L = Σ over the island of m  −  min(m_S, m_T)        (with the world, or in one tree: − m_T)

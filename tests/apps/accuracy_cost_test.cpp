@@ -33,7 +33,8 @@ TEST(AccuracyCost, ErrorsFallWithTheOrder) {
   const io::TempFolder folder;
   const std::string out = folder.path() / "study";
   const std::vector<std::string> arguments = {
-      "--scene", "pendulum", "--out", out, "--repeats", "1", "--robots", dataFile("robots")};
+      "--scene", "pendulum",  "--out", out,        "--min-time",
+      "0",       "--repeats", "1",     "--robots", dataFile("robots")};
   const Outcome outcome = runProgram("accuracy_cost", arguments);
   ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
   auto errors = errorsOf(out + "/accuracy_cost.csv");
