@@ -12,3 +12,4 @@
 #include "collision/lowest_point.hpp"
 #include "collision/primitive_pairs.hpp"
 #include "collision/scene_contacts.hpp"
+#include "collision/unit_contacts.hpp"

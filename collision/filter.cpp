@@ -34,11 +34,6 @@ int solidParent(const Model& model, int body) {
   return -1;
 }
 
-GeometryPair inOrder(const Model& model, int i, int j) {
-  const auto kind = [&](int g) { return model.geometries[static_cast<std::size_t>(g)].shape.kind; };
-  return kind(j) < kind(i) ? GeometryPair{j, i} : GeometryPair{i, j};
-}
-
 /// Two links of two bodies, in a fixed order. The number tells apart robots with equal names.
 using LinkPair = std::array<std::pair<int, std::string>, 2>;
 
@@ -66,6 +61,20 @@ Effect contactEffect(const Model& model, int bodyA, int bodyB) {
   const bool oneRobot = model.bodies[static_cast<std::size_t>(bodyA)].robot ==
                         model.bodies[static_cast<std::size_t>(bodyB)].robot;
   return oneRobot ? Effect::selfCollision : Effect::objectContact;
+}
+
+GeometryPair inOrder(const Model& model, int i, int j) {
+  const auto kind = [&](int g) { return model.geometries[static_cast<std::size_t>(g)].shape.kind; };
+  return kind(j) < kind(i) ? GeometryPair{j, i} : GeometryPair{i, j};
+}
+
+void sortPairs(const Model& model, std::vector<GeometryPair>& pairs) {
+  const auto rank = [&](const GeometryPair& p) {
+    return std::make_pair(!isPlane(model.geometries[static_cast<std::size_t>(p.a)]),
+                          std::make_pair(p.a, p.b));
+  };
+  std::sort(pairs.begin(), pairs.end(),
+            [&](const GeometryPair& x, const GeometryPair& y) { return rank(x) < rank(y); });
 }
 
 PairFilter makePairFilter(const Model& model, const InitialDistance& initialDistance,
@@ -137,12 +146,7 @@ PairFilter makePairFilter(const Model& model, const InitialDistance& initialDist
     }
     filter.pairs.push_back(pair);
   }
-  const auto rank = [&](const GeometryPair& p) {
-    return std::make_pair(!isPlane(model.geometries[static_cast<std::size_t>(p.a)]),
-                          std::make_pair(p.a, p.b));
-  };
-  std::sort(filter.pairs.begin(), filter.pairs.end(),
-            [&](const GeometryPair& x, const GeometryPair& y) { return rank(x) < rank(y); });
+  sortPairs(model, filter.pairs);
   for (auto& [names, pair] : excluded) filter.excluded.push_back(std::move(pair));
   return filter;
 }

@@ -66,6 +66,11 @@ using StayApart = std::function<bool(const GeometryPair&)>;
 PairFilter makePairFilter(const Model& model, const InitialDistance& initialDistance,
                           const StayApart& stayApart = nullptr);
 
+/// The pair of two geometries, ordered by kind.
+GeometryPair inOrder(const Model& model, int i, int j);
+/// Into the order of PairFilter::pairs.
+void sortPairs(const Model& model, std::vector<GeometryPair>& pairs);
+
 /// Whether a joint connects the bodies, looking through empty bodies; symmetric.
 bool areAdjacent(const Model& model, int bodyA, int bodyB);
 

@@ -3,39 +3,16 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <exception>
-#include <map>
+#include <utility>
 
 #include "collision/detail/broadphase.hpp"
-#include "collision/detail/convex_pairs.hpp"
+#include "collision/detail/geometry_set.hpp"
 #include "collision/primitive_pairs.hpp"
 #include "collision/reach.hpp"
 #include "engine/constraints/contact.hpp"
 #include "engine/model/state.hpp"
 
 namespace softgauss::collision {
-namespace {
-
-double boundingRadius(const Shape& shape, const ConvexHull* hull) {
-  switch (shape.kind) {
-    case ShapeKind::plane:
-      return 0.0;
-    case ShapeKind::sphere:
-      return shape.radius;
-    case ShapeKind::capsule:
-      return shape.radius + shape.halfLength;
-    case ShapeKind::cylinder:
-      return std::hypot(shape.radius, shape.halfLength);
-    case ShapeKind::box:
-      return shape.halfExtents.norm();
-    case ShapeKind::mesh:
-      return hull->boundingRadius;
-  }
-  return 0.0;
-}
-
-}  // namespace
-
 /// Everything that detect() reads and writes, in flat arrays by geometry and by pair.
 struct SceneContacts::Scene {
   /// Of a pair: centres farther apart than `reach` do not touch. For a plane, the distance of the
@@ -50,15 +27,17 @@ struct SceneContacts::Scene {
   /// How much of a geometry's orientation is ever read.
   enum class Turn : std::uint8_t { none, axis, full };
 
-  explicit Scene(const Model& model);
+  Scene(const Model& model, HullCache& hulls);
   /// Poses of the geometries of some pair that move, or of all.
   void pose(const Kinematics& kinematics, bool all = false);
   void choosePosed();
   void chooseSlack(const std::vector<GeometryPair>& pairs);
   void setPairs(const std::vector<GeometryPair>& pairs, int broadphasePairs);
-  /// Exact test; false when it failed.
-  bool test(int a, int b, double margin);
   bool stayApart(int a, int b) const;
+  /// Poses of all geometries in the initial configuration.
+  void placeInitially();
+  /// Signed distance [m] of a pair that overlaps, anything ≥ 0 of others.
+  double distance(const GeometryPair& pair);
   void report(const Row& row, ContactSet& contacts);
   /// Whether the bounding sphere of row.b is within the reach of row.a and `extra` [m].
   bool within(const Row& row, double extra) const;
@@ -68,11 +47,7 @@ struct SceneContacts::Scene {
   void sweep();
 
   const Model& model;
-  std::map<const Mesh*, std::shared_ptr<const ConvexHull>> hulls;  ///< shared by equal meshes
-  std::vector<const ConvexHull*> hullOf;                           ///< null unless a mesh
-  std::vector<detail::Collider> colliders;
-  std::vector<Vector3> centreInG;  ///< of the bounding sphere
-  std::vector<double> radius;
+  const detail::GeometrySet set;
   std::vector<Turn> turn;
   std::vector<int> posed;  ///< geometries whose pose a step needs anew
 
@@ -94,26 +69,12 @@ struct SceneContacts::Scene {
   std::vector<int> firstRow;  ///< rows of geometry a are [firstRow[a], firstRow[a + 1])
 };
 
-SceneContacts::Scene::Scene(const Model& m) : model(m) {
+SceneContacts::Scene::Scene(const Model& m, HullCache& hulls) : model(m), set(m, hulls) {
   const std::size_t count = model.geometries.size();
   X_WG.resize(count);
   centre.resize(count, Vector3::Zero());
-  centreInG.resize(count, Vector3::Zero());
-  colliders.resize(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const Shape& shape = model.geometries[i].shape;
-    const ConvexHull* hull = nullptr;
-    if (shape.kind == ShapeKind::mesh) {
-      auto& shared = hulls[shape.mesh.get()];
-      if (!shared) shared = std::make_shared<ConvexHull>(makeConvexHull(*shape.mesh));
-      hull = shared.get();
-      centreInG[i] = hull->centre;
-    }
-    hullOf.push_back(hull);
-    turn.push_back(shape.kind == ShapeKind::sphere ? Turn::none : Turn::full);
-    radius.push_back(boundingRadius(shape, hull));
-    if (shape.kind != ShapeKind::plane) colliders[i] = detail::makeCollider(shape, hull);
-  }
+  for (const Geometry& g : model.geometries)
+    turn.push_back(g.shape.kind == ShapeKind::sphere ? Turn::none : Turn::full);
 }
 
 void SceneContacts::Scene::setPairs(const std::vector<GeometryPair>& pairs, int broadphasePairs) {
@@ -123,8 +84,8 @@ void SceneContacts::Scene::setPairs(const std::vector<GeometryPair>& pairs, int 
     const Geometry& a = model.geometries[static_cast<std::size_t>(pair.a)];
     const Geometry& b = model.geometries[static_cast<std::size_t>(pair.b)];
     const double margin = pairMaterial(model, pair.a, pair.b).margin;
-    const double reach = radius[static_cast<std::size_t>(pair.a)] +
-                         radius[static_cast<std::size_t>(pair.b)] + margin;
+    const double reach = set.radius[static_cast<std::size_t>(pair.a)] +
+                         set.radius[static_cast<std::size_t>(pair.b)] + margin;
     (a.shape.kind == ShapeKind::plane ? planeRows : rows)
         .push_back({pair.a, pair.b, reach, margin, a.shape.kind == ShapeKind::plane});
     if (hasClosedForm(a.shape.kind, b.shape.kind)) continue;
@@ -146,7 +107,7 @@ void SceneContacts::Scene::setPairs(const std::vector<GeometryPair>& pairs, int 
     for (const ContactPair& pair : model.contactPairs)
       if (pair.geometryA == static_cast<int>(i) || pair.geometryB == static_cast<int>(i))
         margin = std::max(margin, 0.5 * pair.material.margin);
-    radii.push_back(radius[i] + margin + 0.5 * slack);
+    radii.push_back(set.radius[i] + margin + 0.5 * slack);
   }
   movableCentre.resize(movable.size());
   broadphase = std::make_unique<detail::Broadphase>(radii);
@@ -162,7 +123,7 @@ void SceneContacts::Scene::setPairs(const std::vector<GeometryPair>& pairs, int 
 void SceneContacts::Scene::chooseSlack(const std::vector<GeometryPair>& pairs) {
   constexpr double kShare = 0.2;
   double sum = 0.0;
-  for (const GeometryPair& pair : pairs) sum += radius[static_cast<std::size_t>(pair.b)];
+  for (const GeometryPair& pair : pairs) sum += set.radius[static_cast<std::size_t>(pair.b)];
   slack = pairs.empty() ? 0.0 : kShare * sum / static_cast<double>(pairs.size());
 }
 
@@ -190,19 +151,22 @@ void SceneContacts::Scene::pose(const Kinematics& kinematics, bool all) {
     else if (turn[i] == Turn::full)
       X.R.noalias() = X_WB.R * g.X_BG.R;
     centre[i] = X.p;
-    if (hullOf[i] != nullptr) centre[i].noalias() += X.R * centreInG[i];
+    if (set.hull[i]) centre[i].noalias() += X.R * set.centreInG[i];
   }
 }
 
-bool SceneContacts::Scene::test(int a, int b, double margin) {
-  const auto i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b);
-  const Shape &shapeA = model.geometries[i].shape, &shapeB = model.geometries[j].shape;
-  found.clear();
-  if (hasClosedForm(shapeA.kind, shapeB.kind)) {
-    collideInOrder(shapeA, X_WG[i], shapeB, X_WG[j], hullOf[j], margin, found);
-    return true;
-  }
-  return detail::convexConvex(colliders[i], X_WG[i], colliders[j], X_WG[j], margin, found);
+void SceneContacts::Scene::placeInitially() {
+  Kinematics kinematics(model);
+  computeKinematics(model, State(model), kinematics);
+  pose(kinematics, true);
+}
+
+double SceneContacts::Scene::distance(const GeometryPair& pair) {
+  double deepest = kInfinity;
+  if (set.test(pair.a, X_WG[static_cast<std::size_t>(pair.a)], pair.b,
+               X_WG[static_cast<std::size_t>(pair.b)], 0.0, found))
+    for (int i = 0; i < found.count; ++i) deepest = std::min(deepest, found[i].distance);
+  return deepest;
 }
 
 bool SceneContacts::Scene::stayApart(int a, int b) const {
@@ -210,7 +174,7 @@ bool SceneContacts::Scene::stayApart(int a, int b) const {
   constexpr double kRounding = 1e-9;
   const auto ball = [&](int g) {
     const auto i = static_cast<std::size_t>(g);
-    return Ball{model.geometries[i].X_BG * centreInG[i], radius[i]};
+    return Ball{model.geometries[i].X_BG * set.centreInG[i], set.radius[i]};
   };
   return leastDistance(model, model.geometries[static_cast<std::size_t>(a)], ball(a),
                        model.geometries[static_cast<std::size_t>(b)],
@@ -218,24 +182,8 @@ bool SceneContacts::Scene::stayApart(int a, int b) const {
 }
 
 void SceneContacts::Scene::report(const Row& row, ContactSet& contacts) {
-  ++contacts.pairsTested;
-  if (!test(row.a, row.b, row.margin)) {
-    ++contacts.pairsSkipped;
-    return;
-  }
-  if (found.count == 0) return;
-  Contact contact;
-  contact.geometryA = row.a;
-  contact.geometryB = row.b;
-  contact.bodyA = model.geometries[static_cast<std::size_t>(row.a)].body;
-  contact.bodyB = model.geometries[static_cast<std::size_t>(row.b)].body;
-  contact.tangent_W = found.tangent_W;
-  for (int i = 0; i < found.count; ++i) {
-    contact.p_WC = found[i].p_WC;
-    contact.n_W = found[i].n_W;
-    contact.distance = found[i].distance;
-    contacts.add(contact);
-  }
+  set.report(row.a, X_WG[static_cast<std::size_t>(row.a)], row.b,
+             X_WG[static_cast<std::size_t>(row.b)], row.margin, found, contacts);
 }
 
 bool SceneContacts::Scene::within(const Row& row, double extra) const {
@@ -300,22 +248,30 @@ void SceneContacts::Scene::sweep() {
   std::sort(nearRows.begin(), nearRows.end());
 }
 
-SceneContacts::SceneContacts(const Model& model, int broadphasePairs, bool pruning)
-    : scene_(std::make_unique<Scene>(model)) {
-  State initial(model);
-  Kinematics kinematics(model);
-  computeKinematics(model, initial, kinematics);
-  scene_->pose(kinematics, true);
+SceneContacts::SceneContacts(const Model& model, int broadphasePairs, bool pruning,
+                             HullCache* hulls)
+    : scene_(makeScene(model, hulls)) {
+  scene_->placeInitially();
   filter_ = makePairFilter(
-      model,
-      [&](const GeometryPair& pair) {
-        double deepest = kInfinity;
-        if (scene_->test(pair.a, pair.b, 0.0))
-          for (int i = 0; i < scene_->found.count; ++i)
-            deepest = std::min(deepest, scene_->found[i].distance);
-        return deepest;
-      },
+      model, [&](const GeometryPair& pair) { return scene_->distance(pair); },
       [&](const GeometryPair& pair) { return scene_->stayApart(pair.a, pair.b); });
+  setUp(broadphasePairs, pruning);
+}
+
+SceneContacts::SceneContacts(const Model& model, std::vector<GeometryPair> pairs, HullCache& hulls)
+    : scene_(makeScene(model, &hulls)) {
+  scene_->placeInitially();
+  filter_.pairs = std::move(pairs);
+  setUp(kBroadphasePairs, true);
+}
+
+std::unique_ptr<SceneContacts::Scene> SceneContacts::makeScene(const Model& model,
+                                                               HullCache* hulls) {
+  HullCache own;
+  return std::make_unique<Scene>(model, hulls ? *hulls : own);
+}
+
+void SceneContacts::setUp(int broadphasePairs, bool pruning) {
   if (pruning) scene_->chooseSlack(filter_.pairs);
   scene_->setPairs(filter_.pairs, broadphasePairs);
   scene_->choosePosed();
@@ -341,7 +297,7 @@ void SceneContacts::detect(const Model&, const Kinematics& kinematics,
 std::int64_t SceneContacts::sweeps() const { return scene_->sweeps; }
 
 const ConvexHull* SceneContacts::hull(int geometry) const {
-  return scene_->hullOf[static_cast<std::size_t>(geometry)];
+  return scene_->set.hull[static_cast<std::size_t>(geometry)].get();
 }
 
 }  // namespace softgauss::collision

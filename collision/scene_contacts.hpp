@@ -16,6 +16,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "collision/convex_hull.hpp"
 #include "collision/filter.hpp"
@@ -31,8 +32,11 @@ class SceneContacts final : public ContactSource {
 
   /// Throws ModelError when a mesh has no surface. The model must outlive this object.
   /// With `pruning` off every pair is looked at in every step.
+  /// Hulls that `hulls` has are taken from there, others are added; null: made anew.
   explicit SceneContacts(const Model& model, int broadphasePairs = kBroadphasePairs,
-                         bool pruning = true);
+                         bool pruning = true, HullCache* hulls = nullptr);
+  /// With these pairs instead of the filter's, in the order of PairFilter::pairs.
+  SceneContacts(const Model& model, std::vector<GeometryPair> pairs, HullCache& hulls);
   ~SceneContacts() override;
   SceneContacts(const SceneContacts&) = delete;
   SceneContacts& operator=(const SceneContacts&) = delete;
@@ -49,6 +53,9 @@ class SceneContacts final : public ContactSource {
 
  private:
   struct Scene;
+  static std::unique_ptr<Scene> makeScene(const Model& model, HullCache* hulls);
+  void setUp(int broadphasePairs, bool pruning);
+
   std::unique_ptr<Scene> scene_;
   PairFilter filter_;
 };

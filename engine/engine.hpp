@@ -13,6 +13,7 @@
 
 #include "engine/dynamics/energy.hpp"    // energy, momentum, centre of mass
 #include "engine/dynamics/jacobian.hpp"  // point and rotation Jacobians
+#include "engine/islands/islands.hpp"    // a scene in parts that sleep
 #include "engine/model/model_builder.hpp"
 #include "engine/model/state.hpp"
 #include "engine/step/effect_use.hpp"  // what each effect costs

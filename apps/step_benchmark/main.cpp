@@ -16,6 +16,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "apps/step_benchmark/crowds.hpp"
 #include "apps/step_benchmark/ladder.hpp"
 #include "apps/step_benchmark/scaling.hpp"
 #include "apps/step_benchmark/scenes.hpp"
@@ -222,6 +223,7 @@ int main(int argc, char** argv) {
     nlohmann::ordered_json json;
     FlatReporter reporter(json);
     benchmark::RunSpecifiedBenchmarks(&reporter, filter);
+    for (const auto& [name, value] : crowdFigures(robots, filter)) json[name] = value;
     std::map<std::string, double> figures;
     for (const auto& [name, value] : json.items()) figures[name] = value.get<double>();
     const auto derived = [&](const std::string& name, double value) {

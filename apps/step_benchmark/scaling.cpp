@@ -20,13 +20,9 @@ void addGround(ModelBuilder& builder) {
   builder.geometry(plane);
 }
 
-std::unique_ptr<Scene> makeBoxes(int count, bool ground) {
-  ModelBuilder builder = freeBoxes(count, ground ? 0.1 - 1e-4 : 10.0);
-  if (ground) addGround(builder);
-  return makeScene(std::move(builder), false);
-}
+}  // namespace
 
-std::unique_ptr<Scene> makeHumanoids(const std::string& robots, int count) {
+Model humanoids(const std::string& robots, int count) {
   ModelBuilder one = io::readUrdf(robots + "/humanoid.urdf");
   const Model alone = one.build();
   Kinematics k(alone);
@@ -35,11 +31,27 @@ std::unique_ptr<Scene> makeHumanoids(const std::string& robots, int count) {
   ModelBuilder builder("humanoids");
   for (int i = 0; i < count; ++i) {
     one.base = BaseKind::floating;
-    one.X_WRoot.p = Vector3(2.0 * (i % 8), 2.0 * (i / 8), -height);
+    one.X_WRoot.p = Vector3(2.5 * (i % 8), 2.5 * (i / 8), -height);
     builder.add(one, fmt::format("humanoid{}", i));
   }
   addGround(builder);
-  return makeScene(std::move(builder), false);
+  return builder.build();
+}
+
+ModelBuilder boxesOnGround(int count, double spacing) {
+  ModelBuilder builder = freeBoxes(count, 0.1 - 1e-4, spacing);
+  addGround(builder);
+  return builder;
+}
+
+std::unique_ptr<Scene> makeHumanoids(const std::string& robots, int count) {
+  return makeScene(humanoids(robots, count));
+}
+
+namespace {
+
+std::unique_ptr<Scene> makeBoxes(int count, bool ground) {
+  return makeScene(ground ? boxesOnGround(count, 0.3) : freeBoxes(count, 10.0), false);
 }
 
 }  // namespace

@@ -11,6 +11,12 @@
 
 namespace softgauss::app {
 
+/// Humanoids that stand in rows on a ground, 2.5 m apart.
+Model humanoids(const std::string& robots, int count);
+std::unique_ptr<Scene> makeHumanoids(const std::string& robots, int count);
+/// freeBoxes() that lie on a ground.
+ModelBuilder boxesOnGround(int count, double spacing);
+
 /// Named what_count: chains of links, free boxes far apart, boxes on the ground, humanoids on it.
 std::vector<Rung> scaling(const std::string& robots);
 

@@ -8,8 +8,16 @@
 
 namespace softgauss::app {
 
-std::unique_ptr<Scene> makeScene(ModelBuilder builder, bool ground) {
+std::unique_ptr<Scene> makeScene(Model model) {
   auto scene = std::make_unique<Scene>();
+  scene->model = std::move(model);
+  scene->contacts = std::make_unique<collision::SceneContacts>(scene->model);
+  scene->data = std::make_unique<Data>(scene->model);
+  scene->state = State(scene->model);
+  return scene;
+}
+
+std::unique_ptr<Scene> makeScene(ModelBuilder builder, bool ground) {
   if (ground) {
     GeometrySpec plane;
     plane.name = "ground";
@@ -17,10 +25,7 @@ std::unique_ptr<Scene> makeScene(ModelBuilder builder, bool ground) {
     plane.shape = Shape::plane();
     builder.geometry(plane);
   }
-  scene->model = builder.build();
-  scene->contacts = std::make_unique<collision::SceneContacts>(scene->model);
-  scene->data = std::make_unique<Data>(scene->model);
-  scene->state = State(scene->model);
+  std::unique_ptr<Scene> scene = makeScene(builder.build());
   const Body& root = scene->model.bodies[scene->model.trees.front().rootBody];
   if (ground && root.joint == JointKind::floating) {
     computeKinematics(scene->model, scene->state, scene->data->kinematics);
@@ -65,13 +70,13 @@ void addReach(Scene& scene, const std::string& link, const Vector3& target) {
   scene.controller->goals.push_back(std::make_unique<gdd::VirtualDamping>());
 }
 
-ModelBuilder freeBoxes(int count, double height) {
+ModelBuilder freeBoxes(int count, double height, double spacing) {
   ModelBuilder builder("boxes");
   builder.base = BaseKind::floating;
   for (int i = 0; i < count; ++i) {
     ModelBuilder one("box");
     one.base = BaseKind::floating;
-    one.X_WRoot.p = Vector3(0.3 * (i % 5), 0.3 * (i / 5), height);
+    one.X_WRoot.p = Vector3(spacing * (i % 5), spacing * (i / 5), height);
     LinkSpec link;
     link.name = "body";
     link.mass = 1.0;

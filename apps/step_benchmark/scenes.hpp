@@ -34,14 +34,16 @@ struct Scene {
 /// At rest; with `ground`, a floating root stands on the plane z = 0.
 std::unique_ptr<Scene> makeScene(ModelBuilder builder, bool ground);
 
+std::unique_ptr<Scene> makeScene(Model model);
+
 /// folder/name.urdf.
 std::unique_ptr<Scene> makeRobot(const std::string& folder, const std::string& name, bool ground);
 
 /// A chain of n links of 0.1 m and 0.1 kg on hinges of alternating axes, hanging sideways.
 std::unique_ptr<Scene> makeChain(int links);
 
-/// Cubes of 0.2 m and 1 kg, free, 0.3 m apart in rows of five, their centres at `height` [m].
-ModelBuilder freeBoxes(int count, double height);
+/// Cubes of 0.2 m and 1 kg, free, `spacing` apart in rows of five, their centres at `height` [m].
+ModelBuilder freeBoxes(int count, double height, double spacing = 0.3);
 
 /// A goal for a point of `link`, and virtual damping.
 void addReach(Scene& scene, const std::string& link, const Vector3& target);

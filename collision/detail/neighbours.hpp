@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Which units touch, found from boxes about their shapes and then shape by shape.
+
+#include <cstdint>
+#include <map>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "collision/detail/geometry_set.hpp"
+#include "collision/filter.hpp"
+#include "engine/islands/units.hpp"
+
+namespace softgauss::collision::detail {
+
+/// Axis-aligned, in the world [m].
+struct Box {
+  Vector3 lower = Vector3::Constant(kInfinity);
+  Vector3 upper = Vector3::Constant(-kInfinity);
+
+  void add(const Vector3& centre, double radius) {
+    lower = lower.cwiseMin((centre.array() - radius).matrix());
+    upper = upper.cwiseMax((centre.array() + radius).matrix());
+  }
+  bool overlaps(const Box& o) const {
+    return (lower.array() <= o.upper.array()).all() && (o.lower.array() <= upper.array()).all();
+  }
+  bool contains(const Box& o) const {
+    return (lower.array() <= o.lower.array()).all() && (o.upper.array() <= upper.array()).all();
+  }
+};
+
+class Neighbours {
+ public:
+  Neighbours(const Model& model, const Units& units, HullCache& hulls);
+
+  void place(int tree, std::span<const Transform> X_WB) noexcept;
+  /// As IslandContacts::findTouching().
+  void findTouching(const std::vector<int>& awake, const std::vector<int>& groupOf,
+                    std::vector<std::pair<int, int>>& touching) noexcept;
+  std::int64_t searches() const { return searches_; }
+
+ private:
+  /// A geometry of a unit.
+  struct Part {
+    int geometry = 0;
+    int tree = 0;
+    int bodyInTree = 0;
+    Vector3 centreInB = Vector3::Zero();  ///< of the bounding sphere [m]
+    double radius = 0.0;                  ///< of it, with the part of the margin that it brings [m]
+  };
+  struct Row {
+    int a = 0, b = 0;     ///< geometries, as in GeometryPair
+    double reach = 0.0;   ///< bounding radii and margin together [m]
+    double margin = 0.0;  ///< of the pair [m]
+    bool plane = false;   ///< a is one
+  };
+  using UnitPair = std::pair<int, int>;
+
+  const Transform& pose(const Part& part) const {
+    return X_WB_[static_cast<std::size_t>(part.tree)][static_cast<std::size_t>(part.bodyInTree)];
+  }
+  /// Centres and box of a unit, now.
+  void measure(int unit);
+  /// Poses of its geometries, unless they are known.
+  void poseParts(int unit);
+  /// Finds the neighbours of a unit that has left its fat box.
+  void search(int unit);
+  const std::vector<Row>& rowsOf(int i, int j);
+  bool touch(int i, int j);
+
+  const GeometrySet set_;
+  const Units& units_;
+  std::vector<std::vector<Part>> parts_;          ///< (units)
+  std::vector<std::span<const Transform>> X_WB_;  ///< (trees)
+  std::vector<Vector3> centre_;                   ///< (geometries) of bounding spheres, world
+  std::vector<Transform> X_WG_;                   ///< (geometries)
+  std::vector<std::uint8_t> posed_;               ///< (units) X_WG_ is that of now
+  std::vector<Box> box_, fat_;                    ///< (units)
+  std::vector<std::vector<int>> near_;            ///< (units) whose fat boxes overlap its own
+  std::map<UnitPair, std::vector<Row>> rows_;     ///< of pairs that have been near
+  std::vector<int> moved_;                        ///< placed since the last findTouching()
+  std::vector<std::uint8_t> awake_;               ///< (units) scratch
+  PairContacts found_;
+  std::int64_t searches_ = 0;
+};
+
+}  // namespace softgauss::collision::detail

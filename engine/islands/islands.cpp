@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/islands/islands.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <utility>
+
+namespace softgauss {
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+std::vector<int> treesOf(const Units& units, const std::vector<int>& some) {
+  std::vector<int> trees;
+  for (const int unit : some)
+    trees.insert(trees.end(), units.trees[at(unit)].begin(), units.trees[at(unit)].end());
+  std::sort(trees.begin(), trees.end());
+  return trees;
+}
+
+/// Radius of gyration of each body about its centre of mass, the mean over all axes [m].
+std::vector<double> gyrationRadii(const Model& model) {
+  std::vector<double> radii;
+  for (const Body& body : model.bodies) {
+    const double trace = body.I_Bcm.xx + body.I_Bcm.yy + body.I_Bcm.zz;
+    radii.push_back(body.mass > 0.0 ? std::sqrt(trace / (3.0 * body.mass)) : 0.0);
+  }
+  return radii;
+}
+
+/// The fastest link: speed of its centre of mass, and of its radius of gyration [m/s].
+double fastestLink(const Islands::Island& island) {
+  const Model& model = island.part.model;
+  const Kinematics& k = island.data.kinematics;
+  double fastest = 0.0;
+  for (int b = 1; b < model.bodyCount(); ++b) {
+    const Body& body = model.bodies[at(b)];
+    if (body.massless) continue;
+    const Motion& V = k.V[at(b)];
+    const Vector3 com = k.X_WB[at(b)] * body.com - k.p_WO[at(body.tree)];
+    const Vector3 v = V.linear + V.angular.cross(com);
+    fastest = std::max(fastest, v.norm() + island.gyration[at(b)] * V.angular.norm());
+  }
+  return fastest;
+}
+
+}  // namespace
+
+Islands::Island::Island(const Model& whole, std::vector<int> ofUnits, const std::vector<int>& trees,
+                        IslandContacts* source)
+    : units(std::move(ofUnits)),
+      part(whole, trees),
+      contacts(source ? source->within(part) : nullptr),
+      state(part.model),
+      data(part.model),
+      gyration(gyrationRadii(part.model)) {}
+
+Islands::Islands(const Model& model, IslandContacts* contacts, Sleep sleep)
+    : model_(model), contacts_(contacts), sleep_(sleep), units_(model) {
+  if (model.options.integrator != Integrator::semiImplicitEuler)
+    throw ModelError({}, "islands",
+                     "are stepped by semi-implicit-euler, not by " +
+                         std::string(integratorName(model.options.integrator)) +
+                         ", which evaluates the dynamics within the step");
+  islandOf_.resize(at(units_.size()), nullptr);
+  groupOf_.resize(at(units_.size()), 0);
+  acceleration_ = VectorX::Zero(model.nv);
+  setState(State(model));
+}
+
+Islands::~Islands() = default;
+
+void Islands::setState(const State& state) {
+  state_ = state;
+  for (Island* island : islandOf_)
+    if (island && island->active) deactivate(*island);
+  for (int unit = 0; unit < units_.size(); ++unit) activate(find({unit}));
+  refreshLists();
+}
+
+void Islands::wake(int body) {
+  const int unit = units_.ofBody(model_, body);
+  if (unit >= 0) wake(*islandOf_[at(unit)]);
+  refreshLists();
+}
+
+bool Islands::asleep(int body) const {
+  const int unit = units_.ofBody(model_, body);
+  return unit >= 0 && !islandOf(unit).awake;
+}
+
+Islands::Island& Islands::find(const std::vector<int>& units) {
+  std::unique_ptr<Island>& island = islands_[units];
+  if (!island) island = std::make_unique<Island>(model_, units, treesOf(units_, units), contacts_);
+  return *island;
+}
+
+void Islands::activate(Island& island) {
+  island.active = true;
+  island.age = 0;
+  island.awake = false;
+  ++active_;
+  for (const int unit : island.units) {
+    islandOf_[at(unit)] = &island;
+    groupOf_[at(unit)] = island.units.front();
+  }
+  wake(island);
+  place(island);
+}
+
+void Islands::place(const Island& island) {
+  if (!contacts_) return;
+  for (std::size_t t = 0; t < island.part.trees.size(); ++t) {
+    const Tree& tree = island.part.model.trees[t];
+    contacts_->place(island.part.trees[t],
+                     std::span(island.data.kinematics.X_WB)
+                         .subspan(at(tree.rootBody), at(tree.bodyEnd - tree.rootBody)));
+  }
+}
+
+void Islands::deactivate(Island& island) {
+  island.active = island.awake = false;
+  --active_;
+}
+
+/// Reads the island's state.
+void Islands::wake(Island& island) {
+  if (island.awake) return;
+  island.part.gather(model_, state_, island.state);
+  island.awake = true;
+  island.resting = 0.0;
+  awake_.push_back(&island);
+}
+
+void Islands::fallAsleep(Island& island) {
+  island.awake = false;
+  island.state.v.setZero();
+  island.state.warmstart.a.setZero();
+  island.part.scatter(model_, island.state, state_);
+  island.part.scatter(model_, island.state.v, acceleration_);
+  computeKinematics(island.part.model, island.state, island.data.kinematics);
+  place(island);
+}
+
+void Islands::refreshLists() {
+  std::erase_if(awake_, [](const Island* i) { return !i->active || !i->awake; });
+  const auto before = [](const Island* x, const Island* y) {
+    return x->units.front() < y->units.front();
+  };
+  std::sort(awake_.begin(), awake_.end(), before);
+  awake_.erase(std::unique(awake_.begin(), awake_.end()), awake_.end());
+  awakeUnits_.clear();
+  for (const Island* island : awake_)
+    awakeUnits_.insert(awakeUnits_.end(), island->units.begin(), island->units.end());
+  std::sort(awakeUnits_.begin(), awakeUnits_.end());
+}
+
+/// A force that is not zero keeps an island awake, and wakes it.
+void Islands::wakeWhatIsPushed(const Input& input) {
+  const auto push = [&](int tree) {
+    Island& island = *islandOf_[at(units_.ofTree[at(tree)])];
+    if (!island.awake) ++islandStats_.wakeups, wake(island);
+    island.resting = 0.0;
+  };
+  if (input.tau.size() > 0)
+    for (std::size_t t = 0; t < model_.trees.size(); ++t) {
+      const Tree& tree = model_.trees[t];
+      const auto force = input.tau.segment(tree.firstDof, tree.dofEnd - tree.firstDof);
+      if (!(force.array() == 0.0).all()) push(static_cast<int>(t));
+    }
+  for (const ExternalWrench& w : input.wrenches) {
+    const bool none = w.F_Bo_W.force.isZero(0.0) && w.F_Bo_W.moment.isZero(0.0);
+    const int tree = model_.bodies[at(w.body)].tree;
+    if (!none && tree >= 0) push(tree);
+  }
+}
+
+SolveStatus Islands::compute(Island& island, const Input& input) {
+  Input& part = island.input;
+  if (input.tau.size() > 0) {
+    part.tau.resize(island.part.model.nv);
+    island.part.gather(model_, input.tau, part.tau);
+  } else {
+    part.tau.resize(0);
+  }
+  part.wrenches.clear();
+  for (ExternalWrench wrench : input.wrenches) {
+    const int unit = units_.ofBody(model_, wrench.body);
+    if (unit < 0 || islandOf_[at(unit)] != &island) continue;
+    wrench.body = island.part.bodyOf(model_, wrench.body);
+    part.wrenches.push_back(wrench);
+  }
+  return computeStages(island.part.model, part, island.state, island.data, island.contacts.get());
+}
+
+SolveStatus Islands::step(const Input& input) noexcept {
+  stats_ = {};
+  islandStats_ = {};
+  const bool fits =
+      (input.tau.size() == 0 || input.tau.size() == model_.nv) &&
+      std::all_of(input.wrenches.begin(), input.wrenches.end(), [&](const ExternalWrench& w) {
+        return w.body >= 0 && w.body < model_.bodyCount();
+      });
+  if (!fits) return stats_.status = SolveStatus::notFinite;
+
+  wakeWhatIsPushed(input);
+  if (islandStats_.wakeups > 0) refreshLists();
+  for (Island* island : awake_)
+    if (compute(*island, input) == SolveStatus::notFinite) return fail(*island);
+  if (const Island* bad = regroup(input)) return fail(*bad);
+  for (Island* island : awake_) {
+    State& state = island->state;
+    const VectorX* guess = state.warmstart.valid ? &state.warmstart.a : nullptr;
+    const SolveStatus status = advance(island->part.model, island->input, island->contacts.get(),
+                                       guess, island->data, state);
+    if (status == SolveStatus::notFinite) return fail(*island);
+  }
+
+  // All went well: what the islands have found becomes the state.
+  ++clock_;
+  state_.time += model_.options.timestep;
+  state_.warmstart.valid = true;
+  for (Island* island : awake_) {
+    island->part.scatter(model_, island->state, state_);
+    island->part.scatter(model_, island->data.forward.a, acceleration_);
+    island->lastUse = clock_;
+    ++island->age;
+  }
+  collectStats();
+  if (sleep_.enabled) settle();
+  return stats_.status;
+}
+
+/// The state is as before the step in every island.
+SolveStatus Islands::fail(const Island& island) {
+  stats_ = island.data.stats;
+  if (stats_.badDof >= 0) {
+    const int tree =
+        island.part.model.bodies[at(island.part.model.dofs[at(stats_.badDof)].body)].tree;
+    stats_.badDof += model_.trees[at(island.part.trees[at(tree)])].firstDof -
+                     island.part.model.trees[at(tree)].firstDof;
+  }
+  for (Island* other : awake_) other->part.gather(model_, state_, other->state);
+  return stats_.status = SolveStatus::notFinite;
+}
+
+void Islands::settle() {
+  bool changed = false;
+  for (Island* island : awake_) {
+    const bool slow = fastestLink(*island) <= sleep_.speed;
+    island->resting = slow ? island->resting + model_.options.timestep : 0.0;
+    if (island->resting < sleep_.time) continue;
+    fallAsleep(*island);
+    changed = true;
+  }
+  if (changed) refreshLists();
+}
+
+void Islands::collectStats() {
+  islandStats_.islands = active_;
+  islandStats_.awake = static_cast<int>(awake_.size());
+  for (const Island* island : awake_) {
+    const StepStats& s = island->data.stats;
+    stats_.status = std::max(stats_.status, s.status);
+    stats_.contacts += s.contacts;
+    stats_.rows += s.rows;
+    stats_.iterations += s.iterations;
+    stats_.factorizations += s.factorizations;
+    stats_.residual = std::max(stats_.residual, s.residual);
+    stats_.maxPenetration = std::max(stats_.maxPenetration, s.maxPenetration);
+    stats_.pairsSkipped += s.pairsSkipped;
+    stats_.followedTrees += s.followedTrees;
+    stats_.abandonedTrees += s.abandonedTrees;
+    stats_.substeps += s.substeps;
+    stats_.times.kinematics += s.times.kinematics;
+    stats_.times.collision += s.times.collision;
+    stats_.times.rows += s.times.rows;
+    stats_.times.solve += s.times.solve;
+    stats_.times.integrate += s.times.integrate;
+  }
+}
+
+}  // namespace softgauss

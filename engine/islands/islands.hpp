@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// A scene that is stepped island by island, and whose islands may sleep.
+///
+/// An island is a set of units (units.hpp) that touch one another. P = M + JᵀHJ has no entry
+/// between two islands, so the objective of (T.1) is the sum of theirs, and each is solved alone,
+/// as a model of its own (sub_model.hpp): it stops when it has converged, and its result is the
+/// same, bit for bit, whoever else is in the scene. The joint solve of step() finds the same
+/// accelerations up to rounding.
+///
+///   1. stages of each island that is awake: kinematics, M, forces, contacts, rows
+///   2. islands that touch become one; an island may fall apart into those that touch
+///   3. forward dynamics and integration of each
+///   4. an island that has been at rest for long falls asleep
+///
+/// Units join at once. An island is looked at only every kSplitAge of its steps to see whether it
+/// has come apart: solving two islands as one is right too. Step 2 makes models of its own where it
+/// joins or splits, and allocates then; otherwise a step allocates nothing.
+///
+/// Sleep. Where no link has been faster than Sleep::speed for Sleep::time, and nothing is applied,
+/// the island's velocity is set to zero and it costs nothing until something touches it, a force or
+/// wrench is applied to it, wake() or setState() is called. What sleep leaves out is the motion
+/// that was left: less than Sleep::speed times the time asleep (docs/decisions/0026).
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "engine/islands/island_contacts.hpp"
+#include "engine/islands/union_find.hpp"
+#include "engine/islands/units.hpp"
+#include "engine/step/snapshot.hpp"
+#include "engine/step/step.hpp"
+
+namespace softgauss {
+
+struct Sleep {
+  bool enabled = false;
+  double speed = 5e-3;  ///< [m/s] of every link: its centre of mass, and its radius of gyration
+  double time = 0.5;    ///< [s] for which they have been slower
+};
+
+struct IslandStats {
+  int islands = 0;   ///< all, asleep or not
+  int awake = 0;     ///< of them
+  int regroups = 0;  ///< islands made in this step because units met or came apart
+  int wakeups = 0;   ///< islands that were woken by this step
+};
+
+class Islands {
+ public:
+  /// Steps of an island between two looks at whether it has come apart.
+  static constexpr int kSplitAge = 32;
+
+  /// `contacts` may be null: nothing collides. Model and contacts must outlive this object.
+  /// Throws ModelError when the model's integrator is not semi-implicit Euler: the others evaluate
+  /// the dynamics within the step, where islands may meet that were apart at its start.
+  explicit Islands(const Model& model, IslandContacts* contacts, Sleep sleep = {});
+  ~Islands();
+  Islands(const Islands&) = delete;
+  Islands& operator=(const Islands&) = delete;
+
+  const State& state() const { return state_; }
+  /// Wakes everything.
+  void setState(const State& state);
+  /// Wakes the island of a body.
+  void wake(int body);
+  bool asleep(int body) const;
+
+  /// One step of all islands that are awake. On SolveStatus::notFinite the whole state is left as
+  /// it was; stats().badDof tells the dof.
+  SolveStatus step(const Input& input) noexcept;
+
+  /// Sums over the awake islands; status and residual are the worst.
+  const StepStats& stats() const { return stats_; }
+  const IslandStats& islandStats() const { return islandStats_; }
+  /// Of the last step; sleepers have none (nv).
+  const VectorX& acceleration() const { return acceleration_; }
+
+  /// An island, as the last step has left it. Its state is that of the step's end, its data that of
+  /// the start.
+  struct Island {
+    Island(const Model& whole, std::vector<int> ofUnits, const std::vector<int>& trees,
+           IslandContacts* contacts);
+
+    std::vector<int> units;  ///< ascending
+    SubModel part;
+    std::unique_ptr<ContactSource> contacts;  ///< null: nothing collides
+    State state;
+    Data data;
+    Input input;
+    std::vector<double> gyration;  ///< (bodies) radius of gyration [m]
+    int age = 0;                   ///< steps since it was made
+    double resting = 0.0;          ///< [s]
+    bool active = false;           ///< part of the scene now
+    bool awake = false;
+    std::int64_t lastUse = 0;
+  };
+  /// Those that are awake, by their first unit.
+  const std::vector<Island*>& awake() const { return awake_; }
+  /// The island of a unit now.
+  const Island& islandOf(int unit) const { return *islandOf_[static_cast<std::size_t>(unit)]; }
+  const Units& units() const { return units_; }
+
+ private:
+  Island& find(const std::vector<int>& units);
+  void activate(Island& island);
+  void deactivate(Island& island);
+  void wake(Island& island);
+  void fallAsleep(Island& island);
+  void place(const Island& island);
+  void refreshLists();
+  void wakeWhatIsPushed(const Input& input);
+  SolveStatus compute(Island& island, const Input& input);
+  const Island* regroup(const Input& input);
+  void uniteUnits(const Island& island, bool touchingOnly, UnionFind& sets) const;
+  void forget();
+  void settle();
+  SolveStatus fail(const Island& island);
+  void collectStats();
+
+  const Model& model_;
+  IslandContacts* contacts_;
+  const Sleep sleep_;
+  const Units units_;
+  State state_;
+  VectorX acceleration_;
+  StepStats stats_;
+  IslandStats islandStats_;
+
+  std::map<std::vector<int>, std::unique_ptr<Island>> islands_;  ///< by units; all that are kept
+  std::vector<Island*> islandOf_;                                ///< (units)
+  std::vector<int> groupOf_;                   ///< (units) first unit of its island
+  std::vector<Island*> awake_;                 ///< by first unit
+  std::vector<int> awakeUnits_;                ///< ascending
+  int active_ = 0;                             ///< islands, asleep or not
+  std::int64_t clock_ = 0;                     ///< steps taken
+  std::vector<std::pair<int, int>> touching_;  ///< scratch
+  std::vector<Island*> affected_;              ///< scratch
+};
+
+}  // namespace softgauss

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/// Islands join and come apart.
+
+#include <algorithm>
+
+#include "engine/islands/islands.hpp"
+#include "engine/islands/union_find.hpp"
+
+namespace softgauss {
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+}  // namespace
+
+/// Unites the units of an island that touch, or all of them.
+void Islands::uniteUnits(const Island& island, bool touchingOnly, UnionFind& sets) const {
+  if (!touchingOnly) {
+    for (const int unit : island.units) sets.unite(unit, island.units.front());
+    return;
+  }
+  const auto unitOf = [&](int body) {
+    const int tree = island.part.model.bodies[at(body)].tree;
+    return tree < 0 ? -1 : units_.ofTree[at(island.part.trees[at(tree)])];
+  };
+  for (const Contact& c : island.data.contacts.contacts) {
+    const int a = unitOf(c.bodyA), b = unitOf(c.bodyB);
+    if (a >= 0 && b >= 0) sets.unite(a, b);
+  }
+}
+
+/// Islands from who touches whom. Returns an island whose stages could not be computed, or null.
+const Islands::Island* Islands::regroup(const Input& input) {
+  touching_.clear();
+  if (contacts_) contacts_->findTouching(awakeUnits_, groupOf_, touching_);
+
+  std::vector<Island*>& affected = affected_;
+  affected.clear();
+  for (Island* island : awake_)
+    if (island->units.size() > 1 && island->age > 0 && island->age % kSplitAge == 0)
+      affected.push_back(island);
+  if (touching_.empty() && affected.empty()) return nullptr;
+
+  UnionFind sets(units_.size());
+  for (const Island* island : affected) uniteUnits(*island, true, sets);
+  const std::size_t looked = affected.size();
+  for (const auto& [i, j] : touching_) {
+    sets.unite(i, j);
+    for (Island* island : {islandOf_[at(i)], islandOf_[at(j)]})
+      if (std::find(affected.begin(), affected.end(), island) == affected.end())
+        affected.push_back(island);
+  }
+  for (std::size_t n = looked; n < affected.size(); ++n) uniteUnits(*affected[n], false, sets);
+
+  std::map<int, std::vector<int>> groups;  // by first unit
+  for (const Island* island : affected)
+    for (const int unit : island->units) groups[sets.find(unit)].push_back(unit);
+  std::vector<Island*> made;
+  for (Island* island : affected) {
+    if (!island->awake) ++islandStats_.wakeups;
+    const int set = sets.find(island->units.front());
+    const bool whole = std::all_of(island->units.begin(), island->units.end(),
+                                   [&](int unit) { return sets.find(unit) == set; });
+    if (!whole || groups.at(set).size() != island->units.size()) deactivate(*island);
+  }
+  for (auto& [first, group] : groups) {
+    std::sort(group.begin(), group.end());
+    Island& island = find(group);
+    if (island.active) continue;  // as it was
+    activate(island);
+    made.push_back(&island);
+    ++islandStats_.regroups;
+  }
+  if (made.empty()) return nullptr;
+  refreshLists();
+  for (Island* island : made)
+    if (compute(*island, input) == SolveStatus::notFinite) return island;
+  forget();
+  return nullptr;
+}
+
+/// Islands of several units that were not met for long are forgotten.
+void Islands::forget() {
+  constexpr std::size_t kKept = 64;
+  std::vector<std::pair<std::int64_t, const std::vector<int>*>> idle;
+  for (const auto& [units, island] : islands_)
+    if (units.size() > 1 && !island->active) idle.emplace_back(island->lastUse, &units);
+  if (idle.size() <= kKept) return;
+  std::sort(idle.begin(), idle.end(), [](const auto& x, const auto& y) {
+    return x.first != y.first ? x.first < y.first : *x.second < *y.second;
+  });
+  for (std::size_t n = 0; n < idle.size() - kKept / 2; ++n)
+    islands_.erase(std::vector<int>(*idle[n].second));
+}
+
+}  // namespace softgauss
