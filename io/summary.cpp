@@ -106,7 +106,7 @@ std::string Summary::json() const {
     goalList.push_back({{"name", goal.name},
                         {"initial_error_m", goal.initialError},
                         {"final_error_m", goal.finalError}});
-  const ordered_json summary = {
+  ordered_json summary = {
       {"version", version},
       {"model",
        {{"name", modelName_},
@@ -148,6 +148,11 @@ std::string Summary::json() const {
       {"max_penetration_m", maxPenetration_},
       {"max_control_ratio", maxControlRatio_},
       {"warnings", warnings}};
+  if (islands.on)
+    summary["islands"] = {{"most", islands.most},
+                          {"fewest_awake", islands.fewestAwake},
+                          {"asleep_share", islands.asleepShare()},
+                          {"wakeups", islands.wakeups}};
   // Names come from files: bytes that are no UTF-8 are replaced, not refused.
   return summary.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }

@@ -43,6 +43,21 @@ struct GddOutcomes {
   long uncertified() const { return iterationLimit + bend + undecided; }
 };
 
+/// Islands over the steps of a run; sums count every step.
+struct IslandOutcomes {
+  bool on = false;
+  long steps = 0;
+  long islands = 0;  ///< sum over the steps
+  long awake = 0;    ///< sum over the steps
+  long wakeups = 0;
+  int most = 0;         ///< in a step
+  int fewestAwake = 0;  ///< in a step
+
+  double asleepShare() const {
+    return islands > 0 ? 1.0 - static_cast<double>(awake) / static_cast<double>(islands) : 0.0;
+  }
+};
+
 /// Values of one quantity over the steps.
 struct Series {
   std::vector<double> values;
@@ -81,6 +96,7 @@ class Summary {
   std::vector<std::string> effects;
   std::vector<GoalOutcome> goals;
   GddOutcomes gdd;
+  IslandOutcomes islands;
   std::vector<std::string> warnings;  ///< preset to the model's
 
   double simulatedSeconds() const { return endTime_ - startTime_; }

@@ -74,6 +74,9 @@ std::string Summary::table() const {
     add(fmt::format("  minima of goals: {:.4g} % certified, {:.3g} % of all at kinks",
                     100.0 * static_cast<double>(gdd.certified + gdd.kinks) / gdd.all(),
                     100.0 * static_cast<double>(gdd.kinks) / gdd.all()));
+  if (islands.on)
+    add(fmt::format("  islands: up to {}, {:.3g} % of them asleep over the run, {} woken",
+                    islands.most, 100.0 * islands.asleepShare(), islands.wakeups));
   add("");
   add(fmt::format("  energy {:.4g} J to {:.4g} J; deepest penetration {}; largest control {}",
                   initialEnergy_, finalEnergy_, millimetres(maxPenetration_),

@@ -117,7 +117,7 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
       "bring it nearer its goals, with the contact forces that then act.");
   app.set_version_flag("--version", std::string("softgauss ") + SOFTGAUSS_VERSION);
   std::string base = "automatic", ground, effects, zeroEffort = "passive", integrator, cone, solver,
-              compatibility;
+              compatibility, islands;
   std::vector<std::string> reach, q0;
   for (int i = 0; i < argc; ++i)
     options.commandLine +=
@@ -207,6 +207,12 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
       ->check(CLI::IsMember({"none", "mujoco"}))
       ->group(simulation);
 
+  app.add_option("--islands", islands,
+                 "apart: robots and objects that do not touch are solved apart from each other;\n"
+                 "sleep: and those at rest cost nothing until something touches or pushes them")
+      ->check(CLI::IsMember({"apart", "sleep"}))
+      ->group(simulation);
+
   const char* const output = "Output";
   app.add_flag("--explain", options.explain, "tell what was loaded and simulate nothing")
       ->group(output);
@@ -254,6 +260,8 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
     options.gddSolver =
         solver == "active-set" ? gdd::GddSolver::activeSet : gdd::GddSolver::augmentedLagrangian;
   if (!compatibility.empty()) options.likeMujoco = compatibility == "mujoco";
+  options.islands = !islands.empty();
+  options.sleep = islands == "sleep";
   options.zeroEffortIsUnlimited = zeroEffort == "unlimited";
   if (!effects.empty()) options.effects = parseEffects(effects);
   if (options.ground) mustBeNear(*options.ground, "--ground");

@@ -41,6 +41,8 @@ struct SimulateOptions {
   std::optional<Integrator> integrator;
   std::optional<double> integrationTolerance;
   std::optional<bool> likeMujoco;  ///< --compatibility
+  bool islands = false;            ///< what does not touch is solved apart
+  bool sleep = false;              ///< and what rests costs nothing
   bool explain = false;
   bool quiet = false;
   std::filesystem::path log, summary, view, plot;

@@ -22,6 +22,10 @@ class Replay {
   void addStep(const io::StepRecord& record, const Data& data) {
     if (recording_) recording_->addStep(record, data);
   }
+  void addStep(const io::StepRecord& record, const Data& data,
+               const std::vector<Snapshot::ContactForce>& contacts) {
+    if (recording_) recording_->addStep(record, data, contacts);
+  }
   /// The final state, whose stages are in `data`; `message` says why the run ended early. Returns
   /// what could not be written, or nothing.
   std::string finish(const io::StepRecord& last, const Data& data, const io::Summary& summary,

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <optional>
 
+#include "apps/simulate_gdd/island_run.hpp"
 #include "apps/simulate_gdd/progress.hpp"
 #include "apps/simulate_gdd/replay.hpp"
 #include "apps/simulate_gdd/verdict.hpp"
@@ -79,6 +80,11 @@ class Runner {
     for (const io::EffectNote& note : notes)
       if (note.asked && !note.on)
         summary_.warnings.push_back(fmt::format("{} is not simulated: {}", note.name, note.reason));
+    if (options.islands) {
+      if (!controller_.goals.empty())
+        throw UsageError("--islands is for runs without goals: goals tie all that they move");
+      islands_.emplace(model_, state_, options.sleep);
+    }
     computeStages(model_, input_, state_, data_, &contacts_);
     for (const auto& goal : controller_.goals)
       if (const std::optional<double> error = goal->error({model_, state_, data_}))
@@ -133,15 +139,16 @@ class Runner {
     record_.q = state_.q;
     record_.v = state_.v;
     if (torques_) torques_->controlAt(state_.time, input_.tau);
-    if (!wrenches_.empty()) {
-      computeKinematics(model_, state_, data_.kinematics);
+    if (islands_ || !wrenches_.empty()) computeKinematics(model_, state_, data_.kinematics);
+    if (!wrenches_.empty())
       wrenches_.at(state_.time, model_.options.timestep, data_.kinematics, input_.wrenches);
-    }
     const Clock::time_point start = Clock::now();
-    const SolveStatus status = controller_.goals.empty()
+    const SolveStatus status = islands_ ? islands_->step(input_)
+                               : controller_.goals.empty()
                                    ? softgauss::step(model_, input_, state_, data_, &contacts_)
                                    : controller_.step(model_, input_, state_, data_, &contacts_);
     record_.stepUs = 1e6 * secondsSince(start);
+    if (islands_) islands_->take(input_, state_, data_);
     if (!data_.constraints.piecewiseQuadratic()) ++stepsWithCones_;
     return status != SolveStatus::notFinite;
   }
@@ -159,7 +166,8 @@ class Runner {
     record_.stationarity = gdd ? controller_.report.stationarity : 0.0;
     record_.gddUs = gdd ? 1e6 * controller_.solveTime : 0.0;
     record_.forwardUs = record_.stepUs - record_.gddUs;
-    record_.physicsViolation = physicsViolation(model_, data_, scratch_);
+    record_.physicsViolation =
+        islands_ ? islands_->physicsViolation() : physicsViolation(model_, data_, scratch_);
     const Energy energy = computeEnergy(model_, data_.kinematics, record_.q, record_.v);
     record_.energy = energy.total();
     record_.kineticEnergy = energy.kinetic;
@@ -174,7 +182,10 @@ class Runner {
       if (std::isfinite(bound) && bound > 0.0)
         summary_.addControlRatio(std::abs(controller_.commands[k]) / bound);
     }
-    replay_->addStep(record_, data_);
+    if (islands_)
+      replay_->addStep(record_, data_, islands_->contacts());
+    else
+      replay_->addStep(record_, data_);
   }
 
   void count(const gdd::GddReport& report) {
@@ -242,6 +253,7 @@ class Runner {
       summary_.warnings.push_back(std::move(unreached));
     tellSolver();
     tellMinima();
+    if (islands_) summary_.islands = islands_->outcomes();
     summary_.finish(last);
     if (!options_.summary.empty()) summary_.write(options_.summary);
     const std::string error = replay_->finish(last, data_, summary_, reason);
@@ -279,6 +291,7 @@ class Runner {
   gdd::GoalDirectedController controller_;
   const io::WrenchSchedule& wrenches_;
   Input input_;
+  std::optional<IslandRun> islands_;
   std::optional<io::TorqueTable> torques_;
   std::optional<io::LogWriter> log_;
   std::optional<Replay> replay_;

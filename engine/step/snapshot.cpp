@@ -49,8 +49,9 @@ void contactForces(const Data& data, std::vector<Snapshot::ContactForce>& contac
   }
 }
 
-void takeSnapshot(const Model& model, const Data& data, double time, Snapshot& snapshot) {
-  const Kinematics& k = data.kinematics;
+void takeSnapshot(const Model& model, const Kinematics& k,
+                  const std::vector<Snapshot::ContactForce>& contacts, double time,
+                  Snapshot& snapshot) {
   snapshot.time = time;
   snapshot.X_WB = k.X_WB;
   snapshot.velocity.assign(model.bodies.size(), Vector3::Zero());
@@ -59,9 +60,15 @@ void takeSnapshot(const Model& model, const Data& data, double time, Snapshot& s
     snapshot.velocity[b] = pointVelocity(model, k, b, k.X_WB[b].p);
     snapshot.angularVelocity[b] = k.V[b].angular;
   }
-  contactForces(data, snapshot.contacts);
+  snapshot.contacts = contacts;
   snapshot.centerOfMass = centerOfMass(model, k);
   snapshot.centerOfPressure = centerOfPressure(model, snapshot.contacts);
+}
+
+void takeSnapshot(const Model& model, const Data& data, double time, Snapshot& snapshot) {
+  std::vector<Snapshot::ContactForce> contacts;
+  contactForces(data, contacts);
+  takeSnapshot(model, data.kinematics, contacts, time, snapshot);
 }
 
 }  // namespace softgauss

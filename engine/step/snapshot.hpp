@@ -41,6 +41,11 @@ std::optional<Vector3> centerOfPressure(const Model& model,
 /// The contacts of the last solve, with their forces.
 void contactForces(const Data& data, std::vector<Snapshot::ContactForce>& contacts);
 
+/// Poses and velocities of `kinematics` at `time`, and these contacts.
+void takeSnapshot(const Model& model, const Kinematics& kinematics,
+                  const std::vector<Snapshot::ContactForce>& contacts, double time,
+                  Snapshot& snapshot);
+
 /// The instant whose stages `data` holds: after step(), that is the step's start at `time`.
 void takeSnapshot(const Model& model, const Data& data, double time, Snapshot& snapshot);
 

@@ -126,11 +126,17 @@ void Recording::readMarks(const StepRecord& r, const Data& data) {
 }
 
 void Recording::addStep(const StepRecord& r, const Data& data) {
-  readMarks(r, data);
   contactForces(data, contacts_);
+  addStep(r, data, contacts_);
+}
+
+void Recording::addStep(const StepRecord& r, const Data& data,
+                        const std::vector<Snapshot::ContactForce>& contacts) {
+  if (&contacts != &contacts_) contacts_ = contacts;
+  readMarks(r, data);
   writeSample(r, false, series_.add(r.time));
   if (frames_.due(r.time)) {
-    takeSnapshot(model_, data, r.time, snapshot_);
+    takeSnapshot(model_, data.kinematics, contacts_, r.time, snapshot_);
     frames_.add(snapshot_, marks_);
   }
 }

@@ -58,6 +58,9 @@ class Recording {
   }
   /// A step that was taken: its record, and the stages that it was taken from.
   void addStep(const StepRecord& record, const Data& data);
+  /// The same with the contact forces from elsewhere.
+  void addStep(const StepRecord& record, const Data& data,
+               const std::vector<Snapshot::ContactForce>& contacts);
   /// The state that the run ended with, whose stages are in `data`. The frame shows the contact
   /// forces of the last step, which led there; curves of what a solve gives end before it.
   void finish(const StepRecord& last, const Data& data);

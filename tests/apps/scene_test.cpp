@@ -173,6 +173,47 @@ TEST(SceneRun, ADifferentialWristStaysWithinItsMotors) {
   }
 }
 
+// Two stacks and a ball that falls on the second: the same motion, and in the end all sleep.
+TEST(SceneRun, IslandsAreSolvedApartAndSleep) {
+  const io::TempFolder folder;
+  std::string text = "ground: 0\nobjects:\n";
+  for (int i = 0; i < 4; ++i)
+    text += "  - {name: box" + std::to_string(i) +
+            ", box: {size: [0.2, 0.2, 0.2]}, mass: 1, position: [" + std::to_string(i / 2) +
+            ", 0, " + std::to_string(0.1 + 0.2 * (i % 2)) + "]}\n";
+  text += "  - {name: ball, sphere: {radius: 0.1}, mass: 1, position: [1, 0, 4]}\n";
+  const std::string scene = folder.write("scene.yaml", text);
+  std::vector<Csv> logs;
+  for (const char* islands : {"", "apart", "sleep"}) {
+    const std::string log = folder.path() / "log.csv", summary = folder.path() / "summary.json";
+    std::vector<std::string> arguments = {scene, "--duration", "3",    "--log",
+                                          log,   "--summary",  summary};
+    if (*islands) arguments.insert(arguments.end(), {"--islands", islands});
+    const Outcome outcome = simulate(arguments);
+    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    logs.emplace_back(readFile(log));
+    const auto json = nlohmann::json::parse(readFile(summary));
+    EXPECT_EQ(json.contains("islands"), *islands != 0);
+    EXPECT_EQ(outcome.out.find("islands: up to 3") != std::string::npos, *islands != 0);
+    if (!*islands) continue;
+    EXPECT_EQ(json["islands"]["most"], 3);
+    const bool sleeps = islands == std::string("sleep");
+    EXPECT_EQ(json["islands"]["fewest_awake"], sleeps ? 0 : 2);
+    EXPECT_EQ(json["islands"]["wakeups"], sleeps ? 1 : 0);
+    EXPECT_LT(json["physics_violation"]["max"], 1e-8);
+  }
+  ASSERT_EQ(logs[0].rows.size(), logs[1].rows.size());
+  const int last = static_cast<int>(logs[0].rows.size()) - 1;
+  for (const char* column : {"q:box0.z", "q:box3.z", "q:ball.z", "energy_J"}) {
+    EXPECT_NEAR(logs[0].number(last - 1, column), logs[1].number(last - 1, column), 1e-6) << column;
+    EXPECT_NEAR(logs[0].number(last - 1, column), logs[2].number(last - 1, column), 1e-3) << column;
+  }
+  const Outcome refused = simulate({scene, "--islands", "apart", "--integrator", "runge-kutta-4"});
+  EXPECT_EQ(refused.exitCode, 2);
+  EXPECT_NE(refused.err.find("semi-implicit-euler"), std::string::npos) << refused.err;
+  EXPECT_EQ(simulate({dataFile("scenes/two_arms.yaml"), "--islands", "sleep"}).exitCode, 2);
+}
+
 TEST(SceneRun, OptionsOfAUrdfAloneAreRefused) {
   const std::string scene = dataFile("scenes/two_arms.yaml");
   for (const auto& [option, value] :

@@ -7,16 +7,24 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <thread>
 
+#include "tests/support/same_contacts.hpp"
 #include "tests/support/tolerance.hpp"
 
 namespace softgauss::test {
+namespace {
+
+constexpr int kNoBroadphase = std::numeric_limits<int>::max();
+
+}  // namespace
 
 Trial::Trial(std::string name, Model m)
     : model(std::move(m)),
       state(model),
       contacts(std::make_unique<collision::SceneContacts>(model)),
+      unpruned(std::make_unique<collision::SceneContacts>(model, kNoBroadphase, false)),
       data(std::make_unique<Data>(model)),
       name_(std::move(name)) {
   input.tau = VectorX::Zero(model.nv);
@@ -53,6 +61,7 @@ bool Trial::run(double seconds, const std::function<void()>& each) {
 
 bool Trial::watch(SolveStatus status) {
   const StepStats& stats = data->stats;
+  if (unpruned->mayTouch()) unpruned->detect(model, data->kinematics, all_);
   const auto breaks = [&](const std::string& law) {
     ADD_FAILURE() << name_ << ": " << law << " at t = " << state.time;
     return false;
@@ -64,6 +73,8 @@ bool Trial::watch(SolveStatus status) {
     return breaks("not finite, dof " + std::to_string(stats.badDof));
   if (status != SolveStatus::converged && ++stalls > mayStall)
     return breaks("the solve ended short, residual " + std::to_string(stats.residual));
+  if (unpruned->mayTouch() && !sameContacts(data->contacts, all_))
+    return breaks("contacts that pruning has changed");
   if (!state.q.allFinite() || !state.v.allFinite()) return breaks("a state that is not finite");
   if (stats.pairsSkipped > 0) return breaks("a pair of shapes was not tested");
   fastest = std::max(fastest, state.v.size() > 0 ? state.v.cwiseAbs().maxCoeff() : 0.0);

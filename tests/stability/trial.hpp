@@ -39,6 +39,8 @@ class Trial {
   State state;  ///< may be changed before the first run()
   Input input;
   std::unique_ptr<collision::SceneContacts> contacts;
+  /// The same without pruning: at every step the two must find the same, bit for bit.
+  std::unique_ptr<collision::SceneContacts> unpruned;
   std::unique_ptr<Data> data;
 
   double mayGain = kInfinity;  ///< [J] above the energy of the first step's start

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/simulate_gdd/island_run.hpp"
+
+#include <algorithm>
+
+namespace softgauss::app {
+
+IslandRun::IslandRun(const Model& model, const State& initial, bool sleep)
+    : model_(model), contacts_(model), islands_(model, &contacts_, Sleep{.enabled = sleep}) {
+  islands_.setState(initial);
+  outcomes_.on = true;
+  outcomes_.fewestAwake = islands_.units().size();
+}
+
+void IslandRun::take(const Input& input, State& state, Data& data) {
+  data.stats = islands_.stats();
+  collectContacts(data.contacts.contacts);
+  if (data.stats.status == SolveStatus::notFinite) return;
+  data.forward.a = islands_.acceleration();
+  if (input.tau.size() > 0)
+    data.forces.tau = input.tau;
+  else
+    data.forces.tau.setZero();
+  state = islands_.state();
+
+  const IslandStats& stats = islands_.islandStats();
+  ++outcomes_.steps;
+  outcomes_.islands += stats.islands;
+  outcomes_.awake += stats.awake;
+  outcomes_.wakeups += stats.wakeups;
+  outcomes_.most = std::max(outcomes_.most, stats.islands);
+  outcomes_.fewestAwake = std::min(outcomes_.fewestAwake, stats.awake);
+}
+
+void IslandRun::collectContacts(std::vector<Contact>& contacts) {
+  contacts.clear();
+  forces_.clear();
+  const Islands::Island* last = nullptr;
+  for (int unit = 0; unit < islands_.units().size(); ++unit) {
+    const Islands::Island& island = islands_.islandOf(unit);
+    if (&island == last || island.units.front() != unit) continue;
+    last = &island;
+    const auto whole = [&](int geometry) {
+      return island.part.geometries[static_cast<std::size_t>(geometry)];
+    };
+    for (Contact c : island.data.contacts.contacts) {
+      c.geometryA = whole(c.geometryA), c.geometryB = whole(c.geometryB);
+      c.bodyA = model_.geometries[static_cast<std::size_t>(c.geometryA)].body;
+      c.bodyB = model_.geometries[static_cast<std::size_t>(c.geometryB)].body;
+      contacts.push_back(c);
+    }
+    contactForces(island.data, some_);
+    for (Snapshot::ContactForce f : some_) {
+      f.geometryA = whole(f.geometryA), f.geometryB = whole(f.geometryB);
+      forces_.push_back(f);
+    }
+  }
+}
+
+double IslandRun::physicsViolation() {
+  double worst = 0.0;
+  for (Islands::Island* island : islands_.awake()) {
+    if (island->part.model.nv == 0) continue;
+    inverseDynamics(island->part.model, island->data.forward.a, island->data, scratch_);
+    worst = std::max(worst, (scratch_ - island->data.forces.tau).cwiseAbs().maxCoeff());
+  }
+  return worst;
+}
+
+}  // namespace softgauss::app
