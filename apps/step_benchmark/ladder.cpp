@@ -19,7 +19,10 @@ struct Base {
 
 Base makeBase(const std::string& robots, const std::string& name) {
   Base base;
-  base.builder = name == "boxes" ? freeBoxes(20, 0.1) : io::readUrdf(robots + "/" + name + ".urdf");
+  const bool plain = name == "plainarm";
+  base.builder = name == "boxes" ? freeBoxes(20, 0.1)
+                                 : io::readUrdf(robots + "/" + (plain ? "arm" : name) + ".urdf");
+  if (plain) base.builder.options.midpointCoriolis = false;
   const Model model = base.builder.build();
   for (int b = 1; b < model.bodyCount(); ++b) {
     const auto i = static_cast<std::size_t>(b);
@@ -121,6 +124,9 @@ std::unique_ptr<Scene> makeEffectScene(const std::string& robots, const std::str
 
 std::vector<Rung> ladder(const std::string& robots) {
   std::vector<Rung> rungs;
+  for (const char* effect : {"nothing", "self_collision_idle"})
+    rungs.push_back({fmt::format("plainarm_{}", effect),
+                     [=] { return makeEffectScene(robots, "plainarm", effect); }});
   for (const char* base : {"arm", "humanoid", "boxes"})
     for (const char* effect : {"nothing", "damping", "limits_idle", "limits_active", "dry_friction",
                                "equality", "self_collision_idle", "ground_idle", "contact",

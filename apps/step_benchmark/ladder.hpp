@@ -4,7 +4,8 @@
 /// The ladder: each effect alone, on the same base.
 ///
 /// Bases are a fixed arm of 7 hinges, a floating humanoid, and 20 free boxes. `nothing` has gravity
-/// and inertial forces; every other rung is that and one effect, at the same state.
+/// and inertial forces; `plainarm` is the arm with the Coriolis forces of the step's start; every
+/// other rung is that and one effect, at the same state.
 
 #include <functional>
 #include <memory>

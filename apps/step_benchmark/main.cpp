@@ -18,6 +18,7 @@
 
 #include "apps/step_benchmark/crowds.hpp"
 #include "apps/step_benchmark/ladder.hpp"
+#include "apps/step_benchmark/pictures.hpp"
 #include "apps/step_benchmark/scaling.hpp"
 #include "apps/step_benchmark/scenes.hpp"
 
@@ -74,20 +75,20 @@ void timeScene(benchmark::State& state, const std::function<std::unique_ptr<Scen
                int warmUp) {
   const std::unique_ptr<Scene> scene = make();
   for (int i = 0; i < warmUp; ++i) scene->step();
-  const State saved = scene->state;
+  const State saved = scene->now();
   std::map<std::string, std::vector<double>> values;
   Recorder recorder;
   State before;
   for (auto _ : state) {
     for (int i = 0; i < kPieces * kTimedSteps; ++i) {
-      if (i % kTimedSteps == 0) scene->state = saved;
+      if (i % kTimedSteps == 0) scene->restore(saved);
       if (scene->recording) before = scene->state;
       const auto start = std::chrono::steady_clock::now();
       scene->step();
       const double seconds =
           std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
       if (scene->recording) recorder.addStep(*scene, before);
-      const StepStats& stats = scene->data->stats;
+      const StepStats& stats = scene->stats();
       values["step.us"].push_back(1e6 * seconds);
       values["kinematics.us"].push_back(1e6 * stats.times.kinematics);
       values["collision.us"].push_back(1e6 * stats.times.collision);
@@ -177,9 +178,11 @@ class FlatReporter final : public benchmark::BenchmarkReporter {
 
 int main(int argc, char** argv) {
   CLI::App app("µs per step and stage; one line per figure");
-  std::string filter = ".", file, robots = "data/robots";
+  std::string filter = ".", file, pictures, robots = "data/robots";
   app.add_option("--filter", filter, "regular expression of scene names");
   app.add_option("--json", file, "write the figures to this file too");
+  app.add_option("--pictures", pictures,
+                 "draw the ladder and the scaling into this folder, with gnuplot");
   app.add_option("--robots", robots, "folder of humanoid.urdf, hand.urdf, arm.urdf")
       ->check(CLI::ExistingDirectory);
   CLI11_PARSE(app, argc, argv);
@@ -240,8 +243,18 @@ int main(int argc, char** argv) {
       if (nothing != figures.end() && nothing->first != name)
         derived(rung + ".added.us", value - nothing->second);
     }
+    // What a step of the arm costs over the algorithms that it needs.
+    for (const auto& [base, needs] : {std::pair{"plainarm", "step"}, {"arm", "with_midpoint"}})
+      for (const char* effect : {"nothing", "self_collision_idle"}) {
+        const std::string rung = fmt::format("ladder_{}_{}", base, effect);
+        const auto step = figures.find(rung + ".step.us");
+        const auto bare = figures.find(fmt::format("ladder_arm_bare.{}.us", needs));
+        if (step != figures.end() && bare != figures.end())
+          derived(rung + ".over_bare", step->second / bare->second);
+      }
     for (const auto& [what, exponent] : exponents(figures))
       derived("scaling_" + what + ".exponent", exponent);
+    if (!pictures.empty()) drawPictures(figures, pictures);
     if (!file.empty()) std::ofstream(file) << json.dump(2) << '\n';
   } catch (const std::exception& error) {
     fmt::print(stderr, "step_benchmark: {}\n", error.what());

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "collision/scene_contacts.hpp"
+#include "collision/unit_contacts.hpp"
 #include "engine/engine.hpp"
 #include "gdd/gdd.hpp"
 #include "io/replay/recording.hpp"
@@ -21,14 +22,25 @@ struct Scene {
   State state;
   std::unique_ptr<Data> data;
   std::unique_ptr<gdd::GoalDirectedController> controller;  ///< null: passive
-  std::unique_ptr<io::Recording> recording;                 ///< of --view; null: none
+  std::unique_ptr<collision::UnitContacts> unitContacts;
+  std::unique_ptr<Islands> islands;          ///< null: solved as one
+  std::unique_ptr<io::Recording> recording;  ///< of --view; null: none
 
   void step() {
-    const SolveStatus status = controller
+    const SolveStatus status = islands ? islands->step({})
+                               : controller
                                    ? controller->step(model, {}, state, *data, contacts.get())
                                    : softgauss::step(model, {}, state, *data, contacts.get());
     if (status == SolveStatus::notFinite) throw std::runtime_error("the scene became non-finite");
   }
+  const State& now() const { return islands ? islands->state() : state; }
+  void restore(const State& saved) {
+    if (islands)
+      islands->setState(saved);
+    else
+      state = saved;
+  }
+  const StepStats& stats() const { return islands ? islands->stats() : data->stats; }
 };
 
 /// At rest; with `ground`, a floating root stands on the plane z = 0.
