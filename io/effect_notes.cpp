@@ -73,6 +73,8 @@ class Notes {
     EffectNote note{name, false, asked ? why : whyNot, asked};
     if (asked && !effect)
       note.reason += "; not simulated yet";
+    else if (asked && !kBuiltEffects.has(*effect))
+      note.reason += "; this build of the engine is without it";
     else if (asked && !model_.options.effects.has(*effect))
       note.reason += "; switched off by --effects";
     else

@@ -171,7 +171,7 @@ class Constraints {
   }
   template <class C, class F>
   static void call(C& c, RowKind kind, RowKinds kinds, F&& f) {
-    if (!kinds.has(kind)) return;
+    if (!kBuiltRows.has(kind) || !kinds.has(kind)) return;
     if constexpr (std::invocable<F, C&, int>)
       f(c, static_cast<int>(kind));
     else

@@ -21,11 +21,11 @@ void computeSmoothForces(const Model& model, const Plan& plan, const State& stat
     ++calls.damping;
     addDamping(plan.damping, state.v, stage.c);
   }
-  if (!plan.springs.empty()) {
+  if (plan.sprung()) {
     ++calls.spring;
     addSprings(plan.springs, state.q, stage.c);
   }
-  if (plan.externalWrench)
+  if (plan.pushed())
     for (const ExternalWrench& wrench : input.wrenches) {
       ++calls.externalWrench;
       addExternalWrench(model, k, wrench, stage.c);

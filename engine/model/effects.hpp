@@ -3,6 +3,7 @@
 
 /// Names of the effects that a scene may call for, and sets of them.
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -60,6 +61,7 @@ class EffectSet {
   constexpr bool has(Effect e) const { return (bits_ >> static_cast<unsigned>(e)) & 1u; }
   constexpr void insert(Effect e) { bits_ |= 1u << static_cast<unsigned>(e); }
   constexpr void remove(Effect e) { bits_ &= ~(1u << static_cast<unsigned>(e)); }
+  constexpr EffectSet operator&(const EffectSet& o) const { return EffectSet(bits_ & o.bits_); }
   constexpr bool operator==(const EffectSet&) const = default;
 
  private:
@@ -68,7 +70,7 @@ class EffectSet {
 };
 
 /// The effect of that name, or nothing.
-inline std::optional<Effect> effectFromName(std::string_view name) {
+constexpr std::optional<Effect> effectFromName(std::string_view name) {
   for (const EffectName& e : kEffectNames)
     if (e.name == name) return e.effect;
   return std::nullopt;
@@ -77,5 +79,24 @@ inline std::optional<Effect> effectFromName(std::string_view name) {
 inline std::string_view effectName(Effect effect) {
   return kEffectNames[static_cast<int>(effect)].name;
 }
+
+/// All effects but those of a list such as "damping,spring". A name that is none is no constant
+/// expression, and so an error where this is one.
+constexpr EffectSet allEffectsBut(std::string_view list) {
+  EffectSet set = EffectSet::all();
+  while (!list.empty()) {
+    const std::size_t end = std::min(list.find(','), list.size());
+    set.remove(effectFromName(list.substr(0, end)).value());
+    list.remove_prefix(std::min(end + 1, list.size()));
+  }
+  return set;
+}
+
+#ifndef SOFTGAUSS_WITHOUT_EFFECTS
+#define SOFTGAUSS_WITHOUT_EFFECTS ""
+#endif
+/// The effects that this build of the engine has: all, unless CMake's SOFTGAUSS_WITHOUT_EFFECTS
+/// names some. The code of the others is not in the step.
+inline constexpr EffectSet kBuiltEffects = allEffectsBut(SOFTGAUSS_WITHOUT_EFFECTS);
 
 }  // namespace softgauss

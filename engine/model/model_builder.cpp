@@ -290,6 +290,7 @@ Model ModelBuilder::build() const {
   Model model;
   model.name = name_;
   model.options = options;
+  model.options.effects = options.effects & kBuiltEffects;
   model.warnings = warnings_;
   Assembler assembler(model, links_, joints_);
   for (const detail::TreeEdge& edge : order.visits) {

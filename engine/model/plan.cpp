@@ -41,7 +41,7 @@ EffectSet possibleContacts(const Model& model) {
 Plan::Plan(const Model& model) : options_(model.options) {
   const EffectSet& allowed = model.options.effects;
   const auto run = [&](Effect effect, bool called) {
-    const bool runs = called && allowed.has(effect);
+    const bool runs = called && allowed.has(effect) && kBuiltEffects.has(effect);
     if (runs) effects.insert(effect);
     return runs;
   };

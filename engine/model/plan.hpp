@@ -46,6 +46,22 @@ class RowKinds {
   unsigned bits_;
 };
 
+/// The kinds whose code is in this build.
+constexpr RowKinds builtRows() {
+  RowKinds rows = RowKinds::none();
+  const auto add = [&](RowKind kind, auto... effects) {
+    if ((kBuiltEffects.has(effects) || ...)) rows.insert(kind);
+  };
+  for (const RowKind kind : {RowKind::connection, RowKind::weld, RowKind::coupling})
+    add(kind, Effect::equality);
+  add(RowKind::dryFriction, Effect::dryFriction);
+  add(RowKind::jointLimit, Effect::jointLimit);
+  for (const RowKind kind : {RowKind::pyramid, RowKind::ellipticCone})
+    add(kind, Effect::selfCollision, Effect::groundContact, Effect::objectContact);
+  return rows;
+}
+inline constexpr RowKinds kBuiltRows = builtRows();
+
 struct Plan {
   struct Spring {
     int dof = 0;
@@ -68,7 +84,9 @@ struct Plan {
 
   Plan() = default;
   explicit Plan(const Model& model);
-  bool damped() const { return damping.size() > 0; }
+  bool damped() const { return kBuiltEffects.has(Effect::damping) && damping.size() > 0; }
+  bool sprung() const { return kBuiltEffects.has(Effect::spring) && !springs.empty(); }
+  bool pushed() const { return kBuiltEffects.has(Effect::externalWrench) && externalWrench; }
   /// Whether the model still has the options, dampings and dry friction of this. For assertions.
   bool fits(const Model& model) const;
 

@@ -73,7 +73,7 @@ SolveStatus minimizeGauss(const Model& model, const VectorX* guess, Data& data) 
   };
   if (!data.forces.net.allFinite()) return notFinite();
 
-  if (data.constraints.active().empty()) {
+  if (kBuiltRows.empty() || data.constraints.active().empty()) {
     if (!solveSmooth(data)) return notPositive();
     return finish();
   }

@@ -104,7 +104,7 @@ SolveStatus computeStages(const Model& model, const Input& input, const State& s
   computeSmoothForces(model, data.plan, state, input, data.kinematics, data.inertia, data.forces);
   data.stats.times.kinematics = lap(clock);
 
-  if (contacts && contacts->mayTouch()) {
+  if (kBuiltRows.has(RowKind::pyramid) && contacts && contacts->mayTouch()) {
     ++data.contacts.detections;
     contacts->detect(model, data.kinematics, data.contacts);
     data.stats.contacts = data.contacts.size();
@@ -116,7 +116,7 @@ SolveStatus computeStages(const Model& model, const Input& input, const State& s
     data.contacts.clear();
   }
 
-  if (!data.plan.rows.empty()) {
+  if (!kBuiltRows.empty() && !data.plan.rows.empty()) {
     data.constraints.assemble(
         {model, state, data.kinematics, data.contacts, data.weights, data.inertia.sparsity});
     // A mass matrix that cannot be factored is found, and reported, by the solve.

@@ -6,6 +6,7 @@
 
 #include "collision/scene_contacts.hpp"
 #include "tests/islands/crowd.hpp"
+#include "tests/support/allocation_guard.hpp"
 #include "tests/support/matchers.hpp"
 
 namespace softgauss::test {
@@ -143,6 +144,25 @@ TEST(Islands, FeelForcesAndWrenches) {
   expected[1] = 2.0;
   expected[6] = 3.0;
   EXPECT_APPROX(crowd.islands.acceleration(), expected, 1e-14);
+}
+
+TEST(Islands, AllocateOnlyWhereTheyRegroup) {
+  if (!kAllocationHook) GTEST_SKIP() << "the sanitizer has its own allocator";
+  Crowd crowd(heap(16, 2).build());
+  int quiet = 0, regrouped = 0;
+  for (int i = 0; i < 1200; ++i) {
+    const AllocationGuard guard;
+    ASSERT_TRUE(crowd.steps(1));
+    const bool looked = i < 600 || crowd.islands.islandStats().regroups > 0;
+    if (looked) {
+      regrouped += crowd.islands.islandStats().regroups;
+      continue;
+    }
+    // An island's own buffers grow when it has more contacts than ever before.
+    quiet += guard.count() == 0;
+  }
+  EXPECT_GT(regrouped, 10);
+  EXPECT_GT(quiet, 500);
 }
 
 TEST(Islands, RefuseIntegratorsThatLookWithinTheStep) {

@@ -233,6 +233,16 @@ TEST(Plan, SourceWithoutPairsIsNotAsked) {
   EXPECT_EQ(s.data->contacts.detections, 0);
 }
 
+TEST(Plan, BuildsMayBeWithoutEffects) {
+  constexpr EffectSet some = allEffectsBut("damping,joint_limit");
+  for (const EffectName& e : kEffectNames)
+    EXPECT_EQ(some.has(e.effect), e.effect != Effect::damping && e.effect != Effect::jointLimit);
+  EXPECT_EQ(allEffectsBut(""), EffectSet::all());
+  // This one has them all.
+  EXPECT_EQ(kBuiltEffects, EffectSet::all());
+  EXPECT_EQ(kBuiltRows, RowKinds::all());
+}
+
 TEST(Plan, KnowsWhenTheModelsOptionsHaveChanged) {
   Model model = bareChain().build();
   const Plan plan(model);
