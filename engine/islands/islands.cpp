@@ -129,6 +129,7 @@ void Islands::wake(Island& island) {
   if (island.awake) return;
   island.part.gather(model_, state_, island.state);
   island.awake = true;
+  island.posed = false;
   island.resting = 0.0;
   awake_.push_back(&island);
 }
@@ -176,7 +177,13 @@ void Islands::wakeWhatIsPushed(const Input& input) {
   }
 }
 
-SolveStatus Islands::compute(Island& island, const Input& input) {
+void Islands::pose(Island& island) {
+  if (!island.posed) computeKinematics(island.part.model, island.state, island.data.kinematics);
+  island.posed = true;
+}
+
+/// One step of an island, and the poses where it ends: while its memory is at hand.
+SolveStatus Islands::take(Island& island, const Input& input) {
   Input& part = island.input;
   if (input.tau.size() > 0) {
     part.tau.resize(island.part.model.nv);
@@ -191,7 +198,16 @@ SolveStatus Islands::compute(Island& island, const Input& input) {
     wrench.body = island.part.bodyOf(model_, wrench.body);
     part.wrenches.push_back(wrench);
   }
-  return computeStages(island.part.model, part, island.state, island.data, island.contacts.get());
+  const Model& model = island.part.model;
+  State& state = island.state;
+  if (computeStagesAt(model, part, state, island.data, island.contacts.get()) ==
+      SolveStatus::notFinite)
+    return SolveStatus::notFinite;
+  const VectorX* guess = state.warmstart.valid ? &state.warmstart.a : nullptr;
+  const SolveStatus status = advance(model, part, island.contacts.get(), guess, island.data, state);
+  if (status == SolveStatus::notFinite) return status;
+  computeKinematics(model, state, island.data.kinematics);
+  return status;
 }
 
 SolveStatus Islands::step(const Input& input) noexcept {
@@ -206,16 +222,11 @@ SolveStatus Islands::step(const Input& input) noexcept {
 
   wakeWhatIsPushed(input);
   if (islandStats_.wakeups > 0) refreshLists();
+  for (Island* island : awake_) pose(*island);
+  part();
+  join();
   for (Island* island : awake_)
-    if (compute(*island, input) == SolveStatus::notFinite) return fail(*island);
-  if (const Island* bad = regroup(input)) return fail(*bad);
-  for (Island* island : awake_) {
-    State& state = island->state;
-    const VectorX* guess = state.warmstart.valid ? &state.warmstart.a : nullptr;
-    const SolveStatus status = advance(island->part.model, island->input, island->contacts.get(),
-                                       guess, island->data, state);
-    if (status == SolveStatus::notFinite) return fail(*island);
-  }
+    if (take(*island, input) == SolveStatus::notFinite) return fail(*island);
 
   // All went well: what the islands have found becomes the state.
   ++clock_;
@@ -241,7 +252,10 @@ SolveStatus Islands::fail(const Island& island) {
     stats_.badDof += model_.trees[at(island.part.trees[at(tree)])].firstDof -
                      island.part.model.trees[at(tree)].firstDof;
   }
-  for (Island* other : awake_) other->part.gather(model_, state_, other->state);
+  for (Island* other : awake_) {
+    other->part.gather(model_, state_, other->state);
+    other->posed = false;
+  }
   return stats_.status = SolveStatus::notFinite;
 }
 

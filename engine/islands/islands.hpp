@@ -9,13 +9,12 @@
 /// same, bit for bit, whoever else is in the scene. The joint solve of step() finds the same
 /// accelerations up to rounding.
 ///
-///   1. stages of each island that is awake: kinematics, M, forces, contacts, rows
-///   2. islands that touch become one; an island may fall apart into those that touch
-///   3. forward dynamics and integration of each
-///   4. an island that has been at rest for long falls asleep
+///   1. islands that touch become one; an island may fall apart into those that touch
+///   2. each island that is awake takes its step, and the poses are found where it ends
+///   3. an island that has been at rest for long falls asleep
 ///
 /// Units join at once. An island is looked at only every kSplitAge of its steps to see whether it
-/// has come apart: solving two islands as one is right too. Step 2 makes models of its own where it
+/// has come apart: solving two islands as one is right too. Step 1 makes models of its own where it
 /// joins or splits, and allocates then; otherwise a step allocates nothing.
 ///
 /// Sleep. Where no link has been faster than Sleep::speed for Sleep::time, and nothing is applied,
@@ -79,8 +78,8 @@ class Islands {
   /// Of the last step; sleepers have none (nv).
   const VectorX& acceleration() const { return acceleration_; }
 
-  /// An island, as the last step has left it. Its state is that of the step's end, its data that of
-  /// the start.
+  /// An island, as the last step has left it. State and kinematics are those of the step's end, the
+  /// rest of the data is that of its start.
   struct Island {
     Island(const Model& whole, std::vector<int> ofUnits, const std::vector<int>& trees,
            IslandContacts* contacts);
@@ -96,6 +95,7 @@ class Islands {
     double resting = 0.0;          ///< [s]
     bool active = false;           ///< part of the scene now
     bool awake = false;
+    bool posed = false;  ///< data.kinematics is that of `state`
     std::int64_t lastUse = 0;
   };
   /// Those that are awake, by their first unit.
@@ -113,9 +113,11 @@ class Islands {
   void place(const Island& island);
   void refreshLists();
   void wakeWhatIsPushed(const Input& input);
-  SolveStatus compute(Island& island, const Input& input);
-  const Island* regroup(const Input& input);
-  void uniteUnits(const Island& island, bool touchingOnly, UnionFind& sets) const;
+  void pose(Island& island);
+  SolveStatus take(Island& island, const Input& input);
+  void part();
+  void join();
+  void makeIslands(const std::vector<Island*>& old, UnionFind& sets);
   void forget();
   void settle();
   SolveStatus fail(const Island& island);

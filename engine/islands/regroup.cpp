@@ -14,51 +14,12 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 }  // namespace
 
-/// Unites the units of an island that touch, or all of them.
-void Islands::uniteUnits(const Island& island, bool touchingOnly, UnionFind& sets) const {
-  if (!touchingOnly) {
-    for (const int unit : island.units) sets.unite(unit, island.units.front());
-    return;
-  }
-  const auto unitOf = [&](int body) {
-    const int tree = island.part.model.bodies[at(body)].tree;
-    return tree < 0 ? -1 : units_.ofTree[at(island.part.trees[at(tree)])];
-  };
-  for (const Contact& c : island.data.contacts.contacts) {
-    const int a = unitOf(c.bodyA), b = unitOf(c.bodyB);
-    if (a >= 0 && b >= 0) sets.unite(a, b);
-  }
-}
-
-/// Islands from who touches whom. Returns an island whose stages could not be computed, or null.
-const Islands::Island* Islands::regroup(const Input& input) {
-  touching_.clear();
-  if (contacts_) contacts_->findTouching(awakeUnits_, groupOf_, touching_);
-
-  std::vector<Island*>& affected = affected_;
-  affected.clear();
-  for (Island* island : awake_)
-    if (island->units.size() > 1 && island->age > 0 && island->age % kSplitAge == 0)
-      affected.push_back(island);
-  if (touching_.empty() && affected.empty()) return nullptr;
-
-  UnionFind sets(units_.size());
-  for (const Island* island : affected) uniteUnits(*island, true, sets);
-  const std::size_t looked = affected.size();
-  for (const auto& [i, j] : touching_) {
-    sets.unite(i, j);
-    for (Island* island : {islandOf_[at(i)], islandOf_[at(j)]})
-      if (std::find(affected.begin(), affected.end(), island) == affected.end())
-        affected.push_back(island);
-  }
-  for (std::size_t n = looked; n < affected.size(); ++n) uniteUnits(*affected[n], false, sets);
-
+/// Makes an island of each set of the units of `old` islands, unless there is such a one already.
+void Islands::makeIslands(const std::vector<Island*>& old, UnionFind& sets) {
   std::map<int, std::vector<int>> groups;  // by first unit
-  for (const Island* island : affected)
+  for (const Island* island : old)
     for (const int unit : island->units) groups[sets.find(unit)].push_back(unit);
-  std::vector<Island*> made;
-  for (Island* island : affected) {
-    if (!island->awake) ++islandStats_.wakeups;
+  for (Island* island : old) {
     const int set = sets.find(island->units.front());
     const bool whole = std::all_of(island->units.begin(), island->units.end(),
                                    [&](int unit) { return sets.find(unit) == set; });
@@ -69,15 +30,52 @@ const Islands::Island* Islands::regroup(const Input& input) {
     Island& island = find(group);
     if (island.active) continue;  // as it was
     activate(island);
-    made.push_back(&island);
+    pose(island);
     ++islandStats_.regroups;
   }
-  if (made.empty()) return nullptr;
   refreshLists();
-  for (Island* island : made)
-    if (compute(*island, input) == SolveStatus::notFinite) return island;
+}
+
+/// Lets islands come apart whose units did not touch one another in the step before.
+void Islands::part() {
+  affected_.clear();
+  for (Island* island : awake_)
+    if (island->units.size() > 1 && island->age > 0 && island->age % kSplitAge == 0)
+      affected_.push_back(island);
+  if (affected_.empty()) return;
+  UnionFind sets(units_.size());
+  for (const Island* island : affected_) {
+    const auto unitOf = [&](int body) {
+      const int tree = island->part.model.bodies[at(body)].tree;
+      return tree < 0 ? -1 : units_.ofTree[at(island->part.trees[at(tree)])];
+    };
+    for (const Contact& c : island->data.contacts.contacts) {
+      const int a = unitOf(c.bodyA), b = unitOf(c.bodyB);
+      if (a >= 0 && b >= 0) sets.unite(a, b);
+    }
+  }
+  makeIslands(affected_, sets);
+}
+
+/// Joins islands that touch at the start of the step.
+void Islands::join() {
+  touching_.clear();
+  if (contacts_) contacts_->findTouching(awakeUnits_, groupOf_, touching_);
+  if (touching_.empty()) return;
+  UnionFind sets(units_.size());
+  affected_.clear();
+  for (const auto& [i, j] : touching_) {
+    sets.unite(i, j);
+    for (Island* island : {islandOf_[at(i)], islandOf_[at(j)]})
+      if (std::find(affected_.begin(), affected_.end(), island) == affected_.end())
+        affected_.push_back(island);
+  }
+  for (const Island* island : affected_) {
+    islandStats_.wakeups += !island->awake;
+    for (const int unit : island->units) sets.unite(unit, island->units.front());
+  }
+  makeIslands(affected_, sets);
   forget();
-  return nullptr;
 }
 
 /// Islands of several units that were not met for long are forgotten.

@@ -90,7 +90,8 @@ namespace {
 
 /// computeStages(); `clock` is when the last stage ended. A clock is read only after what has run.
 SolveStatus computeStages(const Model& model, const Input& input, const State& state, Data& data,
-                          ContactSource* contacts, Clock::time_point& clock) noexcept {
+                          ContactSource* contacts, Clock::time_point& clock,
+                          bool posed = false) noexcept {
   SOFTGAUSS_ASSERT(data.plan.fits(model));
   data.stats = {};
   if (!finite(model, input, state)) {
@@ -99,7 +100,7 @@ SolveStatus computeStages(const Model& model, const Input& input, const State& s
     return data.stats.status;
   }
   clock = Clock::now();
-  computeKinematics(model, state, data.kinematics);
+  if (!posed) computeKinematics(model, state, data.kinematics);
   computeMassMatrix(model, data.kinematics, data.inertia);
   computeSmoothForces(model, data.plan, state, input, data.kinematics, data.inertia, data.forces);
   data.stats.times.kinematics = lap(clock);
@@ -169,6 +170,12 @@ SolveStatus computeStages(const Model& model, const Input& input, const State& s
                           ContactSource* contacts) noexcept {
   Clock::time_point clock;
   return computeStages(model, input, state, data, contacts, clock);
+}
+
+SolveStatus computeStagesAt(const Model& model, const Input& input, const State& state, Data& data,
+                            ContactSource* contacts) noexcept {
+  Clock::time_point clock;
+  return computeStages(model, input, state, data, contacts, clock, true);
 }
 
 SolveStatus advance(const Model& model, const Input& held, ContactSource* contacts,

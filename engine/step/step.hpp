@@ -13,6 +13,10 @@ namespace softgauss {
 SolveStatus computeStages(const Model& model, const Input& input, const State& state, Data& data,
                           ContactSource* contacts) noexcept;
 
+/// The same where data.kinematics is that of the state already.
+SolveStatus computeStagesAt(const Model& model, const Input& input, const State& state, Data& data,
+                            ContactSource* contacts) noexcept;
+
 /// forwardDynamics for data.forces.net, then the integrator, which advances the state by
 /// options.timestep. `guess` starts the solve (null: none); the result is the next warm start.
 /// `held` and `contacts`: what is applied over the whole step, and where contacts come from, for
