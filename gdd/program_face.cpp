@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "engine/core/vector_clones.hpp"
+#include "gdd/weighted_rows.hpp"
 
 namespace softgauss::gdd {
 namespace {
@@ -22,12 +23,6 @@ SOFTGAUSS_VECTOR_CLONES double dotPadded(const double* x, const double* y, int n
 SOFTGAUSS_VECTOR_CLONES void multiplyRows(const double* W, int count, int stride, const double* w,
                                           double* g) {
   for (int k = 0; k < count; ++k) g[k] = dot(W + k * stride, w, stride);
-}
-
-/// y ← y + Σ_k c_k w_k.
-SOFTGAUSS_VECTOR_CLONES void addRows(const double* W, int count, int stride, const double* c,
-                                     double* y) {
-  addCombination(1.0, c, 1, W, stride, count, stride, y);
 }
 
 double largest(const double* x, int n) {
@@ -101,7 +96,7 @@ bool ProgramFace::solveFace(const PaddedCholesky& factor, const ProgramData& pro
   for (int a = 0; a < m; ++a) nu_[a] = b_[a] - nu_[a];
   if (!solveMultipliers()) return false;
   p_ = y_;
-  addRows(W_.data(), m, stride, nu_.data(), p_.data());
+  addWeightedRows(nu_.data(), W_.data(), m, stride, p_.data());
   factor.solveTransposed(p_.data());
   for (const int c : active_) {
     if (c < n)
