@@ -199,7 +199,8 @@ void ActiveSet::finish(const ControlBox& box, const GoalCost& cost, Data& data) 
   rate_ = force_ - residual_;  // g(a)
   report_.violation = box.violation(rate_);
   forces_.evaluate(data.constraints);
-  report_.objective = effort() + cost.value(path_.a, Ma_) + forces_.value();
+  path_.value = cost.value(path_.a, Ma_);
+  report_.objective = objective();
   report_.heldRows = path_.held.atKnots();
   knots_.clear();
   for (const HeldKnot& held : path_.held)
@@ -222,9 +223,7 @@ std::optional<GddStatus> ActiveSet::descend(const GoalCost& cost, double wanted,
       report_.stationarity = 1.0;  // nobody knows
       return GddStatus::undecided;
     }
-    if (report_.iterations >= kPatience &&
-        effort() + path_.value + forces_.value() - promised > wanted)
-      return std::nullopt;
+    if (report_.iterations >= kPatience && objective() - promised > wanted) return std::nullopt;
     const int heldBefore = held.atKnots();
     bool stationary = promised <= options.tolerance * merit_;
     if (!stationary) {
@@ -266,6 +265,11 @@ GddReport ActiveSet::solve(const Model& model, GoalCost& cost, const ControlBox&
   searchAge_ = 0;
   searchWait_ = 1;
   if (model.nv == 0) return report_;
+  badDof_ = box.firstBad(model.nv);
+  if (badDof_ >= 0) {
+    report_.status = GddStatus::badBox;
+    return report_;
+  }
   report_.status = start(model, cost, box, data, warm);
   if (report_.status == GddStatus::notFinite) return report_;
   if (cell_.columns() > 0)

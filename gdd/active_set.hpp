@@ -50,7 +50,8 @@ class ActiveSet {
   /// Writes the solution where the next solve starts from.
   void keepWarmStart(WarmStart& warm) const;
 
-  /// After GddStatus::notFinite: the first dof whose force is not finite, or −1.
+  /// After GddStatus::notFinite: the first dof whose force is not finite, or −1. After badBox: the
+  /// coordinate whose bounds are none.
   int badDof() const { return badDof_; }
   const VectorX& acceleration() const { return path_.a; }
   const VectorX& force() const { return force_; }  ///< B u, within the box (nv)
@@ -74,6 +75,7 @@ class ActiveSet {
   bool setInertia(const GoalCost& cost, const TreeFactor* massFactor, const Data& data);
   void computeEffortSlope();
   double effort() const;
+  double objective() const { return effort() + path_.value + forces_.value(); }  ///< F
   void computeResidual(const Data& data);
   bool enterCell(const GoalCost& cost, Data& data);
   void evaluateCost(const GoalCost& cost, const Data& data);

@@ -29,7 +29,7 @@ double ActiveSet::moveTo(const Model& model, const GoalCost& cost, const VectorX
   evaluateCost(cost, data);
   computeEffortSlope();
   evaluateForces(data);
-  return effort() + path_.value + forces_.value();
+  return objective();
 }
 
 /// From the last step's a along the exact path to a = f(u), where few rows change their pieces on
@@ -48,7 +48,7 @@ double ActiveSet::moveAlongPath(const GoalCost& cost, const VectorX& a, Data& da
   evaluateCost(cost, data);
   computeEffortSlope();
   evaluateForces(data);
-  return effort() + path_.value + forces_.value();
+  return objective();
 }
 
 /// ℓ and ∇ℓ at a.

@@ -113,6 +113,8 @@ void AugmentedLagrangian::start(const GoalCost& cost, const ControlBox& box, Dat
 
 GddReport AugmentedLagrangian::solve(const Model& model, GoalCost& cost, const ControlBox& box,
                                      Data& data, const WarmStart& warm) {
+  badBound_ = box.firstBad(model.nv);
+  if (badBound_ >= 0) return {.status = GddStatus::badBox};
   GddReport report = minimizeFrom(model, cost, box, data, warm);
   if (report.status != GddStatus::notFinite || !warm.gddValid || massFactor_.failedRow() >= 0 ||
       !data.forces.c.allFinite())
@@ -221,6 +223,7 @@ GddReport AugmentedLagrangian::minimizeFrom(const Model& model, GoalCost& cost,
 }
 
 int AugmentedLagrangian::badDof() const {
+  if (badBound_ >= 0) return badBound_;
   if (massFactor_.failedRow() >= 0) return massFactor_.failedRow();
   for (int i = 0; i < gradient_.size(); ++i)
     if (!std::isfinite(gradient_[i])) return i;

@@ -47,7 +47,8 @@ class AugmentedLagrangian {
   /// Writes the solution where the next solve starts from.
   void keepWarmStart(WarmStart& warm) const;
 
-  /// After GddStatus::notFinite: the first dof whose gradient is not finite, or −1.
+  /// After GddStatus::notFinite: the first dof whose gradient is not finite, or −1. After badBox:
+  /// the coordinate whose bounds are none.
   int badDof() const;
   const VectorX& acceleration() const { return a_; }
   const VectorX& force() const { return g_; }  ///< g(a): the control, before clamping
@@ -75,6 +76,7 @@ class AugmentedLagrangian {
   Ray ray_;
   CurvedRay curvedRay_;
   double penalty_ = 0.0;       ///< Σ ψ
+  int badBound_ = -1;          ///< ControlBox::firstBad()
   bool rowsChanged_ = true;    ///< a row changed its piece: P is out of date
   bool stale_ = true;          ///< P changed since H was factored
   bool boundsChanged_ = true;  ///< a bound changed its piece since H was factored

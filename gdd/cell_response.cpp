@@ -5,6 +5,7 @@
 
 #include "engine/core/vector_clones.hpp"
 #include "engine/core/vector_kernels.hpp"
+#include "gdd/weighted_rows.hpp"
 
 namespace softgauss::gdd {
 namespace {
@@ -23,13 +24,6 @@ SOFTGAUSS_VECTOR_CLONES void subtractRankOne(const double* y, const double* s, d
                                              RowMajorMatrixX& S) {
   const int rows = static_cast<int>(S.rows()), columns = static_cast<int>(S.cols());
   for (int i = 0; i < rows; ++i) addScaled(-scale * y[i], s, columns, S.data() + i * columns);
-}
-
-/// b ← Sᵀ x, S (rows × columns) by rows.
-SOFTGAUSS_VECTOR_CLONES void multiplyRows(const double* S, int rows, int columns, const double* x,
-                                          double* b) {
-  for (int j = 0; j < columns; ++j) b[j] = 0.0;
-  addCombination(1.0, x, 1, S, columns, rows, columns, b);
 }
 
 /// K ← Σ_k c_k y_k y_kᵀ (n × n), y_k row k of Y, which is zero but in range k.
@@ -129,14 +123,14 @@ void CellResponse::computeForcePrice() {
 }
 
 void CellResponse::multiplyTransposed(const VectorX& x, VectorX& y) const {
-  padded_.resize(padded());
-  multiplyRows(S_.data(), static_cast<int>(S_.rows()), padded(), x.data(), padded_.data());
+  padded_.setZero(padded());
+  addWeightedRows(x.data(), S_.data(), static_cast<int>(S_.rows()), padded(), padded_.data());
   y = padded_.head(columns());
 }
 
 void CellResponse::multiplyForcePrice(const VectorX& p, VectorX& y) const {
-  padded_.resize(padded());
-  multiplyRows(forcePrice_.data(), columns(), padded(), p.data(), padded_.data());
+  padded_.setZero(padded());
+  addWeightedRows(p.data(), forcePrice_.data(), columns(), padded(), padded_.data());
   y = padded_.head(columns());
 }
 
@@ -213,8 +207,8 @@ void CellResponse::computeHessian() {
 
 /// K and S of the cell behind one more crossing.
 void CellResponse::addToHessian(const Correction& c) {
-  b_.resize(padded());
-  multiplyRows(S_.data(), static_cast<int>(S_.rows()), padded(), c.Hy.data(), b_.data());
+  b_.setZero(padded());
+  addWeightedRows(c.Hy.data(), S_.data(), static_cast<int>(S_.rows()), padded(), b_.data());
   b_ = c.scale * b_ - 0.5 * c.scale * c.scale * c.y.dot(c.Hy) * c.By;
   subtractRankTwo(c.By.data(), b_.data(), padded(), K_.data());
   subtractRankOne(c.y.data(), c.By.data(), c.scale, S_);

@@ -7,6 +7,7 @@
 
 #include "engine/core/vector_clones.hpp"
 #include "engine/core/vector_kernels.hpp"
+#include "gdd/weighted_rows.hpp"
 
 namespace softgauss::gdd {
 namespace {
@@ -29,14 +30,6 @@ SOFTGAUSS_VECTOR_CLONES void addRankOne(const double* y, double scale, MatrixX& 
     const int from = i & ~3;
     addScaled(scale * y[i], y + from, n - from, K.data() + i * n + from);
   }
-}
-
-/// y ← Sᵀx.
-SOFTGAUSS_VECTOR_CLONES void multiplyTransposed(const RowMajorMatrixX& S, const double* x,
-                                                double* y) {
-  const int rows = static_cast<int>(S.rows()), n = static_cast<int>(S.cols());
-  for (int i = 0; i < n; ++i) y[i] = 0.0;
-  addCombination(1.0, x, 1, S.data(), n, rows, n, y);
 }
 
 }  // namespace
@@ -248,9 +241,10 @@ void GoalCost::addReducedCurvature(const TreeFactor& massFactor, const RowMajorM
     addGram(rootS, metricWeight_, K);
   }
   // One rank for each row of J, and for each dof.
-  reduced_.resize(S.cols());
   const auto addRank = [&](const auto& row, double weight) {
-    multiplyTransposed(S, row.data(), reduced_.data());
+    reduced_.setZero(S.cols());
+    addWeightedRows(row.data(), S.data(), static_cast<int>(S.rows()), static_cast<int>(S.cols()),
+                    reduced_.data());
     addRankOne(reduced_.data(), weight, K);
   };
   for (int i = 0; i < rows_.size(); ++i) {

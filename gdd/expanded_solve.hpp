@@ -67,7 +67,7 @@ class ExpandedSolve {
       if (!cost.expand(data.inertia.M, at, guessed ? 0.0 : mu)) break;
       ++solves_;
       const GddReport report = solver.solve(model, cost, box, data, warm_);
-      if (report.status == GddStatus::notFinite) return report;
+      if (isRefused(report.status)) return report;
       const VectorX& trial = solver.acceleration();
       solver.keepWarmStart(next_);
       const double error = cost.functionValue(trial) - cost.expansionValue(trial);

@@ -27,7 +27,7 @@ SolveStatus GoalDirectedController::solveAndAdvance(Solver& used, const Model& m
     if (goal->actsAt(state.time)) goal->addCost({model, state, data}, cost_);
   report = expansion.solve(used, model, cost_, box, data, state.warmstart);
   solveTime = std::chrono::duration<double>(Clock::now() - start).count();
-  if (report.status == GddStatus::notFinite) {
+  if (isRefused(report.status)) {
     data.stats.status = SolveStatus::notFinite;
     data.stats.badDof = used.badDof();
     return data.stats.status;

@@ -41,8 +41,8 @@ class GoalDirectedController {
   GddReport report;  ///< of the last step
   double solveTime = 0.0;  ///< wall time of the last GDD solve [s]
 
-  /// One step. `input` acts besides the control (disturbances). On SolveStatus::notFinite the
-  /// state is left as it was.
+  /// One step. `input` acts besides the control (disturbances). On SolveStatus::notFinite, also
+  /// where the box is none (GddStatus::badBox), the state is left as it was.
   SolveStatus step(const Model& model, const Input& input, State& state, Data& data,
                    ContactSource* contacts) noexcept;
   /// Of the last GDD solve, before the final forward step (nv).

@@ -23,9 +23,9 @@ SOFTGAUSS_VECTOR_CLONES bool factor(double* A, int n, int stride, double* invers
   return true;
 }
 
-SOFTGAUSS_VECTOR_CLONES void solveLower(const double* L, int n, int stride, const double* inverse,
-                                        double* x) {
-  for (int j = 0; j < n; ++j) {
+SOFTGAUSS_VECTOR_CLONES void solveLower(const double* L, int first, int n, int stride,
+                                        const double* inverse, double* x) {
+  for (int j = first; j < n; ++j) {
     const int from = j & ~3;
     const double xj = x[j] * inverse[j];
     addScaled(-xj, L + j * stride + from, stride - from, x + from);
@@ -58,8 +58,8 @@ bool PaddedCholesky::compute(const Eigen::Ref<const MatrixX>& K) {
   return factor(L_.data(), n_, stride(), inverse_.data());
 }
 
-void PaddedCholesky::solveLower(double* x) const {
-  gdd::solveLower(L(), n_, stride(), inverse(), x);
+void PaddedCholesky::solveLower(double* x, int first) const {
+  gdd::solveLower(L(), first, n_, stride(), inverse(), x);
 }
 
 void PaddedCholesky::solveTransposed(double* x) const {

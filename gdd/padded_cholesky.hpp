@@ -20,8 +20,8 @@ class PaddedCholesky {
   int stride() const { return paddedSize(n_); }
   const double* L() const { return L_.data(); }  ///< column j at j · stride(), zero above
   const double* inverse() const { return inverse_.data(); }  ///< of L's diagonal
-  /// x ← L⁻¹x and x ← L⁻ᵀx; x (stride()) has zeros behind its entries.
-  void solveLower(double* x) const;
+  /// x ← L⁻¹x and x ← L⁻ᵀx; x (stride()) has zeros behind its entries, and before `first`.
+  void solveLower(double* x, int first = 0) const;
   void solveTransposed(double* x) const;
 
  private:

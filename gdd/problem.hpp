@@ -38,6 +38,14 @@ struct ControlBox {
   /// pull, the joint's effort is no bound any more. Throws ModelError as Transmission does.
   ControlBox(const Model& model, std::vector<Actuator> actuators);
 
+  /// The first coordinate whose bounds leave no finite value, or −1: a box has lower ≤ upper, lower
+  /// < ∞ and upper > −∞ (nv).
+  int firstBad(int dofs) const {
+    if (lower.size() != dofs || upper.size() != dofs) return 0;
+    for (int i = 0; i < dofs; ++i)
+      if (!(lower[i] <= upper[i] && lower[i] < kInfinity && upper[i] > -kInfinity)) return i;
+    return -1;
+  }
   /// Opens the box of every force that no actuator causes: root forces are then allowed, and
   /// applied.
   void allowRootForces(const Model& model) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "engine/core/vector_clones.hpp"
+#include "gdd/weighted_rows.hpp"
 
 namespace softgauss::gdd {
 namespace {
@@ -24,12 +25,6 @@ SOFTGAUSS_VECTOR_CLONES void multiplyRows(const double* W, int count, int stride
   for (int k = 0; k < count; ++k) g[k] = dot(W + k * stride, w, stride);
 }
 
-/// y ← y + Σ_k c_k w_k.
-SOFTGAUSS_VECTOR_CLONES void addRows(const double* W, int count, int stride, const double* c,
-                                     double* y) {
-  addCombination(1.0, c, 1, W, stride, count, stride, y);
-}
-
 double largest(const double* x, int n) {
   double most = 0.0;
   for (int i = 0; i < n; ++i) most = std::max(most, std::abs(x[i]));
@@ -47,44 +42,52 @@ void ProgramFace::addNormal(const PaddedCholesky& factor, const ProgramData& pro
   double* w = W_.data() + used;
   std::fill(w, w + stride, 0.0);
   double size = 1.0;
+  int first = 0;
   if (constraint < n) {
-    w[constraint] = 1.0;
-    b_.push_back((*program.lower)[constraint]);
+    w[first = constraint] = 1.0;
+    rest_.push_back((*program.lower)[constraint]);
   } else if (constraint < 2 * n) {
-    w[constraint - n] = -1.0;
-    b_.push_back(-(*program.upper)[constraint - n]);
+    w[first = constraint - n] = -1.0;
+    rest_.push_back(-(*program.upper)[constraint - n]);
   } else {
     const int row = constraint - 2 * n;
     std::copy_n(&(*program.N)(row, 0), n, w);
     size = std::sqrt(dotPadded(w, w, stride));
-    b_.push_back(-(*program.distance)[row]);
+    rest_.push_back(-(*program.distance)[row]);
   }
-  factor.solveLower(w);
+  factor.solveLower(w, first);
   active_.push_back(constraint);
   size_.push_back(size);
   isActive_[constraint] = 1;
 }
 
-/// ν ← G⁻¹ν by Cholesky, G's lower triangle in rows; false where constraints depend on one another.
+/// G and the right sides of constraints that have come since the last time.
+void ProgramFace::growGram(const PaddedCholesky& factor) {
+  const int n = factor.size(), stride = factor.stride();
+  const int m = static_cast<int>(active_.size());
+  if (G_.cols() < n) G_.resize(n, n);
+  products_.resize(static_cast<std::size_t>(m));
+  for (; known_ < m; ++known_) {
+    const double* w = W_.data() + known_ * stride;
+    multiplyRows(W_.data(), known_ + 1, stride, w, products_.data());
+    for (int b = 0; b <= known_; ++b) G_(known_, b) = products_[b];
+    rest_[known_] -= dotPadded(w, y_.data(), stride);
+  }
+}
+
+/// ν ← G⁻¹(b + W L⁻¹q); false where constraints depend on one another.
 bool ProgramFace::solveMultipliers() {
   const int m = static_cast<int>(active_.size());
+  if (!gram_.compute(G_.topLeftCorner(m, m))) return false;
   for (int a = 0; a < m; ++a) {
-    double* row = G_.data() + a * m;
-    const double whole = row[a];
-    for (int b = 0; b <= a; ++b) {
-      const double* other = G_.data() + b * m;
-      for (int c = 0; c < b; ++c) row[b] -= row[c] * other[c];
-      if (b < a) row[b] *= other[b];  // the diagonal holds inverses
-    }
-    if (!(row[a] > kDependent * whole)) return false;
-    row[a] = 1.0 / std::sqrt(row[a]);
-    for (int b = 0; b < a; ++b) nu_[a] -= row[b] * nu_[b];
-    nu_[a] *= row[a];
+    const double inverse = gram_.inverse()[a];
+    if (!(1.0 > kDependent * G_(a, a) * inverse * inverse)) return false;
   }
-  for (int a = m - 1; a >= 0; --a) {
-    nu_[a] *= G_[a * m + a];
-    for (int b = 0; b < a; ++b) nu_[b] -= G_[a * m + b] * nu_[a];
-  }
+  nu_.assign(static_cast<std::size_t>(gram_.stride()), 0.0);
+  std::copy_n(rest_.begin(), m, nu_.begin());
+  gram_.solveLower(nu_.data());
+  gram_.solveTransposed(nu_.data());
+  nu_.resize(static_cast<std::size_t>(m));
   return true;
 }
 
@@ -93,15 +96,10 @@ bool ProgramFace::solveFace(const PaddedCholesky& factor, const ProgramData& pro
   const int n = factor.size(), stride = factor.stride();
   const int m = static_cast<int>(active_.size());
   if (m > n) return false;
-  G_.resize(static_cast<std::size_t>(m) * m);
-  nu_.resize(static_cast<std::size_t>(m));
-  for (int a = 0; a < m; ++a)
-    multiplyRows(W_.data(), a + 1, stride, W_.data() + a * stride, G_.data() + a * m);
-  multiplyRows(W_.data(), m, stride, y_.data(), nu_.data());
-  for (int a = 0; a < m; ++a) nu_[a] = b_[a] - nu_[a];
+  growGram(factor);
   if (!solveMultipliers()) return false;
   p_ = y_;
-  addRows(W_.data(), m, stride, nu_.data(), p_.data());
+  addWeightedRows(nu_.data(), W_.data(), m, stride, p_.data());
   factor.solveTransposed(p_.data());
   for (const int c : active_) {
     if (c < n)
@@ -118,6 +116,7 @@ bool ProgramFace::changeFace(const PaddedCholesky& factor, const ProgramData& pr
   const double size = kRounding * largest(p_.data(), n);
   int kept = 0;
   const int before = static_cast<int>(active_.size());
+  from_.resize(static_cast<std::size_t>(before));
   for (int a = 0; a < before; ++a) {
     if (nu_[a] * size_[a] < -kRounding * force_) {
       isActive_[active_[a]] = 0;
@@ -125,11 +124,15 @@ bool ProgramFace::changeFace(const PaddedCholesky& factor, const ProgramData& pr
     }
     if (kept != a) {
       std::copy_n(W_.data() + a * stride, stride, W_.data() + kept * stride);
-      active_[kept] = active_[a], b_[kept] = b_[a], size_[kept] = size_[a];
+      active_[kept] = active_[a], rest_[kept] = rest_[a], size_[kept] = size_[a];
     }
-    ++kept;
+    from_[kept++] = a;
   }
-  active_.resize(kept), b_.resize(kept), size_.resize(kept);
+  active_.resize(kept), rest_.resize(kept), size_.resize(kept);
+  if (kept != before)
+    for (int b = 0; b < kept; ++b)
+      for (int a = b; a < kept; ++a) G_(a, b) = G_(from_[a], from_[b]);
+  known_ = kept;
   bool changed = kept != before;
   // What was dropped is on its bound, and violates nothing.
   const auto take = [&](int constraint) {
@@ -159,7 +162,8 @@ bool ProgramFace::minimize(const PaddedCholesky& factor, const ProgramData& prog
   force_ = largest(y_.data(), n);
   factor.solveLower(y_.data());
   isActive_.assign(static_cast<std::size_t>(program.count()), 0);
-  active_.clear(), b_.clear(), size_.clear();
+  active_.clear(), rest_.clear(), size_.clear();
+  known_ = 0;
   for (int i = 0; i < n; ++i) {
     if ((*program.lower)[i] == 0.0) addNormal(factor, program, i);
     if ((*program.upper)[i] == 0.0) addNormal(factor, program, n + i);

@@ -42,16 +42,21 @@ class ProgramFace {
  private:
   void addNormal(const PaddedCholesky& factor, const ProgramData& program, int constraint);
   bool solveFace(const PaddedCholesky& factor, const ProgramData& program);
+  void growGram(const PaddedCholesky& factor);
   bool solveMultipliers();
   bool changeFace(const PaddedCholesky& factor, const ProgramData& program);
 
   std::vector<int> active_;
   std::vector<double> W_;     ///< w_c of the active ones, padded
-  std::vector<double> b_;     ///< theirs
+  std::vector<double> rest_;  ///< their b_c, with w_c·L⁻¹q once known
   std::vector<double> size_;  ///< |n_c|
   std::vector<char> isActive_;
-  std::vector<double> G_, nu_, p_, y_;
-  double force_ = 0.0;  ///< size of q
+  MatrixX G_;            ///< w_c·w_d, lower triangle
+  int known_ = 0;        ///< of its rows
+  PaddedCholesky gram_;  ///< factor of G_
+  std::vector<double> nu_, p_, y_, products_;
+  std::vector<int> from_;  ///< where the constraints that stay were
+  double force_ = 0.0;     ///< size of q
 };
 
 }  // namespace softgauss::gdd

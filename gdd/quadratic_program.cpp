@@ -7,6 +7,7 @@
 #include "engine/core/check.hpp"
 #include "engine/core/vector_clones.hpp"
 #include "engine/core/vector_kernels.hpp"
+#include "gdd/weighted_rows.hpp"
 
 namespace softgauss::gdd {
 namespace {
@@ -31,13 +32,6 @@ SOFTGAUSS_VECTOR_CLONES void invertTransposed(const double* L, int n, int stride
 SOFTGAUSS_VECTOR_CLONES void subtractOuter(const double* z, const double* c, int count, int stride,
                                            double* J) {
   for (int k = 0; k < count; ++k) addScaled(-c[k], z, stride, J + k * stride);
-}
-
-/// z ← J d over `count` columns.
-SOFTGAUSS_VECTOR_CLONES void multiplyColumns(const double* J, const double* d, int count,
-                                             int stride, double* z) {
-  for (int i = 0; i < stride; ++i) z[i] = 0.0;
-  addCombination(1.0, d, 1, J, stride, count, stride, z);
 }
 
 }  // namespace
@@ -223,8 +217,8 @@ bool QuadraticProgram::minimizeByDual(const ProgramData& program) {
         break;
       }
       if (!dependent) {
-        z_.resize(J_.rows());
-        multiplyColumns(J_.col(m).data(), d_.data() + m, n - m, paddedSize(n), z_.data());
+        z_.setZero(J_.rows());
+        addWeightedRows(d_.data() + m, J_.col(m).data(), n - m, paddedSize(n), z_.data());
         p_ += step * z_.head(n);
         size_ = std::max(size_, p_.norm());
       }

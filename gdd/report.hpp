@@ -12,8 +12,14 @@ enum class GddStatus {
   bend,       ///< no descent along the direction, past a kink of an elliptic cone: not certified
   undecided,  ///< solver 2: at a kink of more dependent rows than it tries in all combinations, or
               ///< where rounding keeps its quadratic program from an answer
+  badBox,     ///< bounds of a control cross or are not numbers: nothing was solved
   notFinite
 };
+
+/// Whether the solve has no control to apply.
+constexpr bool isRefused(GddStatus status) {
+  return status == GddStatus::badBox || status == GddStatus::notFinite;
+}
 
 struct GddReport {
   GddStatus status = GddStatus::converged;

@@ -62,9 +62,11 @@ void Transmission::check() const {
   const int dofs = static_cast<int>(size_.size());
   for (const Actuator& actuator : actuators_) {
     if (actuator.pulls.empty()) fail(actuator, "pulls nothing, expected a joint");
-    if (!(actuator.lower <= actuator.upper))
+    if (!(actuator.lower <= actuator.upper && actuator.lower < kInfinity &&
+          actuator.upper > -kInfinity))
       fail(actuator, "has bounds from " + std::to_string(actuator.lower) + " to " +
-                         std::to_string(actuator.upper) + ", expected lower ≤ upper");
+                         std::to_string(actuator.upper) +
+                         ", expected lower ≤ upper, and a finite number between");
     for (const Actuator::Pull& pull : actuator.pulls) {
       if (pull.dof < 0 || pull.dof >= dofs)
         fail(actuator, "pulls dof " + std::to_string(pull.dof) + ", expected one of 0 to " +

@@ -23,6 +23,9 @@ using detail::Range;
 using detail::YamlMap;
 using detail::YamlValue;
 
+/// Products of a few numbers of this size, squared, are still finite.
+constexpr double kLargest = 1e12;
+
 /// When the goal acts: from `start` until `end`.
 void readTimes(const YamlMap& keys, gdd::Goal& goal) {
   keys.read("start", goal.startTime, Range::any);
@@ -66,7 +69,7 @@ GoalPointer readGoal(const std::string& file, const YamlValue& item, std::size_t
     throw ModelError({file, only.line}, named,
                      fmt::format("found {}, expected a map {{…}} with keys of {}",
                                  only.value.described(), detail::listed(kind->keys)));
-  const YamlMap keys(file, named + ": ", "", only.value);
+  const YamlMap keys(file, named + ": ", "", only.value, kLargest);
   std::vector<std::string> known = kind->keys;
   known.insert(known.end(), {"start", "end"});
   keys.expectOnly(known);

@@ -4,8 +4,8 @@
 /// Reads goals from YAML files; the schema, with an example of every kind, is docs/goals.md.
 ///
 /// Strict: a key that is unknown or written twice, a value of another type or count than expected,
-/// a number that is not finite or out of range, a link or joint that the model lacks end in a
-/// ModelError `file:line: goal 2 'reach': key 'weight': found '-1', expected …`.
+/// a number that is not finite, beyond 10¹² or out of range, a link or joint that the model lacks
+/// end in a ModelError `file:line: goal 2 'reach': key 'weight': found '-1', expected …`.
 
 #include <filesystem>
 #include <memory>

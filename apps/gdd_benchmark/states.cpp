@@ -30,6 +30,8 @@ const char* statusName(gdd::GddStatus status) {
       return "bend";
     case gdd::GddStatus::undecided:
       return "undecided";
+    case gdd::GddStatus::badBox:
+      return "badBox";
     case gdd::GddStatus::notFinite:
       return "notFinite";
   }

@@ -207,6 +207,7 @@ class Runner {
       case gdd::GddStatus::undecided:
         ++outcomes.undecided;
         break;
+      case gdd::GddStatus::badBox:
       case gdd::GddStatus::notFinite:
         break;
     }

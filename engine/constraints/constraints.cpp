@@ -168,26 +168,19 @@ double Constraints::curvatureJump(Knot knot) const {
 }
 
 KnotName Constraints::nameOf(Knot knot) const {
-  KnotName name{.kind = knot.row.kind, .index = knot.index};
+  KnotName name{.kind = knot.row.kind, .row = {}, .index = knot.index};
   visitOne(*this, knot.row.kind, [&](const auto& c) {
-    if constexpr (requires { c.name(0); }) {
-      const RowName row = c.name(knot.row.row);
-      name.first = row.first;
-      name.second = row.second;
-      name.contact = row.contact;
-      name.direction = row.direction;
-    }
+    if constexpr (requires { c.name(0); }) name.row = c.name(knot.row.row);
   });
   return name;
 }
 
 std::optional<Knot> Constraints::find(const KnotName& name) const {
   std::optional<Knot> found;
-  const RowName wanted{name.first, name.second, name.contact, name.direction};
   visitOne(*this, name.kind, [&](const auto& c) {
     if constexpr (requires { c.name(0); })
       for (int row = 0; row < c.rowCount() && !found; ++row)
-        if (c.name(row) == wanted) found = Knot{{name.kind, row}, name.index};
+        if (c.name(row) == name.row) found = Knot{{name.kind, row}, name.index};
   });
   return found;
 }

@@ -36,12 +36,6 @@ struct Knot {
   auto operator<=>(const Knot&) const = default;
 };
 
-/// What a row is of, the same from step to step: the fields of KnotName but kind and index.
-struct RowName {
-  int first = 0, second = 0, contact = 0, direction = 0;
-  bool operator==(const RowName&) const = default;
-};
-
 /// A row that reaches a knot of its penalty at α = alpha along the ray a + α d.
 struct Crossing {
   double alpha = 0.0;

@@ -50,7 +50,8 @@ std::uint64_t hash(const State& state) {
   mixBits(h, static_cast<std::uint64_t>(state.warmstart.gddSearchAge));
   mixBits(h, static_cast<std::uint64_t>(state.warmstart.gddSearchWait));
   for (const KnotName& k : state.warmstart.knots)
-    for (const int part : {k.kind, k.first, k.second, k.contact, k.direction, k.index})
+    for (const int part :
+         {k.kind, k.row.first, k.row.second, k.row.contact, k.row.direction, k.index})
       mixBits(h, static_cast<std::uint64_t>(part));
   for (const std::uint8_t flag : state.followed)
     if (flag) mixBits(h, flag);

@@ -10,18 +10,24 @@
 
 namespace softgauss {
 
-/// A knot of a constraint row's penalty, named so that the next step finds it again. Rows are known
-/// by what they are of, not by their place among the rows, which changes from step to step as
-/// contacts come and go.
-struct KnotName {
-  int kind = 0;       ///< of constraint
-  int first = 0;      ///< what the row is of: a dof, or the geometries that touch
+/// A constraint row, named by what it is of, so that the next step finds it again: its place among
+/// the rows changes from step to step as contacts come and go.
+struct RowName {
+  int first = 0;      ///< a dof, or the geometries that touch
   int second = 0;     ///< and the other one, or the end of a range
   int contact = 0;    ///< among the contacts of the pair
   int direction = 0;  ///< among the rows of the contact
-  int index = 0;      ///< among the knots of the row, upwards
+  bool operator==(const RowName&) const = default;
+};
+
+/// A knot of a row's penalty, named likewise.
+struct KnotName {
+  int kind = 0;  ///< of constraint
+  RowName row;
+  int index = 0;  ///< among the knots of the row, upwards
   bool operator==(const KnotName&) const = default;
 };
+
 /// Solutions of the last step, from which the next solve starts: they may choose a local minimum.
 struct WarmStart {
   VectorX a;                    ///< acceleration of the forward solve (nv)

@@ -17,9 +17,8 @@ void Hold::addCost(const GoalContext& context, GoalCost& cost) const {
   if (context.model.bodies[body].dofs == 0) return;  // fixed to the world
   const Vector3 p = framePose(context.model, context.data.kinematics, frame) * p_FP;
   const LinkRows rows(context, body, p, cost.workspace());
-  const Vector6 target = -rate * rows.velocity - rows.bias;
-  cost.addRows(rows.J.topRows(3), weight, target.head(3));
-  if (wholeLink) cost.addRows(rows.J.bottomRows(3), rotationWeight, target.tail(3));
+  const Vector6 wished = -rate * rows.velocity;
+  addLinkCost(context, rows, wished.head(wholeLink ? 6 : 3), {weight, rotationWeight}, cost);
 }
 
 }  // namespace softgauss::gdd

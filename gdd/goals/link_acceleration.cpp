@@ -24,17 +24,9 @@ void LinkAcceleration::addCost(const GoalContext& context, GoalCost& cost) const
   const int body = context.model.frames[frame].body;
   if (context.model.bodies[body].dofs == 0) return;  // fixed to the world
   const LinkRows rows(context, body, framePose(context.model, k, frame) * p_FP, cost.workspace());
-  const int dim = angular ? 6 : 3;
-  Vector6 weights, target = -rows.bias;
-  weights << Vector3::Constant(weight), Vector3::Constant(rotationWeight);
-  target.head<3>() += linear;
-  if (angular) target.tail<3>() += *angular;
-  if (metric == LinkMetric::consistent) {
-    addConsistent(context, rows.J, weights, target.head(dim), cost);
-    return;
-  }
-  for (int i = 0; i < dim; i += 3)
-    cost.addRows(rows.J.middleRows(i, 3), weights[i], target.segment(i, 3));
+  Vector6 wished;
+  wished << linear, angular.value_or(Vector3::Zero());
+  addLinkCost(context, rows, wished.head(angular ? 6 : 3), {weight, rotationWeight, metric}, cost);
 }
 
 }  // namespace softgauss::gdd

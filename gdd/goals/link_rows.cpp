@@ -17,6 +17,10 @@ LinkRows::LinkRows(const GoalContext& context, int body, const Vector3& p_WP, Go
   velocity << pointVelocity(context.model, k, body, p_WP), k.V[body].angular;
 }
 
+namespace {
+
+/// ½ (W½(J a − target))ᵀ (J M⁻¹Jᵀ)⁻¹ (W½(J a − target)), W = diag(weights), for the first rows of
+/// J, as many as targets.
 void addConsistent(const GoalContext& context, const GoalWorkspace::Rows& J, const Vector6& weights,
                    const Eigen::Ref<const VectorX>& target, GoalCost& cost) {
   using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6>;  // not on the heap
@@ -52,6 +56,21 @@ void addConsistent(const GoalContext& context, const GoalWorkspace::Rows& J, con
     const Eigen::Matrix<double, 1, 1> wished(row.head(k).dot(target));
     cost.addRows(work.rows.topRows(1), 1.0, wished);
   }
+}
+
+}  // namespace
+
+void addLinkCost(const GoalContext& context, const LinkRows& rows,
+                 const Eigen::Ref<const VectorX>& wished, const LinkWeights& weights,
+                 GoalCost& cost) {
+  const Eigen::Index dim = wished.size();
+  Vector6 w, target = -rows.bias;
+  w << Vector3::Constant(weights.point), Vector3::Constant(weights.rotation);
+  target.head(dim) += wished;
+  if (weights.metric == LinkMetric::consistent)
+    return addConsistent(context, rows.J, w, target.head(dim), cost);
+  for (Eigen::Index i = 0; i < dim; i += 3)
+    cost.addRows(rows.J.middleRows(i, 3), w[i], target.segment(i, 3));
 }
 
 }  // namespace softgauss::gdd

@@ -33,9 +33,17 @@ struct LinkRows {
   LinkRows(const GoalContext& context, int body, const Vector3& p_WP, GoalWorkspace& work);
 };
 
-/// ½ (W½(J a − target))ᵀ (J M⁻¹Jᵀ)⁻¹ (W½(J a − target)), W = diag(weights), for the first rows of
-/// J, at most 6, as many as targets.
-void addConsistent(const GoalContext& context, const GoalWorkspace::Rows& J, const Vector6& weights,
-                   const Eigen::Ref<const VectorX>& target, GoalCost& cost);
+/// How much a goal of a link weighs.
+struct LinkWeights {
+  double point;     ///< w [kg; - if consistent]
+  double rotation;  ///< w_r [kg m²; - if consistent]
+  LinkMetric metric = LinkMetric::euclidean;
+};
+
+/// Adds ½ w |p̈ − wished|², and with six numbers ½ w_r |ω̇ − wished|² for the last three, or both in
+/// the consistent metric.
+void addLinkCost(const GoalContext& context, const LinkRows& rows,
+                 const Eigen::Ref<const VectorX>& wished, const LinkWeights& weights,
+                 GoalCost& cost);
 
 }  // namespace softgauss::gdd

@@ -23,7 +23,7 @@ LookAt::LookAt(const Model& model, const std::string& linkName, const Vector3& t
                const Vector3& axis, const Vector3& point)
     : link(linkName),
       frame(model.findFrame(linkName)),
-      axis_F(axis.normalized()),
+      axis_F(axis.stableNormalized()),
       p_FP(point),
       p_WTarget(target),
       weight(kRotationWeightPerWeight * kReachWeightPerMass * model.totalMass()) {
@@ -31,7 +31,7 @@ LookAt::LookAt(const Model& model, const std::string& linkName, const Vector3& t
   if (frame < 0) throw ModelError({}, element, "the model has no link of that name");
   if (!target.allFinite() || !point.allFinite() || !axis.allFinite())
     throw ModelError({}, element, "target, axis or point is not finite");
-  if (axis.norm() == 0.0) throw ModelError({}, element, "the axis is zero");
+  if (axis.stableNorm() == 0.0) throw ModelError({}, element, "the axis is zero");
 }
 
 std::optional<GoalMark> LookAt::mark(const GoalContext& context) const {

@@ -77,19 +77,13 @@ void Reach::addCost(const GoalContext& context, GoalCost& cost) const {
     return;
   }
   const LinkRows rows(context, body, p, cost.workspace());
-  const int dim = R_WTarget ? 6 : 3;
-  Vector6 weights, target = -rows.bias;
-  weights << Vector3::Constant(weight), Vector3::Constant(rotationWeight);
-  target.head<3>() += wishedAcceleration(time, p, rows.velocity.head<3>());
+  Vector6 wished;
+  wished.head<3>() = wishedAcceleration(time, p, rows.velocity.head<3>());
   if (R_WTarget)
-    target.tail<3>() +=
+    wished.tail<3>() =
         wishedRotation(time, framePose(context.model, k, frame).R, rows.velocity.tail<3>());
-  if (metric == LinkMetric::consistent) {
-    addConsistent(context, rows.J, weights, target.head(dim), cost);
-    return;
-  }
-  for (int i = 0; i < dim; i += 3)
-    cost.addRows(rows.J.middleRows(i, 3), weights[i], target.segment(i, 3));
+  addLinkCost(context, rows, wished.head(R_WTarget ? 6 : 3), {weight, rotationWeight, metric},
+              cost);
 }
 
 }  // namespace softgauss::gdd

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Goals of links: reach, link_acceleration, look_at, hold.
 
+#include <fmt/format.h>
+
 #include "gdd/goals/hold.hpp"
 #include "gdd/goals/link_acceleration.hpp"
 #include "gdd/goals/look_at.hpp"
@@ -11,12 +13,18 @@
 namespace softgauss::io::detail {
 namespace {
 
+/// Of a minimum-jerk line [s]: less is below any time step, and accelerations go as its square.
+constexpr double kShortest = 1e-6;
+
 /// The line of Flash and Hogan from where the goal's point is at first.
 gdd::MinimumJerk readMinimumJerk(const YamlMap& keys, const gdd::Reach& goal,
                                  const GoalScene& scene) {
   keys.expectOnly({"duration", "start"});
   gdd::MinimumJerk line;
   keys.read("duration", line.duration, Range::positive);
+  if (line.duration < kShortest)
+    keys.fail(*keys.find("duration"),
+              fmt::format("found {} s, expected at least {:g} s", line.duration, kShortest));
   keys.read("start", line.startTime, Range::any);
   const Transform start = initialPose(scene, goal.frame);
   line.p_start = start * goal.p_FP;
@@ -83,7 +91,7 @@ GoalPointer readLookAt(const YamlMap& keys, const GoalScene& scene) {
   const Vector3 target = requiredTarget(keys);
   Vector3 axis = Vector3::UnitX();
   keys.read("axis", axis);
-  if (axis.norm() == 0.0)
+  if (axis.stableNorm() == 0.0)
     keys.fail(*keys.find("axis"), "found a vector of length 0, expected a direction");
   auto goal = std::make_unique<gdd::LookAt>(scene.model, link, target, axis);
   keys.read("point", goal->p_FP);

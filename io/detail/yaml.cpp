@@ -6,6 +6,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 
 #include "engine/core/check.hpp"
@@ -140,11 +141,13 @@ std::optional<double> YamlValue::finiteNumber() const {
 
 // ---- Maps ---------------------------------------------------------------------------------------
 
-YamlMap::YamlMap(std::string file, std::string label, std::string prefix, const YamlValue& map)
+YamlMap::YamlMap(std::string file, std::string label, std::string prefix, const YamlValue& map,
+                 double largest)
     : file_(std::move(file)),
       label_(std::move(label)),
       prefix_(std::move(prefix)),
-      line_(map.line) {
+      line_(map.line),
+      largest_(largest) {
   for (const YamlValue::Pair& pair : map.pairs) {
     const int line = pair.key.line;
     if (pair.key.kind != YamlValue::Kind::text)
@@ -181,11 +184,13 @@ double YamlMap::number(const Entry& entry, Range range) const {
   const std::optional<double> x = entry.value.finiteNumber();
   const bool inside =
       x && (range == Range::any || *x > 0.0 || (range == Range::notNegative && *x == 0.0));
-  if (inside) return *x;
+  if (inside && std::abs(*x) <= largest_) return *x;
   const char* const bound = range == Range::notNegative ? " >= 0"
                             : range == Range::positive  ? " > 0"
                                                         : "";
-  fail(entry, fmt::format("found {}, expected a finite number{}", entry.value.described(), bound));
+  const std::string size = inside ? fmt::format(" of size {:g} at most", largest_) : "";
+  fail(entry,
+       fmt::format("found {}, expected a finite number{}{}", entry.value.described(), bound, size));
 }
 
 bool YamlMap::boolean(const Entry& entry) const {
@@ -216,6 +221,10 @@ Vector3 YamlMap::vector3(const Entry& entry) const {
       fail({entry.key, {}, item.line},
            fmt::format("found {} as number {}, expected three finite numbers [x, y, z]",
                        item.described(), i + 1));
+    if (std::abs(*x) > largest_)
+      fail({entry.key, {}, item.line},
+           fmt::format("found {} as number {}, expected numbers of size {:g} at most",
+                       item.described(), i + 1, largest_));
     p[i] = *x;
   }
   return p;
@@ -238,7 +247,7 @@ std::string YamlMap::choice(const Entry& entry, const std::vector<std::string>& 
 YamlMap YamlMap::map(const Entry& entry) const {
   if (entry.value.kind != YamlValue::Kind::map)
     fail(entry, fmt::format("found {}, expected a map {{…}}", entry.value.described()));
-  return {file_, label_, prefix_ + entry.key + ".", entry.value};
+  return {file_, label_, prefix_ + entry.key + ".", entry.value, largest_};
 }
 
 const std::vector<YamlValue>& YamlMap::list(const Entry& entry) const {

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/core/check.hpp"
 #include "engine/core/types.hpp"
 
 namespace softgauss::io::detail {
@@ -53,7 +54,9 @@ class YamlMap {
   };
 
   /// `label` is how messages begin, "goal 2 'reach': "; `prefix` what they put before keys.
-  YamlMap(std::string file, std::string label, std::string prefix, const YamlValue& map);
+  /// Numbers beyond ±`largest` are refused.
+  YamlMap(std::string file, std::string label, std::string prefix, const YamlValue& map,
+          double largest = kInfinity);
 
   const std::string& file() const { return file_; }
   int line() const { return line_; }  ///< in which it begins
@@ -84,6 +87,7 @@ class YamlMap {
  private:
   std::string file_, label_, prefix_;
   int line_ = 0;
+  double largest_ = kInfinity;
   std::vector<Entry> entries_;
 };
 

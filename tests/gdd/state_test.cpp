@@ -107,6 +107,46 @@ TEST(GddState, GoalThatIsNotFiniteIsRefusedAndTheStateKept) {
   }
 }
 
+// Bounds that cross, that are no numbers, or that leave no finite value.
+TEST(GddState, BoxThatIsNoneIsRefusedAndTheStateKept) {
+  const std::pair<double, double> none[] = {{1.0, -1.0},
+                                            {kNaN, 1.0},
+                                            {-1.0, kNaN},
+                                            {kInfinity, kInfinity},
+                                            {kInfinity, -kInfinity},
+                                            {-kInfinity, -kInfinity}};
+  for (const auto solver : {gdd::GddSolver::activeSet, gdd::GddSolver::augmentedLagrangian}) {
+    for (const bool functions : {false, true}) {
+      auto r = reachingHumanoid(5);
+      r->controller.solver = solver;
+      if (functions)
+        r->controller.goals.push_back(std::make_unique<gdd::FunctionGoal>(
+            [](const gdd::GoalContext&, const VectorX& a, VectorX& gradient, MatrixX& hessian) {
+              gradient = a;
+              hessian.setIdentity();
+              return 0.5 * a.squaredNorm();
+            }));
+      const gdd::ControlBox good = r->controller.box;
+      for (const auto& [lower, upper] : none) {
+        for (const int i : {2, 9}) {  // a root force, a joint
+          r->controller.box.lower[i] = lower;
+          r->controller.box.upper[i] = upper;
+          expectRefused(*r);
+          EXPECT_EQ(r->controller.report.status, gdd::GddStatus::badBox);
+          EXPECT_EQ(r->data.stats.badDof, i);
+          r->controller.box = good;
+        }
+      }
+      r->controller.box.upper.conservativeResize(3);
+      expectRefused(*r);
+      EXPECT_EQ(r->controller.report.status, gdd::GddStatus::badBox);
+      r->controller.box = good;
+      EXPECT_NE(r->step(), SolveStatus::notFinite) << "it goes on after a refusal";
+      EXPECT_NE(r->controller.report.status, gdd::GddStatus::badBox);
+    }
+  }
+}
+
 TEST(GddState, WarmStartThatIsNotFiniteIsAColdStart) {
   auto cold = reachingHumanoid();
   const State good = cold->state;

@@ -54,6 +54,34 @@ TEST(GoalTimesInFiles, AreOfEveryKind) {
             "'damping': key 'end': found '.inf', expected a finite number");
 }
 
+// The largest numbers that a file may hold overflow nothing: each kind, each of its numbers.
+TEST(GoalNumbersInFiles, AtTheirLargestKeepStepsFinite) {
+  const std::string items[] = {
+      "reach: {link: arm, target: [1e12, 1e12, -1e12], point: [0, 1e12, 0], weight: 1e12,"
+      " stiffness: 1e12, damping: 1e12}",
+      "reach: {link: arm, target: [0, 1e12, 0], rpy: [1e12, 0, 1e12], rotation_weight: 1e12,"
+      " metric: consistent, minimum_jerk: {duration: 1e-6, start: -1e-7}}",
+      "link_acceleration: {link: arm, linear: [1e12, 0, 1e12], angular: [1e12, 0, 0],"
+      " weight: 1e12}",
+      "look_at: {link: arm, target: [1e12, 1, 2], axis: [1e12, 1e12, 0], weight: 1e12,"
+      " stiffness: 1e12, damping: 1e12}",
+      "look_at: {link: arm, target: [1, 1, 2], axis: [1e-300, 1e-300, 0]}",
+      "hold: {link: arm, point: [1e12, 0, 0], weight: 1e12, rate: 1e12}",
+      "posture: {weight: 1e12, stiffness: 1e12, damping: 1e12, joints: {shoulder: 1e12}}",
+      "damping: {weight: 1e12, rate: 1e12}",
+      "center_of_mass: {target: [1e12, 0, 0], weight: 1e12, stiffness: 1e12, damping: 1e12}",
+      "momentum: {linear: [1e12, 0, 0], linear_weight: 1e12, rate: 1e12}",
+      "capture_point: {target: [1e12, 0, 0], weight: 1e12, rate: 1e12}"};
+  for (const std::string& item : items) {
+    gdd::GoalDirectedController controller(sampleModel());
+    controller.goals = read("  - " + item + "\n");
+    Data data(sampleModel());
+    State state = sampleState();
+    EXPECT_NE(controller.step(sampleModel(), {}, state, data, nullptr), SolveStatus::notFinite)
+        << item;
+  }
+}
+
 TEST(LinkAccelerationInFiles, ArrivesWithItsValues) {
   const auto goal = readOne<gdd::LinkAcceleration>(
       "link_acceleration: {link: arm, linear: [1, 2, 3], angular: [4, 5, 6], point: [7, 8, 9],"

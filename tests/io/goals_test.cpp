@@ -203,6 +203,21 @@ const BadGoal kBadGoals[] = {
      "number"},
     {"BeyondDouble", "weight: 7", "weight: 1e999",
      "bad.yaml:4: goal 1 'reach': key 'weight': found '1e999', expected a finite number >= 0"},
+    {"BeyondSense", "weight: 7", "weight: 1e200",
+     "bad.yaml:4: goal 1 'reach': key 'weight': found '1e200', expected a finite number >= 0 of "
+     "size 1e+12 at most"},
+    {"BeyondSenseBelow", "start: 0.25", "start: -1.1e12",
+     "bad.yaml:5: goal 1 'reach': key 'minimum_jerk.start': found '-1.1e12', expected a finite "
+     "number of size 1e+12 at most"},
+    {"BeyondSenseInAVector", "[0.1, 0, 0]", "[0.1, 0, -1e200]",
+     "bad.yaml:3: goal 1 'reach': key 'point': found '-1e200' as number 3, expected numbers of "
+     "size 1e+12 at most"},
+    {"JointBeyondSense", "shoulder: 0.8", "shoulder: 1e200",
+     "bad.yaml:6: goal 2 'posture': key 'joints.shoulder': found '1e200', expected a finite number "
+     "of size 1e+12 at most"},
+    {"DurationBelowSense", "duration: 1.5", "duration: 1e-200",
+     "bad.yaml:5: goal 1 'reach': key 'minimum_jerk.duration': found 1e-200 s, expected at least "
+     "1e-06 s"},
     {"HalfNumber", "weight: 7", "weight: 7kg",
      "bad.yaml:4: goal 1 'reach': key 'weight': found '7kg', expected a finite number >= 0"},
     {"QuotedNumber", "weight: 7", "weight: \"7\"",
