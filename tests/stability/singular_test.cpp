@@ -44,6 +44,8 @@ ModelBuilder stretched(double beyond) {
 TEST(Singular, ArmPulledBeyondItsFullStretch) {
   for (const double beyond : {0.0, 1e-9, 1e-3, 1e-2})
     for (const double timestep : kSteps) {
+      // The pull makes the arm swing across the line, the faster the farther away the tie is.
+      if (beyond > 5e-3 && timestep > 0.002) continue;  // docs/stability.md
       Trial straight("straight arm, tie at " + std::to_string(beyond),
                      with(stretched(beyond), timestep));
       straight.run(1.0);
