@@ -3,6 +3,8 @@
 
 #include <chrono>
 
+#include "engine/constraints/soft_friction.hpp"
+
 namespace softgauss::gdd {
 
 GoalDirectedController::GoalDirectedController(const Model& model)
@@ -51,6 +53,7 @@ SolveStatus GoalDirectedController::step(const Model& model, const Input& input,
                                          Data& data, ContactSource* contacts) noexcept {
   if (computeStages(model, input, state, data, contacts) == SolveStatus::notFinite)
     return SolveStatus::notFinite;
+  softenFriction(model, data.weights, data.constraints.dryFriction);
   if (solver == GddSolver::activeSet && data.constraints.piecewiseQuadratic())
     return solveAndAdvance(activeSet, model, input, state, data, contacts);
   return solveAndAdvance(augmentedLagrangian, model, input, state, data, contacts);

@@ -250,11 +250,12 @@ class Writer {
                         text(range.upper), text(range.margin), softness(range.impedance, "limit"));
     line(
         "<joint name=\"j{}\" type=\"{}\" pos=\"{}\" axis=\"{}\" armature=\"{}\" damping=\"{}\" "
-        "frictionloss=\"{}\" {} {}/>",
+        "frictionloss=\"{}\" stiffness=\"{}\" springref=\"{}\" {} {}/>",
         b, body.joint == JointKind::revolute ? "hinge" : "slide", text(X_BodyJoint.p),
         text(X_BodyJoint.R * body.axis), text(effects.has(Effect::armature) ? dof.armature : 0.0),
         text(effects.has(Effect::damping) ? dof.damping : 0.0),
         text(effects.has(Effect::dryFriction) ? dof.dryFriction : 0.0),
+        text(effects.has(Effect::spring) ? dof.stiffness : 0.0), text(dof.springReference),
         softness(dof.frictionImpedance, "friction"), limits);
   }
 

@@ -99,14 +99,31 @@ Figure tieIsOff(double bound) {
           }};
 }
 
-Figure creep(const std::string& link, double seconds) {
+Figure creep(const std::string& link, double seconds, double bound) {
   return {"creep",
           "mm/s",
           1e3 / seconds,
-          2.0,
+          bound,
           Figure::last,
           [link](Stage& s, double start) { return s.origin(link).x() - start; },
           [link](Stage& s) { return s.origin(link).x(); }};
+}
+
+/// The first joint's motion from its start.
+Figure jointCreep(double bound) {
+  return {"creep",
+          "rad",
+          1.0,
+          bound,
+          Figure::last,
+          [](Stage& s, double start) { return s.state.q[0] - start; },
+          [](Stage& s) { return s.state.q[0]; }};
+}
+
+Figure speedAtRest(double bound) {
+  return {"speed at rest", "mm/s or mrad/s", 1e3, bound, Figure::last, [](Stage& s, double) {
+            return s.state.v.cwiseAbs().maxCoeff();
+          }};
 }
 
 }  // namespace
@@ -135,7 +152,15 @@ std::vector<HardCase> hardCases() {
       {"loop_1", "loop, 1 tie", 10.0, {tieIsOff(1.3)}},
       {"loop_2", "loop, 2 ties", 10.0, {tieIsOff(0.9)}},
       {"loop_5", "loop, 5 ties", 10.0, {tieIsOff(0.5)}},
-      {"slope", "slope of 15°, μ 1", 10.0, {creep("box", 10.0)}},
+      {"slope", "slope of 15°, μ 1", 10.0, {creep("box", 10.0, 2.0)}},
+      {"slope_edge", "slope at 99 % of the cone", 60.0, {creep("box", 60.0, 5.0)}},
+      {"held", "dry friction beyond any torque", 60.0, {jointCreep(1e-6)}},
+      {"springs", "springs of h/10", 5.0, {speedAtRest(1e-3)}},
+      // A ball of 0.004 kg m² at 2 rad/s has 8 mJ.
+      {"gimbal", "gimbal near alignment", 0.5, {energyError(8e-3, 1.0)}},
+      {"tower_far", "tower 100 km from the origin", 5.0, {sinks("box2", 0.5), speedAtRest(1e-3)}},
+      {"tower_small", "tower of 1 mm cubes", 5.0, {sinks("box2", 0.5), tiltOf("box2", 0.1)}},
+      {"tower_large", "tower of 1 km cubes", 5.0, {sinks("box2", 0.5), tiltOf("box2", 0.1)}},
       {"sphere", "sphere at rest", 5.0, {overlapAtRest(0.5)}},
   };
 }

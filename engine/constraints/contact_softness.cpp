@@ -59,7 +59,9 @@ Softness contactSoftness(const Material& pair, int frictionDim, double distance,
   const double mu = edges ? pair.slidingFriction : 0.0;
   Softness s = softnessAt(pair.impedance, distance, weight * (1.0 + mu * mu), options.timestep);
   if (!edges) return s;
-  const double scale = 2.0 * mu * mu / options.impedanceRatio;
+  double scale = 2.0 * mu * mu / options.impedanceRatio;
+  // (T.96): a friction above 1 makes no contact softer than one of 1.
+  if (options.carriedLoad && mu > 1.0) scale *= 2.0 / (mu * mu * (1.0 + mu * mu));
   s.R *= scale;
   s.perInertia *= scale;
   return s;

@@ -1,9 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/constraints/dry_friction.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "engine/constraints/impedance.hpp"
+#include "engine/constraints/soft_friction.hpp"
 
 namespace softgauss {
+namespace {
+
+/// (T.94): a joint that hardly moves sticks. `rate` = |v|, `limit` = f_max.
+void harden(Softness& soft, double rate, double limit) {
+  constexpr double kAtRest = 1e-9;  // of R: a joint at rest
+  if (!(soft.damping > 0.0)) return;
+  const double slow = 2.0 * limit * soft.R / soft.damping;
+  if (!(rate < slow)) return;  // also NaN
+  const double share = std::max(kAtRest, rate / slow);
+  soft.R = std::max(kSmallestRegulariser, share * soft.R);
+  soft.perInertia *= share;
+}
+
+}  // namespace
 
 void DryFriction::assemble(const Assembly& in) {
   const Model& model = in.model;
@@ -13,15 +31,30 @@ void DryFriction::assemble(const Assembly& in) {
     for (int i = 0; i < model.nv; ++i) {
       const Dof& dof = model.dofs[i];
       if (dof.dryFriction == 0.0) continue;
-      const Softness soft =
+      const double rate = in.state.v[i];
+      Softness soft =
           softnessAt(dof.frictionImpedance, 0.0, in.weights.dof[i], model.options.timestep);
+      if (model.options.carriedLoad) harden(soft, std::abs(rate), dof.dryFriction);
       dof_.push_back(i);
-      reference.push_back(soft.referenceAcceleration(in.state.v[i], 0.0));
+      reference.push_back(soft.referenceAcceleration(rate, 0.0));
       pushSoftness(soft);
       limit.push_back(dof.dryFriction);
     }
   }
   resizeRows(dof_.size());
+}
+
+void softenFriction(const Model& model, const InverseWeights& weights, DryFriction& rows) {
+  for (int row = 0; row < rows.rowCount(); ++row) {
+    const int dof = rows.dof(row);
+    const Softness soft = softnessAt(model.dofs[dof].frictionImpedance, 0.0, weights.dof[dof],
+                                     model.options.timestep);
+    double& perInertia = rows.perInertia[static_cast<std::size_t>(row)];
+    if (perInertia == soft.perInertia) continue;
+    double& D = rows.D[static_cast<std::size_t>(row)];
+    D = model.options.exactDiagonal ? D * (perInertia / soft.perInertia) : 1.0 / soft.R;
+    perInertia = soft.perInertia;
+  }
 }
 
 }  // namespace softgauss

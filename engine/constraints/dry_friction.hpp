@@ -5,9 +5,9 @@
 ///
 /// The row wants the joint to come to rest, with a force of at most f_max = Dof::dryFriction:
 ///   x = aᵢ − a_ref,   a_ref = −b vᵢ,   f = −D x clamped to ± f_max                        (T.27)
-/// There is no distance: b, D come from the dof's Impedance at r = 0. While the joint slides,
-/// |x| ≥ R f_max and the force is f_max against the motion; while it sticks, it creeps at the speed
-/// R f/b under a load f. Contract: |f| ≤ f_max.
+/// There is no distance: b, D come from the dof's Impedance at r = 0. While the joint slides, the
+/// force is f_max against the motion. While it sticks under a load f, it would creep at R f/b, but
+/// slower than 2 R f_max/b its row hardens (T.94, Options::carriedLoad). Contract: |f| ≤ f_max.
 
 #include <vector>
 

@@ -20,34 +20,68 @@ bool mayTurnFar(const Model& model, const Data& data, State& state) {
   return false;
 }
 
+/// A spring that swings by more than a radian in a step (T.95), taken at the step's end.
+bool isStiff(const Model& model, const Data& data, const Plan::Spring& spring) {
+  const double h = model.options.timestep;
+  return model.options.midpointCoriolis &&
+         h * h * spring.stiffness * data.weights.dof[spring.dof] > 1.0;
+}
+
+bool anyStiff(const Model& model, const Data& data) {
+  const std::vector<Plan::Spring>& springs = data.plan.springs;
+  return std::any_of(springs.begin(), springs.end(),
+                     [&](const Plan::Spring& spring) { return isStiff(model, data, spring); });
+}
+
+/// s.Md ← h D + h² K and net ← net − h K v, K of the stiff springs.
+void setImplicitForces(const Model& model, const State& state, Data& data, VectorX& net) {
+  const double h = model.options.timestep;
+  VectorX& Md = data.forward.Md;
+  if (data.plan.damped())
+    Md = h * data.plan.damping;
+  else
+    Md.setZero();
+  for (const Plan::Spring& spring : data.plan.springs) {
+    if (!isStiff(model, data, spring)) continue;
+    Md[spring.dof] += h * h * spring.stiffness;
+    net[spring.dof] -= h * spring.stiffness * state.v[spring.dof];
+  }
+}
+
 }  // namespace
 
 bool semiImplicitEuler(const Model& model, Data& data, State& state) {
   const double h = model.options.timestep;
   ForwardSolution& s = data.forward;
   const Plan& plan = data.plan;
-  const bool damped = plan.damped(), midpoint = plan.midpoint;
+  const bool stiff = anyStiff(model, data);
+  const bool midpoint = plan.midpoint, implicit = plan.damped() || stiff;
   data.acceleration = s.a;
   bool follow = false;
-  if (damped || midpoint) {
+  if (implicit || midpoint) {
     // Right side M a, less what the Coriolis forces gain by mid-step.
     VectorX& net = data.acceleration;
     if (data.constraints.active().empty())
       net = s.Ma;
     else
       data.inertia.M.multiply(s.a, net);
+    if (implicit) setImplicitForces(model, state, data, net);
     if (midpoint) {
-      s.start = state.v + 0.5 * h * s.a;
+      s.start = s.a;
+      if (stiff) {  // a is that of springs that the step does not follow
+        s.start = net;
+        if (!solveMass(data, &s.Md, s.start)) return false;
+      }
+      s.start = state.v + 0.5 * h * s.start;
       ++data.forces.calls.coriolis;
       computeBiasAt(model, data.kinematics, data.inertia, s.start, data.forces.work, s.direction);
       s.direction -= data.forces.bias;
       net -= s.direction;
     }
-    if (damped) s.Md = h * plan.damping;
-    if (!solveMass(data, damped ? &s.Md : nullptr, net)) return false;
+    if (!solveMass(data, implicit ? &s.Md : nullptr, net)) return false;
     if (midpoint && mayTurnFar(model, data, state)) {
       // What Δb does to the velocity, damped like the rest.
-      if (!damped)
+      if (!implicit)
         s.direction = s.a - net;
       else if (plan.diagonal)
         solveMass(data, &s.Md, s.direction);

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/constraints/dry_friction.hpp"
 
+#include <algorithm>
+
 #include "engine/constraints/impedance.hpp"
+#include "engine/constraints/soft_friction.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/scene.hpp"
 
@@ -54,17 +57,37 @@ TEST(DryFriction, StopsASlideAfterItsStoppingDistance) {
   EXPECT_SMALL(s.state.q[0] - 1.5 * 1.5 * 2.0 / 6.0, 3.0 * h * 1.5);
 }
 
-// A load below the limit is held, at the creep that softness needs; one above it is not.
-TEST(DryFriction, HoldsALoadBelowItsLimitWithCreepAndSlidesAboveIt) {
+// A load below the limit is held, without creep, or, where it is as soft as in motion, with the
+// creep that softness needs; one above it is not.
+TEST(DryFriction, HoldsALoadBelowItsLimitAndSlidesAboveIt) {
+  const double R = 0.1 / 0.9 * 0.5, b = 2.0 / (0.95 * 0.02);
   Scene held = slide(0.0, 2.0);
   held.steps(500);
-  const double R = 0.1 / 0.9 * 0.5, b = 2.0 / (0.95 * 0.02);
-  EXPECT_SMALL(held.state.v[0] / (R * 2.0 / b) - 1.0, 1e-9);
+  EXPECT_SMALL(held.state.v[0], 1e-8 * R * 2.0 / b);
   EXPECT_SMALL(held.data->constraints.dryFriction.f[0] + 2.0, 1e-9);
+
+  Scene soft = slide(0.0, 2.0);
+  soft.model.options.carriedLoad = false;
+  soft.steps(500);
+  EXPECT_SMALL(soft.state.v[0] / (R * 2.0 / b) - 1.0, 1e-9);
+  EXPECT_SMALL(soft.data->constraints.dryFriction.f[0] + 2.0, 1e-9);
 
   Scene slides = slide(0.0, 4.0);
   slides.steps(500);
   EXPECT_SMALL(slides.data->forward.a[0] - 0.5, 1e-12);
+}
+
+// (T.94): R falls with the speed below twice the creep of the limit, down to 10⁻⁹; goals may have
+// it soft again.
+TEST(DryFriction, HardensAsItComesToRest) {
+  const double R = 0.1 / 0.9 * 0.5, b = 2.0 / (0.95 * 0.02), slow = 2.0 * 3.0 * R / b;
+  for (const double share : {0.0, 1e-12, 1e-3, 0.5, 1.0, 2.0}) {
+    Scene s = slide(-share * slow, 0.0);
+    DryFriction& rows = s.data->constraints.dryFriction;
+    EXPECT_SMALL(1.0 / rows.D[0] / (R * std::clamp(share, 1e-9, 1.0)) - 1.0, 1e-12) << share;
+    softenFriction(s.model, s.data->weights, rows);
+    EXPECT_SMALL(1.0 / rows.D[0] / R - 1.0, 1e-15) << share;
+  }
 }
 
 TEST(DryFriction, NeverExceedsItsLimitNorDrives) {

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Family 5: contacts whose time constant, impedance or friction is at the end of its range, and a
+/// slope at the edge of slipping.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "tests/stability/scenes.hpp"
+
+namespace softgauss::test {
+namespace {
+
+/// A box of 1 kg flat on a plane that is tilted by `slope` about y; its x points downhill.
+Model boxOnSlope(double slope, double friction, double timestep, Cone cone) {
+  const Matrix3 R = Eigen::AngleAxisd(slope, Vector3::UnitY()).toRotationMatrix();
+  ModelBuilder builder("slope");
+  builder.geometry(groundSpec(friction, R));
+  addBody(builder, "box", Shape::box(Vector3(0.1, 0.1, 0.05)), 1.0, {R, R * Vector3(0, 0, 0.05)},
+          friction);
+  return with(builder, timestep, cone).build();
+}
+
+/// How far the box is downhill of its start [m].
+double downhill(const Trial& t, double slope) {
+  return t.state.q.head<3>().dot(Vector3(std::cos(slope), 0.0, -std::sin(slope)));
+}
+
+void setImpedance(Model& model, const Impedance& impedance) {
+  for (Geometry& g : model.geometries) g.material.impedance = impedance;
+}
+
+// Time constants below two steps count as two: the box neither leaves nor sinks.
+TEST(ContactParameters, TimeConstantsAtAndBelowTheStep) {
+  for (const double timestep : kSteps)
+    for (const double share : {2.0, 1.0, 0.1, 1e-6})
+      for (const Cone cone : kCones) {
+        Model model = boxOnSlope(0.0, 1.0, timestep, cone);
+        Impedance impedance;
+        impedance.timeConstant = share * timestep;
+        setImpedance(model, impedance);
+        Trial t("time constant, steps " + std::to_string(share), std::move(model));
+        t.state.q[2] += 0.05;  // dropped
+        t.mayGain = 1e-9;
+        t.run(2.0);
+        // 4 g h² of the reference motion of 2 h, softened by (1 − d)/d.
+        t.expect("penetration at rest", t.data->stats.maxPenetration,
+                 0.1 * 4.0 * 9.81 * std::pow(2.0 * timestep, 2.0) + 1e-6, "m");
+        t.expect("speed at rest", t.state.v.cwiseAbs().maxCoeff(), 1e-6, "m/s");
+      }
+}
+
+// Impedances up to the clamp and beyond it: the harder, the less deep.
+TEST(ContactParameters, ImpedancesUpToOne) {
+  for (const double timestep : kSteps)
+    for (const Cone cone : kCones)
+      for (const double d : {0.5, 0.9, 0.99, 0.9999, 1.0}) {
+        Model model = boxOnSlope(0.0, 1.0, timestep, cone);
+        Impedance impedance;
+        impedance.dMin = impedance.dMax = d;
+        setImpedance(model, impedance);
+        Trial t("impedance " + std::to_string(d), std::move(model));
+        t.state.q[2] += 0.05;
+        t.mayGain = 1e-9;
+        t.run(2.0);
+        // One contact: g (1 − d)/(k d²) d_max² with k = 1/tc², as docs/softness.md has it for μ =
+        // 1; the box has four.
+        const double e = std::min(d, 0.9999), tc = std::max(0.02, 2.0 * timestep);
+        t.expect("penetration at rest", t.data->stats.maxPenetration,
+                 9.81 * (1.0 - e) / e * tc * tc, "m");
+        t.expect("speed at rest", t.state.v.cwiseAbs().maxCoeff(), 1e-6, "m/s");
+      }
+}
+
+// Friction from 0 to 10 on a slope of 20 degrees: below its tangent the box slides as Coulomb says,
+// above it stays, but for the creep of a soft friction.
+TEST(ContactParameters, FrictionFromNoneToTen) {
+  const double slope = 20.0 * M_PI / 180.0;
+  for (const double timestep : kSteps)
+    for (const Cone cone : kCones)
+      for (const double friction : {0.0, 1e-6, 0.01, 0.1, 0.3, 1.0, 3.0, 10.0}) {
+        Trial t("friction " + std::to_string(friction),
+                boxOnSlope(slope, friction, timestep, cone));
+        t.mayGain = 1e-6;
+        t.run(1.0);
+        const double a = 9.81 * (std::sin(slope) - std::min(friction, 10.0) * std::cos(slope));
+        if (a > 0.0) {
+          const double speed = t.state.v.head<3>().norm();
+          // While it lands, a step and the time constant, the friction is not that of its weight.
+          t.expect("speed against Coulomb", speed - a,
+                   0.01 * a + 9.81 * friction * (0.02 + 4.0 * timestep), "m/s");
+        } else {
+          t.expect("slides", downhill(t, slope), 5e-3, "m");
+          t.expect("tilt", tilt(t, "box") - slope, 1e-3, "rad");
+        }
+      }
+}
+
+/// Downhill in `seconds` on a slope whose tangent is 99 % of the friction.
+double creeps(Trial& t, double slope, double seconds) {
+  t.run(1.0);
+  const double begun = downhill(t, slope);
+  t.run(seconds);
+  return (downhill(t, slope) - begun) / seconds;
+}
+
+// At 99 % of the cone a soft friction creeps at f_t R_t/b. What `noSlip` leaves of it on an
+// elliptic cone is 10⁻⁴.
+void holdsAtTheEdge(double timestep, double seconds) {
+  const double friction = 0.8, slope = std::atan(0.99 * friction);
+  Trial soft("slope at 99 % of the cone", boxOnSlope(slope, friction, timestep, Cone::elliptic));
+  soft.expect("creep", creeps(soft, slope, seconds), 5e-3, "m/s");
+  Model model = boxOnSlope(slope, friction, timestep, Cone::elliptic);
+  model.options.noSlip = true;
+  Trial hard("the same, no slip", std::move(model));
+  hard.expect("creep", creeps(hard, slope, seconds), 5e-7, "m/s");
+}
+
+TEST(ContactParameters, SlopeAtTheEdgeOfTheCone) {
+  for (const double timestep : {0.0005, 0.002, 0.005}) holdsAtTheEdge(timestep, 3.0);
+}
+
+TEST(ContactParameters, SlopeAtTheEdgeOfTheConeForAMinuteLong) {
+  for (const double timestep : {0.0005, 0.002, 0.005}) holdsAtTheEdge(timestep, 60.0);
+}
+
+// With pyramids friction lifts as it creeps. At the edge the box chatters, and still goes slowly.
+TEST(ContactParameters, SlopeAtTheEdgeOfThePyramid) {
+  for (const double timestep : {0.0005, 0.002, 0.005, 0.01}) {
+    const double friction = 0.8, slope = std::atan(0.99 * friction);
+    Trial t("slope at 99 % of the pyramid", boxOnSlope(slope, friction, timestep, Cone::pyramidal));
+    t.expect("creep", creeps(t, slope, 3.0), 0.1, "m/s");
+    t.expect("off the plane", t.deepest, 2e-3, "m");
+  }
+}
+
+TEST(ContactParameters, SameBits) {
+  expectSameBits([] {
+    Trial t("slope", boxOnSlope(0.3, 10.0, 0.002, Cone::elliptic));
+    t.run(0.5);
+    return hash(t.state);
+  });
+}
+
+}  // namespace
+}  // namespace softgauss::test

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Family 4: singular places. An arm at full stretch, hinges whose axes fall together, rotations of
+/// nothing and of half a turn.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "engine/core/rotation.hpp"
+#include "tests/stability/scenes.hpp"
+#include "tests/support/random.hpp"
+
+namespace softgauss::test {
+namespace {
+
+/// Three links of 0.2 m and 1 kg along x on hinges about y, no gravity; the end is tied to a place
+/// on the x axis that is `beyond` the full stretch.
+ModelBuilder stretched(double beyond) {
+  ModelBuilder builder("arm");
+  builder.link(emptyLink("world"));
+  std::string parent = "world";
+  for (int i = 0; i < 3; ++i) {
+    const std::string name = "link" + std::to_string(i);
+    builder.link(boxLink(name, 1.0, {0.1, 0.02, 0.02}, {0.1, 0.0, 0.0}));
+    builder.joint(jointSpec("hinge" + std::to_string(i), JointType::continuous, parent, name,
+                            {Matrix3::Identity(), Vector3(i > 0 ? 0.2 : 0.0, 0, 0)},
+                            Vector3::UnitY()));
+    parent = name;
+  }
+  ConnectSpec tie;
+  tie.linkA = "link2";
+  tie.p_LAP = Vector3(0.2, 0, 0);
+  tie.linkB = "world";
+  tie.p_LBP = Vector3(0.6 + beyond, 0, 0);
+  builder.connect(tie);
+  builder.options.gravity.setZero();
+  return builder;
+}
+
+// Straight, and pulled along itself by a tie that it cannot reach: no acceleration answers it, and
+// none comes. Begun bent, it comes to be straight.
+TEST(Singular, ArmPulledBeyondItsFullStretch) {
+  for (const double beyond : {0.0, 1e-9, 1e-3, 1e-2})
+    for (const double timestep : kSteps) {
+      // The pull makes the arm swing across the line, the faster the farther away the tie is.
+      if (beyond > 5e-3 && timestep > 0.002) continue;  // docs/stability.md
+      Trial straight("straight arm, tie at " + std::to_string(beyond),
+                     with(stretched(beyond), timestep));
+      straight.run(1.0);
+      straight.expect("off the line", straight.state.q.cwiseAbs().maxCoeff(), 1e-12, "rad");
+
+      Trial bent("bent arm, tie at " + std::to_string(beyond), with(stretched(beyond), timestep));
+      bent.state.q = Vector3(0.1, -0.2, 0.15);
+      bent.run(5.0);
+      // The speed of the way that is left, within a time constant.
+      bent.expect("fastest", bent.fastest, (0.15 + beyond) / 0.2 / 0.02, "rad/s");
+      const Vector3 end = bent.origin("link2") + bent.rotation("link2") * Vector3(0.2, 0, 0);
+      bent.expect("end off the line", end.z(), 1e-3 + 0.1 * beyond, "m");
+      bent.expect("end off the stretch", end.x() - 0.6, 1e-3 + 0.1 * beyond, "m");
+    }
+}
+
+/// A ball of 1 kg on three hinges about z, y and z, which meet in its centre; what is between has
+/// no mass, so that without armature M is singular where the outer axes fall together (q_y = 0).
+ModelBuilder gimbal(double armature) {
+  ModelBuilder builder("gimbal");
+  builder.link(emptyLink("world")).link(emptyLink("a")).link(emptyLink("b"));
+  builder.link(sphereLink("ball", 1.0, 0.1));
+  const char* links[] = {"world", "a", "b", "ball"};
+  for (int i = 0; i < 3; ++i) {
+    JointSpec hinge = jointSpec("hinge" + std::to_string(i), JointType::continuous, links[i],
+                                links[i + 1], {}, i == 1 ? Vector3::UnitY() : Vector3::UnitZ());
+    hinge.armature = armature;
+    builder.joint(hinge);
+  }
+  builder.options.gravity.setZero();
+  return builder;
+}
+
+/// A rotation of the ball at ω about the fixed axis (0, 1, offset): what its hinges do for that
+/// near the place where they fall together takes them to ω/offset.
+void turnsThroughAlignment(double offset, double timestep) {
+  Trial t("gimbal, axes within " + std::to_string(offset), with(gimbal(1e-12), timestep));
+  const double omega = 2.0, begun = -0.5;
+  t.state.q[1] = begun;
+  computeKinematics(t.model, t.state, t.data->kinematics);
+  const Matrix3 R0 = t.rotation("ball");
+  const Vector3 axis = Vector3(0.0, 1.0, offset).normalized();
+  // ω = z q̇₀ + y′ q̇₁ + z″ q̇₂ with y′ = y, z″ = R_y(q₁) z at q₀ = 0.
+  Matrix3 axes;
+  axes.col(0) = Vector3::UnitZ();
+  axes.col(1) = Vector3::UnitY();
+  axes.col(2) = axisRotation(Vector3::UnitY(), begun) * Vector3::UnitZ();
+  t.state.v = axes.lu().solve(omega * axis);
+  const double E0 = t.energy().total();
+  t.mayGain = 0.01 * E0;
+  double lost = 0.0, turned = 0.0;
+  t.run(0.5, [&] {
+    lost = std::max(lost, E0 - t.energy().total());
+    const Matrix3 expected = axisRotation(axis, omega * t.state.time) * R0;
+    turned = std::max(
+        turned,
+        quaternionLog(Quaternion(Matrix3(expected.transpose() * t.rotation("ball")))).norm());
+  });
+  t.expect("energy, relative", std::max(lost, t.gained) / E0, 0.01, "");
+  t.expect("turned, against the free ball", turned * 180.0 / M_PI, 1.0, "deg");
+}
+
+TEST(Singular, GimbalPassesItsAlignment) {
+  for (const double timestep : {0.0005, 0.002, 0.005, 0.01})
+    for (const double offset : {0.1, 0.01, 0.001}) turnsThroughAlignment(offset, timestep);
+}
+
+// At the alignment itself there is a motion that takes no force: without armature the model is
+// refused before the first step, with armature it has a definite one.
+TEST(Singular, GimbalAtItsAlignment) {
+  EXPECT_THROW(Data{gimbal(0.0).build()}, ModelError);
+  for (const double armature : {1e-9, 1e-6, 1e-3})
+    for (const double timestep : {0.0005, 0.002, 0.01}) {
+      Trial t("gimbal aligned, armature " + std::to_string(armature),
+              with(gimbal(armature), timestep));
+      t.state.v = Vector3(1.0, 0.5, -1.0 + 1e-3);
+      const double E0 = t.energy().total();
+      t.mayGain = 0.01 * E0;
+      t.run(1.0);
+      t.expect("energy, relative", t.energy().total() / E0 - 1.0, 0.01, "");
+    }
+}
+
+// Rotations of almost nothing and of almost half a turn, there and back.
+TEST(Singular, SmallAndHalfTurnsThereAndBack) {
+  Random random(3);
+  double worst = 0.0, worstStep = 0.0;
+  const Model model = freeBody(sphereLink("ball", 1.0, 0.1)).build();
+  for (int i = 0; i < 4000; ++i) {
+    const double small = std::pow(10.0, random.uniform(-300.0, -1.0));
+    const double angle = i % 2 == 0 ? small : M_PI - small;
+    const Vector3 phi = angle * random.direction();
+    const Vector3 back = quaternionLog(quaternionExp(phi));
+    // At half a turn both directions of the axis are the same rotation.
+    worst = std::max(worst, std::min((back - phi).norm(), angle > 3.0 ? (back + phi).norm() : 1.0) /
+                                std::max(angle, 1e-300));
+    State a(model), b(model);
+    a.q.tail<4>() = State(model).q.tail<4>();
+    b.q = a.q;
+    VectorX v = VectorX::Zero(6);
+    v.tail<3>() = phi;
+    integratePosition(model, v, 1.0, b.q);
+    const VectorX d = positionDifference(model, a.q, b.q);
+    worstStep =
+        std::max(worstStep, std::min((d - v).norm(), angle > 3.0 ? (d + v).norm() : 1.0) / angle);
+  }
+  EXPECT_SMALL(worst, 1e-14);
+  EXPECT_SMALL(worstStep, 1e-14);
+}
+
+// A body is welded to the world, and begins turned by almost nothing or almost half a turn. Exactly
+// at half a turn there is no shorter way back, and it may stay.
+TEST(Singular, WeldTurnsBackFromHalfATurn) {
+  for (const double timestep : kSteps)
+    for (const double away : {1e-12, 1e-6, 1e-2}) {
+      for (const bool half : {false, true}) {
+        ModelBuilder builder = freeBody(sphereLink("body", 1.0, 0.1));
+        builder.options.gravity.setZero();
+        WeldSpec weld;
+        weld.linkA = "body";
+        weld.linkB = "world";
+        builder.weld(weld);
+        Trial t(half ? "welded, almost half a turn off" : "welded, hardly off",
+                with(builder, timestep));
+        const double angle = half ? M_PI - away : away;
+        const Quaternion q = quaternionExp(angle * Vector3(1, 2, -2) / 3.0);
+        t.state.q.tail<4>() << q.w(), q.x(), q.y(), q.z();
+        t.run(5.0);
+        // From the very edge it leaves as a pendulum does from its top.
+        const bool left = !half || away > 1e-10;
+        const double off = quaternionLog(Quaternion(t.rotation("body"))).norm();
+        if (left) t.expect("off after 5 s", off, 1e-6, "rad");
+        t.expect("fastest", t.fastest, angle / std::max(0.02, 2.0 * timestep), "rad/s");
+        t.expect("away from its place", t.state.q.head<3>().norm(), 1e-9, "m");
+      }
+    }
+}
+
+TEST(Singular, SameBits) {
+  expectSameBits([] {
+    Trial t("bent arm", stretched(1e-3));
+    t.state.q = Vector3(0.1, -0.2, 0.15);
+    t.run(0.5);
+    return hash(t.state);
+  });
+}
+
+}  // namespace
+}  // namespace softgauss::test
