@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 
+#include "engine/islands/units.hpp"
 #include "io/detail/text.hpp"
 #include "io/detail/text_table.hpp"
 
@@ -48,6 +49,8 @@ std::string headText(const Model& model, const ExplainContext& context) {
                   context.contents ? ", " + counted(idx(context.contents->joints), "joint") : "",
                   model.bodies.size() - 1);
   out += fmt::format("  {} degrees of freedom, {} actuated\n", model.nv, actuated);
+  if (const int units = Units(model).size(); units > 1)
+    out += fmt::format("  {} units, solved apart with --islands while they do not touch\n", units);
   out += fmt::format("  {:.6g} kg", mass);
   if (std::abs(mass - moving) > 1e-9 * mass)
     out += fmt::format(", of which {:.6g} kg move", moving);

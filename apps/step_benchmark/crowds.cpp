@@ -115,11 +115,19 @@ Pair mover() {
   return timeInTurn([&] { among.step(); }, [&] { alone.step(); }, 100, 100);
 }
 
-Pair robots(const std::string& folder) {
-  Crowd many(humanoids(folder, kHumanoids), false), one(humanoids(folder, 1), false);
+Pair robots(const std::string& folder, int count) {
+  Crowd many(humanoids(folder, count), false), one(humanoids(folder, 1), false);
   many.steps(100);
   one.steps(100);
   const Pair pair = timeInTurn([&] { many.step(); }, [&] { one.step(); }, 5, 5);
+  return {pair.first / count, pair.second};
+}
+
+Pair withoutIslands(const std::string& folder) {
+  const std::unique_ptr<Scene> many = makeHumanoids(folder, kHumanoids);
+  const std::unique_ptr<Scene> one = makeHumanoids(folder, 1);
+  for (int i = 0; i < 100; ++i) many->step(), one->step();
+  const Pair pair = timeInTurn([&] { many->step(); }, [&] { one->step(); }, 5, 5);
   return {pair.first / kHumanoids, pair.second};
 }
 
@@ -138,7 +146,9 @@ std::map<std::string, double> crowdFigures(const std::string& robotsFolder,
   const std::pair<const char*, std::function<Pair()>> pairs[] = {
       {"islands_asleep", [&] { return asleep(robotsFolder); }},
       {"islands_mover", [&] { return mover(); }},
-      {"islands_robots", [&] { return robots(robotsFolder); }},
+      {"islands_robots", [&] { return robots(robotsFolder, kHumanoids); }},
+      {"islands_few", [&] { return robots(robotsFolder, 16); }},
+      {"islands_none", [&] { return withoutIslands(robotsFolder); }},
       {"islands_joint", [&] { return joint(robotsFolder); }}};
   std::map<std::string, double> figures;
   for (const auto& [name, time] : pairs) {

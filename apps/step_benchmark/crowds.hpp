@@ -12,6 +12,8 @@ namespace softgauss::app {
 ///   islands_asleep   100 humanoids that lie on the ground, asleep over awake
 ///   islands_mover    a ball that rolls among 1,000 sleeping boxes, over the same ball alone
 ///   islands_robots   100 humanoids that fall, over one of them, per humanoid
+///   islands_few      16 of them, over one, per humanoid
+///   islands_none     100 without islands, over one, per humanoid
 ///   islands_joint    those 100 in islands, over the joint solve of all
 /// `first.us` and `second.us` are medians of CPU time per step, `ratio` that of the medians.
 std::map<std::string, double> crowdFigures(const std::string& robots, const std::string& filter);
