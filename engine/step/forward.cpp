@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/step/forward.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "engine/step/gauss_objective.hpp"
@@ -13,6 +14,14 @@ int firstNotFinite(const VectorX& x) {
   for (Eigen::Index i = 0; i < x.size(); ++i)
     if (!std::isfinite(x[i])) return static_cast<int>(i);
   return -1;
+}
+
+/// A step of Newton's ends in another cell or at the minimum, and the more rows, the more cells lie
+/// on the way: Options::maxIterations are for every thousand rows. (200 bodies that fall on each
+/// other, with 4,210 rows, have needed more than 100.)
+int mostIterations(int option, int rows) {
+  constexpr int kRows = 1000;
+  return option * std::max(1, rows / kRows);
 }
 
 /// Without rows the minimiser is M⁻¹(τ − c): no iteration, no residual. False where M is singular.
@@ -97,8 +106,9 @@ SolveStatus minimizeGauss(const Model& model, const VectorX* guess, Data& data) 
   s.massFactor.solve(s.start);
   const double smoothCost = objective.moveTo(s.start);
   if (warm && warmCost <= smoothCost) objective.moveTo(*guess);
-  s.report = minimize(objective, model.options.tolerance, model.options.maxIterations, s.gradient,
-                      s.direction);
+  s.report = minimize(objective, model.options.tolerance,
+                      mostIterations(model.options.maxIterations, data.constraints.rowCount()),
+                      s.gradient, s.direction);
   s.cellFactored = s.report.factorizations > 0 && !objective.cellChanged();
   return finish();
 }
