@@ -31,6 +31,9 @@ struct LineSearchOptions {
 template <class Along>
 LineSearchResult exactLineSearch(Along&& along, double slope0,
                                  const LineSearchOptions& options = {}) {
+  // Newton lands on the minimiser of a few pieces within as many steps. Where it creeps, next to
+  // the apex of a cone, every other step halves the bracket.
+  constexpr int kPatience = 16;
   LineSearchResult result;
   if (!(slope0 < 0.0)) return result;
   const double tolerance = options.tolerance * -slope0;
@@ -38,15 +41,18 @@ LineSearchResult exactLineSearch(Along&& along, double slope0,
   while (result.evaluations < options.maxEvaluations) {
     const Jet jet = along(alpha);
     ++result.evaluations;
-    if (std::abs(jet.slope) <= tolerance || !std::isfinite(jet.slope)) break;
+    result.alpha = alpha;
+    if (std::abs(jet.slope) <= tolerance || !std::isfinite(jet.slope)) return result;
     (jet.slope < 0.0 ? lower : upper) = alpha;
     double next = jet.curvature > 0.0 ? alpha - jet.slope / jet.curvature : kInfinity;
-    if (!(next > lower && next < upper))
+    const bool creeps = result.evaluations > kPatience && result.evaluations % 2 == 0;
+    if (creeps || !(next > lower && next < upper))
       next = std::isfinite(upper) ? 0.5 * (lower + upper) : 2.0 * alpha;
-    if (next == alpha) break;  // the bracket has shrunk to rounding
+    if (next == alpha) return result;  // the bracket has shrunk to rounding
     alpha = next;
   }
-  result.alpha = alpha;
+  // Not found: as far as the function is known to fall.
+  if (lower > 0.0) result.alpha = lower;
   return result;
 }
 

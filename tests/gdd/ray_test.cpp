@@ -4,6 +4,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 
+#include "engine/constraints/soft_friction.hpp"
 #include "tests/gdd/gdd_scene.hpp"
 #include "tests/support/matchers.hpp"
 
@@ -179,6 +180,7 @@ TEST(Ray, PassesBothKnotsOfDryFriction) {
   joint.dryFriction = limit;
   Scene scene(builder.joint(joint).build());
   scene.stages();
+  softenFriction(scene.model, scene.data->weights, scene.data->constraints.dryFriction);
   const Constraints& constraints = scene.data->constraints;
   const gdd::ControlBox box(scene.model);
   const VectorX lambda = VectorX::Zero(1), rho = VectorX::Ones(1);

@@ -313,7 +313,7 @@ TEST(Goals, WarmStartsAreGuesses) {
             if ((i / 20) % 5 == k || (i / 20) % 5 == 4)
               *parts[k] = size * random.vector(c.model.nv, 1.0);
           for (KnotName& knot : warm.knots)
-            if (random.chance(0.5)) knot.first = random.index(40), knot.index = random.index(3);
+            if (random.chance(0.5)) knot.row.first = random.index(40), knot.index = random.index(3);
         }
         if (!c.step()) break;
       }

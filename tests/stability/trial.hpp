@@ -74,6 +74,7 @@ class Trial {
   std::string name_;
   double startEnergy_ = 0.0;
   bool begun_ = false, broken_ = false;
+  ContactSet all_;  ///< of `unpruned`
 };
 
 /// Runs `trial`, which returns a hash, twice in turn and twice at once on two threads, and expects
