@@ -10,14 +10,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 #include <memory>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "collision/scene_contacts.hpp"
-#include "collision/unit_contacts.hpp"
 #include "engine/dynamics/energy.hpp"
 #include "engine/step/inverse.hpp"
 #include "tests/parity/comparison.hpp"
@@ -357,39 +355,6 @@ TEST_P(Parity, InverseDynamics) {
   }
   EXPECT_SMALL(worst, kInverse);
   report("inverse", worst);
-}
-
-// Pairs that cannot come near are not tested, and the run is the same bit for bit.
-TEST_P(Parity, PruningIsNotSeen) {
-  const ReferenceTrajectory& reference = log_.trajectory("Euler", false);
-  collision::SceneContacts all(scene_.model, std::numeric_limits<int>::max(), false);
-  Data data(scene_.model);
-  scene_.state.q = reference.q[0];
-  scene_.state.v = reference.v[0];
-  State other = scene_.state;
-  scene_.input.tau = log_.force;
-  const double duration = reference.every * static_cast<double>(reference.q.size() - 1);
-  for (double t = 0.0; t < duration; t += scene_.model.options.timestep) {
-    ASSERT_EQ(scene_.step(), SolveStatus::converged);
-    ASSERT_EQ(step(scene_.model, scene_.input, other, data, &all), SolveStatus::converged);
-    ASSERT_EQ(hash(scene_.state), hash(other)) << "at t = " << t;
-  }
-}
-
-// What does not touch is solved apart, with the same result.
-TEST_P(Parity, IslandsAreNotSeen) {
-  collision::UnitContacts contacts(scene_.model);
-  Islands islands(scene_.model, &contacts);
-  double worst = 0.0;
-  for (const ReferenceState& reference : log_.states) {
-    moveTo(reference, Points::ours);
-    islands.setState(scene_.state);
-    ASSERT_EQ(islands.step(scene_.input), SolveStatus::converged);
-    ASSERT_EQ(scene_.step(), SolveStatus::converged);
-    worst = std::max(worst, relativeDifference(islands.acceleration(), scene_.data->forward.a,
-                                               kSmallAcceleration));
-  }
-  EXPECT_SMALL(worst, 1e-10);
 }
 
 TEST_P(Parity, Trajectory) {

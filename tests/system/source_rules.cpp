@@ -35,6 +35,7 @@ const std::map<std::string, Names> kMayInclude = {
     {"engine/forces", {"engine/core", "engine/model", "engine/dynamics"}},
     {"engine/constraints", {"engine/core", "engine/model", "engine/dynamics"}},
     {"engine/step", {"engine"}},
+    {"engine/islands", {"engine"}},
     {"engine", {"engine"}},
     {"gdd", {"engine"}},
     {"collision", {"engine"}},

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What only saves time is not seen: pruning of pairs and islands, on every scene of the logs.
+
+#include <algorithm>
+#include <limits>
+
+#include "collision/scene_contacts.hpp"
+#include "collision/unit_contacts.hpp"
+#include "engine/islands/islands.hpp"
+#include "tests/parity/comparison.hpp"
+#include "tests/parity/reference_log.hpp"
+#include "tests/support/tolerance.hpp"
+
+namespace softgauss::test {
+namespace {
+
+class ParityScene : public testing::TestWithParam<std::string> {
+ protected:
+  const ReferenceLog& log_ = referenceLog(GetParam());
+  const Model& model_ = log_.model;
+  collision::SceneContacts contacts_{model_};
+  Data data_{model_};
+};
+
+// Pairs that cannot come near are not tested, and the run is the same bit for bit.
+TEST_P(ParityScene, PruningIsNotSeen) {
+  const ReferenceTrajectory& reference = log_.trajectory("Euler", false);
+  collision::SceneContacts all(model_, std::numeric_limits<int>::max(), false);
+  Data other(model_);
+  State state(model_);
+  state.q = reference.q[0];
+  state.v = reference.v[0];
+  State same = state;
+  const Input input{log_.force, {}};
+  const double duration = reference.every * static_cast<double>(reference.q.size() - 1);
+  for (double t = 0.0; t < duration; t += model_.options.timestep) {
+    ASSERT_EQ(step(model_, input, state, data_, &contacts_), SolveStatus::converged);
+    ASSERT_EQ(step(model_, input, same, other, &all), SolveStatus::converged);
+    ASSERT_EQ(hash(state), hash(same)) << "at t = " << t;
+  }
+}
+
+// What does not touch is solved apart, with the same result.
+TEST_P(ParityScene, IslandsAreNotSeen) {
+  constexpr double kSmallAcceleration = 1.0;  // [m/s² or rad/s²] below this, absolute
+  collision::UnitContacts unitContacts(model_);
+  Islands islands(model_, &unitContacts);
+  double worst = 0.0;
+  for (const ReferenceState& reference : log_.states) {
+    State state(model_);
+    state.q = reference.q;
+    state.v = reference.v;
+    const Input input{reference.force, reference.wrenches};
+    islands.setState(state);
+    ASSERT_EQ(islands.step(input), SolveStatus::converged);
+    ASSERT_EQ(step(model_, input, state, data_, &contacts_), SolveStatus::converged);
+    worst = std::max(
+        worst, relativeDifference(islands.acceleration(), data_.forward.a, kSmallAcceleration));
+  }
+  EXPECT_SMALL(worst, 1e-10);
+}
+
+INSTANTIATE_TEST_SUITE_P(Mujoco, ParityScene, testing::ValuesIn(referenceLogNames()),
+                         [](const auto& test) { return test.param; });
+
+}  // namespace
+}  // namespace softgauss::test
