@@ -110,7 +110,7 @@ std::string scalingScript(const Figures& figures) {
   if (plots.empty()) return {};
   return fmt::format(
       "set terminal svg enhanced size 720,480 font 'sans-serif,12' background 'white'\n"
-      "set output '{}'\n{}set logscale xy\nset encoding utf8\nset key bottom right reverse "
+      "set output '{}'\n{}set logscale xy\nset encoding utf8\nset key top left reverse "
       "Left\nset xrange [1:600]\nset grid\n"
       "set xlabel 'count'\nset ylabel 'µs per step'\nplot {}\n",
       io::kGnuplotDrawing, data, plots);
