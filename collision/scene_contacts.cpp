@@ -102,12 +102,7 @@ void SceneContacts::Scene::setPairs(const std::vector<GeometryPair>& pairs, int 
   for (std::size_t i = 0; i < model.geometries.size(); ++i) {
     if (!paired[i]) continue;
     movable.push_back(static_cast<int>(i));
-    // At least half of each pair's margin: material margins add up.
-    double margin = std::max(model.geometries[i].material.margin, 0.0);
-    for (const ContactPair& pair : model.contactPairs)
-      if (pair.geometryA == static_cast<int>(i) || pair.geometryB == static_cast<int>(i))
-        margin = std::max(margin, 0.5 * pair.material.margin);
-    radii.push_back(set.radius[i] + margin + 0.5 * slack);
+    radii.push_back(set.radius[i] + set.marginShare(static_cast<int>(i)) + 0.5 * slack);
   }
   movableCentre.resize(movable.size());
   broadphase = std::make_unique<detail::Broadphase>(radii);

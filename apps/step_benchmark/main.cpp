@@ -18,6 +18,7 @@
 
 #include "apps/step_benchmark/crowds.hpp"
 #include "apps/step_benchmark/ladder.hpp"
+#include "apps/step_benchmark/median.hpp"
 #include "apps/step_benchmark/pictures.hpp"
 #include "apps/step_benchmark/scaling.hpp"
 #include "apps/step_benchmark/scenes.hpp"
@@ -31,12 +32,6 @@ constexpr int kWarmUpSteps = 500;
 constexpr int kTimedSteps = 50;
 constexpr int kPieces = 20;
 constexpr int kRepetitions = 5;
-
-double median(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// As --view does it.
 void record(Scene& scene) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "collision/detail/geometry_set.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "collision/primitive_pairs.hpp"
@@ -44,6 +45,14 @@ GeometrySet::GeometrySet(const Model& m, HullCache& hulls) : model(m) {
     radius.push_back(boundingRadius(shape, hull[i].get()));
     if (shape.kind != ShapeKind::plane) colliders[i] = makeCollider(shape, hull[i].get());
   }
+}
+
+double GeometrySet::marginShare(int g) const {
+  double margin = std::max(geometry(g).material.margin, 0.0);
+  for (const ContactPair& pair : model.contactPairs)
+    if (pair.geometryA == g || pair.geometryB == g)
+      margin = std::max(margin, 0.5 * pair.material.margin);
+  return margin;
 }
 
 bool GeometrySet::test(int a, const Transform& X_WA, int b, const Transform& X_WB, double margin,

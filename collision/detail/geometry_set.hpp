@@ -26,6 +26,9 @@ struct GeometrySet {
 
   const Geometry& geometry(int g) const { return model.geometries[static_cast<std::size_t>(g)]; }
   bool isPlane(int g) const { return geometry(g).shape.kind == ShapeKind::plane; }
+  /// At least half of every margin that a pair of this geometry may have: those of materials add
+  /// up.
+  double marginShare(int g) const;
   /// Contacts of a pair, a's kind ≤ b's, with distance < margin; false where a pose is not finite.
   bool test(int a, const Transform& X_WA, int b, const Transform& X_WB, double margin,
             PairContacts& found) const;

@@ -10,15 +10,6 @@ namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-/// At least half of every margin that a pair of this geometry may have: those of materials add up.
-double marginShare(const Model& model, int geometry) {
-  double margin = std::max(model.geometries[at(geometry)].material.margin, 0.0);
-  for (const ContactPair& pair : model.contactPairs)
-    if (pair.geometryA == geometry || pair.geometryB == geometry)
-      margin = std::max(margin, 0.5 * pair.material.margin);
-  return margin;
-}
-
 }  // namespace
 
 Neighbours::Neighbours(const Model& model, const Units& units, HullCache& hulls)
@@ -40,7 +31,7 @@ Neighbours::Neighbours(const Model& model, const Units& units, HullCache& hulls)
     parts_[at(units.ofTree[at(tree)])].push_back(
         {g, tree, geometry.body - model.trees[at(tree)].rootBody,
          geometry.X_BG * set_.centreInG[at(g)],
-         set_.isPlane(g) ? kInfinity : set_.radius[at(g)] + marginShare(model, g)});
+         set_.isPlane(g) ? kInfinity : set_.radius[at(g)] + set_.marginShare(g)});
   }
 }
 
