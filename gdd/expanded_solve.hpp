@@ -90,11 +90,11 @@ class ExpandedSolve {
         total = report;
         total.status = GddStatus::iterationLimit;
         total.objective = report.objective + error;
-        addCounts(before, total);
+        total.addCounts(before);
         growth = 4.0;
         mayGuess = true;
       } else {
-        addCounts(report, total);
+        total.addCounts(report);
         if (guessed) {
           mayGuess = false;
         } else {
@@ -138,13 +138,6 @@ class ExpandedSolve {
     a_ = solver.acceleration();
     force_ = solver.force();
     solver.keepWarmStart(warm_);
-  }
-  static void addCounts(const GddReport& from, GddReport& to) {
-    to.iterations += from.iterations;
-    to.dualUpdates += from.dualUpdates;
-    to.factorizations += from.factorizations;
-    to.cells += from.cells;
-    to.forwardIterations += from.forwardIterations;
   }
   static VectorX freeAcceleration(const Data& data);
   /// Σ λ_i (y_i − its bound) over the bounds that y = C g is at in the last trial.

@@ -8,6 +8,7 @@
 ///   controller.goals.push_back(std::make_unique<gdd::VirtualDamping>());
 ///   controller.step(model, Input{}, state, data, &contacts);
 
+#include "gdd/goal_directed_islands.hpp"
 #include "gdd/goal_directed_step.hpp"
 #include "gdd/goals/balance.hpp"
 #include "gdd/goals/center_of_pressure.hpp"

@@ -5,9 +5,11 @@
 ///
 /// To add a kind of goal: write a file in goals/ with a class that adds its terms to the cost.
 
+#include <memory>
 #include <optional>
 #include <string>
 
+#include "engine/islands/sub_model.hpp"
 #include "engine/step/data.hpp"
 #include "gdd/cost.hpp"
 
@@ -38,6 +40,10 @@ class Goal {
   virtual std::string name() const = 0;
   /// Adds the cost of this goal at the present state.
   virtual void addCost(const GoalContext& context, GoalCost& cost) const = 0;
+  /// This goal as one of an island alone, in the island's own indices; null where it is about
+  /// nothing there. The goals of all islands together cost what this one costs. Throws ModelError
+  /// where it ties what may be apart, as any goal does that does not say otherwise.
+  virtual std::unique_ptr<Goal> within(const Model& whole, const SubModel& island) const;
   /// Nothing for a goal that is no place.
   virtual std::optional<GoalMark> mark(const GoalContext&) const { return std::nullopt; }
   /// Distance from the goal [m]; nothing for a goal that is no place.

@@ -53,6 +53,19 @@ SolveStatus GoalDirectedController::step(const Model& model, const Input& input,
                                          Data& data, ContactSource* contacts) noexcept {
   if (computeStages(model, input, state, data, contacts) == SolveStatus::notFinite)
     return SolveStatus::notFinite;
+  return finish(model, input, state, data, contacts);
+}
+
+SolveStatus GoalDirectedController::stepAt(const Model& model, const Input& input, State& state,
+                                           Data& data, ContactSource* contacts) noexcept {
+  if (computeStagesAt(model, input, state, data, contacts) == SolveStatus::notFinite)
+    return SolveStatus::notFinite;
+  return finish(model, input, state, data, contacts);
+}
+
+/// Control and step, where the stages are those of the state.
+SolveStatus GoalDirectedController::finish(const Model& model, const Input& input, State& state,
+                                           Data& data, ContactSource* contacts) {
   softenFriction(model, data.weights, data.constraints.dryFriction);
   if (solver == GddSolver::activeSet && data.constraints.piecewiseQuadratic())
     return solveAndAdvance(activeSet, model, input, state, data, contacts);

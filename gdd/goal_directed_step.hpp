@@ -45,10 +45,15 @@ class GoalDirectedController {
   /// where the box is none (GddStatus::badBox), the state is left as it was.
   SolveStatus step(const Model& model, const Input& input, State& state, Data& data,
                    ContactSource* contacts) noexcept;
+  /// The same where data.kinematics is that of the state already.
+  SolveStatus stepAt(const Model& model, const Input& input, State& state, Data& data,
+                     ContactSource* contacts) noexcept;
   /// Of the last GDD solve, before the final forward step (nv).
   const VectorX& acceleration() const { return expansion.acceleration(); }
 
  private:
+  SolveStatus finish(const Model& model, const Input& input, State& state, Data& data,
+                     ContactSource* contacts);
   template <class Solver>
   SolveStatus solveAndAdvance(Solver& used, const Model& model, const Input& input, State& state,
                               Data& data, ContactSource* contacts);

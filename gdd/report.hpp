@@ -3,6 +3,8 @@
 
 /// What a solver of goal directed dynamics tells of its last solve.
 
+#include <algorithm>
+
 namespace softgauss::gdd {
 
 enum class GddStatus {
@@ -35,6 +37,25 @@ struct GddReport {
   /// its quadratic program promises still, over the objective; 1 where that has no answer.
   double stationarity = 0.0;
   double objective = 0.0;  ///< ½ gᵀ(R + W) g + ℓ up to ℓ's constant
+
+  /// Adds what another solve has taken: of the same problem, or of one beside it.
+  void addCounts(const GddReport& other) {
+    iterations += other.iterations;
+    dualUpdates += other.dualUpdates;
+    factorizations += other.factorizations;
+    cells += other.cells;
+    forwardIterations += other.forwardIterations;
+  }
+  /// Adds a problem beside this one: status, violation and stationarity are the worse ones.
+  void add(const GddReport& other) {
+    addCounts(other);
+    status = std::max(status, other.status);
+    heldRows += other.heldRows;
+    restarts += other.restarts;
+    violation = std::max(violation, other.violation);
+    stationarity = std::max(stationarity, other.stationarity);
+    objective += other.objective;
+  }
 };
 
 }  // namespace softgauss::gdd

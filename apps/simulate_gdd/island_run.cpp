@@ -5,8 +5,23 @@
 
 namespace softgauss::app {
 
-IslandRun::IslandRun(const Model& model, const State& initial, bool sleep)
-    : model_(model), contacts_(model), islands_(model, &contacts_, Sleep{.enabled = sleep}) {
+namespace {
+
+/// Goals, if there are any, control islands.
+IslandControls* controlsOf(const Model& model, gdd::GoalDirectedController& controller,
+                           std::optional<gdd::GoalDirectedIslands>& controls) {
+  if (controller.goals.empty()) return nullptr;
+  return &controls.emplace(model, controller);
+}
+
+}  // namespace
+
+IslandRun::IslandRun(const Model& model, const State& initial, const Sleep& sleep,
+                     gdd::GoalDirectedController& controller)
+    : model_(model),
+      controller_(controller),
+      contacts_(model),
+      islands_(model, &contacts_, sleep, controlsOf(model, controller, controls_)) {
   islands_.setState(initial);
   outcomes_.on = true;
   outcomes_.fewestAwake = islands_.units().size();
@@ -17,7 +32,9 @@ void IslandRun::take(const Input& input, State& state, Data& data) {
   collectContacts(data.contacts.contacts);
   if (data.stats.status == SolveStatus::notFinite) return;
   data.forward.a = islands_.acceleration();
-  if (input.tau.size() > 0)
+  if (controls_)
+    data.forces.tau = controller_.control;
+  else if (input.tau.size() > 0)
     data.forces.tau = input.tau;
   else
     data.forces.tau.setZero();
@@ -55,6 +72,12 @@ void IslandRun::collectContacts(std::vector<Contact>& contacts) {
       forces_.push_back(f);
     }
   }
+}
+
+bool IslandRun::controlledCones() const {
+  return std::any_of(islands_.awake().begin(), islands_.awake().end(), [](const auto* island) {
+    return island->controlled && !island->data.constraints.piecewiseQuadratic();
+  });
 }
 
 double IslandRun::physicsViolation() {

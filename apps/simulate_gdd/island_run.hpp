@@ -1,17 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// --islands: the steps of a run without goals, taken island by island.
+/// --islands: the steps of a run, taken island by island.
+
+#include <optional>
 
 #include "collision/unit_contacts.hpp"
 #include "engine/engine.hpp"
+#include "gdd/gdd.hpp"
 #include "io/summary.hpp"
 
 namespace softgauss::app {
 
 class IslandRun {
  public:
-  IslandRun(const Model& model, const State& initial, bool sleep);
+  /// Islands on which goals act are controlled as `controller` tells, which gets the results.
+  /// Throws ModelError where a goal ties what may be apart.
+  IslandRun(const Model& model, const State& initial, const Sleep& sleep,
+            gdd::GoalDirectedController& controller);
 
   SolveStatus step(const Input& input) { return islands_.step(input); }
   /// Takes over what the last step has come to. Of `data`, which has the kinematics of its start,
@@ -21,13 +27,17 @@ class IslandRun {
   double physicsViolation();
   /// Of the last solve of every island, those that sleep too, in the geometries of the model.
   const std::vector<Snapshot::ContactForce>& contacts() const { return forces_; }
+  /// Whether an island with elliptic cones was controlled in the last step.
+  bool controlledCones() const;
   const io::IslandOutcomes& outcomes() const { return outcomes_; }
 
  private:
   void collectContacts(std::vector<Contact>& contacts);
 
   const Model& model_;
+  gdd::GoalDirectedController& controller_;
   collision::UnitContacts contacts_;
+  std::optional<gdd::GoalDirectedIslands> controls_;  ///< with goals
   Islands islands_;
   std::vector<Snapshot::ContactForce> forces_, some_;
   io::IslandOutcomes outcomes_;

@@ -209,8 +209,9 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
 
   app.add_option("--islands", islands,
                  "apart: robots and objects that do not touch are solved apart from each other;\n"
-                 "sleep: and those at rest cost nothing until something touches or pushes them")
-      ->check(CLI::IsMember({"apart", "sleep"}))
+                 "sleep: and those at rest that no goal controls cost nothing until something\n"
+                 "touches or pushes them; sleep-all: robots at rest under their goals too")
+      ->check(CLI::IsMember({"apart", "sleep", "sleep-all"}))
       ->group(simulation);
 
   const char* const output = "Output";
@@ -261,7 +262,8 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
         solver == "active-set" ? gdd::GddSolver::activeSet : gdd::GddSolver::augmentedLagrangian;
   if (!compatibility.empty()) options.likeMujoco = compatibility == "mujoco";
   options.islands = !islands.empty();
-  options.sleep = islands == "sleep";
+  options.sleep.enabled = islands == "sleep" || islands == "sleep-all";
+  options.sleep.controlled = islands == "sleep-all";
   options.zeroEffortIsUnlimited = zeroEffort == "unlimited";
   if (!effects.empty()) options.effects = parseEffects(effects);
   if (options.ground) mustBeNear(*options.ground, "--ground");

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/islands/islands.hpp"
 #include "engine/model/model_builder.hpp"
 #include "gdd/goal_directed_step.hpp"
 
@@ -42,7 +43,7 @@ struct SimulateOptions {
   std::optional<double> integrationTolerance;
   std::optional<bool> likeMujoco;  ///< --compatibility
   bool islands = false;            ///< what does not touch is solved apart
-  bool sleep = false;              ///< and what rests costs nothing
+  Sleep sleep;                     ///< and what rests costs nothing
   bool explain = false;
   bool quiet = false;
   std::filesystem::path log, summary, view, plot;

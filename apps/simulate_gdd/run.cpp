@@ -80,11 +80,7 @@ class Runner {
     for (const io::EffectNote& note : notes)
       if (note.asked && !note.on)
         summary_.warnings.push_back(fmt::format("{} is not simulated: {}", note.name, note.reason));
-    if (options.islands) {
-      if (!controller_.goals.empty())
-        throw UsageError("--islands is for runs without goals: goals tie all that they move");
-      islands_.emplace(model_, state_, options.sleep);
-    }
+    if (options.islands) islands_.emplace(model_, state_, options.sleep, controller_);
     computeStages(model_, input_, state_, data_, &contacts_);
     for (const auto& goal : controller_.goals)
       if (const std::optional<double> error = goal->error({model_, state_, data_}))
@@ -149,7 +145,9 @@ class Runner {
                                    : controller_.step(model_, input_, state_, data_, &contacts_);
     record_.stepUs = 1e6 * secondsSince(start);
     if (islands_) islands_->take(input_, state_, data_);
-    if (!data_.constraints.piecewiseQuadratic()) ++stepsWithCones_;
+    const bool cones =
+        islands_ ? islands_->controlledCones() : !data_.constraints.piecewiseQuadratic();
+    if (cones) ++stepsWithCones_;
     return status != SolveStatus::notFinite;
   }
 

@@ -2,18 +2,20 @@
 #include "apps/step_benchmark/crowds.hpp"
 
 #include <fmt/format.h>
-#include <time.h>
 
 #include <algorithm>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <regex>
 #include <vector>
 
-#include "apps/step_benchmark/median.hpp"
+#include "apps/step_benchmark/in_turn.hpp"
 #include "apps/step_benchmark/scaling.hpp"
 #include "apps/step_benchmark/scenes.hpp"
 #include "collision/unit_contacts.hpp"
+#include "gdd/gdd.hpp"
+#include "io/urdf.hpp"
 
 namespace softgauss::app {
 namespace {
@@ -21,13 +23,20 @@ namespace {
 constexpr int kHumanoids = 100;
 constexpr int kSleepers = 1000;
 
-/// A model, stepped in islands.
+using Goals = std::vector<std::unique_ptr<gdd::Goal>>;
+
+/// A model, stepped in islands, and its goals.
 struct Crowd {
   Model model;
   collision::UnitContacts contacts;
+  gdd::GoalDirectedController controller;
+  std::optional<gdd::GoalDirectedIslands> controls;
   Islands islands;
-  Crowd(Model m, bool sleeps)
-      : model(std::move(m)), contacts(model), islands(model, &contacts, Sleep{.enabled = sleeps}) {}
+  Crowd(Model m, bool sleeps, const std::function<Goals(const Model&)>& goals = nullptr)
+      : model(std::move(m)),
+        contacts(model),
+        controller(model),
+        islands(model, &contacts, Sleep{.enabled = sleeps}, follow(goals)) {}
   void step() {
     if (islands.step({}) == SolveStatus::notFinite)
       throw std::runtime_error("the scene became non-finite");
@@ -35,14 +44,14 @@ struct Crowd {
   void steps(int count) {
     for (int i = 0; i < count; ++i) step();
   }
-};
 
-/// CPU time of this thread [µs].
-double cpuTime() {
-  timespec t;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return 1e6 * static_cast<double>(t.tv_sec) + 1e-3 * static_cast<double>(t.tv_nsec);
-}
+ private:
+  IslandControls* follow(const std::function<Goals(const Model&)>& goals) {
+    if (!goals) return nullptr;
+    controller.goals = goals(model);
+    return &controls.emplace(model, controller);
+  }
+};
 
 using Step = std::function<void()>;
 
@@ -50,19 +59,10 @@ struct Pair {
   double first, second;  ///< median times of a step [µs]
 };
 
-/// Pieces of both in turn; of each piece the mean, of the pieces the median.
-Pair timeInTurn(const Step& first, const Step& second, int stepsOfFirst, int stepsOfSecond) {
-  constexpr int kPieces = 21;
-  std::vector<double> times[2];
-  for (int piece = 0; piece < kPieces; ++piece)
-    for (const int which : {0, 1}) {
-      const Step& step = which == 0 ? first : second;
-      const int count = which == 0 ? stepsOfFirst : stepsOfSecond;
-      const double start = cpuTime();
-      for (int i = 0; i < count; ++i) step();
-      times[which].push_back((cpuTime() - start) / count);
-    }
-  return {median(times[0]), median(times[1])};
+Pair timePair(const Step& first, const Step& second, int stepsOfFirst, int stepsOfSecond) {
+  const std::vector<double> times =
+      timeInTurn({{nullptr, first, stepsOfFirst}, {nullptr, second, stepsOfSecond}});
+  return {times[0], times[1]};
 }
 
 Pair asleep(const std::string& robots) {
@@ -71,7 +71,68 @@ Pair asleep(const std::string& robots) {
   int steps = 0;
   for (; asleep.islands.islandStats().awake > 0 || steps == 0; ++steps) asleep.step();
   awake.steps(steps);
-  return timeInTurn([&] { asleep.step(); }, [&] { awake.step(); }, 100, 2);
+  return timePair([&] { asleep.step(); }, [&] { awake.step(); }, 100, 2);
+}
+
+/// An arm reaches beside boxes that sleep.
+Pair reacher(const std::string& folder) {
+  const auto goals = [](const Model& model) {
+    Goals reach;
+    reach.push_back(std::make_unique<gdd::Reach>(model, "arm/hand", Vector3(0.5, 0.3, 0.5)));
+    reach.push_back(std::make_unique<gdd::VirtualDamping>());
+    return reach;
+  };
+  const auto make = [&](int sleepers) {
+    ModelBuilder builder = boxesOnGround(sleepers, 0.6);
+    ModelBuilder arm = io::readUrdf(folder + "/arm.urdf");
+    arm.X_WRoot.p = Vector3(-3.0, 0.0, 0.0);
+    builder.add(arm, "arm");
+    return std::make_unique<Crowd>(builder.build(), true, goals);
+  };
+  const auto among = make(kSleepers), alone = make(0);
+  for (const auto& crowd : {among.get(), alone.get()}) {
+    crowd->steps(1500);
+    if (crowd->islands.islandStats().awake != 1)
+      throw std::runtime_error("the arm is not alone awake");
+  }
+  return timePair([&] { among->step(); }, [&] { alone->step(); }, 100, 100);
+}
+
+/// The right hand of each humanoid seeks a place before it, and none is to move otherwise.
+Goals reachingHands(const Model& model) {
+  Goals goals;
+  for (const Frame& frame : model.frames) {
+    if (!frame.name.ends_with("right_hand")) continue;
+    const Body& root = model.bodies[static_cast<std::size_t>(
+        model
+            .trees[static_cast<std::size_t>(
+                model.bodies[static_cast<std::size_t>(frame.body)].tree)]
+            .rootBody)];
+    const Vector3 base = model.q0.segment<3>(root.q);
+    goals.push_back(std::make_unique<gdd::Reach>(model, frame.name,
+                                                 Vector3(base.x() + 0.45, base.y() - 0.25, 1.1)));
+    static_cast<gdd::Reach&>(*goals.back()).weight = 100.0;
+  }
+  goals.push_back(std::make_unique<gdd::VirtualDamping>());
+  return goals;
+}
+
+Pair goals(const std::string& folder, int count) {
+  Crowd many(humanoids(folder, count), false, reachingHands);
+  Crowd one(humanoids(folder, 1), false, reachingHands);
+  many.steps(100), one.steps(100);
+  const Pair pair = timePair([&] { many.step(); }, [&] { one.step(); }, 5, 5);
+  return {pair.first / count, pair.second};
+}
+
+Pair jointGoals(const std::string& folder, int count) {
+  Crowd islands(humanoids(folder, count), false, reachingHands);
+  const std::unique_ptr<Scene> scene = makeHumanoids(folder, count);
+  scene->controller = std::make_unique<gdd::GoalDirectedController>(scene->model);
+  scene->controller->goals = reachingHands(scene->model);
+  islands.steps(100);
+  for (int i = 0; i < 100; ++i) scene->step();
+  return timePair([&] { islands.step(); }, [&] { scene->step(); }, 5, 5);
 }
 
 /// A ball that rolls along x between rows of boxes that sleep, `sleepers` of them.
@@ -107,14 +168,14 @@ Pair mover() {
     if (crowd->islands.islandStats().awake != 1)
       throw std::runtime_error("the ball is not alone awake");
   }
-  return timeInTurn([&] { among.step(); }, [&] { alone.step(); }, 100, 100);
+  return timePair([&] { among.step(); }, [&] { alone.step(); }, 100, 100);
 }
 
 Pair robots(const std::string& folder, int count) {
   Crowd many(humanoids(folder, count), false), one(humanoids(folder, 1), false);
   many.steps(100);
   one.steps(100);
-  const Pair pair = timeInTurn([&] { many.step(); }, [&] { one.step(); }, 5, 5);
+  const Pair pair = timePair([&] { many.step(); }, [&] { one.step(); }, 5, 5);
   return {pair.first / count, pair.second};
 }
 
@@ -122,7 +183,7 @@ Pair withoutIslands(const std::string& folder) {
   const std::unique_ptr<Scene> many = makeHumanoids(folder, kHumanoids);
   const std::unique_ptr<Scene> one = makeHumanoids(folder, 1);
   for (int i = 0; i < 100; ++i) many->step(), one->step();
-  const Pair pair = timeInTurn([&] { many->step(); }, [&] { one->step(); }, 5, 5);
+  const Pair pair = timePair([&] { many->step(); }, [&] { one->step(); }, 5, 5);
   return {pair.first / kHumanoids, pair.second};
 }
 
@@ -131,7 +192,7 @@ Pair joint(const std::string& folder) {
   std::unique_ptr<Scene> scene = makeHumanoids(folder, kHumanoids);
   islands.steps(100);
   for (int i = 0; i < 100; ++i) scene->step();
-  return timeInTurn([&] { islands.step(); }, [&] { scene->step(); }, 5, 5);
+  return timePair([&] { islands.step(); }, [&] { scene->step(); }, 5, 5);
 }
 
 }  // namespace
@@ -144,7 +205,10 @@ std::map<std::string, double> crowdFigures(const std::string& robotsFolder,
       {"islands_robots", [&] { return robots(robotsFolder, kHumanoids); }},
       {"islands_few", [&] { return robots(robotsFolder, 16); }},
       {"islands_none", [&] { return withoutIslands(robotsFolder); }},
-      {"islands_joint", [&] { return joint(robotsFolder); }}};
+      {"islands_joint", [&] { return joint(robotsFolder); }},
+      {"islands_reacher", [&] { return reacher(robotsFolder); }},
+      {"islands_goals", [&] { return goals(robotsFolder, 8); }},
+      {"islands_goals_joint", [&] { return jointGoals(robotsFolder, 8); }}};
   std::map<std::string, double> figures;
   for (const auto& [name, time] : pairs) {
     if (!std::regex_search(name, std::regex(filter))) continue;

@@ -15,6 +15,9 @@ namespace softgauss::app {
 ///   islands_few      16 of them, over one, per humanoid
 ///   islands_none     100 without islands, over one, per humanoid
 ///   islands_joint    those 100 in islands, over the joint solve of all
+///   islands_reacher  an arm that reaches among 1,000 sleeping boxes, over the arm alone
+///   islands_goals    8 humanoids that reach, each with its goals, over one, per humanoid
+///   islands_goals_joint  those 8 in islands, over the joint solve of all
 /// `first.us` and `second.us` are medians of CPU time per step, `ratio` that of the medians.
 std::map<std::string, double> crowdFigures(const std::string& robots, const std::string& filter);
 

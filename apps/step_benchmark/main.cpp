@@ -17,6 +17,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/step_benchmark/crowds.hpp"
+#include "apps/step_benchmark/in_turn.hpp"
 #include "apps/step_benchmark/ladder.hpp"
 #include "apps/step_benchmark/median.hpp"
 #include "apps/step_benchmark/pictures.hpp"
@@ -110,41 +111,6 @@ void timeScene(benchmark::State& state, const std::function<std::unique_ptr<Scen
   for (auto& [name, column] : values) state.counters[name] = median(column);
 }
 
-/// The algorithms that a step of the arm cannot do without, and nothing between them: kinematics,
-/// M, bias forces, factor, solve; and those that the integrator adds, at mid-step.
-void timeBare(benchmark::State& state, const std::string& robots) {
-  const std::unique_ptr<Scene> scene = makeRung(robots, "arm_nothing");
-  for (int i = 0; i < kTimedSteps; ++i) scene->step();  // sines of zero are cheap
-  const Model& model = scene->model;
-  Data& data = *scene->data;
-  TreeFactor factor;
-  VectorX bias = data.forces.bias, a = bias, gain = bias;
-  std::vector<double> bare, middle;
-  for (auto _ : state) {
-    for (int i = 0; i < kPieces * kTimedSteps; ++i) {
-      const auto start = std::chrono::steady_clock::now();
-      computeKinematics(model, scene->state, data.kinematics);
-      computeMassMatrix(model, data.kinematics, data.inertia);
-      computeBias(model, data.kinematics, data.inertia, data.forces.work, bias);
-      factor.compute(data.inertia.M);
-      a = -bias;
-      factor.solve(a);
-      const auto between = std::chrono::steady_clock::now();
-      gain = scene->state.v + 0.5 * model.options.timestep * a;
-      computeBiasAt(model, data.kinematics, data.inertia, gain, data.forces.work, bias);
-      gain = -bias;
-      factor.solve(gain);
-      const auto end = std::chrono::steady_clock::now();
-      benchmark::DoNotOptimize(gain.data());
-      bare.push_back(1e6 * std::chrono::duration<double>(between - start).count());
-      middle.push_back(1e6 * std::chrono::duration<double>(end - start).count());
-    }
-    state.SetIterationTime(1e-6 * median(bare));
-  }
-  state.counters["step.us"] = median(bare);
-  state.counters["with_midpoint.us"] = median(middle);
-}
-
 /// Collects the repetitions' counters and prints their medians.
 class FlatReporter final : public benchmark::BenchmarkReporter {
  public:
@@ -212,43 +178,19 @@ int main(int argc, char** argv) {
   add("chain100", kWarmUpSteps, [] { return makeChain(100); });
   for (const Rung& rung : ladder(robots)) add("ladder_" + rung.name, 0, rung.make);
   for (const Rung& rung : scaling(robots)) add("scaling_" + rung.name, 10, rung.make);
-  benchmark::RegisterBenchmark("ladder_arm_bare", [=](benchmark::State& s) { timeBare(s, robots); })
-      ->Iterations(1)
-      ->UseManualTime()
-      ->Repetitions(kRepetitions);
 
   try {
     nlohmann::ordered_json json;
     FlatReporter reporter(json);
     benchmark::RunSpecifiedBenchmarks(&reporter, filter);
-    for (const auto& [name, value] : crowdFigures(robots, filter)) json[name] = value;
     std::map<std::string, double> figures;
-    for (const auto& [name, value] : json.items()) figures[name] = value.get<double>();
-    const auto derived = [&](const std::string& name, double value) {
-      json[name] = value;
-      fmt::print("{} {:.4g}\n", name, value);
-    };
-    // What each rung of the ladder adds to the one without its effect.
-    for (const auto& [name, value] : figures) {
-      const std::string suffix = ".step.us";
-      if (name.rfind("ladder_", 0) != 0 || name.find(suffix) == std::string::npos) continue;
-      const std::string rung = name.substr(0, name.size() - suffix.size());
-      const std::string base = rung.substr(0, rung.find('_', std::string("ladder_").size()));
-      const auto nothing = figures.find(base + "_nothing" + suffix);
-      if (nothing != figures.end() && nothing->first != name)
-        derived(rung + ".added.us", value - nothing->second);
-    }
-    // What a step of the arm costs over the algorithms that it needs.
-    for (const auto& [base, needs] : {std::pair{"plainarm", "step"}, {"arm", "with_midpoint"}})
-      for (const char* effect : {"nothing", "self_collision_idle"}) {
-        const std::string rung = fmt::format("ladder_{}_{}", base, effect);
-        const auto step = figures.find(rung + ".step.us");
-        const auto bare = figures.find(fmt::format("ladder_arm_bare.{}.us", needs));
-        if (step != figures.end() && bare != figures.end())
-          derived(rung + ".over_bare", step->second / bare->second);
-      }
+    for (const auto& timed : {ladderInTurn, scalingInTurn})
+      for (const auto& [name, value] : timed(robots, filter)) figures[name] = value;
     for (const auto& [what, exponent] : exponents(figures))
-      derived("scaling_" + what + ".exponent", exponent);
+      figures["scaling_" + what + ".exponent"] = exponent;
+    for (const auto& [name, value] : figures) fmt::print("{} {:.4g}\n", name, value);
+    figures.merge(crowdFigures(robots, filter));
+    for (const auto& [name, value] : figures) json[name] = value;
     if (!pictures.empty()) drawPictures(figures, pictures);
     if (!file.empty()) std::ofstream(file) << json.dump(2) << '\n';
   } catch (const std::exception& error) {

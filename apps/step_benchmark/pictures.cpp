@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <optional>
 #include <stdexcept>
@@ -34,6 +35,13 @@ void write(const std::filesystem::path& file, const std::string& script) {
     throw std::runtime_error(file.string() + ": cannot be written");
 }
 
+/// 1, 2 or 5 times a power of ten, near x.
+double roundStep(double x) {
+  const double power = std::pow(10.0, std::floor(std::log10(x)));
+  const double digit = x / power;
+  return power * (digit < 1.5 ? 1.0 : digit < 3.5 ? 2.0 : digit < 7.5 ? 5.0 : 10.0);
+}
+
 /// One panel a base: bars of the time of a step, that of `nothing` in grey, what is added in blue.
 std::string ladderScript(const Figures& figures) {
   static constexpr const char* kEffects[] = {
@@ -44,14 +52,14 @@ std::string ladderScript(const Figures& figures) {
   constexpr const char* kTitles[] = {"arm, 7 hinges", "humanoid, 27 dofs", "20 free boxes"};
   std::string data, plots;
   for (std::size_t b = 0; b < std::size(kBases); ++b) {
-    const auto nothing = find(figures, fmt::format("ladder_{}_nothing.step.us", kBases[b]));
+    const auto nothing = find(figures, fmt::format("ladder_{}_nothing.in_turn.us", kBases[b]));
     if (!nothing) return {};
     data += fmt::format("${} << EOD\n", kBases[b]);
     std::string tics;
     int row = 0;
     double longest = 0.0;
     for (const char* effect : kEffects) {
-      const auto step = find(figures, fmt::format("ladder_{}_{}.step.us", kBases[b], effect));
+      const auto step = find(figures, fmt::format("ladder_{}_{}.in_turn.us", kBases[b], effect));
       if (!step) continue;
       data += fmt::format("{} {:.6g} {:.6g} {}\n", -row, std::min(*step, *nothing),
                           std::max(*step, *nothing),
@@ -63,11 +71,12 @@ std::string ladderScript(const Figures& figures) {
     }
     data += "EOD\n";
     plots += fmt::format(
-        "set title '{}'\nset ytics ({}) nomirror\nset xrange [0:{:.6g}]\nset yrange [{}:0.6]\n"
+        "set title '{}'\nset xtics 0,{:.6g}\nset ytics ({}) nomirror\nset xrange [0:{:.6g}]\nset "
+        "yrange [{}:0.6]\n"
         "plot ${} using (0.5*$2):1:(0.5*$2):(0.36) with boxxyerror lc rgb '#b8c0c8', "
         "'' using (0.5*($2+$3)):1:(0.5*($3-$2)):(0.36) with boxxyerror lc rgb '#3465a4', "
         "'' using 3:1:4 with labels left offset 0.5,0\n",
-        kTitles[b], tics, 1.25 * longest, 0.4 - row, kBases[b]);
+        kTitles[b], roundStep(0.3 * longest), tics, 1.25 * longest, 0.4 - row, kBases[b]);
   }
   return fmt::format(
       "set encoding utf8\nset terminal svg size 1080,420 font 'sans-serif,12' background "
@@ -95,7 +104,7 @@ std::string scalingScript(const Figures& figures) {
     std::map<int, double> points;
     for (auto place = figures.lower_bound(prefix);
          place != figures.end() && place->first.rfind(prefix, 0) == 0; ++place)
-      if (place->first.size() > 8 && place->first.rfind(".step.us") == place->first.size() - 8)
+      if (place->first.find(".in_turn.us") != std::string::npos)
         points[std::stoi(place->first.substr(prefix.size()))] = place->second;
     if (points.size() < 2) continue;
     data += fmt::format("${} << EOD\n", kLines[n].what);

@@ -83,7 +83,7 @@ std::map<std::string, double> exponents(const std::map<std::string, double>& fig
   struct Sums {
     double n = 0, x = 0, y = 0, xx = 0, xy = 0;
   };
-  static const std::regex name("scaling_([a-z]+)_([0-9]+)[.]step[.]us");
+  static const std::regex name("scaling_([a-z]+)_([0-9]+)[.]in_turn[.]us");
   std::map<std::string, Sums> sums;
   for (const auto& [key, us] : figures) {
     std::smatch match;

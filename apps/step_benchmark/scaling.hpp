@@ -21,7 +21,7 @@ ModelBuilder boxesOnGround(int count, double spacing);
 std::vector<Rung> scaling(const std::string& robots);
 
 /// The exponent p of time ∝ countᵖ by least squares on logarithms, over the counts of each `what`,
-/// from figures named scaling_what_count.step.us.
+/// from figures named scaling_what_count.in_turn.us.
 std::map<std::string, double> exponents(const std::map<std::string, double>& figures);
 
 }  // namespace softgauss::app

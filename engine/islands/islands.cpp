@@ -48,16 +48,18 @@ double fastestLink(const Islands::Island& island) {
 }  // namespace
 
 Islands::Island::Island(const Model& whole, std::vector<int> ofUnits, const std::vector<int>& trees,
-                        IslandContacts* source)
+                        IslandContacts* source, IslandControls* controls)
     : units(std::move(ofUnits)),
       part(whole, trees),
       contacts(source ? source->within(part) : nullptr),
+      control(controls ? controls->within(part) : nullptr),
       state(part.model),
       data(part.model),
       gyration(gyrationRadii(part.model)) {}
 
-Islands::Islands(const Model& model, IslandContacts* contacts, Sleep sleep)
-    : model_(model), contacts_(contacts), sleep_(sleep), units_(model) {
+Islands::Islands(const Model& model, IslandContacts* contacts, Sleep sleep,
+                 IslandControls* controls)
+    : model_(model), contacts_(contacts), controls_(controls), sleep_(sleep), units_(model) {
   if (model.options.integrator != Integrator::semiImplicitEuler)
     throw ModelError({}, "islands",
                      "are stepped by semi-implicit-euler, not by " +
@@ -92,7 +94,8 @@ bool Islands::asleep(int body) const {
 
 Islands::Island& Islands::find(const std::vector<int>& units) {
   std::unique_ptr<Island>& island = islands_[units];
-  if (!island) island = std::make_unique<Island>(model_, units, treesOf(units_, units), contacts_);
+  if (!island)
+    island = std::make_unique<Island>(model_, units, treesOf(units_, units), contacts_, controls_);
   return *island;
 }
 
@@ -177,6 +180,18 @@ void Islands::wakeWhatIsPushed(const Input& input) {
   }
 }
 
+/// Where what controls an island begins, ends or has changed, it wakes.
+void Islands::wakeWhatIsControlled() {
+  if (!controls_) return;
+  changed_.clear();
+  controls_->begin(state_.time, changed_);
+  for (const int tree : changed_) {
+    Island& island = *islandOf_[at(units_.ofTree[at(tree)])];
+    if (!island.awake) ++islandStats_.wakeups, wake(island);
+    island.resting = 0.0;
+  }
+}
+
 void Islands::pose(Island& island) {
   if (!island.posed) computeKinematics(island.part.model, island.state, island.data.kinematics);
   island.posed = true;
@@ -200,12 +215,27 @@ SolveStatus Islands::take(Island& island, const Input& input) {
   }
   const Model& model = island.part.model;
   State& state = island.state;
+  island.controlled = island.control && island.control->acts(state_.time);
+  if (island.controlled) {
+    const SolveStatus status =
+        island.control->step(part, state, island.data, island.contacts.get());
+    if (status == SolveStatus::notFinite) return status;
+    computeKinematics(model, state, island.data.kinematics);
+    return status;
+  }
+  if (island.control) island.control->release();
   if (computeStagesAt(model, part, state, island.data, island.contacts.get()) ==
       SolveStatus::notFinite)
     return SolveStatus::notFinite;
   const VectorX* guess = state.warmstart.valid ? &state.warmstart.a : nullptr;
   const SolveStatus status = advance(model, part, island.contacts.get(), guess, island.data, state);
   if (status == SolveStatus::notFinite) return status;
+  if (controls_) {  // a control that comes to act starts from there
+    state.warmstart.gddA = state.warmstart.a;
+    state.warmstart.multipliers.setZero();
+    state.warmstart.control.setZero();
+    state.warmstart.knots.clear();
+  }
   computeKinematics(model, state, island.data.kinematics);
   return status;
 }
@@ -221,6 +251,7 @@ SolveStatus Islands::step(const Input& input) noexcept {
   if (!fits) return stats_.status = SolveStatus::notFinite;
 
   wakeWhatIsPushed(input);
+  wakeWhatIsControlled();
   if (islandStats_.wakeups > 0) refreshLists();
   for (Island* island : awake_) pose(*island);
   part();
@@ -237,6 +268,7 @@ SolveStatus Islands::step(const Input& input) noexcept {
     island->part.scatter(model_, island->data.forward.a, acceleration_);
     island->lastUse = clock_;
     ++island->age;
+    if (island->controlled) state_.warmstart.gddValid = true;
   }
   collectStats();
   if (sleep_.enabled) settle();
@@ -262,7 +294,8 @@ SolveStatus Islands::fail(const Island& island) {
 void Islands::settle() {
   bool changed = false;
   for (Island* island : awake_) {
-    const bool slow = fastestLink(*island) <= sleep_.speed;
+    const bool mayRest = sleep_.controlled || !island->controlled;
+    const bool slow = mayRest && fastestLink(*island) <= sleep_.speed;
     island->resting = slow ? island->resting + model_.options.timestep : 0.0;
     if (island->resting < sleep_.time) continue;
     fallAsleep(*island);
@@ -276,6 +309,7 @@ void Islands::collectStats() {
   islandStats_.awake = static_cast<int>(awake_.size());
   for (const Island* island : awake_) {
     const StepStats& s = island->data.stats;
+    islandStats_.controlled += island->controlled;
     stats_.status = std::max(stats_.status, s.status);
     stats_.contacts += s.contacts;
     stats_.rows += s.rows;

@@ -19,8 +19,9 @@
 ///
 /// Sleep. Where no link has been faster than Sleep::speed for Sleep::time, and nothing is applied,
 /// the island's velocity is set to zero and it costs nothing until something touches it, a force or
-/// wrench is applied to it, wake() or setState() is called. What sleep leaves out is the motion
-/// that was left: less than Sleep::speed times the time asleep (docs/decisions/0026).
+/// wrench is applied to it, what controls it begins, ends or changes, wake() or setState() is
+/// called. What a control acts on stays awake unless Sleep::controlled. What sleep leaves out is
+/// the motion that was left: less than Sleep::speed times the time asleep (docs/decisions/0026).
 
 #include <cstdint>
 #include <map>
@@ -28,9 +29,9 @@
 #include <vector>
 
 #include "engine/islands/island_contacts.hpp"
+#include "engine/islands/island_control.hpp"
 #include "engine/islands/union_find.hpp"
 #include "engine/islands/units.hpp"
-#include "engine/step/snapshot.hpp"
 #include "engine/step/step.hpp"
 
 namespace softgauss {
@@ -39,13 +40,16 @@ struct Sleep {
   bool enabled = false;
   double speed = 5e-3;  ///< [m/s] of every link: its centre of mass, and its radius of gyration
   double time = 0.5;    ///< [s] for which they have been slower
+  /// What a control acts on may sleep too: it then keeps its pose, and its control the last value.
+  bool controlled = false;
 };
 
 struct IslandStats {
-  int islands = 0;   ///< all, asleep or not
-  int awake = 0;     ///< of them
-  int regroups = 0;  ///< islands made in this step because units met or came apart
-  int wakeups = 0;   ///< islands that were woken by this step
+  int islands = 0;     ///< all, asleep or not
+  int awake = 0;       ///< of them
+  int regroups = 0;    ///< islands made in this step because units met or came apart
+  int wakeups = 0;     ///< islands that were woken by this step
+  int controlled = 0;  ///< islands on which a control has acted in this step
 };
 
 class Islands {
@@ -53,10 +57,12 @@ class Islands {
   /// Steps of an island between two looks at whether it has come apart.
   static constexpr int kSplitAge = 32;
 
-  /// `contacts` may be null: nothing collides. Model and contacts must outlive this object.
+  /// `contacts` may be null: nothing collides. `controls` may be null: every step is the ordinary
+  /// one. Model, contacts and controls must outlive this object.
   /// Throws ModelError when the model's integrator is not semi-implicit Euler: the others evaluate
   /// the dynamics within the step, where islands may meet that were apart at its start.
-  explicit Islands(const Model& model, IslandContacts* contacts, Sleep sleep = {});
+  explicit Islands(const Model& model, IslandContacts* contacts, Sleep sleep = {},
+                   IslandControls* controls = nullptr);
   ~Islands();
   Islands(const Islands&) = delete;
   Islands& operator=(const Islands&) = delete;
@@ -82,11 +88,12 @@ class Islands {
   /// rest of the data is that of its start.
   struct Island {
     Island(const Model& whole, std::vector<int> ofUnits, const std::vector<int>& trees,
-           IslandContacts* contacts);
+           IslandContacts* contacts, IslandControls* controls);
 
     std::vector<int> units;  ///< ascending
     SubModel part;
     std::unique_ptr<ContactSource> contacts;  ///< null: nothing collides
+    std::unique_ptr<IslandControl> control;   ///< null: nothing controls any
     State state;
     Data data;
     Input input;
@@ -95,7 +102,8 @@ class Islands {
     double resting = 0.0;          ///< [s]
     bool active = false;           ///< part of the scene now
     bool awake = false;
-    bool posed = false;  ///< data.kinematics is that of `state`
+    bool posed = false;       ///< data.kinematics is that of `state`
+    bool controlled = false;  ///< in its last step
     std::int64_t lastUse = 0;
   };
   /// Those that are awake, by their first unit.
@@ -113,6 +121,7 @@ class Islands {
   void place(const Island& island);
   void refreshLists();
   void wakeWhatIsPushed(const Input& input);
+  void wakeWhatIsControlled();
   void pose(Island& island);
   SolveStatus take(Island& island, const Input& input);
   void part();
@@ -125,6 +134,7 @@ class Islands {
 
   const Model& model_;
   IslandContacts* contacts_;
+  IslandControls* controls_;
   const Sleep sleep_;
   const Units units_;
   State state_;
@@ -141,6 +151,7 @@ class Islands {
   std::int64_t clock_ = 0;                     ///< steps taken
   std::vector<std::pair<int, int>> touching_;  ///< scratch
   std::vector<Island*> affected_;              ///< scratch
+  std::vector<int> changed_;                   ///< scratch
 };
 
 }  // namespace softgauss

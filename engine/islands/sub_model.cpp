@@ -28,6 +28,16 @@ Block coordinatesOf(const Model& whole, const Model& part, int wholeTree, std::s
   return {first, q(part, part.trees[partTree].rootBody), end - first};
 }
 
+/// What a warm start has of every dof.
+constexpr VectorX WarmStart::*kWarmVectors[] = {&WarmStart::a, &WarmStart::gddA,
+                                                &WarmStart::multipliers, &WarmStart::control};
+
+/// The place of x in ascending numbers, −1: it is not there.
+int placeIn(const std::vector<int>& numbers, int x) {
+  const auto place = std::lower_bound(numbers.begin(), numbers.end(), x);
+  return place != numbers.end() && *place == x ? static_cast<int>(place - numbers.begin()) : -1;
+}
+
 /// Makes the part; `newBody`, `newGeometry`: indices in it, −1 for what is left out.
 class Extraction {
  public:
@@ -45,15 +55,12 @@ class Extraction {
     newBody_[0] = 0;
     for (const int tree : part_.trees) addTree(whole_.trees[static_cast<std::size_t>(tree)]);
     m.bodies[0].subtreeEnd = m.bodyCount();
+    addFrames();
     m.bodyNames.resize(m.bodies.size());
     m.jointNames.resize(m.bodies.size());
     addJoints();
     addGeometries();
-    m.q0.resize(m.nq);
-    for (std::size_t t = 0; t < part_.trees.size(); ++t) {
-      const Block q = coordinatesOf(whole_, m, part_.trees[t], t);
-      m.q0.segment(q.to, q.count) = whole_.q0.segment(q.from, q.count);
-    }
+    part_.gatherPosition(whole_, whole_.q0, m.q0);
   }
 
  private:
@@ -117,6 +124,15 @@ class Extraction {
     }
   }
 
+  void addFrames() {
+    for (std::size_t f = 0; f < whole_.frames.size(); ++f) {
+      Frame frame = whole_.frames[f];
+      if ((frame.body = body(frame.body)) < 0) continue;
+      part_.frames.push_back(static_cast<int>(f));
+      part_.model.frames.push_back(std::move(frame));
+    }
+  }
+
   bool move(int& a, int& b) const {
     a = body(a), b = body(b);
     return a >= 0 && b >= 0 && (a > 0 || b > 0);
@@ -134,10 +150,30 @@ SubModel::SubModel(const Model& whole, std::vector<int> ofWhole) : trees(std::mo
 }
 
 int SubModel::bodyOf(const Model& whole, int body) const {
+  if (body == 0) return 0;
   const int tree = whole.bodies[static_cast<std::size_t>(body)].tree;
-  const auto place = std::lower_bound(trees.begin(), trees.end(), tree) - trees.begin();
+  const int place = placeIn(trees, tree);
+  if (place < 0) return -1;
   return body - whole.trees[static_cast<std::size_t>(tree)].rootBody +
          model.trees[static_cast<std::size_t>(place)].rootBody;
+}
+
+int SubModel::dofOf(const Model& whole, int dof) const {
+  const int ofWhole = whole.dofs[static_cast<std::size_t>(dof)].body;
+  const int here = bodyOf(whole, ofWhole);
+  if (here < 0) return -1;
+  return dof - whole.bodies[static_cast<std::size_t>(ofWhole)].v +
+         model.bodies[static_cast<std::size_t>(here)].v;
+}
+
+int SubModel::frameOf(int frame) const { return placeIn(frames, frame); }
+
+void SubModel::gatherPosition(const Model& whole, const VectorX& q, VectorX& ofPart) const {
+  ofPart.resize(model.nq);
+  for (std::size_t t = 0; t < trees.size(); ++t) {
+    const Block block = coordinatesOf(whole, model, trees[t], t);
+    ofPart.segment(block.to, block.count) = q.segment(block.from, block.count);
+  }
 }
 
 void SubModel::gather(const Model& whole, const VectorX& x, VectorX& y) const {
@@ -155,14 +191,21 @@ void SubModel::scatter(const Model& whole, const VectorX& y, VectorX& x) const {
 }
 
 void SubModel::gather(const Model& whole, const State& from, State& to) const {
-  for (std::size_t t = 0; t < trees.size(); ++t) {
-    const Block q = coordinatesOf(whole, model, trees[t], t);
-    to.q.segment(q.to, q.count) = from.q.segment(q.from, q.count);
+  gatherPosition(whole, from.q, to.q);
+  for (std::size_t t = 0; t < trees.size(); ++t)
     to.followed[t] = from.followed[static_cast<std::size_t>(trees[t])];
-  }
   gather(whole, from.v, to.v);
-  gather(whole, from.warmstart.a, to.warmstart.a);
-  to.warmstart.valid = from.warmstart.valid;
+  const WarmStart& ofWhole = from.warmstart;
+  to.warmstart.knots.clear();
+  to.warmstart.gddSearchAge = 0;
+  to.warmstart.gddSearchWait = 1;
+  for (const auto warm : kWarmVectors)
+    if ((ofWhole.*warm).size() == whole.nv) {
+      (to.warmstart.*warm).resize(model.nv);
+      gather(whole, ofWhole.*warm, to.warmstart.*warm);
+    }
+  to.warmstart.valid = ofWhole.valid;
+  to.warmstart.gddValid = ofWhole.gddValid;
   to.time = from.time;
 }
 
@@ -173,7 +216,9 @@ void SubModel::scatter(const Model& whole, const State& from, State& to) const {
     to.followed[static_cast<std::size_t>(trees[t])] = from.followed[t];
   }
   scatter(whole, from.v, to.v);
-  scatter(whole, from.warmstart.a, to.warmstart.a);
+  for (const auto warm : kWarmVectors)
+    if ((from.warmstart.*warm).size() == model.nv && (to.warmstart.*warm).size() == whole.nv)
+      scatter(whole, from.warmstart.*warm, to.warmstart.*warm);
 }
 
 }  // namespace softgauss

@@ -13,13 +13,6 @@ const Centroidal& centroidalOf(const GoalContext& context, int robot, Centroidal
   return c;
 }
 
-double massOf(const Model& model, int robot) {
-  double mass = 0.0;
-  for (const Body& body : model.bodies)
-    if (body.robot == robot) mass += body.mass;
-  return mass;
-}
-
 /// ½ weight (acceleration of the centre of mass along `axis` − wished)²: of m times that, the row
 /// of A.
 void addAxis(const Centroidal& c, int axis, double weight, double wished, GoalCost& cost) {
@@ -34,6 +27,15 @@ double pendulumRate(const GoalContext& context, double height) {
   return pull > 0.0 && height > 1e-3 ? std::sqrt(pull / height) : 0.0;
 }
 
+/// A goal of a robot within an island: null where the robot is not there.
+template <class RobotGoal>
+std::unique_ptr<Goal> ofRobotWithin(const RobotGoal& goal, const SubModel& island) {
+  for (const Tree& tree : island.model.trees)
+    if (island.model.bodies[tree.rootBody].robot == goal.robot)
+      return std::make_unique<RobotGoal>(goal);
+  return nullptr;
+}
+
 }  // namespace
 
 int drivenRobot(const Model& model) {
@@ -44,7 +46,7 @@ int drivenRobot(const Model& model) {
 }
 
 CenterOfMass::CenterOfMass(const Model& model, int ofRobot, const Vector3& target)
-    : robot(ofRobot), p_WTarget(target), weight(kReachWeightPerMass * massOf(model, robot)) {}
+    : robot(ofRobot), p_WTarget(target), weight(kReachWeightPerMass * massOfRobot(model, robot)) {}
 
 void CenterOfMass::addCost(const GoalContext& context, GoalCost& cost) const {
   const Centroidal& c = centroidalOf(context, robot, cost.workspace().centroidal);
@@ -55,8 +57,8 @@ void CenterOfMass::addCost(const GoalContext& context, GoalCost& cost) const {
 
 MomentumGoal::MomentumGoal(const Model& model, int ofRobot)
     : robot(ofRobot),
-      linearWeight(kReachWeightPerMass / massOf(model, robot)),
-      angularWeight(10.0 / massOf(model, robot)) {}
+      linearWeight(kReachWeightPerMass / massOfRobot(model, robot)),
+      angularWeight(10.0 / massOfRobot(model, robot)) {}
 
 void MomentumGoal::addCost(const GoalContext& context, GoalCost& cost) const {
   const Centroidal& c = centroidalOf(context, robot, cost.workspace().centroidal);
@@ -68,7 +70,7 @@ void MomentumGoal::addCost(const GoalContext& context, GoalCost& cost) const {
 }
 
 CapturePoint::CapturePoint(const Model& model, int ofRobot, const Vector3& target)
-    : robot(ofRobot), p_WTarget(target), weight(kReachWeightPerMass * massOf(model, robot)) {}
+    : robot(ofRobot), p_WTarget(target), weight(kReachWeightPerMass * massOfRobot(model, robot)) {}
 
 std::optional<Vector3> CapturePoint::position(const GoalContext& context) const {
   Centroidal c;
@@ -88,6 +90,18 @@ void CapturePoint::addCost(const GoalContext& context, GoalCost& cost) const {
     const double v = c.v_WC[i], away = c.p_WC[i] + v / omega - p_WTarget[i];
     addAxis(c, i, weight, omega * (-rate * away - v) - 0.5 * v * c.v_WC.z() / z, cost);
   }
+}
+
+std::unique_ptr<Goal> CenterOfMass::within(const Model&, const SubModel& island) const {
+  return ofRobotWithin(*this, island);
+}
+
+std::unique_ptr<Goal> MomentumGoal::within(const Model&, const SubModel& island) const {
+  return ofRobotWithin(*this, island);
+}
+
+std::unique_ptr<Goal> CapturePoint::within(const Model&, const SubModel& island) const {
+  return ofRobotWithin(*this, island);
 }
 
 }  // namespace softgauss::gdd

@@ -38,6 +38,7 @@ class CenterOfMass final : public Goal {
 
   std::string name() const override { return "center_of_mass"; }
   void addCost(const GoalContext& context, GoalCost& cost) const override;
+  std::unique_ptr<Goal> within(const Model& whole, const SubModel& island) const override;
 };
 
 class MomentumGoal final : public Goal {
@@ -53,6 +54,7 @@ class MomentumGoal final : public Goal {
 
   std::string name() const override { return "momentum"; }
   void addCost(const GoalContext& context, GoalCost& cost) const override;
+  std::unique_ptr<Goal> within(const Model& whole, const SubModel& island) const override;
 };
 
 class CapturePoint final : public Goal {
@@ -69,6 +71,7 @@ class CapturePoint final : public Goal {
   std::optional<Vector3> position(const GoalContext& context) const;
   std::string name() const override { return "capture_point"; }
   void addCost(const GoalContext& context, GoalCost& cost) const override;
+  std::unique_ptr<Goal> within(const Model& whole, const SubModel& island) const override;
 };
 
 }  // namespace softgauss::gdd

@@ -2,6 +2,7 @@
 #include "gdd/goals/center_of_pressure.hpp"
 
 #include "engine/core/rotation.hpp"
+#include "gdd/goals/reach.hpp"
 
 namespace softgauss::gdd {
 namespace {
@@ -11,7 +12,7 @@ constexpr double kWeightPerInverseMass = 10.0;  // [1/m²], as of MomentumGoal::
 }  // namespace
 
 CenterOfPressure::CenterOfPressure(const Model& model, int robot, const Vector3& target)
-    : p_WTarget(target), weight(kWeightPerInverseMass / model.totalMass()) {
+    : p_WTarget(target), weight(kWeightPerInverseMass / massOfRobot(model, robot)) {
   const Vector3& gravity = model.options.gravity;
   n_W = gravity.norm() > 0.0 ? Vector3(-gravity.normalized()) : Vector3(Vector3::UnitZ());
   for (const Geometry& g : model.geometries)
@@ -51,6 +52,14 @@ std::optional<Vector3> CenterOfPressure::measured(const Data& data) const {
   if (!(load > 0.0)) return std::nullopt;
   // Π m = (p − p*) × n f_n, so p − p* = n × m / f_n.
   return Vector3(p_WTarget + n_W.cross(moment) / load);
+}
+
+std::unique_ptr<Goal> CenterOfPressure::within(const Model&, const SubModel& island) const {
+  std::optional<ContactSelection> part = contactsWithin(contacts, island, name());
+  if (!part) return nullptr;
+  auto goal = std::make_unique<CenterOfPressure>(*this);
+  goal->contacts = std::move(*part);
+  return goal;
 }
 
 }  // namespace softgauss::gdd

@@ -22,7 +22,7 @@ class CenterOfPressure final : public Goal {
   ContactSelection contacts;  ///< on the robot's geometries, by those of the world
   Vector3 p_WTarget;          ///< p* [m]
   Vector3 n_W;                ///< n, of length 1
-  double weight;              ///< w [1/(kg m²)]; default 10 over the mass that moves, in 1/m²
+  double weight;              ///< w [1/(kg m²)]; default 10 over the robot's mass, in 1/m²
 
   /// `robot`: Body::robot.
   CenterOfPressure(const Model& model, int robot, const Vector3& p_WTarget);
@@ -32,6 +32,7 @@ class CenterOfPressure final : public Goal {
 
   std::string name() const override { return "center_of_pressure"; }
   void addCost(const GoalContext& context, GoalCost& cost) const override;
+  std::unique_ptr<Goal> within(const Model& whole, const SubModel& island) const override;
   /// p, of the rows' present forces: after a step, those that acted in it [m]. Nothing where the
   /// contacts do not push up.
   std::optional<Vector3> measured(const Data& data) const;

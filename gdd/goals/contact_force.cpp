@@ -6,7 +6,9 @@
 namespace softgauss::gdd {
 
 ContactForce::ContactForce(const Model& model, const std::string& linkName, const Vector3& wished)
-    : link(linkName), force(wished), weight(kReachWeightPerMass / model.totalMass()) {
+    : link(linkName),
+      force(wished),
+      weight(kReachWeightPerMass / massBehind(model, model.findFrame(linkName))) {
   contacts.on = geometriesOf(model, link, name());
   for (const char on : contacts.on) contacts.by.push_back(!on);
 }
@@ -33,6 +35,14 @@ Vector3 ContactForce::measured(const Data& data) const {
     sum += sign * rows.force(i);
   });
   return sum;
+}
+
+std::unique_ptr<Goal> ContactForce::within(const Model&, const SubModel& island) const {
+  std::optional<ContactSelection> part = contactsWithin(contacts, island, name());
+  if (!part) return nullptr;
+  auto goal = std::make_unique<ContactForce>(*this);
+  goal->contacts = std::move(*part);
+  return goal;
 }
 
 }  // namespace softgauss::gdd

@@ -21,7 +21,7 @@ class ContactForce final : public Goal {
   ContactSelection contacts;                   ///< on the link, by all else
   Vector3 force;                               ///< f*, on the link, world axes [N]
   std::array<bool, 3> axes{true, true, true};  ///< S: of x, y, z
-  double weight;                               ///< w [1/kg]; default 2.5 over the mass that moves
+  double weight;                               ///< w [1/kg]; default 2.5 over massBehind()
 
   /// Throws ModelError when the model has no such link or the link cannot touch anything.
   ContactForce(const Model& model, const std::string& link, const Vector3& force);
@@ -30,6 +30,7 @@ class ContactForce final : public Goal {
 
   std::string name() const override { return "contact_force " + link; }
   void addCost(const GoalContext& context, GoalCost& cost) const override;
+  std::unique_ptr<Goal> within(const Model& whole, const SubModel& island) const override;
   /// Of the rows' present forces: after a step, those that acted in it [N].
   Vector3 measured(const Data& data) const;
 };

@@ -23,4 +23,23 @@ std::vector<char> geometriesOfWorld(const Model& model) {
   return chosen;
 }
 
+std::optional<ContactSelection> contactsWithin(const ContactSelection& contacts,
+                                               const SubModel& island, const std::string& goal) {
+  ContactSelection part;
+  bool any = false;
+  for (std::size_t g = 0; g < island.geometries.size(); ++g) {
+    const auto ofWhole = static_cast<std::size_t>(island.geometries[g]);
+    part.on.push_back(contacts.on[ofWhole]);
+    part.by.push_back(contacts.by[ofWhole]);
+    if (!part.on.back()) continue;
+    any = true;
+    if (island.model.geometries[g].body == 0)
+      throw ModelError({}, "goal '" + goal + "'",
+                       "is of forces on what is fixed to the world, expected forces on what moves "
+                       "where islands are solved apart");
+  }
+  if (!any) return std::nullopt;
+  return part;
+}
+
 }  // namespace softgauss::gdd

@@ -4,6 +4,7 @@
 /// Which contacts a goal is about, and which of their two sides: the force counted is the one that
 /// acts on what is `on`, by what is `by`.
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,12 @@ struct ContactSelection {
     });
   }
 };
+
+/// The contacts meant within an island; nothing where none of them can be. Throws ModelError, in
+/// the name of `goal`, where forces on the world are meant: those of islands that are apart would
+/// be one sum.
+std::optional<ContactSelection> contactsWithin(const ContactSelection& contacts,
+                                               const SubModel& island, const std::string& goal);
 
 /// The geometries written in a link. Throws ModelError, in the name of `goal`, when the model has
 /// no such link or the link has no collision geometry.

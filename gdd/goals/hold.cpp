@@ -6,7 +6,7 @@ namespace softgauss::gdd {
 Hold::Hold(const Model& model, const std::string& linkName)
     : link(linkName),
       frame(model.findFrame(linkName)),
-      weight(kReachWeightPerMass * model.totalMass()),
+      weight(kReachWeightPerMass * massBehind(model, frame)),
       rotationWeight(kRotationWeightPerWeight * weight) {
   if (frame < 0)
     throw ModelError({}, "goal 'hold " + linkName + "'", "the model has no link of that name");

@@ -17,7 +17,7 @@ class Hold final : public Goal {
   int frame = 0;                   ///< index into Model::frames
   Vector3 p_FP = Vector3::Zero();  ///< the point in the link's frame [m]
   bool wholeLink = true;           ///< false: the point only
-  double weight;                   ///< w [kg]; default 2.5 × the robot's mass
+  double weight;                   ///< w [kg]; default 2.5 × massBehind()
   double rotationWeight;           ///< w_r [kg m²]; default 0.01 m² × w
   double rate = 20.0;              ///< β [1/s]
 
@@ -26,6 +26,9 @@ class Hold final : public Goal {
 
   std::string name() const override { return "hold " + link; }
   void addCost(const GoalContext& context, GoalCost& cost) const override;
+  std::unique_ptr<Goal> within(const Model&, const SubModel& island) const override {
+    return ofLinkWithin(*this, island);
+  }
 };
 
 }  // namespace softgauss::gdd

@@ -17,6 +17,30 @@ JointTarget jointTarget(const Model& model, const std::string& joint, double val
   return {body, value};
 }
 
+namespace {
+
+/// A goal of joints within an island: of those that are there.
+template <class JointGoal>
+std::unique_ptr<Goal> ofJointsWithin(const JointGoal& goal, const Model& whole,
+                                     const SubModel& island) {
+  auto part = std::make_unique<JointGoal>(goal);
+  part->targets.clear();
+  for (JointTarget target : goal.targets)
+    if ((target.body = island.bodyOf(whole, target.body)) > 0) part->targets.push_back(target);
+  if (part->targets.empty()) return nullptr;
+  return part;
+}
+
+}  // namespace
+
+std::unique_ptr<Goal> JointAcceleration::within(const Model& whole, const SubModel& island) const {
+  return ofJointsWithin(*this, whole, island);
+}
+
+std::unique_ptr<Goal> JointPosture::within(const Model& whole, const SubModel& island) const {
+  return ofJointsWithin(*this, whole, island);
+}
+
 void JointAcceleration::addCost(const GoalContext& context, GoalCost& cost) const {
   for (const JointTarget& target : targets) {
     const int dof = context.model.bodies[target.body].v;

@@ -33,6 +33,7 @@ class JointAcceleration final : public Goal {
 
   std::string name() const override { return "acceleration"; }
   void addCost(const GoalContext& context, GoalCost& cost) const override;
+  std::unique_ptr<Goal> within(const Model& whole, const SubModel& island) const override;
 };
 
 class JointPosture final : public Goal {
@@ -44,6 +45,7 @@ class JointPosture final : public Goal {
 
   std::string name() const override { return "joint_posture"; }
   void addCost(const GoalContext& context, GoalCost& cost) const override;
+  std::unique_ptr<Goal> within(const Model& whole, const SubModel& island) const override;
 };
 
 }  // namespace softgauss::gdd

@@ -11,7 +11,7 @@ LinkAcceleration::LinkAcceleration(const Model& model, const std::string& linkNa
       frame(model.findFrame(linkName)),
       p_FP(point),
       linear(wished),
-      weight(kReachWeightPerMass * model.totalMass()),
+      weight(kReachWeightPerMass * massBehind(model, frame)),
       rotationWeight(kRotationWeightPerWeight * weight) {
   const std::string element = "goal 'acceleration of " + linkName + "'";
   if (frame < 0) throw ModelError({}, element, "the model has no link of that name");

@@ -21,7 +21,7 @@ class LinkAcceleration final : public Goal {
   Vector3 p_FP = Vector3::Zero();  ///< the point in the link's frame [m]
   Vector3 linear;                  ///< a* of the point, world axes [m/s²]
   std::optional<Vector3> angular;  ///< α* of the link, world axes [rad/s²]; absent: any
-  double weight;                   ///< w [kg; - if consistent]; default 2.5 × the mass
+  double weight;                   ///< w [kg; - if consistent]; default 2.5 × massBehind()
   double rotationWeight;           ///< w_r [kg m²; - if consistent]; default 0.01 m² × w
   LinkMetric metric = LinkMetric::euclidean;
 
@@ -31,6 +31,9 @@ class LinkAcceleration final : public Goal {
 
   std::string name() const override { return "acceleration of " + link; }
   void addCost(const GoalContext& context, GoalCost& cost) const override;
+  std::unique_ptr<Goal> within(const Model&, const SubModel& island) const override {
+    return ofLinkWithin(*this, island);
+  }
 };
 
 }  // namespace softgauss::gdd

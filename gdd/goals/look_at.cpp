@@ -26,7 +26,7 @@ LookAt::LookAt(const Model& model, const std::string& linkName, const Vector3& t
       axis_F(axis.stableNormalized()),
       p_FP(point),
       p_WTarget(target),
-      weight(kRotationWeightPerWeight * kReachWeightPerMass * model.totalMass()) {
+      weight(kRotationWeightPerWeight * kReachWeightPerMass * massBehind(model, frame)) {
   const std::string element = "goal 'look_at " + linkName + "'";
   if (frame < 0) throw ModelError({}, element, "the model has no link of that name");
   if (!target.allFinite() || !point.allFinite() || !axis.allFinite())

@@ -23,7 +23,7 @@ class LookAt final : public Goal {
   Vector3 axis_F;                       ///< u in the link's frame, length 1
   Vector3 p_FP = Vector3::Zero();       ///< p in the link's frame [m]
   Vector3 p_WTarget = Vector3::Zero();  ///< p* [m]
-  double weight;                        ///< w [kg m²]; default 0.025 m² × the robot's mass
+  double weight;                        ///< w [kg m²]; default 0.025 m² × massBehind()
   double stiffness = 100.0;             ///< k_p [1/s²]
   double damping = 20.0;                ///< k_d [1/s]
 
@@ -34,6 +34,9 @@ class LookAt final : public Goal {
 
   std::string name() const override { return "look_at " + link; }
   void addCost(const GoalContext& context, GoalCost& cost) const override;
+  std::unique_ptr<Goal> within(const Model&, const SubModel& island) const override {
+    return ofLinkWithin(*this, island);
+  }
   /// The point on the axis that is as far as the place, and the place.
   std::optional<GoalMark> mark(const GoalContext& context) const override;
 };

@@ -29,6 +29,11 @@ class Posture final : public Goal {
     positionDifference(context.model, context.state.q, q, away);
     cost.addMetric(weight, context.data.inertia.M, stiffness * away - damping * context.state.v);
   }
+  std::unique_ptr<Goal> within(const Model& whole, const SubModel& island) const override {
+    auto goal = std::make_unique<Posture>(*this);  // M ties nothing that is apart
+    island.gatherPosition(whole, q, goal->q);
+    return goal;
+  }
 };
 
 }  // namespace softgauss::gdd

@@ -23,13 +23,29 @@ struct Way {
 
 }  // namespace
 
+double massOfRobot(const Model& model, int robot) {
+  double mass = 0.0;
+  for (const Body& body : model.bodies)
+    if (body.robot == robot) mass += body.mass;
+  return mass;
+}
+
+double massBehind(const Model& model, int frame) {
+  if (frame < 0) return model.totalMass();
+  const int robot = model.bodies[model.frames[frame].body].robot;
+  const bool driven = std::any_of(model.dofs.begin(), model.dofs.end(), [&](const Dof& dof) {
+    return dof.actuated && model.bodies[dof.body].robot == robot;
+  });
+  return driven ? massOfRobot(model, robot) : model.totalMass();
+}
+
 Reach::Reach(const Model& model, const std::string& linkName, const Vector3& target,
              const Vector3& point)
     : link(linkName),
       frame(model.findFrame(linkName)),
       p_FP(point),
       p_WTarget(target),
-      weight(kReachWeightPerMass * model.totalMass()),
+      weight(kReachWeightPerMass * massBehind(model, frame)),
       rotationWeight(kRotationWeightPerWeight * weight) {
   const std::string element = "goal 'reach " + linkName + "'";
   if (frame < 0) throw ModelError({}, element, "the model has no link of that name");

@@ -27,9 +27,16 @@ struct MinimumJerk {
   Matrix3 R_start = Matrix3::Identity();  ///< orientation of the link at t₀, for an orientation
 };
 
-/// w over the mass of all moving bodies, by default: 100 kg for a humanoid of 40 kg. A fixed weight
-/// would ask a robot of 1 kg for accelerations that no time step can carry.
+/// w over the mass of the robot, by default: 100 kg for a humanoid of 40 kg. A fixed weight would
+/// ask a robot of 1 kg for accelerations that no time step can carry.
 inline constexpr double kReachWeightPerMass = 2.5;
+
+/// The mass of a robot (Body::robot) [kg].
+double massOfRobot(const Model& model, int robot);
+/// The mass by which goals of a link weigh, of a frame or of none (< 0): that of its robot, whoever
+/// else is in the scene; of all that moves where nothing drives that robot, as others then move it
+/// [kg].
+double massBehind(const Model& model, int frame);
 
 /// w_r over w by default [m²]: a link of radius of gyration 0.1 m.
 inline constexpr double kRotationWeightPerWeight = 0.01;
@@ -41,7 +48,7 @@ class Reach final : public Goal {
   Vector3 p_FP = Vector3::Zero();       ///< the point in the link's frame [m]
   Vector3 p_WTarget = Vector3::Zero();  ///< p* [m]
   std::optional<Matrix3> R_WTarget;     ///< R*: orientation of the link; absent: any
-  double weight;                        ///< w [kg; - if consistent]; default 2.5 × the mass
+  double weight;                        ///< w [kg; - if consistent]; default 2.5 × massBehind()
   double rotationWeight;                ///< w_r [kg m²; - if consistent]; default 0.01 m² × w
   LinkMetric metric = LinkMetric::euclidean;
   double stiffness = 100.0;                ///< k_p [1/s²]
@@ -54,6 +61,9 @@ class Reach final : public Goal {
 
   std::string name() const override { return "reach " + link; }
   void addCost(const GoalContext& context, GoalCost& cost) const override;
+  std::unique_ptr<Goal> within(const Model&, const SubModel& island) const override {
+    return ofLinkWithin(*this, island);
+  }
   std::optional<GoalMark> mark(const GoalContext& context) const override;
   Vector3 position(const GoalContext& context) const;
 

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Goal directed dynamics of a scene that is stepped island by island (engine/islands).
+///
+/// A robot with actuators is controlled wherever a goal acts on it; what it touches is of its
+/// island, and so of its problem (T.17). Other islands take the ordinary step: without actuators
+/// there is nothing to choose, and with actuators but no goal (8) chooses none. So a robot among a
+/// thousand objects pays for those that it touches, and two robots with a goal each are two
+/// problems. The goals of all islands together cost what the given ones cost (Goal::within()): the
+/// minimum is the same. What is not controlled keeps the dry friction of the ordinary step.
+///
+///   gdd::GoalDirectedController controller(model);      // goals, box, solver
+///   gdd::GoalDirectedIslands controls(model, controller);
+///   Islands islands(model, &contacts, Sleep{.enabled = true}, &controls);
+///   islands.step(input);                                // controller.control, .report
+
+#include <memory>
+#include <vector>
+
+#include "engine/islands/island_control.hpp"
+#include "engine/islands/units.hpp"
+#include "gdd/goal_directed_step.hpp"
+
+namespace softgauss::gdd {
+
+class GoalDirectedIslands final : public IslandControls {
+ public:
+  /// Islands are controlled as `controller` would control the whole scene: by its goals, its box,
+  /// its price of force and its solvers' options. Its control, commands, report and solveTime are
+  /// those of the last step of all islands: counts, times and objectives are sums, the rest is the
+  /// worst. An island that sleeps keeps its control. Both must outlive this object.
+  GoalDirectedIslands(const Model& model, GoalDirectedController& controller);
+  ~GoalDirectedIslands() override;
+
+  /// To be called after anything of the controller has been changed, times of goals and their
+  /// places included: all islands read it anew, and those that it concerns wake. Throws ModelError
+  /// where a goal, an actuator or the price of force ties robots that may be apart.
+  void changed();
+
+  std::unique_ptr<IslandControl> within(const SubModel& island) override;
+  void begin(double time, std::vector<int>& trees) noexcept override;
+
+ private:
+  class Control;
+  const Model& model_;
+  const Units units_;
+  GoalDirectedController& controller_;
+  std::vector<Control*> controls_;  ///< of all islands that there are
+  std::vector<char> acting_;        ///< (goals) in the last step
+  bool changed_ = false;            ///< since the last step
+};
+
+}  // namespace softgauss::gdd
