@@ -35,12 +35,48 @@ struct Island {
   double of(int contact) const { return load.of(model, contacts.contacts[contact]); }
 };
 
-// 1 kg carries 10 kg, which carries 100 kg: each contact carries what is not its own.
-TEST(CarriedLoad, IsTheIslandLessTheLighterOfTheTwo) {
+// 1 kg carries 10 kg, which carries 100 kg: each contact carries what stands upon it.
+TEST(CarriedLoad, IsWhatStandsUponIt) {
   const Island tower({1.0, 10.0, 100.0}, {{0, 1}, {1, 2}, {2, 3}});
   EXPECT_SMALL(tower.of(0) - 110.0, 1e-12);
   EXPECT_SMALL(tower.of(1) - 110.0, 1e-12);
-  EXPECT_SMALL(tower.of(2) - 101.0, 1e-12);
+  EXPECT_SMALL(tower.of(2) - 100.0, 1e-12);
+}
+
+// Two balls on three, one of them on one of the three alone: shares are equal.
+TEST(CarriedLoad, IsSharedByThoseThatBearIt) {
+  const std::vector<std::pair<int, int>> touching = {{0, 1}, {0, 2}, {0, 3}, {4, 1},
+                                                     {4, 2}, {4, 3}, {5, 4}, {5, 2}};
+  const Island heavy({1.0, 1.0, 1.0, 6.0, 2.0}, touching);  // the heaviest counts everywhere
+  for (const int contact : {0, 1, 2, 3, 4, 5}) EXPECT_SMALL(heavy.of(contact) - 6.0, 1e-12);
+  const Island wide({1.0, 1.0, 1.0, 1.0, 3.0}, touching);
+  EXPECT_SMALL(wide.of(0) - 3.0, 1e-12);                // the largest of the others
+  EXPECT_SMALL(wide.of(1) - (1.0 / 3.0 + 3.0), 1e-12);  // a third of one, all of the other
+}
+
+// A layer that is wide carries no more for it.
+TEST(CarriedLoad, DoesNotGrowWithTheWidthOfAPile) {
+  constexpr int kWidth = 30;
+  std::vector<std::pair<int, int>> touching;
+  for (int i = 1; i <= kWidth; ++i) {
+    touching.emplace_back(0, i);
+    touching.emplace_back(i, kWidth + i);
+    if (i > 1) touching.emplace_back(i - 1, i);
+    if (i > 1) touching.emplace_back(kWidth + i - 1, kWidth + i);
+  }
+  const Island pile(std::vector<double>(2 * kWidth, 1.0), touching);
+  for (std::size_t i = 0; i < touching.size(); ++i)
+    EXPECT_SMALL(pile.of(static_cast<int>(i)) -
+                     (touching[i].second <= kWidth && touching[i].first > 0 ? 2.0 : 1.0),
+                 1e-12)
+        << i;
+}
+
+// What touches no world has nothing to stand upon: the heaviest counts.
+TEST(CarriedLoad, OfWhatFallsIsTheHeaviest) {
+  const Island falling({1.0, 10.0, 100.0}, {{1, 2}, {2, 3}});
+  EXPECT_SMALL(falling.of(0) - 100.0, 1e-12);
+  EXPECT_SMALL(falling.of(1) - 100.0, 1e-12);
 }
 
 TEST(CarriedLoad, EndsWhereTreesDoNotTouch) {
