@@ -43,6 +43,16 @@ struct GddOutcomes {
   long uncertified() const { return iterationLimit + bend + undecided; }
 };
 
+/// What steps did in place of what was asked for (StepStats), over a run.
+struct Fallbacks {
+  long shortSolves = 0;     ///< stalled or at the iteration limit
+  long roundedSolves = 0;   ///< ended by rounding, within 10³ of the tolerance
+  long refusedGuesses = 0;  ///< warm starts that were not finite
+  long keptSlips = 0;       ///< no_slip: second solves that failed
+  long abandonedTrees = 0;  ///< not followed through the step
+  long jumps = 0;           ///< shortest parts of a step, taken in spite of their estimate
+};
+
 /// Islands over the steps of a run; sums count every step.
 struct IslandOutcomes {
   bool on = false;
@@ -96,6 +106,7 @@ class Summary {
   std::vector<std::string> effects;
   std::vector<GoalOutcome> goals;
   GddOutcomes gdd;
+  Fallbacks fallbacks;
   IslandOutcomes islands;
   std::vector<std::string> warnings;  ///< preset to the model's
 

@@ -173,6 +173,7 @@ class Runner {
     writeLog(record_);
     summary_.addStep(record_);
     if (gdd) count(controller_.report);
+    count(stats);
     for (Eigen::Index k = 0; k < controller_.commands.size(); ++k) {
       const gdd::Actuator& actuator =
           controller_.box.transmission->actuators()[static_cast<std::size_t>(k)];
@@ -184,6 +185,16 @@ class Runner {
       replay_->addStep(record_, data_, islands_->contacts());
     else
       replay_->addStep(record_, data_);
+  }
+
+  void count(const StepStats& stats) {
+    io::Fallbacks& f = summary_.fallbacks;
+    f.shortSolves += stats.shortSolves;
+    f.roundedSolves += stats.roundedSolves;
+    f.refusedGuesses += stats.refusedGuesses;
+    f.keptSlips += stats.keptSlips;
+    f.abandonedTrees += stats.abandonedTrees;
+    f.jumps += stats.jumps;
   }
 
   void count(const gdd::GddReport& report) {

@@ -45,6 +45,7 @@ struct NewtonReport {
   int factorizations = 0;
   int lineSearchEvaluations = 0;
   double residual = 0.0;  ///< scaled gradient at the result
+  bool rounded = false;   ///< converged as far as rounding lets it, short of the tolerance
 };
 
 /// What is minimised. It holds the present point.
@@ -82,6 +83,7 @@ NewtonReport minimize(Objective& objective, double tolerance, int maxIterations,
     slowSteps = slow && near ? slowSteps + 1 : 0;
     const bool stuck = (slow && !objective.cellChanged()) || slowSteps == kSlowSteps;
     if (stuck || report.iterations == maxIterations) {
+      report.rounded = near;
       if (near) return report;
       report.status = stuck ? SolveStatus::stalled : SolveStatus::iterationLimit;
       return report;
@@ -100,7 +102,8 @@ NewtonReport minimize(Objective& objective, double tolerance, int maxIterations,
     report.lineSearchEvaluations += search.evaluations;
     ++report.iterations;
     if (search.alpha == 0.0) {
-      if (report.residual > kRoundingFloor * tolerance) report.status = SolveStatus::stalled;
+      report.rounded = near;
+      if (!near) report.status = SolveStatus::stalled;
       return report;
     }
     objective.advance(d, search.alpha);

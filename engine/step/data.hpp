@@ -56,6 +56,11 @@ struct StepStats {
   int evaluations = 0;     ///< of forward dynamics by a Runge–Kutta integrator
   int rejections = 0;      ///< parts of the step that it has tried and shortened
   int jumps = 0;           ///< shortest parts that were taken in spite of their estimate
+  // What was done in place of what was asked for, as abandonedTrees and jumps are.
+  int shortSolves = 0;     ///< ended stalled or at the iteration limit
+  int roundedSolves = 0;   ///< ended by rounding, within 10³ of the tolerance
+  int refusedGuesses = 0;  ///< warm starts that are not finite: the solve began without
+  int keptSlips = 0;       ///< Options::noSlip: the second solve failed, the first stands
   int badDof = -1;         ///< with SolveStatus::notFinite: the first dof that is not finite
   StepTimes times;
 };

@@ -66,6 +66,7 @@ SolveStatus minimizeGauss(const Model& model, const VectorX* guess, Data& data) 
   ForwardSolution& s = data.forward;
   s.report = {};
   s.massFactored = s.cellFactored = false;
+  data.stats.refusedGuesses += guess && !guess->allFinite();
   if (model.nv == 0) return SolveStatus::converged;
   const auto notFinite = [&] {
     data.stats.badDof = firstNotFinite(data.forces.net);
@@ -77,6 +78,7 @@ SolveStatus minimizeGauss(const Model& model, const VectorX* guess, Data& data) 
     return s.report.status;
   };
   const auto finish = [&] {
+    data.stats.roundedSolves += s.report.rounded;
     if (s.report.status == SolveStatus::notFinite) data.stats.badDof = firstNotFinite(s.a);
     return s.report.status;
   };

@@ -74,6 +74,7 @@ void removeSlip(const Model& model, Data& data) noexcept {
     constraints.evaluate(changed);
     s.report.status = first.status;
     s.report.residual = first.residual;
+    ++data.stats.keptSlips;
   }
   s.report.iterations += first.iterations;
   s.report.factorizations += first.factorizations;

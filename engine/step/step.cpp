@@ -158,6 +158,7 @@ SolveStatus advance(const Model& model, const Input& held, ContactSource* contac
     stats.badDof = worstDof(model, data, state);
     return stats.status;
   }
+  stats.shortSolves += stats.status != SolveStatus::converged;
   state.warmstart.a = data.forward.a;
   state.warmstart.valid = true;
   stats.times.integrate = lap(clock);

@@ -170,6 +170,7 @@ TEST(SummaryFile, HasTheKeysOfTheInterfaceAndNoOthers) {
                              "gdd_violation",
                              "stationarity",
                              "gdd_minima",
+                             "fallbacks",
                              "goals",
                              "energy_J",
                              "max_penetration_m",

@@ -84,6 +84,7 @@ TEST(Summary, HasTheKeysOfTheInterfaceInOrder) {
                                 "gdd_violation",
                                 "stationarity",
                                 "gdd_minima",
+                                "fallbacks",
                                 "goals",
                                 "energy_J",
                                 "max_penetration_m",

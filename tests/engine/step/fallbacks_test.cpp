@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What a step does in place of what it was asked for is counted, and only then.
+
+#include <gtest/gtest.h>
+
+#include "collision/scene_contacts.hpp"
+#include "tests/support/matchers.hpp"
+#include "tests/support/scene.hpp"
+
+namespace softgauss::test {
+namespace {
+
+Model sphere(const Options& options) {
+  ModelBuilder builder = sphereOnPlane(0.1, 1.0, 0.5);
+  builder.options = options;
+  return builder.build();
+}
+
+/// A sphere that slides and rolls on the ground, with friction that has to be found by iterations.
+struct Sliding : Scene {
+  explicit Sliding(const Options& options = {}) : Scene(sphere(options)) {
+    contacts = std::make_shared<collision::SceneContacts>(model);
+    state.q[2] = 0.0999;
+    state.v[0] = 1.0;
+  }
+};
+
+void expectNone(const StepStats& stats) {
+  EXPECT_EQ(stats.shortSolves, 0);
+  EXPECT_EQ(stats.roundedSolves, 0);
+  EXPECT_EQ(stats.refusedGuesses, 0);
+  EXPECT_EQ(stats.keptSlips, 0);
+  EXPECT_EQ(stats.abandonedTrees, 0);
+  EXPECT_EQ(stats.jumps, 0);
+}
+
+TEST(Fallbacks, AreNoneInAPlainStep) {
+  for (const bool noSlip : {false, true}) {
+    Options options;
+    options.noSlip = noSlip;
+    Sliding s(options);
+    int rows = 0;
+    for (int i = 0; i < 20; ++i) {
+      ASSERT_EQ(s.step(), SolveStatus::converged);
+      rows += s.data->stats.rows;
+      expectNone(s.data->stats);
+    }
+    EXPECT_GT(rows, 0);
+  }
+}
+
+TEST(Fallbacks, ASolveThatEndsShortIsCountedWithItsResidual) {
+  Options options;
+  options.maxIterations = 1;
+  Sliding s(options);
+  EXPECT_EQ(s.step(), SolveStatus::iterationLimit);
+  EXPECT_EQ(s.data->stats.shortSolves, 1);
+  EXPECT_GT(s.data->stats.residual, options.tolerance);
+  // The gradient itself, scaled: what it says is what is left.
+  EXPECT_SMALL(
+      s.data->stats.residual -
+          s.data->forward.gradient.cwiseProduct(s.data->forward.scale).cwiseAbs().maxCoeff(),
+      1e-12 * s.data->stats.residual);
+}
+
+TEST(Fallbacks, ASolveThatRoundingEndsIsCounted) {
+  Options options;
+  options.tolerance = 1e-17;
+  Sliding s(options);
+  int rounded = 0;
+  for (int i = 0; i < 20; ++i) {
+    ASSERT_EQ(s.step(), SolveStatus::converged);
+    rounded += s.data->stats.roundedSolves;
+    EXPECT_LE(s.data->stats.residual, 1e3 * options.tolerance);
+    EXPECT_EQ(s.data->stats.roundedSolves > 0, s.data->stats.residual > options.tolerance);
+  }
+  EXPECT_GT(rounded, 0);
+}
+
+TEST(Fallbacks, AGuessThatIsNotFiniteIsCounted) {
+  Sliding s;
+  s.steps(2);
+  s.state.warmstart.a[3] = std::numeric_limits<double>::quiet_NaN();
+  ASSERT_EQ(s.step(), SolveStatus::converged);
+  EXPECT_EQ(s.data->stats.refusedGuesses, 1);
+  ASSERT_EQ(s.step(), SolveStatus::converged);
+  expectNone(s.data->stats);
+}
+
+// The first solve is given its answer, the second has one iteration to find its own: where it does
+// not, the friction of the first stands.
+TEST(Fallbacks, AFrictionThatIsKeptSoftIsCounted) {
+  int kept = 0;
+  for (int seed = 0; seed < 20; ++seed) {
+    Scene s = lawScene(seed);
+    ASSERT_EQ(s.forward(), SolveStatus::converged);
+    const VectorX soft = s.data->forward.a;
+    s.model.options.noSlip = true;
+    s.model.options.maxIterations = 1;
+    s.state.warmstart.a = soft;
+    s.state.warmstart.valid = true;
+    s.stages();
+    if (s.forward() != SolveStatus::converged) continue;
+    const bool same = (s.data->forward.a - soft).norm() <= 1e-12 * soft.norm();
+    EXPECT_EQ(s.data->stats.keptSlips, same ? 1 : 0) << "seed " << seed;
+    kept += s.data->stats.keptSlips;
+  }
+  EXPECT_GT(kept, 0);
+}
+
+}  // namespace
+}  // namespace softgauss::test
