@@ -125,12 +125,21 @@ TEST(ContactParameters, SlopeAtTheEdgeOfTheConeForAMinuteLong) {
   for (const double timestep : {0.0005, 0.002, 0.005}) holdsAtTheEdge(timestep, 60.0);
 }
 
-// With pyramids friction lifts as it creeps. At the edge the box chatters, and still goes slowly.
+// With pyramids friction lifts as it creeps. Of a contact's four edges, κ = −k r and s = b μ v, one
+// bears D (κ + s), two D κ and one nothing, so that f_t/(μ f_n) = (κ + s)/(3 κ + s) = 0.99 asks for
+// s = 197 κ: v = 0.985 f_n R/(b μ), at a two hundredth of the depth of rest. So near to leaving,
+// the box chatters (docs/stability.md): it is borne in every other step, at twice that speed, and
+// falls downhill in the others.
 TEST(ContactParameters, SlopeAtTheEdgeOfThePyramid) {
+  constexpr double kMu = 0.8, kWeight = 9.81, kSoftness = (1.0 - 0.9) / 0.9,
+                   kB = 2.0 / (0.95 * 0.02);
+  const double slope = std::atan(0.99 * kMu);
+  const double R = kSoftness * 2.0 * kMu * kMu * (1.0 + kMu * kMu);  // of 1 kg
+  const double creep = 0.985 * 0.25 * kWeight * std::cos(slope) * R / (kB * kMu);
   for (const double timestep : {0.0005, 0.002, 0.005, 0.01}) {
-    const double friction = 0.8, slope = std::atan(0.99 * friction);
-    Trial t("slope at 99 % of the pyramid", boxOnSlope(slope, friction, timestep, Cone::pyramidal));
-    t.expect("creep", creeps(t, slope, 3.0), 0.1, "m/s");
+    Trial t("slope at 99 % of the pyramid", boxOnSlope(slope, kMu, timestep, Cone::pyramidal));
+    t.expect("creep", creeps(t, slope, 3.0), 2.0 * creep + kWeight * std::sin(slope) * timestep,
+             "m/s");
     t.expect("off the plane", t.deepest, 2e-3, "m");
   }
 }

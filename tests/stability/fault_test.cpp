@@ -68,6 +68,21 @@ TEST(Fault, StatesAreRefusedAndForgotten) {
   }
 }
 
+// A speed whose square is no number turns a body by no angle.
+TEST(Fault, SpeedsThatOverflowAreRefused) {
+  ModelBuilder builder = freeBody(sphereLink("ball", 1.0, 0.1));
+  Model model = builder.build();
+  model.options.effects.remove(Effect::coriolis);
+  Data data(model);
+  for (const double speed : {1e151, 1e200, 1e300}) {
+    State state(model);
+    state.v[4] = speed;
+    const std::uint64_t before = hash(state);
+    EXPECT_EQ(step(model, {}, state, data, nullptr), SolveStatus::notFinite);
+    EXPECT_EQ(hash(state), before);
+  }
+}
+
 // A warm start is a guess: one that is not finite costs iterations and nothing else.
 TEST(Fault, WarmStartsAreGuesses) {
   Pair pair;
@@ -77,8 +92,10 @@ TEST(Fault, WarmStartsAreGuesses) {
     State bad = pair.state;
     bad.warmstart.a[(3 * i) % pair.model.nv] = kFaults[(i / 10) % 3];
     ASSERT_EQ(pair.faulty(pair.input, bad), SolveStatus::converged);
+    EXPECT_EQ(pair.data.stats.refusedGuesses, 1);
     State good = pair.state;
     ASSERT_EQ(pair.faulty(pair.input, good), SolveStatus::converged);
+    EXPECT_EQ(pair.data.stats.refusedGuesses, 0);
     EXPECT_SMALL((bad.v - good.v).cwiseAbs().maxCoeff(), 1e-9);
   }
 }

@@ -36,6 +36,7 @@ class Course {
     name_ += solver == gdd::GddSolver::activeSet ? ", solver 2" : ", solver 1";
     input.tau = VectorX::Zero(model.nv);
   }
+  ~Course() { writeBits(name_, state); }
   Course(const Course&) = delete;
   Course& operator=(const Course&) = delete;
 

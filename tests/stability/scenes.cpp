@@ -51,6 +51,21 @@ ModelBuilder tower(const std::vector<double>& masses) {
   return builder;
 }
 
+ModelBuilder levelArm() {
+  ModelBuilder builder("arm");
+  builder.link(emptyLink("world"));
+  std::string parent = "world";
+  for (int i = 0; i < 3; ++i) {
+    const std::string name = "link" + std::to_string(i);
+    builder.link(boxLink(name, 1.0, {0.1, 0.02, 0.02}, {0.1, 0.0, 0.0}));
+    builder.joint(jointSpec("hinge" + std::to_string(i), JointType::continuous, parent, name,
+                            {Matrix3::Identity(), Vector3(i > 0 ? 0.2 : 0.0, 0, 0)},
+                            Vector3::UnitY()));
+    parent = name;
+  }
+  return builder;
+}
+
 double tilt(Trial& trial, const std::string& link) {
   return std::acos(std::min(1.0, trial.rotation(link)(2, 2)));
 }

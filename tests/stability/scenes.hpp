@@ -21,6 +21,10 @@ void addBody(ModelBuilder& builder, const std::string& name, const Shape& shape,
 /// Cubes of 0.2 m called box0, box1, … of these masses [kg], one on the other on the ground.
 ModelBuilder tower(const std::vector<double>& masses);
 
+/// Three links of 0.2 m and 1 kg, link0 to link2, level along x on hinges about y that the world
+/// holds.
+ModelBuilder levelArm();
+
 /// Largest tilt of a link's z axis from the vertical [rad].
 double tilt(Trial& trial, const std::string& link);
 

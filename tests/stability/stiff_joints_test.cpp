@@ -6,28 +6,16 @@
 #include <cmath>
 #include <string>
 
-#include "tests/stability/trial.hpp"
+#include "tests/stability/scenes.hpp"
 
 namespace softgauss::test {
 namespace {
 
-/// Three links of 0.2 m and 1 kg on hinges about y, hanging out horizontally.
+/// The level arm with this damping in every joint.
 ModelBuilder arm(double damping, double h) {
-  ModelBuilder builder("arm");
-  builder.link(emptyLink("world"));
-  std::string parent = "world";
-  for (int i = 0; i < 3; ++i) {
-    const std::string name = "link" + std::to_string(i);
-    builder.link(boxLink(name, 1.0, {0.1, 0.02, 0.02}, {0.1, 0.0, 0.0}));
-    Transform X;
-    if (i > 0) X.p = Vector3(0.2, 0.0, 0.0);
-    JointSpec joint = jointSpec("hinge" + std::to_string(i), JointType::continuous, parent, name, X,
-                                Vector3::UnitY());
-    joint.damping = damping;
-    builder.joint(joint);
-    parent = name;
-  }
-  builder.options.timestep = h;
+  ModelBuilder builder = with(levelArm(), h);
+  for (const char* hinge : {"hinge0", "hinge1", "hinge2"})
+    builder.findJoint(hinge)->damping = damping;
   return builder;
 }
 
@@ -63,9 +51,8 @@ TEST(StiffJoints, SpringsFasterThanTheStepComeToRest) {
       t.state.q = Vector3(0.1, -0.2, 0.1);
       t.state.v.setConstant(5.0);
       const double E0 = t.energy().total();
-      double gained = 0.0;
-      t.run(2.0, [&] { gained = std::max(gained, t.energy().total() - E0); });
-      t.expect("energy gained, relative", gained / E0, 1e-9, "");
+      t.mayGain = 1e-9 * E0;
+      t.run(2.0);
       if (swing < 3.0) continue;  // the arm as a whole swings slower than the step, and goes on
       // The weight of 3 kg at 0.3 m, on the first spring.
       t.expect("bends", t.state.q.cwiseAbs().maxCoeff(), 1.01 * 3.0 * 9.81 * 0.3 / k, "rad");

@@ -6,8 +6,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <condition_variable>
 #include <cstdio>
+#include <cstdlib>
+#include <deque>
 #include <limits>
+#include <mutex>
+#include <optional>
 #include <thread>
 
 #include "tests/support/same_contacts.hpp"
@@ -30,6 +35,68 @@ Trial::Trial(std::string name, Model m)
   input.tau = VectorX::Zero(model.nv);
 }
 
+/// The same run on a thread of its own, some steps behind, with the bits of the trial to compare.
+class Trial::Twin {
+ public:
+  explicit Twin(const Trial& trial)
+      : model_(trial.model), state_(trial.state), data_(model_), contacts_(model_) {
+    thread_ = std::thread([this] { follow(); });
+  }
+  ~Twin() {
+    if (thread_.joinable()) end();
+  }
+  /// The trial has taken a step with this input, and has come to this hash.
+  void add(const Input& input, std::uint64_t hash) {
+    const std::lock_guard lock(mutex_);
+    steps_.push_back({input, hash});
+    added_.notify_one();
+  }
+  /// Follows to the end. The time of the first step with other bits, or none.
+  std::optional<double> end() {
+    {
+      const std::lock_guard lock(mutex_);
+      ended_ = true;
+      added_.notify_one();
+    }
+    thread_.join();
+    return differs_;
+  }
+
+ private:
+  struct Step {
+    Input input;
+    std::uint64_t hash;
+  };
+  void follow() {
+    for (;;) {
+      std::deque<Step> steps;
+      {
+        std::unique_lock lock(mutex_);
+        added_.wait(lock, [this] { return ended_ || !steps_.empty(); });
+        if (steps_.empty()) return;
+        steps.swap(steps_);
+      }
+      for (const Step& s : steps) {
+        step(model_, s.input, state_, data_, &contacts_);
+        if (!differs_ && hash(state_) != s.hash) differs_ = state_.time;
+      }
+    }
+  }
+
+  const Model model_;
+  State state_;
+  Data data_;
+  collision::SceneContacts contacts_;
+  std::optional<double> differs_;
+  std::mutex mutex_;  ///< of what follows
+  std::condition_variable added_;
+  std::deque<Step> steps_;
+  bool ended_ = false;
+  std::thread thread_;
+};
+
+Trial::~Trial() { writeBits(name_, state); }
+
 Energy Trial::energy() {
   computeKinematics(model, state, data->kinematics);
   return computeEnergy(model, data->kinematics, state.q, state.v);
@@ -51,11 +118,19 @@ bool Trial::run(double seconds, const std::function<void()>& each) {
   if (!begun_) startEnergy_ = energy().total();
   begun_ = true;
   const auto count = static_cast<int>(std::round(seconds / model.options.timestep));
+  std::optional<Twin> twin;
+  if (std::getenv("SOFTGAUSS_TWINS")) twin.emplace(*this);
+  Input used;
   for (int i = 0; i < count && !broken_; ++i) {
+    if (twin) used = input;
+    before_ = state.v;
     broken_ = !watch(step(model, input, state, *data, contacts.get()));
+    if (twin) twin->add(used, hash(state));
     ++steps;
     if (!broken_ && each) each();
   }
+  const std::optional<double> differs = twin ? twin->end() : std::nullopt;
+  EXPECT_FALSE(differs) << name_ << ": other bits on another thread at t = " << *differs;
   return !broken_;
 }
 
@@ -76,11 +151,14 @@ bool Trial::watch(SolveStatus status) {
   if (unpruned->mayTouch() && !sameContacts(data->contacts, all_))
     return breaks("contacts that pruning has changed");
   if (!state.q.allFinite() || !state.v.allFinite()) return breaks("a state that is not finite");
+  if (stats.refusedGuesses + stats.keptSlips + stats.abandonedTrees + stats.jumps > 0)
+    return breaks("something done in place of what was asked");
   if (stats.pairsSkipped > 0) return breaks("a pair of shapes was not tested");
   fastest = std::max(fastest, state.v.size() > 0 ? state.v.cwiseAbs().maxCoeff() : 0.0);
-  gained = std::max(gained, energy().total() - startEnergy_);
+  work += 0.5 * model.options.timestep * input.tau.dot(before_ + state.v);
+  gained = std::max(gained, energy().total() - startEnergy_ - work);
   if (gained > mayGain)
-    return breaks("more energy than at the start, by " + std::to_string(gained) + " J");
+    return breaks("more energy than at the start and by work, by " + std::to_string(gained) + " J");
   return true;
 }
 
@@ -91,6 +169,17 @@ void Trial::expect(const std::string& quantity, double value, double bound,
               quantity.c_str(), value, bound, unit.c_str());
   EXPECT_SMALL(value, bound) << name_ << ", " << quantity << " [" << unit << "], h "
                              << model.options.timestep;
+}
+
+void writeBits(const std::string& name, const State& state) {
+  const char* file = std::getenv("SOFTGAUSS_BITS");
+  if (!file) return;
+  std::FILE* out = std::fopen(file, "a");
+  ASSERT_NE(out, nullptr) << file;
+  const testing::TestInfo& test = *testing::UnitTest::GetInstance()->current_test_info();
+  std::fprintf(out, "%016llx %s.%s, %s\n", static_cast<unsigned long long>(hash(state)),
+               test.test_suite_name(), test.name(), name.c_str());
+  std::fclose(out);
 }
 
 void expectSameBits(const std::function<std::uint64_t()>& trial) {

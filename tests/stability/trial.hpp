@@ -3,12 +3,18 @@
 
 /// A hard case: a scene that is stepped, watched at every step, and measured at the end.
 ///
-/// At every step the state must be finite and the solve converged, and a passive scene must not
+/// At every step the state must be finite and the solve converged, nothing may have been done in
+/// place of what was asked (StepStats::abandonedTrees and the like), and a passive scene must not
 /// have more energy than it began with:
-///   E(t) − E(0) ≤ mayGain,      E of computeEnergy(); what contacts store is not part of it
+///   E(t) − E(0) − W(t) ≤ mayGain
+/// with E of computeEnergy(), to which what contacts store does not belong, and W what `input.tau`
+/// has done, h τᵀ ½ (v + v⁺) in each step.
 /// A case then states its figures one by one, each beside a bound that was chosen before it was
 /// measured: expect("sinks", 0.4e-3, 2e-3, "m"). Every figure is printed, so that a run of the
 /// tests shows how much room there is.
+///
+/// With SOFTGAUSS_TWINS set, a copy takes every step a second time on another thread, and has to
+/// come to the same bits.
 ///
 ///   Trial trial("1000 kg on 1 kg", boxes({1.0, 1000.0}));
 ///   trial.mayGain = 1e-6;
@@ -32,6 +38,7 @@ class Trial {
   /// The model's own shapes collide; its options give step, cone and all else.
   Trial(std::string name, const ModelBuilder& builder) : Trial(std::move(name), builder.build()) {}
   Trial(std::string name, Model m);
+  ~Trial();
   Trial(const Trial&) = delete;
   Trial& operator=(const Trial&) = delete;
 
@@ -43,12 +50,15 @@ class Trial {
   std::unique_ptr<collision::SceneContacts> unpruned;
   std::unique_ptr<Data> data;
 
-  double mayGain = kInfinity;  ///< [J] above the energy of the first step's start
+  /// [J] above the energy of the first step's start; rounding and the landing of what begins a
+  /// nanometre away, where a case says nothing.
+  double mayGain = 1e-6;
   /// Steps whose solve may end short of its tolerance; their residual is in `worstResidual`.
   int mayStall = 0;
 
   // Measured over all steps so far.
-  double gained = -kInfinity;  ///< most energy above that of the start [J]
+  double gained = -kInfinity;  ///< most energy above that of the start and of the work [J]
+  double work = 0.0;           ///< of `input.tau` [J]
   double deepest = 0.0;        ///< deepest overlap of any two shapes [m]
   double fastest = 0.0;        ///< largest |v_i| [m/s or rad/s]
   double worstResidual = 0.0;  ///< of the solve, scaled
@@ -69,13 +79,19 @@ class Trial {
   double start() const { return startEnergy_; }  ///< energy of the first step's start [J]
 
  private:
+  class Twin;
   bool watch(SolveStatus status);
 
   std::string name_;
   double startEnergy_ = 0.0;
   bool begun_ = false, broken_ = false;
+  VectorX before_;  ///< v at the start of the step
   ContactSet all_;  ///< of `unpruned`
 };
+
+/// Writes a case's last state down, to be compared with that of another run of the suite: a line in
+/// the file that SOFTGAUSS_BITS names, if any.
+void writeBits(const std::string& name, const State& state);
 
 /// Runs `trial`, which returns a hash, twice in turn and twice at once on two threads, and expects
 /// the same bits each time.
