@@ -45,7 +45,7 @@ SolveStatus GoalDirectedController::solveAndAdvance(Solver& used, const Model& m
   }
   const SolveStatus status =
       advance(model, held_, contacts, &expansion.acceleration(), data, state);
-  if (status != SolveStatus::notFinite) expansion.keepWarmStart(state.warmstart);
+  if (!softgauss::isRefused(status)) expansion.keepWarmStart(state.warmstart);
   return status;
 }
 

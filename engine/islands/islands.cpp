@@ -60,7 +60,7 @@ Islands::Island::Island(const Model& whole, std::vector<int> ofUnits, const std:
 Islands::Islands(const Model& model, IslandContacts* contacts, Sleep sleep,
                  IslandControls* controls)
     : model_(model), contacts_(contacts), controls_(controls), sleep_(sleep), units_(model) {
-  if (model.options.integrator != Integrator::semiImplicitEuler)
+  if (model.options.integrator != Integrator::semiImplicitEuler || model.options.stepDoubling)
     throw ModelError({}, "islands",
                      "are stepped by semi-implicit-euler, not by " +
                          std::string(integratorName(model.options.integrator)) +

@@ -95,10 +95,11 @@ enum class Cone : std::uint8_t {
   elliptic    ///< √Σ(f_k/μ_k)² ≤ f_n (constraints/elliptic_contact.hpp)
 };
 
-/// Choices that hold for the whole simulation.
 /// How a step moves the state on; one file each in step/integrators.
 enum class Integrator : std::uint8_t {
   semiImplicitEuler,  ///< order 1, one solve, implicit damping (semi_implicit_euler.hpp)
+  implicit,           ///< order 1, one solve, Coriolis derivative too (implicit_velocity.hpp)
+  implicitMidpoint,   ///< order 2, keeps the energy balance (implicit_midpoint.hpp)
   rungeKutta4,        ///< order 4, four solves (runge_kutta.hpp)
   dormandPrince       ///< order 5 with error control, six solves or more (runge_kutta.hpp)
 };
@@ -112,6 +113,10 @@ struct IntegratorName {
 inline constexpr IntegratorName kIntegratorNames[] = {
     {Integrator::semiImplicitEuler, "semi-implicit-euler",
      "order 1, one solve a step, implicit joint damping"},
+    {Integrator::implicit, "implicit",
+     "order 1, one solve a step, implicit in velocity, Coriolis forces included"},
+    {Integrator::implicitMidpoint, "implicit-midpoint",
+     "order 2, some five solves a step, keeps the energy balance to rounding"},
     {Integrator::rungeKutta4, "runge-kutta-4",
      "order 4 in smooth motion, four solves a step, explicit damping"},
     {Integrator::dormandPrince, "dormand-prince",
@@ -128,13 +133,16 @@ inline std::string_view integratorName(Integrator integrator) {
   return kIntegratorNames[static_cast<int>(integrator)].name;
 }
 
+/// Choices that hold for the whole simulation.
 struct Options {
   double timestep = 0.002;                     ///< h [s]
   Vector3 gravity = Vector3(0.0, 0.0, -9.81);  ///< [m/s²], world
   EffectSet effects = EffectSet::all();        ///< which effects may be simulated
   Integrator integrator = Integrator::semiImplicitEuler;
-  /// Largest error of a step that an integrator with error control leaves [m or rad].
+  /// Largest error of a step that error control leaves [m or rad].
   double integrationTolerance = 1e-6;
+  /// Error control for integrators of one solve (integrators/step_doubling.hpp).
+  bool stepDoubling = false;
   bool midpointCoriolis = true;  ///< see integrators/semi_implicit_euler.hpp
   Cone cone = Cone::pyramidal;   ///< of contacts with friction
   double impedanceRatio = 1.0;   ///< impratio: friction against normal impedance
@@ -143,6 +151,13 @@ struct Options {
   bool noSlip = false;         ///< friction without creep (step/no_slip.hpp)
   int maxIterations = 100;     ///< Newton
   double tolerance = 1e-12;    ///< Newton: scaled gradient, see solver/newton.hpp
+
+  /// The integrator moves on with one solve, that of the step's start, unless it is doubled.
+  bool solvesOnce() const {
+    return integrator == Integrator::semiImplicitEuler || integrator == Integrator::implicit;
+  }
+  /// The step evaluates the dynamics again within it.
+  bool looksWithin() const { return !solvesOnce() || stepDoubling; }
 };
 
 struct Model {

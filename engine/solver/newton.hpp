@@ -22,8 +22,14 @@ enum class SolveStatus {
   converged,       ///< the gradient is within tolerance
   stalled,         ///< no further decrease was possible; residual says how far off
   iterationLimit,  ///< residual says how far off
-  notFinite        ///< the input or the result has a NaN or an infinity
+  notFinite,       ///< the input or the result has a NaN or an infinity
+  notClosed        ///< of a step: the iteration of its integrator has not closed
 };
+
+/// A step with this status leaves the state as it was.
+inline bool isRefused(SolveStatus status) {
+  return status == SolveStatus::notFinite || status == SolveStatus::notClosed;
+}
 
 inline const char* statusName(SolveStatus status) {
   switch (status) {
@@ -35,6 +41,8 @@ inline const char* statusName(SolveStatus status) {
       return "iteration limit";
     case SolveStatus::notFinite:
       return "not finite";
+    case SolveStatus::notClosed:
+      return "not closed";
   }
   return "unknown";
 }

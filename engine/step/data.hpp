@@ -52,9 +52,9 @@ struct StepStats {
   std::int64_t pairsSkipped = 0;
   int followedTrees = 0;   ///< whose free motion was followed within the step (T.93)
   int abandonedTrees = 0;  ///< that needed more sub-steps than allowed and took (T.16) instead
-  int substeps = 0;        ///< of followed trees, over all of them; of a Runge–Kutta integrator
-  int evaluations = 0;     ///< of forward dynamics by a Runge–Kutta integrator
-  int rejections = 0;      ///< parts of the step that it has tried and shortened
+  int substeps = 0;        ///< of followed trees, over all of them; parts of a step in parts
+  int evaluations = 0;     ///< of forward dynamics, where the step looks within itself
+  int rejections = 0;      ///< parts of the step that were tried and shortened
   int jumps = 0;           ///< shortest parts that were taken in spite of their estimate
   // What was done in place of what was asked for, as abandonedTrees and jumps are.
   int shortSolves = 0;     ///< ended stalled or at the iteration limit
@@ -66,6 +66,7 @@ struct StepStats {
 };
 
 struct IntegratorStages;
+struct VelocityDerivative;
 
 /// Owns all memory of a simulation thread. Copies of the model share nothing. Holds for the model
 /// as it was at construction.
@@ -90,7 +91,8 @@ struct Data {
   ForwardSolution forward;
   FollowedTrees followed;  ///< of the integrator; empty without Coriolis forces of mid-step
   VectorX acceleration;    ///< discrete, (v⁺ − v)/h (nv)
-  std::unique_ptr<IntegratorStages> stages;  ///< null where the integrator needs one solve
+  std::unique_ptr<IntegratorStages> stages;        ///< null where the step is one solve
+  std::unique_ptr<VelocityDerivative> derivative;  ///< of the implicit integrators, else null
   StepStats stats;
 };
 

@@ -6,9 +6,12 @@
 #include <cmath>
 
 #include "engine/step/forward.hpp"
+#include "engine/step/integrators/implicit_midpoint.hpp"
 #include "engine/step/integrators/runge_kutta.hpp"
-#include "engine/step/integrators/semi_implicit_euler.hpp"
+#include "engine/step/integrators/single_solve.hpp"
 #include "engine/step/integrators/stages.hpp"
+#include "engine/step/integrators/step_doubling.hpp"
+#include "engine/step/integrators/velocity_derivative.hpp"
 
 namespace softgauss {
 namespace {
@@ -65,8 +68,7 @@ int worstDof(const Model& model, const Data& data, const State& state) {
 Data::~Data() = default;
 
 Data::Data(const Model& model) : Data(model, Evaluation{}) {
-  if (model.options.integrator != Integrator::semiImplicitEuler)
-    stages = std::make_unique<IntegratorStages>(model);
+  if (model.options.looksWithin()) stages = std::make_unique<IntegratorStages>(model);
 }
 
 Data::Data(const Model& model, Evaluation)
@@ -78,7 +80,9 @@ Data::Data(const Model& model, Evaluation)
       constraints(plan.rows),
       exactDiagonal(model.options.exactDiagonal ? model.nv : 0),
       followed(plan.midpoint ? FollowedTrees(model) : FollowedTrees()),
-      acceleration(VectorX::Zero(model.nv)) {
+      acceleration(VectorX::Zero(model.nv)),
+      derivative(isImplicit(model.options.integrator) ? std::make_unique<VelocityDerivative>(model)
+                                                      : nullptr) {
   ForwardSolution& s = forward;
   for (VectorX* x : {&s.a, &s.Ma, &s.gradient, &s.direction, &s.Md, &s.scale, &s.start})
     *x = VectorX::Zero(model.nv);
@@ -130,17 +134,26 @@ SolveStatus computeStages(const Model& model, const Input& input, const State& s
   return SolveStatus::converged;
 }
 
-bool integrate(const Model& model, const Input& held, ContactSource* contacts, Data& data,
-               State& state) noexcept {
+/// What became of the state; converged where it has moved on.
+SolveStatus integrate(const Model& model, const Input& held, ContactSource* contacts, Data& data,
+                      State& state) noexcept {
+  const auto moved = [](bool finite) {
+    return finite ? SolveStatus::converged : SolveStatus::notFinite;
+  };
   switch (model.options.integrator) {
     case Integrator::semiImplicitEuler:
-      return semiImplicitEuler(model, data, state);
+    case Integrator::implicit:
+      if (model.options.stepDoubling)
+        return moved(stepDoubling(model, held, contacts, data, state));
+      return moved(moveOnce(model, data, state));
+    case Integrator::implicitMidpoint:
+      return implicitMidpoint(model, held, contacts, data, state);
     case Integrator::rungeKutta4:
-      return rungeKutta(kRungeKutta4, model, held, contacts, data, state);
+      return moved(rungeKutta(kRungeKutta4, model, held, contacts, data, state));
     case Integrator::dormandPrince:
-      return rungeKutta(kDormandPrince, model, held, contacts, data, state);
+      return moved(rungeKutta(kDormandPrince, model, held, contacts, data, state));
   }
-  return false;
+  return SolveStatus::notFinite;
 }
 
 SolveStatus advance(const Model& model, const Input& held, ContactSource* contacts,
@@ -152,9 +165,11 @@ SolveStatus advance(const Model& model, const Input& held, ContactSource* contac
   stats.factorizations = data.forward.report.factorizations;
   stats.residual = data.forward.report.residual;
   stats.times.solve = lap(clock);
-  if (stats.status != SolveStatus::notFinite && !integrate(model, held, contacts, data, state))
-    stats.status = SolveStatus::notFinite;
-  if (stats.status == SolveStatus::notFinite) {
+  if (!isRefused(stats.status)) {
+    const SolveStatus moved = integrate(model, held, contacts, data, state);
+    if (isRefused(moved)) stats.status = moved;
+  }
+  if (isRefused(stats.status)) {
     stats.badDof = worstDof(model, data, state);
     return stats.status;
   }

@@ -21,12 +21,13 @@ SolveStatus computeStagesAt(const Model& model, const Input& input, const State&
 /// options.timestep. `guess` starts the solve (null: none); the result is the next warm start.
 /// `held` and `contacts`: what is applied over the whole step, and where contacts come from, for
 /// integrators that evaluate the dynamics again within it.
-/// On SolveStatus::notFinite the state is left as it was.
+/// On SolveStatus::notFinite and notClosed the state is left as it was.
 SolveStatus advance(const Model& model, const Input& held, ContactSource* contacts,
                     const VectorX* guess, Data& data, State& state) noexcept;
 
 /// computeStages, then advance. `contacts` may be null: nothing collides. On
-/// SolveStatus::notFinite the state is left as it was, data.stats tells the dof. Other statuses
+/// SolveStatus::notFinite and notClosed (isRefused()) the state is left as it was, data.stats tells
+/// the dof. Other statuses
 /// advance the state; data.stats.residual tells how accurate the solve was.
 SolveStatus step(const Model& model, const Input& input, State& state, Data& data,
                  ContactSource* contacts) noexcept;

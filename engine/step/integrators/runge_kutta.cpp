@@ -30,13 +30,7 @@ bool evaluate(const Model& model, ContactSource* contacts, IntegratorStages& s, 
   if (computeStages(model, s.input, s.state, data, contacts) == SolveStatus::notFinite)
     return false;
   const SolveStatus status = forwardDynamics(model, &guess, data);
-  ++stats.evaluations;
-  stats.iterations += data.forward.report.iterations;
-  stats.factorizations += data.forward.report.factorizations;
-  stats.residual = std::max(stats.residual, data.forward.report.residual);
-  stats.maxPenetration = std::max(stats.maxPenetration, data.stats.maxPenetration);
-  if (status == SolveStatus::notFinite) return false;
-  if (status != SolveStatus::converged) stats.status = status;
+  if (!countEvaluation(data, status, stats)) return false;
   s.acceleration[i] = data.forward.a;
   displacementRate(model, s.phi, s.state.v, s.rate[i]);
   return true;
@@ -81,11 +75,7 @@ bool rungeKutta(const Tableau& t, const Model& model, const Input& input, Contac
   const double h = model.options.timestep;
   IntegratorStages& s = *data.stages;
   StepStats& stats = data.stats;
-  s.input.tau = input.tau;
-  s.input.wrenches = input.wrenches;
-  s.from.q = state.q;
-  s.from.v = state.v;
-  s.state.time = state.time;
+  s.begin(input, state);
   s.acceleration[0] = data.forward.a;
   s.phi.setZero();
   displacementRate(model, s.phi, state.v, s.rate[0]);

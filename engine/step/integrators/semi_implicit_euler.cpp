@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "engine/step/forward.hpp"
+#include "engine/step/integrators/implicit_forces.hpp"
 
 namespace softgauss {
 namespace {
@@ -23,41 +24,13 @@ bool mayTurnFar(const Model& model, const Data& data, State& state) {
 /// Beyond it, squares overflow.
 bool tooFast(const VectorX& v) { return !(v.array().abs() < 1e150).all(); }
 
-/// A spring that swings by more than a radian in a step (T.95), taken at the step's end.
-bool isStiff(const Model& model, const Data& data, const Plan::Spring& spring) {
-  const double h = model.options.timestep;
-  return model.options.midpointCoriolis &&
-         h * h * spring.stiffness * data.weights.dof[spring.dof] > 1.0;
-}
-
-bool anyStiff(const Model& model, const Data& data) {
-  const std::vector<Plan::Spring>& springs = data.plan.springs;
-  return std::any_of(springs.begin(), springs.end(),
-                     [&](const Plan::Spring& spring) { return isStiff(model, data, spring); });
-}
-
-/// s.Md ← h D + h² K and net ← net − h K v, K of the stiff springs.
-void setImplicitForces(const Model& model, const State& state, Data& data, VectorX& net) {
-  const double h = model.options.timestep;
-  VectorX& Md = data.forward.Md;
-  if (data.plan.damped())
-    Md = h * data.plan.damping;
-  else
-    Md.setZero();
-  for (const Plan::Spring& spring : data.plan.springs) {
-    if (!isStiff(model, data, spring)) continue;
-    Md[spring.dof] += h * h * spring.stiffness;
-    net[spring.dof] -= h * spring.stiffness * state.v[spring.dof];
-  }
-}
-
 }  // namespace
 
 bool semiImplicitEuler(const Model& model, Data& data, State& state) {
   const double h = model.options.timestep;
   ForwardSolution& s = data.forward;
   const Plan& plan = data.plan;
-  const bool stiff = anyStiff(model, data);
+  const bool stiff = anyStiffSpring(model, data);
   const bool midpoint = plan.midpoint, implicit = plan.damped() || stiff;
   data.acceleration = s.a;
   bool follow = false;

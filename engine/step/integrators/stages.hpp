@@ -4,6 +4,8 @@
 /// Memory of an integrator that evaluates the dynamics more than once a step. The step's own Data
 /// stay those of its start.
 
+#include <algorithm>
+#include <optional>
 #include <vector>
 
 #include "engine/step/data.hpp"
@@ -13,19 +15,47 @@ namespace softgauss {
 
 struct IntegratorStages {
   explicit IntegratorStages(const Model& model)
-      : data(model, Data::Evaluation{}),
-        state(model),
-        from(model),
-        phi(VectorX::Zero(model.nv)),
-        rate(Tableau::kMostStages, VectorX::Zero(model.nv)),
-        acceleration(Tableau::kMostStages, VectorX::Zero(model.nv)) {}
+      : data(model, Data::Evaluation{}), state(model), from(model), end(model) {
+    if (model.options.stepDoubling && model.options.solvesOnce()) part = model;
+    phi = VectorX::Zero(model.nv);
+    const Integrator integrator = model.options.integrator;
+    const int stages = integrator == Integrator::rungeKutta4     ? kRungeKutta4.stages
+                       : integrator == Integrator::dormandPrince ? kDormandPrince.stages
+                                                                 : 1;
+    rate.assign(static_cast<std::size_t>(stages), phi);
+    acceleration = rate;
+    if (integrator == Integrator::implicitMidpoint) kinematics = Kinematics(model);
+  }
 
   Data data;    ///< of the stage
   State state;  ///< of the stage
   State from;   ///< where the part of the step begins
+  State end;    ///< where it ends, of implicitMidpoint() and stepDoubling()
   Input input;
   VectorX phi;                              ///< displacement from there (nv)
   std::vector<VectorX> rate, acceleration;  ///< φ̇ and v̇ of the stages
+  std::optional<Model>
+      part;               ///< of stepDoubling(): the model with the length of a part as its step
+  Kinematics kinematics;  ///< of implicitMidpoint(), at `end`
+
+  void begin(const Input& held, const State& at) {
+    input.tau = held.tau;
+    input.wrenches = held.wrenches;
+    from = at;
+    state.time = at.time;
+  }
 };
+
+/// Adds what the last solve of `data` has counted; false where its result is no acceleration.
+inline bool countEvaluation(const Data& data, SolveStatus status, StepStats& stats) {
+  ++stats.evaluations;
+  stats.iterations += data.forward.report.iterations;
+  stats.factorizations += data.forward.report.factorizations;
+  stats.residual = std::max(stats.residual, data.forward.report.residual);
+  stats.maxPenetration = std::max(stats.maxPenetration, data.stats.maxPenetration);
+  if (status == SolveStatus::notFinite) return false;
+  if (status != SolveStatus::converged) stats.status = status;
+  return true;
+}
 
 }  // namespace softgauss

@@ -120,6 +120,8 @@ TEST_P(Convergence, OrderIsAsSaid) {
 INSTANTIATE_TEST_SUITE_P(
     Integrators, Convergence,
     testing::Values(Case{Integrator::semiImplicitEuler, 1.0, {1024, 2048, 4096, 8192}},
+                    Case{Integrator::implicit, 1.0, {1024, 2048, 4096, 8192}},
+                    Case{Integrator::implicitMidpoint, 2.0, {128, 256, 512, 1024}},
                     Case{Integrator::rungeKutta4, 4.0, {128, 256, 512, 1024}},
                     Case{Integrator::dormandPrince, 5.0, {128, 192, 256, 384, 512}}),
     [](const auto& instance) {
@@ -149,8 +151,10 @@ TEST(RungeKutta, DormandPrinceKeepsItsTolerance) {
 }
 
 // A step that several stages make is still a function of the state alone.
-TEST(RungeKutta, SameStateSameBits) {
-  for (const Integrator integrator : {Integrator::rungeKutta4, Integrator::dormandPrince}) {
+TEST(Integrators, SameStateSameBits) {
+  for (const IntegratorName& name : kIntegratorNames) {
+    const Integrator integrator = name.integrator;
+    if (integrator == Integrator::semiImplicitEuler) continue;  // its warm start is in the state
     const ModelBuilder builder = tumblingTree();
     const Model model = builder.build();
     const State start = tumblingStart(model);
@@ -162,16 +166,18 @@ TEST(RungeKutta, SameStateSameBits) {
 }
 
 // A state in which a later stage overflows is left as it was.
-TEST(RungeKutta, AStepThatOverflowsLeavesTheState) {
-  ModelBuilder builder = tumblingTree();
-  builder.options.integrator = Integrator::rungeKutta4;
-  const Model model = builder.build();
-  Data data(model);
-  State state = tumblingStart(model);
-  state.v[4] = 1e160;
-  const std::uint64_t before = hash(state);
-  EXPECT_EQ(step(model, {}, state, data, nullptr), SolveStatus::notFinite);
-  EXPECT_EQ(hash(state), before);
+TEST(Integrators, AStepThatOverflowsLeavesTheState) {
+  for (const IntegratorName& name : kIntegratorNames) {
+    ModelBuilder builder = tumblingTree();
+    builder.options.integrator = name.integrator;
+    const Model model = builder.build();
+    Data data(model);
+    State state = tumblingStart(model);
+    state.v[4] = 1e160;
+    const std::uint64_t before = hash(state);
+    EXPECT_EQ(step(model, {}, state, data, nullptr), SolveStatus::notFinite) << name.name;
+    EXPECT_EQ(hash(state), before) << name.name;
+  }
 }
 
 }  // namespace

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/step/integrators/implicit_velocity.hpp"
+
+#include "engine/step/forward.hpp"
+#include "engine/step/integrators/implicit_forces.hpp"
+#include "engine/step/integrators/velocity_derivative.hpp"
+
+namespace softgauss {
+
+bool implicitVelocity(const Model& model, Data& data, State& state) {
+  const double h = model.options.timestep;
+  ForwardSolution& s = data.forward;
+  VectorX& net = data.acceleration;
+  if (data.constraints.active().empty())
+    net = s.Ma;
+  else
+    data.inertia.M.multiply(s.a, net);
+  const bool diagonal = data.plan.damped() || anyStiffSpring(model, data);
+  if (diagonal) setImplicitForces(model, state, data, net);
+  const VectorX* added = diagonal ? &s.Md : nullptr;
+  if (data.plan.coriolis && data.derivative->factorize(model, data, h, added))
+    data.derivative->solve(model, net);
+  else if (!solveMass(data, added, net))
+    return false;
+  s.start = state.v + h * data.acceleration;
+  if (!s.start.allFinite()) return false;
+  state.v = s.start;
+  integratePosition(model, state.v, h, state.q);
+  state.time += h;
+  return true;
+}
+
+}  // namespace softgauss

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/step/integrators/step_doubling.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/step/forward.hpp"
+#include "engine/step/integrators/single_solve.hpp"
+#include "engine/step/integrators/stages.hpp"
+#include "engine/step/step.hpp"
+
+namespace softgauss {
+namespace {
+
+constexpr int kOrder = 1;
+
+/// One whole step of length h on the part's model. False where it is not finite.
+bool take(double h, ContactSource* contacts, IntegratorStages& s, State& state, StepStats& stats) {
+  Model& model = *s.part;
+  model.options.timestep = h;
+  if (computeStages(model, s.input, state, s.data, contacts) == SolveStatus::notFinite)
+    return false;
+  if (!countEvaluation(s.data, forwardDynamics(model, state, s.data), stats)) return false;
+  if (!moveOnce(model, s.data, state)) return false;
+  state.warmstart.a = s.data.forward.a;
+  state.warmstart.valid = true;
+  return true;
+}
+
+}  // namespace
+
+bool stepDoubling(const Model& model, const Input& input, ContactSource* contacts, Data& data,
+                  State& state) noexcept {
+  constexpr double kShortest = 1.0 / 512.0;  // of the step
+  const double h = model.options.timestep;
+  IntegratorStages& s = *data.stages;
+  StepStats& stats = data.stats;
+  s.begin(input, state);
+  ++stats.evaluations;
+
+  double done = 0.0, length = h;
+  bool first = true;  // its solve is the step's own
+  while (done < h) {
+    const bool closes = done + length >= h * (1.0 - 1e-12);
+    if (closes) length = h - done;
+    s.end = s.from;
+    bool finite = first ? moveOnce(model, data, s.end) : take(length, contacts, s, s.end, stats);
+    first = false;
+    s.state = s.from;
+    for (int half = 0; half < 2; ++half)
+      finite = finite && take(0.5 * length, contacts, s, s.state, stats);
+    double error = kInfinity;
+    if (finite) {
+      positionDifference(model, s.end.q, s.state.q, s.phi);
+      error = std::max(s.phi.cwiseAbs().maxCoeff(),
+                       length * (s.state.v - s.end.v).cwiseAbs().maxCoeff());
+    }
+    const double ratio = error * h / (length * model.options.integrationTolerance);
+    const bool shortest = length <= kShortest * h;
+    if (!std::isfinite(ratio) && shortest) return false;
+    const double factor = stepFactor(ratio, kOrder);
+    if (ratio > 1.0 && !shortest) {
+      ++stats.rejections;
+      length = std::max(length * factor, kShortest * h);
+      continue;
+    }
+    stats.jumps += ratio > 1.0;
+    ++stats.substeps;
+    done = closes ? h : done + length;
+    length = std::max(length * factor, kShortest * h);
+    s.from = s.state;
+  }
+  data.acceleration = (s.from.v - state.v) / h;
+  state.q = s.from.q;
+  state.v = s.from.v;
+  state.followed = s.from.followed;
+  state.time += h;
+  return true;
+}
+
+}  // namespace softgauss

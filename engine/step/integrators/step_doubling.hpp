@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Error control for the steps of one solve (Options::stepDoubling): each part of a step is taken
+/// once at its length and twice at half of it, whole convex steps with their own solves and rows;
+///
+///   e = (q², v²) ⊖ (q¹, v¹),   |e_q| ≤ tolerance h_i/h,   h_i |e_v| ≤ tolerance h_i/h    (T.113)
+///
+/// q², v² of the two halves is what is kept. For a method of order 1 the error of the halves is as
+/// large as e. A part that fails is shortened: StepStats::rejections. Every step tries its whole
+/// length first, so that nothing but the state decides. Parts of h/512 are taken whatever they
+/// estimate, and counted in StepStats::jumps: where force jumps, |e_v| does not fall with the
+/// length. Three solves for a step that is not divided [Kurtz, Castro 2025, of Drake's CENIC].
+
+#include "engine/step/contact_source.hpp"
+#include "engine/step/data.hpp"
+
+namespace softgauss {
+
+/// Moves the state on by options.timestep. `data` holds the stages at the state and its forward
+/// solution; they stay. `input`: what is applied over the step. Returns false, with the state
+/// untouched, where the result is not finite.
+bool stepDoubling(const Model& model, const Input& input, ContactSource* contacts, Data& data,
+                  State& state) noexcept;
+
+}  // namespace softgauss

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/step/integrators/step_doubling.hpp"
+
+#include <cmath>
+
+#include "collision/scene_contacts.hpp"
+#include "engine/engine.hpp"
+#include "tests/support/matchers.hpp"
+#include "tests/support/sample_models.hpp"
+
+namespace softgauss::test {
+namespace {
+
+struct Ran {
+  State state;
+  int rejections = 0, substeps = 0, evaluations = 0, jumps = 0;
+};
+
+Ran run(ModelBuilder builder, double h, int steps, const VectorX& q, const VectorX& v,
+        bool contacts = false) {
+  builder.options.timestep = h;
+  const Model model = builder.build();
+  collision::SceneContacts source(model);
+  Data data(model);
+  Ran ran;
+  ran.state = State(model);
+  ran.state.q = q;
+  ran.state.v = v;
+  for (int i = 0; i < steps; ++i) {
+    EXPECT_FALSE(isRefused(step(model, {}, ran.state, data, contacts ? &source : nullptr)));
+    ran.rejections += data.stats.rejections;
+    ran.substeps += data.stats.substeps;
+    ran.evaluations += data.stats.evaluations;
+    ran.jumps += data.stats.jumps;
+  }
+  return ran;
+}
+
+// Within tolerance nothing is divided: what is kept are two steps of half the length, bit for bit
+// but for the sum of the times.
+TEST(StepDoubling, KeepsTheTwoHalves) {
+  for (const Integrator integrator : {Integrator::semiImplicitEuler, Integrator::implicit}) {
+    ModelBuilder builder = chain(3);
+    builder.options.integrator = integrator;
+    builder.options.integrationTolerance = 1e3;
+    const VectorX q = VectorX::Constant(3, 0.4), v = VectorX::Constant(3, 0.5);
+    const Ran halves = run(builder, 0.001, 20, q, v);
+    builder.options.stepDoubling = true;
+    const Ran doubled = run(builder, 0.002, 10, q, v);
+    EXPECT_EQ(doubled.rejections, 0);
+    EXPECT_EQ(doubled.evaluations, 30);
+    EXPECT_EQ((doubled.state.q - halves.state.q).norm(), 0.0);
+    EXPECT_EQ((doubled.state.v - halves.state.v).norm(), 0.0);
+  }
+}
+
+// Errors of the parts add up: at most the tolerance a step, spread by a pendulum that swings up.
+TEST(StepDoubling, KeepsItsTolerance) {
+  ModelBuilder builder = pendulum(0.5, 1.0, 0.05);
+  const VectorX q = VectorX::Constant(1, 1.0), v = VectorX::Constant(1, 0.0);
+  builder.options.integrator = Integrator::rungeKutta4;
+  const Ran exact = run(builder, 0.0005, 640, q, v);
+  builder.options.integrator = Integrator::semiImplicitEuler;
+  builder.options.stepDoubling = true;
+  int before = 0;
+  double last = 1.0;
+  for (const double tolerance : {1e-4, 1e-5, 1e-6}) {
+    builder.options.integrationTolerance = tolerance;
+    const Ran ran = run(builder, 0.016, 20, q, v);
+    const double error = std::abs(ran.state.q[0] - exact.state.q[0]);
+    EXPECT_LT(error, 20 * 3.0 * tolerance);
+    EXPECT_LT(error, last);
+    EXPECT_GT(ran.rejections, 0);
+    EXPECT_GT(ran.substeps, before);
+    before = ran.substeps;
+    last = error;
+  }
+}
+
+// Touch-down is where it shortens: in free fall and at rest a step is two halves.
+TEST(StepDoubling, ShortensWhereContactBegins) {
+  ModelBuilder builder = sphereOnPlane(0.1, 1.0, 0.5);
+  builder.options.stepDoubling = true;
+  builder.options.integrationTolerance = 1e-4;
+  VectorX q(7);
+  q << 0, 0, 0.2, 1, 0, 0, 0;
+  const VectorX v = VectorX::Zero(6);
+  const Ran fall = run(builder, 0.004, 30, q, v, true);  // 0.12 s, touch-down is at 0.143 s
+  EXPECT_EQ(fall.rejections, 0);
+  const Ran landing = run(builder, 0.004, 250, q, v, true);
+  EXPECT_GT(landing.rejections, 0);
+  EXPECT_GT(landing.substeps, 250);
+  EXPECT_NEAR(landing.state.q[2], 0.1, 0.001);
+}
+
+TEST(StepDoubling, LeavesTheStateWhereItOverflows) {
+  ModelBuilder builder = chain(3);
+  builder.options.stepDoubling = true;
+  const Model model = builder.build();
+  Data data(model);
+  State state(model);
+  state.q.setConstant(0.4);
+  state.v[1] = 1e160;
+  const std::uint64_t before = hash(state);
+  EXPECT_EQ(step(model, {}, state, data, nullptr), SolveStatus::notFinite);
+  EXPECT_EQ(hash(state), before);
+}
+
+}  // namespace
+}  // namespace softgauss::test
