@@ -165,9 +165,12 @@ GddReport AugmentedLagrangian::minimizeFrom(const Model& model, GoalCost& cost,
     report.stationarity = stationarity(data.inertia.forceScale);
 
     // Stationary: leave a kink, or update the multipliers, or done. A second full step in one cell
-    // that promises no less than the first has reached rounding.
+    // that promises no less than the first has reached rounding. A decrement that the objective
+    // cannot show leaves a gradient of its root times the stiffness of H: where nothing is held,
+    // the last full step is worth taking.
     const double merit = std::abs(report.objective) + penalty_;
-    const bool rounding = decrement <= 1e-14 * merit || (sameCell && decrement > 0.01 * promised);
+    const double unseen = (held_.empty() ? 1e-18 : 1e-14) * merit;
+    const bool rounding = decrement <= unseen || (sameCell && decrement > 0.01 * promised);
     if (report.stationarity <= options.gradientTolerance || rounding) {
       bool towardsStiff = false;
       const int leaving = held_.leaving(w_, forces_, data.constraints, towardsStiff);
