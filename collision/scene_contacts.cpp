@@ -10,9 +10,19 @@
 #include "collision/primitive_pairs.hpp"
 #include "collision/reach.hpp"
 #include "engine/constraints/contact.hpp"
+#include "engine/core/memory.hpp"
 #include "engine/model/state.hpp"
 
 namespace softgauss::collision {
+namespace {
+
+template <class T>
+void release(std::vector<T>& v) {
+  std::vector<T>().swap(v);
+}
+
+}  // namespace
+
 /// Everything that detect() reads and writes, in flat arrays by geometry and by pair.
 struct SceneContacts::Scene {
   /// Of a pair: centres farther apart than `reach` do not touch. For a plane, the distance of the
@@ -46,8 +56,12 @@ struct SceneContacts::Scene {
   void findNear();
   void sweep();
 
+  /// Keeps the hulls alone.
+  void forget();
+  std::size_t bytes() const;
+
   const Model& model;
-  const detail::GeometrySet set;
+  detail::GeometrySet set;
   std::vector<Turn> turn;
   std::vector<int> posed;  ///< geometries whose pose a step needs anew
 
@@ -111,6 +125,17 @@ void SceneContacts::Scene::setPairs(const std::vector<GeometryPair>& pairs, int 
     firstRow[static_cast<std::size_t>(rows[static_cast<std::size_t>(r)].a)] = r;
   for (std::size_t g = model.geometries.size(); g-- > 0;)
     firstRow[g] = std::min(firstRow[g], firstRow[g + 1]);
+}
+
+void SceneContacts::Scene::forget() {
+  release(X_WG), release(centre), release(turn), release(posed);
+  release(set.colliders), release(set.centreInG), release(set.radius);
+}
+
+std::size_t SceneContacts::Scene::bytes() const {
+  return bytesOfAll(turn, posed, X_WG, centre, planeRows, rows, movable, movableCentre, near,
+                    nearPlaneRows, nearRows, reference, firstRow, set.colliders, set.centreInG,
+                    set.radius);
 }
 
 /// A fifth of the mean radius of what may touch: small shapes keep few pairs near, and one that
@@ -271,6 +296,11 @@ void SceneContacts::setUp(int broadphasePairs, bool pruning) {
   scene_->setPairs(filter_.pairs, broadphasePairs);
   scene_->choosePosed();
   mayTouch_ = !filter_.pairs.empty();
+  if (!mayTouch_) scene_->forget();
+}
+
+std::size_t SceneContacts::bytes() const noexcept {
+  return bytesOf(filter_.pairs) + scene_->bytes();
 }
 
 SceneContacts::~SceneContacts() = default;

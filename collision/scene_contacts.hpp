@@ -45,6 +45,9 @@ class SceneContacts final : public ContactSource {
   void detect(const Model& model, const Kinematics& kinematics,
               ContactSet& contacts) noexcept override;
 
+  /// Rows of pairs, poses and bounds; nothing where no two shapes may touch.
+  std::size_t bytes() const noexcept override;
+
   /// How often the near pairs were looked for since the start.
   std::int64_t sweeps() const;
   const PairFilter& filter() const { return filter_; }

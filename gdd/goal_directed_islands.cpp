@@ -110,6 +110,12 @@ class GoalDirectedIslands::Control final : public IslandControl {
                                     [&](const auto& goal) { return goal->actsAt(time); });
   }
 
+  bool steady(double time) const noexcept override {
+    return std::all_of(part_->goals.begin(), part_->goals.end(), [&](const auto& goal) {
+      return !goal->actsAt(time) || goal->steadyAt(time);
+    });
+  }
+
   SolveStatus step(const Input& input, State& state, Data& data,
                    ContactSource* contacts) noexcept override {
     const SolveStatus status = part_->stepAt(island_.model, input, state, data, contacts);
@@ -163,6 +169,12 @@ void GoalDirectedIslands::changed() {
   changed_ = true;
 }
 
+void GoalDirectedIslands::changed(std::size_t goal) {
+  for (Control* control : controls_)
+    if (control->has(goal)) control->read();
+  acting_[goal] = -1;
+}
+
 std::unique_ptr<IslandControl> GoalDirectedIslands::within(const SubModel& island) {
   return std::make_unique<Control>(*this, island);
 }
@@ -177,8 +189,8 @@ void GoalDirectedIslands::begin(double time, std::vector<int>& trees) noexcept {
   };
   if (changed_) wake([](const Control& control) { return control.hasActuators(); });
   changed_ = false;
-  for (std::size_t k = 0; k < acting_.size(); ++k) {
-    const char acts = controller_.goals[k]->actsAt(time);
+  for (std::size_t k = 0; k < std::min(acting_.size(), controller_.goals.size()); ++k) {
+    const int acts = controller_.goals[k]->actsAt(time);
     if (acts != acting_[k]) wake([&](const Control& control) { return control.has(k); });
     acting_[k] = acts;
   }

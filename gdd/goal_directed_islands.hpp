@@ -33,10 +33,14 @@ class GoalDirectedIslands final : public IslandControls {
   GoalDirectedIslands(const Model& model, GoalDirectedController& controller);
   ~GoalDirectedIslands() override;
 
-  /// To be called after anything of the controller has been changed, times of goals and their
-  /// places included: all islands read it anew, and those that it concerns wake. Throws ModelError
-  /// where a goal, an actuator or the price of force ties robots that may be apart.
+  /// To be called after goals have been added, removed or given to others, or the box, the price of
+  /// force or options have been changed: all islands read the controller anew, and all robots wake.
+  /// Throws ModelError where a goal, an actuator or the price of force ties robots that may be
+  /// apart.
   void changed();
+  /// To be called after this goal has been given another place, weight or time: the islands that it
+  /// is about read it anew, and wake.
+  void changed(std::size_t goal);
 
   std::unique_ptr<IslandControl> within(const SubModel& island) override;
   void begin(double time, std::vector<int>& trees) noexcept override;
@@ -47,7 +51,7 @@ class GoalDirectedIslands final : public IslandControls {
   const Units units_;
   GoalDirectedController& controller_;
   std::vector<Control*> controls_;  ///< of all islands that there are
-  std::vector<char> acting_;        ///< (goals) in the last step
+  std::vector<int> acting_;         ///< (goals) in the last step; -1: it has been changed since
   bool changed_ = false;            ///< since the last step
 };
 

@@ -59,17 +59,24 @@ ReachArgument parseReach(const std::string& text) {
 
 EffectSet parseEffects(const std::string& text) {
   if (text == "auto") return EffectSet::all();
-  EffectSet effects = EffectSet::none();
+  if (text == "none") return EffectSet::none();
+  const std::string no = "no_";
+  EffectSet kept = EffectSet::none(), dropped = EffectSet::none();
   for (const std::string& name : split(text, ',')) {
-    const std::optional<Effect> effect = effectFromName(name);
+    const bool without = name.rfind(no, 0) == 0;
+    const std::optional<Effect> effect = effectFromName(without ? name.substr(no.size()) : name);
     if (!effect) {
       std::string known;
       for (const EffectName& e : kEffectNames) known += fmt::format(" {}", e.name);
-      throw UsageError(fmt::format("--effects: no effect '{}'; there are:{}", name, known));
+      throw UsageError(
+          fmt::format("--effects: no effect '{}'; there are:{}; or auto, or none", name, known));
     }
-    effects.insert(*effect);
+    (without ? dropped : kept).insert(*effect);
   }
-  return effects;
+  if (kept == EffectSet::none()) kept = EffectSet::all();  // all but the dropped ones
+  for (const EffectName& e : kEffectNames)
+    if (dropped.has(e.effect)) kept.remove(e.effect);
+  return kept;
 }
 
 }  // namespace
@@ -140,7 +147,9 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
   app.add_option("--q0", q0, "initial joint positions NAME=VALUE,… [rad or m]")
       ->delimiter(',')
       ->group(scene);
-  app.add_option("--effects", effects, "auto, or a list of the effects to simulate")->group(scene);
+  app.add_option("--effects", effects,
+                 "the effects to simulate: auto, none, a list, or no_NAME,… for all but those")
+      ->group(scene);
   app.add_option("--zero-effort", zeroEffort,
                  "what effort=\"0\" means: passive (not actuated) or unlimited")
       ->check(CLI::IsMember({"passive", "unlimited"}))
@@ -265,7 +274,7 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
   options.sleep.enabled = islands == "sleep" || islands == "sleep-all";
   options.sleep.controlled = islands == "sleep-all";
   options.zeroEffortIsUnlimited = zeroEffort == "unlimited";
-  if (!effects.empty()) options.effects = parseEffects(effects);
+  if (app.count("--effects") > 0) options.effects = parseEffects(effects);
   if (options.ground) mustBeNear(*options.ground, "--ground");
   for (const std::string& text : reach) {
     options.reach.push_back(parseReach(text));

@@ -68,7 +68,7 @@ std::map<std::string, io::EffectCost> tryEffects(const Scene& scene) {
   State state = scene.initial;
   for (int i = 0; i < kStates && (i == 0 || secondsSince(start) < kSeconds); ++i) {
     const double whole = all.time(state);
-    const std::array<EffectUse, kEffects> use = effectUse(all.model, all.data);
+    const std::array<EffectUse, kEffects> use = effectUse(all.model, all.data, &all.contacts);
     for (const auto& [effect, variant] : variants) {
       differences[effect].push_back(whole - variant->time(state));
       io::EffectCost& cost = costs[std::string(effectName(effect))];

@@ -103,7 +103,7 @@ void timeScene(benchmark::State& state, const std::function<std::unique_ptr<Scen
     state.SetIterationTime(1e-6 * median(values["step.us"]));
   }
   double bytes = 0.0;
-  for (const EffectUse& use : effectUse(scene->model, *scene->data))
+  for (const EffectUse& use : effectUse(scene->model, *scene->data, scene->contacts.get()))
     bytes += static_cast<double>(use.bytes);
   values["effects.bytes"] = {bytes};
   // One step in eight makes a frame too, so here the mean counts.

@@ -19,6 +19,8 @@ class IslandControl {
 
   /// Whether it acts at this time [s]; while it does not, the step is the ordinary one.
   virtual bool acts(double time) const noexcept = 0;
+  /// Whether what it wants stays where it is at this time: only then may the island rest.
+  virtual bool steady(double time) const noexcept = 0;
   /// It does not act in this step.
   virtual void release() noexcept = 0;
 

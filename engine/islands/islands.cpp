@@ -29,21 +29,32 @@ std::vector<double> gyrationRadii(const Model& model) {
   return radii;
 }
 
-/// The fastest link: speed of its centre of mass, and of its radius of gyration [m/s].
-double fastestLink(const Islands::Island& island) {
-  const Model& model = island.part.model;
-  const Kinematics& k = island.data.kinematics;
-  double fastest = 0.0;
-  for (int b = 1; b < model.bodyCount(); ++b) {
-    const Body& body = model.bodies[at(b)];
-    if (body.massless) continue;
-    const Motion& V = k.V[at(b)];
-    const Vector3 com = k.X_WB[at(b)] * body.com - k.p_WO[at(body.tree)];
-    const Vector3 v = V.linear + V.angular.cross(com);
-    fastest = std::max(fastest, v.norm() + island.gyration[at(b)] * V.angular.norm());
+/// What a rotor's speed is worth, √(armature / mass of its tree), the mass 1 kg where it has none:
+/// a rotor turns unseen by the links.
+std::vector<double> rotorLevers(const Model& model) {
+  std::vector<double> levers;
+  for (const Dof& dof : model.dofs) {
+    const Tree& tree = model.trees[at(model.bodies[at(dof.body)].tree)];
+    double mass = 0.0;
+    for (int b = tree.rootBody; b < tree.bodyEnd; ++b) mass += model.bodies[at(b)].mass;
+    levers.push_back(std::sqrt(dof.armature / (mass > 0.0 ? mass : 1.0)));
   }
-  return fastest;
+  return levers;
 }
+
+/// Velocity of a link's centre of mass, and of its radius of gyration [m/s].
+Motion linkVelocity(const Islands::Island& island, int b) {
+  const Kinematics& k = island.data.kinematics;
+  const Body& body = island.part.model.bodies[at(b)];
+  const Motion& V = k.V[at(b)];
+  const Vector3 com = k.X_WB[at(b)] * body.com - k.p_WO[at(body.tree)];
+  Motion v;
+  v.angular = island.gyration[at(b)] * V.angular;
+  v.linear = V.linear + V.angular.cross(com);
+  return v;
+}
+
+double sizeOf(const Motion& v) { return v.linear.norm() + v.angular.norm(); }
 
 }  // namespace
 
@@ -55,7 +66,9 @@ Islands::Island::Island(const Model& whole, std::vector<int> ofUnits, const std:
       control(controls ? controls->within(part) : nullptr),
       state(part.model),
       data(part.model),
-      gyration(gyrationRadii(part.model)) {}
+      gyration(gyrationRadii(part.model)),
+      rotor(rotorLevers(part.model)),
+      rest(part.model.bodies.size()) {}
 
 Islands::Islands(const Model& model, IslandContacts* contacts, Sleep sleep,
                  IslandControls* controls)
@@ -291,12 +304,36 @@ SolveStatus Islands::fail(const Island& island) {
   return stats_.status = SolveStatus::notFinite;
 }
 
+/// Whether the island is slow, and goes on as it was when it began to rest. Speeds below a
+/// thousandth of Sleep::speed are rounding.
+bool Islands::rests(Island& island) const {
+  const Model& model = island.part.model;
+  const bool begins = island.resting == 0.0;
+  double fastest = 0.0, change = 0.0;
+  for (int b = 1; b < model.bodyCount(); ++b) {
+    if (model.bodies[at(b)].massless) continue;
+    const Motion v = linkVelocity(island, b);
+    fastest = std::max(fastest, sizeOf(v));
+    Motion& rest = island.rest[at(b)];
+    if (begins) rest = v;
+    change = std::max(change, (v.linear - rest.linear).norm() + (v.angular - rest.angular).norm());
+  }
+  for (int i = 0; i < model.nv; ++i)
+    fastest = std::max(fastest, island.rotor[at(i)] * std::abs(island.state.v[i]));
+  if (!(fastest <= sleep_.speed)) return false;
+  if (begins) island.restSpeed = std::max(fastest, 1e-3 * sleep_.speed);
+  return change <= 0.1 * sleep_.speed && fastest <= island.restSpeed;
+}
+
 void Islands::settle() {
   bool changed = false;
   for (Island* island : awake_) {
-    const bool mayRest = sleep_.controlled || !island->controlled;
-    const bool slow = mayRest && fastestLink(*island) <= sleep_.speed;
-    island->resting = slow ? island->resting + model_.options.timestep : 0.0;
+    const bool mayRest =
+        !island->controlled || (sleep_.controlled && island->control->steady(state_.time));
+    if (mayRest && rests(*island))
+      island->resting += model_.options.timestep;
+    else
+      island->resting = 0.0;
     if (island->resting < sleep_.time) continue;
     fallAsleep(*island);
     changed = true;

@@ -15,13 +15,15 @@
 ///
 /// Units join at once. An island is looked at only every kSplitAge of its steps to see whether it
 /// has come apart: solving two islands as one is right too. Step 1 makes models of its own where it
-/// joins or splits, and allocates then; otherwise a step allocates nothing.
+/// joins or splits, and allocates then; otherwise a step allocates where an island has more
+/// contacts or rows than it ever had.
 ///
-/// Sleep. Where no link has been faster than Sleep::speed for Sleep::time, and nothing is applied,
-/// the island's velocity is set to zero and it costs nothing until something touches it, a force or
-/// wrench is applied to it, what controls it begins, ends or changes, wake() or setState() is
-/// called. What a control acts on stays awake unless Sleep::controlled. What sleep leaves out is
-/// the motion that was left: less than Sleep::speed times the time asleep (docs/decisions/0026).
+/// Sleep. An island is at rest where, over Sleep::time, no link has been faster than Sleep::speed,
+/// none has changed its velocity by more than a tenth of that, the fastest is not faster than
+/// before, and nothing is applied. Then its velocity becomes zero and it costs nothing until
+/// something touches it, a force or wrench is applied to it, what controls it begins, ends or
+/// changes, wake() or setState() is called. What a control acts on stays awake unless
+/// Sleep::controlled. What sleep leaves out: docs/decisions/0026.
 
 #include <cstdint>
 #include <map>
@@ -39,7 +41,7 @@ namespace softgauss {
 struct Sleep {
   bool enabled = false;
   double speed = 5e-3;  ///< [m/s] of every link: its centre of mass, and its radius of gyration
-  double time = 0.5;    ///< [s] for which they have been slower
+  double time = 0.5;    ///< [s] for which they have been slower, and steady
   /// What a control acts on may sleep too: it then keeps its pose, and its control the last value.
   bool controlled = false;
 };
@@ -98,6 +100,9 @@ class Islands {
     Data data;
     Input input;
     std::vector<double> gyration;  ///< (bodies) radius of gyration [m]
+    std::vector<double> rotor;     ///< (dofs) speed of the tree that armature makes of v [m]
+    std::vector<Motion> rest;      ///< (bodies) velocity when it began to rest
+    double restSpeed = 0.0;        ///< of the fastest link then [m/s]
     int age = 0;                   ///< steps since it was made
     double resting = 0.0;          ///< [s]
     bool active = false;           ///< part of the scene now
@@ -129,6 +134,7 @@ class Islands {
   void makeIslands(const std::vector<Island*>& old, UnionFind& sets);
   void forget();
   void settle();
+  bool rests(Island& island) const;
   SolveStatus fail(const Island& island);
   void collectStats();
 

@@ -22,6 +22,9 @@ class ContactSource {
   virtual void detect(const Model& model, const Kinematics& kinematics,
                       ContactSet& contacts) noexcept = 0;
 
+  /// Memory that it holds for the shapes and pairs of the scene.
+  virtual std::size_t bytes() const noexcept { return 0; }
+
  protected:
   bool mayTouch_ = true;
 };

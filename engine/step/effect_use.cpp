@@ -15,7 +15,8 @@ Effect contactEffectOf(const Model& model, const Contact& c) {
 
 }  // namespace
 
-std::array<EffectUse, kEffects> effectUse(const Model& model, const Data& data) {
+std::array<EffectUse, kEffects> effectUse(const Model& model, const Data& data,
+                                          const ContactSource* contacts) {
   std::array<EffectUse, kEffects> use{};
   const auto at = [&](Effect effect) -> EffectUse& {
     return use[static_cast<std::size_t>(effect)];
@@ -51,10 +52,15 @@ std::array<EffectUse, kEffects> effectUse(const Model& model, const Data& data) 
 
   const EffectUse pyramids = of(rows.contact, RowKind::pyramid);
   const EffectUse cones = of(rows.ellipticContact, RowKind::ellipticCone);
-  for (const Effect effect : {Effect::groundContact, Effect::selfCollision, Effect::objectContact})
-    if (plan.effects.has(effect)) {
+  // Where none of the three runs, all tell what there is: it has to be nothing.
+  const auto kinds = {Effect::groundContact, Effect::selfCollision, Effect::objectContact};
+  const bool any = std::any_of(kinds.begin(), kinds.end(),
+                               [&](Effect effect) { return plan.effects.has(effect); });
+  for (const Effect effect : kinds)
+    if (plan.effects.has(effect) || !any) {
       at(effect).calls = data.contacts.detections + pyramids.calls + cones.calls;
-      at(effect).bytes = bytesOf(data.contacts.contacts) + pyramids.bytes + cones.bytes;
+      at(effect).bytes = bytesOf(data.contacts.contacts) + pyramids.bytes + cones.bytes +
+                         (contacts ? contacts->bytes() : 0);
     }
   const auto count = [&](const std::vector<ContactRows>& made, int rowsOfDirection) {
     for (const ContactRows& contact : made) {

@@ -60,6 +60,10 @@ class Reach final : public Goal {
         const Vector3& p_FP = Vector3::Zero());
 
   std::string name() const override { return "reach " + link; }
+  bool steadyAt(double time) const override {
+    return !minimumJerk || time < minimumJerk->startTime ||
+           time > minimumJerk->startTime + minimumJerk->duration;
+  }
   void addCost(const GoalContext& context, GoalCost& cost) const override;
   std::unique_ptr<Goal> within(const Model&, const SubModel& island) const override {
     return ofLinkWithin(*this, island);

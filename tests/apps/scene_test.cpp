@@ -214,6 +214,23 @@ TEST(SceneRun, IslandsAreSolvedApartAndSleep) {
   EXPECT_NE(refused.err.find("semi-implicit-euler"), std::string::npos) << refused.err;
 }
 
+TEST(SceneRun, EffectsAreAListOrAllButSome) {
+  const auto effects = [](const std::string& text) {
+    const Outcome outcome = simulate(
+        {dataFile("robots/arm.urdf"), "--passive", "--duration", "0.01", "--effects", text});
+    const std::size_t at = outcome.out.find("effects:");
+    return outcome.exitCode == 0 ? outcome.out.substr(at, outcome.out.find('\n', at) - at)
+                                 : outcome.err;
+  };
+  EXPECT_NE(effects("auto").find(" gravity"), std::string::npos);
+  EXPECT_EQ(effects("none").find("gravity"), std::string::npos);
+  EXPECT_EQ(effects("no_gravity").find("gravity"), std::string::npos);
+  EXPECT_NE(effects("no_gravity").find("coriolis"), std::string::npos);
+  EXPECT_EQ(effects("gravity,damping").find("coriolis"), std::string::npos);
+  EXPECT_NE(effects("").find("no effect ''"), std::string::npos);
+  EXPECT_NE(effects("no_wind").find("no effect 'no_wind'"), std::string::npos);
+}
+
 // Two arms that reach for a box: each is its own problem until they touch it.
 TEST(SceneRun, GoalsActOnIslands) {
   const io::TempFolder folder;

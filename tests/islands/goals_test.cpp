@@ -282,6 +282,55 @@ TEST(GoalsOfIslands, MayLetRobotsSleep) {
   }
 }
 
+TEST(GoalsOfIslands, WakeThoseThatTheyAreAbout) {
+  ModelBuilder builder = ground();
+  for (int i = 0; i < 4; ++i)
+    addCreature(builder, "robot" + std::to_string(i), Vector3(2.0 * i, 0.0, 0.05));
+  GoalCrowd crowd(builder.build());
+  for (int i = 0; i < 4; ++i) {
+    auto bent = std::make_unique<gdd::JointPosture>();
+    const std::string name = "robot" + std::to_string(i);
+    for (const char* joint : {"_1_joint", "_2_joint", "_3_joint"})
+      bent->targets.push_back(gdd::jointTarget(crowd.model, name + joint, 0.4));
+    crowd.controller.goals.push_back(std::move(bent));
+  }
+  crowd.start(Sleep{.enabled = true, .controlled = true});
+  ASSERT_TRUE(crowd.steps(6000));
+  ASSERT_EQ(crowd.islands->islandStats().awake, 0);
+  static_cast<gdd::JointPosture&>(*crowd.controller.goals[2]).targets[0].value = -0.4;
+  crowd.controls->changed(2);
+  ASSERT_TRUE(crowd.steps(1));
+  EXPECT_EQ(crowd.islands->islandStats().awake, 1);
+  EXPECT_FALSE(crowd.islands->asleep(crowd.body("robot2_0")));
+  const int joint = crowd.model.findJoint("robot2_1_joint");
+  ASSERT_TRUE(crowd.steps(6000));
+  EXPECT_EQ(crowd.islands->islandStats().awake, 0);
+  EXPECT_NEAR(crowd.islands->state().q[crowd.model.bodies[static_cast<std::size_t>(joint)].q], -0.4,
+              0.05);
+}
+
+TEST(GoalsOfIslands, FollowALineAwake) {
+  // A minimum-jerk line of 8 s starts with less than 1 mm/s; a robot that slept would never go.
+  ModelBuilder builder = ground();
+  addCreature(builder, "robot", Vector3(0.0, 0.0, 0.05));
+  GoalCrowd crowd(builder.build());
+  gdd::Reach& reach = crowd.reach("robot_3", Vector3::Zero());
+  reach.minimumJerk = gdd::MinimumJerk{.startTime = 1.0, .duration = 8.0};
+  EXPECT_TRUE(reach.steadyAt(0.9));
+  EXPECT_FALSE(reach.steadyAt(1.0));
+  EXPECT_FALSE(reach.steadyAt(9.0));
+  EXPECT_TRUE(reach.steadyAt(9.1));
+  reach.minimumJerk.reset();
+  EXPECT_TRUE(reach.steadyAt(2.0));
+
+  crowd.start(Sleep{.enabled = true, .controlled = true});
+  ASSERT_TRUE(crowd.steps(1));
+  const SubModel whole(crowd.model, all(static_cast<int>(crowd.model.trees.size())));
+  EXPECT_TRUE(crowd.controls->within(whole)->steady(2.0));
+  reach.minimumJerk = gdd::MinimumJerk{.startTime = 1.0, .duration = 8.0};
+  EXPECT_FALSE(crowd.controls->within(whole)->steady(2.0));
+}
+
 TEST(GoalsOfIslands, KeepActuatorsAndPriceOfForce) {
   // Gears, and a diagonal and a dense price: the same control, alone and beside another robot.
   for (const bool dense : {false, true}) {

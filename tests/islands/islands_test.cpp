@@ -4,6 +4,9 @@
 
 #include "engine/islands/islands.hpp"
 
+#include <array>
+#include <map>
+
 #include "collision/scene_contacts.hpp"
 #include "tests/islands/crowd.hpp"
 #include "tests/support/allocation_guard.hpp"
@@ -150,16 +153,26 @@ TEST(Islands, AllocateOnlyWhereTheyRegroup) {
   if (!kAllocationHook) GTEST_SKIP() << "the sanitizer has its own allocator";
   Crowd crowd(heap(16, 2).build());
   int quiet = 0, regrouped = 0;
+  std::map<const Islands::Island*, std::array<int, 4>> most;  // of what an island ever had
   for (int i = 0; i < 1200; ++i) {
-    const AllocationGuard guard;
-    ASSERT_TRUE(crowd.steps(1));
-    const bool looked = i < 600 || crowd.islands.islandStats().regroups > 0;
-    if (looked) {
-      regrouped += crowd.islands.islandStats().regroups;
-      continue;
+    std::int64_t allocations = 0;
+    {
+      const AllocationGuard guard;
+      ASSERT_TRUE(crowd.steps(1));
+      allocations = guard.count();
     }
-    // An island's own buffers grow when it has more contacts than ever before.
-    quiet += guard.count() == 0;
+    bool grew = crowd.islands.islandStats().regroups > 0;
+    regrouped += crowd.islands.islandStats().regroups;
+    for (const Islands::Island* island : crowd.islands.awake()) {
+      const StepStats& s = island->data.stats;
+      std::array<int, 4>& had = most[island];
+      const std::array<int, 4> now = {s.contacts, s.rows, s.iterations, s.substeps};
+      for (std::size_t k = 0; k < now.size(); ++k)
+        if (now[k] > had[k]) grew = true, had[k] = now[k];
+    }
+    if (i < 600 || grew) continue;
+    EXPECT_EQ(allocations, 0) << "step " << i;
+    ++quiet;
   }
   EXPECT_GT(regrouped, 10);
   EXPECT_GT(quiet, 500);

@@ -7,6 +7,7 @@
 
 #include <functional>
 
+#include "collision/scene_contacts.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/scene.hpp"
 
@@ -87,6 +88,28 @@ TEST(Plan, AbsentEffectHasNoRowsNoBytesAndNoCalls) {
   }
   EXPECT_EQ(useOf(bare, Effect::coriolis).calls, 20);  // at the start and in the middle of a step
   EXPECT_TRUE(bare.data->plan.rows.empty());
+}
+
+// The memory of collision is counted with contacts: it is there with pairs, and without any there
+// is none.
+TEST(Plan, CollisionWithoutPairsHoldsNothing) {
+  ModelBuilder builder = bareChain();
+  builder.geometry(groundSpec(1.0));
+  for (const char* link : {"link1", "link2", "link3"})
+    builder.geometry(geometrySpec(link, Shape::sphere(0.1)));
+  for (const bool on : {false, true}) {
+    if (!on) builder.options.effects.remove(Effect::groundContact);
+    if (!on) builder.options.effects.remove(Effect::selfCollision);
+    if (on) builder.options.effects = EffectSet::all();
+    const Model model = builder.build();
+    const collision::SceneContacts contacts(model);
+    const Data data(model);
+    EXPECT_EQ(contacts.bytes() > 0, on);
+    EXPECT_EQ(contacts.mayTouch(), on);
+    const EffectUse use =
+        effectUse(model, data, &contacts)[static_cast<std::size_t>(Effect::groundContact)];
+    EXPECT_EQ(use.bytes > 0, on);
+  }
 }
 
 // Each alone is called once a step, the others stay at nothing; switched off it is nothing again,
