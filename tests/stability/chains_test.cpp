@@ -43,10 +43,10 @@ ModelBuilder hangingChain(int n, double load, Hinges hinges, double h) {
 double energyNow(Trial& t) {
   const bool followed = !t.state.followed.empty() && t.state.followed[0] == 1;
   if (followed || t.steps == 0) return t.energy().total();
-  const VectorX half = 0.5 * t.model.options.timestep * t.data->acceleration;
-  t.state.v += half;
+  const VectorX v = t.state.v;
+  t.state.v += 0.5 * t.model.options.timestep * t.data->acceleration;
   const double E = t.energy().total();
-  t.state.v -= half;
+  t.state.v = v;
   return E;
 }
 
