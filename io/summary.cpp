@@ -60,7 +60,9 @@ Summary::Summary(const Model& model)
       cone_(model.options.cone == Cone::elliptic ? "elliptic" : "pyramidal"),
       impedanceRatio_(model.options.impedanceRatio),
       exactDiagonal_(model.options.exactDiagonal),
-      noSlip_(model.options.noSlip) {
+      noSlip_(model.options.noSlip),
+      stepDoubling_(model.options.stepDoubling),
+      tolerance_(model.options.tolerance) {
   for (int i = 0; i < model.nv; ++i) {
     const Dof& dof = model.dofs[static_cast<std::size_t>(i)];
     if (!dof.actuated) continue;
@@ -117,6 +119,8 @@ std::string Summary::json() const {
       {"options",
        {{"timestep_s", timestep_},
         {"integrator", integrator},
+        {"step_doubling", stepDoubling_},
+        {"tolerance", tolerance_},
         {"cone", cone_},
         {"impedance_ratio", impedanceRatio_},
         {"exact_diagonal", exactDiagonal_},
@@ -160,6 +164,10 @@ std::string Summary::json() const {
                           {"fewest_awake", islands.fewestAwake},
                           {"asleep_share", islands.asleepShare()},
                           {"wakeups", islands.wakeups}};
+  if (error.estimated)
+    summary["error"] = {{"position_m", error.position},
+                        {"orientation_rad", error.orientation},
+                        {"of", error.ofSteps ? "steps, added up" : "the run"}};
   // Names come from files: bytes that are no UTF-8 are replaced, not refused.
   return summary.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }

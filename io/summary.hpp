@@ -68,6 +68,14 @@ struct IslandOutcomes {
   }
 };
 
+/// What the settings of a run leave as error, estimated beside it.
+struct ErrorOutcome {
+  bool estimated = false;
+  bool ofSteps = false;      ///< the sum of what the steps err by; else of the whole run
+  double position = 0.0;     ///< of link poses, root mean square [m]
+  double orientation = 0.0;  ///< of links [rad]
+};
+
 /// Values of one quantity over the steps.
 struct Series {
   std::vector<double> values;
@@ -108,6 +116,7 @@ class Summary {
   GddOutcomes gdd;
   Fallbacks fallbacks;
   IslandOutcomes islands;
+  ErrorOutcome error;
   std::vector<std::string> warnings;  ///< preset to the model's
 
   double simulatedSeconds() const { return endTime_ - startTime_; }
@@ -124,7 +133,8 @@ class Summary {
   double timestep_ = 0.0;
   std::string cone_;
   double impedanceRatio_ = 1.0;
-  bool exactDiagonal_ = false, noSlip_ = false;
+  bool exactDiagonal_ = false, noSlip_ = false, stepDoubling_ = false;
+  double tolerance_ = 0.0;
   std::vector<Bounded> bounded_;  ///< controls with a box
   std::size_t steps_ = 0;
   double startTime_ = 0.0, endTime_ = 0.0;

@@ -15,11 +15,12 @@ namespace softgauss::app {
 struct Method {
   std::string engine;      ///< "softgauss" or "mujoco"
   std::string integrator;  ///< its name there
-  std::string label;       ///< of the curve
+  std::string label;       ///< of the curve; it has no comma, for the table
   Cone cone = Cone::pyramidal;
   double tolerance = 0.0;             ///< of the solver; 0: the engine's default
-  double integrationTolerance = 0.0;  ///< of an integrator with error control; 0: none
+  double integrationTolerance = 0.0;  ///< of error control; 0: none
   bool warmStart = true;
+  bool doubling = false;  ///< Options::stepDoubling
 
   bool operator==(const Method&) const = default;
 };

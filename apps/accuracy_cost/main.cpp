@@ -9,7 +9,10 @@
 #include <filesystem>
 #include <iostream>
 
+#include "apps/accuracy_cost/drift.hpp"
+#include "apps/accuracy_cost/honesty.hpp"
 #include "apps/accuracy_cost/pictures.hpp"
+#include "apps/accuracy_cost/ratio_table.hpp"
 #include "apps/accuracy_cost/study.hpp"
 #include "apps/accuracy_cost/table.hpp"
 #include "apps/shared/progress.hpp"
@@ -26,13 +29,15 @@ struct Arguments {
 std::string figure(double x) { return std::isfinite(x) ? fmt::format("{:.3g}", x) : "not finite"; }
 
 void print(const Problem& problem, const std::vector<Result>& results) {
-  fmt::print("\n{}: {}\n{:<40} {:>10} {:>10} {:>11} {:>10} {:>10}\n", problem.name, problem.title,
-             "", "step [ms]", "error [m]", "angle [rad]", "drift", "s per s");
+  fmt::print("\n{}: {}\n{:<40} {:>10} {:>10} {:>11} {:>10} {:>10} {:>10}\n", problem.name,
+             problem.title, "", "step [ms]", "error [m]", "angle [rad]", "energy", "momentum",
+             "s per s");
   for (const Result& r : results) {
     if (r.problem != problem.name) continue;
-    fmt::print("{:<40} {:>10.4g} {:>10} {:>11} {:>10} {:>10}\n", r.method.label, 1e3 * r.h,
+    fmt::print("{:<40} {:>10.4g} {:>10} {:>11} {:>10} {:>10} {:>10}\n", r.method.label, 1e3 * r.h,
                figure(r.error), figure(r.orientation),
-               problem.passive ? figure(r.energyDrift) : "-", figure(r.time));
+               problem.passive ? figure(r.energyDrift) : "-", figure(r.momentumDrift),
+               figure(r.time));
   }
 }
 
@@ -81,7 +86,12 @@ int main(int argc, char** argv) {
   app.add_option("--min-time", arguments.study.minTime,
                  "CPU time that each measurement takes at least [s]")
       ->check(CLI::NonNegativeNumber);
-  bool list = false;
+  bool list = false, drift = false, honesty = false;
+  app.add_flag("--drift", drift,
+               "instead: energy and momentum over 10 s at 2 ms, every integrator");
+  app.add_flag("--honesty", honesty,
+               "and then: choose a setting for accuracies of 1e-2 … 1e-6 m on each problem, as\n"
+               "simulate_gdd --accuracy does, and check its true error and its time");
   app.add_flag("--list", list, "name the problems and end");
   CLI11_PARSE(app, argc, argv);
 
@@ -106,6 +116,10 @@ int main(int argc, char** argv) {
   try {
     catchInterrupts();
     std::filesystem::create_directories(arguments.out);
+    if (drift) {
+      measureDrifts(arguments.out, problems);
+      return interrupted() ? 130 : 0;
+    }
     ResultTable table(std::filesystem::path(arguments.out) / "accuracy_cost.csv");
     for (const Problem& problem : problems) {
       run(problem, arguments, table);
@@ -113,6 +127,9 @@ int main(int argc, char** argv) {
       if (interrupted()) break;
     }
     writePictures(arguments.out, problems, table.results());
+    writeRatioTable(arguments.out, problems, table.results());
+    if (honesty && !interrupted())
+      checkHonesty(arguments.out, problems, table.results(), arguments.study);
     return interrupted() ? 130 : 0;
   } catch (const std::exception& e) {
     fmt::print(stderr, "accuracy_cost: {}\n", e.what());

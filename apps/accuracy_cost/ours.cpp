@@ -35,7 +35,7 @@ class Ours final : public Contestant {
     input_.tau = tau;
     for (int i = 0; i < steps; ++i) {
       if (!warmStart_) state_.warmstart.valid = false;
-      if (step(model_, input_, state_, data_, &contacts_) == SolveStatus::notFinite) return false;
+      if (isRefused(step(model_, input_, state_, data_, &contacts_))) return false;
       penetration_ = std::max(penetration_, data_.stats.maxPenetration);
     }
     return true;
@@ -51,7 +51,7 @@ class Ours final : public Contestant {
       builder.options.midpointCoriolis = false;
     else
       builder.options.integrator = integratorFromName(method.integrator).value();
-    // A period has many steps: each may leave its share of the error.
+    builder.options.stepDoubling = method.doubling;
     if (method.integrationTolerance > 0.0)
       builder.options.integrationTolerance = method.integrationTolerance;
     return builder.build();
@@ -82,8 +82,11 @@ Method referenceMethod(const Problem& problem, const Method& method) {
 }
 
 std::vector<Method> methodsFor(const Problem& problem) {
-  std::vector<Method> methods{{"softgauss", "semi-implicit-euler", "semi-implicit Euler"},
+  const Method euler{"softgauss", "semi-implicit-euler", "semi-implicit Euler"};
+  std::vector<Method> methods{euler,
                               {"softgauss", kMujocoEuler, "semi-implicit Euler as MuJoCo's"},
+                              {"softgauss", "implicit", "implicit in velocity"},
+                              {"softgauss", "implicit-midpoint", "implicit midpoint"},
                               {"softgauss", "runge-kutta-4", "Runge-Kutta 4"}};
   Method adaptive{"softgauss", "dormand-prince", ""};
   for (const double tolerance : {1e-5, 1e-8, 1e-11}) {
@@ -91,10 +94,27 @@ std::vector<Method> methodsFor(const Problem& problem) {
     adaptive.label = fmt::format("Dormand-Prince to {:.0e}", tolerance);
     methods.push_back(adaptive);
   }
+  for (const double tolerance : {1e-4, 1e-6}) {
+    Method doubled = euler;
+    doubled.doubling = true;
+    doubled.integrationTolerance = tolerance;
+    doubled.label = fmt::format("Euler with step doubling to {:.0e}", tolerance);
+    methods.push_back(doubled);
+  }
   if (problem.contact) {
-    Method elliptic = methods.front();
+    for (const double tolerance : {1e-6, 1e-3}) {
+      Method loose = euler;
+      loose.tolerance = tolerance;
+      loose.label = fmt::format("Euler with solver to {:.0e}", tolerance);
+      methods.push_back(loose);
+    }
+    Method cold = euler;
+    cold.warmStart = false;
+    cold.label = "Euler without warm start";
+    methods.push_back(cold);
+    Method elliptic = euler;
     elliptic.cone = Cone::elliptic;
-    elliptic.label = "semi-implicit Euler with elliptic cones";
+    elliptic.label = "Euler with elliptic cones";
     methods.push_back(elliptic);
   }
   for (Method& method : mujocoMethods(problem)) methods.push_back(std::move(method));

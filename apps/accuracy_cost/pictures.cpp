@@ -16,9 +16,10 @@ namespace softgauss::app {
 namespace {
 
 constexpr const char* kDataPlace = "/*RESULTS*/null";
-const std::array<const char*, 10> kColours = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
-                                              "#e69f00", "#56b4e9", "#8c6d31", "#000000",
-                                              "#7b3294", "#999999"};
+const std::array<const char*, 18> kColours = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00",
+                                              "#56b4e9", "#8c6d31", "#000000", "#7b3294", "#999999",
+                                              "#1b9e77", "#e7298a", "#66a61e", "#a6761d", "#386cb0",
+                                              "#bf5b17", "#b2182b", "#4d4d4d"};
 
 void write(const std::filesystem::path& file, const std::string& text) {
   std::ofstream out(file);
@@ -97,6 +98,7 @@ nlohmann::ordered_json json(const Problem& problem,
                         {"orientation", r.orientation},
                         {"time", r.time},
                         {"drift", r.energyDrift},
+                        {"momentum", r.momentumDrift},
                         {"penetration", r.penetration},
                         {"overshoot", r.overshoot},
                         {"reference", r.referenceError}});

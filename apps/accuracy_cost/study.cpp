@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/accuracy_cost/study.hpp"
 
-#include <time.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "apps/shared/cpu_time.hpp"
 #include "engine/dynamics/energy.hpp"
 
 namespace softgauss::app {
@@ -16,12 +15,6 @@ namespace {
 constexpr int kReferenceSteps = 1024;
 /// And where every step makes contacts.
 constexpr int kContactReferenceSteps = 1024;
-
-double cpuSeconds() {
-  timespec t;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 int stepsOf(double h) { return static_cast<int>(std::lround(kPeriod / h)); }
 
@@ -125,11 +118,14 @@ Result Study::measure(const Method& method, double h) {
   const Model& model = contestant->model();
   LinkPoses pose(model), reference(model);
   Kinematics kinematics(model);
-  const auto energy = [&](const State& state) {
+  const auto energy = [&](const State& state, Momentum& momentum) {
     computeKinematics(model, state, kinematics);
+    momentum = computeMomentum(model, kinematics);
     return computeEnergy(model, kinematics, state.q, state.v);
   };
   double sum = 0.0, turned = 0.0, kinetic = 0.0;
+  Momentum own, right;
+  Vector3 change = Vector3::Zero(), most = Vector3::Zero();  // of linear and angular momentum
   int count = 0;
   for (const Window& window : windows_) {
     const std::vector<State> states =
@@ -147,15 +143,20 @@ Result Study::measure(const Method& method, double h) {
       turned += error.orientation * error.orientation;
       ++count;
       // Drift is what the reference does not do: dampers and contacts may take energy.
-      const Energy own = energy(states[k]), right = energy(window.samples[k]);
-      kinetic = std::max(kinetic, right.kinetic);
-      result.energyDrift = std::max(result.energyDrift, std::abs(own.total() - right.total()));
+      const Energy there = energy(states[k], own), wanted = energy(window.samples[k], right);
+      kinetic = std::max(kinetic, wanted.kinetic);
+      result.energyDrift = std::max(result.energyDrift, std::abs(there.total() - wanted.total()));
+      change = change.cwiseMax(
+          Vector3((own.linear - right.linear).norm(), (own.angular - right.angular).norm(), 0.0));
+      most = most.cwiseMax(Vector3(right.linear.norm(), right.angular.norm(), 0.0));
       result.overshoot = std::max(result.overshoot, overshoot(model, states[k]));
     }
   }
   result.error = std::sqrt(sum / count);
   result.orientation = std::sqrt(turned / count);
   result.energyDrift = kinetic > 0.0 ? result.energyDrift / kinetic : 0.0;
+  for (int i = 0; i < 2; ++i)
+    if (most[i] > 0.0) result.momentumDrift = std::max(result.momentumDrift, change[i] / most[i]);
   return result;
 }
 
@@ -187,6 +188,25 @@ void Study::measureTimes(std::vector<Result>& results) {
       results[i].time = std::min(results[i].time, spent / (rounds * simulated));
     }
   }
+}
+
+TrialRun Study::tryOut(const Method& method, double h, double mostSeconds) const {
+  TrialRun result;
+  const auto contestant = makeContestant(problem_, method, h);
+  for (const Window& window : windows_) {
+    contestant->start(window.start);
+    for (int k = 0; k < problem_.windowPeriods; ++k) {
+      const double time = window.start.time + k * kPeriod;
+      const VectorX tau = force(contestant->model(), time);
+      const double begin = cpuSeconds();
+      const bool finite = contestant->advance(tau, stepsOf(h));
+      result.seconds += cpuSeconds() - begin;
+      if (!finite || result.seconds > mostSeconds) return result;
+      result.samples.push_back(contestant->state());
+    }
+  }
+  result.finite = true;
+  return result;
 }
 
 }  // namespace softgauss::app

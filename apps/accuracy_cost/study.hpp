@@ -10,11 +10,9 @@
 /// it is. With other cones, or in another engine, contact is another model: such a method is
 /// compared with its own reference, which says how far it is from its own limit.
 
-#include <functional>
-#include <optional>
-
 #include "apps/accuracy_cost/contestant.hpp"
-#include "apps/accuracy_cost/pose_error.hpp"
+#include "apps/shared/pose_error.hpp"
+#include "apps/shared/setting.hpp"
 
 namespace softgauss::app {
 
@@ -27,8 +25,10 @@ struct Result {
   double orientation = 0.0;  ///< the same of angles [rad]
   double time = 0.0;         ///< CPU seconds per simulated second
   double energyDrift = 0.0;  ///< largest gain or loss over the largest kinetic energy, if passive
-  double penetration = 0.0;  ///< deepest [m]
-  double overshoot = 0.0;    ///< beyond a joint's limit, largest [rad or m]
+  /// Largest difference of linear or angular momentum to the reference, over the largest there.
+  double momentumDrift = 0.0;
+  double penetration = 0.0;     ///< deepest [m]
+  double overshoot = 0.0;       ///< beyond a joint's limit, largest [rad or m]
   double referenceError = 0.0;  ///< by which two references differ [m]
 };
 
@@ -47,6 +47,9 @@ class Study {
   Result measure(const Method& method, double h);
   /// Fills in the times of results of one step size, run in turns.
   void measureTimes(std::vector<Result>& results);
+  /// All windows once, after prepare(), as a trial of shared/setting.hpp.
+  TrialRun tryOut(const Method& method, double h, double mostSeconds) const;
+  double referenceError() const { return referenceError_; }
 
  private:
   struct Window {

@@ -5,6 +5,7 @@
 
 #include <exception>
 
+#include "apps/simulate_gdd/accuracy.hpp"
 #include "apps/simulate_gdd/run.hpp"
 
 int main(int argc, char** argv) {
@@ -16,6 +17,10 @@ int main(int argc, char** argv) {
     if (options->explain) {
       fmt::print("{}", app::explainScene(*scene));
       return app::kDone;
+    }
+    if (options->accuracy) {
+      const std::string choice = app::chooseAccuracy(*options, *scene);
+      if (!options->quiet) fmt::print("{}\n", choice);
     }
     return app::run(*options, *scene);
   } catch (const app::UsageError& error) {

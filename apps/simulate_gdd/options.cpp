@@ -187,9 +187,23 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
       ->check(CLI::IsMember(integrators))
       ->group(simulation);
   app.add_option("--integration-tolerance", options.integrationTolerance,
-                 "largest error that a step of dormand-prince leaves [m or rad], default 1e-6")
+                 "largest error that a step of dormand-prince, or of --step-doubling, leaves\n"
+                 "[m or rad], default 1e-6")
       ->check(CLI::PositiveNumber)
       ->group(simulation);
+  app.add_flag("--step-doubling", options.stepDoubling,
+               "error control for the integrators of one solve: each step once at its length and\n"
+               "twice at half of it, shortened until both agree to --integration-tolerance")
+      ->group(simulation);
+  CLI::Option* accuracy =
+      app.add_option("--accuracy", options.accuracy,
+                     "find by a trial the cheapest integrator, step and solver tolerance that\n"
+                     "leave at most this error over the run [m], and use them")
+          ->check(CLI::PositiveNumber)
+          ->group(simulation);
+  for (const char* chosen :
+       {"--timestep", "--integrator", "--integration-tolerance", "--step-doubling"})
+    accuracy->excludes(app.get_option(chosen));
   app.add_option("--cone", cone,
                  "pyramidal (default): friction pyramids, piecewise quadratic, the fastest;\n"
                  "elliptic: friction alike in all directions, rest depth independent of it")
@@ -227,6 +241,9 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
   app.add_flag("--explain", options.explain, "tell what was loaded and simulate nothing")
       ->group(output);
   app.add_option("--log", options.log, "write every step to a .csv file")->group(output);
+  app.add_flag("--report-error", options.reportError,
+               "estimate the error that the settings leave, by two half steps beside each step")
+      ->group(output);
   app.add_option("--summary", options.summary, "write the summary to a .json file")->group(output);
   app.add_option("--view", options.view, "write a page that replays the run in any browser (.html)")
       ->group(output);

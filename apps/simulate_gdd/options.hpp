@@ -41,6 +41,9 @@ struct SimulateOptions {
   std::optional<gdd::GddSolver> gddSolver;  ///< absent: the scene's own, or the active set
   std::optional<Integrator> integrator;
   std::optional<double> integrationTolerance;
+  bool stepDoubling = false;
+  bool reportError = false;
+  std::optional<double> accuracy;  ///< that a setting is to be chosen for [m]
   std::optional<bool> likeMujoco;  ///< --compatibility
   bool islands = false;            ///< what does not touch is solved apart
   Sleep sleep;                     ///< and what rests costs nothing

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <optional>
 
+#include "apps/simulate_gdd/error_estimate.hpp"
 #include "apps/simulate_gdd/island_run.hpp"
 #include "apps/simulate_gdd/progress.hpp"
 #include "apps/simulate_gdd/replay.hpp"
@@ -81,6 +82,7 @@ class Runner {
       if (note.asked && !note.on)
         summary_.warnings.push_back(fmt::format("{} is not simulated: {}", note.name, note.reason));
     if (options.islands) islands_.emplace(model_, state_, options.sleep, controller_);
+    if (options.reportError) errorEstimate_.emplace(model_, state_, !controller_.goals.empty());
     computeStages(model_, input_, state_, data_, &contacts_);
     for (const auto& goal : controller_.goals)
       if (const std::optional<double> error = goal->error({model_, state_, data_}))
@@ -138,6 +140,7 @@ class Runner {
     if (islands_ || !wrenches_.empty()) computeKinematics(model_, state_, data_.kinematics);
     if (!wrenches_.empty())
       wrenches_.at(state_.time, model_.options.timestep, data_.kinematics, input_.wrenches);
+    if (errorEstimate_) before_ = state_;
     const Clock::time_point start = Clock::now();
     const SolveStatus status = islands_ ? islands_->step(input_)
                                : controller_.goals.empty()
@@ -145,10 +148,18 @@ class Runner {
                                    : controller_.step(model_, input_, state_, data_, &contacts_);
     record_.stepUs = 1e6 * secondsSince(start);
     if (islands_) islands_->take(input_, state_, data_);
+    if (errorEstimate_ && !isRefused(status)) estimateError();
     const bool cones =
         islands_ ? islands_->controlledCones() : !data_.constraints.piecewiseQuadratic();
     if (cones) ++stepsWithCones_;
-    return status != SolveStatus::notFinite;
+    return !isRefused(status);
+  }
+
+  /// The control is held over the step, whoever found it.
+  void estimateError() {
+    held_.wrenches = input_.wrenches;
+    held_.tau = controller_.goals.empty() ? input_.tau : controller_.control;
+    errorEstimate_->observe(before_, held_, state_);
   }
 
   void record() {
@@ -264,6 +275,7 @@ class Runner {
     tellSolver();
     tellMinima();
     if (islands_) summary_.islands = islands_->outcomes();
+    if (errorEstimate_) summary_.error = errorEstimate_->outcome();
     summary_.finish(last);
     if (!options_.summary.empty()) summary_.write(options_.summary);
     const std::string error = replay_->finish(last, data_, summary_, reason);
@@ -302,6 +314,9 @@ class Runner {
   const io::WrenchSchedule& wrenches_;
   Input input_;
   std::optional<IslandRun> islands_;
+  std::optional<ErrorEstimate> errorEstimate_;
+  State before_;  ///< the step, for that
+  Input held_;    ///< over the step, for that
   std::optional<io::TorqueTable> torques_;
   std::optional<io::LogWriter> log_;
   std::optional<Replay> replay_;

@@ -75,6 +75,7 @@ void setOptions(const SimulateOptions& options, ModelBuilder& builder) {
   if (options.integrator) builder.options.integrator = *options.integrator;
   if (options.integrationTolerance)
     builder.options.integrationTolerance = *options.integrationTolerance;
+  if (options.stepDoubling) builder.options.stepDoubling = true;
   if (options.cone) builder.options.cone = *options.cone;
   if (options.effects) builder.options.effects = *options.effects;
   if (options.likeMujoco)

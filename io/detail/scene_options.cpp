@@ -27,15 +27,16 @@ EffectSet readEffects(const YamlMap& map, const YamlMap::Entry& entry) {
 }  // namespace
 
 void readOptions(const YamlMap& map, Options& options, std::optional<gdd::GddSolver>& solver) {
-  map.expectOnly({"integrator", "integration_tolerance", "cone", "no_slip", "exact_diagonal",
-                  "tolerance", "max_iterations", "impedance_ratio", "effects", "compatibility",
-                  "gdd_solver"});
+  map.expectOnly({"integrator", "integration_tolerance", "step_doubling", "cone", "no_slip",
+                  "exact_diagonal", "tolerance", "max_iterations", "impedance_ratio", "effects",
+                  "compatibility", "gdd_solver"});
   if (const auto* entry = map.find("integrator")) {
     std::vector<std::string> names;
     for (const IntegratorName& i : kIntegratorNames) names.emplace_back(i.name);
     options.integrator = *integratorFromName(map.choice(*entry, names));
   }
   map.read("integration_tolerance", options.integrationTolerance, Range::positive);
+  if (const auto* entry = map.find("step_doubling")) options.stepDoubling = map.boolean(*entry);
   if (const auto* entry = map.find("cone"))
     options.cone = map.choice(*entry, {"pyramidal", "elliptic"}) == "elliptic" ? Cone::elliptic
                                                                                : Cone::pyramidal;

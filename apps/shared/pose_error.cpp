@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/accuracy_cost/pose_error.hpp"
+#include "apps/shared/pose_error.hpp"
 
 #include <cmath>
 

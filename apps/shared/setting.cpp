@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/shared/setting.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "apps/shared/pose_error.hpp"
+
+namespace softgauss::app {
+namespace {
+
+constexpr int kMostSteps = 4096;         // a period
+constexpr double kMostSeconds = 30.0;    // CPU, for one run of the reference
+constexpr double kReferenceShare = 0.2;  // of the accuracy, by which two references may differ
+constexpr double kAimedShare = 0.75;     // of the accuracy, at which the next trial aims
+constexpr double kNearlyAsFast = 1.4;    // times the best: timed once more
+constexpr int kTrialsOfAMethod = 7;
+
+struct Tried {
+  Setting setting;
+  double error = kInfinity;
+  double seconds = kInfinity;
+};
+
+/// One way of moving on; its error falls with the step to the power of `order`, or with the
+/// tolerance of its error control.
+struct Method {
+  Integrator integrator;
+  double order;
+  bool controlled = false;
+};
+
+constexpr Method kMethods[] = {{Integrator::dormandPrince, 1.0, true},
+                               {Integrator::rungeKutta4, 4.0},
+                               {Integrator::semiImplicitEuler, 1.0},
+                               {Integrator::implicitMidpoint, 2.0},
+                               {Integrator::implicit, 1.0},
+                               {Integrator::semiImplicitEuler, 1.0, true}};
+
+class Chooser {
+ public:
+  Chooser(double accuracy, const TrialScene& scene)
+      : accuracy_(accuracy),
+        scene_(scene),
+        fewest_(std::max(1, static_cast<int>(std::ceil(scene.period / scene.longestStep - 1e-9)))),
+        a_(*scene.model),
+        b_(*scene.model) {}
+
+  Choice choose() {
+    Choice choice;
+    choice.referenced = findReference();
+    if (choice.referenced) {
+      for (const Method& method : kMethods) {
+        if (!method.controlled)
+          searchSteps(method);
+        else
+          for (const int factor : {1, 2, 4}) searchTolerance(method, factor * fewest_);
+      }
+      choice.found = !good_.empty();
+    }
+    if (choice.found) {
+      timeAgain();
+      loosenSolver();
+      choice.setting = good_.front().setting;
+      choice.error = good_.front().error;
+      choice.price = good_.front().seconds / scene_.simulated;
+    } else {
+      choice.setting = finest_.setting;
+      choice.error = finest_.error;
+      choice.price = finest_.seconds / scene_.simulated;
+    }
+    choice.trials = trials_;
+    choice.trialSeconds = spent_;
+    return choice;
+  }
+
+ private:
+  TrialRun run(const Setting& setting, double mostSeconds) {
+    ++trials_;
+    TrialRun r = scene_.run(setting, mostSeconds);
+    spent_ += r.seconds;
+    return r;
+  }
+
+  /// Root mean square over links and samples [m]; ∞ where one of them did not come to its end.
+  double distance(const TrialRun& x, const TrialRun& y) {
+    if (!x.finite || !y.finite || x.samples.empty()) return kInfinity;
+    double sum = 0.0;
+    for (std::size_t k = 0; k < x.samples.size(); ++k) {
+      a_.set(x.samples[k]);
+      b_.set(y.samples[k]);
+      sum += std::pow(a_.against(b_).total, 2);
+    }
+    return std::sqrt(sum / static_cast<double>(x.samples.size()));
+  }
+
+  bool findReference() {
+    const double tight = std::clamp(1e-4 * accuracy_, 1e-12, 1e-7);
+    const Setting pairs[][2] = {
+        {{Integrator::dormandPrince, 2 * fewest_, false, tight},
+         {Integrator::dormandPrince, 5 * fewest_, false, 0.1 * tight}},
+        {{Integrator::rungeKutta4, 128}, {Integrator::rungeKutta4, 256}},
+        {{Integrator::semiImplicitEuler, 512}, {Integrator::semiImplicitEuler, 1024}}};
+    for (const Setting(&pair)[2] : pairs) {
+      const TrialRun first = run(pair[0], kMostSeconds);
+      if (!first.finite) continue;
+      TrialRun second = run(pair[1], 3.0 * kMostSeconds);
+      const double differ = distance(first, second);
+      if (second.finite) finest_ = {pair[1], differ, second.seconds};
+      if (!(differ <= kReferenceShare * accuracy_)) continue;
+      reference_ = std::move(second);
+      referenceError_ = differ;
+      // What the references cost is a bound: nothing dearer is looked at.
+      note({pair[0], differ, first.seconds});
+      note({pair[1], differ, reference_.seconds});
+      return true;
+    }
+    return false;
+  }
+
+  bool passes(double error) const { return error + referenceError_ <= accuracy_; }
+
+  void note(const Tried& tried) {
+    if (!passes(tried.error)) return;
+    best_ = std::min(best_, tried.seconds);
+    good_.push_back(tried);
+  }
+
+  Tried attempt(const Setting& setting) {
+    const TrialRun r = run(setting, 1.5 * best_);
+    Tried tried{setting, distance(r, reference_), r.seconds};
+    note(tried);
+    return tried;
+  }
+
+  void searchSteps(const Method& method) {
+    int tooFew = 0, n = fewest_;
+    int enough = kMostSteps + 1;
+    for (int i = 0; i < kTrialsOfAMethod; ++i) {
+      const Tried tried = attempt({method.integrator, n});
+      const bool pass = passes(tried.error);
+      if (!pass && tried.seconds > 1.2 * best_) return;  // more steps are dearer still
+      (pass ? enough : tooFew) = n;
+      double next = 4.0 * n;
+      if (std::isfinite(tried.error)) {
+        const double aim = std::max(kAimedShare * accuracy_, 1e-300);
+        next = n * std::pow(tried.error / aim, 1.0 / method.order);
+      }
+      n = static_cast<int>(std::ceil(std::clamp(next, 0.125 * n, 8.0 * n)));
+      n = std::clamp(n, std::max(fewest_, tooFew + 1), kMostSteps);
+      if (n >= enough || (pass && n > 0.9 * enough)) return;
+    }
+  }
+
+  void searchTolerance(const Method& method, int steps) {
+    const bool doubling = method.integrator == Integrator::semiImplicitEuler;
+    double tolerance = 10.0 * accuracy_, loosest = kInfinity, tightest = 0.0;
+    for (int i = 0; i < kTrialsOfAMethod; ++i) {
+      const Tried tried = attempt({method.integrator, steps, doubling, tolerance});
+      const bool pass = passes(tried.error);
+      if (!pass && tried.seconds > 1.2 * best_) return;
+      (pass ? tightest : loosest) = tolerance;
+      const double wanted =
+          std::isfinite(tried.error)
+              ? tolerance * std::pow(kAimedShare * accuracy_ / std::max(tried.error, 1e-300), 0.9)
+              : 1e-2 * tolerance;
+      const double next = std::clamp(wanted, 1e-3 * tolerance, 1e2 * tolerance);
+      // Looser makes no difference where no step is divided.
+      if (pass && (next < 2.0 * tolerance || next >= loosest || tolerance > 1.0)) return;
+      tolerance = pass ? next : std::min(next, 0.7 * tolerance);
+      if (!pass && tightest > 0.0 && tolerance <= tightest) return;
+    }
+  }
+
+  void sort() {
+    std::sort(good_.begin(), good_.end(),
+              [](const Tried& a, const Tried& b) { return a.seconds < b.seconds; });
+  }
+
+  /// Times vary: those near the best are measured twice more.
+  void timeAgain() {
+    sort();
+    const double near = kNearlyAsFast * good_.front().seconds;
+    for (Tried& tried : good_) {
+      if (tried.seconds > near) break;
+      for (int i = 0; i < 2; ++i)
+        tried.seconds = std::min(tried.seconds, run(tried.setting, kMostSeconds).seconds);
+    }
+    sort();
+  }
+
+  void loosenSolver() {
+    for (const double tolerance : {1e-8, 1e-5}) {
+      Tried looser = good_.front();
+      looser.setting.tolerance = tolerance;
+      looser.seconds = kInfinity;
+      for (int i = 0; i < 2; ++i) {
+        const TrialRun r = run(looser.setting, kMostSeconds);
+        looser.error = distance(r, reference_);
+        looser.seconds = std::min(looser.seconds, r.seconds);
+      }
+      if (passes(looser.error) && looser.seconds < 0.97 * good_.front().seconds)
+        good_.insert(good_.begin(), looser);
+    }
+  }
+
+  double accuracy_;
+  const TrialScene& scene_;
+  int fewest_;
+  LinkPoses a_, b_;
+  TrialRun reference_;
+  double referenceError_ = 0.0, best_ = kInfinity, spent_ = 0.0;
+  int trials_ = 0;
+  std::vector<Tried> good_;
+  Tried finest_;
+};
+
+}  // namespace
+
+void Setting::setOptions(double period, Options& options) const {
+  options.integrator = integrator;
+  options.timestep = period / steps;
+  options.stepDoubling = doubling;
+  if (integrationTolerance > 0.0) options.integrationTolerance = integrationTolerance;
+  options.tolerance = tolerance;
+}
+
+std::string Setting::text(double period) const {
+  return fmt::format(
+      "{}{}{}, {:.4g} ms, solver to {:.0e}", integratorName(integrator),
+      doubling ? " with step doubling" : "",
+      integrationTolerance > 0.0 ? fmt::format(" to {:.1e}", integrationTolerance) : std::string(),
+      1e3 * period / steps, tolerance);
+}
+
+Choice chooseSetting(double accuracy, const TrialScene& scene) {
+  return Chooser(accuracy, scene).choose();
+}
+
+double longestStepFor(const Model& model) {
+  double shortest = kInfinity;
+  for (const JointRange& range : model.ranges)
+    shortest = std::min(shortest, range.impedance.timeConstant);
+  for (const Geometry& geometry : model.geometries)
+    shortest = std::min(shortest, geometry.material.impedance.timeConstant);
+  return 0.5 * shortest;
+}
+
+}  // namespace softgauss::app
