@@ -145,6 +145,8 @@ GddReport AugmentedLagrangian::minimizeFrom(const Model& model, GoalCost& cost,
   const double forceScale = std::max(1.0, data.forces.c.cwiseAbs().maxCoeff());
   double promised = kInfinity, lastViolation = kInfinity;
   bool wholeStep = false;  // the last step met no knot
+  constexpr double kSmallGradient = 1e-6;
+  bool lastTaken = false;  // its decrement was one that the objective cannot show
 
   for (;;) {
     if (!gradient(bounds, cost, data)) return end(GddStatus::notFinite);
@@ -167,10 +169,11 @@ GddReport AugmentedLagrangian::minimizeFrom(const Model& model, GoalCost& cost,
     // Stationary: leave a kink, or update the multipliers, or done. A second full step in one cell
     // that promises no less than the first has reached rounding. A decrement that the objective
     // cannot show leaves a gradient of its root times the stiffness of H: where nothing is held,
-    // the last full step is worth taking.
+    // one more step is worth taking if that gradient is large.
     const double merit = std::abs(report.objective) + penalty_;
-    const double unseen = (held_.empty() ? 1e-18 : 1e-14) * merit;
-    const bool rounding = decrement <= unseen || (sameCell && decrement > 0.01 * promised);
+    const bool unseen = decrement <= 1e-14 * merit;
+    const bool last = unseen && held_.empty() && !lastTaken && report.stationarity > kSmallGradient;
+    const bool rounding = (unseen && !last) || (sameCell && decrement > 0.01 * promised);
     if (report.stationarity <= options.gradientTolerance || rounding) {
       bool towardsStiff = false;
       const int leaving = held_.leaving(w_, forces_, data.constraints, towardsStiff);
@@ -195,6 +198,7 @@ GddReport AugmentedLagrangian::minimizeFrom(const Model& model, GoalCost& cost,
       continue;
     }
 
+    lastTaken = last;
     // Exact line search; a minimum at a knot holds its row there.
     data.constraints.setRay(direction_);
     held_.holdOnRay(data.constraints);

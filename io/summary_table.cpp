@@ -83,8 +83,8 @@ std::string Summary::table() const {
                   bounded_.empty() ? std::string("without a box")
                                    : fmt::format("{:.0f} % of its box", 100.0 * maxControlRatio_)));
   if (error.estimated)
-    add(fmt::format("  error of these settings: {:.2g} m, {:.2g} rad, estimated; {}", error.position,
-                    error.orientation,
+    add(fmt::format("  error of these settings: {:.2g} m, {:.2g} rad, estimated; {}",
+                    error.position, error.orientation,
                     error.ofSteps ? "what the steps err by, added up" : "root mean square"));
   for (const GoalOutcome& goal : goals)
     add(fmt::format("  {:<26}{:>12} -> {:>10} {:>8.0f} %", goal.name,

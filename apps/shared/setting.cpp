@@ -30,14 +30,14 @@ struct Method {
   Integrator integrator;
   double order;
   bool controlled = false;
+  bool midpointCoriolis = true;
 };
 
-constexpr Method kMethods[] = {{Integrator::dormandPrince, 1.0, true},
-                               {Integrator::rungeKutta4, 4.0},
-                               {Integrator::semiImplicitEuler, 1.0},
-                               {Integrator::implicitMidpoint, 2.0},
-                               {Integrator::implicit, 1.0},
-                               {Integrator::semiImplicitEuler, 1.0, true}};
+constexpr Method kMethods[] = {
+    {Integrator::dormandPrince, 1.0, true},    {Integrator::rungeKutta4, 4.0},
+    {Integrator::semiImplicitEuler, 1.0},      {Integrator::semiImplicitEuler, 1.0, false, false},
+    {Integrator::implicitMidpoint, 2.0},       {Integrator::implicit, 1.0},
+    {Integrator::semiImplicitEuler, 1.0, true}};
 
 class Chooser {
  public:
@@ -139,7 +139,9 @@ class Chooser {
     int tooFew = 0, n = fewest_;
     int enough = kMostSteps + 1;
     for (int i = 0; i < kTrialsOfAMethod; ++i) {
-      const Tried tried = attempt({method.integrator, n});
+      Setting setting{method.integrator, n};
+      setting.midpointCoriolis = method.midpointCoriolis;
+      const Tried tried = attempt(setting);
       const bool pass = passes(tried.error);
       if (!pass && tried.seconds > 1.2 * best_) return;  // more steps are dearer still
       (pass ? enough : tooFew) = n;
@@ -225,11 +227,13 @@ void Setting::setOptions(double period, Options& options) const {
   options.stepDoubling = doubling;
   if (integrationTolerance > 0.0) options.integrationTolerance = integrationTolerance;
   options.tolerance = tolerance;
+  options.midpointCoriolis = options.midpointCoriolis && midpointCoriolis;
 }
 
 std::string Setting::text(double period) const {
   return fmt::format(
-      "{}{}{}, {:.4g} ms, solver to {:.0e}", integratorName(integrator),
+      "{}{}{}{}, {:.4g} ms, solver to {:.0e}", integratorName(integrator),
+      midpointCoriolis ? "" : " with Coriolis forces of the step's start",
       doubling ? " with step doubling" : "",
       integrationTolerance > 0.0 ? fmt::format(" to {:.1e}", integrationTolerance) : std::string(),
       1e3 * period / steps, tolerance);

@@ -15,8 +15,8 @@
 ///
 /// Units join at once. An island is looked at only every kSplitAge of its steps to see whether it
 /// has come apart: solving two islands as one is right too. Step 1 makes models of its own where it
-/// joins or splits, and allocates then; otherwise a step allocates where an island has more
-/// contacts or rows than it ever had.
+/// joins or splits, and allocates then and where it looks; otherwise a step allocates where a list,
+/// of contacts, of rows or of near pairs, is longer than it ever was.
 ///
 /// Sleep. An island is at rest where, over Sleep::time, no link has been faster than Sleep::speed,
 /// none has changed its velocity by more than a tenth of that, the fastest is not faster than

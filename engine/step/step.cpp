@@ -109,7 +109,9 @@ SolveStatus computeStages(const Model& model, const Input& input, const State& s
   computeSmoothForces(model, data.plan, state, input, data.kinematics, data.inertia, data.forces);
   data.stats.times.kinematics = lap(clock);
 
-  if (kBuiltRows.has(RowKind::pyramid) && contacts && contacts->mayTouch()) {
+  const RowKinds& planned = data.plan.rows;
+  const bool contactRows = planned.has(RowKind::pyramid) || planned.has(RowKind::ellipticCone);
+  if (kBuiltRows.has(RowKind::pyramid) && contactRows && contacts && contacts->mayTouch()) {
     ++data.contacts.detections;
     contacts->detect(model, data.kinematics, data.contacts);
     data.stats.contacts = data.contacts.size();

@@ -177,8 +177,8 @@ TYPED_TEST(Actuation, AGearWithItsBoundsChangesNothing) {
     const auto [a, status, count] = solveWith(false);
     const auto [aGeared, statusGeared, countGeared] = solveWith(true);
     EXPECT_EQ(status, statusGeared) << "seed " << seed;
-    EXPECT_EQ(count, countGeared) << "seed " << seed;
     if (status != gdd::GddStatus::converged && status != gdd::GddStatus::kink) continue;
+    EXPECT_EQ(count, countGeared) << "seed " << seed;
     ++compared;
     atBounds += count;
     worst = std::max(worst, (a - aGeared).norm() / a.norm());

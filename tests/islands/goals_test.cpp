@@ -3,36 +3,18 @@
 /// Goals act on islands as they act on the scene.
 
 #include "collision/scene_contacts.hpp"
-#include "gdd/gdd.hpp"
-#include "tests/islands/crowd.hpp"
+#include "tests/islands/goal_crowd.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/random.hpp"
 
 namespace softgauss::test {
 namespace {
 
-/// Two creatures whose joints have motors, one on a table of two cubes, and a cube by itself.
-ModelBuilder robotsAndCubes() {
-  ModelBuilder builder = ground();
-  addCreature(builder, "lying", Vector3(0.0, 0.0, 0.05));
-  addCube(builder, "lower", Vector3(2.0, 0.0, 0.1));
-  addCube(builder, "upper", Vector3(2.0, 0.0, 0.3));
-  addCreature(builder, "lifted", Vector3(2.0, 0.0, 0.5));
-  addCube(builder, "alone", Vector3(4.0, 0.0, 0.1));
-  return builder;
-}
-
 int robotOf(const Model& model, const std::string& link) {
   return model
       .bodies[static_cast<std::size_t>(
           model.frames[static_cast<std::size_t>(model.findFrame(link))].body)]
       .robot;
-}
-
-std::vector<int> all(int count) {
-  std::vector<int> numbers;
-  for (int i = 0; i < count; ++i) numbers.push_back(i);
-  return numbers;
 }
 
 /// One goal of every kind that islands may have, for both creatures together or for one.
@@ -120,37 +102,6 @@ TEST(GoalsOfIslands, TogetherCostWhatTheGivenOnesCost) {
   }
 }
 
-/// A scene with goals that is stepped in islands.
-struct GoalCrowd {
-  explicit GoalCrowd(Model m) : model(std::move(m)), controller(model), contacts(model) {}
-
-  /// To be called when the controller has its goals.
-  void start(Sleep sleep = {}) {
-    controls.emplace(model, controller);
-    islands.emplace(model, &contacts, sleep, &*controls);
-  }
-  bool steps(int count) {
-    for (int i = 0; i < count; ++i)
-      if (islands->step({}) == SolveStatus::notFinite) return false;
-    return true;
-  }
-  int body(const std::string& name) const {
-    return model.frames[static_cast<std::size_t>(model.findFrame(name))].body;
-  }
-  gdd::Reach& reach(const std::string& link, const Vector3& place) {
-    auto goal = std::make_unique<gdd::Reach>(model, link, place);
-    gdd::Reach& added = *goal;
-    controller.goals.push_back(std::move(goal));
-    return added;
-  }
-
-  const Model model;
-  gdd::GoalDirectedController controller;
-  collision::UnitContacts contacts;
-  std::optional<gdd::GoalDirectedIslands> controls;
-  std::optional<Islands> islands;
-};
-
 TEST(GoalsOfIslands, AgreeWithTheJointSolve) {
   for (const gdd::GddSolver solver :
        {gdd::GddSolver::activeSet, gdd::GddSolver::augmentedLagrangian}) {
@@ -161,7 +112,7 @@ TEST(GoalsOfIslands, AgreeWithTheJointSolve) {
     crowd.controller.goals.push_back(std::make_unique<gdd::VirtualDamping>());
     crowd.start();
     gdd::GoalDirectedController joint(crowd.model);
-    const SubModel whole(crowd.model, all(static_cast<int>(crowd.model.trees.size())));
+    const SubModel whole = allOf(crowd.model);
     joint.solver = solver;
     for (const auto& goal : crowd.controller.goals) {
       joint.goals.push_back(goal->within(crowd.model, whole));
@@ -219,116 +170,6 @@ TEST(GoalsOfIslands, ConcernNobodyElse) {
               together.controller.control.segment(two.v, nv));
   }
   EXPECT_TRUE(touched);
-}
-
-TEST(GoalsOfIslands, LetObjectsSleepAndWakeRobotsThatTheyBeginFor) {
-  GoalCrowd crowd(robotsAndCubes().build());
-  gdd::Reach& always = crowd.reach("lying_3", Vector3(0.2, 0.1, 0.3));
-  gdd::Reach& later = crowd.reach("lifted_3", Vector3(2.0, 0.1, 1.0));
-  later.startTime = 8.0;
-  crowd.controller.goals.push_back(std::make_unique<gdd::VirtualDamping>());
-  crowd.controller.goals.back()->endTime = 4.0;
-  crowd.start(Sleep{.enabled = true});
-  (void)always;
-  ASSERT_TRUE(crowd.steps(2000));
-  EXPECT_EQ(crowd.islands->islandStats().controlled, 2);  // damping is of all robots
-  EXPECT_TRUE(crowd.islands->asleep(crowd.body("alone")));
-  EXPECT_FALSE(
-      crowd.islands->asleep(crowd.body("lower")));  // a robot that is controlled lies on it
-  ASSERT_TRUE(crowd.steps(1990));
-  EXPECT_EQ(crowd.islands->islandStats().controlled, 1);
-  EXPECT_TRUE(crowd.islands->asleep(crowd.body("lifted_0")));
-  EXPECT_TRUE(crowd.islands->asleep(crowd.body("lower")));
-  EXPECT_FALSE(crowd.islands->asleep(crowd.body("lying_0")));
-  int wakeups = 0;
-  for (int i = 0; i < 20; ++i) {
-    ASSERT_TRUE(crowd.steps(1));
-    wakeups += crowd.islands->islandStats().wakeups;
-  }
-  EXPECT_EQ(wakeups, 1);
-  EXPECT_FALSE(crowd.islands->asleep(crowd.body("lifted_0")));
-  EXPECT_TRUE(crowd.islands->asleep(crowd.body("alone")));
-  EXPECT_EQ(crowd.islands->islandStats().controlled, 2);
-  const Body& lifted = crowd.model.bodies[static_cast<std::size_t>(crowd.body("lifted_1"))];
-  EXPECT_NE(crowd.controller.control[lifted.v], 0.0);
-}
-
-TEST(GoalsOfIslands, MayLetRobotsSleep) {
-  for (const bool controlled : {false, true}) {
-    ModelBuilder builder = ground();
-    addCreature(builder, "robot", Vector3(0.0, 0.0, 0.05));
-    GoalCrowd crowd(builder.build());
-    auto bent = std::make_unique<gdd::JointPosture>();
-    for (const char* joint : {"robot_1_joint", "robot_2_joint", "robot_3_joint"})
-      bent->targets.push_back(gdd::jointTarget(crowd.model, joint, 0.4));
-    crowd.controller.goals.push_back(std::move(bent));
-    crowd.start(Sleep{.enabled = true, .controlled = controlled});
-    ASSERT_TRUE(crowd.steps(5000));
-    ASSERT_EQ(crowd.islands->asleep(crowd.body("robot_0")), controlled);
-    if (!controlled) continue;
-    const VectorX control = crowd.controller.control;
-    EXPECT_GT(control.cwiseAbs().maxCoeff(), 0.0);  // it keeps what held it
-    ASSERT_TRUE(crowd.steps(1));
-    EXPECT_EQ(crowd.controller.control, control);
-    crowd.reach("robot_3", Vector3(0.0, 0.3, 0.5));
-    crowd.controls->changed();
-    ASSERT_TRUE(crowd.steps(1));
-    EXPECT_FALSE(crowd.islands->asleep(crowd.body("robot_0")));
-    EXPECT_NE(crowd.controller.control, control);
-    crowd.controller.goals.clear();
-    crowd.controls->changed();
-    ASSERT_TRUE(crowd.steps(1));
-    EXPECT_EQ(crowd.controller.control, VectorX::Zero(crowd.model.nv));
-  }
-}
-
-TEST(GoalsOfIslands, WakeThoseThatTheyAreAbout) {
-  ModelBuilder builder = ground();
-  for (int i = 0; i < 4; ++i)
-    addCreature(builder, "robot" + std::to_string(i), Vector3(2.0 * i, 0.0, 0.05));
-  GoalCrowd crowd(builder.build());
-  for (int i = 0; i < 4; ++i) {
-    auto bent = std::make_unique<gdd::JointPosture>();
-    const std::string name = "robot" + std::to_string(i);
-    for (const char* joint : {"_1_joint", "_2_joint", "_3_joint"})
-      bent->targets.push_back(gdd::jointTarget(crowd.model, name + joint, 0.4));
-    crowd.controller.goals.push_back(std::move(bent));
-  }
-  crowd.start(Sleep{.enabled = true, .controlled = true});
-  ASSERT_TRUE(crowd.steps(6000));
-  ASSERT_EQ(crowd.islands->islandStats().awake, 0);
-  static_cast<gdd::JointPosture&>(*crowd.controller.goals[2]).targets[0].value = -0.4;
-  crowd.controls->changed(2);
-  ASSERT_TRUE(crowd.steps(1));
-  EXPECT_EQ(crowd.islands->islandStats().awake, 1);
-  EXPECT_FALSE(crowd.islands->asleep(crowd.body("robot2_0")));
-  const int joint = crowd.model.findJoint("robot2_1_joint");
-  ASSERT_TRUE(crowd.steps(6000));
-  EXPECT_EQ(crowd.islands->islandStats().awake, 0);
-  EXPECT_NEAR(crowd.islands->state().q[crowd.model.bodies[static_cast<std::size_t>(joint)].q], -0.4,
-              0.05);
-}
-
-TEST(GoalsOfIslands, FollowALineAwake) {
-  // A minimum-jerk line of 8 s starts with less than 1 mm/s; a robot that slept would never go.
-  ModelBuilder builder = ground();
-  addCreature(builder, "robot", Vector3(0.0, 0.0, 0.05));
-  GoalCrowd crowd(builder.build());
-  gdd::Reach& reach = crowd.reach("robot_3", Vector3::Zero());
-  reach.minimumJerk = gdd::MinimumJerk{.startTime = 1.0, .duration = 8.0};
-  EXPECT_TRUE(reach.steadyAt(0.9));
-  EXPECT_FALSE(reach.steadyAt(1.0));
-  EXPECT_FALSE(reach.steadyAt(9.0));
-  EXPECT_TRUE(reach.steadyAt(9.1));
-  reach.minimumJerk.reset();
-  EXPECT_TRUE(reach.steadyAt(2.0));
-
-  crowd.start(Sleep{.enabled = true, .controlled = true});
-  ASSERT_TRUE(crowd.steps(1));
-  const SubModel whole(crowd.model, all(static_cast<int>(crowd.model.trees.size())));
-  EXPECT_TRUE(crowd.controls->within(whole)->steady(2.0));
-  reach.minimumJerk = gdd::MinimumJerk{.startTime = 1.0, .duration = 8.0};
-  EXPECT_FALSE(crowd.controls->within(whole)->steady(2.0));
 }
 
 TEST(GoalsOfIslands, KeepActuatorsAndPriceOfForce) {

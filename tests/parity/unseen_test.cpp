@@ -22,21 +22,30 @@ class ParityScene : public testing::TestWithParam<std::string> {
   Data data_{model_};
 };
 
-// Pairs that cannot come near are not tested, and the run is the same bit for bit.
+// Pairs that cannot come near are not tested, and the run is the same bit for bit, also where an
+// integrator looks at the dynamics within the step.
 TEST_P(ParityScene, PruningIsNotSeen) {
   const ReferenceTrajectory& reference = log_.trajectory("Euler", false);
-  collision::SceneContacts all(model_, std::numeric_limits<int>::max(), false);
-  Data other(model_);
-  State state(model_);
-  state.q = reference.q[0];
-  state.v = reference.v[0];
-  State same = state;
-  const Input input{log_.force, {}};
-  const double duration = reference.every * static_cast<double>(reference.q.size() - 1);
-  for (double t = 0.0; t < duration; t += model_.options.timestep) {
-    ASSERT_EQ(step(model_, input, state, data_, &contacts_), SolveStatus::converged);
-    ASSERT_EQ(step(model_, input, same, other, &all), SolveStatus::converged);
-    ASSERT_EQ(hash(state), hash(same)) << "at t = " << t;
+  for (const Integrator integrator : {model_.options.integrator, Integrator::rungeKutta4}) {
+    Model model = model_;
+    model.options.integrator = integrator;
+    collision::SceneContacts pruned(model);
+    collision::SceneContacts all(model, std::numeric_limits<int>::max(), false);
+    Data data(model), other(model);
+    State state(model);
+    state.q = reference.q[0];
+    state.v = reference.v[0];
+    State same = state;
+    const Input input{log_.force, {}};
+    const double duration = reference.every * static_cast<double>(reference.q.size() - 1);
+    for (double t = 0.0; t < duration; t += model.options.timestep) {
+      const SolveStatus status = step(model, input, state, data, &pruned);
+      ASSERT_EQ(step(model, input, same, other, &all), status);
+      ASSERT_EQ(hash(state), hash(same)) << "at t = " << t;
+      if (integrator == Integrator::rungeKutta4 && status == SolveStatus::notFinite)
+        break;  // joint damping of the fingers is too stiff for it
+      ASSERT_EQ(status, SolveStatus::converged);
+    }
   }
 }
 

@@ -13,6 +13,7 @@
 #include "gdd/gdd.hpp"
 #include "tests/stability/scenes.hpp"
 #include "tests/support/random.hpp"
+#include "tests/support/same_contacts.hpp"
 #include "tests/support/tolerance.hpp"
 
 namespace softgauss::test {
@@ -31,6 +32,7 @@ class Course {
         data(model),
         contacts(model),
         controller(model),
+        unpruned_(model, std::numeric_limits<int>::max(), false),
         name_(std::move(name)) {
     controller.solver = solver;
     name_ += solver == gdd::GddSolver::activeSet ? ", solver 2" : ", solver 1";
@@ -81,6 +83,10 @@ class Course {
       return false;
     };
     ++steps;
+    if (unpruned_.mayTouch()) {  // data.kinematics is that of the step's start
+      unpruned_.detect(model, data.kinematics, all_);
+      if (!sameContacts(data.contacts, all_)) return breaks("other contacts without pruning");
+    }
     if (status == SolveStatus::notFinite) return breaks("not finite");
     if (status != SolveStatus::converged) return breaks("forward dynamics ended short");
     if (!state.q.allFinite() || !state.v.allFinite()) return breaks("a state that is not finite");
@@ -113,6 +119,8 @@ class Course {
   bool isDefault() const { return controller.solver == gdd::GddSolver::activeSet; }
 
  private:
+  collision::SceneContacts unpruned_;
+  ContactSet all_;
   std::string name_;
 };
 

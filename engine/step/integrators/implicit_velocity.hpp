@@ -8,8 +8,8 @@
 /// a is the continuous-time acceleration (T.1), C = ∂b/∂v (T.111), K_s the stiff springs of
 /// (T.95): all smooth forces are taken at v⁺, to first order in what v changes by. Order 1. The
 /// matrix is not symmetric. Bodies that spin fast lose energy where the Coriolis forces of mid-step
-/// keep it. It is what MuJoCo calls `implicit`. Where the derivative outweighs the mass matrix (h ω far above 1)
-/// it is left out of that step.
+/// keep it. It is what MuJoCo calls `implicit`. Where the derivative outweighs the mass matrix (h ω
+/// far above 1) it is left out of that step.
 
 #include "engine/step/data.hpp"
 

@@ -21,8 +21,15 @@ bool mayTurnFar(const Model& model, const Data& data, State& state) {
   return false;
 }
 
-/// Beyond it, squares overflow.
-bool tooFast(const VectorX& v) { return !(v.array().abs() < 1e150).all(); }
+/// Not finite, or turning so fast that the square of the angle overflows.
+bool tooFast(const Model& model, const VectorX& v) {
+  if (!v.allFinite()) return true;
+  return std::any_of(model.trees.begin(), model.trees.end(), [&](const Tree& tree) {
+    const Body& root = model.bodies[static_cast<std::size_t>(tree.rootBody)];
+    return root.joint == JointKind::floating &&
+           v.segment<3>(root.v + 3).cwiseAbs().maxCoeff() > 1e150;
+  });
+}
 
 }  // namespace
 
@@ -67,10 +74,10 @@ bool semiImplicitEuler(const Model& model, Data& data, State& state) {
     }
   }
   s.start = state.v + h * data.acceleration;
-  if (tooFast(s.start)) return false;
+  if (tooFast(model, s.start)) return false;
   if (follow) {
     data.followed.follow(model, data, state, s.direction, s.start);
-    if (tooFast(s.start)) return false;
+    if (tooFast(model, s.start)) return false;
     data.acceleration = (s.start - state.v) / h;
   }
   state.v = s.start;
