@@ -197,9 +197,42 @@ std::string wrenchesText(const ExplainContext& context) {
   return "wrenches from outside, in world axes, at points of links\n" + table.text();
 }
 
+/// How many rows an effect may make: "21", or of how many pairs, "37 pairs", where the number of
+/// points is not known before shapes touch; empty for what makes none of its own.
+std::string mostRows(const Model& model, const ExplainContext& context, Effect effect) {
+  const auto pairsThat = [&](auto&& belong) {
+    const auto count =
+        std::count_if(context.pairs.begin(), context.pairs.end(), [&](const auto& pair) {
+          const auto robotOf = [&](int geometry) {
+            return model.bodies[model.geometries[geometry].body].robot;
+          };
+          return belong(robotOf(pair.first), robotOf(pair.second));
+        });
+    return detail::counted(static_cast<std::size_t>(count), "pair");
+  };
+  switch (effect) {
+    case Effect::jointLimit:
+      return std::to_string(model.ranges.size());
+    case Effect::dryFriction:
+      return std::to_string(std::count_if(model.dofs.begin(), model.dofs.end(),
+                                          [](const Dof& dof) { return dof.dryFriction > 0.0; }));
+    case Effect::equality:
+      return std::to_string(3 * model.connections.size() + 6 * model.welds.size() +
+                            model.couplings.size());
+    case Effect::groundContact:
+      return pairsThat([](int a, int b) { return a < 0 || b < 0; });
+    case Effect::selfCollision:
+      return pairsThat([](int a, int b) { return a >= 0 && a == b; });
+    case Effect::objectContact:
+      return pairsThat([](int a, int b) { return a >= 0 && b >= 0 && a != b; });
+    default:
+      return {};
+  }
+}
+
 std::string effectsText(const Model& model, const ExplainContext& context) {
   detail::TextTable on, off;
-  if (!context.costs.empty()) on.row({"", "rows", "memory", "a step", ""});
+  if (!context.costs.empty()) on.row({"", "rows", "at most", "memory", "a step", ""});
   for (const EffectNote& note : effectNotes(model, context.wrenches)) {
     if (!note.on || context.costs.empty()) {
       (note.on ? on : off).row({note.name, note.reason});
@@ -207,7 +240,8 @@ std::string effectsText(const Model& model, const ExplainContext& context) {
     }
     const auto found = context.costs.find(note.name);
     const EffectCost cost = found == context.costs.end() ? EffectCost{} : found->second;
-    on.row({note.name, std::to_string(cost.rows), fmt::format("{} B", cost.bytes),
+    on.row({note.name, std::to_string(cost.rows),
+            mostRows(model, context, *effectFromName(note.name)), fmt::format("{} B", cost.bytes),
             found == context.costs.end() ? "-" : fmt::format("{:.2f} µs", cost.us), note.reason});
   }
   return "effects that are simulated, and what calls them\n" + on.text() +

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <regex>
 
 #include "io/explain.hpp"
 #include "io/urdf.hpp"
@@ -190,6 +191,14 @@ TEST(Explain, TellsWhatWasLoadedAndWhatIsOff) {
         "1 pair never tested: overlap at the start", "base - arm by 3 mm", "0 pairs may touch",
         "joint_limit    1 joint range, 'shoulder'", "ignored: 1 <gazebo>"})
     EXPECT_TRUE(contains(text, part)) << part << "\n" << text;
+}
+
+TEST(Explain, TellsHowManyRowsThereMayBe) {
+  ExplainContext context;
+  context.costs["gravity"] = {};
+  context.costs["joint_limit"] = {.rows = 1};
+  const std::string text = explain(sampleModel(), context);
+  EXPECT_TRUE(std::regex_search(text, std::regex("joint_limit +1 +1 "))) << text;
 }
 
 TEST(EffectNotes, FollowTheSceneAndTheSwitches) {
