@@ -11,6 +11,9 @@
 
 namespace softgauss::app {
 
+/// Integrator of ours: (T.16) without its middle of the step, as MuJoCo's Euler.
+inline constexpr const char* kMujocoEuler = "mujoco-euler";
+
 /// One curve of a picture: everything but the step size.
 struct Method {
   std::string engine;      ///< "softgauss" or "mujoco"

@@ -14,7 +14,9 @@ namespace {
 constexpr double kAccuracies[] = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6};
 
 Method methodOf(const Setting& setting) {
-  Method method{"softgauss", std::string(integratorName(setting.integrator)),
+  Method method{"softgauss",
+                setting.midpointCoriolis ? std::string(integratorName(setting.integrator))
+                                         : std::string(kMujocoEuler),
                 setting.text(kPeriod)};
   method.tolerance = setting.tolerance;
   method.integrationTolerance = setting.integrationTolerance;

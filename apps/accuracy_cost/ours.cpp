@@ -8,8 +8,6 @@
 namespace softgauss::app {
 namespace {
 
-constexpr const char* kMujocoEuler = "mujoco-euler";  ///< T.16 without its middle of the step
-
 class Ours final : public Contestant {
  public:
   Ours(const Problem& problem, const Method& method, double h)
