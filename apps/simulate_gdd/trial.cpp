@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "apps/shared/median.hpp"
 #include "engine/engine.hpp"
 
 namespace softgauss::app {
@@ -18,12 +19,6 @@ constexpr int kRepetitions = 3;
 
 double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// The scene with some of its effects.
@@ -78,7 +73,7 @@ std::map<std::string, io::EffectCost> tryEffects(const Scene& scene) {
     if (all.data.stats.status == SolveStatus::notFinite) break;
     state = all.after;
   }
-  for (const auto& [effect, list] : differences)
+  for (auto& [effect, list] : differences)
     costs[std::string(effectName(effect))].us = 1e6 * median(list);
   return costs;
 }

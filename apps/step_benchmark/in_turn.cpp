@@ -2,14 +2,14 @@
 #include "apps/step_benchmark/in_turn.hpp"
 
 #include <fmt/format.h>
-#include <time.h>
 
 #include <memory>
 #include <regex>
 #include <utility>
 
+#include "apps/shared/cpu_time.hpp"
+#include "apps/shared/median.hpp"
 #include "apps/step_benchmark/ladder.hpp"
-#include "apps/step_benchmark/median.hpp"
 #include "apps/step_benchmark/scaling.hpp"
 
 namespace softgauss::app {
@@ -19,13 +19,6 @@ using Figures = std::map<std::string, double>;
 
 constexpr int kPieces = 41;
 constexpr int kStepsOfPiece = 50;
-
-/// CPU time of this thread [µs].
-double cpuTime() {
-  timespec t;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return 1e6 * static_cast<double>(t.tv_sec) + 1e-3 * static_cast<double>(t.tv_nsec);
-}
 
 /// A scene that takes the same steps in every piece.
 Timed repeated(std::shared_ptr<Scene> scene, int warmUp, int steps = kStepsOfPiece) {
@@ -71,9 +64,9 @@ std::vector<double> timeInTurn(const std::vector<Timed>& all) {
   for (int piece = 0; piece < kPieces; ++piece)
     for (std::size_t k = 0; k < all.size(); ++k) {
       if (all[k].begin) all[k].begin();
-      const double start = cpuTime();
+      const double start = cpuSeconds();
       for (int i = 0; i < all[k].steps; ++i) all[k].step();
-      times[k].push_back((cpuTime() - start) / all[k].steps);
+      times[k].push_back(1e6 * (cpuSeconds() - start) / all[k].steps);
     }
   std::vector<double> medians;
   for (std::vector<double>& column : times) medians.push_back(median(column));

@@ -16,10 +16,10 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "apps/shared/median.hpp"
 #include "apps/step_benchmark/crowds.hpp"
 #include "apps/step_benchmark/in_turn.hpp"
 #include "apps/step_benchmark/ladder.hpp"
-#include "apps/step_benchmark/median.hpp"
 #include "apps/step_benchmark/pictures.hpp"
 #include "apps/step_benchmark/scaling.hpp"
 #include "apps/step_benchmark/scenes.hpp"
