@@ -88,7 +88,7 @@ void FollowedTrees::follow(const Model& model, Data& data, State& state, VectorX
   held += data.forces.bias;
   for (const Plan::Spring& spring : data.plan.springs)
     held[spring.dof] += spring.stiffness * (state.q[spring.q] - spring.reference);
-  if (data.plan.damped()) held -= h * data.plan.damping.cwiseProduct(data.acceleration);
+  if (data.plan.damped()) held += data.plan.damping.cwiseProduct(state.v);
 
   for (std::size_t t = 0; t < model.trees.size(); ++t) {
     const Tree& tree = model.trees[t];

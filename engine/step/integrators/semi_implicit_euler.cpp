@@ -49,11 +49,19 @@ bool semiImplicitEuler(const Model& model, Data& data, State& state) {
     else
       data.inertia.M.multiply(s.a, net);
     if (implicit) setImplicitForces(model, state, data, net);
+    bool factored = false;
+    const auto solve = [&](VectorX& x) {  // x ← (M + h D)⁻¹ x
+      if (factored && !plan.diagonal)
+        s.massFactor.solve(x);
+      else
+        factored = solveMass(data, implicit ? &s.Md : nullptr, x);
+      return factored;
+    };
     if (midpoint) {
       s.start = s.a;
-      if (stiff) {  // a is that of springs that the step does not follow
+      if (implicit) {  // a is that of damping and springs that the step does not follow
         s.start = net;
-        if (!solveMass(data, &s.Md, s.start)) return false;
+        if (!solve(s.start)) return false;
       }
       s.start = state.v + 0.5 * h * s.start;
       ++data.forces.calls.coriolis;
@@ -61,15 +69,13 @@ bool semiImplicitEuler(const Model& model, Data& data, State& state) {
       s.direction -= data.forces.bias;
       net -= s.direction;
     }
-    if (!solveMass(data, implicit ? &s.Md : nullptr, net)) return false;
+    if (!solve(net)) return false;
     if (midpoint && mayTurnFar(model, data, state)) {
       // What Δb does to the velocity, damped like the rest.
       if (!implicit)
         s.direction = s.a - net;
-      else if (plan.diagonal)
-        solveMass(data, &s.Md, s.direction);
       else
-        s.massFactor.solve(s.direction);
+        solve(s.direction);
       follow = data.followed.needed(model, data, state, s.direction);
     }
   }

@@ -3,9 +3,9 @@
 
 /// Semi-implicit Euler with implicit joint damping and Coriolis forces of mid-step (T.16):
 ///
-///   (M + h D) a' = M a − (b(q, v + ½ h a) − b(q, v)),   v⁺ = v + h a',   q⁺ = q ⊕ h v⁺
+///   (M + h D) a' = M a − (b(q, v + ½ h â) − b(q, v)),   v⁺ = v + h a',   q⁺ = q ⊕ h v⁺
 ///
-/// a is the continuous-time acceleration. Damping is taken at v⁺, so any h d is stable; without it
+/// a is the continuous-time acceleration, (M + h D) â = M a. Damping is taken at v⁺, so any h d is stable; without it
 /// and without Coriolis forces a' = a. Order 1. The second term (Options::midpointCoriolis) takes
 /// the Coriolis and gyroscopic forces at the middle of the step: taken at its start they feed a
 /// body that turns at ω with energy at the relative rate h ω², and fast joints diverge. Without it

@@ -135,6 +135,8 @@ void TreeMotion::derivative(const Model& model, const Plan& plan, const Tree& tr
       n.pA.setZero();
   }
   for (int i = tree.firstDof; i < tree.dofEnd; ++i) dv_[i] = (*held_)[i];
+  if (plan.damped())
+    for (int i = tree.firstDof; i < tree.dofEnd; ++i) dv_[i] -= plan.damping[i] * w_[i];
   for (const Plan::Spring& s : plan.springs)
     if (s.dof >= tree.firstDof && s.dof < tree.dofEnd)
       dv_[s.dof] -= s.stiffness * (q_[s.q] + u_[s.dof] - s.reference);

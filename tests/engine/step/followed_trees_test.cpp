@@ -17,7 +17,7 @@ namespace {
 // The articulated-body recursion against M, its factor and the Newton–Euler recursion, which share
 // nothing with it but the poses' formulas.
 TEST(TreeMotion, AcceleratesLikeTheMassMatrix) {
-  int floating = 0, springs = 0;
+  int floating = 0, springs = 0, damped = 0;
   for (int seed = 0; seed < 20; ++seed) {
     RandomTreeOptions options;
     options.springs = true;
@@ -36,12 +36,17 @@ TEST(TreeMotion, AcceleratesLikeTheMassMatrix) {
       force[spring.dof] -= spring.stiffness * (s.state.q[spring.q] - spring.reference);
       ++springs;
     }
+    for (int i = 0; i < s.model.nv; ++i) {
+      force[i] -= s.model.dofs[i].damping * s.state.v[i];
+      damped += s.model.dofs[i].damping > 0.0;
+    }
     const VectorX expected = s.data->inertia.M.dense().llt().solve(force);
     EXPECT_SMALL((vdot - expected).cwiseAbs().maxCoeff() / expected.cwiseAbs().maxCoeff(), 1e-10)
         << "seed " << seed;
   }
   EXPECT_GT(floating, 10);
   EXPECT_GT(springs, 10);
+  EXPECT_GT(damped, 10);
 }
 
 // φ̇ moves exp(φ) as ω in its own axes does: central difference of R₀ exp(φ).
