@@ -60,7 +60,7 @@ Problem contactProblem(const std::string& name, const std::string& title, int pe
   p.contact = true;
   p.periods = periods;
   p.windows = 10;
-  p.windowPeriods = 2;
+  p.windowPeriods = 3;  // as far as the next one begins
   return p;
 }
 

@@ -53,8 +53,15 @@ std::unique_ptr<Contestant> makeContestant(const Problem& problem, const Method&
 std::vector<Method> methodsFor(const Problem& problem);
 
 /// What a method is compared with, where no closed form is: the most accurate method of the same
-/// model. Without contact that is ours for every engine; with contact each engine and each kind of
-/// cone is a model of its own.
-Method referenceMethod(const Problem& problem, const Method& method);
+/// model, and one that tells how good it is. Without contact that is ours for every engine; with
+/// contact each engine and each kind of cone is a model of its own. There ours is led by its error,
+/// for forces jump where contacts begin and end.
+struct References {
+  Method fine, coarse;
+  int fineSteps = 1024, coarseSteps = 512;  ///< in a period
+
+  bool operator==(const References&) const = default;
+};
+References referencesFor(const Problem& problem, const Method& method);
 
 }  // namespace softgauss::app

@@ -71,12 +71,19 @@ std::unique_ptr<Contestant> makeContestant(const Problem& problem, const Method&
   return std::make_unique<Ours>(problem, method, h);
 }
 
-Method referenceMethod(const Problem& problem, const Method& method) {
-  Method reference{"softgauss", "runge-kutta-4", "reference"};
-  if (!problem.contact) return reference;
-  if (method.engine == "mujoco") return {"mujoco", "Euler", "reference"};
-  reference.cone = method.cone;
-  return reference;
+References referencesFor(const Problem& problem, const Method& method) {
+  References r;
+  r.fine = r.coarse = {"softgauss", "runge-kutta-4", "reference"};
+  if (!problem.contact) return r;
+  if (method.engine == "mujoco") {
+    r.fine = r.coarse = {"mujoco", "RK4", "reference"};
+    return r;
+  }
+  r.fine = r.coarse = {"softgauss", "dormand-prince", "reference", method.cone};
+  r.fine.integrationTolerance = 1e-12;
+  r.coarse.integrationTolerance = 1e-10;
+  r.fineSteps = 64, r.coarseSteps = 32;
+  return r;
 }
 
 std::vector<Method> methodsFor(const Problem& problem) {

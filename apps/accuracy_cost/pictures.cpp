@@ -65,7 +65,7 @@ std::string script(const Problem& problem, const std::vector<std::vector<Result>
   add("set border 3 linecolor '#666666'; set tics nomirror scale 0.5 textcolor '#333333'");
   add("set grid linecolor '#e2e2e2' linetype 1 linewidth 0.5");
   add("set xlabel 'CPU seconds per simulated second'");
-  add(problem.contact ? "set ylabel 'error after up to 64 ms [m]'" : "set ylabel 'error [m]'");
+  add(problem.contact ? "set ylabel 'error after up to 96 ms [m]'" : "set ylabel 'error [m]'");
   add("set key below");
   std::string plot = "plot ";
   for (std::size_t k = 0; k < curves.size(); ++k) {

@@ -11,11 +11,6 @@
 namespace softgauss::app {
 namespace {
 
-/// Steps a period of the two references. The finer one is the reference.
-constexpr int kReferenceSteps = 1024;
-/// And where every step makes contacts.
-constexpr int kContactReferenceSteps = 1024;
-
 int stepsOf(double h) { return static_cast<int>(std::lround(kPeriod / h)); }
 
 double overshoot(const Model& model, const State& state) {
@@ -58,26 +53,32 @@ std::vector<State> Study::run(Contestant& contestant, const State& start, int pe
 }
 
 bool Study::prepare(const Method& method) {
-  const Method reference = referenceMethod(problem_, method);
-  if (!windows_.empty() && reference == referenceOf_) return true;
-  referenceOf_ = reference;
-  windows_.clear();
-  const int steps = problem_.contact ? kContactReferenceSteps : kReferenceSteps;
-  const auto fine = makeContestant(problem_, reference, kPeriod / steps);
-  const auto coarse = makeContestant(problem_, reference, 2.0 * kPeriod / steps);
+  const References wanted = referencesFor(problem_, method);
+  for (current_ = 0; current_ < references_.size(); ++current_)
+    if (references_[current_].of == wanted) break;
+  if (current_ == references_.size()) references_.push_back(makeReference(wanted));
+  return !windows().empty();
+}
+
+Study::Reference Study::makeReference(const References& of) const {
+  Reference reference;
+  reference.of = of;
+  const auto fine = makeContestant(problem_, of.fine, kPeriod / of.fineSteps);
+  const auto coarse = makeContestant(problem_, of.coarse, kPeriod / of.coarseSteps);
   const Model& model = fine->model();
 
   // Where windows start: on the motion at a step that is good enough to choose states by.
   std::vector<State> starts{initialState(model)};
   if (problem_.windows > 1) {
-    const auto scout = makeContestant(problem_, reference, kPeriod / 64);
+    const auto scout = makeContestant(problem_, of.fine, kPeriod / 64);
     const std::vector<State> states = run(*scout, starts.front(), problem_.periods, 64);
-    if (static_cast<int>(states.size()) < problem_.periods) return false;
+    if (static_cast<int>(states.size()) < problem_.periods) return reference;
     starts.clear();
     for (int w = 0; w < problem_.windows; ++w)
       starts.push_back(states[(w + 1) * (problem_.periods - 1) / problem_.windows]);
   }
   LinkPoses a(model), b(model);
+  std::vector<Window> windows;
   double sum = 0.0;
   int count = 0;
   for (const State& start : starts) {
@@ -91,10 +92,10 @@ bool Study::prepare(const Method& method) {
         window.samples.push_back(state);
       }
     } else {
-      window.samples = run(*fine, start, problem_.windowPeriods, steps);
-      const std::vector<State> other = run(*coarse, start, problem_.windowPeriods, steps / 2);
+      window.samples = run(*fine, start, problem_.windowPeriods, of.fineSteps);
+      const std::vector<State> other = run(*coarse, start, problem_.windowPeriods, of.coarseSteps);
       if (static_cast<int>(std::min(window.samples.size(), other.size())) < problem_.windowPeriods)
-        return false;
+        return reference;
       for (int k = 0; k < problem_.windowPeriods; ++k) {
         a.set(window.samples[k]);
         b.set(other[k]);
@@ -102,10 +103,11 @@ bool Study::prepare(const Method& method) {
         ++count;
       }
     }
-    windows_.push_back(std::move(window));
+    windows.push_back(std::move(window));
   }
-  referenceError_ = count > 0 ? std::sqrt(sum / count) : 0.0;
-  return true;
+  reference.windows = std::move(windows);
+  reference.error = count > 0 ? std::sqrt(sum / count) : 0.0;
+  return reference;
 }
 
 Result Study::measure(const Method& method, double h) {
@@ -113,7 +115,7 @@ Result Study::measure(const Method& method, double h) {
   result.problem = problem_.name;
   result.method = method;
   result.h = h;
-  result.referenceError = referenceError_;
+  result.referenceError = referenceError();
   const auto contestant = makeContestant(problem_, method, h);
   const Model& model = contestant->model();
   LinkPoses pose(model), reference(model);
@@ -127,7 +129,7 @@ Result Study::measure(const Method& method, double h) {
   Momentum own, right;
   Vector3 change = Vector3::Zero(), most = Vector3::Zero();  // of linear and angular momentum
   int count = 0;
-  for (const Window& window : windows_) {
+  for (const Window& window : windows()) {
     const std::vector<State> states =
         run(*contestant, window.start, problem_.windowPeriods, stepsOf(h));
     result.penetration = std::max(result.penetration, contestant->penetration());
@@ -161,12 +163,13 @@ Result Study::measure(const Method& method, double h) {
 }
 
 void Study::measureTimes(std::vector<Result>& results) {
+  if (results.empty()) return;
   std::vector<std::unique_ptr<Contestant>> contestants;
   for (Result& r : results) {
     contestants.push_back(makeContestant(problem_, r.method, r.h));
     r.time = std::numeric_limits<double>::infinity();
   }
-  const double simulated = problem_.windowPeriods * kPeriod * static_cast<double>(windows_.size());
+  const double simulated = problem_.windowPeriods * kPeriod * static_cast<double>(windows().size());
   for (int repeat = 0; repeat < options_.repeats; ++repeat) {
     for (std::size_t i = 0; i < results.size(); ++i) {
       if (!std::isfinite(results[i].error)) continue;
@@ -174,7 +177,7 @@ void Study::measureTimes(std::vector<Result>& results) {
       double spent = 0.0;
       int rounds = 0;
       do {
-        for (const Window& window : windows_) {
+        for (const Window& window : windows()) {
           contestant.start(window.start);
           for (int k = 0; k < problem_.windowPeriods; ++k) {
             const VectorX tau = force(contestant.model(), window.start.time + k * kPeriod);
@@ -193,7 +196,7 @@ void Study::measureTimes(std::vector<Result>& results) {
 TrialRun Study::tryOut(const Method& method, double h, double mostSeconds) const {
   TrialRun result;
   const auto contestant = makeContestant(problem_, method, h);
-  for (const Window& window : windows_) {
+  for (const Window& window : windows()) {
     contestant->start(window.start);
     for (int k = 0; k < problem_.windowPeriods; ++k) {
       const double time = window.start.time + k * kPeriod;

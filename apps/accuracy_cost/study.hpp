@@ -6,9 +6,9 @@
 /// A problem is cut into windows, each from a state of the reference; every contestant starts each
 /// window there, and is compared with the reference at the end of every period. A smooth problem
 /// has one window, the whole motion. The reference is the closed form where there is one, else the
-/// most accurate method at the smallest step; a second reference at twice that step tells how good
-/// it is. With other cones, or in another engine, contact is another model: such a method is
-/// compared with its own reference, which says how far it is from its own limit.
+/// most accurate method; a second, coarser one tells how good it is. With other cones, or in
+/// another engine, contact is another model: such a method is compared with its own reference,
+/// which says how far it is from its own limit.
 
 #include "apps/accuracy_cost/contestant.hpp"
 #include "apps/shared/pose_error.hpp"
@@ -41,7 +41,7 @@ class Study {
  public:
   Study(const Problem& problem, StudyOptions options);
 
-  /// The references of a method's model; false where even they are not finite.
+  /// The references of a method's model, worked out once; false where even they are not finite.
   bool prepare(const Method& method);
   /// Measures a method at a step size, after prepare(). Times are measured by measureTimes().
   Result measure(const Method& method, double h);
@@ -49,22 +49,28 @@ class Study {
   void measureTimes(std::vector<Result>& results);
   /// All windows once, after prepare(), as a trial of shared/setting.hpp.
   TrialRun tryOut(const Method& method, double h, double mostSeconds) const;
-  double referenceError() const { return referenceError_; }
+  double referenceError() const { return references_[current_].error; }
 
  private:
   struct Window {
     State start;
     std::vector<State> samples;  ///< at the end of each period
   };
+  struct Reference {
+    References of;
+    std::vector<Window> windows;  ///< empty: it is not finite
+    double error = 0.0;           ///< by which two references differ [m]
+  };
+  const std::vector<Window>& windows() const { return references_[current_].windows; }
+  Reference makeReference(const References& of) const;
   std::vector<State> run(Contestant& contestant, const State& start, int periods, int steps) const;
   State initialState(const Model& model) const;
   VectorX force(const Model& model, double time) const;
 
   Problem problem_;
   StudyOptions options_;
-  Method referenceOf_;
-  std::vector<Window> windows_;
-  double referenceError_ = 0.0;
+  std::vector<Reference> references_;
+  std::size_t current_ = 0;  ///< of the method that was prepared last
 };
 
 }  // namespace softgauss::app
