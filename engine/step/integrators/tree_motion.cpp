@@ -202,6 +202,17 @@ void TreeMotion::acceleration(const Model& model, const Plan& plan, const Tree& 
   vdot.segment(tree.firstDof, n) = dv_.segment(tree.firstDof, n);
 }
 
+void TreeMotion::atRest(const Model& model, const Plan& plan, const Tree& tree, const VectorX& held,
+                        const Vector3& heldInWorld, VectorX& vdot) {
+  const int f = tree.firstDof, n = tree.dofEnd - tree.firstDof;
+  u_.segment(f, n).setZero();
+  w_.segment(f, n).setZero();
+  held_ = &held;
+  heldInWorld_ = heldInWorld;
+  derivative(model, plan, tree);
+  vdot.segment(f, n) = dv_.segment(f, n);
+}
+
 void TreeMotion::start(const Model& model, const State& state, const Tree& tree) {
   const int n = tree.dofEnd - tree.firstDof;
   const Body& root = model.bodies[tree.rootBody];

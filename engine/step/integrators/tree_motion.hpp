@@ -43,6 +43,10 @@ class TreeMotion {
               const Vector3& heldInWorld, const VectorX& scale, double speed, double duration,
               double firstStep);
 
+  /// v̇ of (T.91) where the motion is, were it at rest: no Coriolis forces. `vdot` (nv).
+  void atRest(const Model& model, const Plan& plan, const Tree& tree, const VectorX& held,
+              const Vector3& heldInWorld, VectorX& vdot);
+
   const VectorX& q() const { return q_; }  ///< (nq), of the tree moved
   const VectorX& v() const { return v_; }  ///< (nv), of the tree moved
   int substeps() const { return substeps_; }
