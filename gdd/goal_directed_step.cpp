@@ -16,6 +16,18 @@ GoalDirectedController::GoalDirectedController(const Model& model)
       cost_(model.nv),
       coordinates_(VectorX::Zero(model.nv)) {}
 
+namespace {
+
+/// A warm start that the solver cannot begin from: it begins without.
+bool refuses(const ActiveSet&, const WarmStart& warm) {
+  return warm.gddValid && !(warm.gddA.allFinite() && warm.control.allFinite());
+}
+bool refuses(const AugmentedLagrangian&, const WarmStart& warm) {
+  return warm.gddValid && !(warm.gddA.allFinite() && warm.multipliers.allFinite());
+}
+
+}  // namespace
+
 template <class Solver>
 SolveStatus GoalDirectedController::solveAndAdvance(Solver& used, const Model& model,
                                                     const Input& input, State& state, Data& data,
@@ -27,6 +39,7 @@ SolveStatus GoalDirectedController::solveAndAdvance(Solver& used, const Model& m
   cost_.clear(forceMetric);
   for (const auto& goal : goals)
     if (goal->actsAt(state.time)) goal->addCost({model, state, data}, cost_);
+  data.stats.refusedGuesses += refuses(used, state.warmstart);
   report = expansion.solve(used, model, cost_, box, data, state.warmstart);
   solveTime = std::chrono::duration<double>(Clock::now() - start).count();
   if (isRefused(report.status)) {

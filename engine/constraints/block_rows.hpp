@@ -5,6 +5,7 @@
 /// welds share.
 
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "engine/constraints/block_jacobian.hpp"
@@ -37,22 +38,46 @@ class BlockRows : public ScalarRows<Quadratic> {
     jacobian_.appendCouplings(segments, setEnd);
   }
 
-  std::size_t bytes() const { return ScalarRows::bytes() + jacobian_.bytes(); }
+  /// Leaves J̇ v out of the references of the blocks that concern a body, until putBackBias().
+  template <class Concerns>
+  void leaveOutBias(const Concerns& concerns) {
+    withBias_ = reference;
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      if (!concerns(bodies_[i].first) && !concerns(bodies_[i].second)) continue;
+      for (std::size_t row = 3 * i; row < 3 * i + 3; ++row) reference[row] += bias_[row];
+    }
+  }
+  void putBackBias() { reference = withBias_; }
+
+  std::size_t bytes() const {
+    return ScalarRows::bytes() + jacobian_.bytes() + bytesOfAll(bias_, withBias_, bodies_);
+  }
 
  protected:
   void clearBlocks() {
     jacobian_.clear();
     clearRows();
+    bias_.clear();
+    bodies_.clear();
   }
-  /// The three rows of the last block added.
-  void pushRows(const Vector3& aRef, const Softness& softness) {
-    for (const double a : aRef) {
-      reference.push_back(a);
+  /// The three rows of the last block added, which is between the bodies of `motion`:
+  /// a_ref = aRef − J̇ v.
+  void pushRows(const RelativeMotion& motion, const Vector3& aRef, const Vector3& bias,
+                const Softness& softness) {
+    for (int i = 0; i < 3; ++i) {
+      reference.push_back(aRef[i] - bias[i]);
+      bias_.push_back(bias[i]);
       pushSoftness(softness);
     }
+    bodies_.emplace_back(motion.bodyA, motion.bodyB);
   }
 
   BlockJacobian jacobian_;
+
+ private:
+  std::vector<double> bias_;                 ///< J̇ v of each row
+  std::vector<double> withBias_;             ///< references while some are without it
+  std::vector<std::pair<int, int>> bodies_;  ///< of each block
 };
 
 }  // namespace softgauss

@@ -35,8 +35,9 @@ void ConnectionRows::assemble(const Assembly& in) {
           softnessAt(c.impedance, offset.r.norm(),
                      in.weights.translation[c.bodyA] + in.weights.translation[c.bodyB],
                      model.options.timestep);
-      jacobian_.add(model, in.kinematics, in.tree, offsetMotion(c.bodyA, p_WA, c.bodyB, p_WB));
-      pushRows(-soft.damping * offset.rate - soft.stiffness * offset.r - offset.bias, soft);
+      const RelativeMotion motion = offsetMotion(c.bodyA, p_WA, c.bodyB, p_WB);
+      jacobian_.add(model, in.kinematics, in.tree, motion);
+      pushRows(motion, -soft.damping * offset.rate - soft.stiffness * offset.r, offset.bias, soft);
     }
   }
   resizeRows(reference.size());

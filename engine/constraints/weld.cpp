@@ -50,7 +50,8 @@ void WeldRows::assemble(const Assembly& in) {
       RelativeMotion motion = offsetMotion(weld.bodyA, X_WA.p, weld.bodyB, X_WB.p);
       const Softness linear = softness(in.weights.translation);
       jacobian_.add(model, k, in.tree, motion);
-      pushRows(-linear.damping * point.rate - linear.stiffness * point.r - point.bias, linear);
+      pushRows(motion, -linear.damping * point.rate - linear.stiffness * point.r, point.bias,
+               linear);
 
       // Bodies that slide only cannot be turned back.
       if (in.weights.rotation[weld.bodyA] + in.weights.rotation[weld.bodyB] == 0.0) continue;
@@ -59,7 +60,8 @@ void WeldRows::assemble(const Assembly& in) {
       motion.angular = turn.J_r.transpose();
       const Softness angular = softness(in.weights.rotation);
       jacobian_.add(model, k, in.tree, motion);
-      pushRows(-angular.damping * turn.rate - angular.stiffness * turn.r - turn.bias, angular);
+      pushRows(motion, -angular.damping * turn.rate - angular.stiffness * turn.r, turn.bias,
+               angular);
     }
   }
   resizeRows(reference.size());

@@ -357,7 +357,13 @@ void Islands::collectStats() {
     stats_.pairsSkipped += s.pairsSkipped;
     stats_.followedTrees += s.followedTrees;
     stats_.abandonedTrees += s.abandonedTrees;
+    stats_.kicks += s.kicks;
     stats_.substeps += s.substeps;
+    stats_.shortSolves += s.shortSolves;
+    stats_.roundedSolves += s.roundedSolves;
+    stats_.refusedGuesses += s.refusedGuesses;
+    stats_.keptSlips += s.keptSlips;
+    stats_.jumps += s.jumps;
     stats_.times.kinematics += s.times.kinematics;
     stats_.times.collision += s.times.collision;
     stats_.times.rows += s.times.rows;

@@ -47,7 +47,8 @@ struct State {
   VectorX v;          ///< generalised velocity (nv)
   double time = 0.0;  ///< [s]
   /// (trees) 1: v is the velocity at `time`, a tree that is followed in its steps leaves it so; 0:
-  /// that of semi-implicit Euler, half a step behind; 2: as given, to be taken as either.
+  /// that of semi-implicit Euler, half a step behind; 2: as given, to be taken as either; 3: half a
+  /// step behind but for Coriolis forces, left by a tree that is followed while rows push it.
   std::vector<std::uint8_t> followed;
   WarmStart warmstart;
 

@@ -46,6 +46,22 @@ TEST(Islands, AgreeWithTheJointSolve) {
   }
 }
 
+// What is done in place of what was asked is counted in each, and summed.
+TEST(Islands, SumTheirFallbacks) {
+  ModelBuilder builder = heap(12, 1);
+  builder.options.tolerance = 1e-17;  // below rounding
+  builder.options.maxIterations = 2;
+  Crowd crowd(builder.build());
+  int rounded = 0, ended = 0;
+  for (int i = 0; i < 400; ++i) {
+    ASSERT_NE(crowd.islands.step({}), SolveStatus::notFinite);
+    rounded = std::max(rounded, crowd.islands.stats().roundedSolves);
+    ended = std::max(ended, crowd.islands.stats().shortSolves);
+  }
+  EXPECT_GT(rounded, 1);  // of several islands in one step
+  EXPECT_GT(ended, 0);
+}
+
 TEST(Islands, DoNotFeelWhoElseIsThere) {
   ModelBuilder few = ground(), many = ground();
   for (ModelBuilder* builder : {&few, &many}) {

@@ -24,6 +24,7 @@ constexpr gdd::GddSolver kSolvers[] = {gdd::GddSolver::activeSet,
 
 /// A robot under goals, watched at every step: the state is finite, every control within its box,
 /// forward dynamics converged, and the goal directed solve ended with a certificate or is counted.
+/// Nothing is done in place of what was asked, unless `mayRefuse` says so.
 class Course {
  public:
   Course(std::string name, Model m, gdd::GddSolver solver)
@@ -48,6 +49,9 @@ class Course {
   collision::SceneContacts contacts;
   gdd::GoalDirectedController controller;
   Input input;
+
+  bool mayRefuse = false;  ///< guesses that are not finite
+  int refused = 0;         ///< of these guesses, in all steps
 
   int uncertified = 0;  ///< solves that ended without a certificate
   int steps = 0;
@@ -96,6 +100,12 @@ class Course {
         return breaks("a control out of its box");
     }
     const gdd::GddReport& report = controller.report;
+    const StepStats& stats = data.stats;
+    refused += stats.refusedGuesses;
+    if (!mayRefuse && stats.refusedGuesses > 0) return breaks("a guess refused");
+    if (report.restarts > 0) return breaks("a solve begun again");
+    if (stats.keptSlips + stats.abandonedTrees + stats.jumps > 0)
+      return breaks("something done in place of what was asked");
     uncertified +=
         report.status != gdd::GddStatus::converged && report.status != gdd::GddStatus::kink;
     worstViolation = std::max(worstViolation, report.violation);
@@ -310,6 +320,8 @@ TEST(Goals, WarmStartsAreGuesses) {
       Course c("humanoid, warm starts", with(humanoid(), timestep).build(), solver);
       c.reach("right_forearm", Vector3(0.3, -0.2, 1.2), 100.0);
       c.posture(1e3);
+      c.mayRefuse = true;
+      int wrong = 0;
       Random random(11);
       const double sizes[] = {1.0, 1e3, 1e8, kNan};
       const int steps = static_cast<int>(2.0 / timestep);
@@ -321,6 +333,8 @@ TEST(Goals, WarmStartsAreGuesses) {
           for (int k = 0; k < 4; ++k)
             if ((i / 20) % 5 == k || (i / 20) % 5 == 4)
               *parts[k] = size * random.vector(c.model.nv, 1.0);
+          const int part = (i / 20) % 5, unread = c.isDefault() ? 1 : 2;  // multipliers, control
+          wrong += std::isnan(size) && part != unread && part != 3;
           for (KnotName& knot : warm.knots)
             if (random.chance(0.5)) knot.row.first = random.index(40), knot.index = random.index(3);
         }
@@ -330,6 +344,9 @@ TEST(Goals, WarmStartsAreGuesses) {
       if (c.isDefault()) c.expect("box of the solve", c.worstViolation, 1e-4, "N m");
       c.expect("pelvis", c.position("pelvis").z() - 0.9, 0.1, "m");
       c.expectCertified(c.isDefault() ? 0.02 : 0.2);
+      // What is not finite is refused and counted, neither more nor less.
+      EXPECT_GT(wrong, 5);
+      EXPECT_EQ(c.refused, wrong);
     }
 }
 

@@ -34,7 +34,7 @@ TEST(Singular, ArmPulledBeyondItsFullStretch) {
   for (const double beyond : {0.0, 1e-9, 1e-3, 1e-2})
     for (const double timestep : kSteps) {
       // The pull makes the arm swing across the line, the faster the farther away the tie is.
-      if (beyond > 5e-3 && timestep > 0.002) continue;  // docs/stability.md
+      if (beyond > 5e-3 && timestep > 0.005) continue;  // docs/stability.md
       Trial straight("straight arm, tie at " + std::to_string(beyond),
                      with(stretched(beyond), timestep));
       straight.run(1.0);
@@ -53,8 +53,21 @@ TEST(Singular, ArmPulledBeyondItsFullStretch) {
     }
 }
 
-// Farther away the default diverges (docs/stability.md); an integrator that divides its steps
-// holds.
+// However far away, and however far the links turn in a step: they swing on, and gain no more than
+// the tie gives. With 0.1 m at 10 ms they turn by 1.3 rad in a step, with 1 m by a turn and more;
+// there they swing wider than they should (docs/stability.md), and nothing is given up.
+TEST(Singular, ArmPulledFarBeyondItsStretch) {
+  for (const double beyond : {1e-2, 1e-1, 1.0})
+    for (const double timestep : kSteps) {
+      Trial t("bent arm, tie at " + std::to_string(beyond), with(stretched(beyond), timestep));
+      t.state.q = Vector3(0.1, -0.2, 0.15);
+      const bool turnsTooFar = beyond * timestep > 5e-4 * 1.001;
+      t.mayGain = turnsTooFar ? kInfinity : 0.5 * 3.0 * std::pow((0.05 + beyond) / 0.02, 2.0);
+      EXPECT_TRUE(t.run(5.0));
+    }
+}
+
+// An integrator that divides its steps has it pulled straight.
 TEST(Singular, ArmPulledFarBeyondItsStretchWithDormandPrince) {
   for (const double beyond : {1e-2, 1e-1})
     for (const double timestep : {0.002, 0.01}) {

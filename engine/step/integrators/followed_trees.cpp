@@ -6,6 +6,8 @@
 
 #include "engine/core/memory.hpp"
 #include "engine/step/data.hpp"
+#include "engine/step/forward.hpp"
+#include "engine/step/integrators/implicit_forces.hpp"
 
 namespace softgauss {
 
@@ -64,25 +66,85 @@ bool isPushed(const Tree& tree, const Data& data, const VectorX& push) {
 
 }  // namespace
 
-bool FollowedTrees::needed(const Model& model, const Data& data, State& state,
-                           const VectorX& change) {
+bool FollowedTrees::needed(const Model& model, const Data& data, State& state, const VectorX& dv) {
   const double h = model.options.timestep;
   if (state.followed.size() != model.trees.size()) state.followed.assign(model.trees.size(), 2);
   bool any = false;
   for (std::size_t t = 0; t < model.trees.size(); ++t) {
-    turn[t] = h * turnRate(model, model.trees[t], state.v, data.forward.a, h, change);
+    turn[t] = h * turnRate(model, model.trees[t], state.v, data.forward.a, h, dv);
     // A tree that is followed stays so until it is far below.
-    followed[t] = turn[t] > (state.followed[t] == 1 ? 0.25 : 1.0) * kFollowedTurn;
+    const bool before = state.followed[t] == 1 || state.followed[t] == 3;
+    followed[t] = turn[t] > (before ? 0.25 : 1.0) * kFollowedTurn;
     if (!followed[t] && state.followed[t] == 2) state.followed[t] = 0;
-    any = any || followed[t] || state.followed[t] == 1;
+    any = any || followed[t] || before;
   }
   return any;
+}
+
+bool FollowedTrees::anyPushed(const Model& model, const Data& data) {
+  data.inertia.M.multiply(data.forward.a, push);
+  push -= data.forces.net;
+  bool any = false;
+  for (std::size_t t = 0; t < model.trees.size(); ++t) {
+    pushed[t] = followed[t] && isPushed(model.trees[t], data, push);
+    any = any || pushed[t];
+  }
+  return any;
+}
+
+bool FollowedTrees::kick(const Model& model, Data& data, const State& state,
+                         const VectorX& changed) {
+  ForwardSolution& s = data.forward;
+  change = changed;
+  a = s.a;
+  net = data.forces.net;
+  bias = data.forces.bias;
+  smooth.setZero();
+  computeBiasAt(model, data.kinematics, data.inertia, smooth, data.forces.work, kicked);
+  for (std::size_t t = 0; t < model.trees.size(); ++t) {
+    if (!pushed[t]) continue;
+    const int first = model.trees[t].firstDof, dofs = model.trees[t].dofEnd - first;
+    data.forces.net.segment(first, dofs) += (bias - kicked).segment(first, dofs);
+    data.forces.bias.segment(first, dofs) = kicked.segment(first, dofs);
+  }
+  const auto isPushed = [&](int body) {
+    const int tree = model.bodies[body].tree;
+    return tree >= 0 && pushed[tree];
+  };
+  data.constraints.connection.leaveOutBias(isPushed);
+  data.constraints.weld.leaveOutBias(isPushed);
+
+  const SolveStatus status = forwardDynamics(model, &a, data);
+  ++data.stats.kicks;
+  if (status == SolveStatus::notFinite) return false;
+  if (status != SolveStatus::converged) data.stats.status = status;
+  // a′ by what a has changed, and without what the Coriolis forces of pushed trees gain.
+  smooth = s.a - a;
+  data.inertia.M.multiply(smooth, kicked);
+  const bool implicit = data.plan.damped() || anyStiffSpring(model, data);
+  if (implicit) setImplicitForces(model, state, data, smooth);
+  if (!solveMass(data, implicit ? &s.Md : nullptr, kicked)) return false;
+  data.acceleration += kicked;
+  for (std::size_t t = 0; t < model.trees.size(); ++t) {
+    if (!pushed[t]) continue;
+    const int first = model.trees[t].firstDof, dofs = model.trees[t].dofEnd - first;
+    data.acceleration.segment(first, dofs) += change.segment(first, dofs);
+  }
+  return true;
+}
+
+void FollowedTrees::endKick(const Model& model, Data& data) {
+  data.forces.net = net;
+  data.forces.bias = bias;
+  data.constraints.connection.putBackBias();
+  data.constraints.weld.putBackBias();
+  forwardDynamics(model, &a, data);
 }
 
 void FollowedTrees::follow(const Model& model, Data& data, State& state, VectorX& held,
                            VectorX& vPlus) {
   const double h = model.options.timestep;
-  // Q = M a + b + K (q − q_s) − h D a′: applied, constraint and damping forces of the step.
+  // Q = M a + b + D v + K (q − q_s): applied and constraint forces of the step.
   data.inertia.M.multiply(data.forward.a, held);
   push = held - data.forces.net;  // Jᵀf
   held += data.forces.bias;
@@ -93,12 +155,19 @@ void FollowedTrees::follow(const Model& model, Data& data, State& state, VectorX
   for (std::size_t t = 0; t < model.trees.size(); ++t) {
     const Tree& tree = model.trees[t];
     const int first = tree.firstDof, dofs = tree.dofEnd - first;
+    const auto part = [&](VectorX& x) { return x.segment(first, dofs); };
     const auto half = 0.5 * h * data.acceleration.segment(first, dofs);
-    const bool free = !isPushed(tree, data, push);
+    const bool free = followed[t] ? !pushed[t] : !isPushed(tree, data, push);
+    std::uint8_t& velocity = state.followed[t];
     if (!followed[t]) {
-      if (state.followed[t] == 1 && free) vPlus.segment(first, dofs) -= half;
-      state.followed[t] = 0;
+      if (velocity == 1 && free) part(vPlus) -= half;
+      velocity = 0;
       continue;
+    }
+    if (!free) {  // Q is what is left for the step's course; the kick is of rows and damping
+      part(held) -= part(push);
+      if (data.plan.damped())
+        part(push) -= data.plan.damping.segment(first, dofs).cwiseProduct(part(vPlus));
     }
     const Body& root = model.bodies[tree.rootBody];
     Vector3 heldInWorld = Vector3::Zero();
@@ -108,8 +177,17 @@ void FollowedTrees::follow(const Model& model, Data& data, State& state, VectorX
       heldInWorld = data.kinematics.X_WB[tree.rootBody].R * (held.segment<3>(root.v + 3) - own);
       held.segment<3>(root.v + 3) = own;
     }
-    motion.start(model, state, tree);
-    if (state.followed[t] == 0 && free) motion.kick(tree, half);
+    motion.start(model, state, tree, free);
+    if (free && velocity == 0) motion.kick(tree, half);
+    if (!free || velocity == 3) {
+      motion.atRest(model, data.plan, tree, held, heldInWorld, smooth);
+      if (velocity != 1) motion.kick(tree, 0.5 * h * part(smooth));
+    }
+    if (!free) {
+      part(push) += part(held);
+      motion.atRest(model, data.plan, tree, push, heldInWorld, kicked);
+      motion.kick(tree, h * (part(kicked) - part(smooth)));
+    }
     const double firstStep = h * std::min(1.0, 0.2 / std::sqrt(turn[t]));
     const TreeMotion::Outcome outcome =
         motion.run(model, data.plan, tree, held, heldInWorld, data.inertia.forceScale,
@@ -118,12 +196,16 @@ void FollowedTrees::follow(const Model& model, Data& data, State& state, VectorX
     if (outcome != TreeMotion::Outcome::done) {
       ++data.stats.abandonedTrees;
       followed[t] = 0;
-      state.followed[t] = 0;
+      velocity = 0;
       continue;
     }
+    if (!free) {
+      motion.atRest(model, data.plan, tree, held, heldInWorld, smooth);
+      motion.kick(tree, -0.5 * h * part(smooth));
+    }
     ++data.stats.followedTrees;
-    state.followed[t] = 1;
-    vPlus.segment(first, dofs) = motion.v().segment(first, dofs);
+    velocity = free ? 1 : 3;
+    part(vPlus) = motion.v().segment(first, dofs);
     const int count = coordinates(model, tree);
     q.segment(root.q, count) = motion.q().segment(root.q, count);
   }
@@ -139,7 +221,8 @@ void FollowedTrees::copyPositions(const Model& model, VectorX& qPlus) const {
 }
 
 std::size_t FollowedTrees::bytes() const {
-  return bytesOfAll(turn, followed, push, q) + motion.bytes();
+  return bytesOfAll(turn, followed, pushed, push, change, a, net, bias, smooth, kicked, q) +
+         motion.bytes();
 }
 
 }  // namespace softgauss

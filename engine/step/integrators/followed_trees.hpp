@@ -17,6 +17,18 @@
 /// Semi-implicit Euler keeps the velocity of half a step earlier: its q⁺ = q + h v⁺ is that of the
 /// leapfrog. So ½ h a′ is added to v where a tree begins to be followed, and left out of v⁺ in the
 /// first step after that. State::followed tells which of the two v is.
+///
+/// What rows do to a followed tree is done at the step's start, at once, and the tree goes on
+/// without them:
+///
+///   v ← v + ½ h a_s(q) + h M⁻¹(Jᵀf − D v′),  then (T.91),  then v⁺ ← v − ½ h a_s(q⁺)
+///
+/// with a_s the acceleration that gravity, springs and applied forces give at rest. A force that is
+/// held while the tree turns works where it is not any more, and positions that move with half of
+/// what it does make energy out of a stiff contact, as explicit Euler does. f is that of (T.1)
+/// without what the velocities of these trees make, Coriolis forces and J̇ v of their rows: over
+/// the step these turn, and (T.91) has them. Then a kick takes velocity out of the rows and puts
+/// none in, however far the tree turns.
 
 #include <cstdint>
 #include <vector>
@@ -30,7 +42,11 @@ struct Data;
 struct FollowedTrees {
   std::vector<double> turn;            ///< (trees) of (T.93), in the last step
   std::vector<std::uint8_t> followed;  ///< (trees) 1: it was, in the last step
+  std::vector<std::uint8_t> pushed;    ///< (trees) 1: followed, and rows push it
   VectorX push;                        ///< (nv) Jᵀf of the step
+  VectorX change;                      ///< (nv) M⁻¹Δb
+  VectorX a, net, bias;                ///< (nv) of (T.1) with all forces, while kick() holds
+  VectorX smooth, kicked;              ///< (nv) scratch
   VectorX q;                           ///< (nq) scratch
   TreeMotion motion;
 
@@ -38,14 +54,28 @@ struct FollowedTrees {
   explicit FollowedTrees(const Model& model)
       : turn(model.trees.size(), 0.0),
         followed(model.trees.size(), 0),
+        pushed(model.trees.size(), 0),
         push(VectorX::Zero(model.nv)),
+        change(VectorX::Zero(model.nv)),
+        a(VectorX::Zero(model.nv)),
+        net(VectorX::Zero(model.nv)),
+        bias(VectorX::Zero(model.nv)),
+        smooth(VectorX::Zero(model.nv)),
+        kicked(VectorX::Zero(model.nv)),
         q(model.q0),
         motion(model) {}
 
   /// Finds which trees are to be followed; `change` = M⁻¹Δb (nv). Whether there is one, or was one
   /// in the step before.
   bool needed(const Model& model, const Data& data, State& state, const VectorX& change);
-  /// Corrects v⁺ = v + h a′ of those trees. `held` is scratch (nv).
+  /// Finds which of them rows push, and whether there is one.
+  bool anyPushed(const Model& model, const Data& data);
+  /// Solves (T.1) again, without what the velocities of pushed trees make: Coriolis forces, and J̇ v
+  /// of their rows. `change` as above; a′ of all trees follows. False: not finite.
+  bool kick(const Model& model, Data& data, const State& state, const VectorX& change);
+  /// Puts (T.1) back as it was.
+  void endKick(const Model& model, Data& data);
+  /// Corrects v⁺ = v + h a′ of the followed trees. `held` is scratch (nv).
   void follow(const Model& model, Data& data, State& state, VectorX& held, VectorX& vPlus);
   /// The positions of the followed trees.
   void copyPositions(const Model& model, VectorX& qPlus) const;

@@ -12,8 +12,8 @@ namespace {
 /// A body turns by more than 0.005 rad in the step, or a tree was followed in the last one. Below
 /// that (T.93) need not be worked out.
 bool mayTurnFar(const Model& model, const Data& data, State& state) {
-  if (std::find(state.followed.begin(), state.followed.end(), 1) != state.followed.end())
-    return true;
+  for (const std::uint8_t velocity : state.followed)
+    if (velocity == 1 || velocity == 3) return true;
   const double fast = 0.005 / model.options.timestep;
   for (const Motion& V : data.kinematics.V)
     if (V.angular.squaredNorm() > fast * fast) return true;
@@ -79,6 +79,8 @@ bool semiImplicitEuler(const Model& model, Data& data, State& state) {
       follow = data.followed.needed(model, data, state, s.direction);
     }
   }
+  const bool kicked = follow && data.followed.anyPushed(model, data);
+  if (kicked && !data.followed.kick(model, data, state, s.direction)) return false;
   s.start = state.v + h * data.acceleration;
   if (tooFast(model, s.start)) return false;
   if (follow) {
@@ -89,6 +91,7 @@ bool semiImplicitEuler(const Model& model, Data& data, State& state) {
   state.v = s.start;
   integratePosition(model, state.v, h, state.q);
   if (follow) data.followed.copyPositions(model, state.q);
+  if (kicked) data.followed.endKick(model, data);
   state.time += h;
   return true;
 }

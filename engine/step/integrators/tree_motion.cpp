@@ -135,7 +135,7 @@ void TreeMotion::derivative(const Model& model, const Plan& plan, const Tree& tr
       n.pA.setZero();
   }
   for (int i = tree.firstDof; i < tree.dofEnd; ++i) dv_[i] = (*held_)[i];
-  if (plan.damped())
+  if (damped_ && plan.damped())
     for (int i = tree.firstDof; i < tree.dofEnd; ++i) dv_[i] -= plan.damping[i] * w_[i];
   for (const Plan::Spring& s : plan.springs)
     if (s.dof >= tree.firstDof && s.dof < tree.dofEnd)
@@ -204,7 +204,19 @@ void TreeMotion::acceleration(const Model& model, const Plan& plan, const Tree& 
   vdot.segment(tree.firstDof, n) = dv_.segment(tree.firstDof, n);
 }
 
-void TreeMotion::start(const Model& model, const State& state, const Tree& tree) {
+void TreeMotion::atRest(const Model& model, const Plan& plan, const Tree& tree, const VectorX& held,
+                        const Vector3& heldInWorld, VectorX& vdot) {
+  const int f = tree.firstDof, n = tree.dofEnd - tree.firstDof;
+  u_.segment(f, n).setZero();
+  w_.segment(f, n).setZero();
+  held_ = &held;
+  heldInWorld_ = heldInWorld;
+  derivative(model, plan, tree);
+  vdot.segment(f, n) = dv_.segment(f, n);
+}
+
+void TreeMotion::start(const Model& model, const State& state, const Tree& tree, bool damped) {
+  damped_ = damped;
   const int n = tree.dofEnd - tree.firstDof;
   const Body& root = model.bodies[tree.rootBody];
   const int coordinates = root.joint == JointKind::floating ? n + 1 : n;

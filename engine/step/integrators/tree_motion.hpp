@@ -3,9 +3,10 @@
 
 /// Motion of one kinematic tree under forces that are held, followed within a step.
 ///
-///   q̇ = v,   v̇ = M(q)⁻¹ (Q − b(q, v) − K (q − q_s))                                    (T.91)
+///   q̇ = v,   v̇ = M(q)⁻¹ (Q − b(q, v) − D v − K (q − q_s))                              (T.91)
 ///
-/// b: gravity, Coriolis and gyroscopic forces; K: joint springs; Q: all other generalised forces.
+/// b: gravity, Coriolis and gyroscopic forces; D: joint damping; K: joint springs; Q: all other
+/// generalised forces.
 /// The tree's accelerations come from the articulated-body algorithm [Featherstone 2008, section
 /// 7.3] in O(n), in world axes about the tree's root body. Orientation is followed by the rotation
 /// vector φ from where the sub-step began, R = R₀ exp(φ), φ̇ = dexp⁻¹(ω) (T.92).
@@ -27,8 +28,8 @@ class TreeMotion {
   /// Memory for the largest tree of the model.
   explicit TreeMotion(const Model& model);
 
-  /// Where the motion begins.
-  void start(const Model& model, const State& state, const Tree& tree);
+  /// Where the motion begins. Not `damped`: without D v.
+  void start(const Model& model, const State& state, const Tree& tree, bool damped = true);
   /// Adds `change` (the tree's dofs) to the velocity.
   template <class Change>
   void kick(const Tree& tree, const Change& change) {
@@ -42,6 +43,10 @@ class TreeMotion {
   Outcome run(const Model& model, const Plan& plan, const Tree& tree, const VectorX& held,
               const Vector3& heldInWorld, const VectorX& scale, double speed, double duration,
               double firstStep);
+
+  /// v̇ of (T.91) where the motion is, were it at rest: no Coriolis forces. `vdot` (nv).
+  void atRest(const Model& model, const Plan& plan, const Tree& tree, const VectorX& held,
+              const Vector3& heldInWorld, VectorX& vdot);
 
   const VectorX& q() const { return q_; }  ///< (nq), of the tree moved
   const VectorX& v() const { return v_; }  ///< (nv), of the tree moved
@@ -83,6 +88,7 @@ class TreeMotion {
   VectorX du_, dv_;                 ///< its result
   std::array<VectorX, 7> Ku_, Kv_;  ///< stages
   std::vector<Node> nodes_;
+  bool damped_ = true;
   int substeps_ = 0;
 };
 
