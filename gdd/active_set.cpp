@@ -98,6 +98,15 @@ double ActiveSet::solveProgram() {
   return solved ? program_.decrease() : -1.0;
 }
 
+/// Whether the program's step is lost in the rounding of the forces at work. Where no goal asks for
+/// anything F has its minimum at 0, and no share of it would end the search.
+bool ActiveSet::isRounding(const Data& data) {
+  constexpr double kRounding = 1e-14;
+  cell_.force(program_.solution(), rate_);
+  return rate_.cwiseAbs().maxCoeff() <=
+         kRounding * std::max(data.forces.c.cwiseAbs().maxCoeff(), force_.cwiseAbs().maxCoeff());
+}
+
 /// Moves along the path of the program's solution.
 PathEnd ActiveSet::followPath(const GoalCost& cost, Data& data) {
   const VectorX& p = program_.solution();
@@ -225,7 +234,7 @@ std::optional<GddStatus> ActiveSet::descend(const GoalCost& cost, double wanted,
     }
     if (report_.iterations >= kPatience && objective() - promised > wanted) return std::nullopt;
     const int heldBefore = held.atKnots();
-    bool stationary = promised <= options.tolerance * merit_;
+    bool stationary = promised <= options.tolerance * merit_ || isRounding(data);
     if (!stationary) {
       if (report_.iterations == options.maxIterations) {
         report_.stationarity = promised / merit_;

@@ -83,6 +83,7 @@ class ActiveSet {
   const VectorX& costSlope(Data& data);
   bool computeGradient(Data& data);
   double solveProgram();
+  bool isRounding(const Data& data);
   PathEnd followPath(const GoalCost& cost, Data& data);
   Next leaveCell(Data& data);
   std::optional<GddStatus> descend(const GoalCost& cost, double wanted, Data& data);

@@ -150,5 +150,31 @@ TEST(Effort, ADearJointIsSpared) {
   EXPECT_LT(used(30.0), 0.5 * used(0.0));
 }
 
+// After its last goal F has its minimum 0 at u = 0, where no share of F is small: the controls
+// vanish against the forces at work, and every solve ends by itself.
+TEST(Effort, WithoutGoalsTheSearchEnds) {
+  for (const gdd::GddSolver solver :
+       {gdd::GddSolver::augmentedLagrangian, gdd::GddSolver::activeSet}) {
+    RobotScene r("arm");
+    r.controller.solver = solver;
+    auto look = std::make_unique<gdd::LookAt>(r.model, "hand", Vector3(0.8, 0.6, 0.2));
+    look->endTime = 0.5;
+    r.controller.goals.push_back(std::move(look));
+    int without = 0;
+    for (int i = 0; i < 1000; ++i) {
+      EXPECT_NE(r.step(), SolveStatus::notFinite);
+      const gdd::GddReport& report = r.controller.report;
+      EXPECT_NE(report.status, gdd::GddStatus::iterationLimit) << "step " << i;
+      EXPECT_GE(report.stationarity, 0.0);
+      if (i < 260) continue;
+      ++without;
+      EXPECT_SMALL(
+          r.controller.control.cwiseAbs().maxCoeff() / r.data.forces.c.cwiseAbs().maxCoeff(),
+          1e-12);
+    }
+    EXPECT_GT(without, 700);
+  }
+}
+
 }  // namespace
 }  // namespace softgauss::test

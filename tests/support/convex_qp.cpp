@@ -17,6 +17,7 @@ VectorX nonNegativeLeastSquares(const MatrixX& columns, const VectorX& f) {
   std::vector<Eigen::Index> used;  // the columns whose u may be positive
   std::vector<bool> isUsed(n, false), refused(n, false);
   const double tolerance = 1e-12 * f.norm();
+  double least = f.norm();
 
   const auto fit = [&] {
     MatrixX part(A.rows(), static_cast<Eigen::Index>(used.size()));
@@ -58,7 +59,15 @@ VectorX nonNegativeLeastSquares(const MatrixX& columns, const VectorX& f) {
       fitted = fit();
     }
     for (std::size_t k = 0; k < used.size(); ++k) u[used[k]] = fitted[k];
-    std::fill(refused.begin(), refused.end(), false);
+    // Columns that are nearly the same would take turns: one that does not bring A u nearer to f is
+    // not taken again until another does.
+    const double away = (f - A * u).norm();
+    if (away < least) {
+      least = away;
+      std::fill(refused.begin(), refused.end(), false);
+    } else {
+      refused[best] = true;
+    }
   }
   throw std::runtime_error("non-negative least squares does not end");
 }
