@@ -56,12 +56,20 @@ double turnRate(const Model& model, const Tree& tree, const VectorX& v, const Ve
 }
 
 /// Rows push the tree. Half a step of what they do is no part of how v is understood: an impact
-/// would get half as much again, and the other body would not.
-bool isPushed(const Tree& tree, const Data& data, const VectorX& push) {
+/// would get half as much again, and the other body would not. `push` = M a − net is rounding where
+/// there is none, and much of it in a whipping chain; the rows themselves, `rows` = Jᵀf, are exact.
+bool isPushed(const Tree& tree, const Data& data, const VectorX& push, const VectorX& rows) {
   constexpr double kRounding = 1e-9;
   for (int i = tree.firstDof; i < tree.dofEnd; ++i)
-    if (std::abs(push[i]) > kRounding * std::max(1.0, std::abs(data.forces.net[i]))) return true;
+    if (rows[i] != 0.0 &&
+        std::abs(push[i]) > kRounding * std::max(1.0, std::abs(data.forces.net[i])))
+      return true;
   return false;
+}
+
+void setRowForces(const Data& data, VectorX& rows) {
+  rows.setZero();
+  data.constraints.addForce(rows);
 }
 
 }  // namespace
@@ -84,9 +92,10 @@ bool FollowedTrees::needed(const Model& model, const Data& data, State& state, c
 bool FollowedTrees::anyPushed(const Model& model, const Data& data) {
   data.inertia.M.multiply(data.forward.a, push);
   push -= data.forces.net;
+  setRowForces(data, smooth);
   bool any = false;
   for (std::size_t t = 0; t < model.trees.size(); ++t) {
-    pushed[t] = followed[t] && isPushed(model.trees[t], data, push);
+    pushed[t] = followed[t] && isPushed(model.trees[t], data, push, smooth);
     any = any || pushed[t];
   }
   return any;
@@ -147,6 +156,7 @@ void FollowedTrees::follow(const Model& model, Data& data, State& state, VectorX
   // Q = M a + b + D v + K (q − q_s): applied and constraint forces of the step.
   data.inertia.M.multiply(data.forward.a, held);
   push = held - data.forces.net;  // Jᵀf
+  setRowForces(data, smooth);     // of trees that are not followed it stays so below
   held += data.forces.bias;
   for (const Plan::Spring& spring : data.plan.springs)
     held[spring.dof] += spring.stiffness * (state.q[spring.q] - spring.reference);
@@ -157,7 +167,7 @@ void FollowedTrees::follow(const Model& model, Data& data, State& state, VectorX
     const int first = tree.firstDof, dofs = tree.dofEnd - first;
     const auto part = [&](VectorX& x) { return x.segment(first, dofs); };
     const auto half = 0.5 * h * data.acceleration.segment(first, dofs);
-    const bool free = followed[t] ? !pushed[t] : !isPushed(tree, data, push);
+    const bool free = followed[t] ? !pushed[t] : !isPushed(tree, data, push, smooth);
     std::uint8_t& velocity = state.followed[t];
     if (!followed[t]) {
       if (velocity == 1 && free) part(vPlus) -= half;
