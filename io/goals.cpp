@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "io/detail/goal_kinds.hpp"
+#include "io/detail/scene_parts.hpp"
 #include "io/detail/text.hpp"
 #include "io/detail/yaml.hpp"
 
@@ -91,8 +92,9 @@ std::vector<std::unique_ptr<gdd::Goal>> readGoals(const std::filesystem::path& f
     throw ModelError({path, root.line}, "file",
                      fmt::format("found {}, expected goals: [...]", root.described()));
   const YamlMap top(path, "", "", root);
-  // A scene file, whose other keys readScene() knows, may hold goals too.
-  if (!top.find("robots") && !top.find("objects")) top.expectOnly({"goals"});
+  // A scene file may hold goals too.
+  const bool isScene = top.find("robots") || top.find("objects");
+  top.expectOnly(isScene ? detail::kSceneKeys : std::vector<std::string>{"goals"});
   const YamlMap::Entry& list = top.required("goals", "a list of goals");
   if (list.value.items.empty())
     top.fail(list,
@@ -101,6 +103,7 @@ std::vector<std::unique_ptr<gdd::Goal>> readGoals(const std::filesystem::path& f
   std::vector<std::unique_ptr<gdd::Goal>> goals;
   for (const YamlValue& item : list.value.items)
     goals.push_back(readGoal(path, item, goals.size() + 1, {model, initial}));
+  detail::joinLines(goals);
   return goals;
 }
 

@@ -35,8 +35,7 @@ class SceneReader {
   SceneReader(const YamlMap& top, const UrdfOptions& options) : top_(top), urdfOptions_(options) {}
 
   SceneFile read() {
-    top_.expectOnly({"name", "timestep", "gravity", "ground", "materials", "robots", "objects",
-                     "actuators", "constraints", "pairs", "wrenches", "options", "goals"});
+    top_.expectOnly(detail::kSceneKeys);
     std::string name = std::filesystem::path(top_.file()).stem().string();
     if (const auto* entry = top_.find("name")) name = top_.name(*entry);
     scene_.builder = ModelBuilder(name);

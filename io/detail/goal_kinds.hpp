@@ -48,6 +48,10 @@ int readRobot(const YamlMap& keys, const Model& model);
 /// Some of the letters x, y, z.
 std::array<bool, 3> readAxes(const YamlMap& keys, const YamlMap::Entry& entry);
 
+/// A minimum-jerk line that follows another reach of the same point, of a goal that starts later,
+/// begins at the target of that one, and not where the point was at first.
+void joinLines(const std::vector<GoalPointer>& goals);
+
 /// Pose of a frame in the initial state.
 Transform initialPose(const GoalScene& scene, int frame);
 

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "gdd/goals/hold.hpp"
 #include "gdd/goals/link_acceleration.hpp"
 #include "gdd/goals/look_at.hpp"
@@ -16,11 +18,13 @@ namespace {
 /// Of a minimum-jerk line [s]: less is below any time step, and accelerations go as its square.
 constexpr double kShortest = 1e-6;
 
-/// The line of Flash and Hogan from where the goal's point is at first.
-gdd::MinimumJerk readMinimumJerk(const YamlMap& keys, const gdd::Reach& goal,
+/// The line of Flash and Hogan from where the goal's point is at first. It begins when the goal
+/// does, unless the file says otherwise.
+gdd::MinimumJerk readMinimumJerk(const YamlMap& keys, double goalStart, const gdd::Reach& goal,
                                  const GoalScene& scene) {
   keys.expectOnly({"duration", "start"});
   gdd::MinimumJerk line;
+  line.startTime = std::max(line.startTime, goalStart);
   keys.read("duration", line.duration, Range::positive);
   if (line.duration < kShortest)
     keys.fail(*keys.find("duration"),
@@ -70,9 +74,31 @@ GoalPointer readReach(const YamlMap& keys, const GoalScene& scene) {
               "found without an orientation, expected rpy or quaternion beside it", *goal);
   keys.read("stiffness", goal->stiffness, Range::notNegative);
   keys.read("damping", goal->damping, Range::notNegative);
+  double start = -kInfinity;
+  keys.read("start", start, Range::any);
   if (const auto* line = keys.find("minimum_jerk"))
-    goal->minimumJerk = readMinimumJerk(keys.map(*line), *goal, scene);
+    goal->minimumJerk = readMinimumJerk(keys.map(*line), start, *goal, scene);
   return goal;
+}
+
+void joinLines(const std::vector<GoalPointer>& goals) {
+  std::vector<gdd::Reach*> reaches;
+  for (const GoalPointer& goal : goals)
+    if (auto* reach = dynamic_cast<gdd::Reach*>(goal.get())) reaches.push_back(reach);
+  std::stable_sort(reaches.begin(), reaches.end(), [](const gdd::Reach* a, const gdd::Reach* b) {
+    return a->startTime < b->startTime;
+  });
+  for (auto next = reaches.begin(); next != reaches.end(); ++next) {
+    gdd::Reach& goal = **next;
+    if (!goal.minimumJerk) continue;
+    for (auto it = reaches.begin(); it != next; ++it) {
+      const gdd::Reach& before = **it;
+      if (before.frame != goal.frame || before.p_FP != goal.p_FP) continue;
+      if (before.startTime == goal.startTime) continue;
+      goal.minimumJerk->p_start = before.p_WTarget;
+      if (before.R_WTarget) goal.minimumJerk->R_start = *before.R_WTarget;
+    }
+  }
 }
 
 GoalPointer readLinkAcceleration(const YamlMap& keys, const GoalScene& scene) {

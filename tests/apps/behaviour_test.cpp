@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 /// What the commands of the docs make robots do, seen in the logs.
 
+#include <algorithm>
+#include <cmath>
+
 #include "tests/apps/process.hpp"
 #include "tests/support/tolerance.hpp"
 
@@ -42,6 +45,47 @@ TEST(Behaviour, HandClosesOnABallAndHoldsItForFiveSeconds) {
   // It rests: in the last four seconds it creeps by less than a millimetre.
   for (const char* axis : {"q:ball.x", "q:ball.y", "q:ball.z"})
     EXPECT_SMALL(log.number(last, axis) - log.number(1000, axis), 1e-3);
+}
+
+/// A run of goals that cannot be met: the ways that are left [mm], and how fast the joints still
+/// turn [rad/s].
+struct Leftover {
+  std::vector<double> ways;
+  double speed = 0.0;
+
+  explicit Leftover(std::vector<std::string> arguments) {
+    const io::TempFolder folder;
+    const std::string file = folder.path() / "log.csv";
+    arguments.insert(arguments.end(), {"--log", file});
+    const Outcome outcome = simulate(arguments);
+    EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+    const std::string arrow = " -> ";
+    for (std::size_t at = 0; (at = outcome.out.find(arrow, at)) != std::string::npos;)
+      ways.push_back(std::stod(outcome.out.substr(at += arrow.size())));
+    const Csv log(readFile(file));
+    for (const std::string& column : log.columns)
+      if (column.starts_with("v:"))
+        speed =
+            std::max(speed, std::abs(log.number(static_cast<int>(log.rows.size()) - 1, column)));
+  }
+};
+
+TEST(Behaviour, ArmsWhoseGoalsCannotBeMetComeToRest) {
+  const std::string arm = dataFile("robots/arm.urdf");
+  const Leftover weak({dataFile("scenes/weak_arm.yaml"), "--duration", "8"});
+  ASSERT_EQ(weak.ways.size(), 1u);
+  EXPECT_NEAR(weak.ways[0], 804.0, 10.0) << "it sinks to where the torques suffice";
+  EXPECT_LT(weak.speed, 0.05);
+  const Leftover far({arm, "--goals", dataFile("goals/arm_out_of_reach.yaml"), "--duration", "8"});
+  ASSERT_EQ(far.ways.size(), 1u);
+  EXPECT_NEAR(far.ways[0], 720.0, 2.0) << "1.68 m from the shoulder, for an arm of 0.96 m";
+  EXPECT_LT(far.speed, 0.05);
+  const Leftover two({arm, "--goals", dataFile("goals/arm_two_places.yaml"), "--duration", "6"});
+  ASSERT_EQ(two.ways.size(), 2u);
+  const double apart = 1e3 * std::hypot(0.4, 0.1);
+  EXPECT_NEAR(two.ways[0], 0.75 * apart, 1.0);
+  EXPECT_NEAR(two.ways[1], 0.25 * apart, 1.0);
+  EXPECT_LT(two.speed, 0.05);
 }
 
 TEST(Behaviour, TheSameBallDropsFromAHandWithoutGoals) {

@@ -95,7 +95,6 @@ TEST(HardGoals, WeakActuatorsDoWhatTheyCan) {
   }
 }
 
-// The arm is 0.96 m long from its shoulder: stretched towards the place, it leaves the rest.
 // Multipliers that an unfinished solve has left must not end the run.
 TEST(HardGoals, SolverOneBeginsAnewWhereItsWarmStartOverflows) {
   RobotScene r("arm");
@@ -114,6 +113,7 @@ TEST(HardGoals, SolverOneBeginsAnewWhereItsWarmStartOverflows) {
   EXPECT_SMALL((r.state.q - q).norm(), 1e-9);
 }
 
+// The arm is 0.96 m long from its shoulder: stretched towards the place, it leaves the rest.
 TEST(HardGoals, APlaceOutOfReachIsPointedAt) {
   const Vector3 target(1.5, 0.6, 0.8);
   for (const double weight : {1e2, 1e4, 1e6}) {
