@@ -71,14 +71,15 @@ TEST(GddBenchmark, ASolverIsAsGoodAsItself) {
 }
 
 // Guards against a solver that becomes worse. Solver 1's figures are what 20,000 records showed,
-// with room for so few; solver 2's are what is asked of 20,000, by the goals' weight.
+// with room for so few; solver 2's are what is asked of 20,000 by the goals' weight, with half as
+// many iterations again at 95 % for so few.
 TEST(GddBenchmark, StatisticsStayMet) {
   const Json json = benchmark({"--records", "600", "--passes", "1", "--weight", "1", "--weight",
                                "100", "--weight", "1000"});
   ASSERT_EQ(json["datasets"].size(), 9u);
   const struct {
     double median, most, certified;
-  } asked[] = {{1, 2, 0.9999}, {2, 6, 0.999}, {4, 12, 0.999}};
+  } asked[] = {{1, 3, 0.9999}, {2, 9, 0.999}, {4, 18, 0.999}};
   int place = 0;
   for (const Json& dataset : json["datasets"]) {
     const auto& bound = asked[place++ % 3];
