@@ -57,14 +57,14 @@ std::string script(const Problem& problem, const std::vector<std::vector<Result>
     }
     add("END");
   }
-  add("set terminal svg noenhanced size 760,520 font 'Helvetica,12' background '#ffffff'");
+  add("set terminal svg noenhanced size 760,560 font 'Helvetica,12' background '#ffffff'");
   add(fmt::format("set output '{}'", io::kGnuplotDrawing));
   add(fmt::format("set title '{}' font 'Helvetica-Bold,13'", problem.title));
   add("set logscale xy; set format x '%g'");
   add("set format y '%.0e'");
   add("set border 3 linecolor '#666666'; set tics nomirror scale 0.5 textcolor '#333333'");
   add("set grid linecolor '#e2e2e2' linetype 1 linewidth 0.5");
-  add("set xlabel 'CPU seconds per simulated second'");
+  add("set xlabel 'CPU seconds per simulated second' offset 0,0.6");
   add(problem.contact ? "set ylabel 'error after up to 96 ms [m]'" : "set ylabel 'error [m]'");
   add("set key below");
   std::string plot = "plot ";
