@@ -41,7 +41,7 @@ HonestyCase examine(Study& study, const Problem& problem, const TrialScene& scen
   c.problem = problem.name;
   c.accuracy = accuracy;
   const Result* best = bestOf(problem.name, accuracy, table);
-  c.counted = best && 10.0 * study.referenceError() <= accuracy;
+  c.counted = best && tells(study.referenceError(), accuracy);
   if (!c.counted) return c;
   const Choice choice = chooseSetting(accuracy, scene);
   c.trialSeconds = choice.trialSeconds;

@@ -16,14 +16,14 @@ struct Best {
   double referenceError = 0.0;  ///< smallest of those tried [m]
 };
 
-/// The fastest that is as accurate, by a reference that is ten times better than that.
+/// The fastest that is as accurate, by references that tell.
 Best bestOf(const std::vector<Result>& results, const std::string& problem, double error,
             const std::string& engine) {
   Best best{nullptr, std::numeric_limits<double>::infinity()};
   for (const Result& r : results) {
     if (r.problem != problem || r.method.engine != engine) continue;
     best.referenceError = std::min(best.referenceError, r.referenceError);
-    if (r.error <= error && 10.0 * r.referenceError <= error &&
+    if (r.error <= error && tells(r.referenceError, error) &&
         (!best.result || r.time < best.result->time))
       best.result = &r;
   }
@@ -34,7 +34,7 @@ std::string cells(const Best& best, double error) {
   if (best.result)
     return fmt::format("{}, {:.3g} ms | {:.2g}", best.result->method.label, 1e3 * best.result->h,
                        best.result->time);
-  if (10.0 * best.referenceError <= error) return "not reached | ";
+  if (tells(best.referenceError, error)) return "not reached | ";
   return fmt::format("not told: its references differ by {:.1g} m | ", best.referenceError);
 }
 
@@ -56,7 +56,7 @@ void writeRatioTable(const std::filesystem::path& folder, const std::vector<Prob
         const double r = ours.result->time / theirs.result->time;
         ratio = r > 1.0 ? fmt::format("🔴 **{:.2f}**: MuJoCo's is {:.2f} times as fast", r, r)
                         : fmt::format("{:.2f}", r);
-      } else if (theirs.result && 10.0 * ours.referenceError <= error) {
+      } else if (theirs.result && tells(ours.referenceError, error)) {
         ratio = "🔴 MuJoCo's alone";
       }
       ++rows;

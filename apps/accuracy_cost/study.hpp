@@ -32,6 +32,9 @@ struct Result {
   double referenceError = 0.0;  ///< by which two references differ [m]
 };
 
+/// Whether references that differ by so much [m] tell an error of that size: ten times better.
+inline bool tells(double referenceError, double error) { return 10.0 * referenceError <= error; }
+
 struct StudyOptions {
   double minTime = 0.05;  ///< CPU seconds at least that a time is measured over
   int repeats = 3;        ///< of which the least is taken
