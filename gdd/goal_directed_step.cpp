@@ -3,8 +3,6 @@
 
 #include <chrono>
 
-#include "engine/constraints/soft_friction.hpp"
-
 namespace softgauss::gdd {
 
 GoalDirectedController::GoalDirectedController(const Model& model)
@@ -29,9 +27,8 @@ bool refuses(const AugmentedLagrangian&, const WarmStart& warm) {
 }  // namespace
 
 template <class Solver>
-SolveStatus GoalDirectedController::solveAndAdvance(Solver& used, const Model& model,
-                                                    const Input& input, State& state, Data& data,
-                                                    ContactSource* contacts) {
+SolveStatus GoalDirectedController::solveAndAdvance(Solver& used, const Model& model, State& state,
+                                                    Data& data, ContactSource* contacts) {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point start = Clock::now();
   // A disturbance is not the control's: it belongs to what the control has to cope with.
@@ -51,11 +48,8 @@ SolveStatus GoalDirectedController::solveAndAdvance(Solver& used, const Model& m
   box.clamp(expansion.force(), control, coordinates_);
   box.commands(coordinates_, commands);
   setAppliedForce(control, data.forces);
-  if (data.stages) {  // an integrator that looks at the dynamics again
-    held_.tau = control;
-    if (input.tau.size() == model.nv) held_.tau += input.tau;
-    held_.wrenches = input.wrenches;
-  }
+  if (data.stages)  // an integrator that looks at the dynamics again
+    held_.tau = held_.tau.size() == model.nv ? held_.tau + control : control;
   const SolveStatus status =
       advance(model, held_, contacts, &expansion.acceleration(), data, state);
   if (!softgauss::isRefused(status)) expansion.keepWarmStart(state.warmstart);
@@ -64,25 +58,31 @@ SolveStatus GoalDirectedController::solveAndAdvance(Solver& used, const Model& m
 
 SolveStatus GoalDirectedController::step(const Model& model, const Input& input, State& state,
                                          Data& data, ContactSource* contacts) noexcept {
-  if (computeStages(model, input, state, data, contacts) == SolveStatus::notFinite)
+  hold(input);
+  if (computeStages(model, held_, state, data, contacts) == SolveStatus::notFinite)
     return SolveStatus::notFinite;
-  return finish(model, input, state, data, contacts);
+  return finish(model, state, data, contacts);
 }
 
 SolveStatus GoalDirectedController::stepAt(const Model& model, const Input& input, State& state,
                                            Data& data, ContactSource* contacts) noexcept {
-  if (computeStagesAt(model, input, state, data, contacts) == SolveStatus::notFinite)
+  hold(input);
+  if (computeStagesAt(model, held_, state, data, contacts) == SolveStatus::notFinite)
     return SolveStatus::notFinite;
-  return finish(model, input, state, data, contacts);
+  return finish(model, state, data, contacts);
+}
+
+void GoalDirectedController::hold(const Input& input) {
+  held_ = input;
+  held_.softFriction = true;
 }
 
 /// Control and step, where the stages are those of the state.
-SolveStatus GoalDirectedController::finish(const Model& model, const Input& input, State& state,
-                                           Data& data, ContactSource* contacts) {
-  softenFriction(model, data.weights, data.constraints.dryFriction);
+SolveStatus GoalDirectedController::finish(const Model& model, State& state, Data& data,
+                                           ContactSource* contacts) {
   if (solver == GddSolver::activeSet && data.constraints.piecewiseQuadratic())
-    return solveAndAdvance(activeSet, model, input, state, data, contacts);
-  return solveAndAdvance(augmentedLagrangian, model, input, state, data, contacts);
+    return solveAndAdvance(activeSet, model, state, data, contacts);
+  return solveAndAdvance(augmentedLagrangian, model, state, data, contacts);
 }
 
 }  // namespace softgauss::gdd

@@ -52,15 +52,15 @@ class GoalDirectedController {
   const VectorX& acceleration() const { return expansion.acceleration(); }
 
  private:
-  SolveStatus finish(const Model& model, const Input& input, State& state, Data& data,
-                     ContactSource* contacts);
+  void hold(const Input& input);
+  SolveStatus finish(const Model& model, State& state, Data& data, ContactSource* contacts);
   template <class Solver>
-  SolveStatus solveAndAdvance(Solver& used, const Model& model, const Input& input, State& state,
-                              Data& data, ContactSource* contacts);
+  SolveStatus solveAndAdvance(Solver& used, const Model& model, State& state, Data& data,
+                              ContactSource* contacts);
 
   GoalCost cost_;
   VectorX coordinates_;  ///< y of the control (nv)
-  Input held_;           ///< over the step, where the integrator asks for it
+  Input held_;           ///< over the step, with soft friction; its τ is the control's at the end
 };
 
 }  // namespace softgauss::gdd

@@ -12,12 +12,16 @@
 namespace softgauss {
 
 struct Assembly {
+  /// Whether friction hardens where it sticks.
+  bool sticks() const { return model.options.carriedLoad && !softFriction; }
+
   const Model& model;
   const State& state;
   const Kinematics& kinematics;
   const ContactSet& contacts;
   const InverseWeights& weights;
   const TreeSparsity& tree;           ///< pattern of M: row i lists the dofs that move body(i)
+  bool softFriction = false;          ///< Input::softFriction
   const CarriedLoad* load = nullptr;  ///< null: contacts know of no load
 };
 

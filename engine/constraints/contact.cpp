@@ -2,9 +2,11 @@
 #include "engine/constraints/contact.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "engine/constraints/contact_softness.hpp"
+#include "engine/constraints/sticking_contact.hpp"
 #include "engine/core/rotation.hpp"
 
 namespace softgauss {
@@ -82,10 +84,13 @@ std::optional<Touch> touchAt(const Assembly& in, int i) {
   if (touch.distance >= 0.0) return std::nullopt;  // NaN makes rows, so that the solve reports it
   touch.frictionDim = frictionDim(material, model.options.effects);
   double weight = in.weights.translation[c.bodyA] + in.weights.translation[c.bodyB];
-  if (const double load = in.load ? in.load->of(model, c) : 0.0; load * weight > 1.0) {
+  const double load = in.load ? in.load->of(model, c) : 0.0;
+  touch.carries = load > 0.0;
+  if (load * weight > 1.0) {
     if (!material.spring) touch.hardening = load * weight;
     weight = 1.0 / load;
   }
+  touch.inverseMass = weight;
   touch.softness =
       contactSoftness(material, touch.frictionDim, touch.distance, weight, model.options);
   if (touch.frictionDim > 0) {
@@ -109,7 +114,7 @@ ContactBlocks::FrameVector ContactBlocks::addBlock(const Assembly& in, int i, co
          all[i - place - 1].geometryB == c.geometryB)
     ++place;
   made_.push_back({i, c.geometryA, c.geometryB, place, row, R_WC, touch.frictionDim, touch.friction,
-                   touch.hardening});
+                   touch.hardening, 1.0});
 
   RelativeMotion motion;
   motion.bodyA = c.bodyA;
@@ -128,6 +133,19 @@ ContactBlocks::FrameVector ContactBlocks::addBlock(const Assembly& in, int i, co
     Eigen::Map<Vector3>(y.data() + 3).noalias() =
         R_WC.transpose() * (in.kinematics.V[c.bodyB].angular - in.kinematics.V[c.bodyA].angular);
   return y;
+}
+
+Softness ContactBlocks::soften(const Assembly& in, const Touch& touch, const FrameVector& velocity,
+                               int rows) {
+  const Softness& soft = touch.softness;
+  if (!touch.carries || !in.sticks() || touch.frictionDim == 0) return soft;
+  double squares = 0.0;
+  for (int k = 0; k < touch.frictionDim; ++k)
+    squares += std::pow(touch.friction[k] * velocity[k + 1], 2.0);
+  const double weight = in.model.options.gravity.norm() / touch.inverseMass;
+  const double creep = (-soft.stiffness * touch.distance + soft.R * weight / rows) / soft.damping;
+  made_.back().slip = SlipSpeeds{std::sqrt(squares), std::abs(velocity[0]), creep}.slip();
+  return sticking(soft, made_.back().slip);
 }
 
 void ContactBlocks::indexRows(std::size_t rows) {

@@ -36,6 +36,8 @@ struct Touch {
   int frictionDim = 0;               ///< condim − 1; 0 when frictionless
   Softness softness;                 ///< of an edge, or of the row along the normal
   double hardening = 1.0;            ///< of it by the load it carries (T.80): (w_A + w_B)/A, ≥ 1
+  double inverseMass = 0.0;          ///< A [1/kg]
+  bool carries = false;              ///< L > 0: other trees stand on each other here
   std::array<double, 5> friction{};  ///< μ_k of frictionDim directions
 
   double mu() const { return friction[0]; }  ///< of sliding; 0 when frictionless
@@ -54,6 +56,7 @@ struct ContactRows {
   int frictionDim = 0;               ///< condim − 1; 0 when frictionless
   std::array<double, 5> friction{};  ///< μ_k
   double hardening = 1.0;            ///< Touch::hardening
+  double slip = 1.0;                 ///< ρ (T.97), 1 where it does not stick
 };
 
 /// Contacts of one kind, and how they move.
@@ -93,6 +96,9 @@ class ContactBlocks {
   }
   /// The block of contact i, whose rows begin at `row`; returns ẏ.
   FrameVector addBlock(const Assembly& in, int i, const Touch& touch, int row);
+  /// How soft the last block is, `rows` of which push along the normal: as it is, or harder where
+  /// it sticks (T.97).
+  Softness soften(const Assembly& in, const Touch& touch, const FrameVector& velocity, int rows);
   /// Contact of each of `rows` rows.
   void indexRows(std::size_t rows);
 

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "engine/constraints/impedance.hpp"
-#include "engine/constraints/soft_friction.hpp"
 
 namespace softgauss {
 namespace {
@@ -34,7 +33,7 @@ void DryFriction::assemble(const Assembly& in) {
       const double rate = in.state.v[i];
       Softness soft =
           softnessAt(dof.frictionImpedance, 0.0, in.weights.dof[i], model.options.timestep);
-      if (model.options.carriedLoad) harden(soft, std::abs(rate), dof.dryFriction);
+      if (in.sticks()) harden(soft, std::abs(rate), dof.dryFriction);
       dof_.push_back(i);
       reference.push_back(soft.referenceAcceleration(rate, 0.0));
       pushSoftness(soft);
@@ -42,19 +41,6 @@ void DryFriction::assemble(const Assembly& in) {
     }
   }
   resizeRows(dof_.size());
-}
-
-void softenFriction(const Model& model, const InverseWeights& weights, DryFriction& rows) {
-  for (int row = 0; row < rows.rowCount(); ++row) {
-    const int dof = rows.dof(row);
-    const Softness soft = softnessAt(model.dofs[dof].frictionImpedance, 0.0, weights.dof[dof],
-                                     model.options.timestep);
-    double& perInertia = rows.perInertia[static_cast<std::size_t>(row)];
-    if (perInertia == soft.perInertia) continue;
-    double& D = rows.D[static_cast<std::size_t>(row)];
-    D = model.options.exactDiagonal ? D * (perInertia / soft.perInertia) : 1.0 / soft.R;
-    perInertia = soft.perInertia;
-  }
 }
 
 }  // namespace softgauss

@@ -17,7 +17,7 @@ void EllipticContact::assemble(const Assembly& in) {
       const std::optional<Touch> touch = touchAt(in, i);
       if (!touch || touch->frictionDim == 0) continue;
       const FrameVector velocity = addBlock(in, i, *touch, static_cast<int>(reference.size()));
-      const Softness& soft = touch->softness;
+      const Softness soft = soften(in, *touch, velocity, 1);
       perInertia_.push_back(soft.perInertia);
       cones_.push_back({touch->frictionDim + 1, 1.0 / soft.R,
                         touch->mu() / std::sqrt(options.impedanceRatio), touch->friction});

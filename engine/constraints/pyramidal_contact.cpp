@@ -26,10 +26,10 @@ void PyramidalContact::assemble(const Assembly& in) {
     const std::optional<Touch> touch = touchAt(in, i);
     if (!touch || (touch->frictionDim > 0 && options.cone != Cone::pyramidal)) continue;
     const FrameVector velocity = addBlock(in, i, *touch, static_cast<int>(reference.size()));
-    const Softness& soft = touch->softness;
     double edgeVelocity[10];
     toEdges(velocity.data(), touch->frictionDim, touch->friction, edgeVelocity);
     const int edges = std::max(1, 2 * touch->frictionDim);
+    const Softness soft = soften(in, *touch, velocity, edges);
     for (int edge = 0; edge < edges; ++edge) {
       reference.push_back(soft.referenceAcceleration(edgeVelocity[edge], touch->distance));
       pushSoftness(soft);

@@ -114,7 +114,8 @@ bool StickingFriction::take(PyramidalContact& pyramids, EllipticContact& cones, 
     patch.friction = made.friction;
     patch.bound = pyramids.frameForce(i)[0];
     patch.Dn = std::max(1, 2 * made.frictionDim) * pyramids.D[row];
-    patch.D = kStiffer * 2.0 * pyramids.D[row] / made.hardening;  // two edges a direction
+    patch.D =
+        kStiffer * 2.0 * made.slip * pyramids.D[row] / made.hardening;  // two edges a direction
     add(patch, a, pyramids.reference.data() + row, 2);
     rubs |= made.frictionDim > 0;
   }
@@ -124,7 +125,8 @@ bool StickingFriction::take(PyramidalContact& pyramids, EllipticContact& cones, 
     patch.friction = cone.friction;
     patch.bound = cones.frameForce(i)[0];
     patch.Dn = cone.D;
-    patch.D = kStiffer * cone.D / (cone.mu * cone.mu * cones.made()[i].hardening);
+    const ContactRows& made = cones.made()[i];
+    patch.D = kStiffer * made.slip * cone.D / (cone.mu * cone.mu * made.hardening);
     patch.round = true;
     add(patch, a, cones.reference.data() + cones.made()[i].row, 1);
     rubs = true;

@@ -219,6 +219,7 @@ SolveStatus Islands::take(Island& island, const Input& input) {
   } else {
     part.tau.resize(0);
   }
+  part.softFriction = input.softFriction || controls_;
   part.wrenches.clear();
   for (ExternalWrench wrench : input.wrenches) {
     const int unit = units_.ofBody(model_, wrench.body);

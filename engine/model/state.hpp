@@ -67,6 +67,9 @@ struct ExternalWrench {
 struct Input {
   VectorX tau;  ///< generalised applied force (nv) [N or N m]; empty: none
   std::vector<ExternalWrench> wrenches;
+  /// Friction is as soft at rest as in motion, as MuJoCo's, and creeps under load: (T.94) and
+  /// (T.97) are left out. What sticks hard does not answer its control, so goals see it like this.
+  bool softFriction = false;
 };
 
 /// 64-bit hash of q, v, time and the warm start, bit for bit.

@@ -124,8 +124,8 @@ SolveStatus computeStages(const Model& model, const Input& input, const State& s
   }
 
   if (!kBuiltRows.empty() && !data.plan.rows.empty()) {
-    data.constraints.assemble(
-        {model, state, data.kinematics, data.contacts, data.weights, data.inertia.sparsity});
+    data.constraints.assemble({model, state, data.kinematics, data.contacts, data.weights,
+                               data.inertia.sparsity, input.softFriction});
     // A mass matrix that cannot be factored is found, and reported, by the solve.
     if (model.options.exactDiagonal && !data.constraints.active().empty())
       data.exactDiagonal.apply(data.inertia.M, data.constraints);

@@ -8,7 +8,6 @@
 
 #include <Eigen/LU>
 
-#include "engine/constraints/soft_friction.hpp"
 #include "tests/gdd/gdd_scene.hpp"
 #include "tests/support/matchers.hpp"
 
@@ -125,8 +124,8 @@ GddScene smallScene(std::uint64_t seed, int contacts, bool boxed, double weight,
     source.points.push_back(c);
   }
   scene.contacts = std::make_shared<FixedContacts>(source);
+  scene.input.softFriction = true;
   EXPECT_EQ(scene.stages(), SolveStatus::converged);
-  softenFriction(scene.model, scene.data->weights, scene.data->constraints.dryFriction);
   GddScene s(std::move(scene));
   if (seed % 2 == 0) s.box.lower[3] = s.box.upper[3] = 0.0;
   for (int i = 0; boxed && i < 2; ++i) {

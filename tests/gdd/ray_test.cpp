@@ -4,7 +4,6 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 
-#include "engine/constraints/soft_friction.hpp"
 #include "tests/gdd/gdd_scene.hpp"
 #include "tests/support/matchers.hpp"
 
@@ -179,8 +178,8 @@ TEST(Ray, PassesBothKnotsOfDryFriction) {
   JointSpec joint = jointSpec("x", JointType::prismatic, "world", "box", {}, Vector3::UnitX());
   joint.dryFriction = limit;
   Scene scene(builder.joint(joint).build());
+  scene.input.softFriction = true;
   scene.stages();
-  softenFriction(scene.model, scene.data->weights, scene.data->constraints.dryFriction);
   const Constraints& constraints = scene.data->constraints;
   const gdd::ControlBox box(scene.model);
   const VectorX lambda = VectorX::Zero(1), rho = VectorX::Ones(1);
