@@ -159,6 +159,7 @@ class Runner {
   void estimateError() {
     held_.wrenches = input_.wrenches;
     held_.tau = controller_.goals.empty() ? input_.tau : controller_.control;
+    held_.softFriction = !controller_.goals.empty();
     errorEstimate_->observe(before_, held_, state_);
   }
 

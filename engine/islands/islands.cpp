@@ -219,7 +219,7 @@ SolveStatus Islands::take(Island& island, const Input& input) {
   } else {
     part.tau.resize(0);
   }
-  part.softFriction = input.softFriction || controls_;
+  part.softFriction = input.softFriction;
   part.wrenches.clear();
   for (ExternalWrench wrench : input.wrenches) {
     const int unit = units_.ofBody(model_, wrench.body);
