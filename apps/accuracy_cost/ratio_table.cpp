@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <limits>
 #include <stdexcept>
@@ -65,6 +66,10 @@ void writeRatioTable(const std::filesystem::path& folder, const std::vector<Prob
                           cells(ours, error), cells(theirs, error), ratio);
     }
   text += fmt::format("\n{} of {} rows are red.\n", slower, rows);
+  for (const Result& r : results)
+    if (std::isnan(r.error))
+      text += fmt::format("\nGiven up, for it takes too long: {}, {}, {:.3g} ms.\n", r.problem,
+                          r.method.label, 1e3 * r.h);
   std::ofstream out(folder / "accuracy_table.md");
   if (!(out << text << std::flush))
     throw std::runtime_error("cannot write " + (folder / "accuracy_table.md").string());
