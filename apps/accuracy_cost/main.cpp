@@ -11,6 +11,7 @@
 
 #include "apps/accuracy_cost/drift.hpp"
 #include "apps/accuracy_cost/honesty.hpp"
+#include "apps/accuracy_cost/parting.hpp"
 #include "apps/accuracy_cost/pictures.hpp"
 #include "apps/accuracy_cost/ratio_table.hpp"
 #include "apps/accuracy_cost/study.hpp"
@@ -104,9 +105,11 @@ int main(int argc, char** argv) {
          "CPU time that a setting may take for one run of a problem, else it is given up [s]")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
-  bool list = false, drift = false, honesty = false;
+  bool list = false, drift = false, parting = false, honesty = false;
   app.add_flag("--drift", drift,
                "instead: energy and momentum over 10 s at 2 ms, every integrator");
+  app.add_flag("--parting", parting,
+               "instead: by how much a small difference grows, which tells chaos");
   app.add_flag("--honesty", honesty,
                "and then: choose a setting for accuracies of 1e-2 … 1e-6 m on each problem, as\n"
                "simulate_gdd --accuracy does, and check its true error and its time");
@@ -136,6 +139,10 @@ int main(int argc, char** argv) {
     std::filesystem::create_directories(arguments.out);
     if (drift) {
       measureDrifts(arguments.out, problems);
+      return interrupted() ? 130 : 0;
+    }
+    if (parting) {
+      writePartings(arguments.out, problems);
       return interrupted() ? 130 : 0;
     }
     ResultTable table(std::filesystem::path(arguments.out) / "accuracy_cost.csv");
