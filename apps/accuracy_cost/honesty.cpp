@@ -48,7 +48,7 @@ HonestyCase examine(Study& study, const Problem& problem, const TrialScene& scen
   c.found = choice.found;
   c.setting = choice.setting.text(kPeriod);
   std::vector<Result> both{study.measure(methodOf(choice.setting), kPeriod / choice.setting.steps),
-                           *best};
+                           study.measure(best->method, best->h)};
   study.measureTimes(both);
   c.error = both[0].error;
   c.time = both[0].time;
@@ -81,6 +81,7 @@ void checkHonesty(const std::filesystem::path& folder, const std::vector<Problem
     for (const double accuracy : kAccuracies) {
       if (interrupted()) return;
       const HonestyCase c = examine(study, problem, scene, accuracy, table);
+      if (interrupted()) return;
       csv << fmt::format("{},{:g},{:d},{:d},\"{}\",{:.4g},{:.4g},\"{}\",{:.4g},{:.3g}\n", c.problem,
                          c.accuracy, c.counted, c.found, c.setting, c.error, c.time, c.best,
                          c.bestTime, c.trialSeconds)

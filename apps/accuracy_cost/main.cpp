@@ -11,6 +11,7 @@
 
 #include "apps/accuracy_cost/drift.hpp"
 #include "apps/accuracy_cost/honesty.hpp"
+#include "apps/accuracy_cost/parting.hpp"
 #include "apps/accuracy_cost/pictures.hpp"
 #include "apps/accuracy_cost/ratio_table.hpp"
 #include "apps/accuracy_cost/study.hpp"
@@ -23,21 +24,25 @@ namespace {
 struct Arguments {
   std::vector<std::string> scenes;
   std::string out = "accuracy", robots = "data/robots";
+  int mostSteps = kMostSteps;  ///< in a period
   StudyOptions study;
 };
 
-std::string figure(double x) { return std::isfinite(x) ? fmt::format("{:.3g}", x) : "not finite"; }
+std::string figure(double x) {
+  if (std::isnan(x)) return "given up";
+  return std::isfinite(x) ? fmt::format("{:.3g}", x) : "not finite";
+}
 
 void print(const Problem& problem, const std::vector<Result>& results) {
-  fmt::print("\n{}: {}\n{:<40} {:>10} {:>10} {:>11} {:>10} {:>10} {:>10}\n", problem.name,
+  fmt::print("\n{}: {}\n{:<40} {:>10} {:>10} {:>11} {:>10} {:>10} {:>10} {:>12}\n", problem.name,
              problem.title, "", "step [ms]", "error [m]", "angle [rad]", "energy", "momentum",
-             "s per s");
+             "s per s", "one step [m]");
   for (const Result& r : results) {
     if (r.problem != problem.name) continue;
-    fmt::print("{:<40} {:>10.4g} {:>10} {:>11} {:>10} {:>10} {:>10}\n", r.method.label, 1e3 * r.h,
-               figure(r.error), figure(r.orientation),
+    fmt::print("{:<40} {:>10.4g} {:>10} {:>11} {:>10} {:>10} {:>10} {:>12}\n", r.method.label,
+               1e3 * r.h, figure(r.error), figure(r.orientation),
                problem.passive ? figure(r.energyDrift) : "-", figure(r.momentumDrift),
-               figure(r.time));
+               figure(r.time), problem.contact ? figure(r.oneStep) : "-");
   }
 }
 
@@ -48,15 +53,19 @@ void run(const Problem& problem, const Arguments& arguments, ResultTable& table)
   Progress progress(problem.name);
   long done = 0;
   const int fewest = problem.contact ? kFewestContactSteps : kFewestSteps;
-  const long all = (problem.contact ? 7 : 9) * static_cast<long>(methods.size());
-  for (int steps = kMostSteps; steps >= fewest; steps /= 2) {
+  long all = 0;
+  for (int steps = arguments.mostSteps; steps >= fewest; steps /= 2)
+    all += static_cast<long>(methods.size());
+  for (int steps = arguments.mostSteps; steps >= fewest; steps /= 2) {
     const double h = kPeriod / steps;
     std::vector<Result> results;
     for (const Method& method : methods) {
       progress.show(done++, all);
       if (interrupted()) return;
       if (table.has(problem.name, method, h)) continue;
-      if (!study.prepare(method)) {
+      const bool prepared = study.prepare(method);
+      if (interrupted()) return;
+      if (!prepared) {
         progress.clear();
         fmt::print("{}: the reference of '{}' is not finite\n", problem.name, method.label);
         continue;
@@ -64,6 +73,7 @@ void run(const Problem& problem, const Arguments& arguments, ResultTable& table)
       results.push_back(study.measure(method, h));
     }
     study.measureTimes(results);
+    if (interrupted()) return;  // the last of them is cut
     for (const Result& result : results) table.add(result);
   }
 }
@@ -81,14 +91,25 @@ int main(int argc, char** argv) {
   app.add_option("--robots", arguments.robots, "folder of arm.urdf, hand.urdf, humanoid.urdf")
       ->type_name("DIR");
   app.add_option("--repeats", arguments.study.repeats,
-                 "how often each time is measured; the least counts")
-      ->check(CLI::Range(1, 100));
+                 "how often each time is measured anew, the least counts; 0: the first run counts")
+      ->check(CLI::Range(0, 100));
   app.add_option("--min-time", arguments.study.minTime,
                  "CPU time that each measurement takes at least [s]")
       ->check(CLI::NonNegativeNumber);
-  bool list = false, drift = false, honesty = false;
+  app.add_option("--most-steps", arguments.mostSteps,
+                 "the shortest step is 32 ms over this, a power of two")
+      ->check(CLI::IsMember({1, 2, 4, 8, 16, 32, 64, 128, 256}))
+      ->capture_default_str();
+  app.add_option(
+         "--most-seconds", arguments.study.mostSeconds,
+         "CPU time that a setting may take for one run of a problem, else it is given up [s]")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  bool list = false, drift = false, parting = false, honesty = false;
   app.add_flag("--drift", drift,
                "instead: energy and momentum over 10 s at 2 ms, every integrator");
+  app.add_flag("--parting", parting,
+               "instead: by how much a small difference grows, which tells chaos");
   app.add_flag("--honesty", honesty,
                "and then: choose a setting for accuracies of 1e-2 … 1e-6 m on each problem, as\n"
                "simulate_gdd --accuracy does, and check its true error and its time");
@@ -118,6 +139,10 @@ int main(int argc, char** argv) {
     std::filesystem::create_directories(arguments.out);
     if (drift) {
       measureDrifts(arguments.out, problems);
+      return interrupted() ? 130 : 0;
+    }
+    if (parting) {
+      writePartings(arguments.out, problems);
       return interrupted() ? 130 : 0;
     }
     ResultTable table(std::filesystem::path(arguments.out) / "accuracy_cost.csv");

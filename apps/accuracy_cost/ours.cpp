@@ -80,8 +80,8 @@ References referencesFor(const Problem& problem, const Method& method) {
     return r;
   }
   r.fine = r.coarse = {"softgauss", "dormand-prince", "reference", method.cone};
-  r.fine.integrationTolerance = 1e-12;
-  r.coarse.integrationTolerance = 1e-10;
+  r.fine.integrationTolerance = problem.referenceTolerance;
+  r.coarse.integrationTolerance = 100.0 * problem.referenceTolerance;
   r.fineSteps = 64, r.coarseSteps = 32;
   return r;
 }

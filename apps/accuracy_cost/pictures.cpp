@@ -65,7 +65,9 @@ std::string script(const Problem& problem, const std::vector<std::vector<Result>
   add("set border 3 linecolor '#666666'; set tics nomirror scale 0.5 textcolor '#333333'");
   add("set grid linecolor '#e2e2e2' linetype 1 linewidth 0.5");
   add("set xlabel 'CPU seconds per simulated second' offset 0,0.6");
-  add(problem.contact ? "set ylabel 'error after up to 96 ms [m]'" : "set ylabel 'error [m]'");
+  add(problem.contact ? fmt::format("set ylabel 'error within {:g} ms [m]'",
+                                    1e3 * kPeriod * problem.windowPeriods)
+                      : "set ylabel 'error [m]'");
   add("set key below");
   std::string plot = "plot ";
   for (std::size_t k = 0; k < curves.size(); ++k) {
@@ -101,7 +103,8 @@ nlohmann::ordered_json json(const Problem& problem,
                         {"momentum", r.momentumDrift},
                         {"penetration", r.penetration},
                         {"overshoot", r.overshoot},
-                        {"reference", r.referenceError}});
+                        {"reference", r.referenceError},
+                        {"oneStep", r.oneStep}});
     out["curves"].push_back({{"engine", m.engine}, {"label", m.label}, {"points", points}});
   }
   return out;

@@ -35,6 +35,9 @@ struct Problem {
   int periods = 62;     ///< of the whole motion (2 s)
   int windows = 1;
   int windowPeriods = 62;
+  /// With contact: of the error control of our reference; the one that checks it has 100 times
+  /// more. Where forces jump thousands of times in a second a tighter one finds no more.
+  double referenceTolerance = 1e-12;
   std::function<ModelBuilder()> build;
   std::function<void(const Model&, State&)> start;            ///< null: at rest in q0
   std::function<void(const Model&, double, VectorX&)> force;  ///< τ from a time on; null: none

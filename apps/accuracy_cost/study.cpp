@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "apps/shared/cpu_time.hpp"
+#include "apps/shared/progress.hpp"
 #include "engine/dynamics/energy.hpp"
 
 namespace softgauss::app {
@@ -38,18 +39,57 @@ VectorX Study::force(const Model& model, double time) const {
   return tau;
 }
 
-/// States at the ends of periods; ends early where one is not finite.
-std::vector<State> Study::run(Contestant& contestant, const State& start, int periods,
-                              int steps) const {
+double Study::simulated() const {
+  return problem_.windowPeriods * kPeriod * static_cast<double>(windows().size());
+}
+
+/// States at the ends of periods; ends early where one is not finite, time is up, or the user
+/// wishes to end.
+std::vector<State> Study::run(Contestant& contestant, const State& start, int periods, int steps,
+                              Budget& budget) const {
   std::vector<State> samples;
   contestant.start(start);
   for (int k = 0; k < periods; ++k) {
     const double time = start.time + k * kPeriod;
-    if (!contestant.advance(force(contestant.model(), time), steps)) break;
+    const VectorX tau = force(contestant.model(), time);
+    const double begin = cpuSeconds();
+    const bool finite = contestant.advance(tau, steps);
+    budget.spent += cpuSeconds() - begin;
+    if (!finite || budget.exceeded() || interrupted()) break;
     samples.push_back(contestant.state());
     samples.back().time = time + kPeriod;
   }
   return samples;
+}
+
+/// The reference after kPeriod/kMostSteps, twice that, … the longest step.
+std::vector<State> Study::firstSteps(const References& of, const State& start) const {
+  std::vector<State> states;
+  const int parts = std::max(1, of.fineSteps / kMostSteps);
+  const auto contestant = makeContestant(problem_, of.fine, kPeriod / (kMostSteps * parts));
+  contestant->start(start);
+  const VectorX tau = force(contestant->model(), start.time);
+  for (int done = 0, k = 1; k <= kMostSteps / kFewestContactSteps; done = k, k *= 2) {
+    if (!contestant->advance(tau, (k - done) * parts)) break;
+    states.push_back(contestant->state());
+  }
+  return states;
+}
+
+double Study::oneStep(Contestant& contestant, double h) const {
+  LinkPoses pose(contestant.model()), reference(contestant.model());
+  const std::size_t k = std::lround(std::log2(h * kMostSteps / kPeriod));
+  double sum = 0.0;
+  for (const Window& window : windows()) {
+    contestant.start(window.start);
+    if (k >= window.first.size() ||
+        !contestant.advance(force(contestant.model(), window.start.time), 1))
+      return kInfinity;
+    pose.set(contestant.state());
+    reference.set(window.first[k]);
+    sum += std::pow(pose.against(reference).total, 2);
+  }
+  return std::sqrt(sum / static_cast<double>(windows().size()));
 }
 
 bool Study::prepare(const Method& method) {
@@ -67,11 +107,12 @@ Study::Reference Study::makeReference(const References& of) const {
   const auto coarse = makeContestant(problem_, of.coarse, kPeriod / of.coarseSteps);
   const Model& model = fine->model();
 
-  // Where windows start: on the motion at a step that is good enough to choose states by.
+  // Where windows start: on the motion of the coarser one.
+  Budget any;
   std::vector<State> starts{initialState(model)};
   if (problem_.windows > 1) {
-    const auto scout = makeContestant(problem_, of.fine, kPeriod / 64);
-    const std::vector<State> states = run(*scout, starts.front(), problem_.periods, 64);
+    const std::vector<State> states =
+        run(*coarse, starts.front(), problem_.periods, of.coarseSteps, any);
     if (static_cast<int>(states.size()) < problem_.periods) return reference;
     starts.clear();
     for (int w = 0; w < problem_.windows; ++w)
@@ -92,8 +133,9 @@ Study::Reference Study::makeReference(const References& of) const {
         window.samples.push_back(state);
       }
     } else {
-      window.samples = run(*fine, start, problem_.windowPeriods, of.fineSteps);
-      const std::vector<State> other = run(*coarse, start, problem_.windowPeriods, of.coarseSteps);
+      window.samples = run(*fine, start, problem_.windowPeriods, of.fineSteps, any);
+      const std::vector<State> other =
+          run(*coarse, start, problem_.windowPeriods, of.coarseSteps, any);
       if (static_cast<int>(std::min(window.samples.size(), other.size())) < problem_.windowPeriods)
         return reference;
       for (int k = 0; k < problem_.windowPeriods; ++k) {
@@ -103,6 +145,7 @@ Study::Reference Study::makeReference(const References& of) const {
         ++count;
       }
     }
+    if (problem_.contact) window.first = firstSteps(of, start);
     windows.push_back(std::move(window));
   }
   reference.windows = std::move(windows);
@@ -129,12 +172,15 @@ Result Study::measure(const Method& method, double h) {
   Momentum own, right;
   Vector3 change = Vector3::Zero(), most = Vector3::Zero();  // of linear and angular momentum
   int count = 0;
+  Budget budget{options_.mostSeconds};
   for (const Window& window : windows()) {
     const std::vector<State> states =
-        run(*contestant, window.start, problem_.windowPeriods, stepsOf(h));
+        run(*contestant, window.start, problem_.windowPeriods, stepsOf(h), budget);
     result.penetration = std::max(result.penetration, contestant->penetration());
     if (states.size() < window.samples.size()) {
-      result.error = result.orientation = std::numeric_limits<double>::infinity();
+      result.error = result.orientation =
+          budget.exceeded() ? std::numeric_limits<double>::quiet_NaN() : kInfinity;
+      result.time = kInfinity;
       return result;
     }
     for (std::size_t k = 0; k < states.size(); ++k) {
@@ -154,6 +200,8 @@ Result Study::measure(const Method& method, double h) {
       result.overshoot = std::max(result.overshoot, overshoot(model, states[k]));
     }
   }
+  result.time = budget.spent / simulated();
+  if (problem_.contact) result.oneStep = oneStep(*contestant, h);
   result.error = std::sqrt(sum / count);
   result.orientation = std::sqrt(turned / count);
   result.energyDrift = kinetic > 0.0 ? result.energyDrift / kinetic : 0.0;
@@ -163,32 +211,23 @@ Result Study::measure(const Method& method, double h) {
 }
 
 void Study::measureTimes(std::vector<Result>& results) {
-  if (results.empty()) return;
-  std::vector<std::unique_ptr<Contestant>> contestants;
-  for (Result& r : results) {
-    contestants.push_back(makeContestant(problem_, r.method, r.h));
-    r.time = std::numeric_limits<double>::infinity();
-  }
-  const double simulated = problem_.windowPeriods * kPeriod * static_cast<double>(windows().size());
+  std::vector<std::pair<Result*, std::unique_ptr<Contestant>>> again;
+  for (Result& r : results)
+    if (options_.repeats > 0 && std::isfinite(r.error) &&
+        r.time * simulated() <= options_.longRun) {
+      again.emplace_back(&r, makeContestant(problem_, r.method, r.h));
+      r.time = kInfinity;
+    }
   for (int repeat = 0; repeat < options_.repeats; ++repeat) {
-    for (std::size_t i = 0; i < results.size(); ++i) {
-      if (!std::isfinite(results[i].error)) continue;
-      Contestant& contestant = *contestants[i];
-      double spent = 0.0;
+    for (const auto& [result, contestant] : again) {
+      Budget budget;
       int rounds = 0;
       do {
-        for (const Window& window : windows()) {
-          contestant.start(window.start);
-          for (int k = 0; k < problem_.windowPeriods; ++k) {
-            const VectorX tau = force(contestant.model(), window.start.time + k * kPeriod);
-            const double begin = cpuSeconds();
-            contestant.advance(tau, stepsOf(results[i].h));
-            spent += cpuSeconds() - begin;
-          }
-        }
+        for (const Window& window : windows())
+          run(*contestant, window.start, problem_.windowPeriods, stepsOf(result->h), budget);
         ++rounds;
-      } while (spent < options_.minTime && rounds < 1000);
-      results[i].time = std::min(results[i].time, spent / (rounds * simulated));
+      } while (budget.spent < options_.minTime && rounds < 1000);
+      result->time = std::min(result->time, budget.spent / (rounds * simulated()));
     }
   }
 }
@@ -196,17 +235,13 @@ void Study::measureTimes(std::vector<Result>& results) {
 TrialRun Study::tryOut(const Method& method, double h, double mostSeconds) const {
   TrialRun result;
   const auto contestant = makeContestant(problem_, method, h);
+  Budget budget{mostSeconds};
   for (const Window& window : windows()) {
-    contestant->start(window.start);
-    for (int k = 0; k < problem_.windowPeriods; ++k) {
-      const double time = window.start.time + k * kPeriod;
-      const VectorX tau = force(contestant->model(), time);
-      const double begin = cpuSeconds();
-      const bool finite = contestant->advance(tau, stepsOf(h));
-      result.seconds += cpuSeconds() - begin;
-      if (!finite || result.seconds > mostSeconds) return result;
-      result.samples.push_back(contestant->state());
-    }
+    const std::vector<State> states =
+        run(*contestant, window.start, problem_.windowPeriods, stepsOf(h), budget);
+    result.samples.insert(result.samples.end(), states.begin(), states.end());
+    result.seconds = budget.spent;
+    if (static_cast<int>(states.size()) < problem_.windowPeriods) return result;
   }
   result.finite = true;
   return result;

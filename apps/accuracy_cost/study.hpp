@@ -8,7 +8,8 @@
 /// has one window, the whole motion. The reference is the closed form where there is one, else the
 /// most accurate method; a second, coarser one tells how good it is. With other cones, or in
 /// another engine, contact is another model: such a method is compared with its own reference,
-/// which says how far it is from its own limit.
+/// which says how far it is from its own limit. With contact the error of one step is measured too,
+/// from the start of every window.
 
 #include "apps/accuracy_cost/contestant.hpp"
 #include "apps/shared/pose_error.hpp"
@@ -20,8 +21,9 @@ namespace softgauss::app {
 struct Result {
   std::string problem;
   Method method;
-  double h = 0.0;            ///< [s]
-  double error = 0.0;        ///< root mean square over windows and periods [m]; ∞: not finite
+  double h = 0.0;  ///< [s]
+  /// Root mean square over windows and periods [m]; ∞: not finite; NaN: it took too long.
+  double error = 0.0;
   double orientation = 0.0;  ///< the same of angles [rad]
   double time = 0.0;         ///< CPU seconds per simulated second
   double energyDrift = 0.0;  ///< largest gain or loss over the largest kinetic energy, if passive
@@ -30,6 +32,7 @@ struct Result {
   double penetration = 0.0;     ///< deepest [m]
   double overshoot = 0.0;       ///< beyond a joint's limit, largest [rad or m]
   double referenceError = 0.0;  ///< by which two references differ [m]
+  double oneStep = 0.0;         ///< with contact: error after one step, over the windows [m]
 };
 
 /// Whether references that differ by so much [m] tell an error of that size: ten times better.
@@ -37,7 +40,9 @@ inline bool tells(double referenceError, double error) { return 10.0 * reference
 
 struct StudyOptions {
   double minTime = 0.05;  ///< CPU seconds at least that a time is measured over
-  int repeats = 3;        ///< of which the least is taken
+  int repeats = 3;        ///< of which the least is taken; 0: the run that gave the error counts
+  double longRun = 5.0;   ///< CPU seconds of all windows, beyond which a time is measured once
+  double mostSeconds = 60.0;  ///< CPU seconds of all windows, beyond which a setting is given up
 };
 
 class Study {
@@ -58,6 +63,7 @@ class Study {
   struct Window {
     State start;
     std::vector<State> samples;  ///< at the end of each period
+    std::vector<State> first;  ///< with contact: after the shortest step, twice, four times … it
   };
   struct Reference {
     References of;
@@ -66,7 +72,16 @@ class Study {
   };
   const std::vector<Window>& windows() const { return references_[current_].windows; }
   Reference makeReference(const References& of) const;
-  std::vector<State> run(Contestant& contestant, const State& start, int periods, int steps) const;
+  /// CPU time that steps may take, and took [s].
+  struct Budget {
+    double most = kInfinity, spent = 0.0;
+    bool exceeded() const { return spent > most; }
+  };
+  std::vector<State> run(Contestant& contestant, const State& start, int periods, int steps,
+                         Budget& budget) const;
+  std::vector<State> firstSteps(const References& of, const State& start) const;
+  double oneStep(Contestant& contestant, double h) const;
+  double simulated() const;  ///< of all windows [s]
   State initialState(const Model& model) const;
   VectorX force(const Model& model, double time) const;
 

@@ -15,23 +15,24 @@ constexpr const char* kHeader =
     "problem,engine,integrator,label,cone,tolerance,integration_tolerance,warm_start,doubling,"
     "timestep_s,"
     "error_m,orientation_rad,"
-    "cpu_s_per_s,energy_drift,momentum_drift,penetration_m,overshoot,reference_error_m";
+    "cpu_s_per_s,energy_drift,momentum_drift,penetration_m,overshoot,reference_error_m,one_step_m";
 
 std::string line(const Result& r) {
   const Method& m = r.method;
   return fmt::format(
-      "{},{},{},{},{},{},{},{},{},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}",
+      "{},{},{},{},{},{},{},{},{},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:."
+      "6g}",
       r.problem, m.engine, m.integrator, m.label,
       m.cone == Cone::elliptic ? "elliptic" : "pyramidal", m.tolerance, m.integrationTolerance,
       m.warmStart ? 1 : 0, m.doubling ? 1 : 0, r.h, r.error, r.orientation, r.time, r.energyDrift,
-      r.momentumDrift, r.penetration, r.overshoot, r.referenceError);
+      r.momentumDrift, r.penetration, r.overshoot, r.referenceError, r.oneStep);
 }
 
 bool parse(const std::string& text, Result& r) {
   std::vector<std::string> cells;
   std::istringstream in(text);
   for (std::string cell; std::getline(in, cell, ',');) cells.push_back(cell);
-  if (cells.size() != 18) return false;
+  if (cells.size() != 19) return false;
   try {
     const auto number = [&](int i) { return std::stod(cells[static_cast<std::size_t>(i)]); };
     r.problem = cells[0];
@@ -41,7 +42,7 @@ bool parse(const std::string& text, Result& r) {
                 cells[7] == "1", cells[8] == "1"};
     r.h = number(9), r.error = number(10), r.orientation = number(11), r.time = number(12);
     r.energyDrift = number(13), r.momentumDrift = number(14), r.penetration = number(15);
-    r.overshoot = number(16), r.referenceError = number(17);
+    r.overshoot = number(16), r.referenceError = number(17), r.oneStep = number(18);
   } catch (const std::exception&) {
     return false;
   }

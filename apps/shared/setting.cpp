@@ -14,7 +14,7 @@ namespace {
 constexpr int kMostSteps = 4096;         // a period
 constexpr double kMostSeconds = 30.0;    // CPU, for one run of the reference
 constexpr double kReferenceShare = 0.2;  // of the accuracy, by which two references may differ
-constexpr double kAimedShare = 0.75;     // of the accuracy, at which the next trial aims
+constexpr double kAimedShare = 0.9;      // of what the reference leaves, at which the next aims
 constexpr double kNearlyAsFast = 1.4;    // times the best: timed once more
 constexpr int kTrialsOfAMethod = 7;
 
@@ -101,6 +101,8 @@ class Chooser {
     const Setting pairs[][2] = {
         {{Integrator::dormandPrince, 2 * fewest_, false, tight},
          {Integrator::dormandPrince, 5 * fewest_, false, 0.1 * tight}},
+        {{Integrator::dormandPrince, 8 * fewest_, false, 1e-10},
+         {Integrator::dormandPrince, 16 * fewest_, false, 1e-12}},
         {{Integrator::rungeKutta4, 128}, {Integrator::rungeKutta4, 256}},
         {{Integrator::semiImplicitEuler, 512}, {Integrator::semiImplicitEuler, 1024}}};
     for (const Setting(&pair)[2] : pairs) {
@@ -121,6 +123,7 @@ class Chooser {
   }
 
   bool passes(double error) const { return error + referenceError_ <= accuracy_; }
+  double aim() const { return kAimedShare * (accuracy_ - referenceError_); }
 
   void note(const Tried& tried) {
     if (!passes(tried.error)) return;
@@ -147,8 +150,7 @@ class Chooser {
       (pass ? enough : tooFew) = n;
       double next = 4.0 * n;
       if (std::isfinite(tried.error)) {
-        const double aim = std::max(kAimedShare * accuracy_, 1e-300);
-        next = n * std::pow(tried.error / aim, 1.0 / method.order);
+        next = n * std::pow(tried.error / aim(), 1.0 / method.order);
       }
       n = static_cast<int>(std::ceil(std::clamp(next, 0.125 * n, 8.0 * n)));
       n = std::clamp(n, std::max(fewest_, tooFew + 1), kMostSteps);
@@ -164,10 +166,9 @@ class Chooser {
       const bool pass = passes(tried.error);
       if (!pass && tried.seconds > 1.2 * best_) return;
       (pass ? tightest : loosest) = tolerance;
-      const double wanted =
-          std::isfinite(tried.error)
-              ? tolerance * std::pow(kAimedShare * accuracy_ / std::max(tried.error, 1e-300), 0.9)
-              : 1e-2 * tolerance;
+      const double wanted = std::isfinite(tried.error)
+                                ? tolerance * std::pow(aim() / std::max(tried.error, 1e-300), 0.9)
+                                : 1e-2 * tolerance;
       const double next = std::clamp(wanted, 1e-3 * tolerance, 1e2 * tolerance);
       // Looser makes no difference where no step is divided.
       if (pass && (next < 2.0 * tolerance || next >= loosest || tolerance > 1.0)) return;

@@ -2,6 +2,7 @@
 /// accuracy_cost on a problem with a closed form: errors are those of the methods' orders, a run
 /// goes on where another ended, and the page holds what the table does.
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
@@ -14,8 +15,21 @@
 namespace softgauss::test {
 namespace {
 
-/// error by (label, steps a period).
-std::map<std::pair<std::string, int>, double> errorsOf(const std::string& file) {
+/// A short study: steps of at least 1 ms, each run once.
+std::vector<std::string> study(const std::string& problem, const std::string& out,
+                               const std::vector<std::string>& more = {}) {
+  std::vector<std::string> arguments{
+      "--scene",   problem, "--out",        out, "--robots", dataFile("robots"),
+      "--repeats", "0",     "--most-steps", "32"};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return arguments;
+}
+
+constexpr std::size_t kError = 10, kOneStep = 18;  // columns of the table
+
+/// A column by (label, steps a period).
+std::map<std::pair<std::string, int>, double> columnOf(const std::string& file,
+                                                       std::size_t column) {
   std::map<std::pair<std::string, int>, double> errors;
   std::istringstream in(readFile(file));
   std::string line;
@@ -25,7 +39,7 @@ std::map<std::pair<std::string, int>, double> errorsOf(const std::string& file) 
     std::istringstream cell(line);
     for (std::string text; std::getline(cell, text, ',');) cells.push_back(text);
     errors[{cells.at(3), static_cast<int>(std::lround(0.032 / std::stod(cells.at(9))))}] =
-        std::stod(cells.at(10));
+        std::stod(cells.at(column));
   }
   return errors;
 }
@@ -33,12 +47,10 @@ std::map<std::pair<std::string, int>, double> errorsOf(const std::string& file) 
 TEST(AccuracyCost, ErrorsFallWithTheOrder) {
   const io::TempFolder folder;
   const std::string out = folder.path() / "study";
-  const std::vector<std::string> arguments = {
-      "--scene", "pendulum",  "--out", out,        "--min-time",
-      "0",       "--repeats", "1",     "--robots", dataFile("robots")};
+  const std::vector<std::string> arguments = study("pendulum", out);
   const Outcome outcome = runProgram("accuracy_cost", arguments);
   ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
-  auto errors = errorsOf(out + "/accuracy_cost.csv");
+  auto errors = columnOf(out + "/accuracy_cost.csv", kError);
   const auto order = [&](const std::string& label) {
     return std::log2(errors.at({label, 4}) / errors.at({label, 16})) / 2.0;
   };
@@ -57,7 +69,7 @@ TEST(AccuracyCost, ErrorsFallWithTheOrder) {
   // A line that an interrupt has cut is measured anew, and only that.
   std::ofstream(out + "/accuracy_cost.csv") << table.substr(0, table.size() - 30);
   ASSERT_EQ(runProgram("accuracy_cost", arguments).exitCode, 0);
-  EXPECT_EQ(errorsOf(out + "/accuracy_cost.csv"), errors);
+  EXPECT_EQ(columnOf(out + "/accuracy_cost.csv", kError), errors);
 
   const std::string page = readFile(out + "/accuracy_cost.html");
   const std::string begin = "const problems = ";
@@ -77,9 +89,7 @@ TEST(AccuracyCost, ErrorsFallWithTheOrder) {
 TEST(AccuracyCost, ChosenSettingsKeepTheirAccuracy) {
   const io::TempFolder folder;
   const std::string out = folder.path() / "study";
-  const Outcome outcome =
-      runProgram("accuracy_cost", {"--scene", "pendulum", "--out", out, "--min-time", "0",
-                                   "--repeats", "1", "--robots", dataFile("robots"), "--honesty"});
+  const Outcome outcome = runProgram("accuracy_cost", study("pendulum", out, {"--honesty"}));
   ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
   std::istringstream in(readFile(out + "/honesty.csv"));
   std::string line;
@@ -105,8 +115,7 @@ TEST(AccuracyCost, ChosenSettingsKeepTheirAccuracy) {
 TEST(AccuracyCost, DriftTellsWhoKeepsTheEnergy) {
   const io::TempFolder folder;
   const std::string out = folder.path() / "study";
-  const Outcome outcome = runProgram("accuracy_cost", {"--scene", "free_body", "--out", out,
-                                                       "--robots", dataFile("robots"), "--drift"});
+  const Outcome outcome = runProgram("accuracy_cost", study("free_body", out, {"--drift"}));
   ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
   std::istringstream in(readFile(out + "/drift.csv"));
   double midpoint = 1.0, euler = 0.0;
@@ -116,6 +125,63 @@ TEST(AccuracyCost, DriftTellsWhoKeepsTheEnergy) {
   }
   EXPECT_LT(midpoint, 1e-10);
   EXPECT_GT(euler, 1e-4);
+}
+
+// In one step a method of order p errs by O(h^(p+1)); the ball falls freely in most windows, and in
+// some it lies on the ground.
+TEST(AccuracyCost, OneStepErrsByOneOrderMore) {
+  const io::TempFolder folder;
+  const std::string out = folder.path() / "study";
+  const Outcome outcome = runProgram("accuracy_cost", study("bouncing_ball", out));
+  ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+  const auto errors = columnOf(out + "/accuracy_cost.csv", kOneStep);
+  for (const char* label : {"semi-implicit Euler", "implicit in velocity"})
+    EXPECT_NEAR(std::log2(errors.at({label, 4}) / errors.at({label, 32})) / 3.0, 2.0, 0.2) << label;
+  EXPECT_LT(errors.at({"Runge-Kutta 4", 4}), 1e-2 * errors.at({"semi-implicit Euler", 4}));
+  EXPECT_GT(errors.at({"Runge-Kutta 4", 4}), 0.0);
+}
+
+// A push of a damped spring grows by the closed form: x ~ e^(−s t) sin ω t.
+TEST(AccuracyCost, PartingIsThatOfTheMotion) {
+  const io::TempFolder folder;
+  const std::string out = folder.path() / "study";
+  const Outcome outcome =
+      runProgram("accuracy_cost", study("spring_mass_damper", out, {"--parting"}));
+  ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+  constexpr double kMass = 2.0, kStiffness = 800.0, kDamping = 8.0, kPeriod = 0.032;
+  const double s = 0.5 * kDamping / kMass, w = std::sqrt(kStiffness / kMass - s * s);
+  const auto x = [&](int k) { return std::exp(-s * k * kPeriod) * std::sin(w * k * kPeriod); };
+  double most = 0.0, whole = 0.0;
+  for (int k = 1; k <= 62; ++k) most = std::max(most, std::abs(x(k) / x(1)));
+  std::istringstream in(readFile(out + "/parting.csv"));
+  for (std::string line; std::getline(in, line);)
+    std::sscanf(line.c_str(), "spring_mass_damper,%lf", &whole);
+  EXPECT_NEAR(whole, most, 0.01 * most);  // steps of 0.25 ms
+}
+
+TEST(AccuracyCost, GivesUpWhatTakesTooLong) {
+  const io::TempFolder folder;
+  const std::string out = folder.path() / "study";
+  const Outcome outcome =
+      runProgram("accuracy_cost", study("pendulum", out, {"--most-seconds", "0"}));
+  ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("given up"), std::string::npos);
+  for (const auto& [setting, error] : columnOf(out + "/accuracy_cost.csv", kError))
+    EXPECT_TRUE(std::isnan(error)) << setting.first;
+  const std::string table = readFile(out + "/accuracy_table.md");
+  EXPECT_NE(table.find("Given up, for it takes too long: pendulum, Runge-Kutta 4, 32 ms."),
+            std::string::npos);
+  EXPECT_NE(table.find("| pendulum | 0.01 m | not reached |"), std::string::npos) << table;
+}
+
+// The reference of the chain takes seconds: the interrupt falls into it.
+TEST(AccuracyCost, EndsInOrderWhenInterrupted) {
+  const io::TempFolder folder;
+  const std::string out = folder.path() / "study", table = out + "/accuracy_cost.csv";
+  const Outcome outcome = runProgram("accuracy_cost", study("chain_20", out), 0.2, table);
+  EXPECT_EQ(outcome.exitCode, 130) << outcome.err;
+  EXPECT_EQ(outcome.out.find("not finite"), std::string::npos) << outcome.out;
+  EXPECT_TRUE(columnOf(table, kError).empty());
 }
 
 TEST(AccuracyCost, UnknownProblemsAreRefused) {

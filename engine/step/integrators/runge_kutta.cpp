@@ -12,9 +12,11 @@
 namespace softgauss {
 namespace {
 
-/// φ̇ of (T.101).
-void displacementRate(const Model& model, const VectorX& phi, const VectorX& v, VectorX& rate) {
+/// φ̇ of (T.101), or v itself where a method is to be as MuJoCo's.
+void displacementRate(const Tableau& t, const Model& model, const VectorX& phi, const VectorX& v,
+                      VectorX& rate) {
   rate = v;
+  if (!t.embedded && !model.options.midpointCoriolis) return;
   for (const Tree& tree : model.trees) {
     const Body& root = model.bodies[tree.rootBody];
     if (root.joint != JointKind::floating) continue;
@@ -24,15 +26,15 @@ void displacementRate(const Model& model, const VectorX& phi, const VectorX& v, 
 }
 
 /// k_i at (q₀ ⊕ φ, v): forward dynamics there. False where it is not finite.
-bool evaluate(const Model& model, ContactSource* contacts, IntegratorStages& s, int i,
-              const VectorX& guess, StepStats& stats) {
+bool evaluate(const Tableau& t, const Model& model, ContactSource* contacts, IntegratorStages& s,
+              int i, const VectorX& guess, StepStats& stats) {
   Data& data = s.data;
   if (computeStages(model, s.input, s.state, data, contacts) == SolveStatus::notFinite)
     return false;
   const SolveStatus status = forwardDynamics(model, &guess, data);
   if (!countEvaluation(data, status, stats)) return false;
   s.acceleration[i] = data.forward.a;
-  displacementRate(model, s.phi, s.state.v, s.rate[i]);
+  displacementRate(t, model, s.phi, s.state.v, s.rate[i]);
   return true;
 }
 
@@ -57,7 +59,8 @@ double part(const Tableau& t, const Model& model, ContactSource* contacts, doubl
     s.state.q = s.from.q;
     integratePosition(model, s.phi, 1.0, s.state.q);
     if (!s.state.q.allFinite() || !s.state.v.allFinite()) return kInfinity;
-    if (!last && !evaluate(model, contacts, s, i, s.acceleration[i - 1], stats)) return kInfinity;
+    if (!last && !evaluate(t, model, contacts, s, i, s.acceleration[i - 1], stats))
+      return kInfinity;
   }
   if (!t.embedded) return 0.0;
   combine(h, t.e.data(), t.stages, s.rate, s.phi);
@@ -78,7 +81,7 @@ bool rungeKutta(const Tableau& t, const Model& model, const Input& input, Contac
   s.begin(input, state);
   s.acceleration[0] = data.forward.a;
   s.phi.setZero();
-  displacementRate(model, s.phi, state.v, s.rate[0]);
+  displacementRate(t, model, s.phi, state.v, s.rate[0]);
   ++stats.evaluations;
 
   double done = 0.0, length = h;
@@ -105,7 +108,7 @@ bool rungeKutta(const Tableau& t, const Model& model, const Input& input, Contac
     // The next part's first k: the last one of this, with φ counted from the new origin.
     s.acceleration[0] = s.acceleration[t.stages - 1];
     s.phi.setZero();
-    displacementRate(model, s.phi, s.from.v, s.rate[0]);
+    displacementRate(t, model, s.phi, s.from.v, s.rate[0]);
   }
   data.acceleration = (s.from.v - state.v) / h;
   state.q = s.from.q;
