@@ -15,7 +15,10 @@ class Ours final : public Contestant {
         model_(build(problem, method, h)),
         contacts_(model_),
         data_(model_),
-        state_(model_) {}
+        state_(model_) {
+    // In both engines, and in the references, what sticks is as soft as what slides.
+    input_.softFriction = true;
+  }
 
   const Model& model() const override { return model_; }
   const State& state() override { return state_; }
@@ -25,7 +28,9 @@ class Ours final : public Contestant {
     state_.q = state.q;
     state_.v = state.v;
     state_.time = state.time;
-    state_.warmstart = State(model_).warmstart;
+    const State fresh(model_);
+    state_.warmstart = fresh.warmstart;
+    state_.followed = fresh.followed;
     penetration_ = 0.0;
   }
 

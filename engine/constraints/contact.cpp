@@ -143,8 +143,10 @@ Softness ContactBlocks::soften(const Assembly& in, const Touch& touch, const Fra
   for (int k = 0; k < touch.frictionDim; ++k)
     squares += std::pow(touch.friction[k] * velocity[k + 1], 2.0);
   const double weight = in.model.options.gravity.norm() / touch.inverseMass;
-  const double creep = (-soft.stiffness * touch.distance + soft.R * weight / rows) / soft.damping;
-  made_.back().slip = SlipSpeeds{std::sqrt(squares), std::abs(velocity[0]), creep}.slip();
+  SlipSpeeds speeds{std::sqrt(squares), std::abs(velocity[0])};
+  speeds.weight = soft.R * weight / (rows * soft.damping);
+  speeds.creep = speeds.weight - soft.stiffness * touch.distance / soft.damping;
+  made_.back().slip = speeds.slip();
   return sticking(soft, made_.back().slip);
 }
 

@@ -50,6 +50,9 @@ class Course {
   gdd::GoalDirectedController controller;
   Input input;
 
+  /// [J] above the energy of the start and the work. What controls drive is not passive: they are
+  /// held over a step that moves.
+  double mayGain = kInfinity;
   bool mayRefuse = false;  ///< guesses that are not finite
   int refused = 0;         ///< of these guesses, in all steps
 
@@ -57,6 +60,8 @@ class Course {
   int steps = 0;
   double worstViolation = 0.0;  ///< of the box, by the solve's own force [N or N m]
   double fastest = 0.0;         ///< largest |v_i|
+  double work = 0.0;            ///< of the controls and `input.tau` [J]
+  double gained = 0.0;          ///< most energy above that of the start and of the work [J]
   bool broken = false;
 
   gdd::Reach& reach(const std::string& link, const Vector3& target, double weight) {
@@ -77,8 +82,15 @@ class Course {
     return framePose(model, data.kinematics, model.findFrame(link)).p;
   }
 
+  double energy() {
+    computeKinematics(model, state, kinematics_);
+    return computeEnergy(model, kinematics_, state.q, state.v).total();
+  }
+
   bool step() {
     if (broken) return false;
+    if (steps == 0) startEnergy_ = energy();
+    before_ = state.v;
     const SolveStatus status = controller.step(model, input, state, data, &contacts);
     const auto breaks = [&](const std::string& law) {
       broken = true;
@@ -110,6 +122,9 @@ class Course {
         report.status != gdd::GddStatus::converged && report.status != gdd::GddStatus::kink;
     worstViolation = std::max(worstViolation, report.violation);
     fastest = std::max(fastest, state.v.cwiseAbs().maxCoeff());
+    work += 0.5 * model.options.timestep * (controller.control + input.tau).dot(before_ + state.v);
+    gained = std::max(gained, energy() - startEnergy_ - work);
+    if (gained > mayGain) return breaks("more energy than at the start and by work");
     return true;
   }
   void run(double seconds) {
@@ -132,6 +147,9 @@ class Course {
   collision::SceneContacts unpruned_;
   ContactSet all_;
   std::string name_;
+  Kinematics kinematics_{model};
+  VectorX before_;  ///< v at the start of the step
+  double startEnergy_ = 0.0;
 };
 
 /// Three links of 0.3 m and 1 kg that hang from hinges about x, y, y; 50 N m each.
@@ -221,6 +239,7 @@ TEST(Goals, AllActuatorsSaturated) {
         for (int i = 0; i < c.model.nv; ++i)
           if (c.model.dofs[i].actuated)
             c.controller.box.lower[i] = -1e-3, c.controller.box.upper[i] = 1e-3;
+        c.mayGain = 1e-6;  // as of a Trial: these controls do less
         c.reach(standing ? "right_forearm" : "hand", Vector3(0.3, 0.2, standing ? 1.5 : 0.5), 1e4);
         c.posture(1e3);
         int bound = 0, driven = 0;
@@ -246,6 +265,7 @@ TEST(Goals, NoActuators) {
       Course c("humanoid without actuators", with(humanoid(), timestep).build(), solver);
       c.controller.box.lower.setZero();
       c.controller.box.upper.setZero();
+      c.mayGain = 1e-6;
       c.reach("right_forearm", Vector3(0.3, 0.2, 1.5), 1e4);
       c.posture(1e3);
       Data data(c.model);

@@ -173,7 +173,7 @@ SolveStatus implicitMidpoint(const Model& model, const Input& input, ContactSour
     const bool closes = done + length >= h * (1.0 - 1e-12);
     if (closes) length = h - done;
     const Outcome outcome = Part(model, contacts, length, s, stats).run(guess, energy);
-    const bool shortest = length <= kShortest * h;
+    const bool shortest = isShortest(length, kShortest * h);
     const bool taken = outcome == Outcome::closed || (outcome == Outcome::jump && shortest);
     if (!taken) {
       if (shortest && outcome == Outcome::notFinite) return SolveStatus::notFinite;

@@ -90,7 +90,7 @@ bool rungeKutta(const Tableau& t, const Model& model, const Input& input, Contac
     if (closes) length = h - done;
     const double tolerance = model.options.integrationTolerance * length / h;
     const double error = part(t, model, contacts, length, tolerance, s, stats);
-    const bool shortest = !t.embedded || length <= kShortest * h;
+    const bool shortest = !t.embedded || isShortest(length, kShortest * h);
     if (!std::isfinite(error) && shortest) return false;
     const double factor = stepFactor(error, t.order);
     if (error > 1.0 && !shortest) {

@@ -41,10 +41,15 @@ struct IntegratorStages {
   void begin(const Input& held, const State& at) {
     input.tau = held.tau;
     input.wrenches = held.wrenches;
+    input.softFriction = held.softFriction;
     from = at;
     state.time = at.time;
   }
 };
+
+/// Whether a part of a step may not be shortened. What is left of a step at its end is the shortest
+/// part to rounding only.
+inline bool isShortest(double length, double shortest) { return length <= shortest * (1.0 + 1e-9); }
 
 /// Adds what the last solve of `data` has counted; false where its result is no acceleration.
 inline bool countEvaluation(const Data& data, SolveStatus status, StepStats& stats) {

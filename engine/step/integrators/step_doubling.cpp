@@ -56,7 +56,7 @@ bool stepDoubling(const Model& model, const Input& input, ContactSource* contact
                        length * (s.state.v - s.end.v).cwiseAbs().maxCoeff());
     }
     const double ratio = error * h / (length * model.options.integrationTolerance);
-    const bool shortest = length <= kShortest * h;
+    const bool shortest = isShortest(length, kShortest * h);
     if (!std::isfinite(ratio) && shortest) return false;
     const double factor = stepFactor(ratio, kOrder);
     if (ratio > 1.0 && !shortest) {

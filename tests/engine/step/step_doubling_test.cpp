@@ -93,6 +93,30 @@ TEST(StepDoubling, ShortensWhereContactBegins) {
   EXPECT_NEAR(landing.state.q[2], 0.1, 0.001);
 }
 
+// What no part satisfies is taken by the shortest parts, whose last one rounding may make longer: a
+// step ends, at any length.
+TEST(StepDoubling, EndsWhateverIsAskedOfIt) {
+  for (const double h : {0.001, 0.005, 0.01, 1.0 / 126.0, 0.02 / 63.0}) {
+    ModelBuilder builder = chain(2);
+    builder.options.timestep = h;
+    builder.options.integrationTolerance = 1e-30;
+    for (const bool doubling : {true, false}) {
+      builder.options.stepDoubling = doubling;
+      builder.options.integrator =
+          doubling ? Integrator::semiImplicitEuler : Integrator::dormandPrince;
+      const Model model = builder.build();
+      Data data(model);
+      State state(model);
+      state.q.setConstant(0.4);
+      for (int i = 0; i < 3; ++i) {
+        ASSERT_EQ(step(model, {}, state, data, nullptr), SolveStatus::converged);
+        EXPECT_NEAR(data.stats.substeps, 512, 1) << h;  // of the shortest length
+        EXPECT_NEAR(data.stats.jumps, 512, 1) << h;
+      }
+    }
+  }
+}
+
 // The step's own solve is finite, 1e200; those of its halves are not.
 TEST(StepDoubling, LeavesTheStateWhereItOverflows) {
   ModelBuilder builder = chain(3);
