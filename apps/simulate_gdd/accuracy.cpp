@@ -81,9 +81,12 @@ std::string chooseAccuracy(const SimulateOptions& options, Scene& scene) {
   choice.setting.setOptions(trial.period, scene.model.options);
   return fmt::format(
       "accuracy {:g} m: {}; estimated error {:.2g} m over {:g} s, {:.3g} s of CPU time per "
-      "simulated second; {} trials took {:.2g} s",
+      "simulated second; {} trials took {:.2g} s{}",
       accuracy, choice.setting.text(trial.period), choice.error, simulated, choice.price,
-      choice.trials, choice.trialSeconds);
+      choice.trials, choice.trialSeconds,
+      options.duration > simulated
+          ? "; errors go on growing after that, --report-error estimates those of the whole run"
+          : "");
 }
 
 }  // namespace softgauss::app

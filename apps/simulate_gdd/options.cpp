@@ -196,9 +196,10 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
                "twice at half of it, shortened until both agree to --integration-tolerance")
       ->group(simulation);
   CLI::Option* accuracy =
-      app.add_option("--accuracy", options.accuracy,
-                     "find by a trial the cheapest integrator, step and solver tolerance that\n"
-                     "leave at most this error over the run [m], and use them")
+      app.add_option(
+             "--accuracy", options.accuracy,
+             "find by a trial the cheapest integrator, step and solver tolerance that\n"
+             "leave at most this error over the run, or over its first 2 s [m], and use them")
           ->check(CLI::PositiveNumber)
           ->group(simulation);
   for (const char* chosen :
