@@ -85,7 +85,7 @@ std::optional<Touch> touchAt(const Assembly& in, int i) {
   touch.frictionDim = frictionDim(material, model.options.effects);
   double weight = in.weights.translation[c.bodyA] + in.weights.translation[c.bodyB];
   const double load = in.load ? in.load->of(model, c) : 0.0;
-  touch.carries = load > 0.0;
+  touch.carries = load > 0.0 && !material.spring;  // springs keep their depth of rest and bounce
   if (load * weight > 1.0) {
     if (!material.spring) touch.hardening = load * weight;
     weight = 1.0 / load;
@@ -139,6 +139,7 @@ Softness ContactBlocks::soften(const Assembly& in, const Touch& touch, const Fra
                                int rows) {
   const Softness& soft = touch.softness;
   if (!touch.carries || !in.sticks() || touch.frictionDim == 0) return soft;
+  if (!(soft.damping * soft.damping >= 4.0 * soft.stiffness)) return soft;  // it bounces
   double squares = 0.0;
   for (int k = 0; k < touch.frictionDim; ++k)
     squares += std::pow(touch.friction[k] * velocity[k + 1], 2.0);

@@ -16,7 +16,8 @@
 /// the inverse (T.2) stays explicit; what moves faster is as it was, bit for bit.
 ///
 /// Along the normal a contact then keeps its depth where that is off by less than c_n of the depth
-/// under its own weight; where it has farther to go it is as soft as before.
+/// under its own weight; where it has farther to go it is as soft as before. What bounces is left
+/// alone: springs of contacts, and references that are less than critically damped, b² < 4 k d.
 
 #include <algorithm>
 

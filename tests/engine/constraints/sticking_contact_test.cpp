@@ -92,6 +92,24 @@ TEST(StickingContact, LeavesWhatStandsAloneAsItIs) {
   }
 }
 
+// What bounces is left alone: springs, and references that are less than critically damped.
+TEST(StickingContact, LeavesWhatBouncesAsItIs) {
+  for (const Cone cone : {Cone::pyramidal, Cone::elliptic})
+    for (const bool spring : {true, false}) {
+      Scene scene = twoBalls(cone);
+      for (Geometry& g : scene.model.geometries) {
+        if (spring)
+          g.material.spring = ContactSpring{.stiffness = 2500.0};
+        else
+          g.material.impedance.direct = {.stiffness = 2500.0, .damping = 0.0};
+      }
+      const Row soft = firstRow(scene, true), hard = firstRow(scene, false);
+      EXPECT_GT(soft.D, 0.0);
+      EXPECT_EQ(hard.D, soft.D);
+      EXPECT_EQ(hard.reference, soft.reference);
+    }
+}
+
 // The inverse gives back what went in, hard as contacts are: what is off is the rounding of J a,
 // which D multiplies.
 TEST(StickingContact, InverseRecoversTheForce) {
