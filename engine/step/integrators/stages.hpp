@@ -39,9 +39,7 @@ struct IntegratorStages {
   Kinematics kinematics;  ///< of implicitMidpoint(), at `end`
 
   void begin(const Input& held, const State& at) {
-    input.tau = held.tau;
-    input.wrenches = held.wrenches;
-    input.softFriction = held.softFriction;
+    input = held;
     from = at;
     state.time = at.time;
   }
