@@ -14,6 +14,11 @@ namespace softgauss {
 struct Assembly {
   /// Whether friction hardens where it sticks.
   bool sticks() const { return model.options.carriedLoad && !softFriction; }
+  /// How far v lies behind q [s]: half a step with leapfrog's integrators (T.116).
+  double lag() const {
+    const Options& o = model.options;
+    return o.midpointCoriolis && !o.looksWithin() ? 0.5 * o.timestep : 0.0;
+  }
 
   const Model& model;
   const State& state;

@@ -60,13 +60,14 @@ class BlockRows : public ScalarRows<Quadratic> {
     bias_.clear();
     bodies_.clear();
   }
-  /// The three rows of the last block added, which is between the bodies of `motion`:
-  /// a_ref = aRef − J̇ v.
-  void pushRows(const RelativeMotion& motion, const Vector3& aRef, const Vector3& bias,
-                const Softness& softness) {
+  /// The three rows of the last block added, which is between the bodies of `motion`: at distance
+  /// r, J v and J̇ v, a_ref = −b (J v − lag J̇ v) − k d r − J̇ v.
+  void pushRows(const RelativeMotion& motion, const Vector3& r, const Vector3& rate,
+                const Vector3& bias, double lag, const Softness& softness) {
+    const double share = 1.0 - lag * softness.damping;
     for (int i = 0; i < 3; ++i) {
-      reference.push_back(aRef[i] - bias[i]);
-      bias_.push_back(bias[i]);
+      bias_.push_back(share * bias[i]);
+      reference.push_back(softness.referenceAcceleration(rate[i], r[i]) - bias_.back());
       pushSoftness(softness);
     }
     bodies_.emplace_back(motion.bodyA, motion.bodyB);
@@ -75,7 +76,7 @@ class BlockRows : public ScalarRows<Quadratic> {
   BlockJacobian jacobian_;
 
  private:
-  std::vector<double> bias_;                 ///< J̇ v of each row
+  std::vector<double> bias_;                 ///< J̇ v in each reference
   std::vector<double> withBias_;             ///< references while some are without it
   std::vector<std::pair<int, int>> bodies_;  ///< of each block
 };

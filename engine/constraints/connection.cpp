@@ -36,7 +36,7 @@ void ConnectionRows::assemble(const Assembly& in) {
           in.weights.translation[c.bodyA] + in.weights.translation[c.bodyB], model.options);
       const RelativeMotion motion = offsetMotion(c.bodyA, p_WA, c.bodyB, p_WB);
       jacobian_.add(model, in.kinematics, in.tree, motion);
-      pushRows(motion, -soft.damping * offset.rate - soft.stiffness * offset.r, offset.bias, soft);
+      pushRows(motion, offset.r, offset.rate, offset.bias, in.lag(), soft);
     }
   }
   resizeRows(reference.size());

@@ -50,8 +50,7 @@ void WeldRows::assemble(const Assembly& in) {
       RelativeMotion motion = offsetMotion(weld.bodyA, X_WA.p, weld.bodyB, X_WB.p);
       const Softness linear = softness(in.weights.translation);
       jacobian_.add(model, k, in.tree, motion);
-      pushRows(motion, -linear.damping * point.rate - linear.stiffness * point.r, point.bias,
-               linear);
+      pushRows(motion, point.r, point.rate, point.bias, in.lag(), linear);
 
       // Bodies that slide only cannot be turned back.
       if (in.weights.rotation[weld.bodyA] + in.weights.rotation[weld.bodyB] == 0.0) continue;
@@ -60,8 +59,7 @@ void WeldRows::assemble(const Assembly& in) {
       motion.angular = turn.J_r.transpose();
       const Softness angular = softness(in.weights.rotation);
       jacobian_.add(model, k, in.tree, motion);
-      pushRows(motion, -angular.damping * turn.rate - angular.stiffness * turn.r, turn.bias,
-               angular);
+      pushRows(motion, turn.r, turn.rate, turn.bias, in.lag(), angular);
     }
   }
   resizeRows(reference.size());
