@@ -55,6 +55,8 @@ TEST(Violent, ImpactAtHundredMetresPerSecond) {
       t.state.v[2] = -100.0;
       t.state.v.segment<3>(3) = Vector3(1.0, 2.0, 3.0);
       t.mayGain = 1e-6 * 5000.0;
+      // Corners that bounce at ω turn by h ω in a step, to which order their rows' work is off.
+      t.mayRise = 1e-7 * 5000.0;
       t.run(5.0);
       t.expect("deepest", t.deepest, 100.0 * (timeConstant(timestep) / M_E + timestep), "m");
       if (timestep > 0.01) continue;  // a box that rocks in steps of 20 ms does not rest by then
