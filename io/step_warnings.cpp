@@ -78,41 +78,71 @@ void joints(const Model& model, std::vector<std::string>& out) {
   }
 }
 
-void reference(const Impedance& p, const std::string& what, double h, Kind& out) {
-  if (!p.direct) {
-    if (p.timeConstant < 2.0 * h)
-      out.add(
-          fmt::format("{}: its time constant of {:g} s counts as {:g} s, two steps; try a step "
-                      "of {:.2g} s",
-                      what, p.timeConstant, 2.0 * h, 0.5 * p.timeConstant));
-    return;
-  }
-  const double K = p.direct->stiffness, B = p.direct->damping;
-  if (h * h * K + 2.0 * h * B > 4.0)
+/// What a step does not follow of a reference (T.115): what it counts as instead or, where it is
+/// taken as it is, that it grows.
+void reference(const Impedance& p, const std::string& what, const Options& options, Kind& out) {
+  const double h = options.timestep;
+  const double tc = std::max(p.timeConstant, 2.0 * h);
+  const ReferenceSpring given =
+      p.direct ? *p.direct : ReferenceSpring{1.0 / std::pow(tc * p.dampingRatio, 2), 2.0 / tc};
+  const double K = given.stiffness, B = given.damping;
+  if (!p.direct && p.timeConstant < 2.0 * h)
     out.add(
-        fmt::format("{}: its reference of {:g}/s² and {:g}/s grows in steps of {:g} s; try a "
-                    "step below {:.2g} s, or lower numbers",
-                    what, K, B, h, K > 0.0 ? (std::sqrt(B * B + 4.0 * K) - B) / K : 2.0 / B));
+        fmt::format("{}: its time constant of {:g} s counts as {:g} s, two steps; try a step "
+                    "of {:.2g} s",
+                    what, p.timeConstant, 2.0 * h, 0.5 * p.timeConstant));
+  if (!options.carriedLoad) {
+    if (h * h * K + 2.0 * h * B > 4.0)
+      out.add(
+          fmt::format("{}: its reference of {:g}/s² and {:g}/s grows in steps of {:g} s; try a "
+                      "step below {:.2g} s, or lower numbers",
+                      what, K, B, h, K > 0.0 ? (std::sqrt(B * B + 4.0 * K) - B) / K : 2.0 / B));
+  } else if (!p.direct) {
+    if (tc * p.dampingRatio < 2.0 * h)
+      out.add(fmt::format(
+          "{}: its damping ratio of {:g} counts as {:g} with a time constant of {:g} s, for it "
+          "would swing by more than half a radian in a step of {:g} s; try a step of {:.2g} s",
+          what, p.dampingRatio, 2.0 * h / tc, tc, h, 0.5 * p.timeConstant * p.dampingRatio));
+  } else if (const ReferenceSpring s = followed(given, h);
+             s.stiffness < K * (1.0 - 1e-9) || s.damping < B * (1.0 - 1e-9)) {
+    out.add(fmt::format(
+        "{}: its reference of {:g}/s² and {:g}/s counts as {:g}/s² and {:g}/s in steps of {:g} s; "
+        "try a step of {:.2g} s, or lower numbers",
+        what, K, B, s.stiffness, s.damping, h,
+        std::min(1.0 / B, std::max(0.5 / std::sqrt(K), B / K))));
+  }
 }
 
 void references(const Model& model, std::vector<std::string>& out) {
-  const double h = model.options.timestep;
+  const Options& options = model.options;
   Kind kind(out);
   std::vector<Material> seen;
   for (const Geometry& g : model.geometries) {
     if (g.material.spring || std::find(seen.begin(), seen.end(), g.material) != seen.end())
       continue;
     seen.push_back(g.material);
-    reference(g.material.impedance, fmt::format("surface of '{}'", g.name), h, kind);
+    reference(g.material.impedance, fmt::format("surface of '{}'", g.name), options, kind);
   }
   for (const JointRange& range : model.ranges)
     reference(range.impedance,
-              fmt::format("range of joint '{}'", model.jointNames[idx(range.body)]), h, kind);
+              fmt::format("range of joint '{}'", model.jointNames[idx(range.body)]), options, kind);
+  for (const ContactPair& pair : model.contactPairs)
+    if (!pair.material.spring)
+      reference(pair.material.impedance,
+                fmt::format("contact of '{}' and '{}'", model.geometries[idx(pair.geometryA)].name,
+                            model.geometries[idx(pair.geometryB)].name),
+                options, kind);
+  const auto between = [&](const char* what, int a, int b) {
+    return fmt::format("{} of '{}' and '{}'", what, model.bodyNames[idx(a)],
+                       model.bodyNames[idx(b)]);
+  };
   for (const Connection& c : model.connections)
-    reference(c.impedance,
-              fmt::format("connection of '{}' and '{}'", model.bodyNames[idx(c.bodyA)],
-                          model.bodyNames[idx(c.bodyB)]),
-              h, kind);
+    reference(c.impedance, between("connection", c.bodyA, c.bodyB), options, kind);
+  for (const Weld& w : model.welds)
+    reference(w.impedance, between("weld", w.bodyA, w.bodyB), options, kind);
+  for (const JointCoupling& c : model.couplings)
+    reference(c.impedance, fmt::format("coupling of joint '{}'", model.jointNames[idx(c.follower)]),
+              options, kind);
 }
 
 void overlaps(const Model& model, const ContactSet& touching, std::vector<std::string>& out) {
@@ -128,7 +158,9 @@ void overlaps(const Model& model, const ContactSet& touching, std::vector<std::s
   Kind kind(out);
   for (const auto& [depth, pair] : order) {
     const Material m = pairMaterial(model, pair.first, pair.second);
-    const double time = std::max(m.impedance.timeConstant, 2.0 * model.options.timestep);
+    const double least = 2.0 * model.options.timestep;
+    const double time = std::max(
+        least, std::max(m.impedance.timeConstant, least) * std::min(1.0, m.impedance.dampingRatio));
     std::string speed;
     if (!m.spring && !m.impedance.direct)
       speed = fmt::format(" and leave each other with up to {:.2g} m/s", -depth / time);

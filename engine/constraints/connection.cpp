@@ -31,10 +31,9 @@ void ConnectionRows::assemble(const Assembly& in) {
       const Vector3 p_WA = in.kinematics.X_WB[c.bodyA] * c.p_AP;
       const Vector3 p_WB = in.kinematics.X_WB[c.bodyB] * c.p_BP;
       const PointOffset offset(in, c.bodyA, p_WA, c.bodyB, p_WB);
-      const Softness soft =
-          softnessAt(c.impedance, offset.r.norm(),
-                     in.weights.translation[c.bodyA] + in.weights.translation[c.bodyB],
-                     model.options.timestep);
+      const Softness soft = softnessAt(
+          c.impedance, offset.r.norm(),
+          in.weights.translation[c.bodyA] + in.weights.translation[c.bodyB], model.options);
       const RelativeMotion motion = offsetMotion(c.bodyA, p_WA, c.bodyB, p_WB);
       jacobian_.add(model, in.kinematics, in.tree, motion);
       pushRows(motion, -soft.damping * offset.rate - soft.stiffness * offset.r, offset.bias, soft);

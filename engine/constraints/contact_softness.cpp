@@ -57,7 +57,7 @@ Softness contactSoftness(const Material& pair, int frictionDim, double distance,
     return s;
   }
   const double mu = edges ? pair.slidingFriction : 0.0;
-  Softness s = softnessAt(pair.impedance, distance, weight * (1.0 + mu * mu), options.timestep);
+  Softness s = softnessAt(pair.impedance, distance, weight * (1.0 + mu * mu), options);
   if (!edges) return s;
   double scale = 2.0 * mu * mu / options.impedanceRatio;
   // (T.96): a friction above 1 makes no contact softer than one of 1.

@@ -10,11 +10,16 @@
 ///   k      = stiffness/dMax²,   b = damping/dMax
 ///   a_ref  = −b ẋ − k d r            so that ẍ + b ẋ + k d r = 0 where the row is hard
 /// The force at acceleration x̂ is f = D (a_ref − x̂) with D = 1/R.
+///
+/// A step follows a reference, K = k dMax² and B = b dMax, that returns nothing faster than it came
+/// (T.115). tc is at least 2h, as MuJoCo's is, so that h B ≤ 1. Beyond that, where it is asked for:
+///   tc ζ ≥ 2h,   or, given directly,   h B ≤ 1,  h² K ≤ max(¼, h B);      h B ≥ (h² K)^1.5/8
+/// The first is half a radian a step, the last what a body brings that arrives within a step.
 
 #include <algorithm>
 #include <cmath>
 
-#include "engine/model/material.hpp"
+#include "engine/model/model.hpp"
 
 namespace softgauss {
 
@@ -68,26 +73,47 @@ inline Impedance mixImpedances(const Impedance& p, const Impedance& q, double sh
   return m;
 }
 
-/// `inverseInertia` is A; `timestep` bounds the time constant from below by 2h, below which an
-/// explicit step cannot follow the reference spring-damper. One that is given directly is taken as
-/// it is.
+/// The reference that a step of h follows in place of one that is given directly (T.115).
+inline ReferenceSpring followed(ReferenceSpring s, double timestep) {
+  const double h = timestep;
+  s.damping = std::min(s.damping, 1.0 / h);
+  s.stiffness = std::min(s.stiffness, std::max(0.25 / (h * h), s.damping / h));
+  s.damping = std::max(s.damping, h * h * s.stiffness * std::sqrt(s.stiffness) / 8.0);
+  return s;
+}
+
+/// `inverseInertia` is A; `follow` bounds the reference by what steps of `timestep` follow (T.115),
+/// else the time constant alone, as MuJoCo does.
 inline Softness softnessAt(const Impedance& p, double distance, double inverseInertia,
-                           double timestep) {
+                           double timestep, bool follow = false) {
   const double d = impedanceAt(p, distance);
   const double dMax = std::clamp(p.dMax, 1e-4, 0.9999);
   Softness s;
   s.perInertia = (1.0 - d) / d;
   s.R = std::max(kSmallestRegulariser, s.perInertia * inverseInertia);
   if (p.direct) {
-    s.stiffness = p.direct->stiffness * d / (dMax * dMax);
-    s.damping = p.direct->damping / dMax;
+    const ReferenceSpring reference = follow ? followed(*p.direct, timestep) : *p.direct;
+    s.stiffness = reference.stiffness * d / (dMax * dMax);
+    s.damping = reference.damping / dMax;
     return s;
   }
-  const double tc = std::max(p.timeConstant, 2.0 * timestep);
-  const double root = dMax * tc * p.dampingRatio;
-  s.stiffness = d / (root * root);
+  const double least = 2.0 * timestep;
+  const double tc = std::max(p.timeConstant, least);
+  double root = dMax * tc * p.dampingRatio;
   s.damping = 2.0 / (dMax * tc);
+  if (follow) {
+    root = std::max(root, dMax * least);
+    const double x = dMax / root;  // √K
+    s.damping = std::max(s.damping, timestep * timestep * x * x * x / (8.0 * dMax));
+  }
+  s.stiffness = d / (root * root);
   return s;
+}
+
+/// The same by the options of a model: in `--compatibility mujoco` references are as MuJoCo's.
+inline Softness softnessAt(const Impedance& p, double distance, double inverseInertia,
+                           const Options& options) {
+  return softnessAt(p, distance, inverseInertia, options.timestep, options.carriedLoad);
 }
 
 }  // namespace softgauss

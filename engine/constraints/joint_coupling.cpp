@@ -36,7 +36,7 @@ void CouplingRows::assemble(const Assembly& in) {
         weight += in.weights.dof[leader.v];
         rate -= pair.slope * in.state.v[leader.v];
       }
-      const Softness soft = softnessAt(c.impedance, r, weight, model.options.timestep);
+      const Softness soft = softnessAt(c.impedance, r, weight, model.options);
       pairs_.push_back(pair);
       reference.push_back(soft.referenceAcceleration(rate, r));
       pushSoftness(soft);

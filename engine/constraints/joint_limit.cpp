@@ -17,8 +17,7 @@ void JointLimit::assemble(const Assembly& in) {
         const double bound = sign > 0.0 ? range.lower : range.upper;
         const double r = sign * (in.state.q[body.q] - bound) - range.margin;
         if (!(r < 0.0)) continue;
-        const Softness soft =
-            softnessAt(range.impedance, r, in.weights.dof[body.v], model.options.timestep);
+        const Softness soft = softnessAt(range.impedance, r, in.weights.dof[body.v], model.options);
         dof_.push_back(body.v);
         sign_.push_back(sign);
         reference.push_back(soft.referenceAcceleration(sign * in.state.v[body.v], r));

@@ -45,7 +45,7 @@ void WeldRows::assemble(const Assembly& in) {
       const double distance = std::hypot(point.r.norm(), turn.r.norm());
       const auto softness = [&](const std::vector<double>& weight) {
         return softnessAt(weld.impedance, distance, weight[weld.bodyA] + weight[weld.bodyB],
-                          model.options.timestep);
+                          model.options);
       };
       RelativeMotion motion = offsetMotion(weld.bodyA, X_WA.p, weld.bodyB, X_WB.p);
       const Softness linear = softness(in.weights.translation);

@@ -52,12 +52,27 @@ TEST(StepWarnings, NameTheEffortThatOutrunsTheStep) {
 
 TEST(StepWarnings, NameTheSurfaceThatIsFasterThanTheStep) {
   Model model = sphereOnPlane(0.1, 1.0, 1.0).build();
-  for (Geometry& g : model.geometries)
-    if (g.body != 0) g.material.impedance.timeConstant = 0.001;
-  expectOne(io::stepWarnings(model, {}), "surface of '", "counts as 0.004 s");
-  for (Geometry& g : model.geometries)
-    if (g.body != 0) g.material.impedance.direct = ReferenceSpring{2e6, 100.0};
-  expectOne(io::stepWarnings(model, {}), "surface of '", "grows in steps of 0.002 s");
+  const auto of = [&](const Impedance& surface) {
+    for (Geometry& g : model.geometries)
+      if (g.body != 0) g.material.impedance = surface;
+    return io::stepWarnings(model, {});
+  };
+  const auto direct = [](double stiffness, double damping) {
+    Impedance p;
+    p.direct = ReferenceSpring{stiffness, damping};
+    return p;
+  };
+  const Impedance fast{0.001}, bouncy{0.02, 0.1};
+  expectOne(of(fast), "surface of '", "counts as 0.004 s");
+  expectOne(of(bouncy), "counts as 0.2 with", "try a step of 0.001 s");
+  expectOne(of(direct(2e6, 100.0)), "surface of '",
+            "counts as 62500/s² and 100/s in steps of 0.002 s");
+  EXPECT_TRUE(of(direct(62499.0, 0.0)).empty());
+  EXPECT_TRUE(of(direct(249e3, 499.0)).empty());
+  model.options.carriedLoad = false;
+  EXPECT_TRUE(of(bouncy).empty());
+  expectOne(of(Impedance{0.02, 0.04}), "surface of '", "grows in steps of 0.002 s");
+  expectOne(of(direct(2e6, 100.0)), "surface of '", "grows in steps of 0.002 s");
 }
 
 TEST(StepWarnings, NameThePairThatOverlapsAtTheStart) {

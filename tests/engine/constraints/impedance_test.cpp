@@ -117,6 +117,57 @@ TEST(Softness, OfADirectReferenceIsThatReferenceWhereDeep) {
   }
 }
 
+/// The largest speed with which a row whose reference is `p` returns what comes with 1 m/s, over
+/// the places in the step in which it may arrive.
+double fastestReturn(const Impedance& p, double h) {
+  const Softness s = softnessAt(p, -1.0, 1.0, h, true);
+  const double dMax = 0.9999;  // and A = 1: x̂ = d a_ref
+  double fastest = 0.0;
+  for (int i = 0; i < 50; ++i) {
+    double v = -1.0, r = -h * (i + 0.5) / 50;
+    for (int n = 0; n < 2000 && r < 0.0; ++n) {
+      v += h * std::max(0.0, dMax * s.referenceAcceleration(v, r));
+      r += h * v;
+    }
+    if (r >= 0.0) fastest = std::max(fastest, v);
+  }
+  return fastest;
+}
+
+// (T.115), over both forms of a reference.
+TEST(Softness, AStepReturnsNothingFasterThanItCame) {
+  const double h = 0.002;
+  Impedance p;
+  p.dMin = p.dMax = 0.9999;
+  for (double timeConstant = h; timeConstant < 1e4 * h; timeConstant *= 1.7)
+    for (double ratio = 1e-4; ratio < 4.0; ratio *= 1.7) {
+      p.timeConstant = timeConstant, p.dampingRatio = ratio;
+      EXPECT_LE(fastestReturn(p, h), 1.0) << timeConstant / h << " " << ratio;
+    }
+  for (double K = 1e-4; K < 1e3; K *= 1.7)
+    for (double B = 1e-6; B < 1e3; B *= 1.7) {
+      p.direct = ReferenceSpring{K / (h * h), B / h};
+      EXPECT_LE(fastestReturn(p, h), 1.0) << K << " " << B;
+    }
+}
+
+// What is critically damped or more is as MuJoCo has it, to the bit; what is not, where the step
+// follows it.
+TEST(Softness, WhatAStepFollowsStaysAsItIs) {
+  const double h = 0.01, r = -0.3e-3;
+  const auto same = [&](const Impedance& p) {
+    const Softness a = softnessAt(p, r, 1.0, h, true), b = softnessAt(p, r, 1.0, h);
+    return a.stiffness == b.stiffness && a.damping == b.damping && a.R == b.R;
+  };
+  for (const double timeConstant : {0.001, 0.02, 0.5})
+    for (const double ratio : {1.0, 3.0}) EXPECT_TRUE(same({timeConstant, ratio}));
+  EXPECT_TRUE(same({0.2, 0.1}));
+  EXPECT_FALSE(same({0.2, 0.09}));
+  Impedance direct;
+  direct.direct = ReferenceSpring{0.9 / (h * h), 0.9 / h};
+  EXPECT_TRUE(same(direct));
+}
+
 // The two forms agree: 1/(tc ζ)² and 2/tc.
 TEST(Softness, OfADirectReferenceIsThatOfItsTimeConstant) {
   Impedance standard, direct;
