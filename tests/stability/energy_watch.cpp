@@ -21,9 +21,7 @@ void forEachSoft(const Model& model, const State& state, const Data& data, F&& f
       f(c, c.made()[i].row, end - c.made()[i].row, touchAt(in, c.made()[i].contact)->softness);
     }
   });
-  const auto softness = [&](const Impedance& p) {
-    return softnessAt(p, 0.0, 1.0, model.options.timestep);
-  };
+  const auto softness = [&](const Impedance& p) { return softnessAt(p, 0.0, 1.0, model.options); };
   for (int i = 0; i < rows.jointLimit.rowCount(); ++i)
     for (const JointRange& range : model.ranges)
       if (model.bodies[range.body].v == rows.jointLimit.dof(i))
