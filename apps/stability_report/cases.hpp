@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,8 @@
 #include "engine/engine.hpp"
 
 namespace softgauss::app {
+
+inline constexpr double kSteps[] = {0.002, 0.01};  ///< [s]
 
 /// A case that is loaded, and one state of it, of whichever engine. All figures are computed here,
 /// from q and v alone, so that both engines are measured alike.
@@ -40,6 +43,12 @@ struct Figure {
   /// From a state; `start` is what it was in the first state.
   std::function<double(Stage&, double start)> value;
   std::function<double(Stage&)> start = {};
+  std::optional<double> coarseBound = {};  ///< with the longer of kSteps, where it is another
+  std::string missed = {};  ///< why our engine is known to miss it at every step; else empty
+
+  double boundAt(double timestep) const {
+    return timestep > kSteps[0] && coarseBound ? *coarseBound : bound;
+  }
 };
 
 struct HardCase {

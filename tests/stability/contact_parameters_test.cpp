@@ -51,6 +51,36 @@ TEST(ContactParameters, TimeConstantsAtAndBelowTheStep) {
       }
 }
 
+// Steps from 1/64 to 32 ms, and time constants from 1/64 to 32 ms at 2 ms: a box that is dropped
+// rests as deep as its time constant, or two steps, asks.
+void restsAsDeepAs(double timestep, double timeConstant, Cone cone) {
+  Model model = boxOnSlope(0.0, 1.0, timestep, cone);
+  Impedance impedance;
+  impedance.timeConstant = timeConstant;
+  setImpedance(model, impedance);
+  Trial t("time constant of " + std::to_string(1e3 * timeConstant) + " ms", std::move(model));
+  t.state.q[2] += 1e-3;
+  t.run(0.5 + 40.0 * timestep);
+  const double tc = std::max(timeConstant, 2.0 * timestep);
+  t.expect("penetration at rest", t.data->stats.maxPenetration, 0.1 / 0.9 * 9.81 * tc * tc, "m");
+  t.expect("speed at rest", t.state.v.cwiseAbs().maxCoeff(), 1e-4, "m/s");
+}
+
+TEST(ContactParameters, StepsAndTimeConstantsOverElevenOctaves) {
+  for (const Cone cone : kCones)
+    for (double share = 1.0 / 64.0; share < 33.0; share *= 2.0) {
+      if (share > 0.1) restsAsDeepAs(1e-3 * share, 0.02, cone);
+      restsAsDeepAs(0.002, 1e-3 * share, cone);
+    }
+}
+TEST(ContactParameters, StepsOfA64thOfAMillisecondLong) {
+  for (const Cone cone : kCones)
+    for (const double share : {1.0 / 64.0, 1.0 / 32.0, 1.0 / 16.0}) {
+      restsAsDeepAs(1e-3 * share, 0.02, cone);
+      restsAsDeepAs(1e-3 * share, 1e-3 * share, cone);
+    }
+}
+
 // Impedances up to the clamp and beyond it: the harder, the less deep.
 TEST(ContactParameters, ImpedancesUpToOne) {
   for (const double timestep : kSteps)

@@ -33,14 +33,16 @@ void tumbles(double rate, double h, double seconds) {
   t.mayGain = 0.01 * E0;
   computeKinematics(t.model, t.state, t.data->kinematics);
   const Vector3 L0 = computeMomentum(t.model, t.data->kinematics).angular;
-  t.run(seconds);
-  computeKinematics(t.model, t.state, t.data->kinematics);
-  const Vector3 L = computeMomentum(t.model, t.data->kinematics).angular;
-  t.expect("energy, relative", t.energy().kinetic / E0 - 1.0, 0.01, "");
+  double energy = 0.0, momentum = 0.0;  // the worst of all steps
+  t.run(seconds, [&] {
+    energy = std::max(energy, std::abs(t.energy().kinetic / E0 - 1.0));
+    const Vector3 L = computeMomentum(t.model, t.data->kinematics).angular;  // where energy() was
+    momentum = std::max(momentum, (L - L0).norm() / L0.norm());
+  });
+  t.expect("energy, relative", energy, 0.01, "");
   // A body that is not followed keeps the velocity of half a step earlier, which shows up to
   // ½ h ω of momentum that is not there; it is followed from ½ (h ω)² = kFollowedTurn on (T.93).
-  t.expect("momentum, relative", (L - L0).norm() / L0.norm(),
-           0.5 * std::sqrt(2.0 * FollowedTrees::kFollowedTurn), "");
+  t.expect("momentum, relative", momentum, 0.5 * std::sqrt(2.0 * FollowedTrees::kFollowedTurn), "");
 }
 
 TEST(FastRotation, TorqueFreeBodyKeepsEnergyAndMomentum) {
@@ -81,10 +83,13 @@ std::vector<TopMotion> spin(Trial& t, double seconds) {
   t.state.v[2] = 100.0;
   t.mayGain = 0.01 * t.energy().total();
   std::vector<TopMotion> motion;
+  const double E0 = t.energy().total();
+  double off = 0.0;
   for (int i = 0; i < std::lround(10.0 * seconds); ++i) {
-    t.run(0.1);
+    t.run(0.1, [&] { off = std::max(off, std::abs(t.energy().total() / E0 - 1.0)); });
     motion.push_back({std::acos(std::clamp(t.rotation("top")(2, 2), -1.0, 1.0)), t.state.q[0]});
   }
+  t.expect("energy, relative", off, 0.01, "");
   return motion;
 }
 
@@ -92,10 +97,6 @@ void spinsLikeTheConvergedOne(double h, double seconds) {
   Trial fine("heavy top at 100 rad/s, fine", top(1e-4));
   const std::vector<TopMotion> expected = spin(fine, seconds);
   Trial t("heavy top at 100 rad/s", top(h));
-  const double E0 = [&] {
-    t.state.v[2] = 100.0;
-    return t.energy().total();
-  }();
   const std::vector<TopMotion> motion = spin(t, seconds);
   double tilt = 0.0, precession = 0.0;
   for (std::size_t i = 0; i < motion.size(); ++i) {
@@ -104,7 +105,6 @@ void spinsLikeTheConvergedOne(double h, double seconds) {
   }
   t.expect("tilt, against converged", tilt * 180.0 / M_PI, 1.0, "deg");
   t.expect("precession, against converged", precession * 180.0 / M_PI, 2.0, "deg");
-  t.expect("energy, relative", t.energy().total() / E0 - 1.0, 0.01, "");
 }
 
 TEST(FastRotation, HeavyTopPrecesses) {
@@ -121,10 +121,11 @@ TEST(FastRotation, QuaternionStaysUnitOverAMillionStepsLong) {
   t.state.v.tail<3>() = Vector3(3.0, 1.0, -2.0);
   const double E0 = t.energy().kinetic;
   t.mayGain = 0.01 * E0;
-  t.run(2000.0);
+  double off = 0.0;
+  t.run(2000.0, [&] { off = std::max(off, std::abs(t.energy().kinetic / E0 - 1.0)); });
   EXPECT_EQ(t.steps, 1000000);
   t.expect("norm less 1", t.state.q.tail<4>().norm() - 1.0, 1e-14, "");
-  t.expect("energy, relative", t.energy().kinetic / E0 - 1.0, 0.01, "");
+  t.expect("energy, relative", off, 0.01, "");
 }
 
 // What spins without turning its inertia is never followed: wheels, balls, tops that stand upright.

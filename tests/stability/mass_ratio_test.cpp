@@ -26,7 +26,7 @@ void carries(double load, double timestep, Cone cone) {
 }
 
 TEST(MassRatio, LightBoxCarriesHeavyBox) {
-  for (const double load : {1.0, 10.0, 100.0, 1000.0, 10000.0})
+  for (const double load : {1.0, 10.0, 100.0, 1e3, 1e4, 1e6})
     for (const double timestep : kSteps)
       for (const Cone cone : kCones) carries(load, timestep, cone);
 }
@@ -101,6 +101,8 @@ TEST(MassRatio, NearZeroInertias) {
             "tip of " + std::to_string(1e6 * mass) + " mg, armature " + std::to_string(armature),
             builder);
         t.mayGain = 0.05 * 2.0 * 9.81 * 0.3;  // of what the arm can give
+        // What a limit does to a tree that turns far in a step is done at the step's start.
+        t.mayRise = 0.2 * t.mayGain;
         t.run(2.0);
         // The arm alone, from level, falls with no more than √(3 g/l) of either link.
         t.expect("arm's speed", t.state.v.head<2>().cwiseAbs().maxCoeff(), 40.0, "rad/s");

@@ -68,7 +68,8 @@ ModelBuilder fourBar(int ties) {
   return builder;
 }
 
-// MuJoCo 3.12, 10 s: 1.3, 0.9, 0.5 mm off for 1, 2, 5 ties at 2 ms.
+// MuJoCo 2.2.2 is off by 0.33, 0.18, 0.075 mm with 1, 2, 5 ties. At 2 ms no more than 0.01 mm
+// beyond; in a step of 10 ms two bars turn by 0.02 rad, whose chord is off by 0.1 mm each: 0.25 mm.
 void loopHolds(int ties, double timestep, double seconds) {
   Trial t("loop tied " + std::to_string(ties) + " times", with(fourBar(ties), timestep));
   // Down, across, up: a square that hangs.
@@ -81,7 +82,8 @@ void loopHolds(int ties, double timestep, double seconds) {
         off,
         (t.origin("bar2") + t.rotation("bar2") * Vector3(0.5, 0, 0) - Vector3(0.5, 0, 0)).norm());
   });
-  t.expect("off", off, timestep <= 0.002 ? 1.3e-3 : 5e-3, "m");
+  const double mujoco = ties == 1 ? 0.33e-3 : ties == 2 ? 0.18e-3 : 0.075e-3;
+  t.expect("off", off, mujoco + (timestep <= 0.002 ? 0.01e-3 : 0.25e-3), "m");
 }
 
 TEST(Redundancy, LoopTiedManyTimes) {

@@ -15,6 +15,7 @@
 #include <optional>
 #include <thread>
 
+#include "tests/stability/energy_watch.hpp"
 #include "tests/support/same_contacts.hpp"
 #include "tests/support/tolerance.hpp"
 
@@ -31,7 +32,8 @@ Trial::Trial(std::string name, Model m)
       contacts(std::make_unique<collision::SceneContacts>(model)),
       unpruned(std::make_unique<collision::SceneContacts>(model, kNoBroadphase, false)),
       data(std::make_unique<Data>(model)),
-      name_(std::move(name)) {
+      name_(std::move(name)),
+      energies_(std::make_unique<EnergyWatch>(model)) {
   input.tau = VectorX::Zero(model.nv);
 }
 
@@ -95,7 +97,11 @@ class Trial::Twin {
   std::thread thread_;
 };
 
-Trial::~Trial() { writeBits(name_, state); }
+Trial::~Trial() {
+  writeBits(name_, state);
+  if (!broken_ && energies_->rose > 0.0)
+    expect("energy above its least", energies_->rose, energies_->allowedThere + mayRise, "J");
+}
 
 Energy Trial::energy() {
   computeKinematics(model, state, data->kinematics);
@@ -115,7 +121,7 @@ Matrix3 Trial::rotation(const std::string& link) {
 }
 
 bool Trial::run(double seconds, const std::function<void()>& each) {
-  if (!begun_) startEnergy_ = energy().total();
+  if (!begun_) startEnergy_ = energy().total(), energies_->begin(state, input);
   begun_ = true;
   const auto count = static_cast<int>(std::round(seconds / model.options.timestep));
   std::optional<Twin> twin;
@@ -159,6 +165,9 @@ bool Trial::watch(SolveStatus status) {
   gained = std::max(gained, energy().total() - startEnergy_ - work);
   if (gained > mayGain)
     return breaks("more energy than at the start and by work, by " + std::to_string(gained) + " J");
+  const double rise = energies_->check(state, input, *data, work, perStep) - mayRise;
+  if (rise > 0.0)
+    return breaks("more energy than at an earlier step, by " + std::to_string(rise) + " J");
   return true;
 }
 

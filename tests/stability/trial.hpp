@@ -4,9 +4,10 @@
 /// A hard case: a scene that is stepped, watched at every step, and measured at the end.
 ///
 /// At every step the state must be finite and the solve converged, nothing may have been done in
-/// place of what was asked (StepStats::abandonedTrees and the like), and a passive scene must not
-/// have more energy than it began with:
+/// place of what was asked (StepStats::abandonedTrees and the like), and a passive scene must gain
+/// no energy, neither against its start nor against any step on the way (energy_watch.hpp):
 ///   E(t) − E(0) − W(t) ≤ mayGain
+///   E(t) − W(t) ≤ E(s) − W(s) + what rows store at s + what the integrator is off by + mayRise
 /// with E of computeEnergy(), to which what contacts store does not belong, and W what `input.tau`
 /// has done, h τᵀ ½ (v + v⁺) in each step.
 /// A case then states its figures one by one, each beside a bound that was chosen before it was
@@ -33,6 +34,8 @@
 
 namespace softgauss::test {
 
+class EnergyWatch;
+
 class Trial {
  public:
   /// The model's own shapes collide; its options give step, cone and all else.
@@ -53,6 +56,9 @@ class Trial {
   /// [J] above the energy of the first step's start; rounding and the landing of what begins a
   /// nanometre away, where a case says nothing.
   double mayGain = 1e-6;
+  /// [J] above the energy of any earlier step, beyond what the law of energy_watch.hpp allows, and
+  /// [J] more for each step since.
+  double mayRise = 1e-12, perStep = 0.0;
   /// Steps whose solve may end short of its tolerance; their residual is in `worstResidual`.
   int mayStall = 0;
 
@@ -87,6 +93,7 @@ class Trial {
   bool begun_ = false, broken_ = false;
   VectorX before_;  ///< v at the start of the step
   ContactSet all_;  ///< of `unpruned`
+  std::unique_ptr<EnergyWatch> energies_;
 };
 
 /// Writes a case's last state down, to be compared with that of another run of the suite: a line in

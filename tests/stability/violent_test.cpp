@@ -55,6 +55,8 @@ TEST(Violent, ImpactAtHundredMetresPerSecond) {
       t.state.v[2] = -100.0;
       t.state.v.segment<3>(3) = Vector3(1.0, 2.0, 3.0);
       t.mayGain = 1e-6 * 5000.0;
+      // Corners that bounce at ω turn by h ω in a step, to which order their rows' work is off.
+      t.mayRise = 1e-7 * 5000.0;
       t.run(5.0);
       t.expect("deepest", t.deepest, 100.0 * (timeConstant(timestep) / M_E + timestep), "m");
       if (timestep > 0.01) continue;  // a box that rocks in steps of 20 ms does not rest by then
@@ -94,10 +96,16 @@ TEST(Violent, PainlevesRod) {
                 {turn.toRotationMatrix(), Vector3(0, 0, 0.5 * std::cos(angle) + 0.01)}, friction);
         Trial t("Painlevé's rod, mu " + std::to_string(friction), with(builder, timestep, cone));
         t.state.v[0] = 5.0;
-        t.mayGain = 1e-3 * t.energy().kinetic;
-        t.run(8.0);
-        t.expect("fastest", t.state.v.head<3>().norm(), 5.0, "m/s");
-        t.expect("off the ground", std::abs(t.state.q[2]), 0.1, "m");
+        double highest = 0.0;
+        t.run(8.0, [&] { highest = std::max(highest, t.state.q[2]); });
+        // It has the height of its start and that of its speed at most; what stops it on its tip is
+        // no deeper than the reference motion that meets 5 m/s.
+        t.expect("rises to", highest, 0.5 * std::cos(angle) + 0.01 + 25.0 / (2.0 * 9.81), "m");
+        t.expect("deepest", t.deepest, 5.0 * (timeConstant(timestep) / M_E + timestep), "m");
+        // It lies down, on its radius, and has slid no farther than twice Coulomb's way.
+        t.expect("above its radius", t.state.q[2] - 0.01, 1e-3, "m");
+        t.expect("speed at rest", t.state.v.cwiseAbs().maxCoeff(), 1e-3, "m/s");
+        t.expect("slides", t.state.q[0], 25.0 / (friction * 9.81) + 0.5, "m");
       }
 }
 
@@ -117,29 +125,53 @@ TEST(Violent, LastBounces) {
   }
 }
 
-// 10⁶ N m on every joint of a free humanoid for a tenth of a second: either it goes on with finite
-// numbers, or the step says that it cannot and leaves the state as it was.
+// 10⁶ and 10⁷ N m on every joint of a humanoid that floats, to and fro. Either it goes on, or the
+// step says that it cannot and leaves the state as it was. Forces within a body move no centre:
+// unless a tree is counted as abandoned its momentum stays, against that of its parts. It is that
+// after the first step that is followed: one from rest is not (docs/stability.md).
 TEST(Violent, ForcesWithoutMeasure) {
-  for (const double timestep : {0.0005, 0.002, 0.01}) {
-    Model model = with(humanoid(), timestep).build();
-    collision::SceneContacts contacts(model);
-    Data data(model);
-    State state(model);
-    Input input;
-    int refused = 0;
-    for (int i = 0; i < static_cast<int>(0.1 / timestep) && refused == 0; ++i) {
-      input.tau = VectorX::Zero(model.nv);
-      input.tau.tail(model.nv - 6).setConstant(i % 2 == 0 ? 1e6 : -1e6);
-      const std::uint64_t before = hash(state);
-      if (step(model, input, state, data, &contacts) == SolveStatus::notFinite) {
-        ++refused;
-        EXPECT_EQ(hash(state), before);
-        EXPECT_GE(data.stats.badDof, 0);
-      } else {
+  int followed = 0, abandoned = 0;
+  for (const double torque : {1e4, 1e6, 1e7})
+    for (const double timestep : {0.0005, 0.002, 0.01}) {
+      ModelBuilder builder = with(humanoid(), timestep);
+      builder.options.gravity.setZero();
+      const Model model = builder.build();
+      Data data(model);
+      State state(model);
+      Input input;
+      Kinematics kinematics(model);
+      Vector3 momentum;
+      double off = 0.0;
+      bool lost = false;  // a tree was abandoned, or a step refused
+      int followedHere = 0;
+      for (int i = 0; i < 6 && !lost; ++i) {
+        input.tau = VectorX::Zero(model.nv);
+        input.tau.tail(model.nv - 6).setConstant(i % 2 == 0 ? torque : -torque);
+        const std::uint64_t before = hash(state);
+        if (isRefused(step(model, input, state, data, nullptr))) {
+          lost = true;
+          EXPECT_EQ(hash(state), before);
+          EXPECT_GE(data.stats.badDof, 0);
+          continue;
+        }
         EXPECT_TRUE(state.q.allFinite() && state.v.allFinite());
+        lost = data.stats.abandonedTrees > 0;
+        abandoned += data.stats.abandonedTrees;
+        if (lost) continue;
+        computeKinematics(model, state, kinematics);
+        const double kinetic = computeEnergy(model, kinematics, state.q, state.v).kinetic;
+        const Vector3 now = computeMomentum(model, kinematics).linear;
+        followedHere += data.stats.followedTrees;
+        if (followedHere <= 1) momentum = now;
+        off = std::max(off, (now - momentum).norm() / std::sqrt(2.0 * model.totalMass() * kinetic));
       }
+      std::printf("  %.0e N m, h %4.1f ms: momentum off by %.2g of 1e-4%s\n", torque,
+                  1e3 * timestep, off, lost ? ", then given up" : "");
+      EXPECT_SMALL(off, 1e-4);
+      followed += followedHere;
     }
-  }
+  EXPECT_GT(followed, 10);
+  EXPECT_GT(abandoned, 0);
 }
 
 }  // namespace

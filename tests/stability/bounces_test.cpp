@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Family 5: references that are less than critically damped. Whatever the step, what bounces gains
+/// no energy.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "tests/stability/scenes.hpp"
+
+namespace softgauss::test {
+namespace {
+
+constexpr double kRatios[] = {0.05, 0.2, 0.5};
+
+Impedance underdamped(double ratio) {
+  Impedance impedance;
+  impedance.timeConstant = 0.02;
+  impedance.dampingRatio = ratio;
+  return impedance;
+}
+
+std::string named(const std::string& what, double ratio) {
+  return what + ", ratio 0." + (ratio < 0.1 ? "05" : ratio < 0.4 ? "2" : "5");
+}
+
+// A ball falls by 0.2 m on a floor. It rises no higher than it began, E is asserted at every step,
+// and it is never deeper than the undamped spring takes it, v t_c ζ, and a step.
+TEST(Bounces, BallOnAFloorGainsNothing) {
+  for (const double ratio : kRatios)
+    for (const double timestep : kSteps)
+      for (const Cone cone : kCones) {
+        ModelBuilder builder = with(sphereOnPlane(0.1, 1.0, 0.5), timestep, cone);
+        builder.X_WRoot.p.z() = 0.3;
+        Model model = builder.build();
+        for (Geometry& g : model.geometries) g.material.impedance = underdamped(ratio);
+        Trial t(named("ball", ratio), std::move(model));
+        double highest = 0.0;
+        bool left = false;  // the floor, once
+        t.run(3.0, [&] {
+          left |= t.deepest > 0.0 && t.state.v[2] > 0.0;
+          if (left) highest = std::max(highest, t.state.q[2]);
+        });
+        EXPECT_TRUE(left);
+        t.expect("rises to", highest, 0.3, "m");
+        const double v = std::sqrt(2.0 * 9.81 * 0.2);
+        t.expect("deepest", t.deepest,
+                 (v + 9.81 * 0.02) * (std::max(0.02 * ratio, 2.0 * timestep) + timestep), "m");
+      }
+}
+
+// A pendulum swings from level into the end of its range.
+TEST(Bounces, JointInItsRangeGainsNothing) {
+  for (const double ratio : kRatios)
+    for (const double timestep : kSteps) {
+      ModelBuilder builder = with(pendulum(0.5, 1.0, 0.05), timestep);
+      JointSpec& hinge = *builder.findJoint("hinge");
+      hinge.type = JointType::revolute;
+      hinge.lower = -0.2, hinge.upper = 3.0;
+      Model model = builder.build();
+      for (JointRange& range : model.ranges) range.impedance = underdamped(ratio);
+      Trial t(named("range", ratio), std::move(model));
+      t.state.q[0] = 0.5 * M_PI;
+      // Half a step behind, v shows the weight's power over it.
+      t.mayGain = 0.5 * timestep * 9.81 * std::sqrt(2.0 * 9.81 * 0.5);
+      double highest = 0.0;
+      bool met = false;
+      t.run(5.0, [&] {
+        met |= t.state.q[0] < -0.2;
+        if (met) highest = std::max(highest, t.state.q[0]);
+      });
+      EXPECT_TRUE(met);
+      t.expect("swings back to", highest, 0.5 * M_PI, "rad");
+    }
+}
+
+// A body hangs on a connection, begun 0.1 m off, without weight: it swings about its place, ever
+// less.
+TEST(Bounces, ConnectionGainsNothing) {
+  for (const double ratio : kRatios)
+    for (const double timestep : kSteps) {
+      ModelBuilder builder = with(freeBody(sphereLink("body", 1.0, 0.1)), timestep);
+      builder.options.gravity.setZero();
+      ConnectSpec tie;
+      tie.linkA = "body";
+      tie.linkB = "world";
+      tie.impedance = underdamped(ratio);
+      builder.connect(tie);
+      Trial t(named("connection", ratio), builder);
+      t.state.q[2] = 0.1;
+      // What the spring has: the fastest is ω times the way.
+      t.mayGain = 0.5 * std::pow(0.1 / std::max(0.02 * ratio, 2.0 * timestep), 2.0);
+      double farthest = 0.0;
+      t.run(3.0, [&] {
+        if (t.state.time > 1.5) farthest = std::max(farthest, t.state.q.head<3>().norm());
+      });
+      // Its reference dies out by e^(−t/t_c), t_c 0.02 s or two steps.
+      t.expect("swings after 1.5 s", farthest, 1e-6, "m");
+    }
+}
+
+}  // namespace
+}  // namespace softgauss::test

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/stability/energy_watch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace softgauss::test {
+namespace {
+
+/// Calls f(kind, first row, rows, softness) for every contact, range, connection, weld and dry
+/// friction that has rows.
+template <class F>
+void forEachSoft(const Model& model, const State& state, const Data& data, F&& f) {
+  const Constraints& rows = data.constraints;
+  const Assembly in{
+      model, state, data.kinematics, data.contacts, data.weights, data.inertia.sparsity, true};
+  rows.visitContacts([&](const auto& c) {
+    for (std::size_t i = 0; i < c.made().size(); ++i) {
+      const int end = i + 1 < c.made().size() ? c.made()[i + 1].row : c.rowCount();
+      f(c, c.made()[i].row, end - c.made()[i].row, touchAt(in, c.made()[i].contact)->softness);
+    }
+  });
+  const auto softness = [&](const Impedance& p) { return softnessAt(p, 0.0, 1.0, model.options); };
+  for (int i = 0; i < rows.jointLimit.rowCount(); ++i)
+    for (const JointRange& range : model.ranges)
+      if (model.bodies[range.body].v == rows.jointLimit.dof(i))
+        f(rows.jointLimit, i, 1, softness(range.impedance));
+  for (int i = 0; i < rows.dryFriction.rowCount(); ++i)
+    f(rows.dryFriction, i, 1, softness(model.dofs[rows.dryFriction.dof(i)].frictionImpedance));
+  for (int i = 0; i < rows.connection.rowCount(); i += 3)
+    f(rows.connection, i, 3, softness(model.connections[i / 3].impedance));
+  for (int i = 0; i < rows.weld.rowCount(); i += 3)  // its point, its rotation
+    f(rows.weld, i, 3, softness(model.welds[i / 6].impedance));
+}
+
+/// References of the kinds that have rows.
+std::vector<std::vector<double>> references(const Constraints& rows) {
+  std::vector<std::vector<double>> all;
+  rows.visit([&](const auto& kind) { all.push_back(kind.reference); });
+  return all;
+}
+
+bool isFreeBody(const Model& model, const Tree& tree) {
+  return model.bodies[tree.rootBody].joint == JointKind::floating &&
+         tree.dofEnd == tree.firstDof + 6;
+}
+
+}  // namespace
+
+EnergyWatch::EnergyWatch(const Model& model)
+    : model_(model),
+      leapfrog_(model.options.solvesOnce() && !model.options.stepDoubling),
+      kinematics_(model),
+      data_(model),
+      contacts_(model) {}
+
+double EnergyWatch::energy(const State& state) {
+  back_ = state;
+  bool pushed = false;  // a followed tree that rows have pushed: its v is behind but for its M
+  if (leapfrog_) {
+    VectorX v = state.v;
+    for (std::size_t t = 0; t < state.followed.size(); ++t) {
+      const Tree& tree = model_.trees[t];
+      if (state.followed[t] == 1) v.segment(tree.firstDof, tree.dofEnd - tree.firstDof).setZero();
+      pushed |= state.followed[t] == 3;
+    }
+    integratePosition(model_, v, -0.5 * model_.options.timestep, back_.q);
+  }
+  computeKinematics(model_, back_, kinematics_);
+  Energy E = computeEnergy(model_, kinematics_, back_.q, back_.v);
+  if (pushed) {
+    computeKinematics(model_, state, kinematics_);
+    E.kinetic = computeEnergy(model_, kinematics_, state.q, state.v).kinetic;
+  }
+  return E.total();
+}
+
+double EnergyWatch::turning(const State& state) {
+  VectorX v = state.v;
+  for (const Tree& tree : model_.trees)
+    if (isFreeBody(model_, tree)) v.segment<3>(tree.firstDof).setZero();
+  return computeEnergy(model_, kinematics_, state.q, v).kinetic;
+}
+
+double EnergyWatch::offset(const State& state, const Input& input) {
+  if (!leapfrog_) return 0.0;
+  const double h = model_.options.timestep;
+  computeStages(model_, input, state, data_, nullptr);
+  VectorX force = data_.forces.net;
+  for (std::size_t t = 0; t < model_.trees.size(); ++t) {
+    const Tree& tree = model_.trees[t];
+    if (isFreeBody(model_, tree)) force.segment<3>(tree.firstDof).setZero();
+    if (!state.followed.empty() && state.followed[t] == 1)
+      force.segment(tree.firstDof, tree.dofEnd - tree.firstDof).setZero();
+  }
+  VectorX a = force;
+  data_.forward.massFactored = false;
+  solveMass(data_, nullptr, a);
+  return 2.0 * FollowedTrees::kFollowedTurn * turning(state) + 0.125 * h * h * force.dot(a);
+}
+
+double EnergyWatch::stored(const State& state, const Input& input) {
+  Input soft = input;
+  soft.softFriction = true;  // (T.97) scales k d by the speed
+  computeStages(model_, soft, state, data_, &contacts_);
+  const std::vector<std::vector<double>> moving = references(data_.constraints);
+  State still = state;
+  still.v.setZero();
+  computeStages(model_, soft, still, data_, &contacts_);
+  const std::vector<std::vector<double>> resting = references(data_.constraints);
+  forwardDynamics(model_, nullptr, data_);
+  std::vector<const void*> kinds;
+  data_.constraints.visit([&](const auto& kind) { kinds.push_back(&kind); });
+
+  double sum = 0.0;
+  const auto add = [&](const auto& kind, int row, int rows, const Softness& s) {
+    const auto k = std::find(kinds.begin(), kinds.end(), &kind) - kinds.begin();
+    for (int i = row; i < row + rows; ++i) {
+      const double rate = std::abs(moving[k][i] - resting[k][i]) / s.damping;
+      const double depth = s.stiffness > 0.0 ? std::abs(resting[k][i]) / s.stiffness : 0.0;
+      sum += std::abs(kind.f[i]) * (depth + rate * (1.0 / s.damping + model_.options.timestep));
+    }
+  };
+  forEachSoft(model_, still, data_, add);
+  return sum;
+}
+
+double EnergyWatch::begun(const Data& data) {
+  before_.swap(now_);
+  now_.clear();
+  double sum = 0.0;
+  data.constraints.visitContacts([&](const auto& c) {
+    for (std::size_t i = 0; i < c.made().size(); ++i) {
+      const ContactRows& made = c.made()[i];
+      now_.push_back(c.name(made.row));
+      if (std::find(before_.begin(), before_.end(), now_.back()) == before_.end())
+        sum += c.frameForce(static_cast<int>(i))[0] *
+               std::abs(data.contacts.contacts[made.contact].distance);
+    }
+  });
+  return sum;
+}
+
+void EnergyWatch::begin(const State& state, const Input& input) {
+  least_ = energy(state);
+  limit_ = least_ + stored(state, input) + offset(state, input);
+}
+
+double EnergyWatch::check(const State& state, const Input& input, const Data& data, double work,
+                          double perStep) {
+  constexpr int kEvery = 5;
+  const double E = energy(state), now = E - work;
+  limit_ += perStep + begun(data);
+  if (leapfrog_)
+    limit_ += (std::pow(2.0 * FollowedTrees::kFollowedTurn, 1.5) / 12.0 +
+               2.0 * TreeMotion::kTolerance * data.stats.substeps) *
+              turning(back_);
+  const double rounding =
+      1e3 * std::numeric_limits<double>::epsilon() * (std::abs(E) + std::abs(work));
+  double over = now - limit_ - rounding;
+  if (over > 0.0) over -= offset(state, input);
+  least_ = std::min(least_, now);
+  if (now - least_ > rose) rose = now - least_, allowedThere = rose - over;
+  if (++steps_ % kEvery == 0)
+    limit_ = std::min(limit_, now + stored(state, input) + offset(state, input));
+  return over;
+}
+
+}  // namespace softgauss::test
