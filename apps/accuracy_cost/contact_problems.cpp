@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "apps/accuracy_cost/problem.hpp"
@@ -168,6 +169,15 @@ Problem squeeze(const std::string& robots) {
 std::vector<Problem> contactProblems(const std::string& robots) {
   return {slidingBlock(), bouncingBall(),   boxStack(),
           capsules(),     humanoid(robots), squeeze(robots)};
+}
+
+Problem lasting(Problem problem, double seconds) {
+  problem.periods = problem.windowPeriods =
+      std::max(1, static_cast<int>(std::lround(seconds / kPeriod)));
+  problem.windows = 1;
+  problem.name += fmt::format("_{:g}s", seconds);
+  problem.title += fmt::format(", {:g} s", seconds);
+  return problem;
 }
 
 std::vector<Problem> allProblems(const std::string& robots) {

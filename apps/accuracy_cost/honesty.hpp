@@ -3,7 +3,8 @@
 
 /// Whether a setting that is chosen for an accuracy keeps it, and is about as fast as the best one.
 ///
-/// chooseSetting() sees the problem and nothing else. Its choice is then measured against the
+/// chooseForRun(), or chooseSetting() where a problem is cut into windows, sees the problem and
+/// nothing else. Its choice is then measured against the
 /// study's own reference, and beside the fastest of all settings in the table that are as accurate:
 /// the exhaustive search. Problems whose two references differ by more than a tenth of the accuracy
 /// are chaotic at that accuracy, and are not counted.
@@ -26,13 +27,18 @@ struct HonestyCase {
   double bestTime = 0.0;
   double trialSeconds = 0.0;
 
+  bool whole = true;      ///< it was tried on all of the motion
+  double expected = 0.0;  ///< the error that it was expected to have, at the end where not whole
+
   bool honest() const { return found && error <= accuracy; }
   bool fast() const { return found && time <= 1.5 * bestTime; }
 };
 
 /// Accuracies of 1e-2 … 1e-6 m on each problem, with the table of a full run. Prints each case and
-/// the shares, and writes honesty.csv.
-void checkHonesty(const std::filesystem::path& folder, const std::vector<Problem>& problems,
-                  const std::vector<Result>& table, const StudyOptions& options);
+/// the shares, and writes honesty.csv. `wholeSeconds`: as chooseForRun() has it. Returns whether
+/// both shares are 95 % or more.
+bool checkHonesty(const std::filesystem::path& folder, const std::vector<Problem>& problems,
+                  const std::vector<Result>& table, const StudyOptions& options,
+                  double wholeSeconds);
 
 }  // namespace softgauss::app

@@ -4,22 +4,48 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "apps/accuracy_cost/best.hpp"
 #include "io/replay/gnuplot.hpp"
 
 namespace softgauss::app {
 namespace {
 
 constexpr const char* kDataPlace = "/*RESULTS*/null";
-const std::array<const char*, 18> kColours = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00",
-                                              "#56b4e9", "#8c6d31", "#000000", "#7b3294", "#999999",
-                                              "#1b9e77", "#e7298a", "#66a61e", "#a6761d", "#386cb0",
-                                              "#bf5b17", "#b2182b", "#4d4d4d"};
+
+/// Curves by their labels. A method of MuJoCo has the colour of ours that it is the counterpart of.
+struct Colour {
+  const char* label;
+  const char* colour;
+  const char* theirs = nullptr;
+};
+constexpr Colour kColours[] = {
+    {"semi-implicit Euler", "#0072b2"},
+    {"semi-implicit Euler as MuJoCo's", "#d55e00", "MuJoCo Euler"},
+    {"implicit in velocity", "#009e73", "MuJoCo implicit"},
+    {"implicit midpoint", "#cc79a7"},
+    {"Runge-Kutta 4", "#e69f00", "MuJoCo RK4"},
+    {"Dormand-Prince to 1e-05", "#56b4e9"},
+    {"Dormand-Prince to 1e-08", "#7b3294"},
+    {"Dormand-Prince to 1e-11", "#000000"},
+    {"Euler with step doubling to 1e-04", "#8c6d31"},
+    {"Euler with step doubling to 1e-06", "#999999"},
+    {"Euler with solver to 1e-06", "#a6d854"},
+    {"Euler with solver to 1e-03", "#4d7c0f"},
+    {"Euler without warm start", "#e7298a"},
+    {"Euler with elliptic cones", "#8b0000"},
+};
+
+/// The same in every picture.
+const char* colourOf(const Method& method) {
+  for (const Colour& c : kColours)
+    if (method.label == c.label || (c.theirs && method.label == c.theirs)) return c.colour;
+  throw std::logic_error("no colour for '" + method.label + "'");
+}
 
 void write(const std::filesystem::path& file, const std::string& text) {
   std::ofstream out(file);
@@ -75,8 +101,7 @@ std::string script(const Problem& problem, const std::vector<std::vector<Result>
     plot += fmt::format(
         "{}$curve{} using 1:2 with linespoints pointtype 7 pointsize 0.5 linewidth 1.8 dashtype {} "
         "linecolor '{}' title \"{}\"",
-        k == 0 ? "" : ", ", k, method.engine == "mujoco" ? 2 : 1, kColours[k % kColours.size()],
-        method.label);
+        k == 0 ? "" : ", ", k, method.engine == "mujoco" ? 2 : 1, colourOf(method), method.label);
   }
   if (reference > 0.0)
     plot += fmt::format(", {:.6g} linecolor '#999999' dashtype 3 title 'two references differ'",
@@ -105,7 +130,11 @@ nlohmann::ordered_json json(const Problem& problem,
                         {"overshoot", r.overshoot},
                         {"reference", r.referenceError},
                         {"oneStep", r.oneStep}});
-    out["curves"].push_back({{"engine", m.engine}, {"label", m.label}, {"points", points}});
+    out["curves"].push_back({{"engine", m.engine},
+                             {"label", m.label},
+                             {"colour", colourOf(m)},
+                             {"sameModel", sameModel(m)},
+                             {"points", points}});
   }
   return out;
 }

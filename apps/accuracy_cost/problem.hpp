@@ -50,6 +50,9 @@ std::vector<Problem> allProblems(const std::string& robots);
 std::vector<Problem> smoothProblems(const std::string& robots);
 std::vector<Problem> contactProblems(const std::string& robots);
 
+/// The whole motion of a problem, of so many seconds; its name says so.
+Problem lasting(Problem problem, double seconds);
+
 /// A link of a homogeneous box, of its half edges [m].
 LinkSpec boxLink(const std::string& name, double mass, const Vector3& half,
                  const Vector3& com = Vector3::Zero());

@@ -6,30 +6,12 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <limits>
 #include <stdexcept>
+
+#include "apps/accuracy_cost/best.hpp"
 
 namespace softgauss::app {
 namespace {
-
-struct Best {
-  const Result* result = nullptr;
-  double referenceError = 0.0;  ///< smallest of those tried [m]
-};
-
-/// The fastest that is as accurate, by references that tell.
-Best bestOf(const std::vector<Result>& results, const std::string& problem, double error,
-            const std::string& engine) {
-  Best best{nullptr, std::numeric_limits<double>::infinity()};
-  for (const Result& r : results) {
-    if (r.problem != problem || r.method.engine != engine) continue;
-    best.referenceError = std::min(best.referenceError, r.referenceError);
-    if (r.error <= error && tells(r.referenceError, error) &&
-        (!best.result || r.time < best.result->time))
-      best.result = &r;
-  }
-  return best;
-}
 
 std::string cells(const Best& best, double error) {
   if (best.result)

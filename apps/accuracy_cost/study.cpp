@@ -25,6 +25,14 @@ double overshoot(const Model& model, const State& state) {
 
 }  // namespace
 
+double simulatedOf(const Problem& problem) {
+  return problem.windows * problem.windowPeriods * kPeriod;
+}
+
+double mostTime(const Problem& problem, const StudyOptions& options) {
+  return options.mostSeconds / simulatedOf(problem);
+}
+
 Study::Study(const Problem& problem, StudyOptions options) : problem_(problem), options_(options) {}
 
 State Study::initialState(const Model& model) const {
@@ -37,10 +45,6 @@ VectorX Study::force(const Model& model, double time) const {
   VectorX tau = VectorX::Zero(model.nv);
   if (problem_.force) problem_.force(model, time, tau);
   return tau;
-}
-
-double Study::simulated() const {
-  return problem_.windowPeriods * kPeriod * static_cast<double>(windows().size());
 }
 
 /// States at the ends of periods; ends early where one is not finite, time is up, or the user
@@ -178,9 +182,10 @@ Result Study::measure(const Method& method, double h) {
         run(*contestant, window.start, problem_.windowPeriods, stepsOf(h), budget);
     result.penetration = std::max(result.penetration, contestant->penetration());
     if (states.size() < window.samples.size()) {
+      const bool late = budget.exceeded();
       result.error = result.orientation =
-          budget.exceeded() ? std::numeric_limits<double>::quiet_NaN() : kInfinity;
-      result.time = kInfinity;
+          late ? std::numeric_limits<double>::quiet_NaN() : kInfinity;
+      result.time = late ? mostTime(problem_, options_) : kInfinity;
       return result;
     }
     for (std::size_t k = 0; k < states.size(); ++k) {
@@ -200,7 +205,7 @@ Result Study::measure(const Method& method, double h) {
       result.overshoot = std::max(result.overshoot, overshoot(model, states[k]));
     }
   }
-  result.time = budget.spent / simulated();
+  result.time = budget.spent / simulatedOf(problem_);
   if (problem_.contact) result.oneStep = oneStep(*contestant, h);
   result.error = std::sqrt(sum / count);
   result.orientation = std::sqrt(turned / count);
@@ -214,7 +219,7 @@ void Study::measureTimes(std::vector<Result>& results) {
   std::vector<std::pair<Result*, std::unique_ptr<Contestant>>> again;
   for (Result& r : results)
     if (options_.repeats > 0 && std::isfinite(r.error) &&
-        r.time * simulated() <= options_.longRun) {
+        r.time * simulatedOf(problem_) <= options_.longRun) {
       again.emplace_back(&r, makeContestant(problem_, r.method, r.h));
       r.time = kInfinity;
     }
@@ -227,21 +232,21 @@ void Study::measureTimes(std::vector<Result>& results) {
           run(*contestant, window.start, problem_.windowPeriods, stepsOf(result->h), budget);
         ++rounds;
       } while (budget.spent < options_.minTime && rounds < 1000);
-      result->time = std::min(result->time, budget.spent / (rounds * simulated()));
+      result->time = std::min(result->time, budget.spent / (rounds * simulatedOf(problem_)));
     }
   }
 }
 
-TrialRun Study::tryOut(const Method& method, double h, double mostSeconds) const {
+TrialRun Study::tryOut(const Method& method, double h, int periods, double mostSeconds) const {
   TrialRun result;
   const auto contestant = makeContestant(problem_, method, h);
   Budget budget{mostSeconds};
   for (const Window& window : windows()) {
-    const std::vector<State> states =
-        run(*contestant, window.start, problem_.windowPeriods, stepsOf(h), budget);
+    const std::vector<State> states = run(*contestant, window.start, periods, stepsOf(h), budget);
     result.samples.insert(result.samples.end(), states.begin(), states.end());
     result.seconds = budget.spent;
-    if (static_cast<int>(states.size()) < problem_.windowPeriods) return result;
+    result.late = budget.exceeded();
+    if (static_cast<int>(states.size()) < periods) return result;
   }
   result.finite = true;
   return result;

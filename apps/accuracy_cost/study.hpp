@@ -25,7 +25,7 @@ struct Result {
   /// Root mean square over windows and periods [m]; ∞: not finite; NaN: it took too long.
   double error = 0.0;
   double orientation = 0.0;  ///< the same of angles [rad]
-  double time = 0.0;         ///< CPU seconds per simulated second
+  double time = 0.0;         ///< CPU seconds per simulated second; given up: what it had of them
   double energyDrift = 0.0;  ///< largest gain or loss over the largest kinetic energy, if passive
   /// Largest difference of linear or angular momentum to the reference, over the largest there.
   double momentumDrift = 0.0;
@@ -45,6 +45,11 @@ struct StudyOptions {
   double mostSeconds = 60.0;  ///< CPU seconds of all windows, beyond which a setting is given up
 };
 
+/// Of all windows [s].
+double simulatedOf(const Problem& problem);
+/// StudyOptions::mostSeconds as CPU seconds per simulated second.
+double mostTime(const Problem& problem, const StudyOptions& options);
+
 class Study {
  public:
   Study(const Problem& problem, StudyOptions options);
@@ -55,8 +60,8 @@ class Study {
   Result measure(const Method& method, double h);
   /// Fills in the times of results of one step size, run in turns.
   void measureTimes(std::vector<Result>& results);
-  /// All windows once, after prepare(), as a trial of shared/setting.hpp.
-  TrialRun tryOut(const Method& method, double h, double mostSeconds) const;
+  /// All windows once, of so many periods, after prepare(), as a trial of shared/setting.hpp.
+  TrialRun tryOut(const Method& method, double h, int periods, double mostSeconds) const;
   double referenceError() const { return references_[current_].error; }
 
  private:
@@ -81,7 +86,6 @@ class Study {
                          Budget& budget) const;
   std::vector<State> firstSteps(const References& of, const State& start) const;
   double oneStep(Contestant& contestant, double h) const;
-  double simulated() const;  ///< of all windows [s]
   State initialState(const Model& model) const;
   VectorX force(const Model& model, double time) const;
 

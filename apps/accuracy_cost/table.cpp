@@ -59,8 +59,8 @@ ResultTable::ResultTable(std::filesystem::path file) {
   if (known) {
     while (std::getline(in, text)) {
       Result result;
-      if (!parse(text, result)) continue;  // an interrupt may have cut the last line
-      results_.push_back(result);
+      // An interrupt may have cut the last line, within its last number too.
+      if (!in.eof() && parse(text, result)) put(result);
     }
   } else if (in) {
     in.close();
@@ -75,14 +75,29 @@ ResultTable::ResultTable(std::filesystem::path file) {
   out_.flush();
 }
 
-bool ResultTable::has(const std::string& problem, const Method& method, double h) const {
-  return std::any_of(results_.begin(), results_.end(), [&](const Result& r) {
+std::vector<Result>::iterator ResultTable::find(const std::string& problem, const Method& method,
+                                                double h) {
+  return std::find_if(results_.begin(), results_.end(), [&](const Result& r) {
     return r.problem == problem && r.method == method && std::abs(r.h - h) < 1e-9 * h;
   });
 }
 
+bool ResultTable::has(const std::string& problem, const Method& method, double h, double mostTime) {
+  const auto found = find(problem, method, h);
+  return found != results_.end() &&
+         !(std::isnan(found->error) && found->time < mostTime * (1.0 - 1e-5));
+}
+
+void ResultTable::put(const Result& result) {
+  const auto old = find(result.problem, result.method, result.h);
+  if (old != results_.end())
+    *old = result;
+  else
+    results_.push_back(result);
+}
+
 void ResultTable::add(const Result& result) {
-  results_.push_back(result);
+  put(result);
   out_ << line(result) << '\n' << std::flush;
 }
 

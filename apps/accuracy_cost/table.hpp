@@ -17,11 +17,16 @@ class ResultTable {
   /// beside it, with `.old`. Throws std::runtime_error when it cannot be written.
   explicit ResultTable(std::filesystem::path file);
 
-  bool has(const std::string& problem, const Method& method, double h) const;
+  /// What was given up counts only where it had `mostTime` or more [CPU s per simulated s].
+  bool has(const std::string& problem, const Method& method, double h, double mostTime);
+  /// In the place of an older one of the same setting.
   void add(const Result& result);
   const std::vector<Result>& results() const { return results_; }
 
  private:
+  std::vector<Result>::iterator find(const std::string& problem, const Method& method, double h);
+  void put(const Result& result);
+
   std::vector<Result> results_;
   std::ofstream out_;
 };

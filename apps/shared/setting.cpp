@@ -11,17 +11,17 @@
 namespace softgauss::app {
 namespace {
 
-constexpr int kMostSteps = 4096;         // a period
-constexpr double kMostSeconds = 30.0;    // CPU, for one run of the reference
-constexpr double kReferenceShare = 0.2;  // of the accuracy, by which two references may differ
-constexpr double kAimedShare = 0.9;      // of what the reference leaves, at which the next aims
-constexpr double kNearlyAsFast = 1.4;    // times the best: timed once more
+constexpr int kMostSteps = 4096;       // a period
+constexpr double kMostSeconds = 30.0;  // CPU, for one run of the reference
+constexpr double kAimedShare = 0.9;    // of what the reference leaves, at which the next aims
+constexpr double kNearlyAsFast = 1.4;  // times the best: timed once more
 constexpr int kTrialsOfAMethod = 7;
 
 struct Tried {
   Setting setting;
   double error = kInfinity;
   double seconds = kInfinity;
+  std::vector<double> errors{};  ///< of each sample
 };
 
 /// One way of moving on; its error falls with the step to the power of `order`, or with the
@@ -65,11 +65,11 @@ class Chooser {
       loosenSolver();
       choice.setting = good_.front().setting;
       choice.error = good_.front().error;
+      choice.errors = good_.front().errors;
       choice.price = good_.front().seconds / scene_.simulated;
     } else {
-      choice.setting = finest_.setting;
-      choice.error = finest_.error;
-      choice.price = finest_.seconds / scene_.simulated;
+      choice.late = late_;
+      choice.error = nearest_;
     }
     choice.trials = trials_;
     choice.trialSeconds = spent_;
@@ -78,22 +78,31 @@ class Chooser {
 
  private:
   TrialRun run(const Setting& setting, double mostSeconds) {
+    const double left = scene_.mostSeconds - spent_;
+    if (left <= 0.0) {
+      TrialRun none;
+      none.late = true;
+      return none;
+    }
     ++trials_;
-    TrialRun r = scene_.run(setting, mostSeconds);
+    TrialRun r = scene_.run(setting, std::min(mostSeconds, left));
     spent_ += r.seconds;
     return r;
   }
 
-  /// Root mean square over links and samples [m]; ∞ where one of them did not come to its end.
-  double distance(const TrialRun& x, const TrialRun& y) {
-    if (!x.finite || !y.finite || x.samples.empty()) return kInfinity;
+  /// How far two runs are apart: error ∞ where one of them did not come to its end.
+  Tried compare(const Setting& setting, const TrialRun& x, const TrialRun& y) {
+    Tried tried{setting, kInfinity, x.seconds};
+    if (!x.finite || !y.finite || x.samples.empty()) return tried;
     double sum = 0.0;
     for (std::size_t k = 0; k < x.samples.size(); ++k) {
       a_.set(x.samples[k]);
       b_.set(y.samples[k]);
-      sum += std::pow(a_.against(b_).total, 2);
+      tried.errors.push_back(a_.against(b_).total);
+      sum += std::pow(tried.errors.back(), 2);
     }
-    return std::sqrt(sum / static_cast<double>(x.samples.size()));
+    tried.error = std::sqrt(sum / static_cast<double>(x.samples.size()));
+    return tried;
   }
 
   bool findReference() {
@@ -107,33 +116,38 @@ class Chooser {
         {{Integrator::semiImplicitEuler, 512}, {Integrator::semiImplicitEuler, 1024}}};
     for (const Setting(&pair)[2] : pairs) {
       const TrialRun first = run(pair[0], kMostSeconds);
+      late_ = late_ || first.late;
       if (!first.finite) continue;
       TrialRun second = run(pair[1], 3.0 * kMostSeconds);
-      const double differ = distance(first, second);
-      if (second.finite) finest_ = {pair[1], differ, second.seconds};
-      if (!(differ <= kReferenceShare * accuracy_)) continue;
+      late_ = late_ || second.late;
+      Tried coarse = compare(pair[0], first, second);
+      nearest_ = std::min(nearest_, coarse.error);
+      if (!(coarse.error <= kReferenceShare * accuracy_)) continue;
       reference_ = std::move(second);
-      referenceError_ = differ;
+      referenceError_ = coarse.error;
       // What the references cost is a bound: nothing dearer is looked at.
-      note({pair[0], differ, first.seconds});
-      note({pair[1], differ, reference_.seconds});
+      Tried fine = coarse;
+      fine.setting = pair[1];
+      fine.seconds = reference_.seconds;
+      note(std::move(coarse));
+      note(std::move(fine));
       return true;
     }
+    late_ = late_ && nearest_ == kInfinity;
     return false;
   }
 
   bool passes(double error) const { return error + referenceError_ <= accuracy_; }
   double aim() const { return kAimedShare * (accuracy_ - referenceError_); }
 
-  void note(const Tried& tried) {
+  void note(Tried tried) {
     if (!passes(tried.error)) return;
     best_ = std::min(best_, tried.seconds);
-    good_.push_back(tried);
+    good_.push_back(std::move(tried));
   }
 
   Tried attempt(const Setting& setting) {
-    const TrialRun r = run(setting, 1.5 * best_);
-    Tried tried{setting, distance(r, reference_), r.seconds};
+    Tried tried = compare(setting, run(setting, 1.5 * best_), reference_);
     note(tried);
     return tried;
   }
@@ -146,7 +160,8 @@ class Chooser {
       setting.midpointCoriolis = method.midpointCoriolis;
       const Tried tried = attempt(setting);
       const bool pass = passes(tried.error);
-      if (!pass && tried.seconds > 1.2 * best_) return;  // more steps are dearer still
+      // More steps are dearer still, or there are none.
+      if (!pass && (tried.seconds > 1.2 * best_ || n >= kMostSteps)) return;
       (pass ? enough : tooFew) = n;
       double next = 4.0 * n;
       if (std::isfinite(tried.error)) {
@@ -188,24 +203,23 @@ class Chooser {
     const double near = kNearlyAsFast * good_.front().seconds;
     for (Tried& tried : good_) {
       if (tried.seconds > near) break;
-      for (int i = 0; i < 2; ++i)
-        tried.seconds = std::min(tried.seconds, run(tried.setting, kMostSeconds).seconds);
+      for (int i = 0; i < 2; ++i) {
+        const TrialRun r = run(tried.setting, kMostSeconds);
+        if (r.finite) tried.seconds = std::min(tried.seconds, r.seconds);
+      }
     }
     sort();
   }
 
   void loosenSolver() {
     for (const double tolerance : {1e-8, 1e-5}) {
-      Tried looser = good_.front();
-      looser.setting.tolerance = tolerance;
-      looser.seconds = kInfinity;
-      for (int i = 0; i < 2; ++i) {
-        const TrialRun r = run(looser.setting, kMostSeconds);
-        looser.error = distance(r, reference_);
-        looser.seconds = std::min(looser.seconds, r.seconds);
-      }
+      Setting setting = good_.front().setting;
+      setting.tolerance = tolerance;
+      Tried looser = compare(setting, run(setting, kMostSeconds), reference_);
+      const TrialRun again = run(setting, kMostSeconds);
+      if (again.finite) looser.seconds = std::min(looser.seconds, again.seconds);
       if (passes(looser.error) && looser.seconds < 0.97 * good_.front().seconds)
-        good_.insert(good_.begin(), looser);
+        good_.insert(good_.begin(), std::move(looser));
     }
   }
 
@@ -216,8 +230,9 @@ class Chooser {
   TrialRun reference_;
   double referenceError_ = 0.0, best_ = kInfinity, spent_ = 0.0;
   int trials_ = 0;
+  bool late_ = false;           ///< a reference took too long
+  double nearest_ = kInfinity;  ///< the least by which two of them differ [m]
   std::vector<Tried> good_;
-  Tried finest_;
 };
 
 }  // namespace

@@ -31,29 +31,38 @@ struct Setting {
   std::string text(double period) const;
 };
 
+/// Of the accuracy, by which two references may differ.
+inline constexpr double kReferenceShare = 0.2;
+
 /// What a run with a setting came to.
 struct TrialRun {
   bool finite = false;
+  bool late = false;           ///< not finite for that it takes too long
   double seconds = 0.0;        ///< CPU time, of the steps alone
-  std::vector<State> samples;  ///< at the ends of periods
+  std::vector<State> samples;  ///< at the ends of periods, the same in every trial
 };
 
 /// The scene in which a setting is tried.
 struct TrialScene {
-  const Model* model = nullptr;  ///< for link poses
-  double period = 0.032;         ///< samples are taken this often [s]
-  double simulated = 0.0;        ///< duration of a trial [s]
-  double longestStep = 0.032;    ///< [s]; beyond it the step would change the model
-  /// Not finite too where it takes more than so many CPU seconds.
+  const Model* model = nullptr;    ///< for link poses
+  double period = 0.032;           ///< samples are taken this often [s]
+  double simulated = 0.0;          ///< duration of a trial [s]
+  double longestStep = 0.032;      ///< [s]; beyond it the step would change the model
+  double mostSeconds = kInfinity;  ///< CPU time of all trials; the best so far counts at its end
+  /// Not finite and late where it takes more than so many CPU seconds.
   std::function<TrialRun(const Setting&, double mostSeconds)> run;
 };
 
 struct Choice {
   Setting setting;
   bool found = false;      ///< a setting that is estimated to be as accurate as asked for
-  bool referenced = true;  ///< false: no two accurate runs agree; `setting` is the finest tried
-  double error = 0.0;      ///< estimated, root mean square over links and samples [m]
-  double price = 0.0;      ///< CPU seconds per simulated second
+  bool referenced = true;  ///< false: no two accurate runs agree
+  bool late = false;       ///< of two accurate runs none came to its end in time
+  /// Estimated, root mean square over links and samples [m]; without a reference the least by which
+  /// two accurate runs differ, ∞ where no two came to their end.
+  double error = kInfinity;
+  std::vector<double> errors;  ///< the same of each sample
+  double price = 0.0;          ///< CPU seconds per simulated second
   double trialSeconds = 0.0;
   int trials = 0;
 };

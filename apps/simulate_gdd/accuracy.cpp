@@ -7,86 +7,136 @@
 #include <cmath>
 
 #include "apps/shared/cpu_time.hpp"
-#include "io/torque_table.hpp"
+#include "apps/shared/run_choice.hpp"
+#include "apps/simulate_gdd/outside_input.hpp"
+#include "apps/simulate_gdd/progress.hpp"
 
 namespace softgauss::app {
 namespace {
 
-constexpr double kLongestTrial = 2.0;  // [s]
-constexpr double kPeriod = 0.032;      // [s]
+constexpr double kPeriod = 0.032;  // [s]
+constexpr int kMostSamples = 2000;
 
-/// The scene with other options, from its start to the end of the trial.
-TrialRun tryOut(const SimulateOptions& options, const Scene& scene, const Model& model, int periods,
-                int steps, double mostSeconds) {
+/// Runs the scene with other options from its start, and shows how far it is.
+class Trials {
+ public:
+  Trials(const SimulateOptions& options, const Scene& scene)
+      : options_(options),
+        scene_(scene),
+        outside_(options, scene),
+        progress_(options.duration, options.quiet) {}
+  ~Trials() { progress_.clear(); }
+
+  TrialScene over(double simulated) {
+    const int periods = std::max(1, static_cast<int>(std::lround(simulated / kPeriod)));
+    TrialScene trial;
+    trial.model = &scene_.model;
+    trial.period = simulated / periods;
+    trial.simulated = simulated;
+    trial.longestStep = std::min(trial.period, longestStepFor(scene_.model));
+    trial.run = [this, periods, period = trial.period](const Setting& setting, double mostSeconds) {
+      Model model = scene_.model;
+      setting.setOptions(period, model.options);
+      ++count_;
+      what_ = setting.text(period);
+      return run(model, periods, setting.steps, mostSeconds);
+    };
+    return trial;
+  }
+
+ private:
+  TrialRun run(const Model& model, int periods, int steps, double mostSeconds);
+
+  const SimulateOptions& options_;
+  const Scene& scene_;
+  const OutsideInput outside_;
+  Progress progress_;
+  const double begin_ = cpuSeconds();
+  int count_ = 0;
+  std::string what_;  ///< is tried
+};
+
+TrialRun Trials::run(const Model& model, int periods, int steps, double mostSeconds) {
   collision::SceneContacts contacts(model);
   Data data(model);
-  State state = scene.initial;
+  State state = scene_.initial;
   Input input;
-  io::WrenchSchedule wrenches = scene.schedule;
   gdd::GoalDirectedController controller(model);
-  if (!options.passive && options.torques.empty()) controller.goals = makeGoals(options, scene);
-  controller.solver = scene.gddSolver;
-  controller.box = io::controlBox(model, scene.actuators);
-  std::optional<io::TorqueTable> torques;
-  if (!options.torques.empty()) torques = io::TorqueTable::read(options.torques, model);
+  if (!options_.passive && options_.torques.empty()) controller.goals = makeGoals(options_, scene_);
+  controller.solver = scene_.gddSolver;
+  controller.box = io::controlBox(model, scene_.actuators);
 
   TrialRun result;
+  const int every = (periods + kMostSamples - 1) / kMostSamples;
   for (int k = 0; k < periods; ++k) {
+    progress_.showTrial(count_, what_, static_cast<double>(k) / periods, cpuSeconds() - begin_);
     const double begin = cpuSeconds();
     for (int i = 0; i < steps; ++i) {
-      if (torques) torques->controlAt(state.time, input.tau);
-      if (!wrenches.empty()) {
-        computeKinematics(model, state, data.kinematics);
-        wrenches.at(state.time, model.options.timestep, data.kinematics, input.wrenches);
-      }
+      outside_.at(model, state, data.kinematics, input);
       if (isRefused(controller.goals.empty()
                         ? step(model, input, state, data, &contacts)
                         : controller.step(model, input, state, data, &contacts)))
         return result;
     }
     result.seconds += cpuSeconds() - begin;
-    if (result.seconds > mostSeconds) return result;
-    result.samples.push_back(state);
+    result.late = result.seconds > mostSeconds;
+    if (result.late) return result;
+    // The last period's end is the run's.
+    if ((periods - 1 - k) % every == 0) result.samples.push_back(state);
   }
   result.finite = true;
   return result;
+}
+
+/// Why nothing can be promised.
+std::string refusal(const RunChoice& run, double accuracy, double duration) {
+  const Choice& choice = run.choice;
+  if (run.growth.chaotic)
+    return fmt::format(
+        "cannot be promised: in a trial of {:g} s errors grow e-fold every {:.2g} s, which is "
+        "chaos, and {:g} s are too dear to be tried",
+        run.tried, 1.0 / run.growth.rate, duration);
+  if (choice.referenced) return "is reached by none of the settings that were tried";
+  if (choice.error == kInfinity)
+    return fmt::format(
+        "cannot be promised: no two accurate runs of {:g} s came to their end within {:g} s of CPU "
+        "time",
+        run.tried, run.whole ? kTrialCpuSeconds : kShortCpuSeconds);
+  return fmt::format(
+      "cannot be promised: the two accurate runs of {:g} s that are nearest differ by {:.2g} m, "
+      "and {:.2g} m would do. Motion with impacts or chaos spreads every error; a shorter "
+      "--duration or a larger error may do",
+      run.tried, choice.error, kReferenceShare * accuracy);
+}
+
+/// What was tried, and what that says of the end.
+std::string reach(const RunChoice& run, double duration) {
+  if (run.whole)
+    return fmt::format("estimated error {:.2g} m over the whole run of {:g} s, {:.2g} m at its end",
+                       run.choice.error, duration, run.atEnd);
+  return fmt::format(
+      "estimated error {:.2g} m over the first {:g} s, where it grows as t^{:.1f}: {:.2g} m at the "
+      "end of {:g} s, if nothing new begins after the trial; one of the whole run would take more "
+      "than {:g} s of CPU time",
+      run.choice.error, run.tried, run.growth.power, run.atEnd, duration, kTrialCpuSeconds);
 }
 
 }  // namespace
 
 std::string chooseAccuracy(const SimulateOptions& options, Scene& scene) {
   const double accuracy = *options.accuracy;
-  const double simulated = std::min(options.duration, kLongestTrial);
-  const int periods = std::max(1, static_cast<int>(std::lround(simulated / kPeriod)));
-  TrialScene trial;
-  trial.model = &scene.model;
-  trial.period = simulated / periods;
-  trial.simulated = simulated;
-  trial.longestStep = std::min(trial.period, longestStepFor(scene.model));
-  trial.run = [&](const Setting& setting, double mostSeconds) {
-    Model model = scene.model;
-    setting.setOptions(trial.period, model.options);
-    return tryOut(options, scene, model, periods, setting.steps, mostSeconds);
-  };
-  const Choice choice = chooseSetting(accuracy, trial);
+  Trials trials(options, scene);
+  const RunChoice run = chooseForRun(accuracy, options.duration,
+                                     [&](double simulated) { return trials.over(simulated); });
+  const Choice& choice = run.choice;
   if (!choice.found)
-    throw ModelError(
-        {}, fmt::format("--accuracy {:g}", accuracy),
-        choice.referenced
-            ? "is reached by none of the settings that were tried"
-            : fmt::format("cannot be promised: two accurate runs of {:g} s differ by {:.2g} m. "
-                          "Motion with impacts or chaos spreads every error; a shorter --duration "
-                          "or a larger error may do",
-                          simulated, choice.error));
-  choice.setting.setOptions(trial.period, scene.model.options);
+    throw ModelError({}, fmt::format("--accuracy {:g}", accuracy),
+                     refusal(run, accuracy, options.duration));
+  choice.setting.setOptions(run.period, scene.model.options);
   return fmt::format(
-      "accuracy {:g} m: {}; estimated error {:.2g} m over {:g} s, {:.3g} s of CPU time per "
-      "simulated second; {} trials took {:.2g} s{}",
-      accuracy, choice.setting.text(trial.period), choice.error, simulated, choice.price,
-      choice.trials, choice.trialSeconds,
-      options.duration > simulated
-          ? "; errors go on growing after that, --report-error estimates those of the whole run"
-          : "");
+      "accuracy {:g} m: {}; {}; {:.3g} s of CPU time per simulated second; {} trials took {:.2g} s",
+      accuracy, choice.setting.text(run.period), reach(run, options.duration), choice.price,
+      choice.trials, choice.trialSeconds);
 }
 
 }  // namespace softgauss::app

@@ -1,15 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/simulate_gdd/error_estimate.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace softgauss::app {
 namespace {
 
+constexpr double kFirstOrder = 2.0;  // 2^p/(2^p − 1)
+
+/// Of the tolerance of error control: the fifth order is cheap to tighten, the first is not.
+constexpr double kDormandPrinceShare = 1.0 / 1024.0, kDoublingShare = 1.0 / 64.0;
+
 Model halved(Model model) {
-  model.options.timestep *= 0.5;
-  model.options.integrationTolerance /= 64.0;
+  Options& options = model.options;
+  options.timestep *= 0.5;
+  options.integrationTolerance *= options.stepDoubling ? kDoublingShare : kDormandPrinceShare;
   return model;
+}
+
+Model halvedByDormandPrince(Model model) {
+  model.options.integrator = Integrator::dormandPrince;
+  return halved(std::move(model));
 }
 
 double factorOf(const Options& options) {
@@ -17,7 +29,7 @@ double factorOf(const Options& options) {
   switch (options.integrator) {
     case Integrator::semiImplicitEuler:
     case Integrator::implicit:
-      return 2.0;
+      return kFirstOrder;
     case Integrator::implicitMidpoint:
       return 4.0 / 3.0;
     case Integrator::rungeKutta4:
@@ -30,41 +42,54 @@ double factorOf(const Options& options) {
 
 }  // namespace
 
-ErrorEstimate::ErrorEstimate(const Model& model, const State& start, bool withGoals)
-    : withGoals_(withGoals),
-      factor_(factorOf(model.options)),
-      model_(halved(model)),
-      contacts_(model_),
-      data_(model_),
-      state_(start),
-      run_(model),
-      halves_(model) {}
+ErrorEstimate::Halves::Halves(const Model& halved, const State& start, double f)
+    : factor(f), model(halved), contacts(model), data(model), state(start), poses(model) {}
+
+ErrorEstimate::ErrorEstimate(const Model& model, const State& start, const OutsideInput& outside,
+                             bool withGoals)
+    : outside_(outside), withGoals_(withGoals), run_(model) {
+  if (model.options.integrator == Integrator::implicitMidpoint)
+    halves_.push_back(std::make_unique<Halves>(halvedByDormandPrince(model), start, 1.0));
+  halves_.push_back(std::make_unique<Halves>(halved(model), start, factorOf(model.options)));
+}
 
 void ErrorEstimate::observe(const State& before, const Input& input, const State& after) {
-  if (lost_) return;
-  if (withGoals_) state_ = before;
-  for (int half = 0; half < 2 && !lost_; ++half)
-    lost_ = isRefused(step(model_, input, state_, data_, &contacts_));
-  if (lost_) return;
   run_.set(after);
-  halves_.set(state_);
-  const PoseError e = run_.against(halves_);
-  total_ += withGoals_ ? e.total : e.total * e.total;
-  turned_ += withGoals_ ? e.orientation : e.orientation * e.orientation;
+  for (const auto& halves : halves_)
+    if (!halves->lost) observe(*halves, before, input);
   ++steps_;
+}
+
+void ErrorEstimate::observe(Halves& h, const State& before, const Input& input) {
+  if (withGoals_) h.state = before;
+  input_ = input;
+  for (int half = 0; half < 2 && !h.lost; ++half) {
+    outside_.at(h.model, h.state, h.data.kinematics, input_);
+    if (input_.tau != input.tau) h.factor = std::max(h.factor, kFirstOrder);
+    h.lost = isRefused(step(h.model, input_, h.state, h.data, &h.contacts));
+  }
+  if (h.lost) return;
+  h.poses.set(h.state);
+  const PoseError e = run_.against(h.poses);
+  h.total += withGoals_ ? e.total : e.total * e.total;
+  h.turned += withGoals_ ? e.orientation : e.orientation * e.orientation;
 }
 
 io::ErrorOutcome ErrorEstimate::outcome() const {
   io::ErrorOutcome outcome;
   outcome.estimated = true;
   outcome.ofSteps = withGoals_;
-  const auto result = [&](double sum) {
-    if (lost_) return kInfinity;
-    if (steps_ == 0) return 0.0;
-    return factor_ * (withGoals_ ? sum : std::sqrt(sum / static_cast<double>(steps_)));
-  };
-  outcome.position = result(total_);
-  outcome.orientation = result(turned_);
+  outcome.position = outcome.orientation = kInfinity;
+  for (const auto& h : halves_) {
+    if (h->lost) continue;
+    const auto result = [&](double sum) {
+      if (steps_ == 0) return 0.0;
+      return h->factor * (withGoals_ ? sum : std::sqrt(sum / static_cast<double>(steps_)));
+    };
+    outcome.position = result(h->total);
+    outcome.orientation = result(h->turned);
+    break;
+  }
   return outcome;
 }
 

@@ -196,11 +196,9 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
                "twice at half of it, shortened until both agree to --integration-tolerance")
       ->group(simulation);
   CLI::Option* accuracy =
-      app.add_option(
-             "--accuracy", options.accuracy,
-             "find by a trial the cheapest integrator, step and solver tolerance that\n"
-             "leave at most this error over the run, or over its first 2 s [m], and use them")
-          ->check(CLI::PositiveNumber)
+      app.add_option("--accuracy", options.accuracy,
+                     "find by trials the cheapest integrator, step and solver tolerance that\n"
+                     "leave at most this error over the run [m], and use them")
           ->group(simulation);
   for (const char* chosen :
        {"--timestep", "--integrator", "--integration-tolerance", "--step-doubling"})
@@ -271,6 +269,9 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
                                       std::pair{"--timestep", options.timestep.value_or(1.0)}})
     if (!(value > 0.0) || !std::isfinite(value))
       throw UsageError(fmt::format("{} {}: expected a number of seconds above 0", option, value));
+  if (options.accuracy && !(*options.accuracy > 0.0 && std::isfinite(*options.accuracy)))
+    throw UsageError(
+        fmt::format("--accuracy {:g}: expected metres of error above 0", *options.accuracy));
   if (options.timestep) checkSteps(options, *options.timestep);
   const auto mustBeNear = [](double metres, const std::string& option) {
     if (!(std::abs(metres) <= kFarthest))

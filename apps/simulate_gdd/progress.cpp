@@ -28,6 +28,14 @@ void Progress::show(double simulated, double elapsed) {
   std::fflush(stderr);
 }
 
+void Progress::showTrial(int trial, const std::string& setting, double share, double elapsed) {
+  if (!visible_ || elapsed - lastShown_ < 0.1) return;
+  lastShown_ = elapsed;
+  fmt::print(stderr, "\rtrial {}: {}: {:.0f} %   {:.0f} s \033[K", trial, setting, 100.0 * share,
+             elapsed);
+  std::fflush(stderr);
+}
+
 void Progress::clear() {
   if (!visible_ || lastShown_ < 0.0) return;
   fmt::print(stderr, "\r\033[K");

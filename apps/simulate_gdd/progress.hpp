@@ -3,6 +3,8 @@
 
 /// A progress bar on a terminal; nothing elsewhere.
 
+#include <string>
+
 namespace softgauss::app {
 
 class Progress {
@@ -10,6 +12,8 @@ class Progress {
   Progress(double duration, bool quiet);
   /// Simulated time, speed against real time and remaining time; redraws ten times a second.
   void show(double simulated, double elapsed);
+  /// Of a trial before the run: which one it is, what it tries, and how far it is.
+  void showTrial(int trial, const std::string& setting, double share, double elapsed);
   void clear();
 
  private:

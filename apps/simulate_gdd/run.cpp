@@ -10,6 +10,7 @@
 
 #include "apps/simulate_gdd/error_estimate.hpp"
 #include "apps/simulate_gdd/island_run.hpp"
+#include "apps/simulate_gdd/outside_input.hpp"
 #include "apps/simulate_gdd/progress.hpp"
 #include "apps/simulate_gdd/replay.hpp"
 #include "apps/simulate_gdd/verdict.hpp"
@@ -17,7 +18,6 @@
 #include "io/explain.hpp"
 #include "io/log.hpp"
 #include "io/summary.hpp"
-#include "io/torque_table.hpp"
 
 namespace softgauss::app {
 namespace {
@@ -67,12 +67,11 @@ class Runner {
         state_(scene.initial),
         data_(model_),
         controller_(model_),
-        wrenches_(scene.schedule),
+        outside_(options, scene),
         summary_(model_) {
     if (!options.passive && options.torques.empty()) controller_.goals = makeGoals(options, scene);
     controller_.solver = scene.gddSolver;
     controller_.box = io::controlBox(model_, scene.actuators);
-    if (!options.torques.empty()) torques_ = io::TorqueTable::read(options.torques, model_);
     if (!options.log.empty()) log_.emplace(options.log, model_);
     summary_.version = SOFTGAUSS_VERSION;
     summary_.massKg = scene.contents.mass;
@@ -82,7 +81,8 @@ class Runner {
       if (note.asked && !note.on)
         summary_.warnings.push_back(fmt::format("{} is not simulated: {}", note.name, note.reason));
     if (options.islands) islands_.emplace(model_, state_, options.sleep, controller_);
-    if (options.reportError) errorEstimate_.emplace(model_, state_, !controller_.goals.empty());
+    if (options.reportError)
+      errorEstimate_.emplace(model_, state_, outside_, !controller_.goals.empty());
     computeStages(model_, input_, state_, data_, &contacts_);
     for (const auto& goal : controller_.goals)
       if (const std::optional<double> error = goal->error({model_, state_, data_}))
@@ -136,10 +136,8 @@ class Runner {
     record_.time = state_.time;
     record_.q = state_.q;
     record_.v = state_.v;
-    if (torques_) torques_->controlAt(state_.time, input_.tau);
-    if (islands_ || !wrenches_.empty()) computeKinematics(model_, state_, data_.kinematics);
-    if (!wrenches_.empty())
-      wrenches_.at(state_.time, model_.options.timestep, data_.kinematics, input_.wrenches);
+    if (islands_) computeKinematics(model_, state_, data_.kinematics);
+    outside_.at(model_, state_, data_.kinematics, input_);
     if (errorEstimate_) before_ = state_;
     const Clock::time_point start = Clock::now();
     const SolveStatus status = islands_ ? islands_->step(input_)
@@ -155,7 +153,7 @@ class Runner {
     return !isRefused(status);
   }
 
-  /// The control is held over the step, whoever found it.
+  /// A control that goals have found is held over the step.
   void estimateError() {
     held_.wrenches = input_.wrenches;
     held_.tau = controller_.goals.empty() ? input_.tau : controller_.control;
@@ -312,13 +310,12 @@ class Runner {
   State state_;
   Data data_;
   gdd::GoalDirectedController controller_;
-  const io::WrenchSchedule& wrenches_;
+  const OutsideInput outside_;
   Input input_;
   std::optional<IslandRun> islands_;
   std::optional<ErrorEstimate> errorEstimate_;
   State before_;  ///< the step, for that
   Input held_;    ///< over the step, for that
-  std::optional<io::TorqueTable> torques_;
   std::optional<io::LogWriter> log_;
   std::optional<Replay> replay_;
   std::string outputError_;

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/simulate_gdd/outside_input.hpp"
+
+namespace softgauss::app {
+
+OutsideInput::OutsideInput(const SimulateOptions& options, const Scene& scene)
+    : wrenches_(scene.schedule) {
+  if (!options.torques.empty()) torques_ = io::TorqueTable::read(options.torques, scene.model);
+}
+
+void OutsideInput::at(const Model& model, const State& state, Kinematics& kinematics,
+                      Input& input) const {
+  if (torques_) torques_->controlAt(state.time, input.tau);
+  if (wrenches_.empty()) return;
+  computeKinematics(model, state, kinematics);
+  wrenches_.at(state.time, model.options.timestep, kinematics, input.wrenches);
+}
+
+}  // namespace softgauss::app
