@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "gdd/gdd.hpp"
+#include "tests/stability/energy_watch.hpp"
 #include "tests/stability/scenes.hpp"
 
 namespace softgauss::test {
@@ -16,22 +17,30 @@ constexpr double kFaults[] = {std::numeric_limits<double>::quiet_NaN(),
                               std::numeric_limits<double>::infinity(),
                               -std::numeric_limits<double>::infinity()};
 
-/// A humanoid that falls, watched by a copy that knows of no fault.
+/// A humanoid that falls, pulled by a steady force, watched by a copy that knows of no fault. It
+/// gains no energy around any.
 struct Pair {
   Model model = humanoid().build();
   collision::SceneContacts contacts{model}, otherContacts{model};
   Data data{model}, otherData{model};
   State state{model}, other{model};
   Input input;
+  EnergyWatch watch{model};
+  double work = 0.0;  ///< of the force, on the pelvis [J]
 
   Pair() {
     input.tau = VectorX::Zero(model.nv);
-    input.wrenches.push_back({1, {Vector3(1, 2, 3), Vector3(10, 20, 30)}});
+    input.wrenches.push_back({1, {Vector3::Zero(), Vector3(10, 20, 30)}});
+    watch.begin(state, input);
   }
   SolveStatus faulty(const Input& in, State& s) { return step(model, in, s, data, &contacts); }
   /// Both go on, to the same bits.
   void goOn() {
+    const Vector3 v = state.v.head<3>();
     EXPECT_NE(step(model, input, state, data, &contacts), SolveStatus::notFinite);
+    work +=
+        0.5 * model.options.timestep * input.wrenches[0].F_Bo_W.force.dot(v + state.v.head<3>());
+    EXPECT_LE(watch.check(state, input, data, work), 1e-9) << state.time;
     EXPECT_NE(step(model, input, other, otherData, &otherContacts), SolveStatus::notFinite);
     EXPECT_EQ(hash(state), hash(other));
   }

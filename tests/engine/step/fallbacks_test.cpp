@@ -87,6 +87,47 @@ TEST(Fallbacks, AGuessThatIsNotFiniteIsCounted) {
   expectNone(s.data->stats);
 }
 
+// A ball that lands with 10 m/s: where the force jumps no part of a step is short enough for a
+// tolerance of 10⁻¹⁵ m.
+TEST(Fallbacks, PartsThatAreTakenInSpiteOfTheirEstimateAreCounted) {
+  for (const bool doubling : {false, true}) {
+    Options options;
+    options.integrator = doubling ? Integrator::semiImplicitEuler : Integrator::dormandPrince;
+    options.stepDoubling = doubling;
+    options.integrationTolerance = 1e-15;
+    Sliding s(options);
+    s.state.q[2] = 0.13;
+    s.state.v[2] = -10.0;
+    int jumps = 0, rejections = 0;
+    for (int i = 0; i < 20; ++i) {
+      ASSERT_FALSE(isRefused(s.step()));
+      jumps += s.data->stats.jumps;
+      rejections += s.data->stats.rejections;
+    }
+    EXPECT_GT(jumps, 0) << doubling;
+    EXPECT_GT(rejections, 0);
+  }
+}
+
+// A hinge that meets the end of its range at 100 rad/s: the sweeps of the midpoint rule do not
+// close on a force that jumps.
+TEST(Fallbacks, SweepsThatDoNotCloseAreCounted) {
+  ModelBuilder builder = pendulum(0.5, 1.0, 0.05);
+  JointSpec& hinge = *builder.findJoint("hinge");
+  hinge.type = JointType::revolute;
+  hinge.lower = -1.0, hinge.upper = 1.0;
+  builder.options.timestep = 0.02;
+  builder.options.integrator = Integrator::implicitMidpoint;
+  Scene s(builder.build());
+  s.state.v[0] = 100.0;
+  int jumps = 0;
+  for (int i = 0; i < 150; ++i) {
+    ASSERT_FALSE(isRefused(s.step()));
+    jumps += s.data->stats.jumps;
+  }
+  EXPECT_GT(jumps, 0);
+}
+
 // The first solve is given its answer, the second has one iteration to find its own: where it does
 // not, the friction of the first stands.
 TEST(Fallbacks, AFrictionThatIsKeptSoftIsCounted) {
