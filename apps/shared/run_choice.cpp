@@ -6,7 +6,7 @@
 namespace softgauss::app {
 namespace {
 
-constexpr int kMostRounds = 4;  // of shorter trials
+constexpr int kMostRounds = 10;  // of shorter trials
 
 }  // namespace
 

@@ -6,7 +6,7 @@
 /// The trial is of the whole run where that takes no more CPU time than it may. Else it is of the
 /// first two seconds: then the setting is chosen so that its error, as it grows there (growth.hpp),
 /// is within the accuracy at the end of the run. Of what begins to move or to touch later such a
-/// trial knows nothing.
+/// trial knows nothing: that is a forecast, and no promise.
 
 #include "apps/shared/growth.hpp"
 #include "apps/shared/setting.hpp"

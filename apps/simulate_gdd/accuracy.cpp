@@ -116,8 +116,9 @@ std::string reach(const RunChoice& run, double duration) {
                        run.choice.error, duration, run.atEnd);
   return fmt::format(
       "estimated error {:.2g} m over the first {:g} s, where it grows as t^{:.1f}: {:.2g} m at the "
-      "end of {:g} s, if nothing new begins after the trial; one of the whole run would take more "
-      "than {:g} s of CPU time",
+      "end of {:g} s is what that leads to, and no promise, for a trial of the whole run would "
+      "take "
+      "more than {:g} s of CPU time",
       run.choice.error, run.tried, run.growth.power, run.atEnd, duration, kTrialCpuSeconds);
 }
 

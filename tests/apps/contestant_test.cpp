@@ -24,18 +24,18 @@ app::Problem problemOf(const std::string& name) {
 TEST(Contestant, WindowsBeginAfresh) {
   const app::Problem top = problemOf("spinning_top");
   const app::Method euler{"softgauss", "semi-implicit-euler", ""};
-  const auto used = app::makeContestant(top, euler, 0.002);
-  const auto fresh = app::makeContestant(top, euler, 0.002);
+  const auto used = app::makeContestant(top, euler, app::kPeriod);
+  const auto fresh = app::makeContestant(top, euler, app::kPeriod);
   State fast(used->model());
   top.start(used->model(), fast);
   used->start(fast);
-  ASSERT_TRUE(used->advance({}, 16));
+  ASSERT_TRUE(used->advance({}, 4));
   ASSERT_EQ(used->state().followed, std::vector<std::uint8_t>{1});
   const State rest(used->model());
   used->start(rest);
   fresh->start(rest);
-  ASSERT_TRUE(used->advance({}, 16));
-  ASSERT_TRUE(fresh->advance({}, 16));
+  ASSERT_TRUE(used->advance({}, 4));
+  ASSERT_TRUE(fresh->advance({}, 4));
   EXPECT_EQ(used->state().q, fresh->state().q);
   EXPECT_EQ(used->state().v, fresh->state().v);
 }

@@ -112,6 +112,8 @@ TEST(ChooseForRun, TriesTheWholeRunWhereItMay) {
   EXPECT_TRUE(run.whole);
   EXPECT_EQ(run.tried, 10.0);
   EXPECT_LE(run.choice.error, 1e-3);
+  // Root mean square of t² over the run: 10² √(1/5).
+  EXPECT_NEAR(run.choice.error / scene.error(run.choice.setting, 10.0), std::sqrt(0.2), 0.01);
 }
 
 // Errors that grow as t and as t²: the one that is expected at the end is the one that is there,
