@@ -44,7 +44,7 @@ class EnergyWatch {
   explicit EnergyWatch(const Model& model);
 
   // Measured over all steps so far: the most that E − W was above its least value before [J], and
-  // what the law allowed there beyond `tolerance` [J].
+  // what the law allowed there [J].
   double rose = 0.0, allowedThere = 0.0;
 
   /// Before the first step, which takes `input`.

@@ -8,9 +8,11 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "gdd/gdd.hpp"
+#include "tests/stability/energy_watch.hpp"
 #include "tests/stability/scenes.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/same_contacts.hpp"
@@ -90,6 +92,10 @@ class Course {
   bool step() {
     if (broken) return false;
     if (steps == 0) startEnergy_ = energy();
+    if (steps == 0 && mayGain < kInfinity) {  // passive, but for what the controls do
+      watch_.emplace(model);
+      watch_->begin(state, input);
+    }
     before_ = state.v;
     const SolveStatus status = controller.step(model, input, state, data, &contacts);
     const auto breaks = [&](const std::string& law) {
@@ -125,6 +131,11 @@ class Course {
     work += 0.5 * model.options.timestep * (controller.control + input.tau).dot(before_ + state.v);
     gained = std::max(gained, energy() - startEnergy_ - work);
     if (gained > mayGain) return breaks("more energy than at the start and by work");
+    if (!watch_) return true;
+    driven_ = input;
+    driven_.tau += controller.control;
+    if (watch_->check(state, driven_, data, work) > mayGain)
+      return breaks("more energy than at an earlier step");
     return true;
   }
   void run(double seconds) {
@@ -150,6 +161,8 @@ class Course {
   Kinematics kinematics_{model};
   VectorX before_;  ///< v at the start of the step
   double startEnergy_ = 0.0;
+  std::optional<EnergyWatch> watch_;
+  Input driven_;  ///< `input` and the controls
 };
 
 /// Three links of 0.3 m and 1 kg that hang from hinges about x, y, y; 50 N m each.

@@ -83,45 +83,48 @@ TEST(Jams, CapsulesThatAreAlmostParallelRest) {
 
 // A cube of 0.2 m in a pit of four walls 0.1 mm too narrow, and 100 kg upon it: seven faces for six
 // freedoms. It leaves no wall, turns nowhere and rests; walls push no more than their depth asks.
-TEST(Jams, BoxBetweenMoreWallsThanItNeeds) {
-  for (const double timestep : kSteps)
-    for (const Cone cone : kCones) {
-      ModelBuilder builder("jam");
-      builder.geometry(groundSpec(1.0));
-      for (const double side : {-1.0, 1.0}) {
-        builder.geometry(geometrySpec("world", Shape::box(Vector3(0.1, 0.4, 0.1)), 1.0,
-                                      {Matrix3::Identity(), Vector3(0.1999 * side, 0, 0.1)}));
-        builder.geometry(geometrySpec("world", Shape::box(Vector3(0.4, 0.1, 0.1)), 1.0,
-                                      {Matrix3::Identity(), Vector3(0, 0.1999 * side, 0.1)}));
-      }
-      addBody(builder, "box", Shape::box(Vector3::Constant(0.1)), 1.0,
-              {Matrix3::Identity(), Vector3(0, 0, 0.1)});
-      addBody(builder, "press", Shape::box(Vector3(0.09, 0.09, 0.1)), 100.0,
-              {Matrix3::Identity(), Vector3(0, 0, 0.3)});
-      Trial t("jammed box", with(builder, timestep, cone));
-      t.run(2.0);
-      t.expect("off the middle", t.origin("box").head<2>().norm(), 1e-6, "m");
-      t.expect("off the floor", t.origin("box").z() - 0.1,
-               1e-3 * std::pow(std::max(1.0, 2.0 * timestep / 0.02), 2.0), "m");
-      t.expect("tilt", tilt(t, "box"), 1e-5, "rad");
-      t.expect("speed at rest", t.state.v.cwiseAbs().maxCoeff(), 1e-5, "m/s");
-      // Opposite walls press alike: their forces on the box add up to its weight and the load's.
-      Vector3 sum = Vector3::Zero();
-      double pressing = 0.0;
-      const auto add = [&](const auto& rows) {
-        for (int i = 0; i < static_cast<int>(rows.made().size()); ++i) {
-          const Contact& c = t.data->contacts.contacts[rows.made()[i].contact];
-          if (c.bodyA != 0 && c.bodyB != 0) continue;
-          const Vector3 force = c.bodyA == 0 ? rows.force(i) : Vector3(-rows.force(i));
-          sum += force;
-          pressing = std::max(pressing, force.head<2>().norm());
-        }
-      };
-      t.data->constraints.visitContacts(add);
-      t.expect("forces less the weight", (sum - Vector3(0, 0, 101.0 * 9.81)).norm(), 1e-2 * 991.0,
-               "N");
-      EXPECT_GT(pressing, 0.0);
+void jams(double friction, double timestep, Cone cone) {
+  ModelBuilder builder("jam");
+  builder.geometry(groundSpec(friction));
+  for (const double side : {-1.0, 1.0}) {
+    builder.geometry(geometrySpec("world", Shape::box(Vector3(0.1, 0.4, 0.1)), friction,
+                                  {Matrix3::Identity(), Vector3(0.1999 * side, 0, 0.1)}));
+    builder.geometry(geometrySpec("world", Shape::box(Vector3(0.4, 0.1, 0.1)), friction,
+                                  {Matrix3::Identity(), Vector3(0, 0.1999 * side, 0.1)}));
+  }
+  addBody(builder, "box", Shape::box(Vector3::Constant(0.1)), 1.0,
+          {Matrix3::Identity(), Vector3(0, 0, 0.1)}, friction);
+  addBody(builder, "press", Shape::box(Vector3(0.09, 0.09, 0.1)), 100.0,
+          {Matrix3::Identity(), Vector3(0, 0, 0.3)}, friction);
+  Trial t(friction > 0.0 ? "jammed box" : "jammed box, smooth", with(builder, timestep, cone));
+  t.run(2.0);
+  t.expect("off the middle", t.origin("box").head<2>().norm(), 1e-6, "m");
+  t.expect("off the floor", t.origin("box").z() - 0.1,
+           1e-3 * std::pow(std::max(1.0, 2.0 * timestep / 0.02), 2.0), "m");
+  t.expect("tilt", tilt(t, "box"), 1e-5, "rad");
+  t.expect("speed at rest", t.state.v.cwiseAbs().maxCoeff(), 1e-5, "m/s");
+  // Opposite walls press alike: their forces on the box add up to its weight and the load's.
+  Vector3 sum = Vector3::Zero();
+  double pressing = 0.0;
+  const auto add = [&](const auto& rows) {
+    for (int i = 0; i < static_cast<int>(rows.made().size()); ++i) {
+      const Contact& c = t.data->contacts.contacts[rows.made()[i].contact];
+      if (c.bodyA != 0 && c.bodyB != 0) continue;
+      const Vector3 force = c.bodyA == 0 ? rows.force(i) : Vector3(-rows.force(i));
+      sum += force;
+      pressing = std::max(pressing, force.head<2>().norm());
     }
+  };
+  t.data->constraints.visitContacts(add);
+  t.expect("forces less the weight", (sum - Vector3(0, 0, 101.0 * 9.81)).norm(), 1e-2 * 991.0, "N");
+  EXPECT_GT(pressing, 0.0);
+}
+
+// Without friction walls and floor alone hold it.
+TEST(Jams, BoxBetweenMoreWallsThanItNeeds) {
+  for (const double friction : {0.0, 1.0})
+    for (const double timestep : kSteps)
+      for (const Cone cone : kCones) jams(friction, timestep, cone);
 }
 
 }  // namespace
