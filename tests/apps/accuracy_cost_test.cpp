@@ -155,8 +155,7 @@ TEST(AccuracyCostLong, AccuracyIsKeptAndIsNotDear) {
                                      "32"};
   for (const char* problem :
        {"pendulum", "spring_mass_damper", "double_pendulum", "spinning_top", "free_body", "chain_5",
-        "chain_20", "arm", "humanoid_in_the_air", "sliding_block", "bouncing_ball", "box_stack",
-        "humanoid_landing", "hand_squeezes_ball"})
+        "arm", "humanoid_in_the_air", "bouncing_ball", "box_stack"})
     arguments.insert(arguments.end(), {"--scene", problem});
   const Outcome outcome = runProgram("accuracy_cost", arguments);
   EXPECT_EQ(outcome.exitCode, 0) << outcome.out.substr(outcome.out.find("pendulum   "));
@@ -164,7 +163,7 @@ TEST(AccuracyCostLong, AccuracyIsKeptAndIsNotDear) {
   int cases = 0;
   for (std::string line; std::getline(in, line);)
     cases += line.find(",1,1,\"") != std::string::npos;
-  EXPECT_GE(cases, 60);
+  EXPECT_GE(cases, 45);
 }
 
 TEST(AccuracyCost, DriftTellsWhoKeepsTheEnergy) {
