@@ -44,10 +44,14 @@ struct Figure {
   std::function<double(Stage&, double start)> value;
   std::function<double(Stage&)> start = {};
   std::optional<double> coarseBound = {};  ///< with the longer of kSteps, where it is another
-  std::string missed = {};  ///< why our engine is known to miss it at every step; else empty
+  std::string missed = {};                 ///< why our engine is known to miss it; else empty
+  std::string missedWhenCoarse = {};       ///< why with the longer of kSteps alone; else empty
 
   double boundAt(double timestep) const {
     return timestep > kSteps[0] && coarseBound ? *coarseBound : bound;
+  }
+  bool isMissedAt(double timestep) const {
+    return !missed.empty() || (timestep > kSteps[0] && !missedWhenCoarse.empty());
   }
 };
 

@@ -140,7 +140,7 @@ bool asKnown(const HardCase& hard, std::size_t f, double timestep, const Outcome
   const Figure& figure = hard.figures[f];
   const double bound = figure.boundAt(timestep);
   const bool held = !ours.diverged && std::abs(ours.figures[f]) <= bound;
-  if (held == figure.missed.empty()) return true;
+  if (held != figure.isMissedAt(timestep)) return true;
   fmt::print(stderr, "{}, {} at {:g} ms: {} of {:g} {}\n", hard.title, figure.name, 1e3 * timestep,
              held ? "holds its bound, and is listed as known to miss it" : "misses its bound",
              bound, figure.unit);
@@ -223,7 +223,9 @@ bool report(const Request& request) {
       std::string row = fmt::format("| {} | {} [{}] | {:g}", f == 0 ? hard.title : "", figure.name,
                                     figure.unit, figure.bound);
       if (figure.coarseBound) row += fmt::format("; {:g} at 10 ms", *figure.coarseBound);
-      row += figure.missed.empty() ? " |" : ", missed |";
+      row += !figure.missed.empty()             ? ", missed |"
+             : !figure.missedWhenCoarse.empty() ? ", missed at 10 ms |"
+                                                : " |";
       for (const Outcome& outcome : outcomes) row += " " + cell(outcome, f) + " |";
 
       fmt::print("{}\n", row);
