@@ -258,7 +258,7 @@ TEST(AccuracyCost, PartingIsThatOfTheMotion) {
   EXPECT_NEAR(whole, most, 0.01 * most);  // steps of 0.25 ms
 }
 
-TEST(AccuracyCost, GivesUpWhatTakesTooLong) {
+TEST(AccuracyCost, GivesUpWhatIsTooDear) {
   const io::TempFolder folder;
   const std::string out = folder.path() / "study";
   const Outcome outcome =

@@ -222,7 +222,7 @@ TEST(Accuracy, IsKept) {
 }
 
 // Over 10 s, of which the first two tell less than a quarter of the error.
-TEST(Accuracy, IsKeptOverALongRun) {
+TEST(Accuracy, IsKeptOverTheWholeRun) {
   const io::TempFolder folder;
   const std::string urdf = folder.path() / "pendulum.urdf", log = folder.path() / "log.csv";
   std::ofstream(urdf) << R"(<robot name="double"><link name="world"/>

@@ -112,7 +112,7 @@ TEST(CapsuleBox, LyingOnAFaceTouchesAtBothEnds) {
   }
 }
 
-TEST(CapsuleBox, LongerThanTheBoxItRestsOnBothEdges) {
+TEST(CapsuleBox, ReachesPastTheBoxAndRestsOnBothEdges) {
   const PairContacts c = contactsOf(Shape::capsule(0.1, 2.0),
                                     turned({0, 1, 0}, M_PI / 2, {0, 0, 0.599}), kCube, at(0, 0, 0));
   ASSERT_EQ(c.count, 2);

@@ -31,7 +31,7 @@ TEST(SeriesTable, KeepsEverySampleOfAShortRun) {
 
 // However many samples: bounded, in order, from the start, and each bucket holds the extremes of
 // its own samples.
-TEST(SeriesTable, LongRunsKeepTheExtremesOfEveryBucket) {
+TEST(SeriesTable, ManySamplesKeepTheExtremesOfEveryBucket) {
   std::mt19937_64 random(7);
   std::normal_distribution<double> normal;
   for (const int samples : {101, 102, 399, 400, 401, 1234, 5003}) {
