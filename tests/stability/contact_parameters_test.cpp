@@ -174,6 +174,17 @@ TEST(ContactParameters, SlopeAtTheEdgeOfThePyramid) {
   }
 }
 
+// Friction that is ten times as hard as what bears the weight bounds it, up to 2 ms.
+TEST(ContactParameters, ImpedanceRatioBoundsTheCreepOfThePyramid) {
+  const double friction = 0.8, slope = std::atan(0.99 * friction);
+  for (const double timestep : {0.0005, 0.001, 0.002}) {
+    Model model = boxOnSlope(slope, friction, timestep, Cone::pyramidal);
+    model.options.impedanceRatio = 10.0;
+    Trial t("the same, impedance ratio 10", std::move(model));
+    t.expect("creep", creeps(t, slope, 10.0), 5e-3, "m/s");
+  }
+}
+
 TEST(ContactParameters, SameBits) {
   expectSameBits([] {
     Trial t("slope", boxOnSlope(0.3, 10.0, 0.002, Cone::elliptic));
