@@ -3,6 +3,7 @@
 
 /// Engines behind one call, so that they run the same problems alternately in one process.
 
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -38,8 +39,8 @@ class Contestant {
   /// Takes so many steps under τ (nv); empty: none. False where the state is no longer finite.
   virtual bool advance(const VectorX& tau, int steps) = 0;
   virtual const State& state() = 0;
-  /// Deepest overlap of a contact since start() [m]; 0 where the engine does not tell.
-  virtual double penetration() const { return 0.0; }
+  /// Deepest overlap of a contact since start() [m]; NaN where the engine does not tell.
+  virtual double penetration() const { return std::numeric_limits<double>::quiet_NaN(); }
 };
 
 /// MuJoCo's methods, none where it was not found when this was built.

@@ -180,7 +180,7 @@ Result Study::measure(const Method& method, double h) {
   for (const Window& window : windows()) {
     const std::vector<State> states =
         run(*contestant, window.start, problem_.windowPeriods, stepsOf(h), budget);
-    result.penetration = std::max(result.penetration, contestant->penetration());
+    result.penetration = std::max(contestant->penetration(), result.penetration);  // NaN stays
     if (states.size() < window.samples.size()) {
       const bool late = budget.exceeded();
       result.error = result.orientation =

@@ -83,7 +83,7 @@ io::ErrorOutcome ErrorEstimate::outcome() const {
   for (const auto& h : halves_) {
     if (h->lost) continue;
     const auto result = [&](double sum) {
-      if (steps_ == 0) return 0.0;
+      if (steps_ == 0) return kInfinity;  // the first one was refused
       return h->factor * (withGoals_ ? sum : std::sqrt(sum / static_cast<double>(steps_)));
     };
     outcome.position = result(h->total);

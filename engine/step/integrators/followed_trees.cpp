@@ -12,6 +12,7 @@
 namespace softgauss {
 
 const double FollowedTrees::kFollowedTurn = 5e-4;
+constexpr double kTiedTurn = 0.1;  // [rad]
 
 namespace {
 
@@ -78,12 +79,21 @@ bool FollowedTrees::needed(const Model& model, const Data& data, State& state, c
   const double h = model.options.timestep;
   if (state.followed.size() != model.trees.size()) state.followed.assign(model.trees.size(), 2);
   bool any = false;
-  for (std::size_t t = 0; t < model.trees.size(); ++t) {
+  for (std::size_t t = 0; t < model.trees.size(); ++t)
     turn[t] = h * turnRate(model, model.trees[t], state.v, data.forward.a, h, dv);
+  // What a tie holds is turned by it, also a ball, which has no Coriolis forces.
+  const auto tied = [&](int body) {
+    const int tree = model.bodies[body].tree;
+    if (tree < 0) return;
+    const double angle = h * data.kinematics.V[body].angular.norm();
+    turn[tree] = std::max(turn[tree], kFollowedTurn * angle * angle / (kTiedTurn * kTiedTurn));
+  };
+  for (const Connection& c : model.connections) tied(c.bodyA), tied(c.bodyB);
+  for (const Weld& w : model.welds) tied(w.bodyA), tied(w.bodyB);
+  for (std::size_t t = 0; t < model.trees.size(); ++t) {
     // A tree that is followed stays so until it is far below.
     const bool before = state.followed[t] == 1 || state.followed[t] == 3;
     followed[t] = turn[t] > (before ? 0.25 : 1.0) * kFollowedTurn;
-    if (!followed[t] && state.followed[t] == 2) state.followed[t] = 0;
     any = any || followed[t] || before;
   }
   return any;

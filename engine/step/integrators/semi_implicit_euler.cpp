@@ -9,15 +9,16 @@
 namespace softgauss {
 namespace {
 
+constexpr std::uint8_t kBehind = 0, kAsGiven = 2;  // State::followed
+
 /// A body turns by more than 0.005 rad in the step, or a tree was followed in the last one. Below
 /// that (T.93) need not be worked out.
-bool mayTurnFar(const Model& model, const Data& data, State& state) {
+bool mayTurnFar(const Model& model, const Data& data, const State& state) {
   for (const std::uint8_t velocity : state.followed)
     if (velocity == 1 || velocity == 3) return true;
   const double fast = 0.005 / model.options.timestep;
   for (const Motion& V : data.kinematics.V)
     if (V.angular.squaredNorm() > fast * fast) return true;
-  std::fill(state.followed.begin(), state.followed.end(), std::uint8_t{0});
   return false;
 }
 
@@ -91,6 +92,7 @@ bool semiImplicitEuler(const Model& model, Data& data, State& state) {
   state.v = s.start;
   integratePosition(model, state.v, h, state.q);
   if (follow) data.followed.copyPositions(model, state.q);
+  if (midpoint) std::replace(state.followed.begin(), state.followed.end(), kAsGiven, kBehind);
   if (kicked) data.followed.endKick(model, data);
   state.time += h;
   return true;
