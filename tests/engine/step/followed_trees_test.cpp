@@ -222,20 +222,33 @@ TEST(FollowedTrees, AWobbleOnARimDiesOut) {
   EXPECT_SMALL(computeEnergy(s.model, s.data->kinematics, s.state.q, s.state.v).kinetic, 1e-9);
 }
 
-/// A box that turns about its corner, which is tied to the world: `turn` is how far in a step.
-Scene turningOnATie(double h, double turn) {
-  ModelBuilder builder = freeBody(boxLink("body", 1.0, {0.05, 0.1, 0.15}));
+/// A free body that turns about one of its points, which is tied to the world: `turn` is how far in
+/// a step.
+Scene turningAbout(const Vector3& point, const LinkSpec& body, const Vector3& axis, double h,
+                   double turn) {
+  ModelBuilder builder = freeBody(body);
   ConnectSpec tie;
-  tie.linkA = "body";
-  tie.p_LAP = tie.p_LBP = Vector3(0.05, 0.1, 0.15);
+  tie.linkA = body.name;
+  tie.p_LAP = tie.p_LBP = point;
   tie.linkB = "world";
   builder.connect(tie);
   builder.options.gravity.setZero();
   builder.options.timestep = h;
   Scene s(builder.build());
-  const Vector3 omega = turn / h * Vector3(0.6, 0.64, -0.48);
-  s.state.v << -omega.cross(tie.p_LAP), omega;
+  const Vector3 omega = turn / h * axis;
+  s.state.v << -omega.cross(point), omega;
   return s;
+}
+
+/// A box that turns about its corner.
+Scene turningOnATie(double h, double turn) {
+  const Vector3 corner(0.05, 0.1, 0.15);
+  return turningAbout(corner, boxLink("body", 1.0, corner), Vector3(0.6, 0.64, -0.48), h, turn);
+}
+
+double energyOf(Scene& s) {
+  computeKinematics(s.model, s.state, s.data->kinematics);
+  return computeEnergy(s.model, s.data->kinematics, s.state.q, s.state.v).total();
 }
 
 // However far the body turns in a step, the tie gives it no energy, and keeps hold of it.
@@ -243,16 +256,12 @@ TEST(FollowedTrees, ATieGivesNoEnergyHoweverFarTheBodyTurns) {
   for (const double h : {0.002, 0.01})
     for (const double turn : {0.1, 0.5, 1.5, 4.0}) {
       Scene s = turningOnATie(h, turn);
-      const auto energy = [&] {
-        computeKinematics(s.model, s.state, s.data->kinematics);
-        return computeEnergy(s.model, s.data->kinematics, s.state.q, s.state.v).total();
-      };
-      const double begun = energy();
+      const double begun = energyOf(s);
       int kicks = 0;
       for (int i = 0; i < 500; ++i) {
         ASSERT_EQ(s.step(), SolveStatus::converged);
         kicks += s.data->stats.kicks;
-        ASSERT_LE(energy(), begun * (1.0 + 1e-6)) << h << ", " << turn << ", step " << i;
+        ASSERT_LE(energyOf(s), begun * (1.0 + 1e-6)) << h << ", " << turn << ", step " << i;
         // The tie holds back ω² r by its spring alone, 1/t_c², and by half a step more.
         const Vector3 corner(0.05, 0.1, 0.15);
         const double off = (s.data->kinematics.X_WB[1] * corner - corner).norm();
@@ -271,21 +280,16 @@ TEST(FollowedTrees, ATieOfWhatIsNotFollowedTakesWhatItShould) {
     for (const double turn : {0.005, 0.02, 0.03, 0.04, 0.05, 0.06, 0.09}) {
       Scene s = turningOnATie(h, turn), converged = turningOnATie(h, turn);
       converged.model.options.integrator = Integrator::dormandPrince;
-      const auto energy = [](Scene& scene) {
-        computeKinematics(scene.model, scene.state, scene.data->kinematics);
-        return computeEnergy(scene.model, scene.data->kinematics, scene.state.q, scene.state.v)
-            .total();
-      };
-      const double begun = energy(s);
+      const double begun = energyOf(s);
       int followed = 0;
       for (double t = 0.0; t < 1.0 - 0.5 * h; t += h) {
         ASSERT_EQ(s.step(), SolveStatus::converged);
         ASSERT_EQ(converged.step(), SolveStatus::converged);
         followed += s.data->stats.followedTrees;
-        ASSERT_LE(energy(s), begun * (1.0 + 2.0 * turn * turn)) << h << ", " << turn << ", " << t;
+        ASSERT_LE(energyOf(s), begun * (1.0 + 2.0 * turn * turn)) << h << ", " << turn << ", " << t;
       }
       if (followed == 0) {
-        EXPECT_SMALL((energy(s) - energy(converged)) / begun, 0.01) << h << ", " << turn;
+        EXPECT_SMALL((energyOf(s) - energyOf(converged)) / begun, 0.01) << h << ", " << turn;
       }
       EXPECT_EQ(followed > 0, turn > 0.05) << h << ", " << turn;
     }
@@ -296,29 +300,16 @@ TEST(FollowedTrees, ATieOfWhatIsNotFollowedTakesWhatItShould) {
 TEST(FollowedTrees, ATieOfABallGivesNoEnergy) {
   for (const double h : {0.0005, 0.002, 0.01})
     for (const double turn : {0.04, 0.15, 0.4, 1.5, 3.0}) {
-      ModelBuilder builder = freeBody(sphereLink("ball", 1.0, 0.1));
-      ConnectSpec tie;
-      tie.linkA = "ball";
-      tie.p_LAP = tie.p_LBP = Vector3(0, 0, 0.2);
-      tie.linkB = "world";
-      builder.connect(tie);
-      builder.options.gravity.setZero();
-      builder.options.timestep = h;
-      Scene s(builder.build());
-      const Vector3 omega = turn / h * Vector3(0.6, 0.48, 0.64);
-      s.state.v << -omega.cross(tie.p_LAP), omega;
-      const auto energy = [&] {
-        computeKinematics(s.model, s.state, s.data->kinematics);
-        return computeEnergy(s.model, s.data->kinematics, s.state.q, s.state.v).total();
-      };
-      const double begun = energy(), behind = turn < 0.1 ? 2.0 * turn * turn : 1e-6;
+      Scene s = turningAbout(Vector3(0, 0, 0.2), sphereLink("ball", 1.0, 0.1),
+                             Vector3(0.6, 0.48, 0.64), h, turn);
+      const double begun = energyOf(s), behind = turn < 0.1 ? 2.0 * turn * turn : 1e-6;
       int followed = 0;
       for (int i = 0; i < 500; ++i) {
         ASSERT_NE(s.step(), SolveStatus::notFinite);
         // At 6000 rad/s J̇ v is 7·10⁶ m/s², and its rounding is left of the solve.
         ASSERT_LE(s.data->stats.residual, 1e-8) << h << ", " << turn << ", step " << i;
         followed += s.data->stats.followedTrees;
-        ASSERT_LE(energy(), begun * (1.0 + behind)) << h << ", " << turn << ", step " << i;
+        ASSERT_LE(energyOf(s), begun * (1.0 + behind)) << h << ", " << turn << ", step " << i;
       }
       EXPECT_EQ(followed > 0, turn > 0.1) << h << ", " << turn;
     }
