@@ -74,6 +74,14 @@ std::vector<Group> groupsOf(const Model& model, const ExplainContext& context) {
   return list;
 }
 
+/// What is in force between the two.
+Material surfaceOf(const Model& model, const Rest& rest) {
+  const int a = model.geometries[idx(rest.geometryA)].body;
+  const int b = model.geometries[idx(rest.geometryB)].body;
+  return inForce(pairMaterial(model, rest.geometryA, rest.geometryB), reducedMass(model, a, b),
+                 model.options);
+}
+
 /// The body that rests, of the two that a pair of geometries joins.
 const std::string& restingBody(const Model& model, const Rest& rest) {
   const int a = model.geometries[idx(rest.geometryA)].body;
@@ -110,7 +118,7 @@ std::string softnessText(const Model& model, const ExplainContext& context) {
     const bool both = group.least.sinks < group.most.sinks;
     for (const Rest* rest : {&group.least, both ? &group.most : nullptr}) {
       if (!rest) continue;
-      const Material pair = pairMaterial(model, rest->geometryA, rest->geometryB);
+      const Material pair = surfaceOf(model, *rest);
       const ContactAtRest at =
           contactAtRest(pair, rest->weight, rest->mass * gravity, model.options);
       const bool rubs = at.mobility > 0.0;
@@ -126,7 +134,7 @@ std::string softnessText(const Model& model, const ExplainContext& context) {
                                         at.equivalent.direct->damping)
                           : "-"});
     }
-    const Material pair = pairMaterial(model, group.most.geometryA, group.most.geometryB);
+    const Material pair = surfaceOf(model, group.most);
     out += fmt::format("  {}: friction {:.4g}, condim {}, {}\n", group.surfaces,
                        pair.slidingFriction, pair.condim, formOf(pair));
     out += table.text();

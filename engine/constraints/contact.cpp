@@ -78,7 +78,8 @@ std::optional<Touch> touchAt(const Assembly& in, int i) {
   const Model& model = in.model;
   const Contact& c = in.contacts.contacts[i];
   if (model.bodies[c.bodyA].dofs == 0 && model.bodies[c.bodyB].dofs == 0) return std::nullopt;
-  const Material material = pairMaterial(model, c.geometryA, c.geometryB);
+  const Material material = inForce(pairMaterial(model, c.geometryA, c.geometryB),
+                                    reducedMass(model, c.bodyA, c.bodyB), model.options);
   Touch touch;
   touch.distance = c.distance - material.margin;
   if (touch.distance >= 0.0) return std::nullopt;  // NaN makes rows, so that the solve reports it

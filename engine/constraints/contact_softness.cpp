@@ -41,6 +41,29 @@ ContactSpring inSeries(const ContactSpring& a, const ContactSpring& b) {
   return s;
 }
 
+double reducedMass(const Model& model, int bodyA, int bodyB) {
+  const int a = model.bodies[bodyA].tree, b = model.bodies[bodyB].tree;
+  const double lighter = restingMass(model, bodyA, bodyB);
+  if (a < 0 || b < 0) return lighter;
+  const double heavier = std::max(model.trees[a].mass, model.trees[b].mass);
+  return lighter * heavier / (lighter + heavier);
+}
+
+Material inForce(const Material& pair, double mass, const Options& options) {
+  if (pair.spring || !options.carriedLoad || !(mass > 0.0)) return pair;
+  // K and B of the reference that a step follows (T.115): k d = K d/d_max², b = B/d_max.
+  const Impedance& p = pair.impedance;
+  const Softness s = softnessAt(p, 0.0, 1.0 / mass, options);
+  const double dMax = std::clamp(p.dMax, 1e-4, 0.9999);
+  const double K = s.stiffness * dMax * dMax / impedanceAt(p, 0.0), B = s.damping * dMax;
+  if (!(B * B < K)) return pair;
+  Material bouncing = pair;
+  ContactSpring& spring = bouncing.spring.emplace();
+  spring.stiffness = mass * K;
+  spring.damping = mass * std::max(0.0, B - options.timestep * K);
+  return bouncing;
+}
+
 int frictionDim(const Material& pair, const EffectSet& effects) {
   int condim = pair.condim;
   if (!effects.has(Effect::rollingFriction)) condim = std::min(condim, 4);

@@ -9,6 +9,10 @@
 ///   f = max(0, −K r⁺ − B ẏ⁺) = max(0, −D (y − a_ref)),   D = h (K h + B),   a_ref = −ẏ/h − (K/D) r
 /// At rest f = −K r, whatever mass and friction are, and no stiffness makes the step unstable. The
 /// edges of a friction pyramid share D alike; an elliptic cone has it along the normal.
+///
+/// What bounces, a reference of an impedance that is less than half damped, is such a spring too,
+/// of the mass that the two trees have by themselves (T.117): a reference pushes whatever mass is
+/// behind it, so that a light body that is pressed in as it bounces would throw up a heavy one.
 
 #include "engine/constraints/impedance.hpp"
 #include "engine/model/model.hpp"
@@ -27,12 +31,20 @@ ContactSpring inNewtons(const ContactSpring& spring, double mass, double gravity
 /// that of slow motion.
 ContactSpring inSeries(const ContactSpring& a, const ContactSpring& b);
 
+/// m_A m_B/(m_A + m_B) of the masses of their trees [kg]; the world's is infinite. 0 where neither
+/// body moves.
+double reducedMass(const Model& model, int bodyA, int bodyB);
+
+/// What a step takes for the surface of a pair of this reduced mass [kg]: itself or, where it
+/// bounces, its spring (T.117).
+Material inForce(const Material& pair, double mass, const Options& options);
+
 /// Directions of friction that a contact has with the effects that are switched on: condim − 1; 0
 /// where it is frictionless. Rolling friction comes with torsional friction.
 int frictionDim(const Material& pair, const EffectSet& effects);
 
 /// R, k d and b of the row along the normal, or with pyramids of each of the 2 `frictionDim` edges
-/// (T.14), (T.36). `pair` is the surface of both, its spring in newtons; `distance` is
+/// (T.14), (T.36). `pair` is the surface that is in force, its spring in newtons; `distance` is
 /// measured from the margin, `weight` is w_A + w_B [1/kg].
 Softness contactSoftness(const Material& pair, int frictionDim, double distance, double weight,
                          const Options& options);

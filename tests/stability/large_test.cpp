@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <memory>
 #include <string>
+#include <thread>
 
 #include "gdd/gdd.hpp"
 #include "tests/stability/scenes.hpp"
@@ -15,8 +17,9 @@
 namespace softgauss::test {
 namespace {
 
-// A humanoid stands and moves a hand between two places, pushed now and then.
-void standsFor(double seconds) {
+// A humanoid stands and moves a hand between two places, pushed now and then. Returns its last
+// hash.
+void stands(double seconds, std::uint64_t& last) {
   const Model model = humanoid().build();
   collision::SceneContacts contacts(model);
   Data data(model);
@@ -39,6 +42,10 @@ void standsFor(double seconds) {
     const SolveStatus status = controller.step(model, input, state, data, &contacts);
     ASSERT_EQ(status, SolveStatus::converged) << "at " << state.time << " s";
     ASSERT_EQ(controller.box.violation(controller.control), 0.0);
+    const StepStats& stats = data.stats;
+    ASSERT_EQ(stats.refusedGuesses + stats.keptSlips + stats.abandonedTrees + stats.jumps, 0)
+        << "at " << state.time << " s";
+    ASSERT_EQ(stats.pairsSkipped, 0);
     const gdd::GddStatus ended = controller.report.status;
     uncertified += ended != gdd::GddStatus::converged && ended != gdd::GddStatus::kink;
     ++solves;
@@ -59,10 +66,20 @@ void standsFor(double seconds) {
   expect("solves not certified", static_cast<double>(uncertified) / static_cast<double>(solves),
          1e-3, "");
   expect("norm less 1", state.q.segment<4>(3).norm() - 1.0, 1e-14, "");
+  last = hash(state);
 }
 
-TEST(Large, HumanoidStandsForTenSeconds) { standsFor(10.0); }
-TEST(Large, HumanoidStandsForTenMinutesLong) { standsFor(600.0); }
+/// At once on two threads: the same bits.
+void standsTwice(double seconds) {
+  std::uint64_t one = 0, other = 1;
+  std::thread thread([&] { stands(seconds, other); });
+  stands(seconds, one);
+  thread.join();
+  EXPECT_EQ(one, other);
+}
+
+TEST(Large, HumanoidStandsForTenSeconds) { standsTwice(10.0); }
+TEST(Large, HumanoidStandsForTenMinutesLong) { standsTwice(600.0); }
 
 /// n links of 0.05 m and 0.05 kg that hang from hinges about x and y in turn.
 ModelBuilder rope(int n) {

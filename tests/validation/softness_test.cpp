@@ -166,18 +166,35 @@ double restitution(double zeta) {
   return std::exp(-2.0 * zeta * std::acos(zeta) / std::sqrt(1.0 - zeta * zeta));
 }
 
-/// Speed after a bounce over that before: a ball of 2 kg at 1 m/s without gravity. The first step
-/// in the ground begins `phase` of a step's way deep.
-double bounce(double omega, double zeta, double timestep, double phase, Cone cone) {
-  const double mass = 2.0;
-  ModelBuilder builder = sphereOnPlane(kRadius, mass, 0.7);
+constexpr double kBallMass = 2.0;
+
+/// A spring of the ball's, with this frequency and damping ratio.
+Material sprung(double omega, double zeta) {
+  Material m;
+  m.slidingFriction = 0.7;
+  m.spring = {kBallMass * omega * omega, 0.0, 2.0 * zeta * kBallMass * omega, 0.0};
+  return m;
+}
+
+/// A reference that has them, 1/(t_c ζ) = ω.
+Material referred(double omega, double zeta) {
+  Material m;
+  m.slidingFriction = 0.7;
+  m.impedance.timeConstant = 1.0 / (omega * zeta);
+  m.impedance.dampingRatio = zeta;
+  return m;
+}
+
+/// Speed after a bounce over that before: a ball at 1 m/s without gravity on what is rigid, or as
+/// soft as it. The first step in the ground begins `phase` of a step's way deep.
+double bounce(const Material& surface, double omega, double timestep, double phase, Cone cone) {
+  ModelBuilder builder = sphereOnPlane(kRadius, kBallMass, 0.7);
   builder.options.timestep = timestep;
   builder.options.gravity.setZero();
   builder.options.cone = cone;
   Model model = builder.build();
   for (Geometry& g : model.geometries)
-    if (g.body != 0)
-      g.material.spring = {mass * omega * omega, 0.0, 2.0 * zeta * mass * omega, 0.0};
+    if (g.body != 0 || !surface.spring) g.material = surface;
   Scene s(std::move(model), std::make_shared<SampleContacts>());
   s.state.q[2] = kRadius + (1.0 - phase) * timestep;
   s.state.v[2] = -1.0;
@@ -196,16 +213,31 @@ TEST(Softness, BouncesByTheRecipe) {
       for (const double phase : {0.05, 0.35, 0.65, 0.95}) {
         SCOPED_TRACE(wish);
         const double fine = 1e-5, coarse = 0.002;
-        EXPECT_SMALL(bounce(omega, zeta, fine, phase, cone) - wish, 1e-3);
+        EXPECT_SMALL(bounce(sprung(omega, zeta), omega, fine, phase, cone) - wish, 1e-3);
         const double less = zeta - 0.5 * omega * coarse;
         if (less > 0.0) {
-          EXPECT_SMALL(bounce(omega, less, coarse, phase, cone) - wish, 0.025);
+          EXPECT_SMALL(bounce(sprung(omega, less), omega, coarse, phase, cone) - wish, 0.025);
         }
         // Without the correction the step takes more.
-        EXPECT_LT(bounce(omega, zeta, coarse, phase, cone), wish);
+        EXPECT_LT(bounce(sprung(omega, zeta), omega, coarse, phase, cone), wish);
       }
     }
   EXPECT_SMALL(restitution(0.1222) - 0.7, 1e-3);
+}
+
+// A reference that is less than half damped is that spring, by the recipe (T.117).
+TEST(Softness, AReferenceBouncesAsItsSpring) {
+  const double omega = 50.0;
+  for (const Cone cone : kCones)
+    for (const double zeta : {0.0343, 0.1222, 0.2553, 0.4972})
+      for (const double phase : {0.05, 0.35, 0.65, 0.95}) {
+        SCOPED_TRACE(zeta);
+        const Material surface = referred(omega, zeta);
+        EXPECT_SMALL(bounce(surface, omega, 1e-5, phase, cone) - restitution(zeta), 1e-3);
+        if (zeta > 0.5 * omega * 0.002) {
+          EXPECT_SMALL(bounce(surface, omega, 0.002, phase, cone) - restitution(zeta), 0.025);
+        }
+      }
 }
 
 }  // namespace

@@ -11,14 +11,21 @@ namespace {
 
 constexpr std::uint8_t kBehind = 0, kAsGiven = 2;  // State::followed
 
-/// A body turns by more than 0.005 rad in the step, or a tree was followed in the last one. Below
-/// that (T.93) need not be worked out.
+/// A body turns by more than 0.005 rad in the step, or a joint does by the velocity that it ends
+/// with, or a tree was followed in the last one. Below that (T.93) need not be worked out.
 bool mayTurnFar(const Model& model, const Data& data, const State& state) {
   for (const std::uint8_t velocity : state.followed)
     if (velocity == 1 || velocity == 3) return true;
-  const double fast = 0.005 / model.options.timestep;
+  const double h = model.options.timestep, fast = 0.005 / h;
   for (const Motion& V : data.kinematics.V)
     if (V.angular.squaredNorm() > fast * fast) return true;
+  const auto ends = [&](int i) { return state.v[i] + h * data.acceleration[i]; };
+  for (const Body& body : model.bodies) {
+    if (body.joint == JointKind::revolute && std::abs(ends(body.v)) > fast) return true;
+    if (body.joint == JointKind::floating)
+      for (int i = body.v + 3; i < body.v + 6; ++i)
+        if (std::abs(ends(i)) > fast) return true;
+  }
   return false;
 }
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/constraints/contact_softness.hpp"
 
+#include <cmath>
 #include <complex>
+#include <utility>
 
 #include "engine/step/inverse.hpp"
 #include "engine/step/snapshot.hpp"
@@ -154,6 +156,42 @@ TEST(ContactSpring, MixesAsTwoSurfacesThatBothGiveWay) {
   EXPECT_EQ(pairMaterial(model, 1, 0).spring, own.spring);
 }
 
+// What is less than half damped is a spring of the pair's own mass, by the recipe (T.117); what is
+// damped more stays a reference, and so do all in --compatibility mujoco.
+TEST(ContactSpring, WhatBouncesIsASpringOfItsOwnMass) {
+  Options options;
+  options.timestep = 0.002;
+  const double mass = 2.5;
+  Material pair;
+  for (const auto& [ratio, timeConstant] : {std::pair(0.1, 0.2), {0.3, 0.1}, {0.49, 0.05}}) {
+    pair.impedance.dampingRatio = ratio;
+    pair.impedance.timeConstant = timeConstant;
+    const double K = std::pow(timeConstant * ratio, -2.0), B = 2.0 / timeConstant;
+    const Material m = inForce(pair, mass, options);
+    ASSERT_TRUE(m.spring);
+    EXPECT_SMALL(m.spring->stiffness / (mass * K) - 1.0, 1e-12);
+    EXPECT_SMALL(m.spring->damping / (mass * (B - 0.002 * K)) - 1.0, 1e-12);
+    Material given = pair;
+    given.impedance.direct = {K, B};
+    const Material same = inForce(given, mass, options);
+    EXPECT_SMALL(same.spring->stiffness / m.spring->stiffness - 1.0, 1e-12);
+    EXPECT_SMALL(same.spring->damping / m.spring->damping - 1.0, 1e-12);
+    Options mujoco = options;
+    mujoco.carriedLoad = false;
+    EXPECT_EQ(inForce(pair, mass, mujoco), pair);
+  }
+  // Faster than a step follows: K as in (T.115), and the step itself damps more than B.
+  pair.impedance.dampingRatio = 0.05, pair.impedance.timeConstant = 0.02;
+  const Material fast = inForce(pair, mass, options);
+  ASSERT_TRUE(fast.spring);
+  EXPECT_SMALL(fast.spring->stiffness / mass * std::pow(2.0 * 0.002, 2.0) - 1.0, 1e-12);
+  EXPECT_EQ(fast.spring->damping, 0.0);
+  pair.impedance.dampingRatio = 0.5, pair.impedance.timeConstant = 0.1;
+  EXPECT_EQ(inForce(pair, mass, options), pair);
+  pair = sprung(4e4, 200.0);
+  EXPECT_EQ(inForce(pair, mass, options), pair);
+}
+
 TEST(ContactSpring, TheLighterTreeRests) {
   ModelBuilder builder("two");
   builder.base = BaseKind::floating;
@@ -167,6 +205,9 @@ TEST(ContactSpring, TheLighterTreeRests) {
   EXPECT_EQ(restingMass(model, 0, body("big")), 20.0);
   EXPECT_EQ(restingMass(model, body("tail"), 0), 3.5);
   EXPECT_EQ(restingMass(model, 0, 0), 0.0);
+  EXPECT_EQ(reducedMass(model, 0, body("big")), 20.0);
+  EXPECT_EQ(reducedMass(model, body("big"), body("tail")), 70.0 / 23.5);
+  EXPECT_EQ(reducedMass(model, 0, 0), 0.0);
 }
 
 // The equivalent impedance makes the same rows at that depth.
