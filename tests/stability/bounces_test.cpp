@@ -105,25 +105,40 @@ TEST(Bounces, ConnectionGainsNothing) {
     }
 }
 
-// Cubes fall, one above the other, on a floor, heavy ones on light ones. A reference would push the
-// heavy one with what the light one has brought: 1 and 100 kg with a ratio of 0.05 at 0.5 ms rose
-// to twice their energy.
+/// Cubes fall, one above the other with these gaps [m], on a floor.
+void stackFalls(const std::vector<double>& masses, double gap, double ratio, double timestep,
+                Cone cone) {
+  std::ostringstream name;
+  for (const double mass : masses) name << mass << (&mass == &masses.back() ? " kg" : ", ");
+  Model model = with(tower(masses), timestep, cone).build();
+  for (Geometry& g : model.geometries) g.material.impedance = underdamped(ratio);
+  Trial t(named(name.str(), ratio), std::move(model));
+  for (std::size_t i = 0; i < masses.size(); ++i)
+    t.state.q[7 * static_cast<Eigen::Index>(i) + 2] += gap * (static_cast<double>(i) + 1.0);
+  // From 0.5 on a contact is a reference, and gives this back to what is heavier (decision 0032).
+  if (ratio >= 0.5 && ratio < 0.9) t.mayRise = (ratio < 0.8 ? 0.05 : 0.001) * t.energy().total();
+  t.run(1.0);
+}
+
+// Heavy cubes above light ones. A reference would push the heavy one with what the light one has
+// brought: 1 and 100 kg with a ratio of 0.05 at 0.5 ms rose by two thirds of their energy.
 TEST(Bounces, HeapsOfUnlikeMassesGainNothing) {
-  for (const auto& [name, masses] :
-       {std::pair<std::string, std::vector<double>>{"1 and 100 kg", {1.0, 100.0}},
-        {"1, 1 and 1000 kg", {1.0, 1.0, 1000.0}}})
+  for (const auto& masses : {std::vector{1.0, 100.0}, {1.0, 1.0, 1000.0}})
     for (const double ratio : {0.05, 0.15, 0.49, 0.5, 0.7})
       for (const double timestep : kSteps)
-        for (const Cone cone : kCones) {
-          ModelBuilder builder = with(tower(masses), timestep, cone);
-          Model model = builder.build();
-          for (Geometry& g : model.geometries) g.material.impedance = underdamped(ratio);
-          Trial t(named(name, ratio), std::move(model));
-          for (std::size_t i = 0; i < masses.size(); ++i)
-            t.state.q[7 * static_cast<Eigen::Index>(i) + 2] += 0.05 * (static_cast<double>(i) + 1);
-          if (ratio >= 0.5) t.mayRise = 0.05 * t.energy().total();
-          t.run(1.0);
-        }
+        for (const Cone cone : kCones) stackFalls(masses, 0.05, ratio, timestep, cone);
+}
+TEST(Bounces, HeapsOfUnlikeMassesAtEveryRatioLong) {
+  for (const auto& masses : {std::vector{1.0, 1.0, 1000.0},
+                             {1.0, 100.0},
+                             {1.0, 1000.0},
+                             {1.0, 1.0, 1.0, 100.0},
+                             {10.0, 1.0, 1000.0},
+                             {1.0, 1e4}})
+    for (const double ratio : {0.02, 0.1, 0.2, 0.3, 0.4, 0.5, 0.55, 0.6, 0.65, 0.7, 0.8, 0.9, 1.0})
+      for (const double gap : {0.01, 0.03, 0.05, 0.1})
+        for (const double timestep : {0.0005, 0.001, 0.002, 0.005})
+          stackFalls(masses, gap, ratio, timestep, Cone::elliptic);
 }
 
 // A rod and a plate land on a corner: what one corner has brought does not come back by another.
