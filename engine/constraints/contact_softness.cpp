@@ -56,7 +56,8 @@ Material inForce(const Material& pair, double mass, const Options& options) {
   const Softness s = softnessAt(p, 0.0, 1.0 / mass, options);
   const double dMax = std::clamp(p.dMax, 1e-4, 0.9999);
   const double K = s.stiffness * dMax * dMax / impedanceAt(p, 0.0), B = s.damping * dMax;
-  if (!(B * B < K)) return pair;
+  constexpr double kRounding = 1e-12;
+  if (!(B * B <= K * (1.0 + kRounding))) return pair;
   Material bouncing = pair;
   ContactSpring& spring = bouncing.spring.emplace();
   spring.stiffness = mass * K;

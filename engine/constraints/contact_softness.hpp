@@ -10,8 +10,8 @@
 /// At rest f = −K r, whatever mass and friction are, and no stiffness makes the step unstable. The
 /// edges of a friction pyramid share D alike; an elliptic cone has it along the normal.
 ///
-/// What bounces, a reference of an impedance that is less than half damped, is such a spring too,
-/// of the mass that the two trees have by themselves (T.117): a reference pushes whatever mass is
+/// What bounces, a reference of an impedance that is at most half damped, is such a spring too, of
+/// the mass that the two trees have by themselves (T.117): a reference pushes whatever mass is
 /// behind it, so that a light body that is pressed in as it bounces would throw up a heavy one.
 
 #include "engine/constraints/impedance.hpp"
