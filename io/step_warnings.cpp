@@ -91,7 +91,7 @@ void reference(const Impedance& p, const std::string& what, const Options& optio
         fmt::format("{}: its time constant of {:g} s counts as {:g} s, two steps; try a step "
                     "of {:.2g} s",
                     what, p.timeConstant, 2.0 * h, 0.5 * p.timeConstant));
-  if (!options.carriedLoad) {
+  if (!options.ownSoftness) {
     if (h * h * K + 2.0 * h * B > 4.0)
       out.add(
           fmt::format("{}: its reference of {:g}/s² and {:g}/s grows in steps of {:g} s; try a "

@@ -30,7 +30,7 @@ class Ours final : public Contestant {
     state_.time = state.time;
     const State fresh(model_);
     state_.warmstart = fresh.warmstart;
-    state_.followed = fresh.followed;
+    state_.velocityOf = fresh.velocityOf;
     penetration_ = 0.0;
   }
 

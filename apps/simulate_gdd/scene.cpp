@@ -79,7 +79,7 @@ void setOptions(const SimulateOptions& options, ModelBuilder& builder) {
   if (options.cone) builder.options.cone = *options.cone;
   if (options.effects) builder.options.effects = *options.effects;
   if (options.likeMujoco)
-    builder.options.midpointCoriolis = builder.options.carriedLoad = !*options.likeMujoco;
+    builder.options.midpointCoriolis = builder.options.ownSoftness = !*options.likeMujoco;
 }
 
 io::UrdfOptions urdfOptions(const SimulateOptions& options) {

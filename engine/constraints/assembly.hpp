@@ -13,7 +13,7 @@ namespace softgauss {
 
 struct Assembly {
   /// Whether friction hardens where it sticks.
-  bool sticks() const { return model.options.carriedLoad && !softFriction; }
+  bool sticks() const { return model.options.ownSoftness && !softFriction; }
   /// How far v lies behind q [s]: half a step with leapfrog's integrators (T.116).
   double lag() const {
     const Options& o = model.options;

@@ -20,7 +20,7 @@ bool isContact(int kind) {
 
 void Constraints::assemble(const Assembly& given) {
   Assembly in = given;
-  if (in.model.options.carriedLoad && in.contacts.size() > 0) {
+  if (in.model.options.ownSoftness && in.contacts.size() > 0) {
     load_.assemble(in.model, in.contacts, in.weights);
     in.load = &load_;
   }

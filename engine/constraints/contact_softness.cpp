@@ -50,7 +50,7 @@ double reducedMass(const Model& model, int bodyA, int bodyB) {
 }
 
 Material inForce(const Material& pair, double mass, const Options& options) {
-  if (pair.spring || !options.carriedLoad || !(mass > 0.0)) return pair;
+  if (pair.spring || !options.ownSoftness || !(mass > 0.0)) return pair;
   // K and B of the reference that a step follows (T.115): k d = K d/d_max², b = B/d_max.
   const Impedance& p = pair.impedance;
   const Softness s = softnessAt(p, 0.0, 1.0 / mass, options);
@@ -85,7 +85,7 @@ Softness contactSoftness(const Material& pair, int frictionDim, double distance,
   if (!edges) return s;
   double scale = 2.0 * mu * mu / options.impedanceRatio;
   // (T.96): a friction above 1 makes no contact softer than one of 1.
-  if (options.carriedLoad && mu > 1.0) scale *= 2.0 / (mu * mu * (1.0 + mu * mu));
+  if (options.ownSoftness && mu > 1.0) scale *= 2.0 / (mu * mu * (1.0 + mu * mu));
   s.R *= scale;
   s.perInertia *= scale;
   return s;

@@ -113,7 +113,7 @@ inline Softness softnessAt(const Impedance& p, double distance, double inverseIn
 /// The same by the options of a model: in `--compatibility mujoco` references are as MuJoCo's.
 inline Softness softnessAt(const Impedance& p, double distance, double inverseInertia,
                            const Options& options) {
-  return softnessAt(p, distance, inverseInertia, options.timestep, options.carriedLoad);
+  return softnessAt(p, distance, inverseInertia, options.timestep, options.ownSoftness);
 }
 
 }  // namespace softgauss

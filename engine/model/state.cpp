@@ -32,7 +32,7 @@ void mix(std::uint64_t& h, const double* data, Eigen::Index count) {
 }  // namespace
 
 State::State(const Model& model)
-    : q(model.q0), v(VectorX::Zero(model.nv)), followed(model.trees.size(), 2) {
+    : q(model.q0), v(VectorX::Zero(model.nv)), velocityOf(model.trees.size(), VelocityOf::asGiven) {
   warmstart.a = VectorX::Zero(model.nv);
   warmstart.gddA = VectorX::Zero(model.nv);
   warmstart.multipliers = VectorX::Zero(model.nv);
@@ -53,8 +53,8 @@ std::uint64_t hash(const State& state) {
     for (const int part :
          {k.kind, k.row.first, k.row.second, k.row.contact, k.row.direction, k.index})
       mixBits(h, static_cast<std::uint64_t>(part));
-  for (const std::uint8_t flag : state.followed)
-    if (flag) mixBits(h, flag);
+  for (const VelocityOf instant : state.velocityOf)
+    if (instant != VelocityOf::halfAStepAgo) mixBits(h, static_cast<std::uint64_t>(instant));
   return h;
 }
 

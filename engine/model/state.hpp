@@ -41,15 +41,20 @@ struct WarmStart {
   bool gddValid = false;
 };
 
+/// The instant that the velocity of a tree belongs to.
+enum class VelocityOf : std::uint8_t {
+  halfAStepAgo,        ///< as semi-implicit Euler has it
+  now,                 ///< State::time: left by a tree that is followed in its steps
+  asGiven,             ///< by who set it: to be taken as either
+  halfAStepAgoPushed,  ///< but for Coriolis forces, left by a tree that is followed while rows push
+};
+
 /// Everything that the next step depends on, and nothing else. Copyable.
 struct State {
-  VectorX q;          ///< configuration (nq)
-  VectorX v;          ///< generalised velocity (nv)
-  double time = 0.0;  ///< [s]
-  /// (trees) 1: v is the velocity at `time`, a tree that is followed in its steps leaves it so; 0:
-  /// that of semi-implicit Euler, half a step behind; 2: as given, to be taken as either; 3: half a
-  /// step behind but for Coriolis forces, left by a tree that is followed while rows push it.
-  std::vector<std::uint8_t> followed;
+  VectorX q;                           ///< configuration (nq)
+  VectorX v;                           ///< generalised velocity (nv)
+  double time = 0.0;                   ///< [s]
+  std::vector<VelocityOf> velocityOf;  ///< (trees)
   WarmStart warmstart;
 
   State() = default;

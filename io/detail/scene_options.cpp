@@ -57,7 +57,7 @@ void readOptions(const YamlMap& map, Options& options, std::optional<gdd::GddSol
   map.read("impedance_ratio", options.impedanceRatio, Range::positive);
   if (const auto* entry = map.find("effects")) options.effects = readEffects(map, *entry);
   if (const auto* entry = map.find("compatibility"))
-    options.midpointCoriolis = options.carriedLoad =
+    options.midpointCoriolis = options.ownSoftness =
         map.choice(*entry, {"none", "mujoco"}) == "none";
 }
 

@@ -30,7 +30,7 @@ TEST(Contestant, WindowsBeginAfresh) {
   top.start(used->model(), fast);
   used->start(fast);
   ASSERT_TRUE(used->advance({}, 4));
-  ASSERT_EQ(used->state().followed, std::vector<std::uint8_t>{1});
+  ASSERT_EQ(used->state().velocityOf, std::vector{VelocityOf::now});
   const State rest(used->model());
   used->start(rest);
   fresh->start(rest);

@@ -185,7 +185,7 @@ GddScene randomGddScene(std::uint64_t seed, int contacts, double boxShare,
   // Between random trees that nothing rests on. With the load of whole forests on each contact the
   // solvers would be tested on other numbers, worse conditioned by a factor of a hundred.
   Scene scene = randomScene(seed, contacts, options);
-  scene.model.options.carriedLoad = false;
+  scene.model.options.ownSoftness = false;
   scene.stages();
   GddScene s(std::move(scene));
   s.addRandomGoals(random);

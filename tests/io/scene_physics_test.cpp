@@ -104,7 +104,7 @@ TEST(SceneFile, OptionsAreThoseOfTheModel) {
   const Options& plain = plainScene.builder.options;
   EXPECT_EQ(plain.effects, EffectSet::all());
   EXPECT_TRUE(plain.midpointCoriolis);
-  EXPECT_TRUE(plain.carriedLoad);
+  EXPECT_TRUE(plain.ownSoftness);
   EXPECT_EQ(plainScene.gddSolver, std::nullopt);
   const io::SceneFile scene =
       SceneFolder(robot +
@@ -119,7 +119,7 @@ TEST(SceneFile, OptionsAreThoseOfTheModel) {
   EXPECT_EQ(o.maxIterations, 7);
   EXPECT_EQ(o.impedanceRatio, 4.0);
   EXPECT_FALSE(o.midpointCoriolis);
-  EXPECT_FALSE(o.carriedLoad);
+  EXPECT_FALSE(o.ownSoftness);
   EXPECT_EQ(o.cone, Cone::elliptic);
   EXPECT_TRUE(o.noSlip);
   EXPECT_TRUE(o.exactDiagonal);

@@ -69,7 +69,7 @@ TEST(StepWarnings, NameTheSurfaceThatIsFasterThanTheStep) {
             "counts as 62500/s² and 100/s in steps of 0.002 s");
   EXPECT_TRUE(of(direct(62499.0, 0.0)).empty());
   EXPECT_TRUE(of(direct(249e3, 499.0)).empty());
-  model.options.carriedLoad = false;
+  model.options.ownSoftness = false;
   EXPECT_TRUE(of(bouncy).empty());
   expectOne(of(Impedance{0.02, 0.04}), "surface of '", "grows in steps of 0.002 s");
   expectOne(of(direct(2e6, 100.0)), "surface of '", "grows in steps of 0.002 s");

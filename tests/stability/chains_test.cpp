@@ -41,7 +41,7 @@ ModelBuilder hangingChain(int n, double load, Hinges hinges, double h) {
 /// The energy at one instant: the velocity of a chain that is not followed is that of half a step
 /// earlier (T.93), and is brought to the time of q.
 double energyNow(Trial& t) {
-  const bool followed = !t.state.followed.empty() && t.state.followed[0] == 1;
+  const bool followed = !t.state.velocityOf.empty() && t.state.velocityOf[0] == VelocityOf::now;
   if (followed || t.steps == 0) return t.energy().total();
   const VectorX v = t.state.v;
   t.state.v += 0.5 * t.model.options.timestep * t.data->acceleration;

@@ -60,10 +60,11 @@ double EnergyWatch::energy(const State& state) {
   bool pushed = false;  // a followed tree that rows have pushed: its v is behind but for its M
   if (leapfrog_) {
     VectorX v = state.v;
-    for (std::size_t t = 0; t < state.followed.size(); ++t) {
+    for (std::size_t t = 0; t < state.velocityOf.size(); ++t) {
       const Tree& tree = model_.trees[t];
-      if (state.followed[t] == 1) v.segment(tree.firstDof, tree.dofEnd - tree.firstDof).setZero();
-      pushed |= state.followed[t] == 3;
+      if (state.velocityOf[t] == VelocityOf::now)
+        v.segment(tree.firstDof, tree.dofEnd - tree.firstDof).setZero();
+      pushed |= state.velocityOf[t] == VelocityOf::halfAStepAgoPushed;
     }
     integratePosition(model_, v, -0.5 * model_.options.timestep, back_.q);
   }
@@ -91,7 +92,7 @@ double EnergyWatch::offset(const State& state, const Input& input) {
   for (std::size_t t = 0; t < model_.trees.size(); ++t) {
     const Tree& tree = model_.trees[t];
     if (isFreeBody(model_, tree)) force.segment<3>(tree.firstDof).setZero();
-    if (!state.followed.empty() && state.followed[t] == 1)
+    if (!state.velocityOf.empty() && state.velocityOf[t] == VelocityOf::now)
       force.segment(tree.firstDof, tree.dofEnd - tree.firstDof).setZero();
   }
   VectorX a = force;

@@ -42,7 +42,7 @@ TEST(RestDepth, IsThePredictedOne) {
          {std::pair{1.0, true}, {10.0, true}, {1.0, false}, {10.0, false}}) {
       ModelBuilder builder = sphereOnPlane(0.1, 3.0, mu);
       builder.options.impedanceRatio = ratio;
-      builder.options.carriedLoad = carried;
+      builder.options.ownSoftness = carried;
       Scene s = onPlane(builder);
       s.steps(3000);
       const double soft = carried ? std::min(mu, 1.0) : mu;

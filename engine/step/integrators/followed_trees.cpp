@@ -77,7 +77,8 @@ void setRowForces(const Data& data, VectorX& rows) {
 
 bool FollowedTrees::needed(const Model& model, const Data& data, State& state, const VectorX& dv) {
   const double h = model.options.timestep;
-  if (state.followed.size() != model.trees.size()) state.followed.assign(model.trees.size(), 2);
+  if (state.velocityOf.size() != model.trees.size())
+    state.velocityOf.assign(model.trees.size(), VelocityOf::asGiven);
   bool any = false;
   for (std::size_t t = 0; t < model.trees.size(); ++t)
     turn[t] = h * turnRate(model, model.trees[t], state.v, data.forward.a, h, dv);
@@ -92,7 +93,7 @@ bool FollowedTrees::needed(const Model& model, const Data& data, State& state, c
   for (const Weld& w : model.welds) tied(w.bodyA), tied(w.bodyB);
   for (std::size_t t = 0; t < model.trees.size(); ++t) {
     // A tree that is followed stays so until it is far below.
-    const bool before = state.followed[t] == 1 || state.followed[t] == 3;
+    const bool before = wasFollowed(state.velocityOf[t]);
     followed[t] = turn[t] > (before ? 0.25 : 1.0) * kFollowedTurn;
     any = any || followed[t] || before;
   }
@@ -178,10 +179,10 @@ void FollowedTrees::follow(const Model& model, Data& data, State& state, VectorX
     const auto part = [&](VectorX& x) { return x.segment(first, dofs); };
     const auto half = 0.5 * h * data.acceleration.segment(first, dofs);
     const bool free = followed[t] ? !pushed[t] : !isPushed(tree, data, push, smooth);
-    std::uint8_t& velocity = state.followed[t];
+    VelocityOf& instant = state.velocityOf[t];
     if (!followed[t]) {
-      if (velocity == 1 && free) part(vPlus) -= half;
-      velocity = 0;
+      if (instant == VelocityOf::now && free) part(vPlus) -= half;
+      instant = VelocityOf::halfAStepAgo;
       continue;
     }
     if (!free) {  // Q is what is left for the step's course; the kick is of rows and damping
@@ -198,10 +199,10 @@ void FollowedTrees::follow(const Model& model, Data& data, State& state, VectorX
       held.segment<3>(root.v + 3) = own;
     }
     motion.start(model, state, tree, free);
-    if (free && velocity == 0) motion.kick(tree, half);
-    if (!free || velocity == 3) {
+    if (free && instant == VelocityOf::halfAStepAgo) motion.kick(tree, half);
+    if (!free || instant == VelocityOf::halfAStepAgoPushed) {
       motion.atRest(model, data.plan, tree, held, heldInWorld, smooth);
-      if (velocity != 1) motion.kick(tree, 0.5 * h * part(smooth));
+      if (instant != VelocityOf::now) motion.kick(tree, 0.5 * h * part(smooth));
     }
     if (!free) {
       part(push) += part(held);
@@ -216,7 +217,7 @@ void FollowedTrees::follow(const Model& model, Data& data, State& state, VectorX
     if (outcome != TreeMotion::Outcome::done) {
       ++data.stats.abandonedTrees;
       followed[t] = 0;
-      velocity = 0;
+      instant = VelocityOf::halfAStepAgo;
       continue;
     }
     if (!free) {
@@ -224,7 +225,7 @@ void FollowedTrees::follow(const Model& model, Data& data, State& state, VectorX
       motion.kick(tree, -0.5 * h * part(smooth));
     }
     ++data.stats.followedTrees;
-    velocity = free ? 1 : 3;
+    instant = free ? VelocityOf::now : VelocityOf::halfAStepAgoPushed;
     part(vPlus) = motion.v().segment(first, dofs);
     const int count = coordinates(model, tree);
     q.segment(root.q, count) = motion.q().segment(root.q, count);

@@ -12,11 +12,12 @@
 ///
 /// It is about ½ (h ω)² for a body that tumbles at ω, and nothing for a wheel or a ball, whose spin
 /// makes no such forces. Where it exceeds kFollowedTurn the tree moves by (T.91) under the forces
-/// of the step, to a tolerance; all others move by (T.16), bit for bit.
+/// of the step, to a tolerance; all others move by (T.16), bit for bit. So does what a connection
+/// or a weld holds where it turns by more than kTiedTurn, a ball too: the rows turn with it.
 ///
 /// Semi-implicit Euler keeps the velocity of half a step earlier: its q⁺ = q + h v⁺ is that of the
 /// leapfrog. So ½ h a′ is added to v where a tree begins to be followed, and left out of v⁺ in the
-/// first step after that. State::followed tells which of the two v is.
+/// first step after that. State::velocityOf tells which of the two v is.
 ///
 /// What rows do to a followed tree is done at the step's start, at once, and the tree goes on
 /// without them:
@@ -84,5 +85,10 @@ struct FollowedTrees {
   /// Of (T.93).
   static const double kFollowedTurn;
 };
+
+/// Whether the step before has followed the tree whose velocity this is.
+inline bool wasFollowed(VelocityOf instant) {
+  return instant == VelocityOf::now || instant == VelocityOf::halfAStepAgoPushed;
+}
 
 }  // namespace softgauss

@@ -9,13 +9,11 @@
 namespace softgauss {
 namespace {
 
-constexpr std::uint8_t kBehind = 0, kAsGiven = 2;  // State::followed
-
 /// A body turns by more than 0.005 rad in the step, or a joint does by the velocity that it ends
 /// with, or a tree was followed in the last one. Below that (T.93) need not be worked out.
 bool mayTurnFar(const Model& model, const Data& data, const State& state) {
-  for (const std::uint8_t velocity : state.followed)
-    if (velocity == 1 || velocity == 3) return true;
+  for (const VelocityOf instant : state.velocityOf)
+    if (wasFollowed(instant)) return true;
   const double h = model.options.timestep, fast = 0.005 / h;
   for (const Motion& V : data.kinematics.V)
     if (V.angular.squaredNorm() > fast * fast) return true;
@@ -99,7 +97,9 @@ bool semiImplicitEuler(const Model& model, Data& data, State& state) {
   state.v = s.start;
   integratePosition(model, state.v, h, state.q);
   if (follow) data.followed.copyPositions(model, state.q);
-  if (midpoint) std::replace(state.followed.begin(), state.followed.end(), kAsGiven, kBehind);
+  if (midpoint)
+    std::replace(state.velocityOf.begin(), state.velocityOf.end(), VelocityOf::asGiven,
+                 VelocityOf::halfAStepAgo);
   if (kicked) data.followed.endKick(model, data);
   state.time += h;
   return true;

@@ -73,7 +73,7 @@ bool stepDoubling(const Model& model, const Input& input, ContactSource* contact
   data.acceleration = (s.from.v - state.v) / h;
   state.q = s.from.q;
   state.v = s.from.v;
-  state.followed = s.from.followed;
+  state.velocityOf = s.from.velocityOf;
   state.time += h;
   return true;
 }

@@ -107,7 +107,7 @@ TEST(CarriedLoad, DoesNotDependOnOrder) {
 
 /// D of all rows of contacts, with loads or without.
 std::vector<double> stiffnesses(Scene& scene, bool carried) {
-  scene.model.options.carriedLoad = carried;
+  scene.model.options.ownSoftness = carried;
   scene.stages();
   return scene.data->constraints.contact.D;
 }

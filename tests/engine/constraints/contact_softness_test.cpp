@@ -177,7 +177,7 @@ TEST(ContactSpring, WhatBouncesIsASpringOfItsOwnMass) {
     EXPECT_SMALL(same.spring->stiffness / m.spring->stiffness - 1.0, 1e-12);
     EXPECT_SMALL(same.spring->damping / m.spring->damping - 1.0, 1e-12);
     Options mujoco = options;
-    mujoco.carriedLoad = false;
+    mujoco.ownSoftness = false;
     EXPECT_EQ(inForce(pair, mass, mujoco), pair);
   }
   // Faster than a step follows: K as in (T.115), and the step itself damps more than B.

@@ -73,7 +73,7 @@ TEST(MixMaterials, HigherPriorityDecidesOnAllButTheMargin) {
 Scene oneContact(std::uint64_t seed, const std::function<void(Model&, Contact&)>& change) {
   Random random(seed);
   Scene s(randomForest(seed).build());
-  s.model.options.carriedLoad = false;  // that is of carried_load_test.cpp
+  s.model.options.ownSoftness = false;  // that is of carried_load_test.cpp
   s.model.ranges.clear();
   s.state = randomState(s.model, random);
   computeKinematics(s.model, s.state, s.data->kinematics);

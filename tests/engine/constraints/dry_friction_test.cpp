@@ -66,7 +66,7 @@ TEST(DryFriction, HoldsALoadBelowItsLimitAndSlidesAboveIt) {
   EXPECT_SMALL(held.data->constraints.dryFriction.f[0] + 2.0, 1e-9);
 
   Scene soft = slide(0.0, 2.0);
-  soft.model.options.carriedLoad = false;
+  soft.model.options.ownSoftness = false;
   soft.steps(500);
   EXPECT_SMALL(soft.state.v[0] / (R * 2.0 / b) - 1.0, 1e-9);
   EXPECT_SMALL(soft.data->constraints.dryFriction.f[0] + 2.0, 1e-9);

@@ -80,7 +80,7 @@ Scene tumbling(double h, double rate) {
 TEST(FollowedTrees, TumblingDoesNotDependOnTheStep) {
   const auto after = [](double h) {
     Scene s = tumbling(h, 200.0);
-    s.state.v.tail<3>() = Vector3(120.0, 150.0, 80.0);  // State::followed: as given
+    s.state.v.tail<3>() = Vector3(120.0, 150.0, 80.0);  // as given
     for (int i = 0; i < std::lround(0.2 / h); ++i) {
       s.step();
       EXPECT_EQ(s.data->stats.followedTrees, 1) << h;
@@ -102,7 +102,7 @@ TEST(FollowedTrees, SlowTreesAreNotFollowed) {
   for (int i = 0; i < 500; ++i) {
     s.step();
     ASSERT_EQ(s.data->stats.followedTrees, 0);
-    ASSERT_EQ(s.state.followed[0], 0);
+    ASSERT_EQ(s.state.velocityOf[0], VelocityOf::halfAStepAgo);
   }
 }
 
