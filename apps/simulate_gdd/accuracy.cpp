@@ -131,8 +131,8 @@ std::string chooseAccuracy(const SimulateOptions& options, Scene& scene) {
                                      [&](double simulated) { return trials.over(simulated); });
   const Choice& choice = run.choice;
   if (!choice.found)
-    throw ModelError({}, fmt::format("--accuracy {:g}", accuracy),
-                     refusal(run, accuracy, options.duration));
+    throw AccuracyError(
+        fmt::format("--accuracy {:g}: {}", accuracy, refusal(run, accuracy, options.duration)));
   choice.setting.setOptions(run.period, scene.model.options);
   return fmt::format(
       "accuracy {:g} m: {}; {}; {:.3g} s of CPU time per simulated second; {} trials took {:.2g} s",
