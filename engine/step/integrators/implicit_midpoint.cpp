@@ -167,6 +167,7 @@ SolveStatus implicitMidpoint(const Model& model, const Input& input, ContactSour
   while (done < h) {
     const bool closes = done + length >= h * (1.0 - 1e-12);
     if (closes) length = h - done;
+    const double deepest = stats.maxPenetration;
     const Outcome outcome = Part(model, contacts, length, s, stats).run(guess, energy);
     const bool shortest = isShortest(length, kShortest * h);
     const bool taken = outcome == Outcome::closed || (outcome == Outcome::jump && shortest);
@@ -174,6 +175,7 @@ SolveStatus implicitMidpoint(const Model& model, const Input& input, ContactSour
       if (shortest && outcome == Outcome::notFinite) return SolveStatus::notFinite;
       if (shortest) return SolveStatus::notClosed;
       ++stats.rejections;
+      stats.maxPenetration = deepest;  // what was tried has not happened
       length = std::max(0.5 * length, kShortest * h);
       guess = data.forward.a;
       continue;
