@@ -110,14 +110,17 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   bool list = false, drift = false, parting = false, honesty = false;
   app.add_flag("--drift", drift,
-               "instead: energy and momentum over 10 s at 2 ms, every integrator");
+               "instead: energy and momentum over 10 s at 2 ms, every integrator;\n"
+               "begins anew where it was interrupted");
   app.add_flag("--parting", parting,
-               "instead: by how much a small difference grows, which tells chaos");
+               "instead: by how much a small difference grows, which tells chaos;\n"
+               "begins anew where it was interrupted");
   CLI::Option* const honestyFlag = app.add_flag(
       "--honesty", honesty,
       "and then: choose a setting for accuracies of 1e-2 … 1e-6 m on each problem, as\n"
       "simulate_gdd --accuracy does, and check its true error and its time; exit code 1\n"
-      "where less than 95 % of them are within the accuracy and 1.5 times the best time");
+      "where less than 95 % of them are within the accuracy and 1.5 times the best time;\n"
+               "these cases begin anew where they were interrupted");
   std::optional<double> seconds;
   app.add_option("--seconds", seconds,
                  "whole motions of so long, those with contact too, instead of windows of 1 s [s]")

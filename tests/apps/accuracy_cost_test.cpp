@@ -114,7 +114,7 @@ void expectSolverTable(const std::string& out) {
 TEST(AccuracyCost, MarkersThatAreNotToldAreHollow) {
   const io::TempFolder folder;
   const std::string out = folder.path() / "study";
-  ASSERT_EQ(runProgram("accuracy_cost", study("free_body", out)).exitCode, 0);
+  ASSERT_EQ(runProgram("accuracy_cost", study("bouncing_ball", out)).exitCode, 0);
   const auto errors = columnOf(out + "/accuracy_cost.csv", kError);
   const auto references = columnOf(out + "/accuracy_cost.csv", kReferenceError);
   int untold = 0;
@@ -122,7 +122,7 @@ TEST(AccuracyCost, MarkersThatAreNotToldAreHollow) {
     untold += std::isfinite(error) && 10.0 * references.at(setting) > error;
   EXPECT_GT(untold, 0);
   EXPECT_LT(untold, static_cast<int>(errors.size()));
-  const std::string svg = readFile(out + "/free_body.svg");
+  const std::string svg = readFile(out + "/bouncing_ball.svg");
   if (svg.empty()) GTEST_SKIP() << "gnuplot was not found";
   int hollow = 0;
   const std::string use = "xlink:href='#gpPt5' transform";

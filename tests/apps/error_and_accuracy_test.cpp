@@ -274,5 +274,18 @@ TEST(Accuracy, DoesNotPromiseWhatCannotBeKept) {
       << outcome.err;
 }
 
+// What overflows is said to do so, and when; it does not take too long.
+TEST(Accuracy, TellsOverflow) {
+  const io::TempFolder folder;
+  const std::string scene = folder.path() / "fall.yaml";
+  std::ofstream(scene) << "gravity: [0, 0, -1e308]\nground: none\nobjects:\n"
+                          "  - {name: ball, sphere: {radius: 0.1}, mass: 1, position: [0, 0, 1],\n"
+                          "     velocity: [0, 0, -1.7e308]}\n";
+  const Outcome outcome = simulate({scene, "--passive", "--duration", "1", "--accuracy", "1e-3"});
+  EXPECT_EQ(outcome.exitCode, 2);
+  EXPECT_NE(outcome.err.find("become non-finite, the first at t = "), std::string::npos)
+      << outcome.err;
+}
+
 }  // namespace
 }  // namespace softgauss::test
