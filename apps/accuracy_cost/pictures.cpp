@@ -97,7 +97,8 @@ std::string script(const Problem& problem, const std::vector<std::vector<Result>
   add("set format y '%.0e'");
   add("set border 3 linecolor '#666666'; set tics nomirror scale 0.5 textcolor '#333333'");
   add("set grid linecolor '#e2e2e2' linetype 1 linewidth 0.5");
-  add("set xlabel 'CPU seconds per simulated second' offset 0,0.6");
+  add("set xlabel \"CPU seconds per simulated second\\n\" offset 0,0.6");  // a line more for the
+                                                                           // key
   add(problem.contact ? fmt::format("set ylabel 'error within {:g} ms [m]'",
                                     1e3 * kPeriod * problem.windowPeriods)
                       : "set ylabel 'error [m]'");
