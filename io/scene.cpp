@@ -48,7 +48,8 @@ class SceneReader {
     scene_.groundMaterial = materials_.at("default");
     if (const auto* entry = top_.find("ground")) readGround(*entry);
     if (const auto* entry = top_.find("options"))
-      detail::readOptions(top_.map(*entry), scene_.builder.options, scene_.gddSolver);
+      scene_.integration =
+          detail::readOptions(top_.map(*entry), scene_.builder.options, scene_.gddSolver);
     const auto forEach = [&](const char* key, const char* noun, auto&& readOne) {
       const YamlMap::Entry* entry = top_.find(key);
       if (!entry) return;

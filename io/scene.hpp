@@ -22,6 +22,18 @@
 
 namespace softgauss::io {
 
+/// Which keys of the integration a file gives; the rest are defaults.
+struct IntegrationKeys {
+  bool integrator = false;
+  bool tolerance = false;  ///< integration_tolerance
+};
+
+/// Whether Options::integrationTolerance changes anything.
+inline bool controlsError(const Options& options) {
+  return options.integrator == Integrator::dormandPrince ||
+         (options.stepDoubling && options.solvesOnce());
+}
+
 /// A scene as its file describes it.
 struct SceneFile {
   ModelBuilder builder;   ///< its options may still be changed before build()
@@ -45,6 +57,7 @@ struct SceneFile {
   std::vector<std::pair<std::string, double>> positions;   ///< of scalar joints [rad or m]
   std::vector<std::pair<std::string, double>> velocities;  ///< of scalar joints [rad/s or m/s]
 
+  IntegrationKeys integration;
   std::vector<TimedWrench> wrenches;
   std::vector<SceneActuator> actuators;  ///< controlBox() makes them a box of controls
 

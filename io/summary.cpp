@@ -159,6 +159,10 @@ std::string Summary::json() const {
       {"max_penetration_m", maxPenetration_},
       {"max_control_ratio", maxControlRatio_},
       {"warnings", warnings}};
+  if (integration.evaluations > 0)
+    summary["integration"] = {{"evaluations", integration.evaluations},
+                              {"substeps", integration.substeps},
+                              {"rejections", integration.rejections}};
   if (islands.on)
     summary["islands"] = {{"most", islands.most},
                           {"fewest_awake", islands.fewestAwake},

@@ -53,6 +53,13 @@ struct Fallbacks {
   long jumps = 0;           ///< shortest parts of a step, taken in spite of their estimate
 };
 
+/// What integrators that look within a step did there (StepStats), over a run.
+struct IntegrationCounts {
+  long evaluations = 0;  ///< of forward dynamics; 0 where a step is one solve
+  long substeps = 0;     ///< parts that steps went in
+  long rejections = 0;   ///< parts that were tried and shortened
+};
+
 /// Islands over the steps of a run; sums count every step.
 struct IslandOutcomes {
   bool on = false;
@@ -115,6 +122,7 @@ class Summary {
   std::vector<GoalOutcome> goals;
   GddOutcomes gdd;
   Fallbacks fallbacks;
+  IntegrationCounts integration;
   IslandOutcomes islands;
   ErrorOutcome error;
   std::vector<std::string> warnings;  ///< preset to the model's

@@ -74,6 +74,11 @@ std::string Summary::table() const {
     add(fmt::format("  minima of goals: {:.4g} % certified, {:.3g} % of all at kinks",
                     100.0 * static_cast<double>(gdd.certified + gdd.kinks) / gdd.all(),
                     100.0 * static_cast<double>(gdd.kinks) / gdd.all()));
+  if (integration.evaluations > 0)
+    add(fmt::format(
+        "  integration: {} evaluations of the dynamics, {} parts of steps, {} more tried "
+        "and shortened, {} taken in spite of their error",
+        integration.evaluations, integration.substeps, integration.rejections, fallbacks.jumps));
   if (islands.on)
     add(fmt::format("  islands: up to {}, {:.3g} % of them asleep over the run, {} woken",
                     islands.most, 100.0 * islands.asleepShare(), islands.wakeups));

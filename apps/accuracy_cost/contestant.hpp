@@ -3,7 +3,6 @@
 
 /// Engines behind one call, so that they run the same problems alternately in one process.
 
-#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -39,8 +38,8 @@ class Contestant {
   /// Takes so many steps under τ (nv); empty: none. False where the state is no longer finite.
   virtual bool advance(const VectorX& tau, int steps) = 0;
   virtual const State& state() = 0;
-  /// Deepest overlap of a contact since start() [m]; NaN where the engine does not tell.
-  virtual double penetration() const { return std::numeric_limits<double>::quiet_NaN(); }
+  /// Deepest overlap of a contact that the last step has seen [m], ≥ 0.
+  virtual double deepestOverlap() const = 0;
 };
 
 /// MuJoCo's methods, none where it was not found when this was built.

@@ -11,6 +11,7 @@
 
 #include "apps/accuracy_cost/drift.hpp"
 #include "apps/accuracy_cost/honesty.hpp"
+#include "apps/accuracy_cost/order_table.hpp"
 #include "apps/accuracy_cost/parting.hpp"
 #include "apps/accuracy_cost/pictures.hpp"
 #include "apps/accuracy_cost/ratio_table.hpp"
@@ -109,13 +110,17 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   bool list = false, drift = false, parting = false, honesty = false;
   app.add_flag("--drift", drift,
-               "instead: energy and momentum over 10 s at 2 ms, every integrator");
+               "instead: energy and momentum over 10 s at 2 ms, every integrator;\n"
+               "begins anew where it was interrupted");
   app.add_flag("--parting", parting,
-               "instead: by how much a small difference grows, which tells chaos");
-  app.add_flag("--honesty", honesty,
-               "and then: choose a setting for accuracies of 1e-2 … 1e-6 m on each problem, as\n"
-               "simulate_gdd --accuracy does, and check its true error and its time; exit code 1\n"
-               "where less than 95 % of them are within the accuracy and 1.5 times the best time");
+               "instead: by how much a small difference grows, which tells chaos;\n"
+               "begins anew where it was interrupted");
+  CLI::Option* const honestyFlag = app.add_flag(
+      "--honesty", honesty,
+      "and then: choose a setting for accuracies of 1e-2 … 1e-6 m on each problem, as\n"
+      "simulate_gdd --accuracy does, and check its true error and its time; exit code 1\n"
+      "where less than 95 % of them are within the accuracy and 1.5 times the best time;\n"
+               "these cases begin anew where they were interrupted");
   std::optional<double> seconds;
   app.add_option("--seconds", seconds,
                  "whole motions of so long, those with contact too, instead of windows of 1 s [s]")
@@ -126,9 +131,24 @@ int main(int argc, char** argv) {
          "with --honesty: CPU time that a trial of a whole motion may take; 0: each is tried\n"
          "on its first 2 s [s]")
       ->check(CLI::NonNegativeNumber)
+      ->needs(honestyFlag)
       ->capture_default_str();
   app.add_flag("--list", list, "name the problems and end");
-  CLI11_PARSE(app, argc, argv);
+  // What they would not look at.
+  for (const char* other :
+       {"--repeats", "--min-time", "--most-steps", "--most-seconds", "--honesty"})
+    for (const char* instead : {"--drift", "--parting"})
+      app.get_option(instead)->excludes(app.get_option(other));
+  app.get_option("--drift")->excludes(app.get_option("--parting"));
+  app.get_option("--drift")->excludes(app.get_option("--seconds"));
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& success) {  // --help, --version
+    return app.exit(success);
+  } catch (const CLI::ParseError& error) {
+    fmt::print(stderr, "accuracy_cost: {}\naccuracy_cost --help lists the options\n", error.what());
+    return 2;
+  }
 
   std::vector<Problem> problems = allProblems(arguments.robots);
   if (list) {
@@ -170,6 +190,7 @@ int main(int argc, char** argv) {
     }
     writePictures(arguments.out, problems, table.results());
     writeRatioTable(arguments.out, problems, table.results());
+    writeOrderTables(arguments.out, problems, table.results());
     const bool kept =
         !honesty || interrupted() ||
         checkHonesty(arguments.out, problems, table.results(), arguments.study, wholeSeconds);

@@ -22,7 +22,7 @@ class Ours final : public Contestant {
 
   const Model& model() const override { return model_; }
   const State& state() override { return state_; }
-  double penetration() const override { return penetration_; }
+  double deepestOverlap() const override { return data_.stats.maxPenetration; }
 
   void start(const State& state) override {
     state_.q = state.q;
@@ -31,7 +31,6 @@ class Ours final : public Contestant {
     const State fresh(model_);
     state_.warmstart = fresh.warmstart;
     state_.velocityOf = fresh.velocityOf;
-    penetration_ = 0.0;
   }
 
   bool advance(const VectorX& tau, int steps) override {
@@ -39,7 +38,6 @@ class Ours final : public Contestant {
     for (int i = 0; i < steps; ++i) {
       if (!warmStart_) state_.warmstart.valid = false;
       if (isRefused(step(model_, input_, state_, data_, &contacts_))) return false;
-      penetration_ = std::max(penetration_, data_.stats.maxPenetration);
     }
     return true;
   }
@@ -66,7 +64,6 @@ class Ours final : public Contestant {
   Data data_;
   State state_;
   Input input_;
-  double penetration_ = 0.0;
 };
 
 }  // namespace

@@ -71,16 +71,23 @@ std::vector<std::vector<Result>> curvesOf(const std::string& problem,
   return curves;
 }
 
+/// Below this error the references of an engine tell nothing [m]; 0: they tell all.
+double toldFrom(const std::vector<std::vector<Result>>& curves, const std::string& engine) {
+  double reference = 0.0;
+  for (const std::vector<Result>& curve : curves)
+    if (curve.front().method.engine == engine && sameModel(curve.front().method))
+      reference = std::max(reference, curve.front().referenceError);
+  return reference / kReferenceTells;
+}
+
 std::string script(const Problem& problem, const std::vector<std::vector<Result>>& curves) {
   std::string text;
   const auto add = [&](const std::string& line) { text += line + "\n"; };
-  double reference = 0.0;
   for (std::size_t k = 0; k < curves.size(); ++k) {
     add(fmt::format("$curve{} << END", k));
-    for (const Result& r : curves[k]) {
-      add(fmt::format("{:.6g} {:.6g}", r.time, std::max(r.error, 1e-17)));
-      reference = std::max(reference, r.referenceError);
-    }
+    for (const Result& r : curves[k])
+      add(fmt::format("{:.6g} {:.6g} {}", r.time, std::max(r.error, 1e-17),
+                      tells(r.referenceError, r.error) ? 1 : 0));
     add("END");
   }
   add("set terminal svg noenhanced size 760,560 font 'Helvetica,12' background '#ffffff'");
@@ -90,7 +97,8 @@ std::string script(const Problem& problem, const std::vector<std::vector<Result>
   add("set format y '%.0e'");
   add("set border 3 linecolor '#666666'; set tics nomirror scale 0.5 textcolor '#333333'");
   add("set grid linecolor '#e2e2e2' linetype 1 linewidth 0.5");
-  add("set xlabel 'CPU seconds per simulated second' offset 0,0.6");
+  add("set xlabel \"CPU seconds per simulated second\\n\" offset 0,0.6");  // a line more for the
+                                                                           // key
   add(problem.contact ? fmt::format("set ylabel 'error within {:g} ms [m]'",
                                     1e3 * kPeriod * problem.windowPeriods)
                       : "set ylabel 'error [m]'");
@@ -98,14 +106,27 @@ std::string script(const Problem& problem, const std::vector<std::vector<Result>
   std::string plot = "plot ";
   for (std::size_t k = 0; k < curves.size(); ++k) {
     const Method& method = curves[k].front().method;
+    const char* const colour = colourOf(method);
+    const int dash = method.engine == "mujoco" ? 2 : 1;
+    // Full markers where the error is told, hollow ones where it is not.
     plot += fmt::format(
-        "{}$curve{} using 1:2 with linespoints pointtype 7 pointsize 0.5 linewidth 1.8 dashtype {} "
-        "linecolor '{}' title \"{}\"",
-        k == 0 ? "" : ", ", k, method.engine == "mujoco" ? 2 : 1, colourOf(method), method.label);
+        "{0}$curve{1} using 1:2 with lines linewidth 1.8 dashtype {2} linecolor '{3}' notitle, "
+        "$curve{1} using 1:($3 == 1 ? $2 : NaN) with points pointtype 7 pointsize 0.5 "
+        "linecolor '{3}' notitle, "
+        "$curve{1} using 1:($3 == 0 ? $2 : NaN) with points pointtype 7 pointsize 0.6 "
+        "linecolor '#ffffff' notitle, "
+        "$curve{1} using 1:($3 == 0 ? $2 : NaN) with points pointtype 6 pointsize 0.6 "
+        "linecolor '{3}' notitle, "
+        "keyentry with linespoints pointtype 7 pointsize 0.5 linewidth 1.8 dashtype {2} "
+        "linecolor '{3}' title \"{4}\"",
+        k == 0 ? "" : ", ", k, dash, colour, method.label);
   }
-  if (reference > 0.0)
-    plot += fmt::format(", {:.6g} linecolor '#999999' dashtype 3 title 'two references differ'",
-                        reference);
+  const double ours = toldFrom(curves, "softgauss"), theirs = toldFrom(curves, "mujoco");
+  const auto level = [&](double error, int dash, const char* title) {
+    plot += fmt::format(", {:.6g} linecolor '#666666' dashtype {} title '{}'", error, dash, title);
+  };
+  if (ours > 0.0) level(ours, 1, "below (hollow): not told");
+  if (theirs > 0.0 && theirs != ours) level(theirs, 2, "the same of MuJoCo");
   add(plot);
   add("unset output");
   return text;
@@ -113,9 +134,13 @@ std::string script(const Problem& problem, const std::vector<std::vector<Result>
 
 nlohmann::ordered_json json(const Problem& problem,
                             const std::vector<std::vector<Result>>& curves) {
-  nlohmann::ordered_json out{{"name", problem.name},         {"title", problem.title},
-                             {"contact", problem.contact},   {"passive", problem.passive},
-                             {"exact", bool(problem.exact)}, {"curves", nlohmann::json::array()}};
+  nlohmann::ordered_json out{{"name", problem.name},
+                             {"title", problem.title},
+                             {"contact", problem.contact},
+                             {"passive", problem.passive},
+                             {"exact", bool(problem.exact)},
+                             {"window", kPeriod * problem.windowPeriods},
+                             {"curves", nlohmann::json::array()}};
   for (const std::vector<Result>& curve : curves) {
     const Method& m = curve.front().method;
     nlohmann::ordered_json points = nlohmann::json::array();

@@ -4,6 +4,7 @@
 
 #include "apps/accuracy_cost/elliptic.hpp"
 #include "apps/accuracy_cost/problem.hpp"
+#include "apps/accuracy_cost/rigid_body_motion.hpp"
 #include "io/urdf.hpp"
 
 /// Problems without contact.
@@ -109,16 +110,17 @@ Problem chainProblem(const std::string& name, const std::string& title, int link
 /// Precession about z, tilt, spin: three hinges in one point.
 Problem top() {
   static constexpr double kMass = 1.0, kHeight = 0.1, kSpin = 100.0, kTilt = 20.0 * kDegree;
+  static constexpr double kAcross = 8e-4, kAxial = 1.2e-3;
   Problem p;
   p.name = "spinning_top";
-  p.title = "Heavy symmetric top, 100 rad/s, tilted by 20°";
+  p.title = "Heavy symmetric top, 100 rad/s, tilted by 20°, against elliptic functions";
   p.build = [] {
     ModelBuilder builder("top");
     builder.link(named("world")).link(named("precession")).link(named("tilt"));
     LinkSpec body = named("top");
     body.mass = kMass;
     body.com = Vector3(0, 0, kHeight);
-    body.I_Lcm = Vector3(8e-4, 8e-4, 1.2e-3).asDiagonal();
+    body.I_Lcm = Vector3(kAcross, kAcross, kAxial).asDiagonal();
     builder.link(body);
     builder.joint(joint("phi", JointType::continuous, "world", "precession", Vector3::UnitZ(),
                         Vector3::Zero()));
@@ -132,13 +134,19 @@ Problem top() {
     return builder;
   };
   p.start = [](const Model&, State& state) { state.v[2] = kSpin; };
+  p.exact = [](const Model&, double t, State& state) {
+    const TopAngles top = topAngles(kAcross + kMass * kHeight * kHeight, kAxial,
+                                    kMass * kGravity * kHeight, kTilt, kSpin, t);
+    state.q << top.precession, top.tilt - kTilt, top.spin;
+    state.v << top.precessionRate, top.tiltRate, top.spinRate;
+  };
   return p;
 }
 
 Problem freeBody() {
   Problem p;
   p.name = "free_body";
-  p.title = "Torque-free asymmetric body, 10 rad/s near its middle axis";
+  p.title = "Torque-free body, 10 rad/s near its middle axis, against elliptic functions";
   p.build = [] {
     ModelBuilder builder("free");
     builder.options.effects.remove(Effect::gravity);
@@ -147,6 +155,16 @@ Problem freeBody() {
     return builder;
   };
   p.start = [](const Model&, State& state) { state.v << 0.3, -0.2, 0.1, 0.2, 10.0, 0.1; };
+  p.exact = [](const Model& model, double t, State& state) {
+    const Matrix3 I = boxLink("body", 1.0, {0.05, 0.1, 0.2}).I_Lcm;
+    const Turn turn = freeTurn(I.diagonal(), Vector3(0.2, 10.0, 0.1), t);
+    const Eigen::Quaterniond rotation(turn.R_WB);
+    const Vector3 velocity(0.3, -0.2, 0.1);
+    state.q = State(model).q;
+    state.q.head<3>() += t * velocity;
+    state.q.tail<4>() << rotation.w(), rotation.vec();
+    state.v << velocity, turn.w_B;
+  };
   return p;
 }
 

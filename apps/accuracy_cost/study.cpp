@@ -50,15 +50,23 @@ VectorX Study::force(const Model& model, double time) const {
 /// States at the ends of periods; ends early where one is not finite, time is up, or the user
 /// wishes to end.
 std::vector<State> Study::run(Contestant& contestant, const State& start, int periods, int steps,
-                              Budget& budget) const {
+                              Budget& budget, Watch* watch) const {
   std::vector<State> samples;
   contestant.start(start);
   for (int k = 0; k < periods; ++k) {
     const double time = start.time + k * kPeriod;
     const VectorX tau = force(contestant.model(), time);
-    const double begin = cpuSeconds();
-    const bool finite = contestant.advance(tau, steps);
-    budget.spent += cpuSeconds() - begin;
+    const int atOnce = watch ? 1 : steps;
+    bool finite = true;
+    for (int done = 0; finite && done < steps; done += atOnce) {
+      const double begin = cpuSeconds();
+      finite = contestant.advance(tau, atOnce);
+      budget.spent += cpuSeconds() - begin;
+      if (!watch || !finite) continue;
+      watch->overlap = std::max(watch->overlap, contestant.deepestOverlap());
+      watch->overshoot =
+          std::max(watch->overshoot, overshoot(contestant.model(), contestant.state()));
+    }
     if (!finite || budget.exceeded() || interrupted()) break;
     samples.push_back(contestant.state());
     samples.back().time = time + kPeriod;
@@ -177,10 +185,10 @@ Result Study::measure(const Method& method, double h) {
   Vector3 change = Vector3::Zero(), most = Vector3::Zero();  // of linear and angular momentum
   int count = 0;
   Budget budget{options_.mostSeconds};
+  Watch watch;
   for (const Window& window : windows()) {
     const std::vector<State> states =
-        run(*contestant, window.start, problem_.windowPeriods, stepsOf(h), budget);
-    result.penetration = std::max(contestant->penetration(), result.penetration);  // NaN stays
+        run(*contestant, window.start, problem_.windowPeriods, stepsOf(h), budget, &watch);
     if (states.size() < window.samples.size()) {
       const bool late = budget.exceeded();
       result.error = result.orientation =
@@ -195,16 +203,16 @@ Result Study::measure(const Method& method, double h) {
       sum += error.total * error.total;
       turned += error.orientation * error.orientation;
       ++count;
-      // Drift is what the reference does not do: dampers and contacts may take energy.
       const Energy there = energy(states[k], own), wanted = energy(window.samples[k], right);
       kinetic = std::max(kinetic, wanted.kinetic);
       result.energyDrift = std::max(result.energyDrift, std::abs(there.total() - wanted.total()));
       change = change.cwiseMax(
           Vector3((own.linear - right.linear).norm(), (own.angular - right.angular).norm(), 0.0));
       most = most.cwiseMax(Vector3(right.linear.norm(), right.angular.norm(), 0.0));
-      result.overshoot = std::max(result.overshoot, overshoot(model, states[k]));
     }
   }
+  result.penetration = watch.overlap;
+  result.overshoot = watch.overshoot;
   result.time = budget.spent / simulatedOf(problem_);
   if (problem_.contact) result.oneStep = oneStep(*contestant, h);
   result.error = std::sqrt(sum / count);

@@ -26,17 +26,22 @@ struct Result {
   double error = 0.0;
   double orientation = 0.0;  ///< the same of angles [rad]
   double time = 0.0;         ///< CPU seconds per simulated second; given up: what it had of them
-  double energyDrift = 0.0;  ///< largest gain or loss over the largest kinetic energy, if passive
+  /// Drift is against the reference, at the ends of periods, where that is known: dampers and
+  /// contacts may take energy. Largest gain or loss over the largest kinetic energy, if passive.
+  double energyDrift = 0.0;
   /// Largest difference of linear or angular momentum to the reference, over the largest there.
   double momentumDrift = 0.0;
-  double penetration = 0.0;     ///< deepest [m]
-  double overshoot = 0.0;       ///< beyond a joint's limit, largest [rad or m]
+  double penetration = 0.0;     ///< deepest after any step [m]
+  double overshoot = 0.0;       ///< beyond a joint's limit, largest after any step [rad or m]
   double referenceError = 0.0;  ///< by which two references differ [m]
   double oneStep = 0.0;         ///< with contact: error after one step, over the windows [m]
 };
 
-/// Whether references that differ by so much [m] tell an error of that size: ten times better.
-inline bool tells(double referenceError, double error) { return 10.0 * referenceError <= error; }
+/// References tell an error where they agree ten times better.
+inline constexpr double kReferenceTells = 0.1;
+inline bool tells(double referenceError, double error) {
+  return referenceError <= kReferenceTells * error;
+}
 
 struct StudyOptions {
   double minTime = 0.05;  ///< CPU seconds at least that a time is measured over
@@ -82,8 +87,13 @@ class Study {
     double most = kInfinity, spent = 0.0;
     bool exceeded() const { return spent > most; }
   };
+  /// What is looked at after every step.
+  struct Watch {
+    double overlap = 0.0;    ///< deepest of a contact [m]
+    double overshoot = 0.0;  ///< beyond a joint's limit, largest [rad or m]
+  };
   std::vector<State> run(Contestant& contestant, const State& start, int periods, int steps,
-                         Budget& budget) const;
+                         Budget& budget, Watch* watch = nullptr) const;
   std::vector<State> firstSteps(const References& of, const State& start) const;
   double oneStep(Contestant& contestant, double h) const;
   State initialState(const Model& model) const;

@@ -26,6 +26,8 @@ class Theirs final : public Contestant {
     return state_;
   }
 
+  double deepestOverlap() const override { return mujoco_.deepestOverlap(); }
+
   void start(const State& state) override {
     const VectorX none = VectorX::Zero(model_.nv);
     mujoco_.set(state, none);

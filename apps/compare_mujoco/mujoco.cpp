@@ -88,6 +88,13 @@ std::vector<Contact> Mujoco::contacts(const Model& model) const {
   return contacts;
 }
 
+double Mujoco::deepestOverlap() const {
+  double deepest = 0.0;
+  for (int i = 0; i < memory_->data->ncon; ++i)
+    deepest = std::max(deepest, -memory_->data->contact[i].dist);
+  return deepest;
+}
+
 std::string Mujoco::firstWarning() const {
   for (int i = 0; i < mjNWARNING; ++i)
     if (memory_->data->warning[i].number > 0)

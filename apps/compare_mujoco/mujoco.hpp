@@ -42,6 +42,7 @@ class Mujoco {
   /// Contacts of the last forward(), inverse() or step(), as our engine takes them. Each of these
   /// finds them anew, with other rounding.
   std::vector<Contact> contacts(const Model& model) const;
+  double deepestOverlap() const;     ///< of these [m], ≥ 0
   std::string firstWarning() const;  ///< empty when there was none
 
  private:

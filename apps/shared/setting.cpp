@@ -70,6 +70,7 @@ class Chooser {
     } else {
       choice.late = late_;
       choice.error = nearest_;
+      if (nearest_ == kInfinity) choice.lostAt = lostAt_;
     }
     choice.trials = trials_;
     choice.trialSeconds = spent_;
@@ -117,9 +118,11 @@ class Chooser {
     for (const Setting(&pair)[2] : pairs) {
       const TrialRun first = run(pair[0], kMostSeconds);
       late_ = late_ || first.late;
+      lostAt_ = std::min(lostAt_, first.lostAt);
       if (!first.finite) continue;
       TrialRun second = run(pair[1], 3.0 * kMostSeconds);
       late_ = late_ || second.late;
+      lostAt_ = std::min(lostAt_, second.lostAt);
       Tried coarse = compare(pair[0], first, second);
       nearest_ = std::min(nearest_, coarse.error);
       if (!(coarse.error <= kReferenceShare * accuracy_)) continue;
@@ -231,6 +234,7 @@ class Chooser {
   double referenceError_ = 0.0, best_ = kInfinity, spent_ = 0.0;
   int trials_ = 0;
   bool late_ = false;           ///< a reference took too long
+  double lostAt_ = kInfinity;   ///< the earliest refusal in one of them [s]
   double nearest_ = kInfinity;  ///< the least by which two of them differ [m]
   std::vector<Tried> good_;
 };

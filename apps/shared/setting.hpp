@@ -38,6 +38,7 @@ inline constexpr double kReferenceShare = 0.2;
 struct TrialRun {
   bool finite = false;
   bool late = false;           ///< not finite for that it takes too long
+  double lostAt = kInfinity;   ///< simulated time at which a step was refused [s]; ∞: none was
   double seconds = 0.0;        ///< CPU time, of the steps alone
   std::vector<State> samples;  ///< at the ends of periods, the same in every trial
 };
@@ -58,6 +59,9 @@ struct Choice {
   bool found = false;      ///< a setting that is estimated to be as accurate as asked for
   bool referenced = true;  ///< false: no two accurate runs agree
   bool late = false;       ///< of two accurate runs none came to its end in time
+  /// Without two accurate runs that come to their end: the earliest time at which one of them, none
+  /// of which was late, had a step refused [s].
+  double lostAt = kInfinity;
   /// Estimated, root mean square over links and samples [m]; without a reference the least by which
   /// two accurate runs differ, ∞ where no two came to their end.
   double error = kInfinity;

@@ -75,8 +75,10 @@ TrialRun Trials::run(const Model& model, int periods, int steps, double mostSeco
       outside_.at(model, state, data.kinematics, input);
       if (isRefused(controller.goals.empty()
                         ? step(model, input, state, data, &contacts)
-                        : controller.step(model, input, state, data, &contacts)))
+                        : controller.step(model, input, state, data, &contacts))) {
+        result.lostAt = state.time;
         return result;
+      }
     }
     result.seconds += cpuSeconds() - begin;
     result.late = result.seconds > mostSeconds;
@@ -97,6 +99,11 @@ std::string refusal(const RunChoice& run, double accuracy, double duration) {
         "chaos, and {:g} s are too dear to be tried",
         run.tried, 1.0 / run.growth.rate, duration);
   if (choice.referenced) return "is reached by none of the settings that were tried";
+  if (choice.error == kInfinity && !choice.late && choice.lostAt < kInfinity)
+    return fmt::format(
+        "cannot be promised: accurate runs of the scene become non-finite, the first at t = {:.6g} "
+        "s. A shorter --duration, more joint damping or smaller forces may do",
+        choice.lostAt);
   if (choice.error == kInfinity)
     return fmt::format(
         "cannot be promised: no two accurate runs of {:g} s came to their end within {:g} s of CPU "
@@ -131,8 +138,8 @@ std::string chooseAccuracy(const SimulateOptions& options, Scene& scene) {
                                      [&](double simulated) { return trials.over(simulated); });
   const Choice& choice = run.choice;
   if (!choice.found)
-    throw ModelError({}, fmt::format("--accuracy {:g}", accuracy),
-                     refusal(run, accuracy, options.duration));
+    throw AccuracyError(
+        fmt::format("--accuracy {:g}: {}", accuracy, refusal(run, accuracy, options.duration)));
   choice.setting.setOptions(run.period, scene.model.options);
   return fmt::format(
       "accuracy {:g} m: {}; {}; {:.3g} s of CPU time per simulated second; {} trials took {:.2g} s",

@@ -29,6 +29,9 @@ int main(int argc, char** argv) {
   } catch (const app::OutputError& error) {
     fmt::print(stderr, "simulate_gdd: {}\n", error.what());
     return app::kBadInput;
+  } catch (const app::AccuracyError& error) {
+    fmt::print(stderr, "simulate_gdd: {}\n", error.what());
+    return app::kBadInput;
   } catch (const ModelError& error) {
     fmt::print(stderr, "{}\n", error.what());
     return app::kBadInput;

@@ -188,8 +188,7 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
       ->group(simulation);
   app.add_option("--integration-tolerance", options.integrationTolerance,
                  "largest error that a step of dormand-prince, or of --step-doubling, leaves\n"
-                 "[m or rad], default 1e-6")
-      ->check(CLI::PositiveNumber)
+                 "[m or rad], default 1e-6; where no integrator is named it is dormand-prince")
       ->group(simulation);
   app.add_flag("--step-doubling", options.stepDoubling,
                "error control for the integrators of one solve: each step once at its length and\n"
@@ -272,6 +271,10 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
   if (options.accuracy && !(*options.accuracy > 0.0 && std::isfinite(*options.accuracy)))
     throw UsageError(
         fmt::format("--accuracy {:g}: expected metres of error above 0", *options.accuracy));
+  if (const auto& tolerance = options.integrationTolerance)
+    if (!(*tolerance > 0.0 && std::isfinite(*tolerance)))
+      throw UsageError(fmt::format(
+          "--integration-tolerance {:g}: expected metres or radians of error above 0", *tolerance));
   if (options.timestep) checkSteps(options, *options.timestep);
   const auto mustBeNear = [](double metres, const std::string& option) {
     if (!(std::abs(metres) <= kFarthest))

@@ -205,6 +205,10 @@ class Runner {
     f.keptSlips += stats.keptSlips;
     f.abandonedTrees += stats.abandonedTrees;
     f.jumps += stats.jumps;
+    io::IntegrationCounts& i = summary_.integration;
+    i.evaluations += stats.evaluations;
+    i.substeps += stats.substeps;
+    i.rejections += stats.rejections;
   }
 
   void count(const gdd::GddReport& report) {

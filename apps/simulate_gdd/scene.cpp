@@ -7,6 +7,7 @@
 #include <cmath>
 #include <set>
 
+#include "apps/simulate_gdd/error_control.hpp"
 #include "apps/simulate_gdd/trial.hpp"
 #include "collision/lowest_point.hpp"
 #include "io/explain.hpp"
@@ -72,10 +73,6 @@ void setOptions(const SimulateOptions& options, ModelBuilder& builder) {
   if (options.timestep) builder.options.timestep = *options.timestep;
   if (options.exactDiagonal) builder.options.exactDiagonal = true;
   if (options.noSlip) builder.options.noSlip = true;
-  if (options.integrator) builder.options.integrator = *options.integrator;
-  if (options.integrationTolerance)
-    builder.options.integrationTolerance = *options.integrationTolerance;
-  if (options.stepDoubling) builder.options.stepDoubling = true;
   if (options.cone) builder.options.cone = *options.cone;
   if (options.effects) builder.options.effects = *options.effects;
   if (options.likeMujoco)
@@ -95,6 +92,7 @@ io::UrdfOptions urdfOptions(const SimulateOptions& options) {
 void loadRobot(const SimulateOptions& options, Scene& scene) {
   ModelBuilder builder = io::readUrdf(options.model, urdfOptions(options), &scene.contents);
   setOptions(options, builder);
+  setErrorControl(options, {}, builder);
   scene.model = builder.build();
 
   // Whether there is ground by default is known only once the base is.
@@ -118,10 +116,12 @@ void loadRobot(const SimulateOptions& options, Scene& scene) {
 void loadSceneFile(const SimulateOptions& options, Scene& scene) {
   io::SceneFile file = io::readScene(options.model, urdfOptions(options));
   setOptions(options, file.builder);
+  std::vector<std::string> warnings = setErrorControl(options, file.integration, file.builder);
   std::optional<double> ground = file.ground;
   if (!ground && !file.noGround && !file.starts.empty()) ground = 0.0;
   if (ground) addGround(file.builder, *ground, file.groundMaterial);
   scene.model = file.builder.build();
+  for (std::string& warning : warnings) scene.model.warnings.push_back(std::move(warning));
   scene.contents = file.contents;
   scene.hasGoals = file.hasGoals;
   if (file.gddSolver) scene.gddSolver = *file.gddSolver;

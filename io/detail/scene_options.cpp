@@ -24,19 +24,41 @@ EffectSet readEffects(const YamlMap& map, const YamlMap::Entry& entry) {
   return effects;
 }
 
+/// The integrator and the control of its error. A tolerance alone asks for dormand-prince; what
+/// would change nothing is refused.
+IntegrationKeys readIntegration(const YamlMap& map, Options& options) {
+  const auto* integrator = map.find("integrator");
+  const auto* tolerance = map.find("integration_tolerance");
+  const auto* doubling = map.find("step_doubling");
+  if (integrator) {
+    std::vector<std::string> names;
+    for (const IntegratorName& i : kIntegratorNames) names.emplace_back(i.name);
+    options.integrator = *integratorFromName(map.choice(*integrator, names));
+  }
+  map.read("integration_tolerance", options.integrationTolerance, Range::positive);
+  if (doubling) options.stepDoubling = map.boolean(*doubling);
+  if (!integrator && tolerance && !options.stepDoubling)
+    options.integrator = Integrator::dormandPrince;
+  const std::string_view name = integratorName(options.integrator);
+  if (options.stepDoubling && !options.solvesOnce())
+    map.fail(*doubling, fmt::format("found true beside integrator {}, where it changes nothing, "
+                                    "expected semi-implicit-euler or implicit",
+                                    name));
+  if (tolerance && !controlsError(options))
+    map.fail(*tolerance, fmt::format("found {} beside integrator {}, which has no error control, "
+                                     "expected dormand-prince or step_doubling: true",
+                                     tolerance->value.described(), name));
+  return {integrator != nullptr, tolerance != nullptr};
+}
+
 }  // namespace
 
-void readOptions(const YamlMap& map, Options& options, std::optional<gdd::GddSolver>& solver) {
+IntegrationKeys readOptions(const YamlMap& map, Options& options,
+                            std::optional<gdd::GddSolver>& solver) {
   map.expectOnly({"integrator", "integration_tolerance", "step_doubling", "cone", "no_slip",
                   "exact_diagonal", "tolerance", "max_iterations", "impedance_ratio", "effects",
                   "compatibility", "gdd_solver"});
-  if (const auto* entry = map.find("integrator")) {
-    std::vector<std::string> names;
-    for (const IntegratorName& i : kIntegratorNames) names.emplace_back(i.name);
-    options.integrator = *integratorFromName(map.choice(*entry, names));
-  }
-  map.read("integration_tolerance", options.integrationTolerance, Range::positive);
-  if (const auto* entry = map.find("step_doubling")) options.stepDoubling = map.boolean(*entry);
+  const IntegrationKeys integration = readIntegration(map, options);
   if (const auto* entry = map.find("cone"))
     options.cone = map.choice(*entry, {"pyramidal", "elliptic"}) == "elliptic" ? Cone::elliptic
                                                                                : Cone::pyramidal;
@@ -59,6 +81,7 @@ void readOptions(const YamlMap& map, Options& options, std::optional<gdd::GddSol
   if (const auto* entry = map.find("compatibility"))
     options.midpointCoriolis = options.ownSoftness =
         map.choice(*entry, {"none", "mujoco"}) == "none";
+  return integration;
 }
 
 }  // namespace softgauss::io::detail

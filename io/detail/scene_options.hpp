@@ -8,10 +8,13 @@
 #include "engine/model/model.hpp"
 #include "gdd/goal_directed_step.hpp"
 #include "io/detail/yaml.hpp"
+#include "io/scene.hpp"
 
 namespace softgauss::io::detail {
 
-/// The map `options` of a scene: how it is solved, and which effects.
-void readOptions(const YamlMap& map, Options& options, std::optional<gdd::GddSolver>& solver);
+/// The map `options` of a scene: how it is solved, and which effects. An `integration_tolerance`
+/// where no integrator is named asks for dormand-prince; keys that change nothing are refused.
+IntegrationKeys readOptions(const YamlMap& map, Options& options,
+                            std::optional<gdd::GddSolver>& solver);
 
 }  // namespace softgauss::io::detail

@@ -25,7 +25,14 @@ std::vector<std::string> study(const std::string& problem, const std::string& ou
   return arguments;
 }
 
-constexpr std::size_t kError = 10, kOneStep = 18;  // columns of the table
+/// --drift or --parting in the place of a study.
+std::vector<std::string> instead(const std::string& problem, const std::string& out,
+                                 const std::string& what) {
+  return {"--scene", problem, "--out", out, "--robots", dataFile("robots"), what};
+}
+
+// Columns of the table.
+constexpr std::size_t kError = 10, kTime = 12, kReferenceError = 17, kOneStep = 18;
 
 /// A column by (label, steps a period).
 std::map<std::pair<std::string, int>, double> columnOf(const std::string& file,
@@ -80,6 +87,51 @@ std::string ellipticWithoutTime(const std::string& table) {
   return result;
 }
 
+/// accuracy_solver.md of the ball: errors at 2 ms, and times over the first.
+void expectSolverTable(const std::string& out) {
+  auto errors = columnOf(out + "/accuracy_cost.csv", kError);
+  auto times = columnOf(out + "/accuracy_cost.csv", kTime);
+  char first[64], loose[64];
+  const std::pair<std::string, int> plain{"semi-implicit Euler", 16};
+  std::snprintf(first, sizeof first, "| bouncing_ball | %.1e m, %.2g s per s |", errors.at(plain),
+                times.at(plain));
+  const std::pair<std::string, int> elliptic{"Euler with elliptic cones", 16};
+  std::snprintf(loose, sizeof loose, " %.1e m, %.2f |\n", errors.at(elliptic),
+                times.at(elliptic) / times.at(plain));
+  const std::string table = readFile(out + "/accuracy_solver.md");
+  EXPECT_NE(table.find(first), std::string::npos) << first << "\n" << table;
+  EXPECT_NE(table.find(loose), std::string::npos) << loose << "\n" << table;
+  const std::string orders = readFile(out + "/accuracy_orders.md");
+  const std::size_t oneStep = orders.find("| order of one step |");
+  ASSERT_NE(oneStep, std::string::npos);
+  double order = 0.0;
+  std::sscanf(orders.c_str() + orders.find("| bouncing_ball |", oneStep), "| bouncing_ball | %lf",
+              &order);
+  EXPECT_NEAR(order, 2.0, 0.2) << orders;
+}
+
+// What the references do not tell has hollow markers: gnuplot's sixth, which it calls gpPt5.
+TEST(AccuracyCost, MarkersThatAreNotToldAreHollow) {
+  const io::TempFolder folder;
+  const std::string out = folder.path() / "study";
+  ASSERT_EQ(runProgram("accuracy_cost", study("bouncing_ball", out)).exitCode, 0);
+  const auto errors = columnOf(out + "/accuracy_cost.csv", kError);
+  const auto references = columnOf(out + "/accuracy_cost.csv", kReferenceError);
+  int untold = 0;
+  for (const auto& [setting, error] : errors)
+    untold += std::isfinite(error) && 10.0 * references.at(setting) > error;
+  EXPECT_GT(untold, 0);
+  EXPECT_LT(untold, static_cast<int>(errors.size()));
+  const std::string svg = readFile(out + "/bouncing_ball.svg");
+  if (svg.empty()) GTEST_SKIP() << "gnuplot was not found";
+  int hollow = 0;
+  const std::string use = "xlink:href='#gpPt5' transform";
+  for (std::size_t at = svg.find(use); at != std::string::npos; at = svg.find(use, at + 1))
+    ++hollow;
+  EXPECT_EQ(hollow, untold);
+  EXPECT_NE(svg.find("below (hollow): not told"), std::string::npos);
+}
+
 TEST(AccuracyCost, ErrorsFallWithTheOrder) {
   const io::TempFolder folder;
   const std::string out = folder.path() / "study";
@@ -106,6 +158,11 @@ TEST(AccuracyCost, ErrorsFallWithTheOrder) {
   std::ofstream(out + "/accuracy_cost.csv") << table.substr(0, table.size() - 30);
   ASSERT_EQ(runProgram("accuracy_cost", arguments).exitCode, 0);
   EXPECT_EQ(columnOf(out + "/accuracy_cost.csv", kError), errors);
+
+  // The table of orders has them too: one row, a cell for each method of fixed steps.
+  const std::string orders = readFile(out + "/accuracy_orders.md");
+  EXPECT_NE(orders.find("| pendulum | 1.0 | 1.0 | 1.0 | 2.0 | 4.0 |"), std::string::npos) << orders;
+  EXPECT_EQ(readFile(out + "/accuracy_solver.md"), "") << "a pendulum touches nothing";
 
   const std::string page = readFile(out + "/accuracy_cost.html");
   const nlohmann::json problems = problemsOf(page);
@@ -169,7 +226,7 @@ TEST(AccuracyCostLong, AccuracyIsKeptAndIsNotDear) {
 TEST(AccuracyCost, DriftTellsWhoKeepsTheEnergy) {
   const io::TempFolder folder;
   const std::string out = folder.path() / "study";
-  const Outcome outcome = runProgram("accuracy_cost", study("free_body", out, {"--drift"}));
+  const Outcome outcome = runProgram("accuracy_cost", instead("free_body", out, "--drift"));
   ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
   std::istringstream in(readFile(out + "/drift.csv"));
   double midpoint = 1.0, euler = 0.0;
@@ -193,6 +250,8 @@ TEST(AccuracyCost, OneStepErrsByOneOrderMore) {
     EXPECT_NEAR(std::log2(errors.at({label, 4}) / errors.at({label, 32})) / 3.0, 2.0, 0.2) << label;
   EXPECT_LT(errors.at({"Runge-Kutta 4", 4}), 1e-2 * errors.at({"semi-implicit Euler", 4}));
   EXPECT_GT(errors.at({"Runge-Kutta 4", 4}), 0.0);
+
+  expectSolverTable(out);
 
   // A line that was cut within its last number still has all its columns: it is measured anew too.
   const std::string file = out + "/accuracy_cost.csv", table = readFile(file);
@@ -245,7 +304,7 @@ TEST(AccuracyCost, PartingIsThatOfTheMotion) {
   const io::TempFolder folder;
   const std::string out = folder.path() / "study";
   const Outcome outcome =
-      runProgram("accuracy_cost", study("spring_mass_damper", out, {"--parting"}));
+      runProgram("accuracy_cost", instead("spring_mass_damper", out, "--parting"));
   ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
   constexpr double kMass = 2.0, kStiffness = 800.0, kDamping = 8.0, kPeriod = 0.032;
   const double s = 0.5 * kDamping / kMass, w = std::sqrt(kStiffness / kMass - s * s);
@@ -292,6 +351,22 @@ TEST(AccuracyCost, EndsInOrderWhenInterrupted) {
   EXPECT_EQ(outcome.exitCode, 130) << outcome.err;
   EXPECT_EQ(outcome.out.find("not finite"), std::string::npos) << outcome.out;
   EXPECT_TRUE(columnOf(table, kError).empty());
+}
+
+// Options that would change nothing are bad usage.
+TEST(AccuracyCost, OptionsThatChangeNothingAreRefused) {
+  for (const auto& arguments :
+       std::vector<std::vector<std::string>>{{"--trial-seconds", "1"},
+                                             {"--drift", "--seconds", "10"},
+                                             {"--drift", "--repeats", "1"},
+                                             {"--parting", "--most-steps", "32"},
+                                             {"--parting", "--drift"},
+                                             {"--honesty", "--drift"},
+                                             {"--nonsense"}}) {
+    const Outcome outcome = runProgram("accuracy_cost", arguments);
+    EXPECT_EQ(outcome.exitCode, 2) << arguments.back();
+    EXPECT_NE(outcome.err.find(arguments.front()), std::string::npos) << outcome.err;
+  }
 }
 
 TEST(AccuracyCost, UnknownProblemsAreRefused) {

@@ -18,6 +18,7 @@ class MadeUp {
  public:
   std::function<double(const Setting&, double time)> error;
   std::function<double(const Setting&)> price = [](const Setting& s) { return 1e-3 * s.steps; };
+  std::function<double(const Setting&)> lostAt = [](const Setting&) { return kInfinity; };
   double spent = 0.0;
 
   MadeUp() {
@@ -41,6 +42,8 @@ class MadeUp {
       spent += run.seconds;
       run.late = needed > mostSeconds;
       if (run.late) return run;
+      run.lostAt = lostAt(setting);
+      if (run.lostAt < simulated) return run;
       run.finite = true;
       for (double t = 0.032; t < simulated + 1e-9; t += 0.032) {
         State state(*model_);
@@ -83,6 +86,23 @@ TEST(ChooseSetting, NamesTheReferencesThatAreNearest) {
   EXPECT_FALSE(choice.referenced);
   EXPECT_FALSE(choice.late);
   EXPECT_NEAR(choice.error, 0.1, 1e-12);
+}
+
+// A run that overflows is not one that takes too long: the shorter trial of chooseForRun() is not
+// made, and the time is told.
+TEST(ChooseSetting, TellsOverflowFromLateness) {
+  MadeUp scene;
+  scene.error = [](const Setting&, double) { return 0.0; };
+  scene.lostAt = [](const Setting& s) {
+    return s.integrator == Integrator::dormandPrince ? 0.7 : 0.9;
+  };
+  const app::RunChoice run = app::chooseForRun(
+      1e-3, 10.0, [&](double simulated) { return scene.over(simulated); }, 1e9);
+  EXPECT_FALSE(run.choice.found);
+  EXPECT_FALSE(run.choice.referenced);
+  EXPECT_FALSE(run.choice.late);
+  EXPECT_TRUE(run.whole);
+  EXPECT_EQ(run.choice.lostAt, 0.7);
 }
 
 TEST(ChooseSetting, EndsAtItsBudgetWithTheBestSoFar) {

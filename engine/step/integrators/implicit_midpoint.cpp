@@ -18,8 +18,6 @@ enum class Outcome { closed, open, jump, notFinite };
 /// What of v⁺ may be left open, relative to the speeds at hand.
 constexpr double kClosed = 1e-12;
 constexpr int kMostSweeps = 25;
-/// γ is sought in these first sweeps, and stays.
-constexpr int kSweepsForEnergy = 10;
 
 /// One part of a step, from s.from to s.end.
 class Part {
@@ -45,24 +43,21 @@ class Part {
       // s.rate is v⁺ of the equation, phi what the sweep is off by.
       VectorX& target = s_.rate[0];
       target = s_.from.v + h_ * (s_.data.forward.a + gamma * s_.state.v);
-      double more = 0.0;
-      if (sweep < kSweepsForEnergy) {
-        more = missingEnergyRate(before);
-        gamma += more;
-        target += (h_ * more) * s_.state.v;
-      }
+      const double more = missingEnergyRate(before);
+      gamma += more;
+      target += (h_ * more) * s_.state.v;
       s_.phi = target - vPlus;
       const double scale = std::max(kClosed, model_.options.tolerance) * speed();
-      const double off = weighted(s_.phi);
+      const double off = std::max(weighted(s_.phi), std::abs(h_ * more) * weighted(s_.state.v));
       if (!std::isfinite(off)) return sweep == 0 ? Outcome::notFinite : Outcome::open;
-      if (off <= scale && std::abs(h_ * more) * weighted(s_.state.v) <= scale) {
+      if (off <= scale) {
         vPlus = target;
         moveToEnd();
         return s_.end.q.allFinite() ? Outcome::closed : Outcome::notFinite;
       }
-      if (sweep >= 6 && off > 0.5 * best) {
-        // Rounding ends the progress of a part that is as good as closed.
-        if (off > 1e3 * scale) break;
+      if (sweep >= 6 && off > 0.5 * best && off > 1e3 * scale) break;
+      if (sweep >= 6 && off >= (rows > 0 ? 0.5 : 1.0) * best) {
+        // Rounding, or a row at its kink, ends the progress of a part that is as good as closed.
         vPlus = target;
         moveToEnd();
         return Outcome::closed;
@@ -172,6 +167,7 @@ SolveStatus implicitMidpoint(const Model& model, const Input& input, ContactSour
   while (done < h) {
     const bool closes = done + length >= h * (1.0 - 1e-12);
     if (closes) length = h - done;
+    const double deepest = stats.maxPenetration;
     const Outcome outcome = Part(model, contacts, length, s, stats).run(guess, energy);
     const bool shortest = isShortest(length, kShortest * h);
     const bool taken = outcome == Outcome::closed || (outcome == Outcome::jump && shortest);
@@ -179,6 +175,7 @@ SolveStatus implicitMidpoint(const Model& model, const Input& input, ContactSour
       if (shortest && outcome == Outcome::notFinite) return SolveStatus::notFinite;
       if (shortest) return SolveStatus::notClosed;
       ++stats.rejections;
+      stats.maxPenetration = deepest;  // what was tried has not happened
       length = std::max(0.5 * length, kShortest * h);
       guess = data.forward.a;
       continue;

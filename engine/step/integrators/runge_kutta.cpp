@@ -89,12 +89,14 @@ bool rungeKutta(const Tableau& t, const Model& model, const Input& input, Contac
     const bool closes = done + length >= h * (1.0 - 1e-12);
     if (closes) length = h - done;
     const double tolerance = model.options.integrationTolerance * length / h;
+    const double deepest = stats.maxPenetration;
     const double error = part(t, model, contacts, length, tolerance, s, stats);
     const bool shortest = !t.embedded || isShortest(length, kShortest * h);
     if (!std::isfinite(error) && shortest) return false;
     const double factor = stepFactor(error, t.order);
     if (error > 1.0 && !shortest) {
       ++stats.rejections;
+      stats.maxPenetration = deepest;  // what was tried has not happened
       length = std::max(length * factor, kShortest * h);
       continue;
     }

@@ -43,6 +43,7 @@ bool stepDoubling(const Model& model, const Input& input, ContactSource* contact
   while (done < h) {
     const bool closes = done + length >= h * (1.0 - 1e-12);
     if (closes) length = h - done;
+    const double deepest = stats.maxPenetration;
     s.end = s.from;
     bool finite = first ? moveOnce(model, data, s.end) : take(length, contacts, s, s.end, stats);
     first = false;
@@ -61,6 +62,7 @@ bool stepDoubling(const Model& model, const Input& input, ContactSource* contact
     const double factor = stepFactor(ratio, kOrder);
     if (ratio > 1.0 && !shortest) {
       ++stats.rejections;
+      stats.maxPenetration = deepest;  // what was tried has not happened
       length = std::max(length * factor, kShortest * h);
       continue;
     }

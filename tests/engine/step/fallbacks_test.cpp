@@ -109,8 +109,8 @@ TEST(Fallbacks, PartsThatAreTakenInSpiteOfTheirEstimateAreCounted) {
   }
 }
 
-// A hinge that meets the end of its range at 100 rad/s: the sweeps of the midpoint rule do not
-// close on a force that jumps.
+// A hinge that meets the end of its range at 100 rad/s and more: the sweeps of the midpoint rule do
+// not close on a force that jumps, unless the middle of a part happens to lie well.
 TEST(Fallbacks, SweepsThatDoNotCloseAreCounted) {
   ModelBuilder builder = pendulum(0.5, 1.0, 0.05);
   JointSpec& hinge = *builder.findJoint("hinge");
@@ -118,14 +118,16 @@ TEST(Fallbacks, SweepsThatDoNotCloseAreCounted) {
   hinge.lower = -1.0, hinge.upper = 1.0;
   builder.options.timestep = 0.02;
   builder.options.integrator = Integrator::implicitMidpoint;
-  Scene s(builder.build());
-  s.state.v[0] = 100.0;
   int jumps = 0;
-  for (int i = 0; i < 150; ++i) {
-    ASSERT_FALSE(isRefused(s.step()));
-    jumps += s.data->stats.jumps;
+  for (const double speed : {100.0, 150.0, 200.0, 300.0, 400.0}) {
+    Scene s(builder.build());
+    s.state.v[0] = speed;
+    for (int i = 0; i < 150; ++i) {
+      ASSERT_FALSE(isRefused(s.step()));
+      jumps += s.data->stats.jumps;
+    }
   }
-  EXPECT_GT(jumps, 0);
+  EXPECT_GE(jumps, 2);
 }
 
 // The first solve is given its answer, the second has one iteration to find its own: where it does

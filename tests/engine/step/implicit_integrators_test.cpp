@@ -61,6 +61,27 @@ TEST(ImplicitMidpoint, KeepsTheEnergyOfAnUndampedChain) {
   EXPECT_SMALL(worstDrift(model, state, 5000, 25.0), 1e-10);
 }
 
+/// A chain of six that swings, over `duration` [s].
+double driftOfSix(double h, double duration) {
+  ModelBuilder builder = chain(6);
+  builder.options.integrator = Integrator::implicitMidpoint;
+  builder.options.timestep = h;
+  const Model model = builder.build();
+  State state(model);
+  state.q.setConstant(0.3);
+  state.q[0] = 1.2;
+  // m g l n²/2, as above.
+  return worstDrift(model, state, static_cast<int>(std::lround(duration / h)), 35.0);
+}
+
+// Long steps need more sweeps than ten; the energy is closed with the last of them, or the step is
+// divided: 500 steps, each to 1e-12 of the speeds.
+TEST(ImplicitMidpoint, ClosesItsBalanceInLongSteps) { EXPECT_SMALL(driftOfSix(0.02, 10.0), 1e-9); }
+
+TEST(ImplicitMidpointLong, KeepsTheEnergyOfAChainForAMinute) {
+  for (const double h : {0.01, 0.02}) EXPECT_SMALL(driftOfSix(h, 60.0), 1e-9);
+}
+
 // A step on with h, the velocity turned round, and a step on again: the same place.
 TEST(ImplicitMidpoint, IsReversible) {
   ModelBuilder builder = chain(5);

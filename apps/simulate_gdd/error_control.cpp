@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/simulate_gdd/error_control.hpp"
+
+#include <fmt/format.h>
+
+namespace softgauss::app {
+
+std::vector<std::string> setErrorControl(const SimulateOptions& options,
+                                         const io::IntegrationKeys& scene, ModelBuilder& builder) {
+  std::vector<std::string> warnings;
+  Options& o = builder.options;
+  const bool named = options.integrator || scene.integrator;
+  const bool doubled = o.stepDoubling || options.stepDoubling;
+  if (options.integrator)
+    o.integrator = *options.integrator;
+  else if (!named && doubled)
+    o.integrator = Integrator::semiImplicitEuler;
+  else if (!named && options.integrationTolerance)
+    o.integrator = Integrator::dormandPrince;
+
+  const std::string_view name = integratorName(o.integrator);
+  const auto ignored = [&](const char* key, const char* reason) {
+    warnings.push_back(fmt::format("{} of the scene changes nothing: {} {}", key, name, reason));
+  };
+  if (options.stepDoubling && !o.solvesOnce())
+    throw UsageError(
+        fmt::format("--step-doubling changes nothing beside {}; it is for semi-implicit-euler and "
+                    "implicit",
+                    name));
+  o.stepDoubling = doubled && o.solvesOnce();
+  if (doubled && !o.stepDoubling) ignored("step_doubling", "is not doubled");
+
+  if (io::controlsError(o)) {
+    if (options.integrationTolerance) o.integrationTolerance = *options.integrationTolerance;
+    return warnings;
+  }
+  if (options.integrationTolerance)
+    throw UsageError(
+        fmt::format("--integration-tolerance changes nothing beside {}, which has no error "
+                    "control; it is for dormand-prince and for --step-doubling",
+                    name));
+  if (scene.tolerance) ignored("integration_tolerance", "has no error control");
+  return warnings;
+}
+
+}  // namespace softgauss::app
