@@ -13,6 +13,10 @@ namespace softgauss {
 
 const double FollowedTrees::kFollowedTurn = 5e-4;
 constexpr double kTiedTurn = 0.1;  // [rad]
+// A tree that is followed stays so until it is far below. Each change from the leapfrog's energy to
+// its own and back is off by what the two differ by, of order h² and of one sign: what nothing
+// brakes gains by it.
+constexpr double kStays = 0.25, kStaysFree = 1e-3;
 
 namespace {
 
@@ -68,9 +72,23 @@ bool isPushed(const Tree& tree, const Data& data, const VectorX& push, const Vec
   return false;
 }
 
+bool isDamped(const Tree& tree, const Plan& plan) {
+  return plan.damped() &&
+         (plan.damping.segment(tree.firstDof, tree.dofEnd - tree.firstDof).array() > 0.0).any();
+}
+
 void setRowForces(const Data& data, VectorX& rows) {
   rows.setZero();
   data.constraints.addForce(rows);
+}
+
+/// f.change = a_c of (T.118): what Coriolis forces do by themselves. `bias`: b(q, v).
+bool setCoriolis(const Model& model, Data& data, const VectorX& bias, FollowedTrees& f) {
+  f.smooth.setZero();
+  computeBiasAt(model, data.kinematics, data.inertia, f.smooth, data.forces.work, f.kicked);
+  f.change = f.kicked - bias;
+  const bool implicit = data.plan.damped() || anyStiffSpring(model, data);
+  return solveMass(data, implicit ? &data.forward.Md : nullptr, f.change);
 }
 
 }  // namespace
@@ -92,10 +110,11 @@ bool FollowedTrees::needed(const Model& model, const Data& data, State& state, c
   for (const Connection& c : model.connections) tied(c.bodyA), tied(c.bodyB);
   for (const Weld& w : model.welds) tied(w.bodyA), tied(w.bodyB);
   for (std::size_t t = 0; t < model.trees.size(); ++t) {
-    // A tree that is followed stays so until it is far below.
-    const bool before = wasFollowed(state.velocityOf[t]);
-    followed[t] = turn[t] > (before ? 0.25 : 1.0) * kFollowedTurn;
-    any = any || followed[t] || before;
+    const VelocityOf instant = state.velocityOf[t];
+    const bool free = instant == VelocityOf::now && !isDamped(model.trees[t], data.plan);
+    const double least = free ? kStaysFree : wasFollowed(instant) ? kStays : 1.0;
+    followed[t] = turn[t] > least * kFollowedTurn;
+    any = any || followed[t] || wasFollowed(instant);
   }
   return any;
 }
@@ -150,7 +169,7 @@ bool FollowedTrees::kick(const Model& model, Data& data, const State& state,
     const int first = model.trees[t].firstDof, dofs = model.trees[t].dofEnd - first;
     data.acceleration.segment(first, dofs) += change.segment(first, dofs);
   }
-  return true;
+  return setCoriolis(model, data, bias, *this);
 }
 
 void FollowedTrees::endKick(const Model& model, Data& data) {
@@ -164,6 +183,12 @@ void FollowedTrees::endKick(const Model& model, Data& data) {
 void FollowedTrees::follow(const Model& model, Data& data, State& state, VectorX& held,
                            VectorX& vPlus) {
   const double h = model.options.timestep;
+  bool kicks = false, ends = false;
+  for (std::size_t t = 0; t < model.trees.size(); ++t) {
+    kicks = kicks || (followed[t] && pushed[t]);
+    ends = ends || (!followed[t] && wasFollowed(state.velocityOf[t]));
+  }
+  if (ends && !kicks && !setCoriolis(model, data, data.forces.bias, *this)) change.setZero();
   // Q = M a + b + D v + K (q − q_s): applied and constraint forces of the step.
   data.inertia.M.multiply(data.forward.a, held);
   push = held - data.forces.net;  // Jᵀf
@@ -180,8 +205,13 @@ void FollowedTrees::follow(const Model& model, Data& data, State& state, VectorX
     const auto half = 0.5 * h * data.acceleration.segment(first, dofs);
     const bool free = followed[t] ? !pushed[t] : !isPushed(tree, data, push, smooth);
     VelocityOf& instant = state.velocityOf[t];
-    if (!followed[t]) {
-      if (instant == VelocityOf::now && free) part(vPlus) -= half;
+    if (!followed[t] && (!wasFollowed(instant) || (instant == VelocityOf::now && free))) {
+      if (wasFollowed(instant)) part(vPlus) -= half;
+      instant = VelocityOf::halfAStepAgo;
+      continue;
+    }
+    if (!followed[t]) part(vPlus) -= 0.5 * h * part(change);
+    if (!followed[t] && instant != VelocityOf::now) {
       instant = VelocityOf::halfAStepAgo;
       continue;
     }
@@ -199,7 +229,14 @@ void FollowedTrees::follow(const Model& model, Data& data, State& state, VectorX
       held.segment<3>(root.v + 3) = own;
     }
     motion.start(model, state, tree, free);
+    if (!followed[t]) {
+      motion.atRest(model, data.plan, tree, held, heldInWorld, kicked);
+      part(vPlus) -= 0.5 * h * part(kicked);
+      instant = VelocityOf::halfAStepAgo;
+      continue;
+    }
     if (free && instant == VelocityOf::halfAStepAgo) motion.kick(tree, half);
+    if (!free && instant == VelocityOf::halfAStepAgo) motion.kick(tree, 0.5 * h * part(change));
     if (!free || instant == VelocityOf::halfAStepAgoPushed) {
       motion.atRest(model, data.plan, tree, held, heldInWorld, smooth);
       if (instant != VelocityOf::now) motion.kick(tree, 0.5 * h * part(smooth));
