@@ -58,11 +58,8 @@ Problem contactProblem(const std::string& name, const std::string& title, int pe
   Problem p;
   p.name = name;
   p.title = title;
-  p.contact = true;
   p.periods = periods;
-  p.windows = 10;
-  p.windowPeriods = 3;  // as far as the next one begins
-  return p;
+  return inWindows(std::move(p));
 }
 
 Problem slidingBlock() {
@@ -169,6 +166,13 @@ Problem squeeze(const std::string& robots) {
 std::vector<Problem> contactProblems(const std::string& robots) {
   return {slidingBlock(), bouncingBall(),   boxStack(),
           capsules(),     humanoid(robots), squeeze(robots)};
+}
+
+Problem inWindows(Problem problem) {
+  problem.contact = true;
+  problem.windows = 10;
+  problem.windowPeriods = 3;  // as far as the next one begins
+  return problem;
 }
 
 Problem lasting(Problem problem, double seconds) {

@@ -12,6 +12,7 @@
 #include "apps/accuracy_cost/drift.hpp"
 #include "apps/accuracy_cost/honesty.hpp"
 #include "apps/accuracy_cost/order_table.hpp"
+#include "apps/accuracy_cost/own_model.hpp"
 #include "apps/accuracy_cost/parting.hpp"
 #include "apps/accuracy_cost/pictures.hpp"
 #include "apps/accuracy_cost/ratio_table.hpp"
@@ -28,6 +29,7 @@ struct Arguments {
   std::string out = "accuracy", robots = "data/robots";
   int mostSteps = kMostSteps;  ///< in a period
   StudyOptions study;
+  OwnModel own;
 };
 
 std::string figure(double x) {
@@ -81,10 +83,54 @@ void run(const Problem& problem, const Arguments& arguments, ResultTable& table)
   }
 }
 
+/// The problems that are named, or all. Throws std::runtime_error.
+std::vector<Problem> builtIn(const Arguments& arguments) {
+  std::vector<Problem> all = allProblems(arguments.robots);
+  if (arguments.scenes.empty()) return all;
+  const auto isNamed = [&](const Problem& p) {
+    return std::find(arguments.scenes.begin(), arguments.scenes.end(), p.name) !=
+           arguments.scenes.end();
+  };
+  for (const std::string& name : arguments.scenes)
+    if (std::none_of(all.begin(), all.end(), [&](const Problem& p) { return p.name == name; }))
+      throw std::runtime_error(fmt::format("no problem '{}'; --list names them", name));
+  std::erase_if(all, [&](const Problem& p) { return !isNamed(p); });
+  return all;
+}
+
+/// The user's model, and prints what is left out of it. Throws ModelError.
+std::vector<Problem> ownModel(const OwnModel& own, bool drift) {
+  const OwnProblem made = ownProblem(own);
+  for (const std::string& note : made.notes) fmt::print("{}: {}\n", own.file.string(), note);
+  if (drift && !made.problem.lossless)
+    throw ModelError({own.file.string(), 0}, "--drift",
+                     "the model has joint damping, dry friction, joint limits or shapes that may "
+                     "touch, expected one that nothing brakes");
+  return {made.problem};
+}
+
 int main(int argc, char** argv) {
   Arguments arguments;
   CLI::App app("What accuracy costs in time: error against CPU time per simulated second.");
   app.set_version_flag("--version", SOFTGAUSS_VERSION);
+  CLI::Option* const own = app.add_option(
+      "MODEL", arguments.own.file,
+      "a .urdf file or a .yaml scene (docs/scenes.md): it is the problem, passive, in the place\n"
+      "of the built-in ones; begins anew where it was interrupted");
+  std::string base;
+  app.add_option("--base", base,
+                 "of a URDF: fixed or floating; default: floating, or fixed when the root link is "
+                 "'world'")
+      ->check(CLI::IsMember({"fixed", "floating"}));
+  app.add_option(
+         "--ground", arguments.own.ground,
+         "of a URDF: height of the ground plane [m] or none; default: 0 for a floating base")
+      ->check(CLI::Range(-1e6, 1e6) | CLI::IsMember({"none"}));
+  app.add_option("--package-path", arguments.own.packagePaths,
+                 "where package://NAME/… is looked for first; repeatable")
+      ->type_name("DIR");
+  for (const char* option : {"--base", "--ground", "--package-path"})
+    app.get_option(option)->needs(own);
   app.add_option("--scene", arguments.scenes, "problems to run, default all; repeatable")
       ->type_name("NAME");
   app.add_option("--out", arguments.out,
@@ -120,7 +166,7 @@ int main(int argc, char** argv) {
       "and then: choose a setting for accuracies of 1e-2 … 1e-6 m on each problem, as\n"
       "simulate_gdd --accuracy does, and check its true error and its time; exit code 1\n"
       "where less than 95 % of them are within the accuracy and 1.5 times the best time;\n"
-               "these cases begin anew where they were interrupted");
+      "these cases begin anew where they were interrupted");
   std::optional<double> seconds;
   app.add_option("--seconds", seconds,
                  "whole motions of so long, those with contact too, instead of windows of 1 s [s]")
@@ -139,6 +185,7 @@ int main(int argc, char** argv) {
        {"--repeats", "--min-time", "--most-steps", "--most-seconds", "--honesty"})
     for (const char* instead : {"--drift", "--parting"})
       app.get_option(instead)->excludes(app.get_option(other));
+  for (const char* other : {"--scene", "--robots", "--list"}) own->excludes(app.get_option(other));
   app.get_option("--drift")->excludes(app.get_option("--parting"));
   app.get_option("--drift")->excludes(app.get_option("--seconds"));
   try {
@@ -149,29 +196,19 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "accuracy_cost: {}\naccuracy_cost --help lists the options\n", error.what());
     return 2;
   }
-
-  std::vector<Problem> problems = allProblems(arguments.robots);
-  if (list) {
-    for (const Problem& p : problems) fmt::print("{:<22} {}\n", p.name, p.title);
-    return 0;
-  }
-  for (const std::string& name : arguments.scenes) {
-    if (std::any_of(problems.begin(), problems.end(),
-                    [&](const Problem& p) { return p.name == name; }))
-      continue;
-    fmt::print(stderr, "accuracy_cost: no problem '{}'; --list names them\n", name);
-    return 2;
-  }
-  if (!arguments.scenes.empty())
-    std::erase_if(problems, [&](const Problem& p) {
-      return std::find(arguments.scenes.begin(), arguments.scenes.end(), p.name) ==
-             arguments.scenes.end();
-    });
-
-  if (seconds)
-    for (Problem& problem : problems) problem = lasting(std::move(problem), *seconds);
+  arguments.own.base = base == "fixed"      ? BaseKind::fixed
+                       : base == "floating" ? BaseKind::floating
+                                            : BaseKind::automatic;
 
   try {
+    std::vector<Problem> problems =
+        own->empty() ? builtIn(arguments) : ownModel(arguments.own, drift);
+    if (list) {
+      for (const Problem& p : problems) fmt::print("{:<22} {}\n", p.name, p.title);
+      return 0;
+    }
+    if (seconds)
+      for (Problem& problem : problems) problem = lasting(std::move(problem), *seconds);
     catchInterrupts();
     std::filesystem::create_directories(arguments.out);
     if (drift) {
@@ -182,7 +219,9 @@ int main(int argc, char** argv) {
       writePartings(arguments.out, problems);
       return interrupted() ? 130 : 0;
     }
-    ResultTable table(std::filesystem::path(arguments.out) / "accuracy_cost.csv");
+    // The file of a model may have changed since, or be another one of that name.
+    ResultTable table(std::filesystem::path(arguments.out) / "accuracy_cost.csv",
+                      own->empty() ? "" : problems.front().name);
     for (const Problem& problem : problems) {
       run(problem, arguments, table);
       print(problem, table.results());
@@ -195,6 +234,9 @@ int main(int argc, char** argv) {
         !honesty || interrupted() ||
         checkHonesty(arguments.out, problems, table.results(), arguments.study, wholeSeconds);
     return interrupted() ? 130 : kept ? 0 : 1;
+  } catch (const ModelError& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return 2;
   } catch (const std::exception& e) {
     fmt::print(stderr, "accuracy_cost: {}\n", e.what());
     return 2;

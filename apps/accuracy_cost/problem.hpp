@@ -31,8 +31,10 @@ struct Problem {
   /// Smooth: the whole motion is compared. With contact motions part by nature; then short windows
   /// of it are, each from a state of the reference.
   bool contact = false;
-  bool passive = true;  ///< nothing adds energy
-  int periods = 62;     ///< of the whole motion (2 s)
+  bool passive = true;    ///< nothing adds energy
+  bool lossless = false;  ///< and nothing takes it
+  bool inMujoco = true;   ///< false: something in it has no counterpart there
+  int periods = 62;       ///< of the whole motion (2 s)
   int windows = 1;
   int windowPeriods = 62;
   /// With contact: of the error control of our reference; the one that checks it has 100 times
@@ -50,6 +52,8 @@ std::vector<Problem> allProblems(const std::string& robots);
 std::vector<Problem> smoothProblems(const std::string& robots);
 std::vector<Problem> contactProblems(const std::string& robots);
 
+/// With contact: compared in ten windows of three periods.
+Problem inWindows(Problem problem);
 /// The whole motion of a problem, of so many seconds; its name says so.
 Problem lasting(Problem problem, double seconds);
 

@@ -26,6 +26,7 @@ Problem pendulum() {
   static constexpr double kMass = 1.0, kLength = 0.5, kRadius = 0.05, kStart = 1.5;
   Problem p;
   p.name = "pendulum";
+  p.lossless = true;
   p.title = "Pendulum from 86°, against elliptic functions";
   p.build = [] {
     ModelBuilder builder("pendulum");
@@ -100,6 +101,7 @@ Problem chainProblem(const std::string& name, const std::string& title, int link
   Problem p;
   p.name = name;
   p.title = title;
+  p.lossless = true;
   p.build = [=] { return chain(links, planar); };
   p.start = [=](const Model& model, State& state) {
     for (int i = 0; i < model.nv; ++i) state.q[i] = i == 0 ? 1.2 : bend;
@@ -113,6 +115,7 @@ Problem top() {
   static constexpr double kAcross = 8e-4, kAxial = 1.2e-3;
   Problem p;
   p.name = "spinning_top";
+  p.lossless = true;
   p.title = "Heavy symmetric top, 100 rad/s, tilted by 20°, against elliptic functions";
   p.build = [] {
     ModelBuilder builder("top");
@@ -146,6 +149,7 @@ Problem top() {
 Problem freeBody() {
   Problem p;
   p.name = "free_body";
+  p.lossless = true;
   p.title = "Torque-free body, 10 rad/s near its middle axis, against elliptic functions";
   p.build = [] {
     ModelBuilder builder("free");

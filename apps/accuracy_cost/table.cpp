@@ -51,7 +51,7 @@ bool parse(const std::string& text, Result& r) {
 
 }  // namespace
 
-ResultTable::ResultTable(std::filesystem::path file) {
+ResultTable::ResultTable(std::filesystem::path file, const std::string& anew) {
   std::ifstream in(file);
   std::string text;
   bool known = false;
@@ -60,7 +60,7 @@ ResultTable::ResultTable(std::filesystem::path file) {
     while (std::getline(in, text)) {
       Result result;
       // An interrupt may have cut the last line, within its last number too.
-      if (!in.eof() && parse(text, result)) put(result);
+      if (!in.eof() && parse(text, result) && result.problem != anew) put(result);
     }
   } else if (in) {
     in.close();

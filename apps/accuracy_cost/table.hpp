@@ -15,7 +15,8 @@ class ResultTable {
  public:
   /// Reads what the file holds, and appends to it. A file of another version of the table is kept
   /// beside it, with `.old`. Throws std::runtime_error when it cannot be written.
-  explicit ResultTable(std::filesystem::path file);
+  /// The results of the problem `anew` are left out.
+  explicit ResultTable(std::filesystem::path file, const std::string& anew = {});
 
   /// What was given up counts only where it had `mostTime` or more [CPU s per simulated s].
   bool has(const std::string& problem, const Method& method, double h, double mostTime);

@@ -65,8 +65,9 @@ class Theirs final : public Contestant {
 
 }  // namespace
 
-std::vector<Method> mujocoMethods(const Problem&) {
+std::vector<Method> mujocoMethods(const Problem& problem) {
   std::vector<Method> methods;
+  if (!problem.inMujoco) return methods;
   for (const char* integrator : {"Euler", "RK4", "implicit"})
     methods.push_back({"mujoco", integrator, std::string("MuJoCo ") + integrator});
   return methods;

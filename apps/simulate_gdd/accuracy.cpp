@@ -16,6 +16,7 @@ namespace {
 
 constexpr double kPeriod = 0.032;  // [s]
 constexpr int kMostSamples = 2000;
+constexpr double kMostRows = 1e6;  // of a table in a trial
 
 /// Runs the scene with other options from its start, and shows how far it is.
 class Trials {
@@ -28,7 +29,7 @@ class Trials {
   ~Trials() { progress_.clear(); }
 
   TrialScene over(double simulated) {
-    const int periods = std::max(1, static_cast<int>(std::lround(simulated / kPeriod)));
+    const int periods = periodsOf(simulated);
     TrialScene trial;
     trial.model = &scene_.model;
     trial.period = simulated / periods;
@@ -45,6 +46,7 @@ class Trials {
   }
 
  private:
+  int periodsOf(double simulated) const;
   TrialRun run(const Model& model, int periods, int steps, double mostSeconds);
 
   const SimulateOptions& options_;
@@ -55,6 +57,16 @@ class Trials {
   int count_ = 0;
   std::string what_;  ///< is tried
 };
+
+/// Where the rows of a table come regularly they end periods, so that no step runs past one.
+int Trials::periodsOf(double simulated) const {
+  const double spacing = outside_.rowSpacing();
+  const double rows = spacing > 0.0 ? simulated / spacing : 0.0;
+  if (rows >= 1.0 && rows <= kMostRows && std::abs(rows - std::round(rows)) < 1e-6)
+    return static_cast<int>(std::lround(rows)) *
+           static_cast<int>(std::ceil(spacing / kPeriod - 1e-9));
+  return std::max(1, static_cast<int>(std::lround(simulated / kPeriod)));
+}
 
 TrialRun Trials::run(const Model& model, int periods, int steps, double mostSeconds) {
   collision::SceneContacts contacts(model);

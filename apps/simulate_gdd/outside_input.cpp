@@ -8,6 +8,11 @@ OutsideInput::OutsideInput(const SimulateOptions& options, const Scene& scene)
   if (!options.torques.empty()) torques_ = io::TorqueTable::read(options.torques, scene.model);
 }
 
+double OutsideInput::rowSpacing() const {
+  if (!torques_ || torques_->startTime() != 0.0 || torques_->rows() < 2) return 0.0;
+  return torques_->endTime() / static_cast<double>(torques_->rows() - 1);
+}
+
 void OutsideInput::at(const Model& model, const State& state, Kinematics& kinematics,
                       Input& input) const {
   if (torques_) torques_->controlAt(state.time, input.tau);

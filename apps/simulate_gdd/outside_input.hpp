@@ -16,6 +16,9 @@ class OutsideInput {
   /// Reads the table. Throws ModelError.
   OutsideInput(const SimulateOptions& options, const Scene& scene);
 
+  /// Mean time between the rows of the table that begins at 0 and has several; else 0 [s].
+  double rowSpacing() const;
+
   /// For the step of model.options.timestep from `state`. Controls are left as they are without a
   /// table. `kinematics` are worked out where there are wrenches.
   void at(const Model& model, const State& state, Kinematics& kinematics, Input& input) const;

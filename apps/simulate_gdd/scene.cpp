@@ -3,13 +3,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <set>
 
+#include "apps/shared/ground.hpp"
 #include "apps/simulate_gdd/error_control.hpp"
 #include "apps/simulate_gdd/trial.hpp"
-#include "collision/lowest_point.hpp"
 #include "io/explain.hpp"
 #include "io/goals.hpp"
 #include "io/scene.hpp"
@@ -20,12 +18,6 @@ namespace {
 
 /// More would take minutes to load and gigabytes to hold.
 constexpr int kMostDofs = 2000;
-
-bool hasFloatingBase(const Model& model) {
-  for (const Body& body : model.bodies)
-    if (body.joint == JointKind::floating) return true;
-  return false;
-}
 
 void setJointPositions(const SimulateOptions& options, const Model& model, State& state) {
   std::set<std::string> seen;
@@ -42,31 +34,6 @@ void setJointPositions(const SimulateOptions& options, const Model& model, State
                                      range.lower, range.upper));
     state.q[model.bodies[body].q] = value;
   }
-}
-
-/// Stands floating trees on the ground: all, or those whose root link is named.
-void standOnGround(const Model& model, double ground, const std::vector<std::string>* links,
-                   State& state) {
-  Kinematics k(model);
-  computeKinematics(model, state, k);
-  for (int t = 0; t < static_cast<int>(model.trees.size()); ++t) {
-    const Body& root = model.bodies[model.trees[t].rootBody];
-    if (root.joint != JointKind::floating) continue;
-    const std::string& link = model.bodyNames[model.trees[t].rootBody];
-    if (links && std::find(links->begin(), links->end(), link) == links->end()) continue;
-    const double lowest = collision::lowestPoint(model, k, t);
-    if (std::isfinite(lowest)) state.q[root.q + 2] += ground - lowest;
-  }
-}
-
-void addGround(ModelBuilder& builder, double height, const Material& material) {
-  GeometrySpec plane;
-  plane.name = "ground";
-  plane.link = "world";
-  plane.shape = Shape::plane();
-  plane.X_LG.p.z() = height;
-  plane.material = material;
-  builder.geometry(plane);
 }
 
 void setOptions(const SimulateOptions& options, ModelBuilder& builder) {
