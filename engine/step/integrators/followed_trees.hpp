@@ -17,7 +17,8 @@
 ///
 /// Semi-implicit Euler keeps the velocity of half a step earlier: its q⁺ = q + h v⁺ is that of the
 /// leapfrog. So ½ h a′ is added to v where a tree begins to be followed, and left out of v⁺ in the
-/// first step after that. State::velocityOf tells which of the two v is.
+/// first step after that; where rows push, ½ h a_c of Coriolis forces alone instead (T.118).
+/// State::velocityOf tells which of the two v is.
 ///
 /// What rows do to a followed tree is done at the step's start, at once, and the tree goes on
 /// without them:
@@ -45,7 +46,7 @@ struct FollowedTrees {
   std::vector<std::uint8_t> followed;  ///< (trees) 1: it was, in the last step
   std::vector<std::uint8_t> pushed;    ///< (trees) 1: followed, and rows push it
   VectorX push;                        ///< (nv) Jᵀf of the step
-  VectorX change;                      ///< (nv) M⁻¹Δb
+  VectorX change;                      ///< (nv) M⁻¹Δb; in follow(), a_c of (T.118)
   VectorX a, net, bias;                ///< (nv) of (T.1) with all forces, while kick() holds
   VectorX smooth, kicked;              ///< (nv) scratch
   VectorX q;                           ///< (nq) scratch
