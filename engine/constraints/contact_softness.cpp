@@ -51,12 +51,14 @@ double reducedMass(const Model& model, int bodyA, int bodyB) {
 
 Material inForce(const Material& pair, double mass, const Options& options) {
   if (pair.spring || !options.ownSoftness || !(mass > 0.0)) return pair;
-  // K and B of the reference that a step follows (T.115): k d = K d/d_max², b = B/d_max.
+  constexpr double kRounding = 1e-12;
   const Impedance& p = pair.impedance;
+  // (T.115) damps more, never less.
+  if (!p.direct && p.dampingRatio > 0.5 * (1.0 + kRounding)) return pair;
+  // K and B of the reference that a step follows: k d = K d/d_max², b = B/d_max.
   const Softness s = softnessAt(p, 0.0, 1.0 / mass, options);
   const double dMax = std::clamp(p.dMax, 1e-4, 0.9999);
   const double K = s.stiffness * dMax * dMax / impedanceAt(p, 0.0), B = s.damping * dMax;
-  constexpr double kRounding = 1e-12;
   if (!(B * B <= K * (1.0 + kRounding))) return pair;
   Material bouncing = pair;
   ContactSpring& spring = bouncing.spring.emplace();
