@@ -8,8 +8,10 @@
 #include <map>
 #include <utility>
 
+#include "engine/constraints/carried_load.hpp"
 #include "engine/constraints/contact.hpp"
 #include "engine/constraints/inverse_weight.hpp"
+#include "engine/core/rotation.hpp"
 
 namespace softgauss::io {
 namespace {
@@ -17,6 +19,7 @@ namespace {
 constexpr double kFarthestDrive = M_PI;    // h² u w [rad or m]
 constexpr double kFastestSpring = 1.0;     // h √(k w)
 constexpr double kHardestDamping = 100.0;  // h d w
+constexpr double kFastestTie = 1.0;        // h √(ΣL g |r|/I)
 constexpr int kMostTold = 8;               // of one kind
 
 std::size_t idx(int i) { return static_cast<std::size_t>(i); }
@@ -145,6 +148,42 @@ void references(const Model& model, std::vector<std::string>& out) {
               options, kind);
 }
 
+/// A free body that hangs on ties swings about its centre, as a bead on a string does: the string's
+/// force is L g on each, at its arm r, against the least inertia across r.
+void tiedSwings(const Model& model, const ContactSet& touching, std::vector<std::string>& out) {
+  const double h = model.options.timestep, g = model.options.gravity.norm();
+  const EffectSet& effects = model.options.effects;
+  if (!effects.has(Effect::equality) || !effects.has(Effect::gravity)) return;
+  Kinematics kinematics(model);
+  computeKinematics(model, State(model), kinematics);
+  CarriedLoad load;
+  load.assemble(model, kinematics, touching, InverseWeights(model));
+  std::vector<double> squares(model.bodies.size(), 0.0);  // ω²
+  const auto add = [&](int body, int other, const Vector3& p_BP) {
+    const Body& b = model.bodies[idx(body)];
+    if (b.joint != JointKind::floating || b.massless) return;
+    const Vector3 r = p_BP - b.com;
+    if (r.norm() < 1e-9) return;
+    Eigen::Matrix<double, 3, 2> across;
+    across << frameFromNormal(r.normalized()).rightCols<2>();
+    const Eigen::Matrix2d I = across.transpose() * b.I_Bcm.matrix() * across;
+    const double least = 0.5 * (I.trace() - std::hypot(I(0, 0) - I(1, 1), 2.0 * I(0, 1)));
+    squares[idx(body)] += load.mass(model, body, other) * g * r.norm() / least;
+  };
+  for (const Connection& c : model.connections)
+    add(c.bodyA, c.bodyB, c.p_AP), add(c.bodyB, c.bodyA, c.p_BP);
+  for (const Weld& w : model.welds)
+    add(w.bodyA, w.bodyB, w.X_AF.p), add(w.bodyB, w.bodyA, w.X_BF.p);
+  Kind kind(out);
+  for (int b = 1; b < model.bodyCount(); ++b)
+    if (const double swing = h * std::sqrt(squares[idx(b)]); swing > kFastestTie)
+      kind.add(fmt::format(
+          "link '{}' is light for what hangs on its connections and welds: it swings by {:.3g} rad "
+          "in a step of {:g} s, expected at most {:g}; try a step below {:.2g} s, or joints, which "
+          "have no such swing",
+          model.bodyNames[idx(b)], swing, h, kFastestTie, h * kFastestTie / swing));
+}
+
 void overlaps(const Model& model, const ContactSet& touching, std::vector<std::string>& out) {
   std::map<std::pair<int, int>, double> deepest;
   for (const Contact& c : touching.contacts)
@@ -178,6 +217,7 @@ std::vector<std::string> stepWarnings(const Model& model, const ContactSet& touc
   std::vector<std::string> out;
   joints(model, out);
   references(model, out);
+  tiedSwings(model, touching, out);
   overlaps(model, touching, out);
   return out;
 }

@@ -224,7 +224,7 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
   app.add_option(
          "--compatibility", compatibility,
          "none (default) or mujoco: as MuJoCo has it, Coriolis forces of the step's start and\n"
-         "contacts that do not know what they carry")
+         "contacts and connections that do not know what they carry")
       ->check(CLI::IsMember({"none", "mujoco"}))
       ->group(simulation);
 

@@ -174,6 +174,7 @@ std::vector<HardCase> hardCases() {
       {"loop_1", "loop, 1 tie", 10.0, {coarse(tieIsOff(0.34), 0.58)}},
       {"loop_2", "loop, 2 ties", 10.0, {coarse(tieIsOff(0.19), 0.43)}},
       {"loop_5", "loop, 5 ties", 10.0, {coarse(tieIsOff(0.085), 0.325)}},
+      {"hung", "100 kg tied to 0.1 kg", 5.0, {sinks("load", 2.0), speedAtRest(1e-3)}},
       {"slope", "slope of 15°, μ 1", 10.0, {creep("box", 10.0, 2.0)}},
       {"slope_edge",
        "slope at 99 % of the cone",

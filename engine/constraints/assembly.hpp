@@ -27,7 +27,7 @@ struct Assembly {
   const InverseWeights& weights;
   const TreeSparsity& tree;           ///< pattern of M: row i lists the dofs that move body(i)
   bool softFriction = false;          ///< Input::softFriction
-  const CarriedLoad* load = nullptr;  ///< null: contacts know of no load
+  const CarriedLoad* load = nullptr;  ///< null: no row knows of a load
 };
 
 }  // namespace softgauss

@@ -13,44 +13,76 @@ bool standsStill(const Model& model, int tree) {
   return tree < 0 || model.bodies[model.trees[tree].rootBody].joint != JointKind::floating;
 }
 
+/// Calls f(bodyA, bodyB, isTie) for every contact and every tie.
+template <class F>
+void visitPairs(const Model& model, const ContactSet& contacts, F&& f) {
+  for (const Contact& c : contacts.contacts) f(c.bodyA, c.bodyB, false);
+  if (!model.options.effects.has(Effect::equality)) return;
+  for (const Connection& c : model.connections) f(c.bodyA, c.bodyB, true);
+  for (const Weld& w : model.welds) f(w.bodyA, w.bodyB, true);
+}
+
 }  // namespace
+
+void CarriedLoad::Load::add(const Load& other, double parts) {
+  mass += other.mass / parts;
+  moment += other.moment / parts;
+  turning += other.turning / parts;
+}
+
+double CarriedLoad::Load::about(const Vector3& p) const {
+  return std::max(0.0, turning - 2.0 * moment.dot(p) + mass * p.squaredNorm());
+}
 
 int CarriedLoad::root(int tree) {
   while (parent_[tree] != tree) tree = parent_[tree] = parent_[parent_[tree]];
   return tree;
 }
 
-void CarriedLoad::assemble(const Model& model, const ContactSet& contacts,
-                           const InverseWeights& weights) {
-  const auto treeOf = [&](int body) { return model.bodies[body].tree; };
-  any_ = std::any_of(contacts.contacts.begin(), contacts.contacts.end(), [&](const Contact& c) {
-    const int a = treeOf(c.bodyA), b = treeOf(c.bodyB);
-    return a >= 0 && b >= 0 && a != b;
+void CarriedLoad::assemble(const Model& model, const Kinematics& kinematics,
+                           const ContactSet& contacts, const InverseWeights& weights) {
+  any_ = false;
+  visitPairs(model, contacts, [&](int bodyA, int bodyB, bool) {
+    const int a = model.bodies[bodyA].tree, b = model.bodies[bodyB].tree;
+    any_ |= a >= 0 && b >= 0 && a != b;
   });
   if (!any_) return;
-  weigh(model, contacts, weights);
+  weigh(model, kinematics, contacts, weights);
   findLayers();
   passDown();
 }
 
-/// m of all trees, the islands' largest, and who touches whom.
-void CarriedLoad::weigh(const Model& model, const ContactSet& contacts,
-                        const InverseWeights& weights) {
+/// m of all trees, the islands' largest, and who holds whom.
+void CarriedLoad::weigh(const Model& model, const Kinematics& kinematics,
+                        const ContactSet& contacts, const InverseWeights& weights) {
   const std::size_t trees = model.trees.size();
+  const bool turning = !model.welds.empty();
+  if (turning) origin_W = kinematics.X_WB[model.welds.front().bodyA].p;
   parent_.resize(trees);
   std::iota(parent_.begin(), parent_.end(), 0);
-  mass_.assign(trees, 0.0);
+  own_.assign(trees, {});
   layer_.assign(trees, 0);
   head_.assign(trees, -1);
   links_.clear();
   order_.clear();
-  for (const Contact& c : contacts.contacts) {
-    const int a = model.bodies[c.bodyA].tree, b = model.bodies[c.bodyB].tree;
-    if (a == b) continue;
-    for (const auto& [body, tree, other] : {std::tuple(c.bodyA, a, b), std::tuple(c.bodyB, b, a)}) {
-      if (standsStill(model, tree)) continue;
+  visitPairs(model, contacts, [&](int bodyA, int bodyB, bool isTie) {
+    const int a = model.bodies[bodyA].tree, b = model.bodies[bodyB].tree;
+    if (a == b) return;
+    for (const auto& [body, tree, other] : {std::tuple(bodyA, a, b), std::tuple(bodyB, b, a)}) {
+      const bool stands = standsStill(model, tree);
+      if (tree < 0 || (stands && !isTie)) continue;
       const double most = model.trees[tree].mass, w = weights.translation[body];
-      mass_[tree] = std::max(mass_[tree], w * most > 1.0 ? 1.0 / w : most);
+      const double mass = w * most > 1.0 ? 1.0 / w : most;
+      if (mass > own_[tree].mass) {
+        Load& own = own_[tree] = {mass};
+        if (turning) {
+          const Vector3 c = kinematics.X_WB[body] * model.bodies[body].com - origin_W;
+          const double w_r = weights.rotation[body];
+          own.moment = mass * c;
+          own.turning = mass * c.squaredNorm() + (w_r > 0.0 ? 1.0 / w_r : 0.0);
+        }
+      }
+      if (stands) continue;
       if (standsStill(model, other)) {
         if (layer_[tree] == 0) order_.push_back(tree);
         layer_[tree] = 1;
@@ -60,18 +92,20 @@ void CarriedLoad::weigh(const Model& model, const ContactSet& contacts,
       head_[tree] = static_cast<int>(links_.size()) - 1;
     }
     if (a >= 0 && b >= 0) parent_[root(a)] = root(b);
-  }
+  });
   island_.resize(trees);
   largest_.assign(trees, {});
   for (int t = 0; t < static_cast<int>(trees); ++t) {
     island_[t] = root(t);
     Largest& largest = largest_[island_[t]];
-    largest.second = std::max(largest.second, std::min(largest.first, mass_[t]));
-    largest.first = std::max(largest.first, mass_[t]);
+    if (massOf(t) > massOf(largest.first))
+      largest = {t, largest.first};
+    else if (massOf(t) > massOf(largest.second))
+      largest.second = t;
   }
 }
 
-/// Breadth first from the trees that touch the world.
+/// Breadth first from the trees that stand on the world.
 void CarriedLoad::findLayers() {
   for (std::size_t i = 0; i < order_.size(); ++i) {
     const int tree = order_[i];
@@ -86,30 +120,54 @@ void CarriedLoad::findLayers() {
 
 /// From the farthest layer towards the world.
 void CarriedLoad::passDown() {
-  passed_ = mass_;
+  passed_ = own_;
   for (std::size_t i = order_.size(); i-- > 0;) {
     const int tree = order_[i];
     const auto below = [&](const Link& link) { return layer_[link.other] == layer_[tree] - 1; };
     int shares = 0;
     for (int l = head_[tree]; l >= 0; l = links_[l].next) shares += below(links_[l]);
     for (int l = head_[tree]; l >= 0; l = links_[l].next)
-      if (below(links_[l])) passed_[links_[l].other] += passed_[tree] / shares;
+      if (below(links_[l])) passed_[links_[l].other].add(passed_[tree], shares);
   }
 }
 
-double CarriedLoad::of(const Model& model, const Contact& c) const {
-  if (!any_) return 0.0;
-  const int a = model.bodies[c.bodyA].tree, b = model.bodies[c.bodyB].tree;
+CarriedLoad::Carried CarriedLoad::between(const Model& model, int bodyA, int bodyB) const {
+  Carried carried;
+  const int a = model.bodies[bodyA].tree, b = model.bodies[bodyB].tree;
   const int some = a >= 0 ? a : b;
-  if (some < 0) return 0.0;
+  if (!any_ || some < 0) return carried;
   const Largest& largest = largest_[island_[some]];
-  if (a >= 0 && b >= 0 && a != b) {
-    double passed = std::max(passed_[a], passed_[b]);
-    if (layer_[a] != layer_[b]) passed = passed_[layer_[a] > layer_[b] ? a : b];
-    return std::max(largest.first, passed);
+  carried.lessOwn = a < 0 || b < 0 || a == b;
+  if (carried.lessOwn) {
+    carried.passing = some;
+    carried.largest = massOf(some) == massOf(largest.first) ? largest.second : largest.first;
+    return carried;
   }
-  const double own = mass_[some];
-  return std::max(own == largest.first ? largest.second : largest.first, passed_[some] - own);
+  carried.largest = largest.first;
+  carried.passing = layer_[a] < layer_[b] ? b : a;
+  if (layer_[a] == layer_[b]) carried.other = b;
+  return carried;
+}
+
+template <class F>
+double CarriedLoad::mostOf(const Carried& c, F&& size) const {
+  double most = c.largest < 0 ? 0.0 : size(own_[c.largest]);
+  for (const int tree : {c.passing, c.other}) {
+    if (tree < 0) continue;
+    Load passed = passed_[tree];
+    if (c.lessOwn) passed.add(own_[tree], -1.0);
+    most = std::max(most, size(passed));
+  }
+  return most;
+}
+
+double CarriedLoad::mass(const Model& model, int bodyA, int bodyB) const {
+  return mostOf(between(model, bodyA, bodyB), [](const Load& load) { return load.mass; });
+}
+
+double CarriedLoad::inertia(const Model& model, int bodyA, int bodyB, const Vector3& p_W) const {
+  const Vector3 p = p_W - origin_W;
+  return mostOf(between(model, bodyA, bodyB), [&](const Load& load) { return load.about(p); });
 }
 
 }  // namespace softgauss

@@ -1,63 +1,102 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// What a contact carries besides its own two bodies, from the graph of contacts alone (T.80).
+/// What a contact or a tie carries besides its own two bodies, from the graph of contacts and of
+/// ties, which are connections and welds, alone (T.80).
 ///
-/// Trees that touch each other, not counting the world, are an island. A tree T on a free base
-/// counts in it with the largest inertia that a contact feels on one of its bodies, others with
-/// none,
-///   m_T = min(mass of T, max over touched bodies B of 1/w_B)
-/// What stands on the world passes its load down: the layer of a tree is the number of contacts
-/// between it and the world, and each of its n_T contacts with the layer below takes an equal
-/// share,
-///   P_T = m_T + Σ P_U/n_U,   over the contacts with trees U of the layer above
-/// A contact between the trees S and T has to carry
+/// Trees that touch or are tied to each other, not counting the world, are an island. A tree T on a
+/// free base counts in it with the largest inertia that a contact or tie feels on one of its
+/// bodies,
+///   m_T = min(mass of T, max over touched and tied bodies B of 1/w_B)
+/// one on a fixed base over tied bodies only: contacts feel it as the world. What stands on the
+/// world passes its load down: the layer of a tree is the number of contacts and ties between it
+/// and the world, and each of its n_T ones with the layer below takes an equal share,
+///   P_T = m_T + Σ P_U/n_U,   over those with trees U of the layer above
+/// One between the trees S and T has to carry
 ///   L = max(largest m of the island,  P of the one that is farther from the world)
 /// of two that are equally far the larger P; with the world, or in one tree,
 ///   L = max(largest m of the island's others,  P_T − m_T)
 /// Its regulariser R = (1 − d)/d A then takes A = min(w_A + w_B, 1/L). So a light body under a
 /// heavy one is as hard as its load wants, and a tree that touches nothing but the world and itself
 /// is as it was: L = 0. L depends on the contacts of this instant and on constants; it costs
-/// O(contacts).
+/// O(contacts + ties).
+///
+/// A weld holds what it carries against turning too. Of the body B that gives m_T, c_T is the
+/// centre of mass and I_T = 1/w^r_B. About the weld's origin p, in the middle where frames are
+/// apart, that is I_T + m_T |c_T − p|², what is passed down adds up as P does, and I, the largest
+/// of both kinds as L is, bounds the A of its three rows of rotation: A = min(w^r_A + w^r_B, 1/I)
+/// (T.119)
 
 #include <vector>
 
 #include "engine/constraints/contact_set.hpp"
 #include "engine/constraints/inverse_weight.hpp"
+#include "engine/dynamics/kinematics.hpp"
 
 namespace softgauss {
 
+/// A of what carries a load: the bodies' weight, or less.
+inline double carrying(double weight, double load) {
+  return load * weight > 1.0 ? 1.0 / load : weight;
+}
+
 class CarriedLoad {
  public:
-  void assemble(const Model& model, const ContactSet& contacts, const InverseWeights& weights);
-  /// L of a contact [kg].
-  double of(const Model& model, const Contact& contact) const;
+  void assemble(const Model& model, const Kinematics& kinematics, const ContactSet& contacts,
+                const InverseWeights& weights);
+  /// L between bodies of which a contact or a tie is [kg].
+  double mass(const Model& model, int bodyA, int bodyB) const;
+  /// I between bodies that a weld ties, about p_W [kg m²].
+  double inertia(const Model& model, int bodyA, int bodyB, const Vector3& p_W) const;
 
  private:
-  /// A contact as one of its two trees sees it.
+  /// Mass, its first moment [kg m] and its second one, with what turns besides [kg m²].
+  struct Load {
+    double mass = 0.0;
+    Vector3 moment = Vector3::Zero();
+    double turning = 0.0;
+
+    /// Adds one of so many parts of the other.
+    void add(const Load& other, double parts);
+    double about(const Vector3& p) const;
+  };
+  /// A contact or tie as one of its two trees sees it.
   struct Link {
     int other = -1;  ///< the other tree
-    int next = -1;   ///< the tree's next contact in `links_`
+    int next = -1;   ///< the tree's next in `links_`
   };
-  /// The two largest m of an island [kg].
+  /// The trees of the two largest m of an island, −1 without.
   struct Largest {
-    double first = 0.0, second = 0.0;
+    int first = -1, second = -1;
+  };
+  /// What a contact or tie has to carry: a tree of the island, and what one or the other of its own
+  /// trees passes down, less itself where `lessOwn`; −1 where there is none.
+  struct Carried {
+    int largest = -1, passing = -1, other = -1;
+    bool lessOwn = false;
   };
 
+  /// The largest `size` of what is carried.
+  template <class F>
+  double mostOf(const Carried& carried, F&& size) const;
   int root(int tree);
-  void weigh(const Model& model, const ContactSet& contacts, const InverseWeights& weights);
+  double massOf(int tree) const { return tree < 0 ? 0.0 : own_[tree].mass; }
+  void weigh(const Model& model, const Kinematics& kinematics, const ContactSet& contacts,
+             const InverseWeights& weights);
   void findLayers();
   void passDown();
+  Carried between(const Model& model, int bodyA, int bodyB) const;
 
-  bool any_ = false;              ///< two trees touch
+  bool any_ = false;              ///< two trees touch, or are tied
+  Vector3 origin_W;               ///< of moments
   std::vector<int> parent_;       ///< of a tree in its island, towards the one that stands for it
-  std::vector<double> mass_;      ///< m_T [kg]
-  std::vector<double> passed_;    ///< P_T [kg]
+  std::vector<Load> own_;         ///< m_T, c_T, I_T
+  std::vector<Load> passed_;      ///< P_T
   std::vector<Largest> largest_;  ///< of the island that a tree stands for
   std::vector<int> island_;       ///< the tree that stands for each tree's island
-  std::vector<int> layer_;        ///< 1 on the world; 0 where no contact leads to the world
+  std::vector<int> layer_;        ///< 1 on the world; 0 where nothing leads to the world
   std::vector<int> order_;        ///< trees that stand on the world, by layer
-  std::vector<int> head_;         ///< a tree's first contact in `links_`, −1 without
+  std::vector<int> head_;         ///< a tree's first in `links_`, −1 without
   std::vector<Link> links_;
 };
 

@@ -6,8 +6,9 @@
 /// Distance r = p_A − p_B, J = J_A − J_B of the two points, and the force f pulls body A along +f,
 /// body B along −f:
 ///   x = J a − a_ref,   a_ref = −b ṙ − k d(|r|) r − J̇ v,   s(x) = ½ D x²                  (T.28)
-/// with A = w_A + w_B, the bodies' translational inverse weights. With J̇ v, r̈ is the acceleration
-/// of the distance itself, and closed loops do not drift when they turn fast.
+/// with A = w_A + w_B, the bodies' translational inverse weights, or less where the connection
+/// carries more than they are (T.80). With J̇ v, r̈ is the acceleration of the distance itself, and
+/// closed loops do not drift when they turn fast.
 
 #include "engine/constraints/assembly.hpp"
 #include "engine/constraints/block_rows.hpp"
@@ -30,5 +31,8 @@ struct PointOffset {
 
 /// The Jacobian J_A − J_B of that offset.
 RelativeMotion offsetMotion(int bodyA, const Vector3& p_WA, int bodyB, const Vector3& p_WB);
+
+/// A of a tie of two bodies' translation [1/kg].
+double tieWeight(const Assembly& in, int bodyA, int bodyB);
 
 }  // namespace softgauss

@@ -20,8 +20,8 @@ bool isContact(int kind) {
 
 void Constraints::assemble(const Assembly& given) {
   Assembly in = given;
-  if (in.model.options.ownSoftness && in.contacts.size() > 0) {
-    load_.assemble(in.model, in.contacts, in.weights);
+  if (in.model.options.ownSoftness) {
+    load_.assemble(in.model, in.kinematics, in.contacts, in.weights);
     in.load = &load_;
   }
   active_ = RowKinds::none();

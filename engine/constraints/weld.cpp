@@ -43,21 +43,24 @@ void WeldRows::assemble(const Assembly& in) {
       const PointOffset point(in, weld.bodyA, X_WA.p, weld.bodyB, X_WB.p);
       const RotationOffset turn(k, weld, X_WA.R, X_WB.R);
       const double distance = std::hypot(point.r.norm(), turn.r.norm());
-      const auto softness = [&](const std::vector<double>& weight) {
-        return softnessAt(weld.impedance, distance, weight[weld.bodyA] + weight[weld.bodyB],
-                          model.options);
+      const auto softness = [&](double weight) {
+        return softnessAt(weld.impedance, distance, weight, model.options);
       };
       RelativeMotion motion = offsetMotion(weld.bodyA, X_WA.p, weld.bodyB, X_WB.p);
-      const Softness linear = softness(in.weights.translation);
+      const Softness linear = softness(tieWeight(in, weld.bodyA, weld.bodyB));
       jacobian_.add(model, k, in.tree, motion);
       pushRows(motion, point.r, point.rate, point.bias, in.lag(), linear);
 
       // Bodies that slide only cannot be turned back.
-      if (in.weights.rotation[weld.bodyA] + in.weights.rotation[weld.bodyB] == 0.0) continue;
+      double weight = in.weights.rotation[weld.bodyA] + in.weights.rotation[weld.bodyB];
+      if (weight == 0.0) continue;
+      if (in.load)
+        weight = carrying(weight,
+                          in.load->inertia(model, weld.bodyA, weld.bodyB, 0.5 * (X_WA.p + X_WB.p)));
       motion.linearDim = 0;
       motion.angularDim = 3;
       motion.angular = turn.J_r.transpose();
-      const Softness angular = softness(in.weights.rotation);
+      const Softness angular = softness(weight);
       jacobian_.add(model, k, in.tree, motion);
       pushRows(motion, turn.r, turn.rate, turn.bias, in.lag(), angular);
     }

@@ -10,7 +10,8 @@
 ///   J̇ v = ½ s [(e₀ 1 + [ē]×) R_WAᵀ(ω̇ − ω_A × ω) − ½ |ω|² ē],   ω = ω_A − ω_B            (T.29)
 ///   x = J a − a_ref,   a_ref = −b J v − k d r − J̇ v,   s(x) = ½ D x²
 /// All six rows share d, of the length of their six distances; A is the translational inverse
-/// weight of the two bodies in three rows, the rotational one in the others. Bodies that cannot
+/// weight of the two bodies in three rows, the rotational one in the others, or less where the weld
+/// carries more than they are (T.80, T.119). Bodies that cannot
 /// turn have the first three rows only.
 
 #include "engine/constraints/assembly.hpp"

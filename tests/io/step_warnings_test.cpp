@@ -50,6 +50,28 @@ TEST(StepWarnings, NameTheEffortThatOutrunsTheStep) {
   EXPECT_TRUE(warningsOf([](JointSpec& j) { j.effort = 1e4; }).empty());
 }
 
+// A bar of 0.1 kg and 0.1 m between ties, the lower one under 100 kg: ω² = (L₁ + L₂) g r/I, with
+// I = m l²/12, is 1085 rad/s.
+TEST(StepWarnings, NameTheBodyThatIsLightForWhatHangsOnIt) {
+  ModelBuilder builder("hung");
+  builder.base = BaseKind::floating;
+  builder.link(boxLink("bar", 0.1, Vector3(0.05, 0.001, 0.001)));
+  builder.link(sphereLink("load", 100.0, 0.05));
+  ConnectSpec tie;
+  tie.linkA = "bar", tie.linkB = "world";
+  tie.p_LAP = Vector3(-0.05, 0, 0);
+  builder.connect(tie);
+  tie.linkA = "load", tie.linkB = "bar";
+  tie.p_LAP = Vector3::Zero(), tie.p_LBP = Vector3(0.05, 0, 0);
+  builder.connect(tie);
+  builder.options.timestep = 0.01;
+  const std::vector<std::string> told = io::stepWarnings(builder.build(), {});
+  expectOne(told, "link 'bar' is light", "swings by 10.8 rad in a step of 0.01 s");
+  EXPECT_NE(told[0].find("try a step below 0.00092 s"), std::string::npos) << told[0];
+  builder.options.timestep = 0.0009;
+  EXPECT_TRUE(io::stepWarnings(builder.build(), {}).empty());
+}
+
 TEST(StepWarnings, NameTheSurfaceThatIsFasterThanTheStep) {
   Model model = sphereOnPlane(0.1, 1.0, 1.0).build();
   const auto of = [&](const Impedance& surface) {

@@ -35,14 +35,22 @@ int coordinates(const Model& model, const Tree& tree) {
          (model.bodies[tree.rootBody].joint == JointKind::floating ? 1 : 0);
 }
 
-/// (T.93), without the factor h.
-double turnRate(const Model& model, const Tree& tree, const VectorX& v, const VectorX& a, double h,
+/// (T.93), without the factor h. Of joints that turn and of those that slide, what changes by less
+/// than rounding of the tree's motion tells nothing: a ball that does not spin is at 0/0.
+double turnRate(const Model& model, const Tree& tree, const Data& data, const VectorX& v,
                 const VectorX& change) {
-  double changes[2] = {0.0, 0.0}, speeds[2] = {0.0, 0.0};  // turning, sliding
+  constexpr double kRounding = 1e-12;
+  const double h = model.options.timestep;
+  double changes[2] = {0.0, 0.0}, sizes[2] = {0.0, 0.0};  // turning, sliding
+  double speeds[2] = {0.0, 0.0}, fastest = 0.0;
   const auto add = [&](int kind, int begin, int end) {
     for (int i = begin; i < end; ++i) {
+      const double root = 1.0 / data.inertia.forceScale[i];  // √M_ii
+      const double speed = std::abs(v[i]) + h * std::abs(data.forward.a[i]);
       changes[kind] = std::max(changes[kind], std::abs(change[i]));
-      speeds[kind] = std::max(speeds[kind], std::abs(v[i]) + h * std::abs(a[i]));
+      sizes[kind] = std::max(sizes[kind], h * std::abs(change[i]) * root);
+      speeds[kind] = std::max(speeds[kind], speed);
+      fastest = std::max(fastest, speed * root);
     }
   };
   for (int b = tree.rootBody; b < tree.bodyEnd; ++b) {
@@ -56,7 +64,7 @@ double turnRate(const Model& model, const Tree& tree, const VectorX& v, const Ve
   }
   double rate = 0.0;
   for (const int kind : {0, 1})
-    if (changes[kind] > 0.0) rate = std::max(rate, changes[kind] / speeds[kind]);
+    if (sizes[kind] > kRounding * fastest) rate = std::max(rate, changes[kind] / speeds[kind]);
   return rate;
 }
 
@@ -99,7 +107,7 @@ bool FollowedTrees::needed(const Model& model, const Data& data, State& state, c
     state.velocityOf.assign(model.trees.size(), VelocityOf::asGiven);
   bool any = false;
   for (std::size_t t = 0; t < model.trees.size(); ++t)
-    turn[t] = h * turnRate(model, model.trees[t], state.v, data.forward.a, h, dv);
+    turn[t] = h * turnRate(model, model.trees[t], data, state.v, dv);
   // What a tie holds is turned by it, also a ball, which has no Coriolis forces.
   const auto tied = [&](int body) {
     const int tree = model.bodies[body].tree;

@@ -23,7 +23,7 @@ struct Island {
       c.bodyA = a, c.bodyB = b;
       contacts.add(c);
     }
-    load.assemble(model, contacts, weights);
+    load.assemble(model, Kinematics(model), contacts, weights);
   }
   static Model spheres(const std::vector<double>& masses) {
     ModelBuilder builder("spheres");
@@ -32,7 +32,10 @@ struct Island {
       builder.link(sphereLink("ball" + std::to_string(i), masses[i], 0.1));
     return builder.build();
   }
-  double of(int contact) const { return load.of(model, contacts.contacts[contact]); }
+  double of(int contact) const {
+    const Contact& c = contacts.contacts[contact];
+    return load.mass(model, c.bodyA, c.bodyB);
+  }
 };
 
 // 1 kg carries 10 kg, which carries 100 kg: each contact carries what stands upon it.
@@ -103,6 +106,103 @@ TEST(CarriedLoad, DoesNotDependOnOrder) {
     const Island one(masses, touching), other(masses, turned);
     for (int i = 0; i < 9; ++i) EXPECT_SMALL(one.of(i) - other.of(8 - i), 1e-12);
   }
+}
+
+/// Spheres of these masses, each tied to the one before, the first to the world, with the centres
+/// 1 m apart along x; `weld` or connect.
+struct Tied {
+  Model model;
+  InverseWeights weights;
+  CarriedLoad load;
+
+  Tied(const std::vector<double>& masses, bool weld, const ContactSet& contacts = {})
+      : model(row(masses, weld)), weights(model) {
+    State state(model);
+    for (int i = 0; i + 1 < model.bodyCount(); ++i) state.q[7 * i] = i;
+    Kinematics kinematics(model);
+    computeKinematics(model, state, kinematics);
+    load.assemble(model, kinematics, contacts, weights);
+  }
+  static Model row(const std::vector<double>& masses, bool weld) {
+    ModelBuilder builder("row");
+    builder.base = BaseKind::floating;
+    std::string last = "world";
+    for (std::size_t i = 0; i < masses.size(); ++i) {
+      const std::string name = "ball" + std::to_string(i);
+      builder.link(sphereLink(name, masses[i], 0.1));
+      ConnectSpec connect;
+      connect.linkA = name, connect.linkB = last;
+      WeldSpec fixed;
+      fixed.linkA = name, fixed.linkB = last;
+      if (weld)
+        builder.weld(fixed);
+      else
+        builder.connect(connect);
+      last = name;
+    }
+    return builder.build();
+  }
+  double mass(int a, int b) const { return load.mass(model, a, b); }
+};
+
+// What hangs on a tie is carried by all between it and the world, like what stands on a contact.
+TEST(CarriedLoad, OfTiesIsWhatHangsOnThem) {
+  for (const bool weld : {false, true}) {
+    const Tied row({1.0, 10.0, 100.0}, weld);
+    EXPECT_SMALL(row.mass(1, 0) - 110.0, 1e-12);
+    EXPECT_SMALL(row.mass(1, 2) - 110.0, 1e-12);
+    EXPECT_SMALL(row.mass(2, 3) - 100.0, 1e-12);
+  }
+  EXPECT_EQ(Tied({5.0}, true).mass(1, 0), 0.0);
+}
+
+// Contacts and ties are edges of one graph: what the last of the row lies on bears none of it, for
+// the world holds its first; what lies on the last is passed to the world by both.
+TEST(CarriedLoad, JoinsContactsAndTies) {
+  ContactSet contacts;
+  Contact c;
+  c.bodyA = 2, c.bodyB = 3;
+  contacts.add(c);
+  Model model = Tied::row({1.0, 2.0, 4.0}, false);
+  model.connections.pop_back();  // the third lies on the second
+  const InverseWeights weights(model);
+  CarriedLoad load;
+  load.assemble(model, Kinematics(model), contacts, weights);
+  EXPECT_SMALL(load.mass(model, 1, 0) - 6.0, 1e-12);
+  EXPECT_SMALL(load.mass(model, 1, 2) - 6.0, 1e-12);
+  EXPECT_SMALL(load.mass(model, 2, 3) - 4.0, 1e-12);
+}
+
+// A weld to the world bears the others' moment of inertia about its origin: that of their masses at
+// their distances, and of each about its own centre, ⅖ m r².
+TEST(CarriedLoad, OfWeldsTurns) {
+  const Tied row({1.0, 10.0, 100.0}, true);
+  const auto own = [](double m) { return 0.4 * m * 0.01; };
+  const Vector3 origin = Vector3::Zero(), second = Vector3::UnitX();
+  EXPECT_SMALL(
+      row.load.inertia(row.model, 1, 0, origin) - (own(10.0) + 10.0 + own(100.0) + 100.0 * 4.0),
+      1e-9);
+  EXPECT_SMALL(row.load.inertia(row.model, 3, 2, second) - (own(100.0) + 100.0), 1e-9);
+  // Of the island's heaviest alone where that is more than what is passed down.
+  const Tied light({100.0, 1.0}, true);
+  EXPECT_SMALL(light.load.inertia(light.model, 2, 1, second) - (own(100.0) + 100.0), 1e-9);
+}
+
+// Options::ownSoftness makes rows of ties harder by their load, A = 1/L, and nothing else of them.
+TEST(CarriedLoad, HardensTies) {
+  Scene scene(Tied::row({1.0, 99.0}, false));
+  scene.stages();
+  const std::vector<double> with = scene.data->constraints.connection.D,
+                            references = scene.data->constraints.connection.reference;
+  scene.model.options.ownSoftness = false;
+  scene.stages();
+  const std::vector<double>& without = scene.data->constraints.connection.D;
+  ASSERT_EQ(with.size(), 6u);
+  for (int i = 0; i < 6; ++i) {
+    const double weight = i < 3 ? 1.0 : 1.0 + 1.0 / 99.0;
+    EXPECT_SMALL(with[i] / without[i] / (99.0 * weight) - 1.0, 1e-12);
+  }
+  EXPECT_EQ(references, scene.data->constraints.connection.reference);
 }
 
 /// D of all rows of contacts, with loads or without.
