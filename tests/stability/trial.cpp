@@ -156,6 +156,9 @@ bool Trial::watch(SolveStatus status) {
     return breaks("the solve ended short, residual " + std::to_string(stats.residual));
   if (unpruned->mayTouch() && !sameContacts(data->contacts, all_))
     return breaks("contacts that pruning has changed");
+  rounded += stats.roundedSolves;
+  if (rounded > 0 && !mayRound)
+    return breaks("the solve ended by rounding, residual " + std::to_string(stats.residual));
   if (!state.q.allFinite() || !state.v.allFinite()) return breaks("a state that is not finite");
   if (stats.refusedGuesses + stats.keptSlips + stats.abandonedTrees + stats.jumps > 0)
     return breaks("something done in place of what was asked");

@@ -61,6 +61,9 @@ class Trial {
   double mayRise = 1e-12, perStep = 0.0;
   /// Steps whose solve may end short of its tolerance; their residual is in `worstResidual`.
   int mayStall = 0;
+  /// Solves may end by rounding, within 10³ of their tolerance (StepStats::roundedSolves); a test
+  /// that allows it asserts that one did.
+  bool mayRound = false;
 
   // Measured over all steps so far.
   double gained = -kInfinity;  ///< most energy above that of the start and of the work [J]
@@ -69,7 +72,8 @@ class Trial {
   double fastest = 0.0;        ///< largest |v_i| [m/s or rad/s]
   double worstResidual = 0.0;  ///< of the solve, scaled
   int mostIterations = 0;
-  int stalls = 0;  ///< solves that ended short of the tolerance
+  int stalls = 0;   ///< solves that ended short of the tolerance
+  int rounded = 0;  ///< solves that ended by rounding
   int steps = 0;
 
   /// Advances by `seconds`, `each` being called after every step (it may set `input` for the next).
