@@ -15,6 +15,8 @@
 /// of time, and each half asks them anew. Where that gives it another control p is 1, whatever the
 /// method: the run holds a control from the start of a step.
 ///
+/// Where shapes may pass through each other between two halves, the halves go in parts (T.125).
+///
 /// Without goals the halves go on by themselves, and the estimate is of the whole run: root mean
 /// square over links and steps. With goals every pair of halves begins where its step does, for the
 /// goals answer to what went before; the estimate is the sum of what the steps err by.
@@ -46,7 +48,11 @@ class ErrorEstimate {
   struct Halves {
     Halves(const Model& halved, const State& start, double factor);
 
+    /// Of the next part, where so much is left of a step: a half, or what is in sight [s].
+    double lengthInSight(double left);
+
     double factor;  ///< 2^p/(2^p − 1)
+    double length;  ///< of a half [s]
     Model model;
     collision::SceneContacts contacts;
     Data data;

@@ -205,10 +205,12 @@ class Runner {
     f.keptSlips += stats.keptSlips;
     f.abandonedTrees += stats.abandonedTrees;
     f.jumps += stats.jumps;
+    f.unseen += stats.unseen;
     io::IntegrationCounts& i = summary_.integration;
     i.evaluations += stats.evaluations;
     i.substeps += stats.substeps;
     i.rejections += stats.rejections;
+    i.glances += stats.glances;
   }
 
   void count(const gdd::GddReport& report) {
@@ -277,6 +279,7 @@ class Runner {
       summary_.warnings.push_back(std::move(unreached));
     tellSolver();
     tellMinima();
+    tellUnseen();
     if (islands_) summary_.islands = islands_->outcomes();
     if (errorEstimate_) summary_.error = errorEstimate_->outcome();
     summary_.finish(last);
@@ -306,6 +309,15 @@ class Runner {
         "{} of {} steps took the best control that was found, without a certificate that it is a "
         "minimum: {} at the iteration limit, {} at a bend of an elliptic cone, {} undecided",
         g.uncertified(), g.all(), g.iterationLimit, g.bend, g.undecided));
+  }
+
+  /// A step that is not divided sees nothing of what begins and ends within it.
+  void tellUnseen() {
+    if (summary_.fallbacks.unseen == 0) return;
+    summary_.warnings.push_back(fmt::format(
+        "{} times shapes were so fast that they may have passed through each other between two "
+        "looks: try a smaller --timestep, or dormand-prince, which divides such steps",
+        summary_.fallbacks.unseen));
   }
 
   const SimulateOptions& options_;
