@@ -47,21 +47,15 @@ double factorOf(const Options& options) {
 }  // namespace
 
 ErrorEstimate::Halves::Halves(const Model& halved, const State& start, double f)
-    : factor(f),
-      length(halved.options.timestep),
-      model(halved),
-      contacts(model),
-      data(model),
-      state(start),
-      poses(model) {}
+    : factor(f), model(halved), contacts(model), data(model), state(start), poses(model) {}
 
-double ErrorEstimate::Halves::lengthInSight(double left) {
-  const double most = std::min(length, left);
+double ErrorEstimate::Halves::lengthInSight(double half, double left) {
+  const double most = std::min(half, left);
   if (!contacts.mayTouch() || io::controlsError(model.options)) return most;
   computeKinematics(model, state, data.kinematics);
   const double sight =
       contacts.timeInSight(model, data.kinematics, 2.0 * most, ContactSource::Way::onwards);
-  return std::min(most, std::max(0.5 * sight, 2.0 * kShortestPart * length));
+  return std::min(most, std::max(0.5 * sight, 2.0 * kShortestPart * half));
 }
 
 ErrorEstimate::ErrorEstimate(const Model& model, const State& start, const OutsideInput& outside,
@@ -72,18 +66,19 @@ ErrorEstimate::ErrorEstimate(const Model& model, const State& start, const Outsi
   halves_.push_back(std::make_unique<Halves>(halved(model), start, factorOf(model.options)));
 }
 
-void ErrorEstimate::observe(const State& before, const Input& input, const State& after) {
+void ErrorEstimate::observe(const State& before, const Input& input, const State& after,
+                            double length) {
   run_.set(after);
   for (const auto& halves : halves_)
-    if (!halves->lost) observe(*halves, before, input);
+    if (!halves->lost) observe(*halves, before, input, length);
   ++steps_;
 }
 
-void ErrorEstimate::observe(Halves& h, const State& before, const Input& input) {
+void ErrorEstimate::observe(Halves& h, const State& before, const Input& input, double length) {
   if (withGoals_) h.state = before;
   input_ = input;
-  for (double left = 2.0 * h.length; left > 1e-9 * h.length && !h.lost;) {
-    h.model.options.timestep = h.lengthInSight(left);
+  for (double left = length; left > 1e-9 * length && !h.lost;) {
+    h.model.options.timestep = h.lengthInSight(0.5 * length, left);
     left -= h.model.options.timestep;
     outside_.at(h.model, h.state, h.data.kinematics, input_);
     if (input_.tau != input.tau) h.factor = std::max(h.factor, kFirstOrder);

@@ -38,8 +38,8 @@ class ErrorEstimate {
   ErrorEstimate(const Model& model, const State& start, const OutsideInput& outside,
                 bool withGoals);
 
-  /// A step of the run from `before` to `after`, under `input`.
-  void observe(const State& before, const Input& input, const State& after);
+  /// A step of the run from `before` to `after`, under `input`, of `length` [s].
+  void observe(const State& before, const Input& input, const State& after, double length);
 
   io::ErrorOutcome outcome() const;
 
@@ -49,10 +49,9 @@ class ErrorEstimate {
     Halves(const Model& halved, const State& start, double factor);
 
     /// Of the next part, where so much is left of a step: a half, or what is in sight [s].
-    double lengthInSight(double left);
+    double lengthInSight(double half, double left);
 
     double factor;  ///< 2^p/(2^p − 1)
-    double length;  ///< of a half [s]
     Model model;
     collision::SceneContacts contacts;
     Data data;
@@ -61,7 +60,7 @@ class ErrorEstimate {
     double total = 0.0, turned = 0.0;  ///< sums, of squares without goals
     bool lost = false;                 ///< not finite
   };
-  void observe(Halves& halves, const State& before, const Input& input);
+  void observe(Halves& halves, const State& before, const Input& input, double length);
 
   const OutsideInput& outside_;
   bool withGoals_;

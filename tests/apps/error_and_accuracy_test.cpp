@@ -308,6 +308,45 @@ TEST(Accuracy, IsKeptUnderATable) {
   }
 }
 
+// Rows that come as they like, from later than 0 on, and a run that ends between two: steps of the
+// trial and of the run end on them all the same. Held steps of 8 ms would take rows that late.
+TEST(Accuracy, IsKeptUnderATableOfIrregularRows) {
+  const io::TempFolder folder;
+  const std::string table = folder.path() / "torques.csv", log = folder.path() / "log.csv";
+  std::ofstream out(table);
+  out << "time_s,u:shoulder_pitch,u:elbow_pitch\n";
+  for (int row = 0; row <= 200; ++row) {
+    const double t = 0.0013 + 0.005 * row + 0.002 * std::sin(7.0 * row);
+    out << t << "," << 8.0 * std::sin(6.0 * t) << "," << 3.0 * std::cos(5.0 * t) << "\n";
+  }
+  out.close();
+  const std::vector<std::string> arguments{dataFile("robots/arm.urdf"),
+                                           "--torques",
+                                           table,
+                                           "--duration",
+                                           "0.7071",
+                                           "--accuracy",
+                                           "1e-5",
+                                           "--log",
+                                           log};
+  const Outcome outcome = simulate(arguments);
+  ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+  // The logged steps end on rows, so that steps of the truth do.
+  Truth truth = passiveArmTruth();
+  truth.torques = table;
+  truth.integrator = Integrator::dormandPrince;
+  EXPECT_LE(trueError(log, truth).total, 1e-5) << outcome.out;
+  const Csv csv(readFile(log));
+  EXPECT_NEAR(csv.number(static_cast<int>(csv.rows.size()) - 1, "time_s"), 0.7071, 1e-9);
+
+  // Islands take whole steps.
+  std::vector<std::string> inIslands = arguments;
+  inIslands.insert(inIslands.end(), {"--islands", "apart"});
+  const Outcome refused = simulate(inIslands);
+  EXPECT_EQ(refused.exitCode, 2);
+  EXPECT_NE(refused.err.find("no step ends on a row"), std::string::npos) << refused.err;
+}
+
 // What begins and ends within a step, seen by none of two references, is promised by nothing.
 TEST(Accuracy, IsKeptWhereWallsArePassedWithinAStep) {
   for (const double speed : {25.0, 40.0, 55.0, 60.0})
