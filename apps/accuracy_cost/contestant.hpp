@@ -52,6 +52,9 @@ std::unique_ptr<Contestant> makeContestant(const Problem& problem, const Method&
 /// What can be compared for a problem: ours, then MuJoCo's where it was found.
 std::vector<Method> methodsFor(const Problem& problem);
 
+/// Ours alone, for a fine search: tolerances of error control by half decades.
+std::vector<Method> fineMethods();
+
 /// What a method is compared with, where no closed form is: the most accurate method of the same
 /// model, and one that tells how good it is. Without contact that is ours for every engine; with
 /// contact each engine and each kind of cone is a model of its own. There ours is led by its error,

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "apps/accuracy_cost/contestant.hpp"
 
@@ -16,8 +17,7 @@ class Ours final : public Contestant {
         contacts_(model_),
         data_(model_),
         state_(model_) {
-    // In both engines, and in the references, what sticks is as soft as what slides.
-    input_.softFriction = true;
+    input_.softFriction = problem.softFriction;
   }
 
   const Model& model() const override { return model_; }
@@ -86,6 +86,30 @@ References referencesFor(const Problem& problem, const Method& method) {
   r.coarse.integrationTolerance = 100.0 * problem.referenceTolerance;
   r.fineSteps = 64, r.coarseSteps = 32;
   return r;
+}
+
+std::vector<Method> fineMethods() {
+  const Method euler{"softgauss", "semi-implicit-euler", "semi-implicit Euler"};
+  std::vector<Method> methods{euler,
+                              {"softgauss", kMujocoEuler, "semi-implicit Euler as MuJoCo's"},
+                              {"softgauss", "implicit", "implicit in velocity"},
+                              {"softgauss", "implicit-midpoint", "implicit midpoint"},
+                              {"softgauss", "runge-kutta-4", "Runge-Kutta 4"}};
+  for (int half = -4; half >= -22; --half) {
+    Method adaptive{"softgauss", "dormand-prince", ""};
+    adaptive.integrationTolerance = std::pow(10.0, 0.5 * half);
+    adaptive.label = fmt::format("Dormand-Prince to {:.1e}", adaptive.integrationTolerance);
+    if (half >= -14) {
+      Method doubled = euler;
+      doubled.doubling = true;
+      doubled.integrationTolerance = adaptive.integrationTolerance;
+      doubled.label =
+          fmt::format("Euler with step doubling to {:.1e}", doubled.integrationTolerance);
+      methods.push_back(std::move(doubled));
+    }
+    methods.push_back(std::move(adaptive));
+  }
+  return methods;
 }
 
 std::vector<Method> methodsFor(const Problem& problem) {

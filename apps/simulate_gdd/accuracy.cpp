@@ -58,7 +58,7 @@ class Trials {
   const SimulateOptions& options_;
   const Scene& scene_;
   const OutsideInput outside_;
-  Progress progress_;
+  RunProgress progress_;
   const double begin_ = cpuSeconds();
   int count_ = 0;
   std::string what_;  ///< is tried
@@ -84,13 +84,17 @@ TrialRun Trials::run(Model model, int periods, int steps, double mostSeconds) {
   controller.solver = scene_.gddSolver;
   controller.box = io::controlBox(model, scene_.actuators);
 
+  TrialRun result;
+  result.touches = false;
   const auto takeStep = [&] {
     outside_.at(model, state, data.kinematics, input);
-    return !isRefused(controller.goals.empty()
-                          ? step(model, input, state, data, &contacts)
-                          : controller.step(model, input, state, data, &contacts));
+    const bool taken = !isRefused(controller.goals.empty()
+                                      ? step(model, input, state, data, &contacts)
+                                      : controller.step(model, input, state, data, &contacts));
+    for (const RowKind kind : {RowKind::jointLimit, RowKind::pyramid, RowKind::ellipticCone})
+      result.touches = result.touches || data.constraints.active().has(kind);
+    return taken;
   };
-  TrialRun result;
   const int every = (periods + kMostSamples - 1) / kMostSamples;
   for (int k = 0; k < periods; ++k) {
     progress_.showTrial(count_, what_, static_cast<double>(k) / periods, cpuSeconds() - begin_);

@@ -93,7 +93,7 @@ class Runner {
   ExitCode run() {
     const auto steps =
         static_cast<long>(std::ceil(options_.duration / model_.options.timestep - 1e-9));
-    Progress progress(options_.duration, options_.quiet);
+    RunProgress progress(options_.duration, options_.quiet);
     Verdict verdict(model_, controller_.box);
     ExitCode code = kDone;
     // From here on an interrupt ends the run in order; a second one ends it at once.
