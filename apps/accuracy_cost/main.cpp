@@ -71,10 +71,14 @@ void run(const Problem& problem, const Arguments& arguments, ResultTable& table)
   const int fewest = problem.contact ? kFewestContactSteps : kFewestSteps;
   const std::vector<int> counts = stepCounts(arguments.mostSteps, fewest, arguments.runs);
   const auto all = static_cast<long>(counts.size() * methods.size());
+  const std::vector<Method> variants =
+      arguments.runs ? std::vector<Method>() : solverVariants(problem);
   for (const int steps : counts) {
     const double h = kPeriod / steps;
     std::vector<Result> results;
-    for (const Method& method : methods) {
+    std::vector<Method> here = methods;
+    if (steps == kSolverSteps) here.insert(here.end(), variants.begin(), variants.end());
+    for (const Method& method : here) {
       progress.show(done++, all);
       if (interrupted()) return;
       if (table.has(problem.name, method, h, most)) continue;

@@ -66,6 +66,25 @@ class Ours final : public Contestant {
   Input input_;
 };
 
+/// A method with other tolerances of the solver, without warm start, and with elliptic cones.
+void addVariants(const Method& plain, const std::string& name,
+                 std::initializer_list<double> tolerances, std::vector<Method>& methods) {
+  for (const double tolerance : tolerances) {
+    Method loose = plain;
+    loose.tolerance = tolerance;
+    loose.label = fmt::format("{} with solver to {:.0e}", name, tolerance);
+    methods.push_back(std::move(loose));
+  }
+  Method cold = plain;
+  cold.warmStart = false;
+  cold.label = name + " without warm start";
+  methods.push_back(std::move(cold));
+  Method elliptic = plain;
+  elliptic.cone = Cone::elliptic;
+  elliptic.label = name + " with elliptic cones";
+  methods.push_back(std::move(elliptic));
+}
+
 }  // namespace
 
 std::unique_ptr<Contestant> makeContestant(const Problem& problem, const Method& method, double h) {
@@ -86,6 +105,17 @@ References referencesFor(const Problem& problem, const Method& method) {
   r.coarse.integrationTolerance = 100.0 * problem.referenceTolerance;
   r.fineSteps = 64, r.coarseSteps = 32;
   return r;
+}
+
+std::vector<Method> solverVariants(const Problem& problem) {
+  std::vector<Method> methods;
+  if (!problem.contact) return methods;
+  Method adaptive{"softgauss", "dormand-prince", ""};
+  adaptive.integrationTolerance = 1e-8;
+  addVariants(adaptive, "Dormand-Prince to 1e-08", {1e-6, 1e-3}, methods);
+  addVariants({"softgauss", "implicit-midpoint", ""}, "implicit midpoint", {1e-6, 1e-3}, methods);
+  for (Method& method : mujocoVariants(problem)) methods.push_back(std::move(method));
+  return methods;
 }
 
 std::vector<Method> fineMethods() {
@@ -132,22 +162,7 @@ std::vector<Method> methodsFor(const Problem& problem) {
     doubled.label = fmt::format("Euler with step doubling to {:.0e}", tolerance);
     methods.push_back(doubled);
   }
-  if (problem.contact) {
-    for (const double tolerance : {1e-6, 1e-3}) {
-      Method loose = euler;
-      loose.tolerance = tolerance;
-      loose.label = fmt::format("Euler with solver to {:.0e}", tolerance);
-      methods.push_back(loose);
-    }
-    Method cold = euler;
-    cold.warmStart = false;
-    cold.label = "Euler without warm start";
-    methods.push_back(cold);
-    Method elliptic = euler;
-    elliptic.cone = Cone::elliptic;
-    elliptic.label = "Euler with elliptic cones";
-    methods.push_back(elliptic);
-  }
+  if (problem.contact) addVariants(euler, "Euler", {1e-6, 1e-3}, methods);
   for (Method& method : mujocoMethods(problem)) methods.push_back(std::move(method));
   return methods;
 }
