@@ -133,6 +133,18 @@ std::optional<double> orderOf(const std::vector<Result>& curve) {
   return slope(points);
 }
 
+std::optional<double> orderBelowTheTurnOf(const std::vector<Result>& curve) {
+  std::vector<Result> rising = curve;
+  std::sort(rising.begin(), rising.end(),
+            [](const Result& a, const Result& b) { return a.h < b.h; });
+  const auto turn =
+      std::adjacent_find(rising.begin(), rising.end(), [](const Result& a, const Result& b) {
+        return tells(b.referenceError, b.error) && b.error < a.error;
+      });
+  if (turn != rising.end()) rising.erase(turn + 1, rising.end());
+  return orderOf(rising);
+}
+
 std::optional<double> oneStepOrderOf(const std::vector<Result>& curve) {
   std::vector<std::pair<double, double>> points;
   for (const Result& r : curve)
@@ -143,7 +155,7 @@ std::optional<double> oneStepOrderOf(const std::vector<Result>& curve) {
 void writeOrderTables(const std::filesystem::path& folder, const std::vector<Problem>& problems,
                       const std::vector<Result>& results) {
   write(folder / "accuracy_orders.md",
-        orders("order of a whole motion", problems, false, results, orderOf) +
+        orders("order of a whole motion", problems, false, results, orderBelowTheTurnOf) +
             orders("order within the windows", problems, true, results, orderOf) +
             orders("order of one step", problems, true, results, oneStepOrderOf));
   std::string solver;

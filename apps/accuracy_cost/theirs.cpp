@@ -79,7 +79,7 @@ std::vector<Method> mujocoVariants(const Problem& problem) {
   std::vector<Method> methods;
   if (!problem.inMujoco) return methods;
   for (const auto& [tolerance, label] : {std::pair{1e-12, "MuJoCo Euler with solver to 1e-12"},
-                                         {1e-4, "MuJoCo Euler with solver to 1e-04"}}) {
+                                         {1e-2, "MuJoCo Euler with solver to 1e-02"}}) {
     Method method{"mujoco", "Euler", label};
     method.tolerance = tolerance;
     methods.push_back(std::move(method));

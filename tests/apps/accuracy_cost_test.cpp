@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <fstream>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
 
@@ -208,6 +209,18 @@ void expectKept(const std::string& out, const std::string& problem) {
     ++cases;
   }
   EXPECT_EQ(cases, 5);
+}
+
+// Long steps of the default follow a tree that turns far, and err a thousand times less than short
+// ones: its order is that of the short ones.
+TEST(AccuracyCost, OrdersAreThoseBelowTheTurn) {
+  const io::TempFolder folder;
+  const std::string out = folder.path() / "study";
+  ASSERT_EQ(runProgram("accuracy_cost", study("chain_5", out)).exitCode, 0);
+  const auto errors = columnOf(out + "/accuracy_cost.csv", kError);
+  EXPECT_LT(errors.at({"semi-implicit Euler", 1}), errors.at({"semi-implicit Euler", 4}));
+  const std::string orders = readFile(out + "/accuracy_orders.md");
+  EXPECT_NE(orders.find("| chain_5 | 1.0 |"), std::string::npos) << orders;
 }
 
 // The promise of --accuracy, on a problem whose motion is known in closed form. Times are not
