@@ -12,6 +12,7 @@ namespace softgauss::app {
 namespace {
 
 constexpr double kRounding = 1e-13;                     // of poses within some metres [m]
+constexpr double kTurn = 0.5;                           // of the error of a shorter step
 constexpr std::size_t kFewest = 4;                      // step sizes
 constexpr double kSolverStep = kPeriod / kSolverSteps;  // [s]
 
@@ -139,7 +140,7 @@ std::optional<double> orderBelowTheTurnOf(const std::vector<Result>& curve) {
             [](const Result& a, const Result& b) { return a.h < b.h; });
   const auto turn =
       std::adjacent_find(rising.begin(), rising.end(), [](const Result& a, const Result& b) {
-        return tells(b.referenceError, b.error) && b.error < a.error;
+        return tells(b.referenceError, b.error) && b.error < kTurn * a.error;
       });
   if (turn != rising.end()) rising.erase(turn + 1, rising.end());
   return orderOf(rising);

@@ -14,8 +14,8 @@ namespace softgauss::app {
 /// p of e ~ hᵖ: the slope of log e over log h, by least squares over at least four step sizes.
 /// Nothing where fewer errors count: those that references tell, above rounding (1e-13 m).
 std::optional<double> orderOf(const std::vector<Result>& curve);
-/// The same of steps up to the first at which a longer one errs less: there another way of moving
-/// on takes over, as where semi-implicit Euler follows its trees.
+/// The same of steps up to the first at which a longer one errs half as much: there another way of
+/// moving on takes over, as where semi-implicit Euler follows its trees.
 std::optional<double> orderBelowTheTurnOf(const std::vector<Result>& curve);
 /// The same of Result::oneStep, which errs by one order more in smooth motion.
 std::optional<double> oneStepOrderOf(const std::vector<Result>& curve);
