@@ -7,6 +7,7 @@
 
 #include "collision/detail/broadphase.hpp"
 #include "collision/detail/geometry_set.hpp"
+#include "collision/passing.hpp"
 #include "collision/primitive_pairs.hpp"
 #include "collision/reach.hpp"
 #include "engine/constraints/contact.hpp"
@@ -41,6 +42,7 @@ struct SceneContacts::Scene {
   /// Poses of the geometries of some pair that move, or of all.
   void pose(const Kinematics& kinematics, bool all = false);
   void choosePosed();
+  void makeFlights();
   void chooseSlack(const std::vector<GeometryPair>& pairs);
   void setPairs(const std::vector<GeometryPair>& pairs, int broadphasePairs);
   bool stayApart(int a, int b) const;
@@ -55,6 +57,10 @@ struct SceneContacts::Scene {
   bool moved() const;
   void findNear();
   void sweep();
+  /// (T.125) over all pairs, with `sign` times the velocities.
+  double timeInSight(const Kinematics& kinematics, double longest, double sign);
+  /// Sets flights and which of them are fast; false where none is.
+  bool launch(const Kinematics& kinematics, double longest, double sign);
 
   /// Keeps the hulls alone.
   void forget();
@@ -80,7 +86,9 @@ struct SceneContacts::Scene {
   double slack = 0.0;                        ///< [m]; 0: near rows are found at every step
   std::vector<Vector3> reference;            ///< centres when they were found; empty: never
   std::int64_t sweeps = 0;
-  std::vector<int> firstRow;  ///< rows of geometry a are [firstRow[a], firstRow[a + 1])
+  std::vector<Flight> flights;     ///< of all geometries; those of posed ones are launch()'s
+  std::vector<std::uint8_t> fast;  ///< may pass through something as thin as itself
+  std::vector<int> firstRow;       ///< rows of geometry a are [firstRow[a], firstRow[a + 1])
 };
 
 SceneContacts::Scene::Scene(const Model& m, HullCache& hulls) : model(m), set(m, hulls) {
@@ -128,14 +136,14 @@ void SceneContacts::Scene::setPairs(const std::vector<GeometryPair>& pairs, int 
 }
 
 void SceneContacts::Scene::forget() {
-  release(X_WG), release(centre), release(turn), release(posed);
+  release(X_WG), release(centre), release(turn), release(posed), release(flights), release(fast);
   release(set.colliders), release(set.centreInG), release(set.radius);
 }
 
 std::size_t SceneContacts::Scene::bytes() const {
   return bytesOfAll(turn, posed, X_WG, centre, planeRows, rows, movable, movableCentre, near,
-                    nearPlaneRows, nearRows, reference, firstRow, set.colliders, set.centreInG,
-                    set.radius);
+                    nearPlaneRows, nearRows, reference, firstRow, flights, fast, set.colliders,
+                    set.centreInG, set.radius);
 }
 
 /// A fifth of the mean radius of what may touch: small shapes keep few pairs near, and one that
@@ -155,6 +163,17 @@ void SceneContacts::Scene::choosePosed() {
       paired[static_cast<std::size_t>(row.a)] = paired[static_cast<std::size_t>(row.b)] = true;
   for (std::size_t i = 0; i < paired.size(); ++i)
     if (paired[i] && model.geometries[i].body != 0) posed.push_back(static_cast<int>(i));
+}
+
+/// Of all at rest where they are now.
+void SceneContacts::Scene::makeFlights() {
+  for (std::size_t i = 0; i < X_WG.size(); ++i) {
+    const Shape& shape = model.geometries[i].shape;
+    const ConvexHull* hull = set.hull[i].get();
+    flights.push_back({&shape, hull, extentOf(shape, hull), &X_WG[i], centre[i], Vector3::Zero(),
+                       Vector3::Zero()});
+  }
+  fast.assign(flights.size(), 0);
 }
 
 void SceneContacts::Scene::pose(const Kinematics& kinematics, bool all) {
@@ -179,6 +198,34 @@ void SceneContacts::Scene::placeInitially() {
   Kinematics kinematics(model);
   computeKinematics(model, State(model), kinematics);
   pose(kinematics, true);
+}
+
+bool SceneContacts::Scene::launch(const Kinematics& kinematics, double longest, double sign) {
+  pose(kinematics);
+  bool any = false;
+  for (const int g : posed) {
+    const auto i = static_cast<std::size_t>(g);
+    const int body = model.geometries[i].body;
+    Flight& flight = flights[i];
+    flight.centre = centre[i];
+    flight.v = sign * pointVelocity(model, kinematics, body, centre[i]);
+    flight.omega = sign * kinematics.V[static_cast<std::size_t>(body)].angular;
+    fast[i] = flight.passesItself(longest);
+    any = any || fast[i];
+  }
+  return any;
+}
+
+double SceneContacts::Scene::timeInSight(const Kinematics& kinematics, double longest,
+                                         double sign) {
+  // Where no shape moves by its share of its own thickness no two move by that of both.
+  if (!launch(kinematics, longest, sign)) return longest;
+  double time = longest;
+  for (const Row& row : rows) {
+    const auto a = static_cast<std::size_t>(row.a), b = static_cast<std::size_t>(row.b);
+    if (fast[a] || fast[b]) time = collision::timeInSight(flights[a], flights[b], row.margin, time);
+  }
+  return time;
 }
 
 double SceneContacts::Scene::distance(const GeometryPair& pair) {
@@ -295,6 +342,7 @@ void SceneContacts::setUp(int broadphasePairs, bool pruning) {
   if (pruning) scene_->chooseSlack(filter_.pairs);
   scene_->setPairs(filter_.pairs, broadphasePairs);
   scene_->choosePosed();
+  scene_->makeFlights();
   mayTouch_ = !filter_.pairs.empty();
   if (!mayTouch_) scene_->forget();
 }
@@ -317,6 +365,11 @@ void SceneContacts::detect(const Model&, const Kinematics& kinematics,
       const Scene::Row& row = (*of)[static_cast<std::size_t>(r)];
       if (scene.within(row, 0.0)) scene.report(row, contacts);
     }
+}
+
+double SceneContacts::timeInSight(const Model&, const Kinematics& kinematics, double longest,
+                                  Way way) noexcept {
+  return scene_->timeInSight(kinematics, longest, way == Way::onwards ? 1.0 : -1.0);
 }
 
 std::int64_t SceneContacts::sweeps() const { return scene_->sweeps; }

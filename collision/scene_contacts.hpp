@@ -45,6 +45,9 @@ class SceneContacts final : public ContactSource {
   void detect(const Model& model, const Kinematics& kinematics,
               ContactSet& contacts) noexcept override;
 
+  double timeInSight(const Model& model, const Kinematics& kinematics, double longest,
+                     Way way) noexcept override;
+
   /// Rows of pairs, poses and bounds; nothing where no two shapes may touch.
   std::size_t bytes() const noexcept override;
 

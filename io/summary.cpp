@@ -153,7 +153,8 @@ std::string Summary::json() const {
         {"refused_guesses", fallbacks.refusedGuesses},
         {"kept_slips", fallbacks.keptSlips},
         {"abandoned_trees", fallbacks.abandonedTrees},
-        {"jumps", fallbacks.jumps}}},
+        {"jumps", fallbacks.jumps},
+        {"unseen", fallbacks.unseen}}},
       {"goals", goalList},
       {"energy_J", {{"initial", initialEnergy_}, {"final", finalEnergy_}}},
       {"max_penetration_m", maxPenetration_},
@@ -162,7 +163,8 @@ std::string Summary::json() const {
   if (integration.evaluations > 0)
     summary["integration"] = {{"evaluations", integration.evaluations},
                               {"substeps", integration.substeps},
-                              {"rejections", integration.rejections}};
+                              {"rejections", integration.rejections},
+                              {"glances", integration.glances}};
   if (islands.on)
     summary["islands"] = {{"most", islands.most},
                           {"fewest_awake", islands.fewestAwake},

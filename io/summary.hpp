@@ -51,6 +51,7 @@ struct Fallbacks {
   long keptSlips = 0;       ///< no_slip: second solves that failed
   long abandonedTrees = 0;  ///< not followed through the step
   long jumps = 0;           ///< shortest parts of a step, taken in spite of their estimate
+  long unseen = 0;          ///< parts in which shapes may have passed through each other unseen
 };
 
 /// What integrators that look within a step did there (StepStats), over a run.
@@ -58,6 +59,7 @@ struct IntegrationCounts {
   long evaluations = 0;  ///< of forward dynamics; 0 where a step is one solve
   long substeps = 0;     ///< parts that steps went in
   long rejections = 0;   ///< parts that were tried and shortened
+  long glances = 0;      ///< parts cut short lest shapes pass through each other unseen
 };
 
 /// Islands over the steps of a run; sums count every step.

@@ -77,8 +77,9 @@ std::string Summary::table() const {
   if (integration.evaluations > 0)
     add(fmt::format(
         "  integration: {} evaluations of the dynamics, {} parts of steps, {} more tried "
-        "and shortened, {} taken in spite of their error",
-        integration.evaluations, integration.substeps, integration.rejections, fallbacks.jumps));
+        "and shortened, {} taken in spite of their error, {} cut short lest shapes pass unseen",
+        integration.evaluations, integration.substeps, integration.rejections, fallbacks.jumps,
+        integration.glances));
   if (islands.on)
     add(fmt::format("  islands: up to {}, {:.3g} % of them asleep over the run, {} woken",
                     islands.most, 100.0 * islands.asleepShare(), islands.wakeups));

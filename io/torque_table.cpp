@@ -119,4 +119,9 @@ void TorqueTable::controlAt(double time, VectorX& u) const {
   for (std::size_t i = 0; i < dofs_.size(); ++i) u[dofs_[i]] = controls_[row * dofs_.size() + i];
 }
 
+double TorqueTable::nextRow(double time) const {
+  const auto after = std::upper_bound(times_.begin(), times_.end(), time + kTimeTolerance);
+  return after == times_.end() ? kInfinity : *after;
+}
+
 }  // namespace softgauss::io

@@ -24,6 +24,9 @@ class TorqueTable {
   /// u (nv) [N m or N] in force at `time` [s].
   void controlAt(double time, VectorX& u) const;
 
+  /// The first row that comes into force after `time` [s]; ∞ if there is none.
+  double nextRow(double time) const;
+
   std::size_t rows() const { return times_.size(); }
   double startTime() const { return times_.front(); }
   double endTime() const { return times_.back(); }

@@ -103,6 +103,7 @@ Problem boxStack() {
 
 Problem capsules() {
   Problem p = contactProblem("27_capsules", "27 capsules that fall on one another", 31);
+  p.chaotic = true;
   // Points of contact come and go all the time, in the pile five times in a millisecond.
   p.windowPeriods = 1;
   p.referenceTolerance = 1e-10;

@@ -26,6 +26,8 @@ struct Method {
   bool doubling = false;  ///< Options::stepDoubling
 
   bool operator==(const Method&) const = default;
+  /// Not the solver, start and cones that there are by default.
+  bool variesSolver() const { return tolerance > 0.0 || !warmStart || cone != Cone::pyramidal; }
 };
 
 /// A problem in an engine with a method and a step size.
@@ -44,6 +46,8 @@ class Contestant {
 
 /// MuJoCo's methods, none where it was not found when this was built.
 std::vector<Method> mujocoMethods(const Problem& problem);
+/// Its Euler with other tolerances of its solver, 1e-8 by default.
+std::vector<Method> mujocoVariants(const Problem& problem);
 std::unique_ptr<Contestant> makeMujoco(const Problem& problem, const Method& method, double h);
 
 /// Of the engine; `h` divides kPeriod.
@@ -51,6 +55,14 @@ std::unique_ptr<Contestant> makeContestant(const Problem& problem, const Method&
 
 /// What can be compared for a problem: ours, then MuJoCo's where it was found.
 std::vector<Method> methodsFor(const Problem& problem);
+
+/// With contact: other solver tolerances, starts and cones of three of these, which methodsFor()
+/// has for semi-implicit Euler alone. They are measured at kSolverSteps, and not drawn.
+std::vector<Method> solverVariants(const Problem& problem);
+inline constexpr int kSolverSteps = 16;  // in a period: 2 ms
+
+/// Ours alone, for a fine search: tolerances of error control by half decades.
+std::vector<Method> fineMethods();
 
 /// What a method is compared with, where no closed form is: the most accurate method of the same
 /// model, and one that tells how good it is. Without contact that is ours for every engine; with

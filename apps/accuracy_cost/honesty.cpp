@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <limits>
 
 #include "apps/accuracy_cost/best.hpp"
+#include "apps/accuracy_cost/user_path.hpp"
 #include "apps/shared/progress.hpp"
 #include "apps/shared/run_choice.hpp"
 
@@ -52,22 +54,34 @@ RunChoice choose(const Study& study, const Problem& problem, const Model& model,
 }
 
 HonestyCase examine(Study& study, const Problem& problem, const Model& model, double accuracy,
-                    const std::vector<Result>& table, double wholeSeconds) {
+                    const std::vector<Result>& table, double wholeSeconds,
+                    const std::filesystem::path* asUsers) {
   HonestyCase c;
   c.problem = problem.name;
   c.accuracy = accuracy;
   const Result* best = bestOf(table, problem.name, accuracy, "softgauss").result;
   c.counted = best && tells(study.referenceError(), accuracy);
   if (!c.counted) return c;
-  const RunChoice run = choose(study, problem, model, accuracy, wholeSeconds);
-  const Choice& choice = run.choice;
-  c.trialSeconds = choice.trialSeconds;
-  c.found = choice.found;
-  c.whole = run.whole;
-  c.expected = run.whole ? choice.error : run.atEnd;
-  c.setting = choice.setting.text(kPeriod);
-  std::vector<Result> both{study.measure(methodOf(choice.setting), kPeriod / choice.setting.steps),
-                           study.measure(best->method, best->h)};
+  Method method;
+  double h = kPeriod;
+  if (asUsers) {
+    UserChoice user = chooseAsUser(problem, accuracy, *asUsers);
+    c.found = user.found;
+    c.setting = std::move(user.told);
+    c.expected = std::numeric_limits<double>::quiet_NaN();  // it is in what was told
+    method = std::move(user.method), h = user.h;
+    if (!c.found) return c;
+  } else {
+    const RunChoice run = choose(study, problem, model, accuracy, wholeSeconds);
+    const Choice& choice = run.choice;
+    c.trialSeconds = choice.trialSeconds;
+    c.found = choice.found;
+    c.whole = run.whole;
+    c.expected = run.whole ? choice.error : run.atEnd;
+    c.setting = choice.setting.text(kPeriod);
+    method = methodOf(choice.setting), h = kPeriod / choice.setting.steps;
+  }
+  std::vector<Result> both{study.measure(method, h), study.measure(best->method, best->h)};
   study.measureTimes(both);
   c.error = both[0].error;
   c.time = both[0].time;
@@ -82,19 +96,22 @@ void print(const HonestyCase& c) {
     return;
   }
   fmt::print(
-      "{:<20} {:>6.0e} m  {}: true error {:.2g} m{}, {:.2g} m {}; {:.2f} of the best's time{} "
+      "{:<20} {:>6.0e} m  {}: true error {:.2g} m{}{}; {:.2f} of the best's time{} "
       "({})\n",
       c.problem, c.accuracy, c.found ? c.setting : "no setting found", c.error,
-      c.honest() ? "" : " TOO LARGE", c.expected,
-      c.whole ? "expected" : "expected at the end by a shorter trial", c.time / c.bestTime,
-      c.fast() ? "" : " TOO SLOW", c.best);
+      c.honest() ? "" : " TOO LARGE",
+      std::isnan(c.expected)
+          ? ""
+          : fmt::format(", {:.2g} m {}", c.expected,
+                        c.whole ? "expected" : "expected at the end by a shorter trial"),
+      c.time / c.bestTime, c.fast() ? "" : " TOO SLOW", c.best);
 }
 
 }  // namespace
 
 bool checkHonesty(const std::filesystem::path& folder, const std::vector<Problem>& problems,
                   const std::vector<Result>& table, const StudyOptions& options,
-                  double wholeSeconds) {
+                  double wholeSeconds, bool asUsers) {
   std::ofstream csv(folder / "honesty.csv");
   csv << "problem,accuracy_m,counted,found,setting,error_m,cpu_s_per_s,best,best_cpu_s_per_s,"
          "trial_s,whole,expected_m\n";
@@ -106,8 +123,8 @@ bool checkHonesty(const std::filesystem::path& folder, const std::vector<Problem
     const auto contestant = makeContestant(problem, plain, kPeriod);
     for (const double accuracy : kAccuracies) {
       if (interrupted()) return false;
-      const HonestyCase c =
-          examine(study, problem, contestant->model(), accuracy, table, wholeSeconds);
+      const HonestyCase c = examine(study, problem, contestant->model(), accuracy, table,
+                                    wholeSeconds, asUsers ? &folder : nullptr);
       if (interrupted()) return false;
       csv << fmt::format(
                  "{},{:g},{:d},{:d},\"{}\",{:.4g},{:.4g},\"{}\",{:.4g},{:.3g},{:d},{:.4g}\n",

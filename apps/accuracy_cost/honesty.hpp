@@ -36,9 +36,10 @@ struct HonestyCase {
 
 /// Accuracies of 1e-2 … 1e-6 m on each problem, with the table of a full run. Prints each case and
 /// the shares, and writes honesty.csv. `wholeSeconds`: as chooseForRun() has it. Returns whether
-/// both shares are 95 % or more.
+/// both shares are 95 % or more. `asUsers`: the choice is simulate_gdd's own (user_path.hpp), for
+/// problems of one window.
 bool checkHonesty(const std::filesystem::path& folder, const std::vector<Problem>& problems,
                   const std::vector<Result>& table, const StudyOptions& options,
-                  double wholeSeconds);
+                  double wholeSeconds, bool asUsers = false);
 
 }  // namespace softgauss::app

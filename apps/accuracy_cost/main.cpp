@@ -28,6 +28,7 @@ struct Arguments {
   std::vector<std::string> scenes;
   std::string out = "accuracy", robots = "data/robots";
   int mostSteps = kMostSteps;  ///< in a period
+  bool runs = false;           ///< as users run them, beside a finer search
   StudyOptions study;
   OwnModel own;
 };
@@ -50,21 +51,34 @@ void print(const Problem& problem, const std::vector<Result>& results) {
   }
 }
 
+/// How many steps a period takes, the most first: halved, or by 4/3 and 3/2 in turn.
+std::vector<int> stepCounts(int most, int fewest, bool fine) {
+  std::vector<int> counts;
+  for (int steps = most; steps >= fewest; steps /= 2) {
+    counts.push_back(steps);
+    if (fine && steps >= 4 && 3 * steps / 4 >= fewest) counts.push_back(3 * steps / 4);
+  }
+  return counts;
+}
+
 /// All step sizes of all methods of a problem that the table does not have yet.
 void run(const Problem& problem, const Arguments& arguments, ResultTable& table) {
   Study study(problem, arguments.study);
-  const std::vector<Method> methods = methodsFor(problem);
+  const std::vector<Method> methods = arguments.runs ? fineMethods() : methodsFor(problem);
   Progress progress(problem.name);
   long done = 0;
   const double most = mostTime(problem, arguments.study);
   const int fewest = problem.contact ? kFewestContactSteps : kFewestSteps;
-  long all = 0;
-  for (int steps = arguments.mostSteps; steps >= fewest; steps /= 2)
-    all += static_cast<long>(methods.size());
-  for (int steps = arguments.mostSteps; steps >= fewest; steps /= 2) {
+  const std::vector<int> counts = stepCounts(arguments.mostSteps, fewest, arguments.runs);
+  const auto all = static_cast<long>(counts.size() * methods.size());
+  const std::vector<Method> variants =
+      arguments.runs ? std::vector<Method>() : solverVariants(problem);
+  for (const int steps : counts) {
     const double h = kPeriod / steps;
     std::vector<Result> results;
-    for (const Method& method : methods) {
+    std::vector<Method> here = methods;
+    if (steps == kSolverSteps) here.insert(here.end(), variants.begin(), variants.end());
+    for (const Method& method : here) {
       progress.show(done++, all);
       if (interrupted()) return;
       if (table.has(problem.name, method, h, most)) continue;
@@ -179,12 +193,21 @@ int main(int argc, char** argv) {
       ->check(CLI::NonNegativeNumber)
       ->needs(honestyFlag)
       ->capture_default_str();
+  CLI::Option* const runsFlag =
+      app.add_flag(
+             "--runs", arguments.runs,
+             "with --honesty: simulate_gdd --accuracy itself, on whole motions, those with\n"
+             "contact of 1 s; ours alone, and the search is finer: tolerances by half decades,\n"
+             "steps by 4/3 and 3/2 in turn. The table is runs.csv")
+          ->needs(honestyFlag)
+          ->excludes(own);
   app.add_flag("--list", list, "name the problems and end");
   // What they would not look at.
   for (const char* other :
        {"--repeats", "--min-time", "--most-steps", "--most-seconds", "--honesty"})
     for (const char* instead : {"--drift", "--parting"})
       app.get_option(instead)->excludes(app.get_option(other));
+  runsFlag->excludes(app.get_option("--trial-seconds"));
   for (const char* other : {"--scene", "--robots", "--list"}) own->excludes(app.get_option(other));
   app.get_option("--drift")->excludes(app.get_option("--parting"));
   app.get_option("--drift")->excludes(app.get_option("--seconds"));
@@ -207,8 +230,12 @@ int main(int argc, char** argv) {
       for (const Problem& p : problems) fmt::print("{:<22} {}\n", p.name, p.title);
       return 0;
     }
-    if (seconds)
-      for (Problem& problem : problems) problem = lasting(std::move(problem), *seconds);
+    if (arguments.runs) std::erase_if(problems, [](const Problem& p) { return p.chaotic; });
+    for (Problem& problem : problems) {
+      if (seconds || (arguments.runs && problem.contact))
+        problem = lasting(std::move(problem), seconds.value_or(1.0));
+      problem.softFriction = !arguments.runs;
+    }
     catchInterrupts();
     std::filesystem::create_directories(arguments.out);
     if (drift) {
@@ -220,19 +247,22 @@ int main(int argc, char** argv) {
       return interrupted() ? 130 : 0;
     }
     // The file of a model may have changed since, or be another one of that name.
-    ResultTable table(std::filesystem::path(arguments.out) / "accuracy_cost.csv",
-                      own->empty() ? "" : problems.front().name);
+    ResultTable table(
+        std::filesystem::path(arguments.out) / (arguments.runs ? "runs.csv" : "accuracy_cost.csv"),
+        own->empty() ? "" : problems.front().name);
     for (const Problem& problem : problems) {
       run(problem, arguments, table);
-      print(problem, table.results());
+      if (!arguments.runs) print(problem, table.results());
       if (interrupted()) break;
     }
-    writePictures(arguments.out, problems, table.results());
-    writeRatioTable(arguments.out, problems, table.results());
-    writeOrderTables(arguments.out, problems, table.results());
-    const bool kept =
-        !honesty || interrupted() ||
-        checkHonesty(arguments.out, problems, table.results(), arguments.study, wholeSeconds);
+    if (!arguments.runs) {
+      writePictures(arguments.out, problems, table.results());
+      writeRatioTable(arguments.out, problems, table.results());
+      writeOrderTables(arguments.out, problems, table.results());
+    }
+    const bool kept = !honesty || interrupted() ||
+                      checkHonesty(arguments.out, problems, table.results(), arguments.study,
+                                   wholeSeconds, arguments.runs);
     return interrupted() ? 130 : kept ? 0 : 1;
   } catch (const ModelError& error) {
     fmt::print(stderr, "{}\n", error.what());

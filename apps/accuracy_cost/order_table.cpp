@@ -11,9 +11,10 @@
 namespace softgauss::app {
 namespace {
 
-constexpr double kRounding = 1e-13;    // of poses within some metres [m]
-constexpr std::size_t kFewest = 4;     // step sizes
-constexpr double kSolverStep = 0.002;  // [s]
+constexpr double kRounding = 1e-13;                     // of poses within some metres [m]
+constexpr double kTurn = 0.5;                           // of the error of a shorter step
+constexpr std::size_t kFewest = 4;                      // step sizes
+constexpr double kSolverStep = kPeriod / kSolverSteps;  // [s]
 
 std::optional<double> slope(const std::vector<std::pair<double, double>>& points) {
   if (points.size() < kFewest) return std::nullopt;
@@ -28,14 +29,18 @@ std::optional<double> slope(const std::vector<std::pair<double, double>>& points
 
 /// One whole solve a step, with all defaults but the integrator.
 bool isPlain(const Method& m) {
-  return m.integrationTolerance == 0.0 && !m.doubling && m.tolerance == 0.0 && m.warmStart &&
-         m.cone == Cone::pyramidal;
+  return m.integrationTolerance == 0.0 && !m.doubling && !m.variesSolver();
 }
 
-/// Semi-implicit Euler as it is, and with another solver, start or cone.
-bool isOfSolver(const Method& m) {
+// Methods as they are, and with another solver, start or cone.
+bool isEuler(const Method& m) {
   return m.engine == "softgauss" && m.integrator == "semi-implicit-euler" && !m.doubling;
 }
+bool isMidpoint(const Method& m) { return m.integrator == "implicit-midpoint"; }
+bool isDormandPrince(const Method& m) {
+  return m.integrator == "dormand-prince" && m.integrationTolerance == 1e-8;
+}
+bool isMujocoEuler(const Method& m) { return m.engine == "mujoco" && m.integrator == "Euler"; }
 
 std::vector<Result> curveOf(const std::vector<Result>& results, const std::string& problem,
                             const Method& method) {
@@ -93,8 +98,11 @@ std::string solverCell(const std::vector<Result>& curve, const Result* first) {
   return " – |";
 }
 
-std::string solverTable(const std::vector<Problem>& problems, const std::vector<Result>& results) {
-  const std::vector<Method> methods = methodsOf(results, isOfSolver);
+std::string solverTable(const std::vector<Problem>& problems, const std::vector<Result>& results,
+                        bool (*wanted)(const Method&)) {
+  std::vector<Method> methods = methodsOf(results, wanted);
+  std::stable_partition(methods.begin(), methods.end(),
+                        [](const Method& m) { return !m.variesSolver(); });
   std::string rows;
   for (const Problem& problem : problems) {
     if (!problem.contact || methods.empty()) continue;
@@ -108,7 +116,7 @@ std::string solverTable(const std::vector<Problem>& problems, const std::vector<
       rows += solverCell(curveOf(results, problem.name, methods[k]), k == 0 ? nullptr : &*first);
     rows += "\n";
   }
-  return rows.empty() ? rows : heading("at 2 ms", methods) + rows;
+  return rows.empty() ? rows : heading("at 2 ms", methods) + rows + "\n";
 }
 
 void write(const std::filesystem::path& file, const std::string& text) {
@@ -126,6 +134,18 @@ std::optional<double> orderOf(const std::vector<Result>& curve) {
   return slope(points);
 }
 
+std::optional<double> orderBelowTheTurnOf(const std::vector<Result>& curve) {
+  std::vector<Result> rising = curve;
+  std::sort(rising.begin(), rising.end(),
+            [](const Result& a, const Result& b) { return a.h < b.h; });
+  const auto turn =
+      std::adjacent_find(rising.begin(), rising.end(), [](const Result& a, const Result& b) {
+        return tells(b.referenceError, b.error) && b.error < kTurn * a.error;
+      });
+  if (turn != rising.end()) rising.erase(turn + 1, rising.end());
+  return orderOf(rising);
+}
+
 std::optional<double> oneStepOrderOf(const std::vector<Result>& curve) {
   std::vector<std::pair<double, double>> points;
   for (const Result& r : curve)
@@ -136,10 +156,13 @@ std::optional<double> oneStepOrderOf(const std::vector<Result>& curve) {
 void writeOrderTables(const std::filesystem::path& folder, const std::vector<Problem>& problems,
                       const std::vector<Result>& results) {
   write(folder / "accuracy_orders.md",
-        orders("order of a whole motion", problems, false, results, orderOf) +
+        orders("order of a whole motion", problems, false, results, orderBelowTheTurnOf) +
             orders("order within the windows", problems, true, results, orderOf) +
             orders("order of one step", problems, true, results, oneStepOrderOf));
-  write(folder / "accuracy_solver.md", solverTable(problems, results));
+  std::string solver;
+  for (const auto wanted : {isEuler, isMidpoint, isDormandPrince, isMujocoEuler})
+    solver += solverTable(problems, results, wanted);
+  write(folder / "accuracy_solver.md", solver);
 }
 
 }  // namespace softgauss::app

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "apps/accuracy_cost/contestant.hpp"
 
@@ -16,8 +17,7 @@ class Ours final : public Contestant {
         contacts_(model_),
         data_(model_),
         state_(model_) {
-    // In both engines, and in the references, what sticks is as soft as what slides.
-    input_.softFriction = true;
+    input_.softFriction = problem.softFriction;
   }
 
   const Model& model() const override { return model_; }
@@ -66,6 +66,25 @@ class Ours final : public Contestant {
   Input input_;
 };
 
+/// A method with other tolerances of the solver, without warm start, and with elliptic cones.
+void addVariants(const Method& plain, const std::string& name,
+                 std::initializer_list<double> tolerances, std::vector<Method>& methods) {
+  for (const double tolerance : tolerances) {
+    Method loose = plain;
+    loose.tolerance = tolerance;
+    loose.label = fmt::format("{} with solver to {:.0e}", name, tolerance);
+    methods.push_back(std::move(loose));
+  }
+  Method cold = plain;
+  cold.warmStart = false;
+  cold.label = name + " without warm start";
+  methods.push_back(std::move(cold));
+  Method elliptic = plain;
+  elliptic.cone = Cone::elliptic;
+  elliptic.label = name + " with elliptic cones";
+  methods.push_back(std::move(elliptic));
+}
+
 }  // namespace
 
 std::unique_ptr<Contestant> makeContestant(const Problem& problem, const Method& method, double h) {
@@ -88,6 +107,41 @@ References referencesFor(const Problem& problem, const Method& method) {
   return r;
 }
 
+std::vector<Method> solverVariants(const Problem& problem) {
+  std::vector<Method> methods;
+  if (!problem.contact) return methods;
+  Method adaptive{"softgauss", "dormand-prince", ""};
+  adaptive.integrationTolerance = 1e-8;
+  addVariants(adaptive, "Dormand-Prince to 1e-08", {1e-6, 1e-3}, methods);
+  addVariants({"softgauss", "implicit-midpoint", ""}, "implicit midpoint", {1e-6, 1e-3}, methods);
+  for (Method& method : mujocoVariants(problem)) methods.push_back(std::move(method));
+  return methods;
+}
+
+std::vector<Method> fineMethods() {
+  const Method euler{"softgauss", "semi-implicit-euler", "semi-implicit Euler"};
+  std::vector<Method> methods{euler,
+                              {"softgauss", kMujocoEuler, "semi-implicit Euler as MuJoCo's"},
+                              {"softgauss", "implicit", "implicit in velocity"},
+                              {"softgauss", "implicit-midpoint", "implicit midpoint"},
+                              {"softgauss", "runge-kutta-4", "Runge-Kutta 4"}};
+  for (int half = -4; half >= -22; --half) {
+    Method adaptive{"softgauss", "dormand-prince", ""};
+    adaptive.integrationTolerance = std::pow(10.0, 0.5 * half);
+    adaptive.label = fmt::format("Dormand-Prince to {:.1e}", adaptive.integrationTolerance);
+    if (half >= -14) {
+      Method doubled = euler;
+      doubled.doubling = true;
+      doubled.integrationTolerance = adaptive.integrationTolerance;
+      doubled.label =
+          fmt::format("Euler with step doubling to {:.1e}", doubled.integrationTolerance);
+      methods.push_back(std::move(doubled));
+    }
+    methods.push_back(std::move(adaptive));
+  }
+  return methods;
+}
+
 std::vector<Method> methodsFor(const Problem& problem) {
   const Method euler{"softgauss", "semi-implicit-euler", "semi-implicit Euler"};
   std::vector<Method> methods{euler,
@@ -108,22 +162,7 @@ std::vector<Method> methodsFor(const Problem& problem) {
     doubled.label = fmt::format("Euler with step doubling to {:.0e}", tolerance);
     methods.push_back(doubled);
   }
-  if (problem.contact) {
-    for (const double tolerance : {1e-6, 1e-3}) {
-      Method loose = euler;
-      loose.tolerance = tolerance;
-      loose.label = fmt::format("Euler with solver to {:.0e}", tolerance);
-      methods.push_back(loose);
-    }
-    Method cold = euler;
-    cold.warmStart = false;
-    cold.label = "Euler without warm start";
-    methods.push_back(cold);
-    Method elliptic = euler;
-    elliptic.cone = Cone::elliptic;
-    elliptic.label = "Euler with elliptic cones";
-    methods.push_back(elliptic);
-  }
+  if (problem.contact) addVariants(euler, "Euler", {1e-6, 1e-3}, methods);
   for (Method& method : mujocoMethods(problem)) methods.push_back(std::move(method));
   return methods;
 }

@@ -58,6 +58,8 @@ std::vector<std::vector<Result>> curvesOf(const std::string& problem,
   std::vector<std::vector<Result>> curves;
   for (const Result& r : results) {
     if (r.problem != problem || !std::isfinite(r.error) || !std::isfinite(r.time)) continue;
+    // One set of such curves is enough for a picture; the others are in a table.
+    if (r.method.variesSolver() && r.method.integrator != "semi-implicit-euler") continue;
     const auto same = [&](const std::vector<Result>& c) { return c.front().method == r.method; };
     const auto curve = std::find_if(curves.begin(), curves.end(), same);
     if (curve == curves.end())

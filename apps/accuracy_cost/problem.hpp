@@ -33,8 +33,11 @@ struct Problem {
   bool contact = false;
   bool passive = true;    ///< nothing adds energy
   bool lossless = false;  ///< and nothing takes it
+  bool chaotic = false;   ///< small differences grow e-fold within the motion (--parting)
   bool inMujoco = true;   ///< false: something in it has no counterpart there
-  int periods = 62;       ///< of the whole motion (2 s)
+  /// What sticks is as soft as what slides, as it is in MuJoCo; false: as simulate_gdd has it.
+  bool softFriction = true;
+  int periods = 62;  ///< of the whole motion (2 s)
   int windows = 1;
   int windowPeriods = 62;
   /// With contact: of the error control of our reference; the one that checks it has 100 times

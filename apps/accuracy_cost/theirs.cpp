@@ -17,7 +17,9 @@ namespace {
 class Theirs final : public Contestant {
  public:
   Theirs(const Problem& problem, const Method& method, double h)
-      : model_(build(problem, h)), mujoco_(description(model_, method)), state_(model_) {}
+      : model_(build(problem, h)), mujoco_(description(model_, method)), state_(model_) {
+    if (method.tolerance > 0.0) mujoco_.setTolerance(method.tolerance);
+  }
 
   const Model& model() const override { return model_; }
   const State& state() override {
@@ -73,6 +75,18 @@ std::vector<Method> mujocoMethods(const Problem& problem) {
   return methods;
 }
 
+std::vector<Method> mujocoVariants(const Problem& problem) {
+  std::vector<Method> methods;
+  if (!problem.inMujoco) return methods;
+  for (const auto& [tolerance, label] : {std::pair{1e-12, "MuJoCo Euler with solver to 1e-12"},
+                                         {1e-2, "MuJoCo Euler with solver to 1e-02"}}) {
+    Method method{"mujoco", "Euler", label};
+    method.tolerance = tolerance;
+    methods.push_back(std::move(method));
+  }
+  return methods;
+}
+
 std::unique_ptr<Contestant> makeMujoco(const Problem& problem, const Method& method, double h) {
   return std::make_unique<Theirs>(problem, method, h);
 }
@@ -80,6 +94,7 @@ std::unique_ptr<Contestant> makeMujoco(const Problem& problem, const Method& met
 #else
 
 std::vector<Method> mujocoMethods(const Problem&) { return {}; }
+std::vector<Method> mujocoVariants(const Problem&) { return {}; }
 
 std::unique_ptr<Contestant> makeMujoco(const Problem&, const Method&, double) {
   throw std::logic_error("MuJoCo was not found when this was built");

@@ -52,6 +52,8 @@ class Chooser {
     Choice choice;
     choice.referenced = findReference();
     if (choice.referenced) {
+      // Rows that never act change nothing, however long the step.
+      if (!reference_.touches) fewest_ = 1;
       for (const Method& method : kMethods) {
         if (!method.controlled)
           searchSteps(method);

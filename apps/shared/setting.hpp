@@ -40,15 +40,17 @@ struct TrialRun {
   bool late = false;           ///< not finite for that it takes too long
   double lostAt = kInfinity;   ///< simulated time at which a step was refused [s]; ∞: none was
   double seconds = 0.0;        ///< CPU time, of the steps alone
+  bool touches = true;         ///< rows of contacts or joint limits may have acted
   std::vector<State> samples;  ///< at the ends of periods, the same in every trial
 };
 
 /// The scene in which a setting is tried.
 struct TrialScene {
-  const Model* model = nullptr;    ///< for link poses
-  double period = 0.032;           ///< samples are taken this often [s]
-  double simulated = 0.0;          ///< duration of a trial [s]
-  double longestStep = 0.032;      ///< [s]; beyond it the step would change the model
+  const Model* model = nullptr;  ///< for link poses
+  double period = 0.032;         ///< samples are taken this often [s]
+  double simulated = 0.0;        ///< duration of a trial [s]
+  /// [s]; beyond it the step would change the model, where something touches.
+  double longestStep = 0.032;
   double mostSeconds = kInfinity;  ///< CPU time of all trials; the best so far counts at its end
   /// Not finite and late where it takes more than so many CPU seconds.
   std::function<TrialRun(const Setting&, double mostSeconds)> run;

@@ -28,6 +28,12 @@ class Trials {
         progress_(options.duration, options.quiet) {}
   ~Trials() { progress_.clear(); }
 
+  /// Whether the run can take its steps as the trial does, which lets them end on rows of a table.
+  bool ofTheRun() const {
+    const double period = options_.duration / periodsOf(options_.duration);
+    return !options_.islands || !outside_.changesWithin(period, options_.duration);
+  }
+
   TrialScene over(double simulated) {
     const int periods = periodsOf(simulated);
     TrialScene trial;
@@ -40,25 +46,25 @@ class Trials {
       setting.setOptions(period, model.options);
       ++count_;
       what_ = setting.text(period);
-      return run(model, periods, setting.steps, mostSeconds);
+      return run(std::move(model), periods, setting.steps, mostSeconds);
     };
     return trial;
   }
 
  private:
   int periodsOf(double simulated) const;
-  TrialRun run(const Model& model, int periods, int steps, double mostSeconds);
+  TrialRun run(Model model, int periods, int steps, double mostSeconds);
 
   const SimulateOptions& options_;
   const Scene& scene_;
   const OutsideInput outside_;
-  Progress progress_;
+  RunProgress progress_;
   const double begin_ = cpuSeconds();
   int count_ = 0;
   std::string what_;  ///< is tried
 };
 
-/// Where the rows of a table come regularly they end periods, so that no step runs past one.
+/// Where the rows of a table come regularly they end periods, so that few steps are cut at one.
 int Trials::periodsOf(double simulated) const {
   const double spacing = outside_.rowSpacing();
   const double rows = spacing > 0.0 ? simulated / spacing : 0.0;
@@ -68,7 +74,7 @@ int Trials::periodsOf(double simulated) const {
   return std::max(1, static_cast<int>(std::lround(simulated / kPeriod)));
 }
 
-TrialRun Trials::run(const Model& model, int periods, int steps, double mostSeconds) {
+TrialRun Trials::run(Model model, int periods, int steps, double mostSeconds) {
   collision::SceneContacts contacts(model);
   Data data(model);
   State state = scene_.initial;
@@ -79,15 +85,22 @@ TrialRun Trials::run(const Model& model, int periods, int steps, double mostSeco
   controller.box = io::controlBox(model, scene_.actuators);
 
   TrialRun result;
+  result.touches = false;
+  const auto takeStep = [&] {
+    outside_.at(model, state, data.kinematics, input);
+    const bool taken = !isRefused(controller.goals.empty()
+                                      ? step(model, input, state, data, &contacts)
+                                      : controller.step(model, input, state, data, &contacts));
+    for (const RowKind kind : {RowKind::jointLimit, RowKind::pyramid, RowKind::ellipticCone})
+      result.touches = result.touches || data.constraints.active().has(kind);
+    return taken;
+  };
   const int every = (periods + kMostSamples - 1) / kMostSamples;
   for (int k = 0; k < periods; ++k) {
     progress_.showTrial(count_, what_, static_cast<double>(k) / periods, cpuSeconds() - begin_);
     const double begin = cpuSeconds();
     for (int i = 0; i < steps; ++i) {
-      outside_.at(model, state, data.kinematics, input);
-      if (isRefused(controller.goals.empty()
-                        ? step(model, input, state, data, &contacts)
-                        : controller.step(model, input, state, data, &contacts))) {
+      if (!outside_.inParts(model, state, takeStep)) {
         result.lostAt = state.time;
         return result;
       }
@@ -146,6 +159,12 @@ std::string reach(const RunChoice& run, double duration) {
 std::string chooseAccuracy(const SimulateOptions& options, Scene& scene) {
   const double accuracy = *options.accuracy;
   Trials trials(options, scene);
+  if (!trials.ofTheRun())
+    throw AccuracyError(fmt::format(
+        "--accuracy {:g}: cannot be promised: the rows of --torques do not come regularly from 0 "
+        "on, or the run is no whole number of them, and with --islands no step ends on a row. "
+        "Without --islands they do",
+        accuracy));
   const RunChoice run = chooseForRun(accuracy, options.duration,
                                      [&](double simulated) { return trials.over(simulated); });
   const Choice& choice = run.choice;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "io/scene.hpp"
+
 namespace softgauss::app {
 namespace {
 
@@ -11,6 +13,8 @@ constexpr double kFirstOrder = 2.0;  // 2^p/(2^p − 1)
 
 /// Of the tolerance of error control: the fifth order is cheap to tighten, the first is not.
 constexpr double kDormandPrinceShare = 1.0 / 1024.0, kDoublingShare = 1.0 / 64.0;
+
+constexpr double kShortestPart = 1.0 / 1024.0;  // of the step
 
 Model halved(Model model) {
   Options& options = model.options;
@@ -45,6 +49,15 @@ double factorOf(const Options& options) {
 ErrorEstimate::Halves::Halves(const Model& halved, const State& start, double f)
     : factor(f), model(halved), contacts(model), data(model), state(start), poses(model) {}
 
+double ErrorEstimate::Halves::lengthInSight(double half, double left) {
+  const double most = std::min(half, left);
+  if (!contacts.mayTouch() || io::controlsError(model.options)) return most;
+  computeKinematics(model, state, data.kinematics);
+  const double sight =
+      contacts.timeInSight(model, data.kinematics, 2.0 * most, ContactSource::Way::onwards);
+  return std::min(most, std::max(0.5 * sight, 2.0 * kShortestPart * half));
+}
+
 ErrorEstimate::ErrorEstimate(const Model& model, const State& start, const OutsideInput& outside,
                              bool withGoals)
     : outside_(outside), withGoals_(withGoals), run_(model) {
@@ -53,17 +66,20 @@ ErrorEstimate::ErrorEstimate(const Model& model, const State& start, const Outsi
   halves_.push_back(std::make_unique<Halves>(halved(model), start, factorOf(model.options)));
 }
 
-void ErrorEstimate::observe(const State& before, const Input& input, const State& after) {
+void ErrorEstimate::observe(const State& before, const Input& input, const State& after,
+                            double length) {
   run_.set(after);
   for (const auto& halves : halves_)
-    if (!halves->lost) observe(*halves, before, input);
+    if (!halves->lost) observe(*halves, before, input, length);
   ++steps_;
 }
 
-void ErrorEstimate::observe(Halves& h, const State& before, const Input& input) {
+void ErrorEstimate::observe(Halves& h, const State& before, const Input& input, double length) {
   if (withGoals_) h.state = before;
   input_ = input;
-  for (int half = 0; half < 2 && !h.lost; ++half) {
+  for (double left = length; left > 1e-9 * length && !h.lost;) {
+    h.model.options.timestep = h.lengthInSight(0.5 * length, left);
+    left -= h.model.options.timestep;
     outside_.at(h.model, h.state, h.data.kinematics, input_);
     if (input_.tau != input.tau) h.factor = std::max(h.factor, kFirstOrder);
     h.lost = isRefused(step(h.model, input_, h.state, h.data, &h.contacts));

@@ -15,6 +15,8 @@
 /// of time, and each half asks them anew. Where that gives it another control p is 1, whatever the
 /// method: the run holds a control from the start of a step.
 ///
+/// Where shapes may pass through each other between two halves, the halves go in parts (T.125).
+///
 /// Without goals the halves go on by themselves, and the estimate is of the whole run: root mean
 /// square over links and steps. With goals every pair of halves begins where its step does, for the
 /// goals answer to what went before; the estimate is the sum of what the steps err by.
@@ -36,8 +38,8 @@ class ErrorEstimate {
   ErrorEstimate(const Model& model, const State& start, const OutsideInput& outside,
                 bool withGoals);
 
-  /// A step of the run from `before` to `after`, under `input`.
-  void observe(const State& before, const Input& input, const State& after);
+  /// A step of the run from `before` to `after`, under `input`, of `length` [s].
+  void observe(const State& before, const Input& input, const State& after, double length);
 
   io::ErrorOutcome outcome() const;
 
@@ -45,6 +47,9 @@ class ErrorEstimate {
   /// A run in half steps.
   struct Halves {
     Halves(const Model& halved, const State& start, double factor);
+
+    /// Of the next part, where so much is left of a step: a half, or what is in sight [s].
+    double lengthInSight(double half, double left);
 
     double factor;  ///< 2^p/(2^p − 1)
     Model model;
@@ -55,7 +60,7 @@ class ErrorEstimate {
     double total = 0.0, turned = 0.0;  ///< sums, of squares without goals
     bool lost = false;                 ///< not finite
   };
-  void observe(Halves& halves, const State& before, const Input& input);
+  void observe(Halves& halves, const State& before, const Input& input, double length);
 
   const OutsideInput& outside_;
   bool withGoals_;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/simulate_gdd/outside_input.hpp"
 
+#include <cmath>
+
 namespace softgauss::app {
 
 OutsideInput::OutsideInput(const SimulateOptions& options, const Scene& scene)
@@ -11,6 +13,20 @@ OutsideInput::OutsideInput(const SimulateOptions& options, const Scene& scene)
 double OutsideInput::rowSpacing() const {
   if (!torques_ || torques_->startTime() != 0.0 || torques_->rows() < 2) return 0.0;
   return torques_->endTime() / static_cast<double>(torques_->rows() - 1);
+}
+
+bool OutsideInput::changesWithin(double h, double duration) const {
+  const long steps = torques_ ? std::lround(duration / h) : 0;
+  for (long i = 0; i < steps; ++i)
+    if (lengthFrom(static_cast<double>(i) * h, h) < h) return true;
+  return false;
+}
+
+double OutsideInput::lengthFrom(double time, double most) const {
+  constexpr double kRounding = 1e-6;  // of the step
+  if (!torques_) return most;
+  const double length = torques_->nextRow(time) - time;
+  return length < (1.0 - kRounding) * most ? length : most;
 }
 
 void OutsideInput::at(const Model& model, const State& state, Kinematics& kinematics,

@@ -10,10 +10,10 @@
 
 namespace softgauss::app {
 
-Progress::Progress(double duration, bool quiet)
+RunProgress::RunProgress(double duration, bool quiet)
     : duration_(duration), visible_(!quiet && isatty(fileno(stderr))) {}
 
-void Progress::show(double simulated, double elapsed) {
+void RunProgress::show(double simulated, double elapsed) {
   if (!visible_ || elapsed - lastShown_ < 0.1) return;
   lastShown_ = elapsed;
   constexpr int kWidth = 32;
@@ -28,7 +28,7 @@ void Progress::show(double simulated, double elapsed) {
   std::fflush(stderr);
 }
 
-void Progress::showTrial(int trial, const std::string& setting, double share, double elapsed) {
+void RunProgress::showTrial(int trial, const std::string& setting, double share, double elapsed) {
   if (!visible_ || elapsed - lastShown_ < 0.1) return;
   lastShown_ = elapsed;
   fmt::print(stderr, "\rtrial {}: {}: {:.0f} %   {:.0f} s \033[K", trial, setting, 100.0 * share,
@@ -36,7 +36,7 @@ void Progress::showTrial(int trial, const std::string& setting, double share, do
   std::fflush(stderr);
 }
 
-void Progress::clear() {
+void RunProgress::clear() {
   if (!visible_ || lastShown_ < 0.0) return;
   fmt::print(stderr, "\r\033[K");
   std::fflush(stderr);

@@ -7,9 +7,9 @@
 
 namespace softgauss::app {
 
-class Progress {
+class RunProgress {
  public:
-  Progress(double duration, bool quiet);
+  RunProgress(double duration, bool quiet);
   /// Simulated time, speed against real time and remaining time; redraws ten times a second.
   void show(double simulated, double elapsed);
   /// Of a trial before the run: which one it is, what it tries, and how far it is.

@@ -93,7 +93,7 @@ class Runner {
   ExitCode run() {
     const auto steps =
         static_cast<long>(std::ceil(options_.duration / model_.options.timestep - 1e-9));
-    Progress progress(options_.duration, options_.quiet);
+    RunProgress progress(options_.duration, options_.quiet);
     Verdict verdict(model_, controller_.box);
     ExitCode code = kDone;
     // From here on an interrupt ends the run in order; a second one ends it at once.
@@ -104,15 +104,23 @@ class Runner {
     sigaction(SIGTERM, &action, nullptr);
     const Clock::time_point start = Clock::now();
     for (long i = 0; i < steps && code == kDone; ++i) {
-      if (interruptRequested) {
-        code = kInterrupted;
-      } else if (!step()) {
-        code = kCannotContinue;
-      } else {
-        record();
-        verdict.observe(record_.u, controller_.commands, state_);
-        progress.show(state_.time, secondsSince(start));
-      }
+      const auto takeStep = [&] {
+        if (interruptRequested) {
+          code = kInterrupted;
+        } else if (!step()) {
+          code = kCannotContinue;
+        } else {
+          record();
+          verdict.observe(record_.u, controller_.commands, state_);
+          progress.show(state_.time, secondsSince(start));
+        }
+        return code == kDone;
+      };
+      // An accuracy was found with steps that end on the rows of a table.
+      if (options_.accuracy)
+        outside_.inParts(model_, state_, takeStep);
+      else
+        takeStep();
     }
     progress.clear();
     summary_.wallSeconds = secondsSince(start);
@@ -158,7 +166,7 @@ class Runner {
     held_.wrenches = input_.wrenches;
     held_.tau = controller_.goals.empty() ? input_.tau : controller_.control;
     held_.softFriction = !controller_.goals.empty();
-    errorEstimate_->observe(before_, held_, state_);
+    errorEstimate_->observe(before_, held_, state_, model_.options.timestep);
   }
 
   void record() {
@@ -205,10 +213,12 @@ class Runner {
     f.keptSlips += stats.keptSlips;
     f.abandonedTrees += stats.abandonedTrees;
     f.jumps += stats.jumps;
+    f.unseen += stats.unseen;
     io::IntegrationCounts& i = summary_.integration;
     i.evaluations += stats.evaluations;
     i.substeps += stats.substeps;
     i.rejections += stats.rejections;
+    i.glances += stats.glances;
   }
 
   void count(const gdd::GddReport& report) {
@@ -277,6 +287,7 @@ class Runner {
       summary_.warnings.push_back(std::move(unreached));
     tellSolver();
     tellMinima();
+    tellUnseen();
     if (islands_) summary_.islands = islands_->outcomes();
     if (errorEstimate_) summary_.error = errorEstimate_->outcome();
     summary_.finish(last);
@@ -308,8 +319,17 @@ class Runner {
         g.uncertified(), g.all(), g.iterationLimit, g.bend, g.undecided));
   }
 
+  /// A step that is not divided sees nothing of what begins and ends within it.
+  void tellUnseen() {
+    if (summary_.fallbacks.unseen == 0) return;
+    summary_.warnings.push_back(fmt::format(
+        "{} times shapes were so fast that they may have passed through each other between two "
+        "looks: try a smaller --timestep, or dormand-prince, which divides such steps",
+        summary_.fallbacks.unseen));
+  }
+
   const SimulateOptions& options_;
-  const Model& model_;
+  Model& model_;  ///< only its step changes, in parts of steps
   ContactSource& contacts_;
   State state_;
   Data data_;

@@ -365,6 +365,8 @@ void Islands::collectStats() {
     stats_.refusedGuesses += s.refusedGuesses;
     stats_.keptSlips += s.keptSlips;
     stats_.jumps += s.jumps;
+    stats_.glances += s.glances;
+    stats_.unseen += s.unseen;
     stats_.times.kinematics += s.times.kinematics;
     stats_.times.collision += s.times.collision;
     stats_.times.rows += s.times.rows;

@@ -3,6 +3,8 @@
 
 /// Where contacts come from: the engine's only virtual call, once per step.
 
+#include <cstdint>
+
 #include "engine/constraints/contact_set.hpp"
 #include "engine/dynamics/kinematics.hpp"
 #include "engine/model/model.hpp"
@@ -21,6 +23,16 @@ class ContactSource {
   /// answered is counted in contacts.pairsSkipped.
   virtual void detect(const Model& model, const Kinematics& kinematics,
                       ContactSet& contacts) noexcept = 0;
+
+  /// Which way a motion is followed from a state.
+  enum class Way : std::uint8_t { onwards, back };
+
+  /// A time [s], at most `longest`, in which no two shapes pass through each other unseen, going on
+  /// or back with the velocities of `kinematics`, by someone who looks at least twice in it, evenly
+  /// (T.125). Depends on the poses and the velocities alone.
+  virtual double timeInSight(const Model&, const Kinematics&, double longest, Way) noexcept {
+    return longest;
+  }
 
   /// Memory that it holds for the shapes and pairs of the scene.
   virtual std::size_t bytes() const noexcept { return 0; }

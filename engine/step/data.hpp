@@ -57,11 +57,13 @@ struct StepStats {
   int evaluations = 0;     ///< of forward dynamics, where the step looks within itself
   int rejections = 0;      ///< parts of the step that were tried and shortened
   int jumps = 0;           ///< shortest parts that were taken in spite of their estimate
+  int glances = 0;         ///< parts cut short lest shapes pass through each other unseen (T.125)
   // What was done in place of what was asked for, as abandonedTrees and jumps are.
   int shortSolves = 0;     ///< ended stalled or at the iteration limit
   int roundedSolves = 0;   ///< ended by rounding, within 10³ of the tolerance
   int refusedGuesses = 0;  ///< warm starts that are not finite: the solve began without
   int keptSlips = 0;       ///< Options::noSlip: the second solve failed, the first stands
+  int unseen = 0;          ///< parts in which shapes may have passed through each other unseen
   int badDof = -1;         ///< with SolveStatus::notFinite: the first dof that is not finite
   StepTimes times;
 };

@@ -8,6 +8,7 @@
 #include "engine/step/forward.hpp"
 #include "engine/step/integrators/implicit_midpoint.hpp"
 #include "engine/step/integrators/runge_kutta.hpp"
+#include "engine/step/integrators/sight.hpp"
 #include "engine/step/integrators/single_solve.hpp"
 #include "engine/step/integrators/stages.hpp"
 #include "engine/step/integrators/step_doubling.hpp"
@@ -109,9 +110,7 @@ SolveStatus computeStages(const Model& model, const Input& input, const State& s
   computeSmoothForces(model, data.plan, state, input, data.kinematics, data.inertia, data.forces);
   data.stats.times.kinematics = lap(clock);
 
-  const RowKinds& planned = data.plan.rows;
-  const bool contactRows = planned.has(RowKind::pyramid) || planned.has(RowKind::ellipticCone);
-  if (kBuiltRows.has(RowKind::pyramid) && contactRows && contacts && contacts->mayTouch()) {
+  if (looksForContacts(data, contacts)) {
     ++data.contacts.detections;
     contacts->detect(model, data.kinematics, data.contacts);
     data.stats.contacts = data.contacts.size();

@@ -20,6 +20,8 @@ class MadeUp {
   std::function<double(const Setting&)> price = [](const Setting& s) { return 1e-3 * s.steps; };
   std::function<double(const Setting&)> lostAt = [](const Setting&) { return kInfinity; };
   double spent = 0.0;
+  bool touches = true;
+  double longestStep = 0.032;  ///< [s]
 
   MadeUp() {
     ModelBuilder builder("slide");
@@ -35,8 +37,10 @@ class MadeUp {
     app::TrialScene scene;
     scene.model = &*model_;
     scene.simulated = simulated;
+    scene.longestStep = longestStep;
     scene.run = [this, simulated](const Setting& setting, double mostSeconds) {
       TrialRun run;
+      run.touches = touches;
       const double needed = price(setting) * simulated;
       run.seconds = std::min(needed, mostSeconds);
       spent += run.seconds;
@@ -71,6 +75,20 @@ double ofOrder(const Setting& s) {
       return 1e-2 * s.integrationTolerance;
     default:
       return s.doubling ? 1e-2 * s.integrationTolerance : h;
+  }
+}
+
+// Steps beyond half a time constant change contacts and limits, where there are any; where none of
+// them acts in the reference, the longest step that is accurate enough is the cheapest.
+TEST(ChooseSetting, LongStepsAreTriedWhereNothingTouches) {
+  for (const bool touches : {false, true}) {
+    MadeUp runs;
+    runs.error = [](const Setting& s, double) { return 1e-6 / s.steps; };
+    runs.touches = touches;
+    runs.longestStep = 0.008;
+    const app::Choice choice = app::chooseSetting(1e-3, runs.over(1.0));
+    ASSERT_TRUE(choice.found);
+    EXPECT_EQ(choice.setting.steps, touches ? 4 : 1);
   }
 }
 

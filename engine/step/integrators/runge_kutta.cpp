@@ -6,6 +6,7 @@
 
 #include "engine/core/rotation.hpp"
 #include "engine/step/forward.hpp"
+#include "engine/step/integrators/sight.hpp"
 #include "engine/step/integrators/stages.hpp"
 #include "engine/step/step.hpp"
 
@@ -85,7 +86,13 @@ bool rungeKutta(const Tableau& t, const Model& model, const Input& input, Contac
   ++stats.evaluations;
 
   double done = 0.0, length = h;
+  double sight = lengthInSight(model, data, data.kinematics, contacts, h);
   while (done < h) {
+    length = std::min(length, h - done);
+    if (t.embedded && length > sight * (1.0 + 1e-9) && !isShortest(length, kShortest * h)) {
+      ++stats.glances;
+      length = std::max(sight, kShortest * h);
+    }
     const bool closes = done + length >= h * (1.0 - 1e-12);
     if (closes) length = h - done;
     const double tolerance = model.options.integrationTolerance * length / h;
@@ -94,19 +101,27 @@ bool rungeKutta(const Tableau& t, const Model& model, const Input& input, Contac
     const bool shortest = !t.embedded || isShortest(length, kShortest * h);
     if (!std::isfinite(error) && shortest) return false;
     const double factor = stepFactor(error, t.order);
-    if (error > 1.0 && !shortest) {
+    // Looking back from its end: what has grown fast within the part.
+    const double seen = shortest || error > 1.0
+                            ? length
+                            : lengthInSight(model, data, s.data.kinematics, contacts, length,
+                                            ContactSource::Way::back);
+    if ((error > 1.0 || seen < length) && !shortest) {
       ++stats.rejections;
       stats.maxPenetration = deepest;  // what was tried has not happened
-      length = std::max(length * factor, kShortest * h);
+      length =
+          std::max(error > 1.0 ? length * factor : std::min(seen, 0.7 * length), kShortest * h);
       continue;
     }
     stats.jumps += error > 1.0;
+    stats.unseen += length > sight * (1.0 + 1e-9);
     ++stats.substeps;
     done = closes ? h : done + length;
     length = std::max(length * factor, kShortest * h);
     s.from.q = s.state.q;
     s.from.v = s.state.v;
     if (done == h) break;
+    sight = lengthInSight(model, data, s.data.kinematics, contacts, h - done);
     // The next part's first k: the last one of this, with φ counted from the new origin.
     s.acceleration[0] = s.acceleration[t.stages - 1];
     s.phi.setZero();

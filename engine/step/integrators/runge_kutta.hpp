@@ -17,6 +17,11 @@
 /// length first, so that nothing but the state decides. Where rows change their pieces the order is
 /// lost, the estimate tells, and the parts get shorter; where a contact begins at some speed the
 /// force jumps, and a part of h/512 is taken whatever it estimates: the jump then lies within it.
+///
+/// What begins and ends between two stages no estimate tells, so that the parts are no longer than
+/// what is in sight (sight.hpp), from their start and, where speeds have grown, back from their
+/// end: StepStats::glances. A step that is not divided, or a part of h/512, that is longer than
+/// that is counted in StepStats::unseen.
 
 #include "engine/step/contact_source.hpp"
 #include "engine/step/data.hpp"

@@ -24,7 +24,7 @@ struct IntegratorStages {
                                                                  : 1;
     rate.assign(static_cast<std::size_t>(stages), phi);
     acceleration = rate;
-    if (integrator == Integrator::implicitMidpoint) kinematics = Kinematics(model);
+    if (integrator == Integrator::implicitMidpoint || part) kinematics = Kinematics(model);
   }
 
   Data data;    ///< of the stage
@@ -36,7 +36,7 @@ struct IntegratorStages {
   std::vector<VectorX> rate, acceleration;  ///< φ̇ and v̇ of the stages
   std::optional<Model>
       part;               ///< of stepDoubling(): the model with the length of a part as its step
-  Kinematics kinematics;  ///< of implicitMidpoint(), at `end`
+  Kinematics kinematics;  ///< of implicitMidpoint(), at `end`; of stepDoubling(), at `from`
 
   void begin(const Input& held, const State& at) {
     input = held;

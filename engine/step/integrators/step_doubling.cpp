@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "engine/step/forward.hpp"
+#include "engine/step/integrators/sight.hpp"
 #include "engine/step/integrators/single_solve.hpp"
 #include "engine/step/integrators/stages.hpp"
 #include "engine/step/step.hpp"
@@ -40,7 +41,14 @@ bool stepDoubling(const Model& model, const Input& input, ContactSource* contact
 
   double done = 0.0, length = h;
   bool first = true;  // its solve is the step's own
+  double sight = lengthInSight(model, data, data.kinematics, contacts, h);
   while (done < h) {
+    length = std::min(length, h - done);
+    if (length > sight * (1.0 + 1e-9) && !isShortest(length, kShortest * h)) {
+      ++stats.glances;
+      length = std::max(sight, kShortest * h);
+      first = first && length == h;
+    }
     const bool closes = done + length >= h * (1.0 - 1e-12);
     if (closes) length = h - done;
     const double deepest = stats.maxPenetration;
@@ -67,10 +75,15 @@ bool stepDoubling(const Model& model, const Input& input, ContactSource* contact
       continue;
     }
     stats.jumps += ratio > 1.0;
+    stats.unseen += length > sight * (1.0 + 1e-9);
     ++stats.substeps;
     done = closes ? h : done + length;
     length = std::max(length * factor, kShortest * h);
     s.from = s.state;
+    if (done < h && looksForContacts(data, contacts)) {
+      computeKinematics(model, s.from, s.kinematics);
+      sight = lengthInSight(model, data, s.kinematics, contacts, h - done);
+    }
   }
   data.acceleration = (s.from.v - state.v) / h;
   state.q = s.from.q;

@@ -10,7 +10,8 @@
 /// large as e. A part that fails is shortened: StepStats::rejections. Every step tries its whole
 /// length first, so that nothing but the state decides. Parts of h/512 are taken whatever they
 /// estimate, and counted in StepStats::jumps: where force jumps, |e_v| does not fall with the
-/// length. Three solves for a step that is not divided [Kurtz, Castro 2025, of Drake's CENIC].
+/// length. No part is longer than what is in sight (sight.hpp). Three solves for a step that is not
+/// divided [Kurtz, Castro 2025, of Drake's CENIC].
 
 #include "engine/step/contact_source.hpp"
 #include "engine/step/data.hpp"
