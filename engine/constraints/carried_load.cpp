@@ -5,6 +5,8 @@
 #include <numeric>
 #include <tuple>
 
+#include "engine/constraints/contact_softness.hpp"
+
 namespace softgauss {
 namespace {
 
@@ -13,13 +15,16 @@ bool standsStill(const Model& model, int tree) {
   return tree < 0 || model.bodies[model.trees[tree].rootBody].joint != JointKind::floating;
 }
 
-/// Calls f(bodyA, bodyB, isTie) for every contact and every tie.
+/// Calls f(bodyA, bodyB, isTie) for every contact and every tie that carries.
 template <class F>
 void visitPairs(const Model& model, const ContactSet& contacts, F&& f) {
   for (const Contact& c : contacts.contacts) f(c.bodyA, c.bodyB, false);
   if (!model.options.effects.has(Effect::equality)) return;
-  for (const Connection& c : model.connections) f(c.bodyA, c.bodyB, true);
-  for (const Weld& w : model.welds) f(w.bodyA, w.bodyB, true);
+  const auto visit = [&](const auto& tie) {
+    if (!bouncing(tie.impedance, model.options)) f(tie.bodyA, tie.bodyB, true);
+  };
+  for (const Connection& c : model.connections) visit(c);
+  for (const Weld& w : model.welds) visit(w);
 }
 
 }  // namespace

@@ -2,7 +2,7 @@
 #pragma once
 
 /// What a contact or a tie carries besides its own two bodies, from the graph of contacts and of
-/// ties, which are connections and welds, alone (T.80).
+/// ties, which are connections and welds that do not bounce (bouncing()), alone (T.80).
 ///
 /// Trees that touch or are tied to each other, not counting the world, are an island. A tree T on a
 /// free base counts in it with the largest inertia that a contact or tie feels on one of its

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/constraints/connection.hpp"
 
-#include "engine/constraints/impedance.hpp"
+#include "engine/constraints/contact_softness.hpp"
 
 namespace softgauss {
 
@@ -13,9 +13,13 @@ PointOffset::PointOffset(const Assembly& in, int bodyA, const Vector3& p_WA, int
       bias(pointBiasAcceleration(in.model, in.kinematics, bodyA, p_WA) -
            pointBiasAcceleration(in.model, in.kinematics, bodyB, p_WB)) {}
 
-double tieWeight(const Assembly& in, int bodyA, int bodyB) {
+bool carries(const Assembly& in, const Impedance& tie) {
+  return in.load && !bouncing(tie, in.model.options);
+}
+
+double tieWeight(const Assembly& in, const Impedance& tie, int bodyA, int bodyB) {
   const double weight = in.weights.translation[bodyA] + in.weights.translation[bodyB];
-  return in.load ? carrying(weight, in.load->mass(in.model, bodyA, bodyB)) : weight;
+  return carries(in, tie) ? carrying(weight, in.load->mass(in.model, bodyA, bodyB)) : weight;
 }
 
 RelativeMotion offsetMotion(int bodyA, const Vector3& p_WA, int bodyB, const Vector3& p_WB) {
@@ -36,8 +40,8 @@ void ConnectionRows::assemble(const Assembly& in) {
       const Vector3 p_WA = in.kinematics.X_WB[c.bodyA] * c.p_AP;
       const Vector3 p_WB = in.kinematics.X_WB[c.bodyB] * c.p_BP;
       const PointOffset offset(in, c.bodyA, p_WA, c.bodyB, p_WB);
-      const Softness soft =
-          softnessAt(c.impedance, offset.r.norm(), tieWeight(in, c.bodyA, c.bodyB), model.options);
+      const Softness soft = softnessAt(c.impedance, offset.r.norm(),
+                                       tieWeight(in, c.impedance, c.bodyA, c.bodyB), model.options);
       const RelativeMotion motion = offsetMotion(c.bodyA, p_WA, c.bodyB, p_WB);
       jacobian_.add(model, in.kinematics, in.tree, motion);
       pushRows(motion, offset.r, offset.rate, offset.bias, in.lag(), soft);

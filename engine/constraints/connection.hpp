@@ -32,7 +32,9 @@ struct PointOffset {
 /// The Jacobian J_A − J_B of that offset.
 RelativeMotion offsetMotion(int bodyA, const Vector3& p_WA, int bodyB, const Vector3& p_WB);
 
+/// Whether a tie of this impedance knows what it carries: those that bounce do not (T.80).
+bool carries(const Assembly& in, const Impedance& tie);
 /// A of a tie of two bodies' translation [1/kg].
-double tieWeight(const Assembly& in, int bodyA, int bodyB);
+double tieWeight(const Assembly& in, const Impedance& tie, int bodyA, int bodyB);
 
 }  // namespace softgauss

@@ -49,22 +49,28 @@ double reducedMass(const Model& model, int bodyA, int bodyB) {
   return lighter * heavier / (lighter + heavier);
 }
 
-Material inForce(const Material& pair, double mass, const Options& options) {
-  if (pair.spring || !options.ownSoftness || !(mass > 0.0)) return pair;
+std::optional<ReferenceSpring> bouncing(const Impedance& p, const Options& options) {
   constexpr double kRounding = 1e-12;
-  const Impedance& p = pair.impedance;
   // (T.115) damps more, never less.
-  if (!p.direct && p.dampingRatio > 0.5 * (1.0 + kRounding)) return pair;
-  // K and B of the reference that a step follows: k d = K d/d_max², b = B/d_max.
-  const Softness s = softnessAt(p, 0.0, 1.0 / mass, options);
+  if (!p.direct && p.dampingRatio > 0.5 * (1.0 + kRounding)) return std::nullopt;
+  // k d = K d/d_max², b = B/d_max.
+  const Softness s = softnessAt(p, 0.0, 1.0, options);
   const double dMax = std::clamp(p.dMax, 1e-4, 0.9999);
   const double K = s.stiffness * dMax * dMax / impedanceAt(p, 0.0), B = s.damping * dMax;
-  if (!(B * B <= K * (1.0 + kRounding))) return pair;
-  Material bouncing = pair;
-  ContactSpring& spring = bouncing.spring.emplace();
+  if (!(B * B <= K * (1.0 + kRounding))) return std::nullopt;
+  return ReferenceSpring{K, B};
+}
+
+Material inForce(const Material& pair, double mass, const Options& options) {
+  if (pair.spring || !options.ownSoftness || !(mass > 0.0)) return pair;
+  const std::optional<ReferenceSpring> reference = bouncing(pair.impedance, options);
+  if (!reference) return pair;
+  const double K = reference->stiffness, B = reference->damping;
+  Material springy = pair;
+  ContactSpring& spring = springy.spring.emplace();
   spring.stiffness = mass * K;
   spring.damping = mass * std::max(0.0, B - options.timestep * K);
-  return bouncing;
+  return springy;
 }
 
 int frictionDim(const Material& pair, const EffectSet& effects) {

@@ -14,6 +14,8 @@
 /// the mass that the two trees have by themselves (T.117): a reference pushes whatever mass is
 /// behind it, so that a light body that is pressed in as it bounces would throw up a heavy one.
 
+#include <optional>
+
 #include "engine/constraints/impedance.hpp"
 #include "engine/model/model.hpp"
 
@@ -34,6 +36,10 @@ ContactSpring inSeries(const ContactSpring& a, const ContactSpring& b);
 /// m_A m_B/(m_A + m_B) of the masses of their trees [kg]; the world's is infinite. 0 where neither
 /// body moves.
 double reducedMass(const Model& model, int bodyA, int bodyB);
+
+/// K and B of the reference that a step follows (T.115), where it is at most half damped, B² ≤ K;
+/// else nothing.
+std::optional<ReferenceSpring> bouncing(const Impedance& p, const Options& options);
 
 /// What a step takes for the surface of a pair of this reduced mass [kg]: itself or, where it
 /// bounces, its spring (T.117).

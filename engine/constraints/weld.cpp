@@ -47,14 +47,14 @@ void WeldRows::assemble(const Assembly& in) {
         return softnessAt(weld.impedance, distance, weight, model.options);
       };
       RelativeMotion motion = offsetMotion(weld.bodyA, X_WA.p, weld.bodyB, X_WB.p);
-      const Softness linear = softness(tieWeight(in, weld.bodyA, weld.bodyB));
+      const Softness linear = softness(tieWeight(in, weld.impedance, weld.bodyA, weld.bodyB));
       jacobian_.add(model, k, in.tree, motion);
       pushRows(motion, point.r, point.rate, point.bias, in.lag(), linear);
 
       // Bodies that slide only cannot be turned back.
       double weight = in.weights.rotation[weld.bodyA] + in.weights.rotation[weld.bodyB];
       if (weight == 0.0) continue;
-      if (in.load)
+      if (carries(in, weld.impedance))
         weight = carrying(weight,
                           in.load->inertia(model, weld.bodyA, weld.bodyB, 0.5 * (X_WA.p + X_WB.p)));
       motion.linearDim = 0;

@@ -10,7 +10,8 @@
 ///
 ///   turn = max_i |h (M⁻¹Δb)_i| / max_i (|v_i| + h |a_i|)                                 (T.93)
 ///
-/// It is about ½ (h ω)² for a body that tumbles at ω, and nothing for a wheel or a ball, whose spin
+/// or, if more, the same by energies, √(h² Δbᵀ M⁻¹Δb / (vᵀMv + h² aᵀMa)), in which a joint of next to
+/// no inertia hides nothing. It is about ½ (h ω)² for a body that tumbles at ω, and nothing for a wheel or a ball, whose spin
 /// makes no such forces. Where it exceeds kFollowedTurn the tree moves by (T.91) under the forces
 /// of the step, to a tolerance; all others move by (T.16), bit for bit. So does what a connection
 /// or a weld holds where it turns by more than kTiedTurn, a ball too: the rows turn with it.

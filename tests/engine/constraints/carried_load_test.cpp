@@ -188,6 +188,20 @@ TEST(CarriedLoad, OfWeldsTurns) {
   EXPECT_SMALL(light.load.inertia(light.model, 2, 1, second) - (own(100.0) + 100.0), 1e-9);
 }
 
+// Ties of at most half the critical damping are no edges, and no harder.
+TEST(CarriedLoad, LeavesTiesThatBounceAsTheyAre) {
+  for (const double ratio : {0.05, 0.5, 0.51, 1.0}) {
+    Scene scene(Tied::row({1.0, 99.0}, false));
+    for (Connection& c : scene.model.connections) c.impedance.dampingRatio = ratio;
+    scene.stages();
+    const std::vector<double> with = scene.data->constraints.connection.D;
+    scene.model.options.ownSoftness = false;
+    scene.stages();
+    const std::vector<double>& without = scene.data->constraints.connection.D;
+    for (int i = 0; i < 6; ++i) EXPECT_EQ(with[i] > without[i], ratio > 0.5) << i << " " << ratio;
+  }
+}
+
 // Options::ownSoftness makes rows of ties harder by their load, A = 1/L, and nothing else of them.
 TEST(CarriedLoad, HardensTies) {
   Scene scene(Tied::row({1.0, 99.0}, false));
