@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/wrenches.hpp"
 
+#include <algorithm>
+
 #include "engine/core/check.hpp"
 
 namespace softgauss::io {
@@ -18,6 +20,15 @@ WrenchSchedule::WrenchSchedule(const Model& model, const std::vector<TimedWrench
     bodies_.push_back(frame.body);
     p_BP_.push_back(frame.X_BF * wrench.p_LP);
   }
+}
+
+double WrenchSchedule::nextChange(double time) const {
+  constexpr double kTimeTolerance = 1e-9;  // [s]
+  double next = kInfinity;
+  for (const TimedWrench& wrench : wrenches_)
+    for (const double change : {wrench.start, wrench.end})
+      if (change > time + kTimeTolerance) next = std::min(next, change);
+  return next;
 }
 
 void WrenchSchedule::at(double time, double timestep, const Kinematics& kinematics,

@@ -34,6 +34,8 @@ class WrenchSchedule {
   WrenchSchedule(const Model& model, const std::vector<TimedWrench>& wrenches);
 
   bool empty() const { return wrenches_.empty(); }
+  /// The first time after `time` at which one begins or ends [s], ∞ without.
+  double nextChange(double time) const;
   /// Those that act in the step from `time`; `kinematics` is that of its start.
   void at(double time, double timestep, const Kinematics& kinematics,
           std::vector<ExternalWrench>& out) const;

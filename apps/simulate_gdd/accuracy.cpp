@@ -28,7 +28,8 @@ class Trials {
         progress_(options.duration, options.quiet) {}
   ~Trials() { progress_.clear(); }
 
-  /// Whether the run can take its steps as the trial does, which lets them end on rows of a table.
+  /// Whether the run can take its steps as the trial does, which lets them end on rows of a table
+  /// and where wrenches begin and end.
   bool ofTheRun() const {
     const double period = options_.duration / periodsOf(options_.duration);
     return !options_.islands || !outside_.changesWithin(period, options_.duration);
@@ -162,8 +163,8 @@ std::string chooseAccuracy(const SimulateOptions& options, Scene& scene) {
   if (!trials.ofTheRun())
     throw AccuracyError(fmt::format(
         "--accuracy {:g}: cannot be promised: the rows of --torques do not come regularly from 0 "
-        "on, or the run is no whole number of them, and with --islands no step ends on a row. "
-        "Without --islands they do",
+        "on, or the run is no whole number of them, or a wrench begins or ends within a step, and "
+        "with --islands no step ends on a row or there. Without --islands they do",
         accuracy));
   const RunChoice run = chooseForRun(accuracy, options.duration,
                                      [&](double simulated) { return trials.over(simulated); });

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/simulate_gdd/outside_input.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace softgauss::app {
@@ -16,7 +17,7 @@ double OutsideInput::rowSpacing() const {
 }
 
 bool OutsideInput::changesWithin(double h, double duration) const {
-  const long steps = torques_ ? std::lround(duration / h) : 0;
+  const long steps = torques_ || !wrenches_.empty() ? std::lround(duration / h) : 0;
   for (long i = 0; i < steps; ++i)
     if (lengthFrom(static_cast<double>(i) * h, h) < h) return true;
   return false;
@@ -24,8 +25,9 @@ bool OutsideInput::changesWithin(double h, double duration) const {
 
 double OutsideInput::lengthFrom(double time, double most) const {
   constexpr double kRounding = 1e-6;  // of the step
-  if (!torques_) return most;
-  const double length = torques_->nextRow(time) - time;
+  double next = wrenches_.nextChange(time);
+  if (torques_) next = std::min(next, torques_->nextRow(time));
+  const double length = next - time;
   return length < (1.0 - kRounding) * most ? length : most;
 }
 

@@ -19,12 +19,14 @@ class OutsideInput {
   /// Mean time between the rows of the table that begins at 0 and has several; else 0 [s].
   double rowSpacing() const;
 
-  /// Whether some row comes into force within a step, where all steps are `h` and begin at 0.
+  /// Whether some row comes into force, or a wrench begins or ends, within a step, where all steps
+  /// are `h` and begin at 0.
   bool changesWithin(double h, double duration) const;
 
   /// Takes a step of model.options.timestep from `state` in parts that end on the rows of the
-  /// table, by calls of take(), each of which moves the state on by the model's step of that time.
-  /// False where one of them did not; the model's step is then what it was.
+  /// table, and where wrenches begin or end, by calls of take(), each of which moves the state on
+  /// by the model's step of that time. False where one of them did not; the model's step is then
+  /// what it was.
   template <class Take>
   bool inParts(Model& model, const State& state, Take&& take) const {
     const double h = model.options.timestep;
@@ -43,7 +45,8 @@ class OutsideInput {
   void at(const Model& model, const State& state, Kinematics& kinematics, Input& input) const;
 
  private:
-  /// `most`, or up to the next row [s]; rows within a millionth of it after its end do not count.
+  /// `most`, or up to the next row or change of a wrench [s]; those within a millionth of it after
+  /// its end do not count.
   double lengthFrom(double time, double most) const;
 
   std::optional<io::TorqueTable> torques_;

@@ -116,7 +116,7 @@ class Runner {
         }
         return code == kDone;
       };
-      // An accuracy was found with steps that end on the rows of a table.
+      // An accuracy was found with steps that end where outside input changes.
       if (options_.accuracy)
         outside_.inParts(model_, state_, takeStep);
       else

@@ -131,44 +131,29 @@ TEST(Chains, ShortOnesGainNothingInHalfAMinuteLong) {
 }
 
 // Trees without damping that swing through their limits at 10 rad/s.
-void whips(int seed, double h, double seconds) {
-  RandomTreeOptions options;
-  options.trees = 1 + seed % 2;
-  options.links = 3 + seed % 9;
-  options.damping = false;
-  options.armature = seed % 3 == 0;
-  options.geometries = false;
-  ModelBuilder builder = randomForest(seed, options);
-  builder.options.timestep = h;
-  Trial t("limits, seed " + std::to_string(seed), builder);
-  Random random(seed + 99);
-  t.state.v = 10.0 * random.vector(t.model.nv, 1.0);
-  const double scale = t.energy().kinetic;
-  t.mayGain = 0.1 * scale;  // v is that of half a step before
-  // Pairs of hinges of next to no inertia, at hundreds of rad/s, take and give back (stability.md).
-  t.mayRise = (seconds > 2.0 ? 0.15 : 0.01) * scale;
-  EnergyWatch watch(t.model);
-  State start = t.state;
-  double E0 = 0.0, gained = 0.0;
-  t.run(seconds, [&] {
-    if (t.steps == 1) {
-      start.velocityOf = t.state.velocityOf;  // of what is followed at once v is that of q
-      E0 = watch.energy(start);
-    }
-    gained = std::max(gained, watch.energy(t.state) - E0);
-  });
-  t.expect("energy gained, relative", gained / scale, 0.01, "");
-}
-
 TEST(Chains, TreesThatWhipThroughTheirLimitsGainNothing) {
-  for (const int seed : {4, 7, 12, 16, 22, 30, 88})
-    for (const double h : {0.0005, 0.002, 0.005}) whips(seed, h, 2.0);
-}
-
-// A pair of hinges between massless links turns at 500 rad/s. Against their speed the others'
-// change is nothing, and where that hid it the tree gained two fifths of its energy.
-TEST(Chains, WhatTurnsFastHidesNothing) {
-  for (const double h : {0.0005, 0.002}) whips(71, h, 10.0);
+  for (const int seed : {7, 12, 16, 22, 30})
+    for (const double h : {0.0005, 0.002, 0.005}) {
+      RandomTreeOptions options;
+      options.trees = 1 + seed % 2;
+      options.links = 3 + seed % 9;
+      options.damping = false;
+      options.armature = seed % 3 == 0;
+      options.geometries = false;
+      ModelBuilder builder = randomForest(seed, options);
+      builder.options.timestep = h;
+      Trial t("limits, seed " + std::to_string(seed), builder);
+      Random random(seed + 99);
+      t.state.v = 10.0 * random.vector(t.model.nv, 1.0);
+      const double scale = t.energy().kinetic;
+      t.mayGain = 0.1 * scale;  // v is that of half a step before
+      t.mayRise = 0.01 * scale;
+      EnergyWatch watch(t.model);
+      const double E0 = watch.energy(t.state);
+      double gained = 0.0;
+      t.run(2.0, [&] { gained = std::max(gained, watch.energy(t.state) - E0); });
+      t.expect("energy gained, relative", gained / scale, 0.01, "");
+    }
 }
 
 TEST(Chains, SameBits) {

@@ -144,8 +144,6 @@ double EnergyWatch::begun(const Data& data) {
 }
 
 void EnergyWatch::begin(const State& state, const Input& input) {
-  start_ = state;
-  startInput_ = input;
   least_ = energy(state);
   limit_ = least_ + stored(state, input) + offset(state, input);
 }
@@ -153,14 +151,6 @@ void EnergyWatch::begin(const State& state, const Input& input) {
 double EnergyWatch::check(const State& state, const Input& input, const Data& data, double work,
                           double perStep) {
   constexpr int kEvery = 5;
-  // What was followed at once began with v at q.
-  if (steps_ == 0 &&
-      std::any_of(state.velocityOf.begin(), state.velocityOf.end(), [](VelocityOf v) {
-        return v == VelocityOf::now || v == VelocityOf::halfAStepAgoPushed;
-      })) {
-    start_.velocityOf = state.velocityOf;
-    begin(start_, startInput_);
-  }
   const double E = energy(state), now = E - work;
   limit_ += perStep + begun(data);
   if (leapfrog_)

@@ -68,8 +68,6 @@ class EnergyWatch {
   Data data_;
   collision::SceneContacts contacts_;
   State back_;
-  State start_;
-  Input startInput_;
   double least_ = kInfinity;  ///< E − W so far
   double limit_ = kInfinity;  ///< of E − W: the least of the right side, but for Δ(t)
   int steps_ = 0;

@@ -108,19 +108,6 @@ bool FollowedTrees::needed(const Model& model, const Data& data, State& state, c
   bool any = false;
   for (std::size_t t = 0; t < model.trees.size(); ++t)
     turn[t] = h * turnRate(model, model.trees[t], data, state.v, dv);
-  // The same by energies, in which a joint of next to no inertia hides nothing, however fast it is.
-  data.inertia.M.multiply(dv, smooth);
-  data.inertia.M.multiply(state.v, kicked);
-  data.inertia.M.multiply(data.forward.a, push);
-  for (std::size_t t = 0; t < model.trees.size(); ++t) {
-    const int first = model.trees[t].firstDof, dofs = model.trees[t].dofEnd - first;
-    const auto product = [&](const VectorX& x, const VectorX& y) {
-      return x.segment(first, dofs).dot(y.segment(first, dofs));
-    };
-    const double changed = h * h * product(dv, smooth);
-    const double moving = product(state.v, kicked) + h * h * product(data.forward.a, push);
-    if (changed > 0.0 && moving > 0.0) turn[t] = std::max(turn[t], std::sqrt(changed / moving));
-  }
   // What a tie holds is turned by it, also a ball, which has no Coriolis forces.
   const auto tied = [&](int body) {
     const int tree = model.bodies[body].tree;

@@ -10,12 +10,12 @@
 ///
 ///   turn = max_i |h (M⁻¹Δb)_i| / max_i (|v_i| + h |a_i|)                                 (T.93)
 ///
-/// or, if more, the same by energies, √(h² Δbᵀ M⁻¹Δb / (vᵀMv + h² aᵀMa)), in which a joint of next
-/// to no inertia hides nothing. It is about ½ (h ω)² for a body that tumbles at ω, and nothing for
-/// a wheel or a ball, whose spin makes no such forces. Where it exceeds kFollowedTurn the tree
-/// moves by (T.91) under the forces of the step, to a tolerance; all others move by (T.16), bit for
-/// bit. So does what a connection or a weld holds where it turns by more than kTiedTurn, a ball
-/// too: the rows turn with it.
+/// It is about ½ (h ω)² for a body that tumbles at ω, and nothing for a wheel or a ball, whose spin
+/// makes no such forces; a joint that is far faster than the others hides what they turn,
+/// which docs/stability.md has figures of. Where it
+/// exceeds kFollowedTurn the tree moves by (T.91) under the forces of the step, to a tolerance; all
+/// others move by (T.16), bit for bit. So does what a connection or a weld holds where it turns by
+/// more than kTiedTurn, a ball too: the rows turn with it.
 ///
 /// Semi-implicit Euler keeps the velocity of half a step earlier: its q⁺ = q + h v⁺ is that of the
 /// leapfrog. So ½ h a′ is added to v where a tree begins to be followed, and left out of v⁺ in the
