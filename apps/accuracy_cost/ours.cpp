@@ -85,6 +85,15 @@ void addVariants(const Method& plain, const std::string& name,
   methods.push_back(std::move(elliptic));
 }
 
+/// Ours without error control, semi-implicit Euler first.
+std::vector<Method> fixedStepMethods() {
+  return {{"softgauss", "semi-implicit-euler", "semi-implicit Euler"},
+          {"softgauss", kMujocoEuler, "semi-implicit Euler as MuJoCo's"},
+          {"softgauss", "implicit", "implicit in velocity"},
+          {"softgauss", "implicit-midpoint", "implicit midpoint"},
+          {"softgauss", "runge-kutta-4", "Runge-Kutta 4"}};
+}
+
 }  // namespace
 
 std::unique_ptr<Contestant> makeContestant(const Problem& problem, const Method& method, double h) {
@@ -119,12 +128,8 @@ std::vector<Method> solverVariants(const Problem& problem) {
 }
 
 std::vector<Method> fineMethods() {
-  const Method euler{"softgauss", "semi-implicit-euler", "semi-implicit Euler"};
-  std::vector<Method> methods{euler,
-                              {"softgauss", kMujocoEuler, "semi-implicit Euler as MuJoCo's"},
-                              {"softgauss", "implicit", "implicit in velocity"},
-                              {"softgauss", "implicit-midpoint", "implicit midpoint"},
-                              {"softgauss", "runge-kutta-4", "Runge-Kutta 4"}};
+  std::vector<Method> methods = fixedStepMethods();
+  const Method euler = methods.front();
   for (int half = -4; half >= -22; --half) {
     Method adaptive{"softgauss", "dormand-prince", ""};
     adaptive.integrationTolerance = std::pow(10.0, 0.5 * half);
@@ -143,12 +148,8 @@ std::vector<Method> fineMethods() {
 }
 
 std::vector<Method> methodsFor(const Problem& problem) {
-  const Method euler{"softgauss", "semi-implicit-euler", "semi-implicit Euler"};
-  std::vector<Method> methods{euler,
-                              {"softgauss", kMujocoEuler, "semi-implicit Euler as MuJoCo's"},
-                              {"softgauss", "implicit", "implicit in velocity"},
-                              {"softgauss", "implicit-midpoint", "implicit midpoint"},
-                              {"softgauss", "runge-kutta-4", "Runge-Kutta 4"}};
+  std::vector<Method> methods = fixedStepMethods();
+  const Method euler = methods.front();
   Method adaptive{"softgauss", "dormand-prince", ""};
   for (const double tolerance : {1e-5, 1e-8, 1e-11}) {
     adaptive.integrationTolerance = tolerance;

@@ -87,10 +87,8 @@ std::optional<Touch> touchAt(const Assembly& in, int i) {
   double weight = in.weights.translation[c.bodyA] + in.weights.translation[c.bodyB];
   const double load = in.load ? in.load->mass(model, c.bodyA, c.bodyB) : 0.0;
   touch.carries = load > 0.0 && !material.spring;  // springs keep their depth of rest and bounce
-  if (load * weight > 1.0) {
-    if (!material.spring) touch.hardening = load * weight;
-    weight = 1.0 / load;
-  }
+  if (!material.spring) touch.hardening = std::max(1.0, load * weight);
+  weight = carrying(weight, load);
   touch.inverseMass = weight;
   touch.softness =
       contactSoftness(material, touch.frictionDim, touch.distance, weight, model.options);

@@ -12,19 +12,10 @@
 #include <sstream>
 
 #include "tests/apps/process.hpp"
+#include "tests/apps/short_study.hpp"
 
 namespace softgauss::test {
 namespace {
-
-/// A short study: steps of at least 1 ms, each run once.
-std::vector<std::string> study(const std::string& problem, const std::string& out,
-                               const std::vector<std::string>& more = {}) {
-  std::vector<std::string> arguments{
-      "--scene",   problem, "--out",        out, "--robots", dataFile("robots"),
-      "--repeats", "0",     "--most-steps", "32"};
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  return arguments;
-}
 
 /// --drift or --parting in the place of a study.
 std::vector<std::string> instead(const std::string& problem, const std::string& out,

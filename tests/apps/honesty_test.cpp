@@ -7,19 +7,10 @@
 #include <sstream>
 
 #include "tests/apps/process.hpp"
+#include "tests/apps/short_study.hpp"
 
 namespace softgauss::test {
 namespace {
-
-/// A short study: steps of at least 1 ms, each run once.
-std::vector<std::string> study(const std::string& problem, const std::string& out,
-                               const std::vector<std::string>& more = {}) {
-  std::vector<std::string> arguments{
-      "--scene",   problem, "--out",        out, "--robots", dataFile("robots"),
-      "--repeats", "0",     "--most-steps", "32"};
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  return arguments;
-}
 
 /// honesty.csv of a problem: every accuracy was looked at, promised and kept.
 void expectKept(const std::string& out, const std::string& problem) {
