@@ -6,6 +6,7 @@
 #include "engine/constraints/carried_load.hpp"
 #include "engine/constraints/contact_set.hpp"
 #include "engine/constraints/inverse_weight.hpp"
+#include "engine/constraints/nearby_poses.hpp"
 #include "engine/dynamics/kinematics.hpp"
 #include "engine/dynamics/tree_matrix.hpp"
 
@@ -25,9 +26,10 @@ struct Assembly {
   const Kinematics& kinematics;
   const ContactSet& contacts;
   const InverseWeights& weights;
-  const TreeSparsity& tree;           ///< pattern of M: row i lists the dofs that move body(i)
-  bool softFriction = false;          ///< Input::softFriction
-  const CarriedLoad* load = nullptr;  ///< null: no row knows of a load
+  const TreeSparsity& tree;             ///< pattern of M: row i lists the dofs that move body(i)
+  bool softFriction = false;            ///< Input::softFriction
+  const CarriedLoad* load = nullptr;    ///< null: no row knows of a load
+  const NearbyPoses* nearby = nullptr;  ///< null: no v that lags, no tie, or no turn
 };
 
 }  // namespace softgauss

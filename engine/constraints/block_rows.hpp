@@ -13,6 +13,16 @@
 
 namespace softgauss {
 
+/// A distance of three components and how it changes:
+///   a_ref = −b J v − k d r − ((1 − lag b) J̇ v − b ahead)                                 (T.116)
+struct Offset {
+  Vector3 r;                        ///< [m]
+  Vector3 rate;                     ///< J v [m/s]
+  Vector3 bias;                     ///< J̇ v, or by how r has come and would go on [m/s²]
+  double lag = 0.0;                 ///< how far v lies behind [s]
+  Vector3 ahead = Vector3::Zero();  ///< J v less by how r has come, where no lag tells [m/s]
+};
+
 class BlockRows : public ScalarRows<Quadratic> {
  public:
   void multiply(const VectorX& a, std::vector<double>& y) const {
@@ -38,36 +48,36 @@ class BlockRows : public ScalarRows<Quadratic> {
     jacobian_.appendCouplings(segments, setEnd);
   }
 
-  /// Leaves J̇ v out of the references of the blocks that concern a body, until putBackBias().
+  /// Leaves out of the references what they have of the bodies' turning, in the blocks that concern
+  /// a body, until putBackTurning(): a_ref = −b J v − k d r.
   template <class Concerns>
-  void leaveOutBias(const Concerns& concerns) {
-    withBias_ = reference;
+  void leaveOutTurning(const Concerns& concerns) {
+    withTurning_ = reference;
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
       if (!concerns(bodies_[i].first) && !concerns(bodies_[i].second)) continue;
-      for (std::size_t row = 3 * i; row < 3 * i + 3; ++row) reference[row] += bias_[row];
+      for (std::size_t row = 3 * i; row < 3 * i + 3; ++row) reference[row] += turning_[row];
     }
   }
-  void putBackBias() { reference = withBias_; }
+  void putBackTurning() { reference = withTurning_; }
 
   std::size_t bytes() const {
-    return ScalarRows::bytes() + jacobian_.bytes() + bytesOfAll(bias_, withBias_, bodies_);
+    return ScalarRows::bytes() + jacobian_.bytes() + bytesOfAll(turning_, withTurning_, bodies_);
   }
 
  protected:
   void clearBlocks() {
     jacobian_.clear();
     clearRows();
-    bias_.clear();
+    turning_.clear();
     bodies_.clear();
   }
-  /// The three rows of the last block added, which is between the bodies of `motion`: at distance
-  /// r, J v and J̇ v, a_ref = −b (J v − lag J̇ v) − k d r − J̇ v.
-  void pushRows(const RelativeMotion& motion, const Vector3& r, const Vector3& rate,
-                const Vector3& bias, double lag, const Softness& softness) {
-    const double share = 1.0 - lag * softness.damping;
+  /// The three rows of the last block added, which is between the bodies of `motion`.
+  void pushRows(const RelativeMotion& motion, const Offset& offset, const Softness& softness) {
     for (int i = 0; i < 3; ++i) {
-      bias_.push_back(share * bias[i]);
-      reference.push_back(softness.referenceAcceleration(rate[i], r[i]) - bias_.back());
+      const double b = softness.damping;
+      turning_.push_back((1.0 - offset.lag * b) * offset.bias[i] - b * offset.ahead[i]);
+      reference.push_back(softness.referenceAcceleration(offset.rate[i], offset.r[i]) -
+                          turning_.back());
       pushSoftness(softness);
     }
     bodies_.emplace_back(motion.bodyA, motion.bodyB);
@@ -76,8 +86,8 @@ class BlockRows : public ScalarRows<Quadratic> {
   BlockJacobian jacobian_;
 
  private:
-  std::vector<double> bias_;                 ///< J̇ v in each reference
-  std::vector<double> withBias_;             ///< references while some are without it
+  std::vector<double> turning_;              ///< what each reference has of the bodies' turning
+  std::vector<double> withTurning_;          ///< references while some are without it
   std::vector<std::pair<int, int>> bodies_;  ///< of each block
 };
 

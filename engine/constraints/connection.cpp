@@ -5,13 +5,25 @@
 
 namespace softgauss {
 
-PointOffset::PointOffset(const Assembly& in, int bodyA, const Vector3& p_WA, int bodyB,
-                         const Vector3& p_WB)
-    : r(p_WA - p_WB),
-      rate(pointVelocity(in.model, in.kinematics, bodyA, p_WA) -
-           pointVelocity(in.model, in.kinematics, bodyB, p_WB)),
-      bias(pointBiasAcceleration(in.model, in.kinematics, bodyA, p_WA) -
-           pointBiasAcceleration(in.model, in.kinematics, bodyB, p_WB)) {}
+PointOffset::PointOffset(const Assembly& in, int bodyA, const Vector3& p_AP, int bodyB,
+                         const Vector3& p_BP)
+    : p_WA(in.kinematics.X_WB[bodyA] * p_AP), p_WB(in.kinematics.X_WB[bodyB] * p_BP) {
+  r = p_WA - p_WB;
+  rate = pointVelocity(in.model, in.kinematics, bodyA, p_WA) -
+         pointVelocity(in.model, in.kinematics, bodyB, p_WB);
+  if (in.nearby == nullptr) {
+    bias = pointBiasAcceleration(in.model, in.kinematics, bodyA, p_WA) -
+           pointBiasAcceleration(in.model, in.kinematics, bodyB, p_WB);
+    lag = in.lag();
+    return;
+  }
+  const double h = in.model.options.timestep;
+  const std::vector<Transform>&before = in.nearby->before.X_WB, &after = in.nearby->after.X_WB;
+  const Vector3 from = before[bodyA] * p_AP - before[bodyB] * p_BP;
+  const Vector3 to = after[bodyA] * p_AP - after[bodyB] * p_BP;
+  ahead = rate - (r - from) / h;
+  bias = (to - r - (r - from)) / (h * h);
+}
 
 bool carries(const Assembly& in, const Impedance& tie) {
   return in.load && !bouncing(tie, in.model.options);
@@ -37,14 +49,12 @@ void ConnectionRows::assemble(const Assembly& in) {
   clearBlocks();
   if (model.options.effects.has(Effect::equality)) {
     for (const Connection& c : model.connections) {
-      const Vector3 p_WA = in.kinematics.X_WB[c.bodyA] * c.p_AP;
-      const Vector3 p_WB = in.kinematics.X_WB[c.bodyB] * c.p_BP;
-      const PointOffset offset(in, c.bodyA, p_WA, c.bodyB, p_WB);
+      const PointOffset offset(in, c.bodyA, c.p_AP, c.bodyB, c.p_BP);
       const Softness soft = softnessAt(c.impedance, offset.r.norm(),
                                        tieWeight(in, c.impedance, c.bodyA, c.bodyB), model.options);
-      const RelativeMotion motion = offsetMotion(c.bodyA, p_WA, c.bodyB, p_WB);
+      const RelativeMotion motion = offsetMotion(c.bodyA, offset.p_WA, c.bodyB, offset.p_WB);
       jacobian_.add(model, in.kinematics, in.tree, motion);
-      pushRows(motion, offset.r, offset.rate, offset.bias, in.lag(), soft);
+      pushRows(motion, offset, soft);
     }
   }
   resizeRows(reference.size());

@@ -8,7 +8,7 @@
 ///   x = J a − a_ref,   a_ref = −b ṙ − k d(|r|) r − J̇ v,   s(x) = ½ D x²                  (T.28)
 /// with A = w_A + w_B, the bodies' translational inverse weights, or less where the connection
 /// carries more than they are (T.80). With J̇ v, r̈ is the acceleration of the distance itself, and
-/// closed loops do not drift when they turn fast.
+/// closed loops do not drift when they turn fast. Of a v that lags by half a step (T.116) has both.
 
 #include "engine/constraints/assembly.hpp"
 #include "engine/constraints/block_rows.hpp"
@@ -20,13 +20,12 @@ class ConnectionRows : public BlockRows {
   void assemble(const Assembly& in);
 };
 
-/// Where a point of A is against a point of B, and how that changes (world axes).
-struct PointOffset {
-  Vector3 r;     ///< p_A − p_B [m]
-  Vector3 rate;  ///< ṙ [m/s]
-  Vector3 bias;  ///< J̇ v [m/s²]
+/// Where a point of A is against a point of B, both given in their bodies' frames, and how that
+/// changes (world axes).
+struct PointOffset : Offset {
+  PointOffset(const Assembly& in, int bodyA, const Vector3& p_AP, int bodyB, const Vector3& p_BP);
 
-  PointOffset(const Assembly& in, int bodyA, const Vector3& p_WA, int bodyB, const Vector3& p_WB);
+  Vector3 p_WA, p_WB;  ///< the points [m]
 };
 
 /// The Jacobian J_A − J_B of that offset.

@@ -24,6 +24,9 @@ void Constraints::assemble(const Assembly& given) {
     load_.assemble(in.model, in.kinematics, in.contacts, in.weights);
     in.load = &load_;
   }
+  const bool ties = !in.model.connections.empty() || !in.model.welds.empty();
+  if (ties && in.lag() > 0.0 && nearby_.assemble(in.model, in.state, in.kinematics))
+    in.nearby = &nearby_;
   active_ = RowKinds::none();
   visitThese(*this, planned_, [&](auto& c, int kind) {
     // Without contacts there is nothing to look at, but old rows to drop.

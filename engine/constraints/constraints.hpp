@@ -187,6 +187,7 @@ class Constraints {
   RowKinds active_ = RowKinds::none();
   std::array<std::int64_t, kRowKinds> calls_{};
   CarriedLoad load_;
+  NearbyPoses nearby_;
   const TreeSparsity* sparsity_ = nullptr;
   TreeSparsity coupled_;
   std::vector<Segment> couplings_, lastCouplings_;

@@ -11,23 +11,22 @@ namespace softgauss {
 namespace {
 
 /// How a frame of A is turned against a frame of B, and how that changes.
-struct RotationOffset {
-  Vector3 r;     ///< s ē
-  Matrix3 J_r;   ///< ṙ = J_r ω for ω = ω_A − ω_B in the world
-  Vector3 rate;  ///< ṙ
-  Vector3 bias;  ///< J̇ v
+struct RotationOffset : Offset {
+  Matrix3 J_r;  ///< ṙ = J_r ω for ω = ω_A − ω_B in the world; r = s ē
 
-  RotationOffset(const Kinematics& k, const Weld& weld, const Matrix3& R_WA, const Matrix3& R_WB) {
+  RotationOffset(const Assembly& in, const Weld& weld, const Matrix3& R_WA, const Matrix3& R_WB) {
     const Quaternion e(Matrix3(R_WB.transpose() * R_WA));
     const double s = weld.torqueScale;
     r = s * e.vec();
     Matrix3 E = skew(e.vec());
     E.diagonal().array() += e.w();
     J_r = 0.5 * s * E * R_WA.transpose();
+    const Kinematics& k = in.kinematics;
     const Motion &A = k.A_bias[weld.bodyA], &B = k.A_bias[weld.bodyB];
     const Vector3 wA = k.V[weld.bodyA].angular, w = wA - k.V[weld.bodyB].angular;
     rate = J_r * w;
     bias = J_r * (A.angular - B.angular - wA.cross(w)) - 0.25 * w.squaredNorm() * r;
+    lag = in.lag();  // of what turns together the rest is nothing
   }
 };
 
@@ -40,8 +39,8 @@ void WeldRows::assemble(const Assembly& in) {
   if (model.options.effects.has(Effect::equality)) {
     for (const Weld& weld : model.welds) {
       const Transform X_WA = k.X_WB[weld.bodyA] * weld.X_AF, X_WB = k.X_WB[weld.bodyB] * weld.X_BF;
-      const PointOffset point(in, weld.bodyA, X_WA.p, weld.bodyB, X_WB.p);
-      const RotationOffset turn(k, weld, X_WA.R, X_WB.R);
+      const PointOffset point(in, weld.bodyA, weld.X_AF.p, weld.bodyB, weld.X_BF.p);
+      const RotationOffset turn(in, weld, X_WA.R, X_WB.R);
       const double distance = std::hypot(point.r.norm(), turn.r.norm());
       const auto softness = [&](double weight) {
         return softnessAt(weld.impedance, distance, weight, model.options);
@@ -49,7 +48,7 @@ void WeldRows::assemble(const Assembly& in) {
       RelativeMotion motion = offsetMotion(weld.bodyA, X_WA.p, weld.bodyB, X_WB.p);
       const Softness linear = softness(tieWeight(in, weld.impedance, weld.bodyA, weld.bodyB));
       jacobian_.add(model, k, in.tree, motion);
-      pushRows(motion, point.r, point.rate, point.bias, in.lag(), linear);
+      pushRows(motion, point, linear);
 
       // Bodies that slide only cannot be turned back.
       double weight = in.weights.rotation[weld.bodyA] + in.weights.rotation[weld.bodyB];
@@ -62,7 +61,7 @@ void WeldRows::assemble(const Assembly& in) {
       motion.angular = turn.J_r.transpose();
       const Softness angular = softness(weight);
       jacobian_.add(model, k, in.tree, motion);
-      pushRows(motion, turn.r, turn.rate, turn.bias, in.lag(), angular);
+      pushRows(motion, turn, angular);
     }
   }
   resizeRows(reference.size());

@@ -18,11 +18,10 @@ Kinematics::Kinematics(const Model& model)
 namespace {
 
 /// Free body: S = [translations | rotations about the body's own axes through its origin p = O].
-void floatingJoint(const Body& body, const State& state, int b, Kinematics& k) {
+void floatingJoint(const Body& body, const VectorX& q, int b, Kinematics& k) {
   Transform& X = k.X_WB[b];
-  X.p = state.q.segment<3>(body.q);
-  const Quaternion r(state.q[body.q + 3], state.q[body.q + 4], state.q[body.q + 5],
-                     state.q[body.q + 6]);
+  X.p = q.segment<3>(body.q);
+  const Quaternion r(q[body.q + 3], q[body.q + 4], q[body.q + 5], q[body.q + 6]);
   X.R = r.normalized().toRotationMatrix();
   k.p_WO[body.tree] = X.p;
   for (int i = 0; i < 3; ++i) {
@@ -33,18 +32,18 @@ void floatingJoint(const Body& body, const State& state, int b, Kinematics& k) {
 
 }  // namespace
 
-void computeKinematics(const Model& model, const State& state, Kinematics& k) {
+void computePoses(const Model& model, const VectorX& q, Kinematics& k) {
   const int bodies = model.bodyCount();
   for (int b = 1; b < bodies; ++b) {
     const Body& body = model.bodies[b];
     if (body.joint == JointKind::floating) {
-      floatingJoint(body, state, b, k);
+      floatingJoint(body, q, b, k);
       continue;
     }
     // Pose: the joint moves the body by q along or about its axis.
     const Transform& X_WP = k.X_WB[body.parent];
     Transform& X = k.X_WB[b];
-    const double q = state.q[body.q];
+    const double angle = q[body.q];  // or way
     X.p.noalias() = X_WP.R * body.X_PB.p;
     X.p += X_WP.p;
     Matrix3 R_WJ;
@@ -56,14 +55,18 @@ void computeKinematics(const Model& model, const State& state, Kinematics& k) {
 
     Motion& S = k.S[body.v];
     if (body.joint == JointKind::revolute) {
-      X.R.noalias() = R_WJ * axisRotation(body.axis, q);
+      X.R.noalias() = R_WJ * axisRotation(body.axis, angle);
       S = {axis_W, r.cross(axis_W)};
     } else {
       X.R = R_WJ;
-      X.p += q * axis_W;
+      X.p += angle * axis_W;
       S = {Vector3::Zero(), axis_W};
     }
   }
+}
+
+void computeKinematics(const Model& model, const State& state, Kinematics& k) {
+  computePoses(model, state.q, k);
   computeVelocities(model, k, state.v, k.V, k.A_bias);
 }
 

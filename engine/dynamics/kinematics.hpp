@@ -24,7 +24,9 @@ struct Kinematics {
   explicit Kinematics(const Model& model);
 };
 
-/// Poses and axes from q, velocities from v.
+/// Poses and axes from q.
+void computePoses(const Model& model, const VectorX& q, Kinematics& kinematics);
+/// These, and velocities from v.
 void computeKinematics(const Model& model, const State& state, Kinematics& kinematics);
 
 /// Velocities and bias accelerations of all bodies for the joint velocity v, at the poses of k.

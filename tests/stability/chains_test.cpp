@@ -130,30 +130,53 @@ TEST(Chains, ShortOnesGainNothingInHalfAMinuteLong) {
     for (const double friction : {0.0, 1e-5, 1e-4, 1e-3}) gainsNothing(n, friction, 0.002, 30.0);
 }
 
-// Trees without damping that swing through their limits at 10 rad/s.
+// Trees without damping that swing through their limits at 10 rad/s. Pairs of hinges and of slides
+// with nothing between them come to whip at hundreds of rad/s and m/s, and hide what the others
+// turn. The energy is that of instants at which rows push no followed tree: else it is known to
+// ⅛ h² FᵀM⁻¹F only (energy_watch.hpp), which is much where hinges align.
+void whipsThroughItsLimits(int seed, double h, double seconds, double bound) {
+  RandomTreeOptions options;
+  options.trees = 1 + seed % 2;
+  options.links = 3 + seed % 9;
+  options.damping = false;
+  options.armature = seed % 3 == 0;
+  options.geometries = false;
+  ModelBuilder builder = randomForest(seed, options);
+  builder.options.timestep = h;
+  Trial t("limits, seed " + std::to_string(seed), builder);
+  Random random(seed + 99);
+  t.state.v = 10.0 * random.vector(t.model.nv, 1.0);
+  const double scale = t.energy().kinetic;
+  t.mayGain = kInfinity;  // of v as it is, which is half a step old; gained below is not
+  t.mayRise = 0.01 * scale;
+  EnergyWatch watch(t.model);
+  State start = t.state;
+  t.run(h);
+  start.velocityOf = t.state.velocityOf;
+  const double E0 = watch.energy(start);
+  double gained = 0.0;
+  t.run(seconds, [&] {
+    const std::vector<VelocityOf>& of = t.state.velocityOf;
+    if (std::find(of.begin(), of.end(), VelocityOf::halfAStepAgoPushed) == of.end())
+      gained = std::max(gained, watch.energy(t.state) - E0);
+  });
+  t.expect("energy gained, relative", gained / scale, bound, "");
+}
+
 TEST(Chains, TreesThatWhipThroughTheirLimitsGainNothing) {
-  for (const int seed : {7, 12, 16, 22, 30})
-    for (const double h : {0.0005, 0.002, 0.005}) {
-      RandomTreeOptions options;
-      options.trees = 1 + seed % 2;
-      options.links = 3 + seed % 9;
-      options.damping = false;
-      options.armature = seed % 3 == 0;
-      options.geometries = false;
-      ModelBuilder builder = randomForest(seed, options);
-      builder.options.timestep = h;
-      Trial t("limits, seed " + std::to_string(seed), builder);
-      Random random(seed + 99);
-      t.state.v = 10.0 * random.vector(t.model.nv, 1.0);
-      const double scale = t.energy().kinetic;
-      t.mayGain = 0.1 * scale;  // v is that of half a step before
-      t.mayRise = 0.01 * scale;
-      EnergyWatch watch(t.model);
-      const double E0 = watch.energy(t.state);
-      double gained = 0.0;
-      t.run(2.0, [&] { gained = std::max(gained, watch.energy(t.state) - E0); });
-      t.expect("energy gained, relative", gained / scale, 0.01, "");
-    }
+  for (const int seed : {7, 12, 16, 22, 30, 71})
+    for (const double h : {0.0005, 0.002, 0.005, 0.01}) whipsThroughItsLimits(seed, h, 2.0, 0.01);
+}
+// Of 320 such trees three gain 1.6 to 1.9 % with steps of 0.5 ms, none more than 0.5 % with longer
+// ones; before slides were looked at, 279 gained 390 %, and by (T.93) without energies 71 gained
+// 40 % at 2 ms and 103 180 % at 0.5 ms.
+TEST(Chains, TreesThatWhipForTenSecondsGainNothingLong) {
+  for (const double h : {0.0005, 0.002, 0.005, 0.01}) {
+    for (int seed = 0; seed < 120; ++seed)
+      whipsThroughItsLimits(seed, h, 10.0, h < 0.002 ? 0.02 : 0.01);
+    for (const int seed : {229, 239, 275, 279, 331, 367})
+      whipsThroughItsLimits(seed, h, 10.0, 0.01);
+  }
 }
 
 TEST(Chains, SameBits) {

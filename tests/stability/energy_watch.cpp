@@ -41,6 +41,11 @@ std::vector<std::vector<double>> references(const Constraints& rows) {
   return all;
 }
 
+bool isPushed(const State& state) {
+  return std::find(state.velocityOf.begin(), state.velocityOf.end(),
+                   VelocityOf::halfAStepAgoPushed) != state.velocityOf.end();
+}
+
 bool isFreeBody(const Model& model, const Tree& tree) {
   return model.bodies[tree.rootBody].joint == JointKind::floating &&
          tree.dofEnd == tree.firstDof + 6;
@@ -56,25 +61,31 @@ EnergyWatch::EnergyWatch(const Model& model)
       contacts_(model) {}
 
 double EnergyWatch::energy(const State& state) {
+  const double h = model_.options.timestep;
   back_ = state;
-  bool pushed = false;  // a followed tree that rows have pushed: its v is behind but for its M
+  double pushed = 0.0;
   if (leapfrog_) {
     VectorX v = state.v;
+    if (isPushed(state)) setRestForce(state);
     for (std::size_t t = 0; t < state.velocityOf.size(); ++t) {
-      const Tree& tree = model_.trees[t];
-      if (state.velocityOf[t] == VelocityOf::now)
-        v.segment(tree.firstDof, tree.dofEnd - tree.firstDof).setZero();
-      pushed |= state.velocityOf[t] == VelocityOf::halfAStepAgoPushed;
+      if (!wasFollowed(state.velocityOf[t])) continue;
+      auto part =
+          v.segment(model_.trees[t].firstDof, model_.trees[t].dofEnd - model_.trees[t].firstDof);
+      if (state.velocityOf[t] == VelocityOf::halfAStepAgoPushed)
+        pushed += 0.5 * h * part.dot(restForce_.segment(model_.trees[t].firstDof, part.size()));
+      part.setZero();
     }
-    integratePosition(model_, v, -0.5 * model_.options.timestep, back_.q);
+    integratePosition(model_, v, -0.5 * h, back_.q);
   }
   computeKinematics(model_, back_, kinematics_);
-  Energy E = computeEnergy(model_, kinematics_, back_.q, back_.v);
-  if (pushed) {
-    computeKinematics(model_, state, kinematics_);
-    E.kinetic = computeEnergy(model_, kinematics_, state.q, state.v).kinetic;
-  }
-  return E.total();
+  return computeEnergy(model_, kinematics_, back_.q, back_.v).total() + pushed;
+}
+
+void EnergyWatch::setRestForce(const State& state) {
+  State still = state;
+  still.v.setZero();
+  computeStages(model_, {}, still, data_, nullptr);
+  restForce_ = data_.forces.net;
 }
 
 double EnergyWatch::turning(const State& state) {
@@ -105,6 +116,9 @@ double EnergyWatch::stored(const State& state, const Input& input) {
   Input soft = input;
   soft.softFriction = true;  // (T.97) scales k d by the speed
   computeStages(model_, soft, state, data_, &contacts_);
+  const auto all = [](int) { return true; };
+  data_.constraints.connection.leaveOutTurning(all);
+  data_.constraints.weld.leaveOutTurning(all);
   const std::vector<std::vector<double>> moving = references(data_.constraints);
   State still = state;
   still.v.setZero();
@@ -144,6 +158,7 @@ double EnergyWatch::begun(const Data& data) {
 }
 
 void EnergyWatch::begin(const State& state, const Input& input) {
+  start_ = state;
   least_ = energy(state);
   limit_ = least_ + stored(state, input) + offset(state, input);
 }
@@ -151,6 +166,11 @@ void EnergyWatch::begin(const State& state, const Input& input) {
 double EnergyWatch::check(const State& state, const Input& input, const Data& data, double work,
                           double perStep) {
   constexpr int kEvery = 5;
+  if (steps_ == 0 && state.velocityOf != start_.velocityOf) {
+    State start = start_;
+    start.velocityOf = state.velocityOf;
+    begin(start, input);
+  }
   const double E = energy(state), now = E - work;
   limit_ += perStep + begun(data);
   if (leapfrog_)

@@ -29,7 +29,9 @@
 /// their weight. A tree that turns by less than kFollowedTurn = ½ (h ω)² of its velocity in a step
 /// is not followed: 2 kFollowedTurn K in Δ, and ε = (h ω)³ K/12 of the third order, K without the
 /// way of free bodies. One that is followed has v at q, and keeps its energy to the tolerance of
-/// its sub-steps, ε = 2 kTolerance K for each.
+/// its sub-steps, ε = 2 kTolerance K for each; where rows push it, v is without half a step of F_s,
+/// what weight and springs do: E there is that of q and v, and ½ h v·F_s.
+/// Which of these a start is, is what the first step has made of it.
 
 #include <cstdint>
 #include <vector>
@@ -59,6 +61,7 @@ class EnergyWatch {
   double offset(const State& state, const Input& input);  ///< Δ [J]
 
  private:
+  void setRestForce(const State& state);
   double begun(const Data& data);
   double turning(const State& state);  ///< K where energy() was, but for the way of free bodies [J]
 
@@ -68,9 +71,11 @@ class EnergyWatch {
   Data data_;
   collision::SceneContacts contacts_;
   State back_;
+  VectorX restForce_;         ///< F_s (nv)
   double least_ = kInfinity;  ///< E − W so far
   double limit_ = kInfinity;  ///< of E − W: the least of the right side, but for Δ(t)
   int steps_ = 0;
+  State start_;
   std::vector<RowName> now_, before_;  ///< contacts
 };
 

@@ -13,10 +13,17 @@ namespace softgauss {
 
 const double FollowedTrees::kFollowedTurn = 5e-4;
 constexpr double kTiedTurn = 0.1;  // [rad]
-// A tree that is followed stays so until it is far below. Each change from the leapfrog's energy to
-// its own and back is off by what the two differ by, of order h² and of one sign: what nothing
-// brakes gains by it.
-constexpr double kStays = 0.25, kStaysFree = 1e-3;
+// A tree that is followed stays so until it is below a part of the threshold. Each change from the
+// leapfrog's energy to its own and back is off by what the two differ by, of order h² and of one
+// sign: what is passive gains by it, and stays followed until it is all but at rest. What is damped
+// or driven does not, and a controller at its limits feels every change; what ties do to a tree
+// that is followed is the coarser part of the step.
+struct Following {
+  double staysFree, staysPushed;  ///< parts of kFollowedTurn; pushed by rows
+  bool byEnergy;                  ///< by the second part of (T.93) too
+};
+constexpr Following kPassive{1e-6, 0.05, true}, kHeld{1e-3, 0.25, false},
+    kDamped{0.25, 0.25, false};
 
 namespace {
 
@@ -29,14 +36,26 @@ double speedOf(const Tree& tree, const Data& data, const VectorX& v, double h) {
   return speed;
 }
 
+/// By which a body turns in a step [rad].
+double angle(const Model& model, const Data& data, int body) {
+  return model.options.timestep * data.kinematics.V[body].angular.norm();
+}
+
 /// How many entries of q a tree has.
 int coordinates(const Model& model, const Tree& tree) {
   return tree.dofEnd - tree.firstDof +
          (model.bodies[tree.rootBody].joint == JointKind::floating ? 1 : 0);
 }
 
-/// (T.93), without the factor h. Of joints that turn and of those that slide, what changes by less
-/// than rounding of the tree's motion tells nothing: a ball that does not spin is at 0/0.
+/// What Δb does to the energy of motion, against what there is: the second part of (T.93), without
+/// the factor h. Both arguments are squares.
+double energyRate(double change, double motion) {
+  return change > 0.0 && motion > 0.0 ? 2.0 * std::sqrt(change / motion) : 0.0;
+}
+
+/// The first part of (T.93), without the factor h. Of joints that turn and of those that slide,
+/// what changes by less than rounding of the tree's motion tells nothing: a ball that does not spin
+/// is at 0/0.
 double turnRate(const Model& model, const Tree& tree, const Data& data, const VectorX& v,
                 const VectorX& change) {
   constexpr double kRounding = 1e-12;
@@ -80,9 +99,16 @@ bool isPushed(const Tree& tree, const Data& data, const VectorX& push, const Vec
   return false;
 }
 
-bool isDamped(const Tree& tree, const Plan& plan) {
-  return plan.damped() &&
-         (plan.damping.segment(tree.firstDof, tree.dofEnd - tree.firstDof).array() > 0.0).any();
+/// Whether forces of this kind act on the tree.
+bool act(const VectorX& forces, const Tree& tree) {
+  return (forces.segment(tree.firstDof, tree.dofEnd - tree.firstDof).array() != 0.0).any();
+}
+
+/// A single body has no joints that could hide a turn.
+const Following& followingOf(const Tree& tree, bool tied, const Data& data) {
+  if (data.plan.damped() && act(data.plan.damping, tree)) return kDamped;
+  const bool body = tree.bodyEnd == tree.rootBody + 1;
+  return tied || body || act(data.forces.tau, tree) ? kHeld : kPassive;
 }
 
 void setRowForces(const Data& data, VectorX& rows) {
@@ -101,27 +127,62 @@ bool setCoriolis(const Model& model, Data& data, const VectorX& bias, FollowedTr
 
 }  // namespace
 
+FollowedTrees::FollowedTrees(const Model& model)
+    : turn(model.trees.size(), 0.0),
+      followed(model.trees.size(), 0),
+      pushed(model.trees.size(), 0),
+      push(VectorX::Zero(model.nv)),
+      change(VectorX::Zero(model.nv)),
+      a(VectorX::Zero(model.nv)),
+      net(VectorX::Zero(model.nv)),
+      bias(VectorX::Zero(model.nv)),
+      smooth(VectorX::Zero(model.nv)),
+      kicked(VectorX::Zero(model.nv)),
+      q(model.q0),
+      tied(model.trees.size(), 0),
+      motion(model) {
+  const auto ties = [&](int body) {
+    if (model.bodies[body].tree >= 0) tied[model.bodies[body].tree] = 1;
+  };
+  for (const Connection& c : model.connections) ties(c.bodyA), ties(c.bodyB);
+  for (const Weld& w : model.welds) ties(w.bodyA), ties(w.bodyB);
+}
+
 bool FollowedTrees::needed(const Model& model, const Data& data, State& state, const VectorX& dv) {
   const double h = model.options.timestep;
   if (state.velocityOf.size() != model.trees.size())
     state.velocityOf.assign(model.trees.size(), VelocityOf::asGiven);
   bool any = false;
-  for (std::size_t t = 0; t < model.trees.size(); ++t)
-    turn[t] = h * turnRate(model, model.trees[t], data, state.v, dv);
+  const VectorX& acceleration = data.forward.a;
+  data.inertia.M.multiply(dv, smooth);
+  data.inertia.M.multiply(state.v, kicked);
+  data.inertia.M.multiply(acceleration, push);
+  for (std::size_t t = 0; t < model.trees.size(); ++t) {
+    const Tree& tree = model.trees[t];
+    turn[t] = h * turnRate(model, tree, data, state.v, dv);
+    if (!followingOf(tree, tied[t], data).byEnergy) continue;
+    const auto square = [&](const VectorX& x, const VectorX& Mx) {
+      const int dofs = tree.dofEnd - tree.firstDof;
+      return x.segment(tree.firstDof, dofs).dot(Mx.segment(tree.firstDof, dofs));
+    };
+    turn[t] = std::max(
+        turn[t], h * energyRate(square(dv, smooth),
+                                square(state.v, kicked) + h * h * square(acceleration, push)));
+  }
   // What a tie holds is turned by it, also a ball, which has no Coriolis forces.
-  const auto tied = [&](int body) {
+  const auto turns = [&](int body) {
     const int tree = model.bodies[body].tree;
     if (tree < 0) return;
-    const double angle = h * data.kinematics.V[body].angular.norm();
-    turn[tree] = std::max(turn[tree], kFollowedTurn * angle * angle / (kTiedTurn * kTiedTurn));
+    const double far = angle(model, data, body) / kTiedTurn;
+    turn[tree] = std::max(turn[tree], kFollowedTurn * far * far);
   };
-  for (const Connection& c : model.connections) tied(c.bodyA), tied(c.bodyB);
-  for (const Weld& w : model.welds) tied(w.bodyA), tied(w.bodyB);
+  for (const Connection& c : model.connections) turns(c.bodyA), turns(c.bodyB);
+  for (const Weld& w : model.welds) turns(w.bodyA), turns(w.bodyB);
   for (std::size_t t = 0; t < model.trees.size(); ++t) {
     const VelocityOf instant = state.velocityOf[t];
-    const bool free = instant == VelocityOf::now && !isDamped(model.trees[t], data.plan);
-    const double least = free ? kStaysFree : wasFollowed(instant) ? kStays : 1.0;
-    followed[t] = turn[t] > least * kFollowedTurn;
+    const Following& stays = followingOf(model.trees[t], tied[t], data);
+    const double least = instant == VelocityOf::now ? stays.staysFree : stays.staysPushed;
+    followed[t] = turn[t] > (wasFollowed(instant) ? least : 1.0) * kFollowedTurn;
     any = any || followed[t] || wasFollowed(instant);
   }
   return any;
@@ -154,12 +215,17 @@ bool FollowedTrees::kick(const Model& model, Data& data, const State& state,
     data.forces.net.segment(first, dofs) += (bias - kicked).segment(first, dofs);
     data.forces.bias.segment(first, dofs) = kicked.segment(first, dofs);
   }
-  const auto isPushed = [&](int body) {
+  // (T.116) tells of a free body that moves on as it has come, and not of links, nor of a tenth of
+  // a turn.
+  const auto turnsFar = [&](int body) {
     const int tree = model.bodies[body].tree;
-    return tree >= 0 && pushed[tree];
+    if (tree < 0 || !pushed[tree]) return false;
+    const bool free = model.trees[tree].dofEnd - model.trees[tree].firstDof == 6 &&
+                      model.bodies[body].joint == JointKind::floating;
+    return !free || angle(model, data, body) > kTiedTurn;
   };
-  data.constraints.connection.leaveOutBias(isPushed);
-  data.constraints.weld.leaveOutBias(isPushed);
+  data.constraints.connection.leaveOutTurning(turnsFar);
+  data.constraints.weld.leaveOutTurning(turnsFar);
 
   const SolveStatus status = forwardDynamics(model, &a, data);
   ++data.stats.kicks;
@@ -183,8 +249,8 @@ bool FollowedTrees::kick(const Model& model, Data& data, const State& state,
 void FollowedTrees::endKick(const Model& model, Data& data) {
   data.forces.net = net;
   data.forces.bias = bias;
-  data.constraints.connection.putBackBias();
-  data.constraints.weld.putBackBias();
+  data.constraints.connection.putBackTurning();
+  data.constraints.weld.putBackTurning();
   forwardDynamics(model, &a, data);
 }
 
@@ -287,7 +353,7 @@ void FollowedTrees::copyPositions(const Model& model, VectorX& qPlus) const {
 }
 
 std::size_t FollowedTrees::bytes() const {
-  return bytesOfAll(turn, followed, pushed, push, change, a, net, bias, smooth, kicked, q) +
+  return bytesOfAll(turn, followed, pushed, push, change, a, net, bias, smooth, kicked, q, tied) +
          motion.bytes();
 }
 

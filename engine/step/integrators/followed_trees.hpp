@@ -6,13 +6,15 @@
 ///
 /// How far a tree turns is told by what (T.16) knows already: the change of the Coriolis and
 /// gyroscopic forces to mid-step, Δb = b(q, v + ½ h a) − b(q, v), gives h M⁻¹Δb of velocity, which
-/// is set against the velocities of the tree's joints, those that turn and those that slide apart:
+/// is set against the velocities of the tree's joints, those that turn and those that slide apart,
+/// and by what it does to the energy of motion:
 ///
-///   turn = max_i |h (M⁻¹Δb)_i| / max_i (|v_i| + h |a_i|)                                 (T.93)
+///   turn = h max(max_i |(M⁻¹Δb)_i| / max_i (|v_i| + h |a_i|),
+///                2 √(Δbᵀ M⁻¹Δb / (vᵀM v + h² aᵀM a)))                                     (T.93)
 ///
-/// It is about ½ (h ω)² for a body that tumbles at ω, and nothing for a wheel or a ball, whose spin
-/// makes no such forces; a joint that is far faster than the others hides what they turn,
-/// which docs/stability.md has figures of. Where it
+/// It is about (h ω)² for a body that tumbles at ω, and nothing for a wheel or a ball, whose spin
+/// makes no such forces. By its energy a fast joint of little inertia hides nothing of what the
+/// others turn; that counts for passive trees, whose energy nothing else changes. Where turn
 /// exceeds kFollowedTurn the tree moves by (T.91) under the forces of the step, to a tolerance; all
 /// others move by (T.16), bit for bit. So does what a connection or a weld holds where it turns by
 /// more than kTiedTurn, a ball too: the rows turn with it.
@@ -52,22 +54,11 @@ struct FollowedTrees {
   VectorX a, net, bias;                ///< (nv) of (T.1) with all forces, while kick() holds
   VectorX smooth, kicked;              ///< (nv) scratch
   VectorX q;                           ///< (nq) scratch
+  std::vector<std::uint8_t> tied;      ///< (trees) 1: connections or welds hold it
   TreeMotion motion;
 
   FollowedTrees() = default;
-  explicit FollowedTrees(const Model& model)
-      : turn(model.trees.size(), 0.0),
-        followed(model.trees.size(), 0),
-        pushed(model.trees.size(), 0),
-        push(VectorX::Zero(model.nv)),
-        change(VectorX::Zero(model.nv)),
-        a(VectorX::Zero(model.nv)),
-        net(VectorX::Zero(model.nv)),
-        bias(VectorX::Zero(model.nv)),
-        smooth(VectorX::Zero(model.nv)),
-        kicked(VectorX::Zero(model.nv)),
-        q(model.q0),
-        motion(model) {}
+  explicit FollowedTrees(const Model& model);
 
   /// Finds which trees are to be followed; `change` = M⁻¹Δb (nv). Whether there is one, or was one
   /// in the step before.
