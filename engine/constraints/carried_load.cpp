@@ -62,7 +62,7 @@ void CarriedLoad::weigh(const Model& model, const Kinematics& kinematics,
                         const ContactSet& contacts, const InverseWeights& weights) {
   const std::size_t trees = model.trees.size();
   const bool turning = !model.welds.empty();
-  if (turning) origin_W = kinematics.X_WB[model.welds.front().bodyA].p;
+  if (turning) origin_ = kinematics.X_WB[model.welds.front().bodyA].p;
   parent_.resize(trees);
   std::iota(parent_.begin(), parent_.end(), 0);
   own_.assign(trees, {});
@@ -81,7 +81,7 @@ void CarriedLoad::weigh(const Model& model, const Kinematics& kinematics,
       if (mass > own_[tree].mass) {
         Load& own = own_[tree] = {mass};
         if (turning) {
-          const Vector3 c = kinematics.X_WB[body] * model.bodies[body].com - origin_W;
+          const Vector3 c = kinematics.X_WB[body] * model.bodies[body].com - origin_;
           const double w_r = weights.rotation[body];
           own.moment = mass * c;
           own.turning = mass * c.squaredNorm() + (w_r > 0.0 ? 1.0 / w_r : 0.0);
@@ -171,7 +171,7 @@ double CarriedLoad::mass(const Model& model, int bodyA, int bodyB) const {
 }
 
 double CarriedLoad::inertia(const Model& model, int bodyA, int bodyB, const Vector3& p_W) const {
-  const Vector3 p = p_W - origin_W;
+  const Vector3 p = p_W - origin_;
   return mostOf(between(model, bodyA, bodyB), [&](const Load& load) { return load.about(p); });
 }
 

@@ -87,8 +87,8 @@ class CarriedLoad {
   void passDown();
   Carried between(const Model& model, int bodyA, int bodyB) const;
 
-  bool any_ = false;              ///< two trees touch, or are tied
-  Vector3 origin_W;               ///< of moments
+  bool any_ = false;                  ///< two trees touch, or are tied
+  Vector3 origin_ = Vector3::Zero();  ///< of moments (world) [m]
   std::vector<int> parent_;       ///< of a tree in its island, towards the one that stands for it
   std::vector<Load> own_;         ///< m_T, c_T, I_T
   std::vector<Load> passed_;      ///< P_T

@@ -8,7 +8,8 @@
 ///   x = J a − a_ref,   a_ref = −b ṙ − k d(|r|) r − J̇ v,   s(x) = ½ D x²                  (T.28)
 /// with A = w_A + w_B, the bodies' translational inverse weights, or less where the connection
 /// carries more than they are (T.80). With J̇ v, r̈ is the acceleration of the distance itself, and
-/// closed loops do not drift when they turn fast. Of a v that lags by half a step (T.116) has both.
+/// closed loops do not drift when they turn fast. Where v lags by half a step, ṙ and J̇ v are those
+/// of (T.116), by how r has come and would go on.
 
 #include "engine/constraints/assembly.hpp"
 #include "engine/constraints/block_rows.hpp"

@@ -46,6 +46,12 @@ bool isPushed(const State& state) {
                    VelocityOf::halfAStepAgoPushed) != state.velocityOf.end();
 }
 
+/// √(2 K) by its largest part, as sub-steps have it: max_i (|v_i| + h |a_i|) √M_ii.
+double speed(const Model& model, const State& state, const Data& data) {
+  const VectorX v = state.v.cwiseAbs() + model.options.timestep * data.acceleration.cwiseAbs();
+  return v.cwiseQuotient(data.inertia.forceScale).maxCoeff();
+}
+
 bool isFreeBody(const Model& model, const Tree& tree) {
   return model.bodies[tree.rootBody].joint == JointKind::floating &&
          tree.dofEnd == tree.firstDof + 6;
@@ -173,10 +179,12 @@ double EnergyWatch::check(const State& state, const Input& input, const Data& da
   }
   const double E = energy(state), now = E - work;
   limit_ += perStep + begun(data);
-  if (leapfrog_)
-    limit_ += (std::pow(2.0 * FollowedTrees::kFollowedTurn, 1.5) / 12.0 +
-               2.0 * TreeMotion::kTolerance * data.stats.substeps) *
-              turning(back_);
+  if (leapfrog_) {
+    const double K = turning(back_);
+    limit_ += std::pow(2.0 * FollowedTrees::kFollowedTurn, 1.5) / 12.0 * K +
+              TreeMotion::kTolerance * data.stats.substeps * speed(model_, state, data) *
+                  std::sqrt(2.0 * K);
+  }
   const double rounding =
       1e3 * std::numeric_limits<double>::epsilon() * (std::abs(E) + std::abs(work));
   double over = now - limit_ - rounding;

@@ -104,11 +104,12 @@ bool act(const VectorX& forces, const Tree& tree) {
   return (forces.segment(tree.firstDof, tree.dofEnd - tree.firstDof).array() != 0.0).any();
 }
 
+bool isSingle(const Tree& tree) { return tree.bodyEnd == tree.rootBody + 1; }
+
 /// A single body has no joints that could hide a turn.
 const Following& followingOf(const Tree& tree, bool tied, const Data& data) {
   if (data.plan.damped() && act(data.plan.damping, tree)) return kDamped;
-  const bool body = tree.bodyEnd == tree.rootBody + 1;
-  return tied || body || act(data.forces.tau, tree) ? kHeld : kPassive;
+  return tied || isSingle(tree) || act(data.forces.tau, tree) ? kHeld : kPassive;
 }
 
 void setRowForces(const Data& data, VectorX& rows) {
@@ -215,14 +216,12 @@ bool FollowedTrees::kick(const Model& model, Data& data, const State& state,
     data.forces.net.segment(first, dofs) += (bias - kicked).segment(first, dofs);
     data.forces.bias.segment(first, dofs) = kicked.segment(first, dofs);
   }
-  // (T.116) tells of a free body that moves on as it has come, and not of links, nor of a tenth of
-  // a turn.
+  // (T.116) tells of a single body that moves on as it has come, not of links.
   const auto turnsFar = [&](int body) {
     const int tree = model.bodies[body].tree;
     if (tree < 0 || !pushed[tree]) return false;
-    const bool free = model.trees[tree].dofEnd - model.trees[tree].firstDof == 6 &&
-                      model.bodies[body].joint == JointKind::floating;
-    return !free || angle(model, data, body) > kTiedTurn;
+    const bool floats = model.bodies[body].joint == JointKind::floating;
+    return !(floats && isSingle(model.trees[tree])) || angle(model, data, body) > kTiedTurn;
   };
   data.constraints.connection.leaveOutTurning(turnsFar);
   data.constraints.weld.leaveOutTurning(turnsFar);
