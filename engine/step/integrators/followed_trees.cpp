@@ -16,8 +16,8 @@ constexpr double kTiedTurn = 0.1;  // [rad]
 // A tree that is followed stays so until it is below a part of the threshold. Each change from the
 // leapfrog's energy to its own and back is off by what the two differ by, of order h² and of one
 // sign: what is passive gains by it, and stays followed until it is all but at rest. What is damped
-// or driven does not, and a controller at its limits feels every change; what ties do to a tree
-// that is followed is the coarser part of the step.
+// much or driven does not, and a controller at its limits feels every change; what ties do to a
+// tree that is followed is the coarser part of the step.
 struct Following {
   double staysFree, staysPushed;  ///< parts of kFollowedTurn; pushed by rows
   bool byEnergy;                  ///< by the second part of (T.93) too
@@ -106,10 +106,20 @@ bool act(const VectorX& forces, const Tree& tree) {
 
 bool isSingle(const Tree& tree) { return tree.bodyEnd == tree.rootBody + 1; }
 
+/// Damping stops a joint within the step: what that takes is more than any change gains, and would
+/// cost many sub-steps.
+bool stops(const Tree& tree, const Data& data, double h) {
+  for (int i = tree.firstDof; i < tree.dofEnd; ++i)
+    if (h * data.plan.damping[i] * std::pow(data.inertia.forceScale[i], 2.0) > 1.0) return true;
+  return false;
+}
+
 /// A single body has no joints that could hide a turn.
-const Following& followingOf(const Tree& tree, bool tied, const Data& data) {
-  if (data.plan.damped() && act(data.plan.damping, tree)) return kDamped;
-  return tied || isSingle(tree) || act(data.forces.tau, tree) ? kHeld : kPassive;
+const Following& followingOf(const Tree& tree, bool tied, const Data& data, double h) {
+  const bool held = tied || isSingle(tree) || act(data.forces.tau, tree);
+  const bool damped = data.plan.damped() && act(data.plan.damping, tree);
+  if (damped && (held || stops(tree, data, h))) return kDamped;
+  return held ? kHeld : kPassive;
 }
 
 void setRowForces(const Data& data, VectorX& rows) {
@@ -161,7 +171,7 @@ bool FollowedTrees::needed(const Model& model, const Data& data, State& state, c
   for (std::size_t t = 0; t < model.trees.size(); ++t) {
     const Tree& tree = model.trees[t];
     turn[t] = h * turnRate(model, tree, data, state.v, dv);
-    if (!followingOf(tree, tied[t], data).byEnergy) continue;
+    if (!followingOf(tree, tied[t], data, h).byEnergy) continue;
     const auto square = [&](const VectorX& x, const VectorX& Mx) {
       const int dofs = tree.dofEnd - tree.firstDof;
       return x.segment(tree.firstDof, dofs).dot(Mx.segment(tree.firstDof, dofs));
@@ -181,7 +191,7 @@ bool FollowedTrees::needed(const Model& model, const Data& data, State& state, c
   for (const Weld& w : model.welds) turns(w.bodyA), turns(w.bodyB);
   for (std::size_t t = 0; t < model.trees.size(); ++t) {
     const VelocityOf instant = state.velocityOf[t];
-    const Following& stays = followingOf(model.trees[t], tied[t], data);
+    const Following& stays = followingOf(model.trees[t], tied[t], data, h);
     const double least = instant == VelocityOf::now ? stays.staysFree : stays.staysPushed;
     followed[t] = turn[t] > (wasFollowed(instant) ? least : 1.0) * kFollowedTurn;
     any = any || followed[t] || wasFollowed(instant);
