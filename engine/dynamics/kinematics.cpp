@@ -43,7 +43,7 @@ void computePoses(const Model& model, const VectorX& q, Kinematics& k) {
     // Pose: the joint moves the body by q along or about its axis.
     const Transform& X_WP = k.X_WB[body.parent];
     Transform& X = k.X_WB[b];
-    const double angle = q[body.q];  // or way
+    const double displacement = q[body.q];
     X.p.noalias() = X_WP.R * body.X_PB.p;
     X.p += X_WP.p;
     Matrix3 R_WJ;
@@ -55,11 +55,11 @@ void computePoses(const Model& model, const VectorX& q, Kinematics& k) {
 
     Motion& S = k.S[body.v];
     if (body.joint == JointKind::revolute) {
-      X.R.noalias() = R_WJ * axisRotation(body.axis, angle);
+      X.R.noalias() = R_WJ * axisRotation(body.axis, displacement);
       S = {axis_W, r.cross(axis_W)};
     } else {
       X.R = R_WJ;
-      X.p += angle * axis_W;
+      X.p += displacement * axis_W;
       S = {Vector3::Zero(), axis_W};
     }
   }

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -96,6 +97,18 @@ TEST(Chains, HundredLinksKeepTheirEnergyForTenSecondsLong) {
       for (const double h : {0.002, 0.01}) keepsItsEnergy(100, load, hinges, h, 10.0);
 }
 
+/// The most energy above the start's [J], with q and v of one instant.
+double gainedIn(Trial& t, double seconds, const std::function<void()>& each = {}) {
+  EnergyWatch watch(t.model);
+  const double E0 = watch.energy(t.state);
+  double gained = 0.0;
+  t.run(seconds, [&] {
+    gained = std::max(gained, watch.energy(t.state) - E0);
+    if (each) each();
+  });
+  return gained;
+}
+
 // Two and three links are followed some of the time, where dry friction pushes them too: each time
 // that begins or ends their energy is off by order h². Of what the weight can give 1 % at most, at
 // 10 ms 5 %, with q and v of one instant. Without half a step of Coriolis forces where what
@@ -110,14 +123,8 @@ void gainsNothing(int n, double friction, double h, double seconds) {
   const double scale = 0.1 * n * 9.81 * 0.05 * n, bound = h > 0.002 ? 0.05 : 0.01;
   t.mayGain = std::max(0.05, 20.0 * h) * scale;  // v is that of half a step before
   t.mayRise = bound * scale;
-  EnergyWatch watch(t.model);
-  const double E0 = watch.energy(t.state);
-  double gained = 0.0;
   int followed = 0;
-  t.run(seconds, [&] {
-    gained = std::max(gained, watch.energy(t.state) - E0);
-    followed += t.data->stats.followedTrees;
-  });
+  const double gained = gainedIn(t, seconds, [&] { followed += t.data->stats.followedTrees; });
   t.expect("energy gained, relative", gained / scale, bound, "");
   EXPECT_TRUE(followed > 0 || h < 0.002);
 }
@@ -162,11 +169,7 @@ TEST(Chains, BearingsOfNextToNoDampingGainNothing) {
         Trial t(name.str(), with(builder, h));
         t.mayGain = std::max(0.05, 20.0 * h) * scale;  // v is that of half a step before
         t.mayRise = 1e-3 * scale;
-        EnergyWatch watch(t.model);
-        const double E0 = watch.energy(t.state);
-        double gained = 0.0;
-        t.run(20.0, [&] { gained = std::max(gained, watch.energy(t.state) - E0); });
-        t.expect("energy gained, relative", gained / scale, 0.01, "");
+        t.expect("energy gained, relative", gainedIn(t, 20.0) / scale, 0.01, "");
       }
 }
 

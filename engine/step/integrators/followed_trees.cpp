@@ -163,24 +163,8 @@ bool FollowedTrees::needed(const Model& model, const Data& data, State& state, c
   const double h = model.options.timestep;
   if (state.velocityOf.size() != model.trees.size())
     state.velocityOf.assign(model.trees.size(), VelocityOf::asGiven);
-  bool any = false;
-  const VectorX& acceleration = data.forward.a;
-  data.inertia.M.multiply(dv, smooth);
-  data.inertia.M.multiply(state.v, kicked);
-  data.inertia.M.multiply(acceleration, push);
-  for (std::size_t t = 0; t < model.trees.size(); ++t) {
-    const Tree& tree = model.trees[t];
-    turn[t] = h * turnRate(model, tree, data, state.v, dv);
-    if (!followingOf(tree, tied[t], data, h).byEnergy) continue;
-    const auto square = [&](const VectorX& x, const VectorX& Mx) {
-      const int dofs = tree.dofEnd - tree.firstDof;
-      return x.segment(tree.firstDof, dofs).dot(Mx.segment(tree.firstDof, dofs));
-    };
-    turn[t] = std::max(
-        turn[t], h * energyRate(square(dv, smooth),
-                                square(state.v, kicked) + h * h * square(acceleration, push)));
-  }
   // What a tie holds is turned by it, also a ball, which has no Coriolis forces.
+  std::fill(turn.begin(), turn.end(), 0.0);
   const auto turns = [&](int body) {
     const int tree = model.bodies[body].tree;
     if (tree < 0) return;
@@ -189,12 +173,31 @@ bool FollowedTrees::needed(const Model& model, const Data& data, State& state, c
   };
   for (const Connection& c : model.connections) turns(c.bodyA), turns(c.bodyB);
   for (const Weld& w : model.welds) turns(w.bodyA), turns(w.bodyB);
+
+  bool any = false, multiplied = false;
   for (std::size_t t = 0; t < model.trees.size(); ++t) {
+    const Tree& tree = model.trees[t];
+    const Following& following = followingOf(tree, tied[t], data, h);
+    turn[t] = std::max(turn[t], h * turnRate(model, tree, data, state.v, dv));
+    if (following.byEnergy) {
+      if (!multiplied) {  // all trees at once
+        data.inertia.M.multiply(dv, smooth);
+        data.inertia.M.multiply(state.v, kicked);
+        data.inertia.M.multiply(data.forward.a, push);
+        multiplied = true;
+      }
+      const auto square = [&](const VectorX& x, const VectorX& Mx) {
+        const int dofs = tree.dofEnd - tree.firstDof;
+        return x.segment(tree.firstDof, dofs).dot(Mx.segment(tree.firstDof, dofs));
+      };
+      const double moving = square(state.v, kicked) + h * h * square(data.forward.a, push);
+      turn[t] = std::max(turn[t], h * energyRate(square(dv, smooth), moving));
+    }
     const VelocityOf instant = state.velocityOf[t];
-    const Following& stays = followingOf(model.trees[t], tied[t], data, h);
-    const double least = instant == VelocityOf::now ? stays.staysFree : stays.staysPushed;
-    followed[t] = turn[t] > (wasFollowed(instant) ? least : 1.0) * kFollowedTurn;
-    any = any || followed[t] || wasFollowed(instant);
+    const bool was = wasFollowed(instant);
+    const double stays = instant == VelocityOf::now ? following.staysFree : following.staysPushed;
+    followed[t] = turn[t] > (was ? stays : 1.0) * kFollowedTurn;
+    any = any || followed[t] || was;
   }
   return any;
 }

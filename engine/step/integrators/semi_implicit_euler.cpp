@@ -9,42 +9,32 @@
 namespace softgauss {
 namespace {
 
-/// A joint slides as fast as one of its tree turns at the speed `fast` [rad/s]: √M_ii |v_i| of it
-/// is larger than of the dof that turns most easily.
-template <class Ends>
-bool slidesFar(const Model& model, const Tree& tree, const Data& data, const Ends& ends,
-               double fast) {
-  double fastest = 0.0, lightest = kInfinity;
-  for (int b = tree.rootBody; b < tree.bodyEnd; ++b) {
-    const Body& body = model.bodies[b];
-    const auto root = [&](int i) { return 1.0 / data.inertia.forceScale[i]; };  // √M_ii
-    if (body.joint == JointKind::prismatic)
-      fastest = std::max(fastest, std::abs(ends(body.v)) * root(body.v));
-    else if (body.joint == JointKind::revolute)
-      lightest = std::min(lightest, root(body.v));
-    else
-      for (int i = body.v + 3; i < body.v + 6; ++i) lightest = std::min(lightest, root(i));
-  }
-  return fastest > fast * lightest;
-}
-
 /// A body turns by more than 0.005 rad in the step, or a joint does by the velocity that it ends
-/// with, or slides as far, or a tree was followed in the last one. Below that (T.93) need not be
-/// worked out.
+/// with, or slides with as much energy, v_i √M_ii, as the joint of its tree that turns most easily
+/// would have so, or a tree was followed in the last one. Below that (T.93) need not be worked out.
 bool mayTurnFar(const Model& model, const Data& data, const State& state) {
   for (const VelocityOf instant : state.velocityOf)
     if (wasFollowed(instant)) return true;
   const double h = model.options.timestep, fast = 0.005 / h;
   for (const Motion& V : data.kinematics.V)
     if (V.angular.squaredNorm() > fast * fast) return true;
-  const auto ends = [&](int i) { return state.v[i] + h * data.acceleration[i]; };
-  for (const Tree& tree : model.trees)
-    if (slidesFar(model, tree, data, ends, fast)) return true;
-  for (const Body& body : model.bodies) {
-    if (body.joint == JointKind::revolute && std::abs(ends(body.v)) > fast) return true;
-    if (body.joint == JointKind::floating)
-      for (int i = body.v + 3; i < body.v + 6; ++i)
-        if (std::abs(ends(i)) > fast) return true;
+  for (const Tree& tree : model.trees) {
+    double slides = 0.0, lightest = kInfinity;
+    for (int b = tree.rootBody; b < tree.bodyEnd; ++b) {
+      const Body& body = model.bodies[b];
+      const bool floats = body.joint == JointKind::floating;
+      for (int i = body.v + (floats ? 3 : 0); i < body.v + (floats ? 6 : 1); ++i) {
+        const double ends = std::abs(state.v[i] + h * data.acceleration[i]);
+        const double root = 1.0 / data.inertia.forceScale[i];  // √M_ii
+        if (body.joint == JointKind::prismatic) {
+          slides = std::max(slides, ends * root);
+          continue;
+        }
+        if (ends > fast) return true;
+        lightest = std::min(lightest, root);
+      }
+    }
+    if (slides > fast * lightest) return true;
   }
   return false;
 }
