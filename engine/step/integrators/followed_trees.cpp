@@ -12,7 +12,8 @@
 namespace softgauss {
 
 const double FollowedTrees::kFollowedTurn = 5e-4;
-constexpr double kTiedTurn = 0.1;  // [rad]
+constexpr double kTiedTurn = 0.1;      // [rad]
+constexpr double kRollingTurn = 0.05;  // of (T.93), a third of a radian
 // A tree that is followed stays so until it is below a part of the threshold. Each change from the
 // leapfrog's energy to its own and back is off by what the two differ by, of order h² and of one
 // sign: what is passive gains by it, and stays followed until it is all but at rest. What is damped
@@ -99,12 +100,26 @@ bool isPushed(const Tree& tree, const Data& data, const VectorX& push, const Vec
   return false;
 }
 
-/// Whether forces of this kind act on the tree.
+/// Whether forces of this kind act on the tree at all.
 bool act(const VectorX& forces, const Tree& tree) {
   return (forces.segment(tree.firstDof, tree.dofEnd - tree.firstDof).array() != 0.0).any();
 }
 
+/// Applied forces change the tree's motion by more than a thousandth in the step.
+bool drive(const VectorX& tau, const Tree& tree, const Data& data, const VectorX& v, double h) {
+  double most = 0.0;
+  for (int i = tree.firstDof; i < tree.dofEnd; ++i)
+    most = std::max(most, std::abs(tau[i]) * data.inertia.forceScale[i]);
+  return h * most > 1e-3 * speedOf(tree, data, v, h);
+}
+
 bool isSingle(const Tree& tree) { return tree.bodyEnd == tree.rootBody + 1; }
+
+/// What rows do to such a body carries on what its velocity makes, as in (T.16): a coin that leans
+/// rolls on by it.
+bool rolls(const Tree& tree, bool tied, double turn) {
+  return isSingle(tree) && !tied && turn < kRollingTurn;
+}
 
 /// Damping stops a joint within the step: what that takes is more than any change gains, and would
 /// cost many sub-steps.
@@ -115,8 +130,9 @@ bool stops(const Tree& tree, const Data& data, double h) {
 }
 
 /// A single body has no joints that could hide a turn.
-const Following& followingOf(const Tree& tree, bool tied, const Data& data, double h) {
-  const bool held = tied || isSingle(tree) || act(data.forces.tau, tree);
+const Following& followingOf(const Tree& tree, bool tied, const Data& data, const VectorX& v,
+                             double h) {
+  const bool held = tied || isSingle(tree) || drive(data.forces.tau, tree, data, v, h);
   const bool damped = data.plan.damped() && act(data.plan.damping, tree);
   if (damped && (held || stops(tree, data, h))) return kDamped;
   return held ? kHeld : kPassive;
@@ -177,7 +193,7 @@ bool FollowedTrees::needed(const Model& model, const Data& data, State& state, c
   bool any = false, multiplied = false;
   for (std::size_t t = 0; t < model.trees.size(); ++t) {
     const Tree& tree = model.trees[t];
-    const Following& following = followingOf(tree, tied[t], data, h);
+    const Following& following = followingOf(tree, tied[t], data, state.v, h);
     turn[t] = std::max(turn[t], h * turnRate(model, tree, data, state.v, dv));
     if (following.byEnergy) {
       if (!multiplied) {  // all trees at once
@@ -224,7 +240,7 @@ bool FollowedTrees::kick(const Model& model, Data& data, const State& state,
   smooth.setZero();
   computeBiasAt(model, data.kinematics, data.inertia, smooth, data.forces.work, kicked);
   for (std::size_t t = 0; t < model.trees.size(); ++t) {
-    if (!pushed[t]) continue;
+    if (!pushed[t] || rolls(model.trees[t], tied[t], turn[t])) continue;
     const int first = model.trees[t].firstDof, dofs = model.trees[t].dofEnd - first;
     data.forces.net.segment(first, dofs) += (bias - kicked).segment(first, dofs);
     data.forces.bias.segment(first, dofs) = kicked.segment(first, dofs);

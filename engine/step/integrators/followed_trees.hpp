@@ -14,11 +14,11 @@
 ///
 /// It is about ½ (h ω)² for a body that tumbles at ω, and nothing for a wheel or a ball, whose spin
 /// makes no such forces. By the second part a fast joint of little inertia hides nothing of what
-/// the others turn; it counts for trees with joints whose energy nothing else changes, neither
-/// damping, nor applied forces, nor ties. Where turn exceeds kFollowedTurn the tree moves by (T.91)
-/// under the forces of the step, to a tolerance; all others move by (T.16), bit for bit. So does
-/// what a connection or a weld holds where it turns by more than kTiedTurn, a ball too: the rows
-/// turn with it.
+/// the others turn; it counts for trees with joints whose energy nothing else changes much,
+/// neither damping, nor applied forces, nor ties. Where turn exceeds kFollowedTurn the tree moves
+/// by (T.91) under the forces of the step, to a tolerance; all others move by (T.16), bit for bit.
+/// So does what a connection or a weld holds where it turns by more than kTiedTurn, a ball too: the
+/// rows turn with it.
 ///
 /// Semi-implicit Euler keeps the velocity of half a step earlier: its q⁺ = q + h v⁺ is that of the
 /// leapfrog. So ½ h a′ is added to v where a tree begins to be followed, and left out of v⁺ in the
@@ -34,9 +34,10 @@
 /// held while the tree turns works where it is not any more, and positions that move with half of
 /// what it does make energy out of a stiff contact, as explicit Euler does. f is that of (T.1)
 /// without what the velocities of these trees make, Coriolis forces and J̇ v of their rows: over
-/// the step these turn, and (T.91) has them. (J̇ v stays in the ties of a single body that turns by
-/// less than kTiedTurn: it moves on as it has come.) Then a kick takes velocity out of the rows and
-/// puts none in, however far the tree turns.
+/// the step these turn, and (T.91) has them. Then a kick takes velocity out of the rows and puts
+/// none in, however far the tree turns. A single body that turns little moves on as it has come:
+/// Coriolis forces stay where no tie holds it and turn < 0.05, without which a coin that rolls
+/// leaning would gain, and J̇ v in its ties below kTiedTurn.
 
 #include <cstdint>
 #include <vector>
