@@ -49,19 +49,17 @@ class BlockRows : public ScalarRows<Quadratic> {
   }
 
   /// Leaves out of the references what they have of the bodies' turning, in the blocks that concern
-  /// a body, until putBackTurning(): a_ref = −b J v − k d r.
+  /// a body: a_ref = −b J v − k d r.
   template <class Concerns>
   void leaveOutTurning(const Concerns& concerns) {
-    withTurning_ = reference;
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
       if (!concerns(bodies_[i].first) && !concerns(bodies_[i].second)) continue;
       for (std::size_t row = 3 * i; row < 3 * i + 3; ++row) reference[row] += turning_[row];
     }
   }
-  void putBackTurning() { reference = withTurning_; }
 
   std::size_t bytes() const {
-    return ScalarRows::bytes() + jacobian_.bytes() + bytesOfAll(turning_, withTurning_, bodies_);
+    return ScalarRows::bytes() + jacobian_.bytes() + bytesOfAll(turning_, bodies_);
   }
 
  protected:
@@ -87,7 +85,6 @@ class BlockRows : public ScalarRows<Quadratic> {
 
  private:
   std::vector<double> turning_;              ///< what each reference has of the bodies' turning
-  std::vector<double> withTurning_;          ///< references while some are without it
   std::vector<std::pair<int, int>> bodies_;  ///< of each block
 };
 

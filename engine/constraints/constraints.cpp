@@ -94,6 +94,27 @@ void Constraints::addForce(VectorX& tau) const {
   visit([&](const auto& c) { c.addTransposed(c.f, tau); });
 }
 
+void Constraints::dampAhead(const VectorX& a, double t) {
+  setRay(a);
+  visit([&](auto& c) {
+    for (std::size_t i = 0; i < c.dx.size(); ++i) c.reference[i] -= c.damping[i] * t * c.dx[i];
+  });
+}
+
+void Constraints::copyReferences(std::vector<double>& references) const {
+  references.clear();
+  visit([&](const auto& c) {
+    references.insert(references.end(), c.reference.begin(), c.reference.end());
+  });
+}
+
+void Constraints::setReferences(const std::vector<double>& references) {
+  auto next = references.begin();
+  visit([&](auto& c) {
+    for (double& r : c.reference) r = *next++;
+  });
+}
+
 void Constraints::setForceRate() {
   visit([](auto& c) { c.setForceRate(); });
 }

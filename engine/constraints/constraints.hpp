@@ -116,6 +116,11 @@ class Constraints {
   void along(double alpha, Jet& jet) const;
   void advance(double alpha);
   void addForce(VectorX& tau) const;
+  /// a_ref ← a_ref − b t J a: all rows damp the speed to which t [s] of a leads.
+  void dampAhead(const VectorX& a, double t);
+  /// All references, one kind after the other.
+  void copyReferences(std::vector<double>& references) const;
+  void setReferences(const std::vector<double>& references);
   /// df ← −∇²s dx: the rates of the rows' forces along the ray, at the present residual.
   void setForceRate();
   /// Adds the rate of that force along the ray, −Jᵀ∇²s dx.

@@ -12,6 +12,7 @@ void EllipticContact::assemble(const Assembly& in) {
   cones_.clear();
   perInertia_.clear();
   reference.clear();
+  damping.clear();
   if (options.cone == Cone::elliptic) {
     for (int i = 0; i < in.contacts.size(); ++i) {
       const std::optional<Touch> touch = touchAt(in, i);
@@ -24,6 +25,7 @@ void EllipticContact::assemble(const Assembly& in) {
       reference.push_back(soft.referenceAcceleration(velocity[0], touch->distance));
       for (int k = 1; k <= touch->frictionDim; ++k)
         reference.push_back(soft.referenceAcceleration(velocity[k], 0.0));
+      damping.resize(reference.size(), soft.damping);
     }
   }
   for (std::vector<double>* column : {&x, &dx, &f, &df}) column->resize(reference.size());

@@ -19,6 +19,7 @@ class EllipticContact : public ContactBlocks {
   static constexpr Cone kCone = Cone::elliptic;
 
   std::vector<double> reference;  ///< a_ref
+  std::vector<double> damping;    ///< b of the reference
   std::vector<double> x;          ///< residual at the present acceleration
   std::vector<double> dx;         ///< J d
   std::vector<double> f;          ///< force −∇s(x)
@@ -60,7 +61,7 @@ class EllipticContact : public ContactBlocks {
   FrameVector frameForce(int i) const;
   std::size_t bytes() const {
     return ContactBlocks::bytes() +
-           bytesOfAll(reference, x, dx, f, df, cones_, perInertia_, zones_, placed_);
+           bytesOfAll(reference, damping, x, dx, f, df, cones_, perInertia_, zones_, placed_);
   }
   /// Its rate along the search direction, after setForceRate().
   FrameVector frameForceRate(int i) const;

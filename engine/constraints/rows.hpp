@@ -50,6 +50,7 @@ class ScalarRows {
   std::vector<double> reference;   ///< a_ref
   std::vector<double> D;           ///< stiffness 1/R
   std::vector<double> perInertia;  ///< R per inverse inertia, Softness::perInertia
+  std::vector<double> damping;     ///< b of the reference
   std::vector<double> limit;       ///< of the force, where the penalty has one; else unused
   std::vector<double> x;           ///< residual at the present acceleration
   std::vector<double> dx;          ///< J d, rate of x along the search direction d
@@ -68,12 +69,14 @@ class ScalarRows {
   void pushSoftness(const Softness& softness) {
     D.push_back(1.0 / softness.R);
     perInertia.push_back(softness.perInertia);
+    damping.push_back(softness.damping);
   }
   /// Drops all rows; keeps the memory.
   void clearRows() {
     reference.clear();
     D.clear();
     perInertia.clear();
+    damping.clear();
     limit.clear();
   }
   /// Fits the arrays that the solver writes to `rows`.
@@ -184,7 +187,7 @@ class ScalarRows {
 
   /// Memory held [bytes].
   std::size_t bytes() const {
-    return bytesOfAll(reference, D, perInertia, limit, x, dx, f, h, df, piece_);
+    return bytesOfAll(reference, D, perInertia, damping, limit, x, dx, f, h, df, piece_);
   }
 
   void advance(double alpha) {

@@ -131,34 +131,6 @@ TEST(Violent, LeaningCylinderLands) {
       }
 }
 
-// Coins and wheels that roll in a circle, leaning: their weight turns the spin, the rim runs along
-// under them, and nothing drives them.
-TEST(Violent, WhatRollsLeaningGainsNothing) {
-  struct Wheel {
-    double R, thickness, mass, lean, speed;  // [m], [kg], [rad], [m/s]
-  };
-  for (const Wheel& w : {Wheel{0.05, 0.005, 0.05, 0.4, 1.0}, Wheel{0.012, 0.002, 0.007, 0.4, 0.5},
-                         Wheel{0.3, 0.04, 2.0, 0.4, 2.0}, Wheel{0.3, 0.04, 2.0, 0.1, 2.0},
-                         Wheel{0.05, 0.005, 0.05, 1.0, 1.0}})
-    for (const double timestep : {0.0005, 0.002, 0.005, 0.01})
-      for (const Cone cone : kCones) {
-        ModelBuilder builder = with(ModelBuilder("wheel"), timestep, cone);
-        builder.geometry(groundSpec(1.0));
-        const double height = w.R * std::cos(w.lean) + 0.5 * w.thickness * std::sin(w.lean);
-        const Eigen::AngleAxisd turn(0.5 * M_PI + w.lean, Vector3::UnitX());
-        addBody(builder, "wheel", Shape::cylinder(w.R, 0.5 * w.thickness), w.mass,
-                {turn.toRotationMatrix(), Vector3(0, 0, height)});
-        Trial t("wheel of " + std::to_string(w.R) + " m", builder);
-        t.state.v[0] = w.speed;
-        t.state.v[5] = -w.speed / w.R;
-        const double begun = t.energy().total();
-        t.mayGain = 1e-3 * begun;
-        t.mayRise = 0.01 * begun;
-        t.run(20.0);
-        t.expect("energy at the end", t.energy().total(), begun, "J");
-      }
-}
-
 // A ball that bounces ever lower: it rests after its last bounce, and never rises above its start.
 TEST(Violent, LastBounces) {
   for (const double timestep : {0.0005, 0.002, 0.01}) {

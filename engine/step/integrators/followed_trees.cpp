@@ -13,7 +13,7 @@ namespace softgauss {
 
 const double FollowedTrees::kFollowedTurn = 5e-4;
 constexpr double kTiedTurn = 0.1;      // [rad]
-constexpr double kRollingTurn = 0.05;  // of (T.93), a third of a radian
+constexpr double kRollingTurn = 0.05;  // of (T.93), about a third of a radian
 // A tree that is followed stays so until it is below a part of the threshold. Each change from the
 // leapfrog's energy to its own and back is off by what the two differ by, of order h² and of one
 // sign: what is passive gains by it, and stays followed until it is all but at rest. What is damped
@@ -115,10 +115,14 @@ bool drive(const VectorX& tau, const Tree& tree, const Data& data, const VectorX
 
 bool isSingle(const Tree& tree) { return tree.bodyEnd == tree.rootBody + 1; }
 
-/// What rows do to such a body carries on what its velocity makes, as in (T.16): a coin that leans
-/// rolls on by it.
-bool rolls(const Tree& tree, bool tied, double turn) {
-  return isSingle(tree) && !tied && turn < kRollingTurn;
+/// What rows do to such a tree carries on what its velocity makes, as in (T.16): a coin that leans
+/// rolls on by it. (T.116) tells of a single body that moves on as it has come, not of links.
+bool rolls(const Model& model, const Data& data, const FollowedTrees& f, int t) {
+  const Tree& tree = model.trees[t];
+  if (!(f.turn[t] < kRollingTurn)) return false;
+  return !f.tied[t] ||
+         (isSingle(tree) && model.bodies[tree.rootBody].joint == JointKind::floating &&
+          angle(model, data, tree.rootBody) <= kTiedTurn);
 }
 
 /// Damping stops a joint within the step: what that takes is more than any change gains, and would
@@ -143,13 +147,13 @@ void setRowForces(const Data& data, VectorX& rows) {
   data.constraints.addForce(rows);
 }
 
-/// f.change = a_c of (T.118): what Coriolis forces do by themselves. `bias`: b(q, v).
-bool setCoriolis(const Model& model, Data& data, const VectorX& bias, FollowedTrees& f) {
+/// f.coriolis = a_c of (T.118): what Coriolis forces do by themselves; f.kicked = b(q, 0).
+bool setCoriolis(const Model& model, Data& data, FollowedTrees& f) {
   f.smooth.setZero();
   computeBiasAt(model, data.kinematics, data.inertia, f.smooth, data.forces.work, f.kicked);
-  f.change = f.kicked - bias;
+  f.coriolis = f.kicked - data.forces.bias;
   const bool implicit = data.plan.damped() || anyStiffSpring(model, data);
-  return solveMass(data, implicit ? &data.forward.Md : nullptr, f.change);
+  return solveMass(data, implicit ? &data.forward.Md : nullptr, f.coriolis);
 }
 
 }  // namespace
@@ -159,7 +163,7 @@ FollowedTrees::FollowedTrees(const Model& model)
       followed(model.trees.size(), 0),
       pushed(model.trees.size(), 0),
       push(VectorX::Zero(model.nv)),
-      change(VectorX::Zero(model.nv)),
+      coriolis(VectorX::Zero(model.nv)),
       a(VectorX::Zero(model.nv)),
       net(VectorX::Zero(model.nv)),
       bias(VectorX::Zero(model.nv)),
@@ -231,26 +235,30 @@ bool FollowedTrees::anyPushed(const Model& model, const Data& data) {
 }
 
 bool FollowedTrees::kick(const Model& model, Data& data, const State& state,
-                         const VectorX& changed) {
+                         const VectorX& change) {
+  const double h = model.options.timestep;
   ForwardSolution& s = data.forward;
-  change = changed;
   a = s.a;
   net = data.forces.net;
   bias = data.forces.bias;
+  data.constraints.copyReferences(references);
+  if (!setCoriolis(model, data, *this)) return false;
+  // (T.120) of trees that roll, without Coriolis forces of the others.
   smooth.setZero();
-  computeBiasAt(model, data.kinematics, data.inertia, smooth, data.forces.work, kicked);
   for (std::size_t t = 0; t < model.trees.size(); ++t) {
-    if (!pushed[t] || rolls(model.trees[t], tied[t], turn[t])) continue;
+    if (!pushed[t]) continue;
     const int first = model.trees[t].firstDof, dofs = model.trees[t].dofEnd - first;
+    if (rolls(model, data, *this, static_cast<int>(t))) {
+      smooth.segment(first, dofs) = coriolis.segment(first, dofs);
+      continue;
+    }
     data.forces.net.segment(first, dofs) += (bias - kicked).segment(first, dofs);
     data.forces.bias.segment(first, dofs) = kicked.segment(first, dofs);
   }
-  // (T.116) tells of a single body that moves on as it has come, not of links.
+  data.constraints.dampAhead(smooth, -0.5 * h);
   const auto turnsFar = [&](int body) {
     const int tree = model.bodies[body].tree;
-    if (tree < 0 || !pushed[tree]) return false;
-    const bool floats = model.bodies[body].joint == JointKind::floating;
-    return !(floats && isSingle(model.trees[tree])) || angle(model, data, body) > kTiedTurn;
+    return tree >= 0 && pushed[tree] && !rolls(model, data, *this, tree);
   };
   data.constraints.connection.leaveOutTurning(turnsFar);
   data.constraints.weld.leaveOutTurning(turnsFar);
@@ -271,14 +279,13 @@ bool FollowedTrees::kick(const Model& model, Data& data, const State& state,
     const int first = model.trees[t].firstDof, dofs = model.trees[t].dofEnd - first;
     data.acceleration.segment(first, dofs) += change.segment(first, dofs);
   }
-  return setCoriolis(model, data, bias, *this);
+  return true;
 }
 
 void FollowedTrees::endKick(const Model& model, Data& data) {
   data.forces.net = net;
   data.forces.bias = bias;
-  data.constraints.connection.putBackTurning();
-  data.constraints.weld.putBackTurning();
+  data.constraints.setReferences(references);
   forwardDynamics(model, &a, data);
 }
 
@@ -290,7 +297,7 @@ void FollowedTrees::follow(const Model& model, Data& data, State& state, VectorX
     kicks = kicks || (followed[t] && pushed[t]);
     ends = ends || (!followed[t] && wasFollowed(state.velocityOf[t]));
   }
-  if (ends && !kicks && !setCoriolis(model, data, data.forces.bias, *this)) change.setZero();
+  if (ends && !kicks && !setCoriolis(model, data, *this)) coriolis.setZero();
   // Q = M a + b + D v + K (q − q_s): applied and constraint forces of the step.
   data.inertia.M.multiply(data.forward.a, held);
   push = held - data.forces.net;  // Jᵀf
@@ -312,7 +319,7 @@ void FollowedTrees::follow(const Model& model, Data& data, State& state, VectorX
       instant = VelocityOf::halfAStepAgo;
       continue;
     }
-    if (!followed[t]) part(vPlus) -= 0.5 * h * part(change);
+    if (!followed[t]) part(vPlus) -= 0.5 * h * part(coriolis);
     if (!followed[t] && instant != VelocityOf::now) {
       instant = VelocityOf::halfAStepAgo;
       continue;
@@ -338,7 +345,7 @@ void FollowedTrees::follow(const Model& model, Data& data, State& state, VectorX
       continue;
     }
     if (free && instant == VelocityOf::halfAStepAgo) motion.kick(tree, half);
-    if (!free && instant == VelocityOf::halfAStepAgo) motion.kick(tree, 0.5 * h * part(change));
+    if (!free && instant == VelocityOf::halfAStepAgo) motion.kick(tree, 0.5 * h * part(coriolis));
     if (!free || instant == VelocityOf::halfAStepAgoPushed) {
       motion.atRest(model, data.plan, tree, held, heldInWorld, smooth);
       if (instant != VelocityOf::now) motion.kick(tree, 0.5 * h * part(smooth));
@@ -381,7 +388,8 @@ void FollowedTrees::copyPositions(const Model& model, VectorX& qPlus) const {
 }
 
 std::size_t FollowedTrees::bytes() const {
-  return bytesOfAll(turn, followed, pushed, push, change, a, net, bias, smooth, kicked, q, tied) +
+  return bytesOfAll(turn, followed, pushed, push, coriolis, a, net, bias, smooth, kicked, q, tied,
+                    references) +
          motion.bytes();
 }
 

@@ -35,9 +35,14 @@
 /// what it does make energy out of a stiff contact, as explicit Euler does. f is that of (T.1)
 /// without what the velocities of these trees make, Coriolis forces and J̇ v of their rows: over
 /// the step these turn, and (T.91) has them. Then a kick takes velocity out of the rows and puts
-/// none in, however far the tree turns. A single body that turns little moves on as it has come:
-/// Coriolis forces stay where no tie holds it and turn < 0.05, without which a coin that rolls
-/// leaning would gain, and J̇ v in its ties below kTiedTurn.
+/// none in, however far the tree turns.
+///
+/// A tree with turn < 0.05 rolls on as it has come, and f has its Coriolis forces: of trees without
+/// ties, and of single bodies that turn by less than kTiedTurn, with J̇ v of their ties. The kick
+/// then puts h c into its rows, c = −J a_c, and on its way the tree takes it out again. The rows
+/// damp the mean of J v and J v + h c, so that f works against no speed of its own making:
+///
+///   a_ref ← a_ref + ½ h b J a_c                                                        (T.120)
 
 #include <cstdint>
 #include <vector>
@@ -53,9 +58,10 @@ struct FollowedTrees {
   std::vector<std::uint8_t> followed;  ///< (trees) 1: it was, in the last step
   std::vector<std::uint8_t> pushed;    ///< (trees) 1: followed, and rows push it
   VectorX push;                        ///< (nv) Jᵀf of the step
-  VectorX change;                      ///< (nv) M⁻¹Δb; in follow(), a_c of (T.118)
+  VectorX coriolis;                    ///< (nv) a_c of (T.118)
   VectorX a, net, bias;                ///< (nv) of (T.1) with all forces, while kick() holds
   VectorX smooth, kicked;              ///< (nv) scratch
+  std::vector<double> references;      ///< of its rows
   VectorX q;                           ///< (nq) scratch
   std::vector<std::uint8_t> tied;      ///< (trees) 1: connections or welds hold it
   TreeMotion motion;
@@ -68,8 +74,9 @@ struct FollowedTrees {
   bool needed(const Model& model, const Data& data, State& state, const VectorX& change);
   /// Finds which of them rows push, and whether there is one.
   bool anyPushed(const Model& model, const Data& data);
-  /// Solves (T.1) again, without what the velocities of pushed trees make: Coriolis forces, and J̇ v
-  /// of their rows. `change` as above; a′ of all trees follows. False: not finite.
+  /// Solves (T.1) again, by (T.120) and without what the velocities of the other pushed trees make:
+  /// Coriolis forces, and J̇ v of their rows. `change` as above; a′ of all trees follows. False: not
+  /// finite.
   bool kick(const Model& model, Data& data, const State& state, const VectorX& change);
   /// Puts (T.1) back as it was.
   void endKick(const Model& model, Data& data);
