@@ -118,6 +118,14 @@ class Constraints {
   void addForce(VectorX& tau) const;
   /// a_ref ← a_ref − b t J a: all rows damp the speed to which t [s] of a leads.
   void dampAhead(const VectorX& a, double t);
+  /// Leaves out of the references what they have of the bodies' turning, J̇ v, in the rows that
+  /// concern a body: a_ref = −b J v − k d r.
+  template <class Concerns>
+  void leaveOutTurning(const Concerns& concerns) {
+    visit([&](auto& c) {
+      if constexpr (requires { c.leaveOutTurning(concerns); }) c.leaveOutTurning(concerns);
+    });
+  }
   /// All references, one kind after the other.
   void copyReferences(std::vector<double>& references) const;
   void setReferences(const std::vector<double>& references);

@@ -2,6 +2,7 @@
 #include "engine/constraints/joint_coupling.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "engine/constraints/impedance.hpp"
 
@@ -23,9 +24,9 @@ void CouplingRows::assemble(const Assembly& in) {
   if (model.options.effects.has(Effect::equality)) {
     for (const JointCoupling& c : model.couplings) {
       const Body &follower = model.bodies[c.follower], &leader = model.bodies[c.leader];
-      Pair pair{follower.v, follower.v, 0.0, false};
+      Pair pair{follower.v, follower.v, 0.0, false, c.leader, 0.0};
       double r = in.state.q[follower.q] - c.polynomial[0];
-      double weight = in.weights.dof[follower.v], rate = in.state.v[follower.v];
+      double weight = in.weights.dof[follower.v], rate = in.state.v[follower.v], bias = 0.0;
       if (c.leader != 0) {
         const double q = in.state.q[leader.q];
         r = in.state.q[follower.q] - c.value(q);
@@ -35,10 +36,12 @@ void CouplingRows::assemble(const Assembly& in) {
             !isAncestor(model, std::min(follower.v, leader.v), std::max(follower.v, leader.v));
         weight += in.weights.dof[leader.v];
         rate -= pair.slope * in.state.v[leader.v];
+        if (model.options.ownSoftness) bias = -c.curvature(q) * std::pow(in.state.v[leader.v], 2.0);
       }
       const Softness soft = softnessAt(c.impedance, r, weight, model.options);
+      pair.turning = (1.0 - in.lag() * soft.damping) * bias;
       pairs_.push_back(pair);
-      reference.push_back(soft.referenceAcceleration(rate, r));
+      reference.push_back(soft.referenceAcceleration(rate, r) - pair.turning);
       pushSoftness(soft);
     }
   }

@@ -5,8 +5,9 @@
 /// joints, gears), or a constant. One row each.
 ///
 /// Distance r = q_f − p(q_l), so J = e_fᵀ − p′(q_l) e_lᵀ:
-///   x = J a − a_ref,   a_ref = −b J v − k d(|r|) r,   s(x) = ½ D x²,   A = w_f + w_l       (T.30)
-/// The curvature p″ of the polynomial is left out of a_ref, as in MuJoCo's model.
+///   x = J a − a_ref,   a_ref = −b J v − k d(|r|) r − (1 − lag b) J̇ v,   J̇ v = −p″ v_l²
+///   s(x) = ½ D x²,   A = w_f + w_l                                                       (T.30)
+/// with the lag of (T.116).
 
 #include <vector>
 
@@ -26,6 +27,13 @@ class CouplingRows : public ScalarRows<Quadratic> {
   /// Pairs of dofs on different branches.
   void appendCouplings(std::vector<Segment>& segments, std::vector<int>& setEnd) const;
 
+  /// As BlockRows::leaveOutTurning().
+  template <class Concerns>
+  void leaveOutTurning(const Concerns& concerns) {
+    for (std::size_t i = 0; i < pairs_.size(); ++i)
+      if (concerns(pairs_[i].body)) reference[i] += pairs_[i].turning;
+  }
+
   std::size_t bytes() const { return ScalarRows::bytes() + bytesOf(pairs_); }
 
  private:
@@ -34,6 +42,8 @@ class CouplingRows : public ScalarRows<Quadratic> {
     int leader = 0;        ///< dof; the follower's own without a leader
     double slope = 0.0;    ///< p′, 0 without a leader
     bool couples = false;  ///< neither dof moves the other's body
+    int body = 0;          ///< of the leader
+    double turning = 0.0;  ///< what the reference has of J̇ v
   };
   std::vector<Pair> pairs_;
 };

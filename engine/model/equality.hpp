@@ -44,6 +44,10 @@ struct JointCoupling {
     const auto& c = polynomial;
     return c[1] + q * (2.0 * c[2] + q * (3.0 * c[3] + q * 4.0 * c[4]));
   }
+  double curvature(double q) const {
+    const auto& c = polynomial;
+    return 2.0 * c[2] + q * (6.0 * c[3] + q * 12.0 * c[4]);
+  }
 };
 
 }  // namespace softgauss

@@ -146,7 +146,8 @@ struct Options {
   bool midpointCoriolis = true;  ///< see integrators/semi_implicit_euler.hpp
   Cone cone = Cone::pyramidal;   ///< of contacts with friction
   double impedanceRatio = 1.0;   ///< impratio: friction against normal impedance
-  /// Softness beyond MuJoCo's: (T.80), (T.94), (T.96), (T.97), (T.115), (T.117).
+  /// Softness beyond MuJoCo's: (T.80), (T.94), (T.96), (T.97), (T.115), (T.117), and the curvature
+  /// of couplings (T.30).
   bool ownSoftness = true;
   bool exactDiagonal = false;  ///< see constraints/exact_diagonal.hpp
   bool noSlip = false;         ///< friction without creep (step/no_slip.hpp)

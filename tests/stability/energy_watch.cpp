@@ -123,8 +123,7 @@ double EnergyWatch::stored(const State& state, const Input& input) {
   soft.softFriction = true;  // (T.97) scales k d by the speed
   computeStages(model_, soft, state, data_, &contacts_);
   const auto all = [](int) { return true; };
-  data_.constraints.connection.leaveOutTurning(all);
-  data_.constraints.weld.leaveOutTurning(all);
+  data_.constraints.leaveOutTurning(all);
   const std::vector<std::vector<double>> moving = references(data_.constraints);
   State still = state;
   still.v.setZero();

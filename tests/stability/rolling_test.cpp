@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Family 6, violent by its spin alone: what rolls leaning or wobbles on its rim. Nothing drives
-/// it, so that it only loses, and with long steps what it loses with short ones.
+/// Family 6, violent by its spin alone: what rolls leaning, and balls with rotors. Nothing drives
+/// it, so that it only loses, to a thousandth, and with long steps what it loses with short ones.
 
 #include <gtest/gtest.h>
 

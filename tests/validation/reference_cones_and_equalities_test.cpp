@@ -176,6 +176,7 @@ TEST(CoupledHinges, AreThoseOfTheReference) {
   spec.leader = "a_joint";
   spec.polynomial = {0.1, -2.0, 0.3, 0.0, 0.0};
   builder.couple(spec);
+  builder.options.ownSoftness = false;  // without p″
   Scene s(builder.build());
   s.state.q << 0.2, -0.25;
   s.state.v << 1, -1;

@@ -260,8 +260,7 @@ bool FollowedTrees::kick(const Model& model, Data& data, const State& state,
     const int tree = model.bodies[body].tree;
     return tree >= 0 && pushed[tree] && !rolls(model, data, *this, tree);
   };
-  data.constraints.connection.leaveOutTurning(turnsFar);
-  data.constraints.weld.leaveOutTurning(turnsFar);
+  data.constraints.leaveOutTurning(turnsFar);
 
   const SolveStatus status = forwardDynamics(model, &a, data);
   ++data.stats.kicks;

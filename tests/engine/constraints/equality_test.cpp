@@ -124,7 +124,7 @@ TEST(Equality, ReferenceIsASpringDamperOfTheDistance) {
 }
 
 // Along any motion the second derivative of the distance is J a + J̇ v, and a_ref holds −J̇ v. Of a v
-// that lags (T.116) rotations damp J v − ½ h J̇ v.
+// that lags (T.116) rotations and couplings damp J v − ½ h J̇ v.
 TEST(Equality, BiasIsTheAccelerationOfTheDistanceAtZeroAcceleration) {
   double worst = 0.0, largest = 0.0;
   for (int seed = 0; seed < 40; ++seed) {
@@ -161,6 +161,7 @@ TEST(Equality, BiasIsTheAccelerationOfTheDistanceAtZeroAcceleration) {
     if (!lags) compare(0, 3, softnessAt({}, r0.head<3>().norm(), 1.0, 0.002));
     if (!lags) compare(3, 3, weld);
     compare(6, 3, weld);
+    for (const int i : {9, 10}) compare(i, 1, softnessAt({}, std::abs(r0[i]), 1.0, 0.002));
   }
   EXPECT_SMALL(worst, 1e-7);
   EXPECT_GT(largest, 1.0);
