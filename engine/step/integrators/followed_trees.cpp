@@ -8,84 +8,19 @@
 #include "engine/step/data.hpp"
 #include "engine/step/forward.hpp"
 #include "engine/step/integrators/implicit_forces.hpp"
+#include "engine/step/integrators/tree_turn.hpp"
 
 namespace softgauss {
 
 const double FollowedTrees::kFollowedTurn = 5e-4;
-constexpr double kTiedTurn = 0.1;      // [rad]
 constexpr double kRollingTurn = 0.05;  // of (T.93), about a third of a radian
-// A tree that is followed stays so until it is below a part of the threshold. Each change from the
-// leapfrog's energy to its own and back is off by what the two differ by, of order h² and of one
-// sign: what is passive gains by it, and stays followed until it is all but at rest. What is damped
-// much or driven does not, and a controller at its limits feels every change; what ties do to a
-// tree that is followed is the coarser part of the step.
-struct Following {
-  double staysFree, staysPushed;  ///< parts of kFollowedTurn; pushed by rows
-  bool byEnergy;                  ///< by the second part of (T.93) too
-};
-constexpr Following kPassive{1e-6, 0.05, true}, kHeld{1e-3, 0.25, false},
-    kDamped{0.25, 0.25, false};
 
 namespace {
-
-/// √(2 × kinetic energy) of a tree by its largest part: max_i (|v_i| + h |a_i|) √M_ii.
-double speedOf(const Tree& tree, const Data& data, const VectorX& v, double h) {
-  double speed = 0.0;
-  for (int i = tree.firstDof; i < tree.dofEnd; ++i)
-    speed = std::max(
-        speed, (std::abs(v[i]) + h * std::abs(data.forward.a[i])) / data.inertia.forceScale[i]);
-  return speed;
-}
-
-/// By which a body turns in a step [rad].
-double angle(const Model& model, const Data& data, int body) {
-  return model.options.timestep * data.kinematics.V[body].angular.norm();
-}
 
 /// How many entries of q a tree has.
 int coordinates(const Model& model, const Tree& tree) {
   return tree.dofEnd - tree.firstDof +
          (model.bodies[tree.rootBody].joint == JointKind::floating ? 1 : 0);
-}
-
-/// What Δb does to the energy of motion, against what there is: the second part of (T.93), without
-/// the factor h. Both arguments are squares.
-double energyRate(double change, double motion) {
-  return change > 0.0 && motion > 0.0 ? 2.0 * std::sqrt(change / motion) : 0.0;
-}
-
-/// The first part of (T.93), without the factor h. Of joints that turn and of those that slide,
-/// what changes by less than rounding of the tree's motion tells nothing: a ball that does not spin
-/// is at 0/0.
-double turnRate(const Model& model, const Tree& tree, const Data& data, const VectorX& v,
-                const VectorX& change) {
-  constexpr double kRounding = 1e-12;
-  const double h = model.options.timestep;
-  double changes[2] = {0.0, 0.0}, sizes[2] = {0.0, 0.0};  // turning, sliding
-  double speeds[2] = {0.0, 0.0}, fastest = 0.0;
-  const auto add = [&](int kind, int begin, int end) {
-    for (int i = begin; i < end; ++i) {
-      const double root = 1.0 / data.inertia.forceScale[i];  // √M_ii
-      const double speed = std::abs(v[i]) + h * std::abs(data.forward.a[i]);
-      changes[kind] = std::max(changes[kind], std::abs(change[i]));
-      sizes[kind] = std::max(sizes[kind], h * std::abs(change[i]) * root);
-      speeds[kind] = std::max(speeds[kind], speed);
-      fastest = std::max(fastest, speed * root);
-    }
-  };
-  for (int b = tree.rootBody; b < tree.bodyEnd; ++b) {
-    const Body& body = model.bodies[b];
-    if (body.joint == JointKind::floating) {
-      add(1, body.v, body.v + 3);
-      add(0, body.v + 3, body.v + 6);
-    } else {
-      add(body.joint == JointKind::prismatic ? 1 : 0, body.v, body.v + 1);
-    }
-  }
-  double rate = 0.0;
-  for (const int kind : {0, 1})
-    if (sizes[kind] > kRounding * fastest) rate = std::max(rate, changes[kind] / speeds[kind]);
-  return rate;
 }
 
 /// Rows push the tree. Half a step of what they do is no part of how v is understood: an impact
@@ -100,21 +35,6 @@ bool isPushed(const Tree& tree, const Data& data, const VectorX& push, const Vec
   return false;
 }
 
-/// Whether forces of this kind act on the tree at all.
-bool act(const VectorX& forces, const Tree& tree) {
-  return (forces.segment(tree.firstDof, tree.dofEnd - tree.firstDof).array() != 0.0).any();
-}
-
-/// Applied forces change the tree's motion by more than a thousandth in the step.
-bool drive(const VectorX& tau, const Tree& tree, const Data& data, const VectorX& v, double h) {
-  double most = 0.0;
-  for (int i = tree.firstDof; i < tree.dofEnd; ++i)
-    most = std::max(most, std::abs(tau[i]) * data.inertia.forceScale[i]);
-  return h * most > 1e-3 * speedOf(tree, data, v, h);
-}
-
-bool isSingle(const Tree& tree) { return tree.bodyEnd == tree.rootBody + 1; }
-
 /// What rows do to such a tree carries on what its velocity makes, as in (T.16): a coin that leans
 /// rolls on by it. (T.116) tells of a single body that moves on as it has come, not of links.
 bool rolls(const Model& model, const Data& data, const FollowedTrees& f, int t) {
@@ -122,24 +42,7 @@ bool rolls(const Model& model, const Data& data, const FollowedTrees& f, int t) 
   if (!(f.turn[t] < kRollingTurn)) return false;
   return !f.tied[t] ||
          (isSingle(tree) && model.bodies[tree.rootBody].joint == JointKind::floating &&
-          angle(model, data, tree.rootBody) <= kTiedTurn);
-}
-
-/// Damping stops a joint within the step: what that takes is more than any change gains, and would
-/// cost many sub-steps.
-bool stops(const Tree& tree, const Data& data, double h) {
-  for (int i = tree.firstDof; i < tree.dofEnd; ++i)
-    if (h * data.plan.damping[i] * std::pow(data.inertia.forceScale[i], 2.0) > 1.0) return true;
-  return false;
-}
-
-/// A single body has no joints that could hide a turn.
-const Following& followingOf(const Tree& tree, bool tied, const Data& data, const VectorX& v,
-                             double h) {
-  const bool held = tied || isSingle(tree) || drive(data.forces.tau, tree, data, v, h);
-  const bool damped = data.plan.damped() && act(data.plan.damping, tree);
-  if (damped && (held || stops(tree, data, h))) return kDamped;
-  return held ? kHeld : kPassive;
+          stepAngle(model, data, tree.rootBody) <= kTiedTurn);
 }
 
 void setRowForces(const Data& data, VectorX& rows) {
@@ -188,7 +91,7 @@ bool FollowedTrees::needed(const Model& model, const Data& data, State& state, c
   const auto turns = [&](int body) {
     const int tree = model.bodies[body].tree;
     if (tree < 0) return;
-    const double far = angle(model, data, body) / kTiedTurn;
+    const double far = stepAngle(model, data, body) / kTiedTurn;
     turn[tree] = std::max(turn[tree], kFollowedTurn * far * far);
   };
   for (const Connection& c : model.connections) turns(c.bodyA), turns(c.bodyB);
@@ -357,7 +260,7 @@ void FollowedTrees::follow(const Model& model, Data& data, State& state, VectorX
     const double firstStep = h * std::min(1.0, 0.2 / std::sqrt(turn[t]));
     const TreeMotion::Outcome outcome =
         motion.run(model, data.plan, tree, held, heldInWorld, data.inertia.forceScale,
-                   speedOf(tree, data, state.v, h), h, firstStep);
+                   treeSpeed(tree, data, state.v, h), h, firstStep);
     data.stats.substeps += motion.substeps();
     if (outcome != TreeMotion::Outcome::done) {
       ++data.stats.abandonedTrees;

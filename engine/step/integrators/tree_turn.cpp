@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/step/integrators/tree_turn.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace softgauss {
+namespace {
+
+constexpr Following kPassive{1e-6, 0.05, true}, kHeld{1e-3, 0.25, false},
+    kDamped{0.25, 0.25, false};
+
+/// Whether forces of this kind act on the tree at all.
+bool act(const VectorX& forces, const Tree& tree) {
+  return (forces.segment(tree.firstDof, tree.dofEnd - tree.firstDof).array() != 0.0).any();
+}
+
+/// Applied forces change the tree's motion by more than a thousandth in the step.
+bool drive(const VectorX& tau, const Tree& tree, const Data& data, const VectorX& v, double h) {
+  double most = 0.0;
+  for (int i = tree.firstDof; i < tree.dofEnd; ++i)
+    most = std::max(most, std::abs(tau[i]) * data.inertia.forceScale[i]);
+  return h * most > 1e-3 * treeSpeed(tree, data, v, h);
+}
+
+/// Damping stops a joint within the step: what that takes is more than any change gains, and would
+/// cost many sub-steps.
+bool stops(const Tree& tree, const Data& data, double h) {
+  for (int i = tree.firstDof; i < tree.dofEnd; ++i)
+    if (h * data.plan.damping[i] * std::pow(data.inertia.forceScale[i], 2.0) > 1.0) return true;
+  return false;
+}
+
+}  // namespace
+
+/// A single body has no joints that could hide a turn.
+Following followingOf(const Tree& tree, bool tied, const Data& data, const VectorX& v, double h) {
+  const bool held = tied || isSingle(tree) || drive(data.forces.tau, tree, data, v, h);
+  const bool damped = data.plan.damped() && act(data.plan.damping, tree);
+  if (damped && (held || stops(tree, data, h))) return kDamped;
+  return held ? kHeld : kPassive;
+}
+
+double turnRate(const Model& model, const Tree& tree, const Data& data, const VectorX& v,
+                const VectorX& change) {
+  constexpr double kRounding = 1e-12;
+  const double h = model.options.timestep;
+  double changes[2] = {0.0, 0.0}, sizes[2] = {0.0, 0.0};  // turning, sliding
+  double speeds[2] = {0.0, 0.0}, fastest = 0.0;
+  const auto add = [&](int kind, int begin, int end) {
+    for (int i = begin; i < end; ++i) {
+      const double root = 1.0 / data.inertia.forceScale[i];  // √M_ii
+      const double speed = std::abs(v[i]) + h * std::abs(data.forward.a[i]);
+      changes[kind] = std::max(changes[kind], std::abs(change[i]));
+      sizes[kind] = std::max(sizes[kind], h * std::abs(change[i]) * root);
+      speeds[kind] = std::max(speeds[kind], speed);
+      fastest = std::max(fastest, speed * root);
+    }
+  };
+  for (int b = tree.rootBody; b < tree.bodyEnd; ++b) {
+    const Body& body = model.bodies[b];
+    if (body.joint == JointKind::floating) {
+      add(1, body.v, body.v + 3);
+      add(0, body.v + 3, body.v + 6);
+    } else {
+      add(body.joint == JointKind::prismatic ? 1 : 0, body.v, body.v + 1);
+    }
+  }
+  double rate = 0.0;
+  for (const int kind : {0, 1})
+    if (sizes[kind] > kRounding * fastest) rate = std::max(rate, changes[kind] / speeds[kind]);
+  return rate;
+}
+
+double energyRate(double change, double motion) {
+  return change > 0.0 && motion > 0.0 ? 2.0 * std::sqrt(change / motion) : 0.0;
+}
+
+double treeSpeed(const Tree& tree, const Data& data, const VectorX& v, double h) {
+  double speed = 0.0;
+  for (int i = tree.firstDof; i < tree.dofEnd; ++i)
+    speed = std::max(
+        speed, (std::abs(v[i]) + h * std::abs(data.forward.a[i])) / data.inertia.forceScale[i]);
+  return speed;
+}
+
+double stepAngle(const Model& model, const Data& data, int body) {
+  return model.options.timestep * data.kinematics.V[body].angular.norm();
+}
+
+}  // namespace softgauss
