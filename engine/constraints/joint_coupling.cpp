@@ -24,13 +24,14 @@ void CouplingRows::assemble(const Assembly& in) {
   if (model.options.effects.has(Effect::equality)) {
     for (const JointCoupling& c : model.couplings) {
       const Body &follower = model.bodies[c.follower], &leader = model.bodies[c.leader];
-      Pair pair{follower.v, follower.v, 0.0, false, c.leader, 0.0};
+      Pair pair{follower.v, follower.v};
       double r = in.state.q[follower.q] - c.polynomial[0];
       double weight = in.weights.dof[follower.v], rate = in.state.v[follower.v], bias = 0.0;
       if (c.leader != 0) {
         const double q = in.state.q[leader.q];
         r = in.state.q[follower.q] - c.value(q);
         pair.leader = leader.v;
+        pair.body = c.leader;
         pair.slope = c.slope(q);
         pair.couples =
             !isAncestor(model, std::min(follower.v, leader.v), std::max(follower.v, leader.v));

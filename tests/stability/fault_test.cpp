@@ -95,7 +95,7 @@ TEST(Fault, EveryIntegratorRefusesAndForgets) {
       Options options;
       options.integrator = integrator;
       options.stepDoubling = doubled;
-      if (doubled && !Options(options).solvesOnce()) continue;
+      if (doubled && !options.solvesOnce()) continue;
       Pair pair(options);
       for (int i = 0; i < 30; ++i) {
         State bad = pair.state;

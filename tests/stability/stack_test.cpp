@@ -121,8 +121,8 @@ Model restingPile(int bodies, double timestep, Cone cone) {
 // Of 200 bodies none leaves the bin or sinks, and all come to rest.
 void pileRests(int bodies, double seconds, double timestep, Cone cone) {
   Trial t("pile of " + std::to_string(bodies), restingPile(bodies, timestep, cone));
-  t.mayGain = 1e-6;  // of tens of joules
-  t.mayRound = cone == Cone::elliptic && timestep < 0.01;  // one or another of so many
+  t.mayGain = 1e-6;                                        // of tens of joules
+  t.mayRound = cone == Cone::elliptic && timestep < 0.01;  // at 10 ms none does
   t.run(seconds);
   EXPECT_EQ(t.rounded > 0, t.mayRound);
   double highest = 0.0, lowest = 1.0, farthest = 0.0;

@@ -33,7 +33,6 @@ bool stops(const Tree& tree, const Data& data, double h) {
 
 }  // namespace
 
-/// A single body has no joints that could hide a turn.
 Following followingOf(const Tree& tree, bool tied, const Data& data, const VectorX& v, double h) {
   const bool held = tied || isSingle(tree) || drive(data.forces.tau, tree, data, v, h);
   const bool damped = data.plan.damped() && act(data.plan.damping, tree);

@@ -19,6 +19,7 @@ struct Following {
   double staysFree, staysPushed;  ///< parts of FollowedTrees::kFollowedTurn; pushed by rows
   bool byEnergy;                  ///< by the second part of (T.93) too
 };
+/// How long this tree stays so. A single body has no joints that could hide a turn.
 Following followingOf(const Tree& tree, bool tied, const Data& data, const VectorX& v, double h);
 
 /// The first part of (T.93), without the factor h; `change` = M⁻¹Δb (nv). Of joints that turn and
@@ -34,6 +35,7 @@ double energyRate(double change, double motion);
 double treeSpeed(const Tree& tree, const Data& data, const VectorX& v, double h);
 /// By which a body turns in a step [rad].
 double stepAngle(const Model& model, const Data& data, int body);
+/// A tree of one body.
 inline bool isSingle(const Tree& tree) { return tree.bodyEnd == tree.rootBody + 1; }
 
 }  // namespace softgauss
