@@ -248,12 +248,20 @@ void FollowedTrees::follow(const Model& model, Data& data, State& state, VectorX
     }
     if (free && instant == VelocityOf::halfAStepAgo) motion.kick(tree, half);
     if (!free && instant == VelocityOf::halfAStepAgo) motion.kick(tree, 0.5 * h * part(coriolis));
+    if (!free) {
+      // Applied forces go with what rows answer to them; of a v that is of now, half of theirs.
+      part(push) += part(held);
+      if (instant == VelocityOf::now) {
+        motion.atRest(model, data.plan, tree, held, heldInWorld, kicked);
+        motion.kick(tree, -0.5 * h * part(kicked));
+      }
+      part(held) -= part(data.forces.tau);
+    }
     if (!free || instant == VelocityOf::halfAStepAgoPushed) {
       motion.atRest(model, data.plan, tree, held, heldInWorld, smooth);
-      if (instant != VelocityOf::now) motion.kick(tree, 0.5 * h * part(smooth));
+      motion.kick(tree, 0.5 * h * part(smooth));
     }
     if (!free) {
-      part(push) += part(held);
       motion.atRest(model, data.plan, tree, push, heldInWorld, kicked);
       motion.kick(tree, h * (part(kicked) - part(smooth)));
     }
