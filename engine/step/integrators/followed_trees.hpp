@@ -30,9 +30,9 @@
 ///
 ///   v ← v + ½ h a_s(q) + h M⁻¹(Jᵀf + τ − D v′),  then (T.91),  then v⁺ ← v − ½ h a_s(q⁺)
 ///
-/// with a_s the acceleration that gravity and springs give at rest. A force that is
-/// held while the tree turns works where it is not any more, and positions that move with half of
-/// what it does make energy out of a stiff contact, as explicit Euler does. f is that of (T.1)
+/// with a_s the acceleration that gravity and springs give at rest. A force that is held while the
+/// tree turns works where it is not any more, and positions that move with half of what it does
+/// make energy out of a stiff contact, as explicit Euler does. f is that of (T.1)
 /// without what the velocities of these trees make, Coriolis forces and J̇ v of their rows: over
 /// the step these turn, and (T.91) has them. Then a kick takes velocity out of the rows and puts
 /// none in, however far the tree turns.
