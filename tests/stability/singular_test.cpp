@@ -57,7 +57,8 @@ TEST(Singular, ArmPulledBeyondItsFullStretch) {
 // the tie gives. With 0.1 m at 10 ms they turn by 1.3 rad in a step, with 1 m by a turn and more;
 // there they swing wider than they should (docs/stability.md), and nothing is given up. With 1 m
 // from 5 ms on even the law of energy is broken, by one start in ten: the first keeps it, and seven
-// more, 1e-9 rad apart, break it by no more than what the tie gives, of which `energy` is the scale.
+// more, 1e-9 rad apart, break it by no more than what the tie gives, of which `energy` is the
+// scale.
 TEST(Singular, ArmPulledFarBeyondItsStretch) {
   int rounded = 0;
   for (const double beyond : {1e-2, 1e-1, 1.0})
