@@ -25,17 +25,17 @@
 /// first step after that; where rows push, ½ h a_c of Coriolis forces alone instead (T.118).
 /// State::velocityOf tells which of the two v is.
 ///
-/// What rows and applied forces do to a followed tree that rows push is done at the step's start,
-/// at once, and the tree goes on without them:
+/// What rows and the applied τ do to a followed tree that rows push is done at the step's start, at
+/// once, and the tree goes on without them:
 ///
 ///   v ← v + ½ h a_s(q) + h M⁻¹(Jᵀf + τ − D v′),  then (T.91),  then v⁺ ← v − ½ h a_s(q⁺)
 ///
-/// with a_s the acceleration that gravity and springs give at rest. A force that is held while the
-/// tree turns works where it is not any more, and positions that move with half of what it does
-/// make energy out of a stiff contact, as explicit Euler does. f is that of (T.1)
-/// without what the velocities of these trees make, Coriolis forces and J̇ v of their rows: over
-/// the step these turn, and (T.91) has them. Then a kick takes velocity out of the rows and puts
-/// none in, however far the tree turns.
+/// with a_s the acceleration that gravity, springs and wrenches give at rest. A force that is held
+/// while the tree turns works where it is not any more, and positions that move with half of what
+/// it does make energy out of a stiff contact, as explicit Euler does. f is that of (T.1) without
+/// what the velocities of these trees make, Coriolis forces and J̇ v of their rows: over the step
+/// these turn, and (T.91) has them. Then a kick takes velocity out of the rows and puts none in,
+/// however far the tree turns.
 ///
 /// A tree with turn < 0.05 rolls on as it has come, and f has its Coriolis forces: of trees without
 /// ties, and of single bodies that turn by less than kTiedTurn, with J̇ v of their ties. The kick
