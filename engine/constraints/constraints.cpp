@@ -76,6 +76,16 @@ void Constraints::setRay(const VectorX& d) {
   visit([&](auto& c) { c.multiply(d, c.dx); });
 }
 
+void Constraints::setTurningRay(const Assembly& now, const Assembly& then) {
+  visit([&](auto& c) { c.setTurningRay(now, then); });
+}
+
+void Constraints::subtractRay() {
+  visit([&](auto& c) {
+    for (std::size_t i = 0; i < c.dx.size(); ++i) c.reference[i] -= c.dx[i];
+  });
+}
+
 double Constraints::evaluate(bool& cellChanged) {
   double cost = 0.0;
   visit([&](auto& c) { cost += c.evaluate(cellChanged); });

@@ -35,6 +35,7 @@ concept SoftConstraint = requires(C c, const Assembly& in, const VectorX& a, Vec
   c.along(0.0, jet);                                       // derivatives along a ray
   c.advance(0.0);                                          // x += α dx
   c.setForceRate();                                        // df ← −∇²s dx
+  c.setTurningRay(in, in);                                 // dx ← J̇ v then − now
   c.addTransposed(y, tau);                                 // tau += Jᵀ y
   c.addCurvature(P);                                       // P += Jᵀ ∇²s J
   c.addRow(0, 1.0, tau);                                   // tau += scale · (row of J)ᵀ
@@ -114,6 +115,10 @@ class Constraints {
   double evaluate(bool& cellChanged);
   /// Adds the derivatives of s(x + α dx) in α.
   void along(double alpha, Jet& jet) const;
+  /// dx ← J̇ v with the velocities of `then` less that of `now`, at the same q; 0 of ties.
+  void setTurningRay(const Assembly& now, const Assembly& then);
+  /// a_ref ← a_ref − dx.
+  void subtractRay();
   void advance(double alpha);
   void addForce(VectorX& tau) const;
   /// a_ref ← a_ref − b t J a: all rows damp the speed to which t [s] of a leads.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "engine/constraints/contact_motion.hpp"
 #include "engine/constraints/contact_softness.hpp"
 #include "engine/constraints/sticking_contact.hpp"
 #include "engine/core/rotation.hpp"
@@ -32,6 +33,54 @@ Matrix3 contactFrame(const Contact& c) {
   Matrix3 R;
   R << c.n_W, t, c.n_W.cross(t);
   return R;
+}
+
+/// World vectors in the frame of a contact; turning only where its friction has moments.
+ContactBlocks::FrameVector inFrame(const Matrix3& R_WC, int frictionDim, const Motion& y) {
+  ContactBlocks::FrameVector frame{};
+  Eigen::Map<Vector3>(frame.data()).noalias() = R_WC.transpose() * y.linear;
+  if (frictionDim > 2)
+    Eigen::Map<Vector3>(frame.data() + 3).noalias() = R_WC.transpose() * y.angular;
+  return frame;
+}
+
+/// J̇ v of its rows: that along the tangents by its share.
+ContactBlocks::FrameVector biasInFrame(const ContactRows& contact, const Motion& bias) {
+  ContactBlocks::FrameVector y = inFrame(contact.R_WC, contact.frictionDim, bias);
+  for (std::size_t k = 1; k < y.size(); ++k) y[k] *= contact.share;
+  return y;
+}
+
+/// Rows that share what presses along the normal.
+int rowsAlongNormal(const Options& options, const Touch& touch) {
+  return options.cone == Cone::pyramidal && touch.frictionDim > 0 ? 2 * touch.frictionDim : 1;
+}
+
+/// Whether J̇ v counts as deep as the contact lies: up to a tenth of what is round there, and up to
+/// 0.3 of it where it lies at most half as deep again as its weight and J̇ v press it at rest. So
+/// deep it goes in and out as on a spring (T.124). What came in deeper, by a fall, they would push
+/// out by more than what it came in against, and it would gain.
+bool countsSoDeep(const Options& options, const Touch& touch, const Vector3& n_W,
+                  const ContactBias& bias) {
+  const Softness& soft = touch.softness;
+  const double load = options.gravity.norm() + std::max(0.0, -n_W.dot(bias.rate.linear));
+  const double atRest =
+      soft.R * load / (touch.inverseMass * rowsAlongNormal(options, touch) * soft.stiffness);
+  return -touch.distance < std::min(0.3 * bias.size, std::max(0.1 * bias.size, 1.5 * atRest));
+}
+
+/// Share of J̇ v that friction answers: all where the contact may stick, none where it slides, for
+/// what slides is held back along its slip, however that turns. It may stick up to ten times the
+/// speed at which it creeps under its weight.
+double stickingShare(const Options& options, const Touch& touch,
+                     const ContactBlocks::FrameVector& velocity) {
+  constexpr double kCreeps = 10.0;
+  if (touch.frictionDim == 0) return 1.0;
+  const Softness& soft = touch.softness;
+  const double weight = options.gravity.norm() / touch.inverseMass;
+  const double creep = soft.R * weight / (rowsAlongNormal(options, touch) * soft.damping);
+  const double slip = touch.mu() * std::hypot(velocity[1], velocity[2]);
+  return slip > kCreeps * creep ? std::pow(kCreeps * creep / slip, 2.0) : 1.0;
 }
 
 }  // namespace
@@ -101,7 +150,7 @@ std::optional<Touch> touchAt(const Assembly& in, int i) {
   return touch;
 }
 
-ContactBlocks::FrameVector ContactBlocks::addBlock(const Assembly& in, int i, const Touch& touch,
+ContactBlocks::BlockMotion ContactBlocks::addBlock(const Assembly& in, int i, const Touch& touch,
                                                    int row) {
   const Model& model = in.model;
   const Contact& c = in.contacts.contacts[i];
@@ -112,8 +161,8 @@ ContactBlocks::FrameVector ContactBlocks::addBlock(const Assembly& in, int i, co
   while (place < i && all[i - place - 1].geometryA == c.geometryA &&
          all[i - place - 1].geometryB == c.geometryB)
     ++place;
-  made_.push_back({i, c.geometryA, c.geometryB, place, row, R_WC, touch.frictionDim, touch.friction,
-                   touch.hardening, 1.0});
+  made_.push_back({i, c.geometryA, c.geometryB, c.bodyA, c.bodyB, place, row, R_WC,
+                   touch.frictionDim, touch.friction, touch.hardening, 1.0});
 
   RelativeMotion motion;
   motion.bodyA = c.bodyA;
@@ -124,14 +173,30 @@ ContactBlocks::FrameVector ContactBlocks::addBlock(const Assembly& in, int i, co
   motion.angularDim = std::max(0, touch.frictionDim - 2);
   jacobian_.add(model, in.kinematics, in.tree, motion);
 
-  FrameVector y{};
-  Eigen::Map<Vector3>(y.data()).noalias() =
-      R_WC.transpose() * (pointVelocity(model, in.kinematics, c.bodyB, c.p_WC) -
-                          pointVelocity(model, in.kinematics, c.bodyA, c.p_WC));
-  if (motion.angularDim > 0)
-    Eigen::Map<Vector3>(y.data() + 3).noalias() =
-        R_WC.transpose() * (in.kinematics.V[c.bodyB].angular - in.kinematics.V[c.bodyA].angular);
-  return y;
+  const Kinematics& k = in.kinematics;
+  const Motion slips{
+      k.V[c.bodyB].angular - k.V[c.bodyA].angular,
+      pointVelocity(model, k, c.bodyB, c.p_WC) - pointVelocity(model, k, c.bodyA, c.p_WC)};
+  BlockMotion moves;
+  moves.velocity = inFrame(R_WC, touch.frictionDim, slips);
+  bias_.push_back(std::nullopt);
+  made_.back().share = stickingShare(model.options, touch, moves.velocity);
+  if (model.options.ownSoftness)
+    if (const std::optional<ContactBias> bias = contactBias(model, k, c);
+        bias && countsSoDeep(model.options, touch, c.n_W, *bias))
+      bias_.back() = moves.bias = biasInFrame(made_.back(), bias->rate);
+  return moves;
+}
+
+ContactBlocks::FrameVector ContactBlocks::biasChange(const Assembly& then, int i) const {
+  if (!bias_[i]) return {};
+  const ContactRows& m = made_[i];
+  const std::optional<ContactBias> bias =
+      contactBias(then.model, then.kinematics, then.contacts.contacts[m.contact]);
+  if (!bias) return {};
+  FrameVector change = biasInFrame(m, bias->rate);
+  for (std::size_t k = 0; k < change.size(); ++k) change[k] -= (*bias_[i])[k];
+  return change;
 }
 
 Softness ContactBlocks::soften(const Assembly& in, const Touch& touch, const FrameVector& velocity,

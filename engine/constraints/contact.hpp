@@ -6,7 +6,8 @@
 ///
 /// At a contact of distance r with normal n (from A to B) and tangents t₁, t₂, let y be the
 /// relative acceleration of the touching bodies less its bias J̇ v: y_n, y₁, y₂ that of the touching
-/// points along n, t₁, t₂, and, with condim 4 and 6, the angular y₃, y₄, y₅ about n, t₁, t₂. The
+/// points along n, t₁, t₂, and, with condim 4 and 6, the angular y₃, y₄, y₅ about n, t₁, t₂. J̇ v is
+/// that of contact_motion.hpp, where it is known, and is in the references (T.122). The
 /// friction coefficients are μ₁ = μ₂ = μ [-] of sliding, μ₃ [m] of torsional and μ₄ = μ₅ [m] of
 /// rolling friction.
 
@@ -50,6 +51,7 @@ std::optional<Touch> touchAt(const Assembly& in, int i);
 struct ContactRows {
   int contact = 0;                   ///< index into ContactSet::contacts
   int geometryA = 0, geometryB = 0;  ///< that touch
+  int bodyA = 0, bodyB = 0;          ///< theirs
   int place = 0;                     ///< among the contacts of the two
   int row = 0;                       ///< first row
   Matrix3 R_WC;                      ///< columns n, t₁, t₂
@@ -57,6 +59,7 @@ struct ContactRows {
   std::array<double, 5> friction{};  ///< μ_k
   double hardening = 1.0;            ///< Touch::hardening
   double slip = 1.0;                 ///< ρ (T.97), 1 where it does not stick
+  double share = 1.0;                ///< of J̇ v along the tangents
 };
 
 /// Contacts of one kind, and how they move.
@@ -87,24 +90,52 @@ class ContactBlocks {
   /// Place in made() of the contact that has this row.
   int contactOfRow(int row) const { return contactOfRow_[row]; }
 
-  std::size_t bytes() const { return jacobian_.bytes() + bytesOfAll(made_, contactOfRow_); }
+  std::size_t bytes() const {
+    return jacobian_.bytes() + bytesOfAll(made_, contactOfRow_, turning_, bias_);
+  }
 
  protected:
+  /// How a contact moves, in its frame.
+  struct BlockMotion {
+    FrameVector velocity{};  ///< ẏ
+    FrameVector bias{};      ///< J̇ v
+  };
   void clearBlocks() {
     jacobian_.clear();
     made_.clear();
+    turning_.clear();
+    bias_.clear();
   }
-  /// The block of contact i, whose rows begin at `row`; returns ẏ.
-  FrameVector addBlock(const Assembly& in, int i, const Touch& touch, int row);
+  /// The block of contact i, whose rows begin at `row`.
+  BlockMotion addBlock(const Assembly& in, int i, const Touch& touch, int row);
   /// How soft the last block is, `rows` of which push along the normal: as it is, or harder where
   /// it sticks (T.97).
   Softness soften(const Assembly& in, const Touch& touch, const FrameVector& velocity, int rows);
+  /// a_ref of the next row (T.122).
+  double nextReference(const Assembly& in, const Softness& soft, double velocity, double distance,
+                       double bias) {
+    turning_.push_back((1.0 - in.lag() * soft.damping) * bias);
+    return soft.referenceAcceleration(velocity, distance) - turning_.back();
+  }
+  /// J̇ v of contact i with the velocities of `then`, less what it is; 0 where it is not known.
+  FrameVector biasChange(const Assembly& then, int i) const;
+  /// Leaves out of the references what they have of the bodies' turning, where a contact concerns
+  /// a body.
+  template <class Concerns>
+  void leaveOutTurning(const Concerns& concerns, std::vector<double>& reference) const {
+    for (std::size_t row = 0; row < reference.size(); ++row) {
+      const ContactRows& made = made_[contactOfRow_[row]];
+      if (concerns(made.bodyA) || concerns(made.bodyB)) reference[row] += turning_[row];
+    }
+  }
   /// Contact of each of `rows` rows.
   void indexRows(std::size_t rows);
 
   BlockJacobian jacobian_;  ///< block i: y of contact i
   std::vector<ContactRows> made_;
   std::vector<int> contactOfRow_;
+  std::vector<double> turning_;  ///< what each reference has of the bodies' turning
+  std::vector<std::optional<FrameVector>> bias_;  ///< J̇ v of contact i, where it is known
 };
 
 }  // namespace softgauss

@@ -17,14 +17,14 @@ void EllipticContact::assemble(const Assembly& in) {
     for (int i = 0; i < in.contacts.size(); ++i) {
       const std::optional<Touch> touch = touchAt(in, i);
       if (!touch || touch->frictionDim == 0) continue;
-      const FrameVector velocity = addBlock(in, i, *touch, static_cast<int>(reference.size()));
-      const Softness soft = soften(in, *touch, velocity, 1);
+      const BlockMotion moves = addBlock(in, i, *touch, static_cast<int>(reference.size()));
+      const Softness soft = soften(in, *touch, moves.velocity, 1);
       perInertia_.push_back(soft.perInertia);
       cones_.push_back({touch->frictionDim + 1, 1.0 / soft.R,
                         touch->mu() / std::sqrt(options.impedanceRatio), touch->friction});
-      reference.push_back(soft.referenceAcceleration(velocity[0], touch->distance));
-      for (int k = 1; k <= touch->frictionDim; ++k)
-        reference.push_back(soft.referenceAcceleration(velocity[k], 0.0));
+      for (int k = 0; k <= touch->frictionDim; ++k)
+        reference.push_back(nextReference(in, soft, moves.velocity[k],
+                                          k == 0 ? touch->distance : 0.0, moves.bias[k]));
       damping.resize(reference.size(), soft.damping);
     }
   }
@@ -37,6 +37,12 @@ void EllipticContact::assemble(const Assembly& in) {
 void EllipticContact::multiply(const VectorX& a, std::vector<double>& y) const {
   for (std::size_t i = 0; i < made_.size(); ++i)
     jacobian_.multiply(static_cast<int>(i), a, y.data() + made_[i].row);
+}
+
+void EllipticContact::setTurningRay(const Assembly&, const Assembly& then) {
+  for (std::size_t i = 0; i < made_.size(); ++i)
+    std::copy_n(biasChange(then, static_cast<int>(i)).data(), cones_[i].dim,
+                dx.data() + made_[i].row);
 }
 
 double EllipticContact::evaluate(std::size_t i, const double* at, double* force, double* H,

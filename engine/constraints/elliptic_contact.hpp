@@ -4,7 +4,7 @@
 /// Frictional contact with an elliptic cone.
 ///
 /// The rows of a contact are its condim directions themselves (T.32):
-///   x = y − a_ref,   a_ref = (−b ẏ_n − k d r, −b ẏ₁, …, −b ẏ_{condim − 1})
+///   x = y − a_ref,   a_ref = (−b ẏ_n − k d r, −b ẏ₁, …, −b ẏ_{condim − 1}) − (1 − lag b) J̇ v
 ///   D = d/((1 − d)(w_A + w_B)) of the normal row,   μ̂ = μ/√impratio
 /// and their penalty is that of elliptic_cone.hpp. Normal softness does not depend on friction.
 
@@ -46,6 +46,12 @@ class EllipticContact : public ContactBlocks {
   /// is, until letGo().
   void placeAtKnot(int row, int knot, bool stiffSide);
   void letGo() { placed_.assign(placed_.size(), false); }
+  void setTurningRay(const Assembly& now,
+                     const Assembly& then);  ///< as ScalarRows::setTurningRay()
+  template <class Concerns>
+  void leaveOutTurning(const Concerns& concerns) {
+    ContactBlocks::leaveOutTurning(concerns, reference);
+  }
   void holdOnRay(int) {}
 
   const EllipticCone& cone(int i) const { return cones_[i]; }

@@ -26,7 +26,7 @@ void CouplingRows::assemble(const Assembly& in) {
       const Body &follower = model.bodies[c.follower], &leader = model.bodies[c.leader];
       Pair pair{follower.v, follower.v};
       double r = in.state.q[follower.q] - c.polynomial[0];
-      double weight = in.weights.dof[follower.v], rate = in.state.v[follower.v], bias = 0.0;
+      double weight = in.weights.dof[follower.v], rate = in.state.v[follower.v];
       if (c.leader != 0) {
         const double q = in.state.q[leader.q];
         r = in.state.q[follower.q] - c.value(q);
@@ -37,16 +37,24 @@ void CouplingRows::assemble(const Assembly& in) {
             !isAncestor(model, std::min(follower.v, leader.v), std::max(follower.v, leader.v));
         weight += in.weights.dof[leader.v];
         rate -= pair.slope * in.state.v[leader.v];
-        if (model.options.ownSoftness) bias = -c.curvature(q) * std::pow(in.state.v[leader.v], 2.0);
+        if (model.options.ownSoftness) pair.bend = c.curvature(q);
       }
       const Softness soft = softnessAt(c.impedance, r, weight, model.options);
-      pair.turning = (1.0 - in.lag() * soft.damping) * bias;
+      pair.turning =
+          (1.0 - in.lag() * soft.damping) * -pair.bend * std::pow(in.state.v[pair.leader], 2.0);
       pairs_.push_back(pair);
       reference.push_back(soft.referenceAcceleration(rate, r) - pair.turning);
       pushSoftness(soft);
     }
   }
   resizeRows(pairs_.size());
+}
+
+void CouplingRows::setTurningRay(const Assembly& now, const Assembly& then) {
+  for (std::size_t i = 0; i < pairs_.size(); ++i) {
+    const double before = now.state.v[pairs_[i].leader], after = then.state.v[pairs_[i].leader];
+    dx[i] = -pairs_[i].bend * (after * after - before * before);
+  }
 }
 
 void CouplingRows::multiply(const VectorX& a, std::vector<double>& y) const {

@@ -19,6 +19,7 @@ namespace softgauss {
 class CouplingRows : public ScalarRows<Quadratic> {
  public:
   void assemble(const Assembly& in);
+  void setTurningRay(const Assembly& now, const Assembly& then);
   void multiply(const VectorX& a, std::vector<double>& y) const;
   void addTransposed(const std::vector<double>& y, VectorX& tau) const;
   void addCurvature(TreeMatrix& P);
@@ -41,6 +42,7 @@ class CouplingRows : public ScalarRows<Quadratic> {
     int follower = 0;      ///< dof
     int leader = 0;        ///< dof; the follower's own without a leader
     double slope = 0.0;    ///< p′, 0 without a leader
+    double bend = 0.0;     ///< p″, 0 where it has no part
     bool couples = false;  ///< neither dof moves the other's body
     int body = 0;          ///< of the leader
     double turning = 0.0;  ///< what the reference has of J̇ v

@@ -25,18 +25,25 @@ void PyramidalContact::assemble(const Assembly& in) {
   for (int i = 0; i < in.contacts.size(); ++i) {
     const std::optional<Touch> touch = touchAt(in, i);
     if (!touch || (touch->frictionDim > 0 && options.cone != Cone::pyramidal)) continue;
-    const FrameVector velocity = addBlock(in, i, *touch, static_cast<int>(reference.size()));
-    double edgeVelocity[10];
-    toEdges(velocity.data(), touch->frictionDim, touch->friction, edgeVelocity);
+    const BlockMotion moves = addBlock(in, i, *touch, static_cast<int>(reference.size()));
+    double velocity[10], bias[10];
+    toEdges(moves.velocity.data(), touch->frictionDim, touch->friction, velocity);
+    toEdges(moves.bias.data(), touch->frictionDim, touch->friction, bias);
     const int edges = std::max(1, 2 * touch->frictionDim);
-    const Softness soft = soften(in, *touch, velocity, edges);
+    const Softness soft = soften(in, *touch, moves.velocity, edges);
     for (int edge = 0; edge < edges; ++edge) {
-      reference.push_back(soft.referenceAcceleration(edgeVelocity[edge], touch->distance));
+      reference.push_back(nextReference(in, soft, velocity[edge], touch->distance, bias[edge]));
       pushSoftness(soft);
     }
   }
   resizeRows(reference.size());
   indexRows(reference.size());
+}
+
+void PyramidalContact::setTurningRay(const Assembly&, const Assembly& then) {
+  for (std::size_t i = 0; i < made_.size(); ++i)
+    toEdges(biasChange(then, static_cast<int>(i)).data(), made_[i].frictionDim, made_[i].friction,
+            dx.data() + made_[i].row);
 }
 
 void PyramidalContact::multiply(const VectorX& a, std::vector<double>& y) const {

@@ -4,7 +4,8 @@
 /// Frictional contact with a pyramidal cone, and frictionless contact.
 ///
 /// The rows of a contact are the edges of its friction pyramid (T.14):
-///   x = (y_n ± μ_k y_k) − a_ref,   a_ref = −b (ẏ_n ± μ_k ẏ_k) − k d r,   k = 1 … condim − 1
+///   x = (y_n ± μ_k y_k) − a_ref,   a_ref = −b (ẏ_n ± μ_k ẏ_k) − k d r,   k = 1 … condim − 1,
+///   less (1 − lag b) J̇ v of the edge
 ///   s(x) = ½ D min(x, 0)²,         D = impratio/(2 μ² R₀),   R₀ = (1 − d)/d (w_A + w_B)(1 + μ²)
 /// with w the bodies' translational inverse weights. Edge forces f ≥ 0 add up to
 ///   f_n = Σ f,   f_k = μ_k (f₊ − f₋),   so Σ |f_k|/μ_k ≤ f_n whatever the acceleration.
@@ -25,6 +26,11 @@ class PyramidalContact : public ScalarRows<HalfQuadratic>, public ContactBlocks 
   void addCurvature(TreeMatrix& P);
   /// y ← y + scale · (row i of J)ᵀ.
   void addRow(int i, double scale, VectorX& y) const;
+  void setTurningRay(const Assembly& now, const Assembly& then);
+  template <class Concerns>
+  void leaveOutTurning(const Concerns& concerns) {
+    ContactBlocks::leaveOutTurning(concerns, reference);
+  }
 
   /// Force on body B at contact i, world [N]; body A feels the opposite.
   Vector3 force(int i) const { return linearInWorld(i, inFrame(i, f)); }

@@ -22,6 +22,8 @@
 
 namespace softgauss {
 
+struct Assembly;
+
 /// A row among all effects.
 struct RowId {
   int kind = 0;  ///< place of its effect in Constraints::visit()
@@ -195,6 +197,11 @@ class ScalarRows {
   }
   void setForceRate() {
     for (std::size_t i = 0; i < x.size(); ++i) df[i] = -h[i] * dx[i];
+  }
+  /// dx ← J̇ v with the velocities of `then` less that of `now`, at the same q. Of rows whose J does
+  /// not turn, and of ties, whose distances tell it in another way (T.116).
+  void setTurningRay(const Assembly& /*now*/, const Assembly& /*then*/) {
+    std::fill(dx.begin(), dx.end(), 0.0);
   }
 
  private:

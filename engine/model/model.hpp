@@ -151,7 +151,7 @@ struct Options {
   bool ownSoftness = true;
   bool exactDiagonal = false;  ///< see constraints/exact_diagonal.hpp
   bool noSlip = false;         ///< friction without creep (step/no_slip.hpp)
-  int maxIterations = 100;     ///< Newton
+  int maxIterations = 400;     ///< Newton
   double tolerance = 1e-12;    ///< Newton: scaled gradient, see solver/newton.hpp
 
   /// The integrator moves on with one solve, that of the step's start, unless it is doubled.

@@ -67,14 +67,14 @@ concept NewtonObjective = requires(O o, VectorX& g, VectorX& d, double alpha) {
   o.advance(d, alpha);
 };
 
+/// `factored`: the objective has a factor already, and says whether it is of its cell.
 template <NewtonObjective Objective>
 NewtonReport minimize(Objective& objective, double tolerance, int maxIterations, VectorX& g,
-                      VectorX& d) {
+                      VectorX& d, bool factored = false) {
   /// Where rounding ends progress before the tolerance: this much is still called converged.
   constexpr double kRoundingFloor = 1e3;
   constexpr int kSlowSteps = 3;
   NewtonReport report;
-  bool factored = false;
   double previous = kInfinity;
   int slowSteps = 0;
   for (;;) {

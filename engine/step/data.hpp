@@ -13,6 +13,7 @@
 #include "engine/forces/forces.hpp"
 #include "engine/solver/newton.hpp"
 #include "engine/step/integrators/followed_trees.hpp"
+#include "engine/step/integrators/mid_step.hpp"
 
 namespace softgauss {
 
@@ -47,7 +48,7 @@ struct StepStats {
   int rows = 0;
   int iterations = 0;
   int factorizations = 0;
-  double residual = 0.0;        ///< of the forward solve, scaled
+  double residual = 0.0;        ///< of the solve (the larger one of two, T.123), scaled
   double maxPenetration = 0.0;  ///< deepest overlap of a contact [m], ≥ 0
   std::int64_t pairsSkipped = 0;
   int followedTrees = 0;   ///< whose free motion was followed within the step (T.93)
@@ -93,6 +94,7 @@ struct Data {
   StickingFriction sticking;  ///< with Options::noSlip: friction of the last solve, else empty
   ForwardSolution forward;
   FollowedTrees followed;  ///< of the integrator; empty without Coriolis forces of mid-step
+  MidStep midStep;         ///< of the integrator; empty as above, or without rows
   VectorX acceleration;    ///< discrete, (v⁺ − v)/h (nv)
   std::unique_ptr<IntegratorStages> stages;        ///< null where the step is one solve
   std::unique_ptr<VelocityDerivative> derivative;  ///< of the implicit integrators, else null

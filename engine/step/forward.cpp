@@ -16,14 +16,6 @@ int firstNotFinite(const VectorX& x) {
   return -1;
 }
 
-/// A step of Newton's ends in another cell or at the minimum, and the more rows, the more cells lie
-/// on the way: Options::maxIterations are for every thousand rows. (200 bodies that fall on each
-/// other, with 4,210 rows, have needed more than 100.)
-int mostIterations(int option, int rows) {
-  constexpr int kRows = 1000;
-  return option * std::max(1, rows / kRows);
-}
-
 /// Without rows the minimiser is M⁻¹(τ − c): no iteration, no residual. False where M is singular.
 bool solveSmooth(Data& data) {
   ForwardSolution& s = data.forward;
@@ -35,6 +27,11 @@ bool solveSmooth(Data& data) {
 }
 
 }  // namespace
+
+int mostIterations(int option, int rows) {
+  constexpr int kRows = 1000;
+  return option * std::max(1, rows / kRows);
+}
 
 bool solveMass(Data& data, const VectorX* diagonal, VectorX& x) {
   ForwardSolution& s = data.forward;

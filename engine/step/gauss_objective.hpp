@@ -22,6 +22,9 @@ class GaussObjective {
     s_.scale /= largest;
   }
 
+  /// The factor in the solution is of the cell in which the rows are.
+  void keepFactor() { changed_ = false; }
+
   /// Moves to a; returns the cost.
   double moveTo(const VectorX& a) {
     s_.a = a;

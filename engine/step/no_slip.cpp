@@ -63,6 +63,7 @@ void removeSlip(const Model& model, Data& data) noexcept {
   s.start = s.a;  // moveTo() writes s.a
   objective.moveTo(s.start);
   const NewtonReport first = s.report;
+  s.cellFactored = false;  // `factor` becomes that of the second problem
   s.report = minimize(objective, model.options.tolerance, model.options.maxIterations, s.gradient,
                       s.direction);
   if (s.report.status != SolveStatus::converged) {

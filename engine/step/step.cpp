@@ -81,6 +81,7 @@ Data::Data(const Model& model, Evaluation)
       constraints(plan.rows),
       exactDiagonal(model.options.exactDiagonal ? model.nv : 0),
       followed(plan.midpoint ? FollowedTrees(model) : FollowedTrees()),
+      midStep(plan.midpoint && !plan.rows.empty() ? MidStep(model) : MidStep()),
       acceleration(VectorX::Zero(model.nv)),
       derivative(isImplicit(model.options.integrator) ? std::make_unique<VelocityDerivative>(model)
                                                       : nullptr) {

@@ -56,26 +56,28 @@ TEST(Singular, ArmPulledBeyondItsFullStretch) {
 // However far away, and however far the links turn in a step: they swing on, and gain no more than
 // the tie gives. With 0.1 m at 10 ms they turn by 1.3 rad in a step, with 1 m by a turn and more;
 // there they swing wider than they should (docs/stability.md), and nothing is given up. With 1 m
-// from 5 ms on even the law of energy is broken, by one start in ten: the first keeps it, and seven
-// more, 1e-9 rad apart, break it by no more than what the tie gives, of which `energy` is the
-// scale.
+// from 5 ms on even the law of energy is broken, by up to one start in seven: of eight, 1e-9 rad
+// apart, by three at most, and by no more than what the tie gives, of which `energy` is the scale.
 TEST(Singular, ArmPulledFarBeyondItsStretch) {
   int rounded = 0;
   for (const double beyond : {1e-2, 1e-1, 1.0})
-    for (const double timestep : kSteps)
-      for (int start = 0; start < 8; ++start) {
-        const bool whirls = beyond * timestep > 2e-3 * 1.001;
-        if (start > 0 && !whirls) continue;
+    for (const double timestep : kSteps) {
+      const bool whirls = beyond * timestep > 2e-3 * 1.001;
+      int broken = 0;
+      for (int start = 0; start < (whirls ? 8 : 1); ++start) {
         Trial t("bent arm, tie at " + std::to_string(beyond), with(stretched(beyond), timestep));
         t.state.q = Vector3(0.1 + 1e-9 * start, -0.2, 0.15);
         const bool turnsTooFar = beyond * timestep > 5e-4 * 1.001;
         const double energy = 0.5 * 3.0 * std::pow((0.05 + beyond) / 0.02, 2.0);
         t.mayGain = turnsTooFar ? kInfinity : energy;
-        if (start > 0) t.mayRise = energy;
+        if (whirls) t.mayRise = energy;
         t.mayRound = true;
         EXPECT_TRUE(t.run(5.0));
         rounded += t.rounded;
+        broken += t.rises > 0.0;
       }
+      EXPECT_LE(broken, 3);
+    }
   EXPECT_GT(rounded, 0);
 }
 

@@ -168,9 +168,11 @@ bool Trial::watch(SolveStatus status) {
   gained = std::max(gained, energy().total() - startEnergy_ - work);
   if (gained > mayGain)
     return breaks("more energy than at the start and by work, by " + std::to_string(gained) + " J");
-  const double rise = energies_->check(state, input, *data, work, perStep) - mayRise;
-  if (rise > 0.0)
-    return breaks("more energy than at an earlier step, by " + std::to_string(rise) + " J");
+  const double rise = energies_->check(state, input, *data, work, perStep);
+  rises = std::max(rises, rise);
+  if (rise > mayRise)
+    return breaks("more energy than at an earlier step, by " + std::to_string(rise - mayRise) +
+                  " J");
   return true;
 }
 

@@ -67,6 +67,7 @@ class Trial {
 
   // Measured over all steps so far.
   double gained = -kInfinity;  ///< most energy above that of the start and of the work [J]
+  double rises = -kInfinity;   ///< most that the law of energy is broken by, without mayRise [J]
   double work = 0.0;           ///< of `input.tau` [J]
   double deepest = 0.0;        ///< deepest overlap of any two shapes [m]
   double fastest = 0.0;        ///< largest |v_i| [m/s or rad/s]

@@ -96,12 +96,24 @@ TEST(Violent, PainlevesRod) {
                 {turn.toRotationMatrix(), Vector3(0, 0, 0.5 * std::cos(angle) + 0.01)}, friction);
         Trial t("Painlevé's rod, mu " + std::to_string(friction), with(builder, timestep, cone));
         t.state.v[0] = 5.0;
-        double highest = 0.0;
-        t.run(8.0, [&] { highest = std::max(highest, t.state.q[2]); });
+        double highest = 0.0, fastest = 0.0;
+        t.run(8.0, [&] {
+          highest = std::max(highest, t.state.q[2]);
+          const Vector3 half = t.rotation("rod") * Vector3(0, 0, 0.5);
+          const Vector3 omega = t.rotation("rod") * t.state.v.segment<3>(3);
+          for (const Vector3& end : {half, Vector3(-half)})
+            if (t.state.q[2] + end.z() < 0.01)
+              fastest = std::max(fastest, -(t.state.v[2] + omega.cross(end).z()));
+        });
         // It has the height of its start and that of its speed at most; what stops it on its tip is
-        // no deeper than the reference motion that meets 5 m/s.
+        // no deeper than the reference motion that meets the speed at which an end comes down: as
+        // it turns over, at 5.5 m/s. (5 m/s were asked before; the motion to which steps of 0.02 ms
+        // and dormand-prince converge is 39.6 mm deep, and would have failed by 7 %.)
         t.expect("rises to", highest, 0.5 * std::cos(angle) + 0.01 + 25.0 / (2.0 * 9.81), "m");
-        t.expect("deepest", t.deepest, 5.0 * (timeConstant(timestep) / M_E + timestep), "m");
+        // All energy in one end: v² ≤ 2 E (1/m + (L/2)²/I).
+        const double quick = std::sqrt(2.0 * (12.5 + 9.81) * (1.0 + 0.25 * 12.0));
+        t.expect("an end comes down at", fastest, quick, "m/s");
+        t.expect("deepest", t.deepest, fastest * (timeConstant(timestep) / M_E + timestep), "m");
         // It lies down, on its radius, and has slid no farther than twice Coulomb's way.
         t.expect("above its radius", t.state.q[2] - 0.01, 1e-3, "m");
         t.expect("speed at rest", t.state.v.cwiseAbs().maxCoeff(), 1e-3, "m/s");
@@ -109,9 +121,9 @@ TEST(Violent, PainlevesRod) {
       }
 }
 
-// A cylinder lands leaning and spinning, and wobbles on its rim. Rows of contacts leave out how the
-// point of contact moves along the rim, and friction pushes along by that (docs/stability.md): 3 %
-// of the start, and never above it.
+// A cylinder lands leaning and spinning, and wobbles on its rim. Where the place that touches goes
+// round far in a step its rows do not know how (T.121), and friction may push along: 0.5 % of the
+// start, and never above it.
 TEST(Violent, LeaningCylinderLands) {
   for (const double spin : {0.0, 30.0, 60.0})
     for (const double timestep : {0.0005, 0.002, 0.005, 0.01})
@@ -123,7 +135,7 @@ TEST(Violent, LeaningCylinderLands) {
                 0.7);
         Trial t("cylinder at " + std::to_string(static_cast<int>(spin)) + " rad/s", builder);
         t.state.v[5] = spin;
-        t.mayRise = 0.03 * t.energy().total();
+        t.mayRise = 5e-3 * t.energy().total();
         t.run(3.0);
         // No point of it is faster than the fall and the spin about its centre, 0.112 m away.
         const double speed = std::sqrt(2.0 * 9.81 * 0.31) + 0.112 * spin;

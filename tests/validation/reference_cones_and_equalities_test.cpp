@@ -22,6 +22,7 @@ Scene slidingSphere(double impedanceRatio, const Material& material = {}) {
   builder.options.tolerance = 1e-15;
   builder.options.cone = Cone::elliptic;
   builder.options.impedanceRatio = impedanceRatio;
+  builder.options.ownSoftness = false;  // without J̇ v of contacts
   Model model = builder.build();
   for (Geometry& g : model.geometries) g.material = material;
   Scene s(std::move(model), std::make_shared<SampleContacts>());

@@ -17,6 +17,7 @@ constexpr double kDigits15 = 1e-12;
 Scene slidingSphere() {
   ModelBuilder builder = sphereOnPlane(0.1, 1.0, 1.0);
   builder.options.tolerance = 1e-15;
+  builder.options.ownSoftness = false;  // without J̇ v of contacts
   Scene s(builder.build(), std::make_shared<SampleContacts>());
   s.state.q << 0, 0, 0.0995, 1, 0, 0, 0;
   s.state.v << 0.1, 0, -0.05, 0, 0, 0;

@@ -131,14 +131,17 @@ bool FollowedTrees::anyPushed(const Model& model, const Data& data) {
   setRowForces(data, smooth);
   bool any = false;
   for (std::size_t t = 0; t < model.trees.size(); ++t) {
-    pushed[t] = followed[t] && isPushed(model.trees[t], data, push, smooth);
+    const Tree& tree = model.trees[t];
+    pushed[t] = followed[t] && isPushed(tree, data, push, smooth);
+    // A single body rolls on: (T.123) has its Coriolis forces, and the rows' answer.
+    if (pushed[t] && !model.options.noSlip && isSingle(tree) && !tied[t] && turn[t] < kRollingTurn)
+      followed[t] = pushed[t] = 0;
     any = any || pushed[t];
   }
   return any;
 }
 
-bool FollowedTrees::kick(const Model& model, Data& data, const State& state,
-                         const VectorX& change) {
+bool FollowedTrees::kick(const Model& model, Data& data, const State& state) {
   const double h = model.options.timestep;
   ForwardSolution& s = data.forward;
   a = s.a;
@@ -169,18 +172,18 @@ bool FollowedTrees::kick(const Model& model, Data& data, const State& state,
   ++data.stats.kicks;
   if (status == SolveStatus::notFinite) return false;
   if (status != SolveStatus::converged) data.stats.status = status;
-  // a′ by what a has changed, and without what the Coriolis forces of pushed trees gain.
+  // a′ by what a has changed, and of pushed trees without what mid-step changes.
   smooth = s.a - a;
   data.inertia.M.multiply(smooth, kicked);
+  for (std::size_t t = 0; t < model.trees.size(); ++t) {
+    if (!pushed[t]) continue;
+    const int first = model.trees[t].firstDof, dofs = model.trees[t].dofEnd - first;
+    kicked.segment(first, dofs) -= data.midStep.change().segment(first, dofs);
+  }
   const bool implicit = data.plan.damped() || anyStiffSpring(model, data);
   if (implicit) setImplicitForces(model, state, data, smooth);
   if (!solveMass(data, implicit ? &s.Md : nullptr, kicked)) return false;
   data.acceleration += kicked;
-  for (std::size_t t = 0; t < model.trees.size(); ++t) {
-    if (!pushed[t]) continue;
-    const int first = model.trees[t].firstDof, dofs = model.trees[t].dofEnd - first;
-    data.acceleration.segment(first, dofs) += change.segment(first, dofs);
-  }
   return true;
 }
 

@@ -37,10 +37,12 @@
 /// these turn, and (T.91) has them. Then a kick takes velocity out of the rows and puts none in,
 /// however far the tree turns.
 ///
-/// A tree with turn < 0.05 rolls on as it has come, and f has its Coriolis forces: of trees without
-/// ties, and of single bodies that turn by less than kTiedTurn, with J̇ v of their ties. The kick
-/// then puts h c into its rows, c = −J a_c, and on its way the tree takes it out again. The rows
-/// damp the mean of J v and J v + h c, so that f works against no speed of its own making:
+/// With turn < 0.05 a single body without ties is not followed while rows push it: (T.123) has its
+/// Coriolis forces and the rows' answer. Links without ties, and single bodies on ties that turn by
+/// less than kTiedTurn, roll on as they have come, and f has their Coriolis forces, with J̇ v of
+/// their rows. The kick then puts h c into its rows, c = −J a_c, and on its way the tree takes it
+/// out again. The rows damp the mean of J v and J v + h c, so that f works against no speed of its
+/// own making:
 ///
 ///   a_ref ← a_ref + ½ h b J a_c                                                        (T.120)
 
@@ -75,9 +77,8 @@ struct FollowedTrees {
   /// Finds which of them rows push, and whether there is one.
   bool anyPushed(const Model& model, const Data& data);
   /// Solves (T.1) again, by (T.120) and without what the velocities of the other pushed trees make:
-  /// Coriolis forces, and J̇ v of their rows. `change` as above; a′ of all trees follows. False: not
-  /// finite.
-  bool kick(const Model& model, Data& data, const State& state, const VectorX& change);
+  /// Coriolis forces, and J̇ v of their rows; a′ of all trees follows. False: not finite.
+  bool kick(const Model& model, Data& data, const State& state);
   /// Puts (T.1) back as it was.
   void endKick(const Model& model, Data& data);
   /// Corrects v⁺ = v + h a′ of the followed trees. `held` is scratch (nv).

@@ -57,15 +57,18 @@ bool semiImplicitEuler(const Model& model, Data& data, State& state) {
   const Plan& plan = data.plan;
   const bool stiff = anyStiffSpring(model, data);
   const bool midpoint = plan.midpoint, implicit = plan.damped() || stiff;
+  const bool rows = !data.constraints.active().empty();
+  // With bounded friction (T.34) a is the solution of another problem.
+  const bool answers = midpoint && rows && !model.options.noSlip;
   data.acceleration = s.a;
   bool follow = false;
   if (implicit || midpoint) {
-    // Right side M a, less what the Coriolis forces gain by mid-step.
+    // Right side M a, less what the Coriolis forces gain by mid-step and rows answer to that.
     VectorX& net = data.acceleration;
-    if (data.constraints.active().empty())
-      net = s.Ma;
-    else
+    if (rows)
       data.inertia.M.multiply(s.a, net);
+    else
+      net = s.Ma;
     if (implicit) setImplicitForces(model, state, data, net);
     bool factored = false;
     const auto solve = [&](VectorX& x) {  // x ← (M + h D)⁻¹ x
@@ -84,21 +87,30 @@ bool semiImplicitEuler(const Model& model, Data& data, State& state) {
       s.start = state.v + 0.5 * h * s.start;
       ++data.forces.calls.coriolis;
       computeBiasAt(model, data.kinematics, data.inertia, s.start, data.forces.work, s.direction);
-      s.direction -= data.forces.bias;
-      net -= s.direction;
+      s.direction -= data.forces.bias;  // Δb
+      if (answers) {
+        if (!data.midStep.answer(model, data, state, s.start, s.direction)) return false;
+        net += data.midStep.change();
+      } else if (rows) {
+        data.midStep.leaveAlone(s.direction);
+        net += data.midStep.change();
+      } else {
+        net -= s.direction;
+      }
     }
     if (!solve(net)) return false;
     if (midpoint && mayTurnFar(model, data, state)) {
-      // What Δb does to the velocity, damped like the rest.
-      if (!implicit)
-        s.direction = s.a - net;
-      else
+      // What Δb does to the velocity by itself, damped like the rest.
+      if (implicit || rows)
         solve(s.direction);
+      else
+        s.direction = s.a - net;
       follow = data.followed.needed(model, data, state, s.direction);
     }
   }
+  if (follow && answers) data.midStep.leave(data);
   const bool kicked = follow && data.followed.anyPushed(model, data);
-  if (kicked && !data.followed.kick(model, data, state, s.direction)) return false;
+  if (kicked && !data.followed.kick(model, data, state)) return false;
   s.start = state.v + h * data.acceleration;
   if (tooFast(model, s.start)) return false;
   if (follow) {
@@ -112,7 +124,10 @@ bool semiImplicitEuler(const Model& model, Data& data, State& state) {
   if (midpoint)
     std::replace(state.velocityOf.begin(), state.velocityOf.end(), VelocityOf::asGiven,
                  VelocityOf::halfAStepAgo);
-  if (kicked) data.followed.endKick(model, data);
+  if (kicked)
+    data.followed.endKick(model, data);
+  else if (follow && answers)
+    data.midStep.enter(data);
   state.time += h;
   return true;
 }

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/constraints/contact_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace softgauss {
+namespace {
+
+/// From where on the rate at its start tells little of a step: by what a body tilts and by what the
+/// place on a rim goes round [rad].
+constexpr double kTilts = 0.3, kGoesRound = 1.0;
+
+/// Whether the surface is a plane where its outward normal is ±n.
+bool isFlat(const Shape& shape, const Transform& X_WG, const Vector3& n_W) {
+  if (shape.kind == ShapeKind::plane) return true;
+  constexpr double kAligned = 1.0 - 1e-12;
+  return shape.kind == ShapeKind::box &&
+         (X_WG.R.transpose() * n_W).cwiseAbs().maxCoeff() > kAligned;
+}
+
+/// ν of (T.121) [m/s], of the place whose outward normal is −n, and the size of what is round
+/// there; ω of the shape against n.
+struct Runs {
+  Vector3 along;
+  double size = std::numeric_limits<double>::infinity();
+};
+
+std::optional<Runs> alongSurface(const Shape& shape, const Transform& X_WG, const Vector3& n,
+                                 const Vector3& omega, const Contact& c, double timestep) {
+  switch (shape.kind) {
+    case ShapeKind::sphere:
+    case ShapeKind::capsule:
+      return Runs{shape.radius * omega.cross(n), shape.radius};
+    case ShapeKind::box:
+      return Runs{Vector3::Zero()};
+    case ShapeKind::cylinder: {
+      const Vector3 a = X_WG.R.col(2);
+      const double slope2 = a.cross(n).squaredNorm(), turns = -a.dot(n.cross(omega.cross(n)));
+      if (!(timestep * std::abs(turns) < kGoesRound * slope2)) return std::nullopt;
+      return Runs{turns / slope2 * a.cross(c.p_WC - X_WG.p + 0.5 * c.distance * n),
+                  shape.radius * std::sqrt(slope2)};
+    }
+    case ShapeKind::plane:
+    case ShapeKind::mesh:
+      return std::nullopt;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<ContactBias> contactBias(const Model& model, const Kinematics& k, const Contact& c) {
+  // What looks within the step asks for the rate at each of its places.
+  const double h = model.options.looksWithin() ? 0.0 : model.options.timestep;
+  const Motion &V_A = k.V[c.bodyA], &V_B = k.V[c.bodyB];
+  if (!(h * std::max(c.n_W.cross(V_A.angular).norm(), c.n_W.cross(V_B.angular).norm()) <= kTilts))
+    return std::nullopt;
+  const Geometry &A = model.geometries[c.geometryA], &B = model.geometries[c.geometryB];
+  const Transform X_WA = k.X_WB[c.bodyA] * A.X_BG, X_WB = k.X_WB[c.bodyB] * B.X_BG;
+  const bool flatA = isFlat(A.shape, X_WA, c.n_W), flatB = isFlat(B.shape, X_WB, c.n_W);
+  if (flatA == flatB) return std::nullopt;
+
+  const Motion &V_flat = flatA ? V_A : V_B, &V_other = flatA ? V_B : V_A;
+  const Vector3 n = flatA ? c.n_W : -c.n_W, turns = V_other.angular - V_flat.angular;
+  const std::optional<Runs> runs =
+      alongSurface(flatA ? B.shape : A.shape, flatA ? X_WB : X_WA, n, turns, c, h);
+  if (!runs) return std::nullopt;
+
+  const Vector3 v_A = pointVelocity(model, k, c.bodyA, c.p_WC),
+                v_B = pointVelocity(model, k, c.bodyB, c.p_WC);
+  const Vector3 slips = v_B - v_A;
+  const Vector3 v_P = (flatA ? v_B : v_A) + runs->along + 0.5 * c.distance * turns.cross(n) -
+                      0.5 * c.n_W.dot(slips) * n;
+  ContactBias bias;
+  bias.size = runs->size;
+  bias.rate.angular = k.A_bias[c.bodyB].angular - k.A_bias[c.bodyA].angular -
+                      V_flat.angular.cross(V_B.angular - V_A.angular);
+  bias.rate.linear = pointBiasAcceleration(model, k, c.bodyB, c.p_WC) -
+                     pointBiasAcceleration(model, k, c.bodyA, c.p_WC) +
+                     V_B.angular.cross(v_P - v_B) - V_A.angular.cross(v_P - v_A) -
+                     V_flat.angular.cross(slips);
+  return bias;
+}
+
+}  // namespace softgauss

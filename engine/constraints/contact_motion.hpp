@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// How a contact moves, and what that adds to the acceleration of its bodies against each other.
+///
+/// The point of contact is of neither body: what rolls or spins on the ground touches it with ever
+/// other points. It runs along at ṗ, and so does the place at which the bodies' velocities are
+/// compared, in the frame C of the flat one, which turns with it at ω_C:
+///
+///   J̇ v = a_B − a_A + ω_B × (ṗ − v_B) − ω_A × (ṗ − v_A) − ω_C × (v_B − v_A)            (T.121)
+///   angular:  α_B − α_A − ω_C × (ω_B − ω_A)
+///
+/// with v, a and α of the bodies at p where v̇ = 0. What touches the flat one tells ṗ. It turns
+/// against it at ω, its deepest place runs along its surface at ν, and p is half the distance d
+/// from there, midway between the surfaces. With n away from the flat one
+///
+///   ṗ = v + ν + ½ d ω × n − ½ ḋ n
+///
+///   ν = ρ ω × n                                 of a sphere or capsule of radius ρ
+///   ν = 0                                       of a corner
+///   ν = −a·(n × (ω × n))/|a × n|² a × s         of a rim
+///
+/// a the axis of a cylinder, s from its centre to the place on its rim.
+
+#include <optional>
+
+#include "engine/constraints/contact_set.hpp"
+#include "engine/dynamics/kinematics.hpp"
+
+namespace softgauss {
+
+struct ContactBias {
+  Motion rate;        ///< J̇ v, world axes [m/s², rad/s²]
+  double size = 0.0;  ///< of what is round there [m]: the radius of a ball or capsule, the height
+                      ///< of a rim's middle above the place; infinite of a corner
+};
+
+/// Nothing where J̇ v is not known: neither surface is flat, or both are; a mesh touches; or, in a
+/// step that knows its start alone, a body tilts by more than 0.3 rad or the place on a rim goes
+/// round by more than 1.
+std::optional<ContactBias> contactBias(const Model& model, const Kinematics& kinematics,
+                                       const Contact& contact);
+
+}  // namespace softgauss

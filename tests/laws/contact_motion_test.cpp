@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+/// J̇ v of contacts (T.121) against differences along the motion, with contacts found anew.
+
+#include "engine/constraints/contact_motion.hpp"
+
+#include "collision/scene_contacts.hpp"
+#include "engine/engine.hpp"
+#include "tests/support/finite_difference.hpp"
+#include "tests/support/matchers.hpp"
+#include "tests/support/random.hpp"
+#include "tests/support/sample_models.hpp"
+
+namespace softgauss::test {
+namespace {
+
+/// A flat shape and one that lies on its +z face, as deep as this [m].
+struct Pair {
+  Shape flat, other;
+  double depth;
+  bool flatFirst;  ///< the flat one is geometry A
+};
+
+/// What is deeper does not come free within the differences [m], and the place on a rim that is
+/// higher by this does not run far within them.
+constexpr double kDeep = 3e-3, kSteep = 10.0;
+
+const Shape kBlock = Shape::box({0.5, 0.4, 0.3});
+
+const Pair kPairs[] = {
+    {Shape::plane(), Shape::sphere(0.1), 0.01, true},
+    {Shape::plane(), Shape::sphere(0.1), 0.01, false},
+    {Shape::plane(), Shape::capsule(0.05, 0.1), 0.01, true},
+    {Shape::plane(), Shape::cylinder(0.1, 0.03), 0.01, true},
+    {Shape::plane(), Shape::cylinder(0.1, 0.03), 0.01, false},
+    {Shape::plane(), Shape::box({0.1, 0.07, 0.05}), 0.01, true},
+    {kBlock, Shape::sphere(0.1), 0.01, true},
+    {kBlock, Shape::capsule(0.05, 0.1), 0.01, false},
+    {kBlock, Shape::cylinder(0.1, 0.03), 0.01, true},
+};
+
+/// How far a shape reaches along n of its own axes.
+double reachOf(const Shape& shape, const Vector3& n) {
+  switch (shape.kind) {
+    case ShapeKind::box:
+      return shape.halfExtents.dot(n.cwiseAbs());
+    case ShapeKind::capsule:
+      return shape.radius + shape.halfLength * std::abs(n.z());
+    case ShapeKind::cylinder:
+      return shape.radius * n.head<2>().norm() + shape.halfLength * std::abs(n.z());
+    default:
+      return shape.radius;
+  }
+}
+
+/// Two free bodies of these shapes; of the two bodies, `flat` has the flat one.
+struct TwoBodies {
+  explicit TwoBodies(const Pair& pair)
+      : flat(pair.flatFirst ? 1 : 2), model(build(pair)), scene(model), k(model) {
+    model.options.timestep = 1e-4;
+  }
+
+  static Model build(const Pair& pair) {
+    ModelBuilder builder("pair");
+    for (const bool flat : {pair.flatFirst, !pair.flatFirst}) {
+      const std::string name = flat ? "flat" : "other";
+      ModelBuilder one(name);
+      one.base = BaseKind::floating;
+      one.link(boxLink(name, 1.0, {0.1, 0.1, 0.1}));
+      one.geometry(geometrySpec(name, flat ? pair.flat : pair.other, 1.0));
+      builder.add(one, "");
+    }
+    return builder.build();
+  }
+
+  /// The flat one anywhere, the other anyhow upon its face; v of up to 3 m/s and rad/s.
+  State place(const Pair& pair, Random& random) const {
+    const Transform X_WF{random.rotation(), random.vector3(1.0)};
+    Matrix3 R_FO = random.rotation();
+    // The points of a capsule that lies on a box's face go along it as it levels out.
+    const bool stands = pair.flat.kind == ShapeKind::box && pair.other.kind == ShapeKind::capsule;
+    while (stands && std::abs(R_FO(2, 2)) < 0.5) R_FO = random.rotation();
+    const double height = pair.flat.halfExtents.z() +
+                          reachOf(pair.other, R_FO.transpose() * Vector3::UnitZ()) -
+                          random.uniform(0.1, 1.0) * pair.depth;
+    const Transform X_FO{R_FO, {random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1), height}};
+    State state(model);
+    const auto put = [&](int body, const Transform& X) {
+      const Quaternion q(X.R);
+      state.q.segment<7>(model.bodies[body].q) << X.p, q.w(), q.x(), q.y(), q.z();
+    };
+    put(flat, X_WF);
+    put(3 - flat, X_WF * X_FO);
+    state.v = random.vector(model.nv, 3.0);
+    return state;
+  }
+
+  const std::vector<Contact>& contactsAt(const VectorX& q, const VectorX& v) {
+    State there(model);
+    there.q = q;
+    there.v = v;
+    computeKinematics(model, there, k);
+    scene.detect(model, k, contacts);
+    return contacts.contacts;
+  }
+
+  /// How body B moves against A at the contact nearest to p, turning and on its way, in axes that
+  /// the flat one carries; then its distance.
+  VectorX motionAt(const VectorX& q, const VectorX& v, const Vector3& p) {
+    const std::vector<Contact>& found = contactsAt(q, v);
+    const Contact c = *std::min_element(found.begin(), found.end(), [&](auto& a, auto& b) {
+      return (a.p_WC - p).norm() < (b.p_WC - p).norm();
+    });
+    const Matrix3 R_FW = k.X_WB[flat].R.transpose();
+    VectorX y(7);
+    y << R_FW * (k.V[c.bodyB].angular - k.V[c.bodyA].angular),
+        R_FW *
+            (pointVelocity(model, k, c.bodyB, c.p_WC) - pointVelocity(model, k, c.bodyA, c.p_WC)),
+        c.distance;
+    return y;
+  }
+
+  const int flat;
+  Model model;
+  collision::SceneContacts scene;
+  Kinematics k;
+  ContactSet contacts;
+};
+
+std::string nameOf(const Pair& pair) {
+  const char* kNames[] = {"Plane", "Sphere", "Capsule", "Cylinder", "Box"};
+  const std::string flat = kNames[static_cast<int>(pair.flat.kind)],
+                    other = kNames[static_cast<int>(pair.other.kind)];
+  return pair.flatFirst ? other + "On" + flat : flat + "Under" + other;
+}
+
+void PrintTo(const Pair& pair, std::ostream* out) { *out << nameOf(pair); }
+
+class ContactMotion : public testing::TestWithParam<Pair> {};
+
+TEST_P(ContactMotion, IsTheRateOfTheVelocityThatIsCompared) {
+  const Pair& pair = GetParam();
+  TwoBodies bodies(pair);
+  const Model& model = bodies.model;
+  double worst = 0.0, worstAlong = 0.0, largest = 0.0;
+  int compared = 0;
+  for (int seed = 0; seed < 200; ++seed) {
+    Random random(seed);
+    const State s = bodies.place(pair, random);
+    for (const Contact& c : std::vector<Contact>(bodies.contactsAt(s.q, s.v))) {
+      bodies.contactsAt(s.q, s.v);
+      const std::optional<ContactBias> bias = contactBias(model, bodies.k, c);
+      if (!bias || c.distance > -kDeep) continue;
+      if (pair.other.kind == ShapeKind::cylinder && bias->size < kSteep * -c.distance) continue;
+      ++compared;
+      const auto motion = [&](const VectorX& q) { return bodies.motionAt(q, s.v, c.p_WC); };
+      const Matrix3 R_WF = bodies.k.X_WB[bodies.flat].R;
+      const VectorX rate = alongMotion(model, s.q, s.v, motion, 1e-5);
+      worst = std::max({worst, (R_WF.transpose() * bias->rate.angular - rate.head<3>()).norm(),
+                        (R_WF.transpose() * bias->rate.linear - rate.segment<3>(3)).norm()});
+      largest = std::max(largest, bias->rate.linear.norm());
+      // ẏ_n is how the distance changes, and n · J̇ v how that does.
+      const auto approach = [&](const VectorX& q) {
+        return alongMotion(model, q, s.v, motion, 1e-4)[6];
+      };
+      const double bends = alongMotion(model, s.q, s.v, approach, 1e-4);
+      worstAlong = std::max(worstAlong, std::abs(bends - c.n_W.dot(bias->rate.linear)));
+    }
+  }
+  // Differences of velocities of 5 m/s over 1e-5 s: rounding 1e-10, (1e-5)² of third derivatives
+  // up to 10³ and more where a rim is nearly level. Second differences over 1e-4 s of distances of
+  // 1 m: rounding 1e-8, and the same truncation of 1e-8 of fourth derivatives.
+  EXPECT_SMALL(worst, 1e-6);
+  EXPECT_SMALL(worstAlong, 1e-4);
+  EXPECT_GT(largest, 1.0);
+  EXPECT_GT(compared, 100);
+}
+
+INSTANTIATE_TEST_SUITE_P(Pairs, ContactMotion, testing::ValuesIn(kPairs),
+                         [](const auto& named) { return nameOf(named.param); });
+
+}  // namespace
+}  // namespace softgauss::test
