@@ -56,31 +56,45 @@ int rowsAlongNormal(const Options& options, const Touch& touch) {
   return options.cone == Cone::pyramidal && touch.frictionDim > 0 ? 2 * touch.frictionDim : 1;
 }
 
-/// Whether J̇ v counts as deep as the contact lies: up to a tenth of what is round there, and up to
-/// 0.3 of it where it lies at most half as deep again as its weight and J̇ v press it at rest. So
-/// deep it goes in and out as on a spring (T.124). What came in deeper, by a fall, they would push
-/// out by more than what it came in against, and it would gain.
-bool countsSoDeep(const Options& options, const Touch& touch, const Vector3& n_W,
-                  const ContactBias& bias) {
-  const Softness& soft = touch.softness;
-  const double load = options.gravity.norm() + std::max(0.0, -n_W.dot(bias.rate.linear));
-  const double atRest =
-      soft.R * load / (touch.inverseMass * rowsAlongNormal(options, touch) * soft.stiffness);
-  return -touch.distance < std::min(0.3 * bias.size, std::max(0.1 * bias.size, 1.5 * atRest));
+/// Residual of a row that holds its body at rest under `acceleration` [m/s²]: R a/(n A), of n rows.
+double residualUnder(double acceleration, const Options& options, const Touch& touch) {
+  return touch.softness.R * acceleration / (touch.inverseMass * rowsAlongNormal(options, touch));
 }
 
+/// Speed at which it creeps under its weight [m/s].
+double creepUnderWeight(const Options& options, const Touch& touch) {
+  return residualUnder(options.gravity.norm(), options, touch) / touch.softness.damping;
+}
+
+/// What presses by the weight and by J̇ v [m/s²].
+double presses(const Options& options, const Vector3& n_W, const ContactBias& bias) {
+  return options.gravity.norm() + std::max(0.0, -n_W.dot(bias.rate.linear));
+}
+
+/// Whether J̇ v counts as deep as the contact lies: as deep as that says, and deeper where it lies
+/// at most half as deep again as its weight and J̇ v press it at rest. So deep it goes in and out as
+/// on a spring (T.124). What came in deeper, by a fall, they would push out by more than what it
+/// came in against, and it would gain.
+bool countsSoDeep(const Options& options, const Touch& touch, double load,
+                  const ContactBias& bias) {
+  const double atRest = residualUnder(load, options, touch) / touch.softness.stiffness;
+  return -touch.distance < std::min(bias.deepest, std::max(bias.deep, 1.5 * atRest));
+}
+
+/// (x/most)⁻² where x > most, else 1.
+double fallsOff(double x, double most) { return x > most ? std::pow(most / x, 2.0) : 1.0; }
+
 /// Share of J̇ v that friction answers: all where the contact may stick, none where it slides, for
-/// what slides is held back along its slip, however that turns. It may stick up to ten times the
-/// speed at which it creeps under its weight.
-double stickingShare(const Options& options, const Touch& touch,
-                     const ContactBlocks::FrameVector& velocity) {
-  constexpr double kCreeps = 10.0;
+/// what slides is held back along its slip, however that turns. It may stick up to 300 times the
+/// speed at which it creeps under its weight, and as long as friction of thrice what presses holds
+/// J̇ v.
+double stickingShare(const Options& options, const Touch& touch, double load,
+                     const ContactBlocks::FrameVector& velocity, const Vector3& alongTangents) {
+  constexpr double kCreeps = 300.0, kHeld = 3.0;
   if (touch.frictionDim == 0) return 1.0;
-  const Softness& soft = touch.softness;
-  const double weight = options.gravity.norm() / touch.inverseMass;
-  const double creep = soft.R * weight / (rowsAlongNormal(options, touch) * soft.damping);
   const double slip = touch.mu() * std::hypot(velocity[1], velocity[2]);
-  return slip > kCreeps * creep ? std::pow(kCreeps * creep / slip, 2.0) : 1.0;
+  return fallsOff(slip, kCreeps * creepUnderWeight(options, touch)) *
+         fallsOff(alongTangents.norm(), kHeld * touch.mu() * load);
 }
 
 }  // namespace
@@ -180,11 +194,15 @@ ContactBlocks::BlockMotion ContactBlocks::addBlock(const Assembly& in, int i, co
   BlockMotion moves;
   moves.velocity = inFrame(R_WC, touch.frictionDim, slips);
   bias_.push_back(std::nullopt);
-  made_.back().share = stickingShare(model.options, touch, moves.velocity);
-  if (model.options.ownSoftness)
-    if (const std::optional<ContactBias> bias = contactBias(model, k, c);
-        bias && countsSoDeep(model.options, touch, c.n_W, *bias))
+  if (!model.options.ownSoftness) return moves;
+  if (const std::optional<ContactBias> bias = contactBias(model, k, c)) {
+    const Vector3 tangents = bias->rate.linear - c.n_W * c.n_W.dot(bias->rate.linear);
+    const double load = presses(model.options, c.n_W, *bias);
+    if (countsSoDeep(model.options, touch, load, *bias)) {
+      made_.back().share = stickingShare(model.options, touch, load, moves.velocity, tangents);
       bias_.back() = moves.bias = biasInFrame(made_.back(), bias->rate);
+    }
+  }
   return moves;
 }
 
@@ -199,17 +217,16 @@ ContactBlocks::FrameVector ContactBlocks::biasChange(const Assembly& then, int i
   return change;
 }
 
-Softness ContactBlocks::soften(const Assembly& in, const Touch& touch, const FrameVector& velocity,
-                               int rows) {
+Softness ContactBlocks::soften(const Assembly& in, const Touch& touch,
+                               const FrameVector& velocity) {
   const Softness& soft = touch.softness;
   if (!touch.carries || !in.sticks() || touch.frictionDim == 0) return soft;
   if (!(soft.damping * soft.damping >= 4.0 * soft.stiffness)) return soft;  // it bounces
   double squares = 0.0;
   for (int k = 0; k < touch.frictionDim; ++k)
     squares += std::pow(touch.friction[k] * velocity[k + 1], 2.0);
-  const double weight = in.model.options.gravity.norm() / touch.inverseMass;
   SlipSpeeds speeds{std::sqrt(squares), std::abs(velocity[0])};
-  speeds.weight = soft.R * weight / (rows * soft.damping);
+  speeds.weight = creepUnderWeight(in.model.options, touch);
   speeds.creep = speeds.weight - soft.stiffness * touch.distance / soft.damping;
   made_.back().slip = speeds.slip();
   return sticking(soft, made_.back().slip);

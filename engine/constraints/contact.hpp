@@ -108,9 +108,8 @@ class ContactBlocks {
   }
   /// The block of contact i, whose rows begin at `row`.
   BlockMotion addBlock(const Assembly& in, int i, const Touch& touch, int row);
-  /// How soft the last block is, `rows` of which push along the normal: as it is, or harder where
-  /// it sticks (T.97).
-  Softness soften(const Assembly& in, const Touch& touch, const FrameVector& velocity, int rows);
+  /// How soft the last block is: as it is, or harder where it sticks (T.97).
+  Softness soften(const Assembly& in, const Touch& touch, const FrameVector& velocity);
   /// a_ref of the next row (T.122).
   double nextReference(const Assembly& in, const Softness& soft, double velocity, double distance,
                        double bias) {

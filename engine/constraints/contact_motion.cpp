@@ -20,11 +20,11 @@ bool isFlat(const Shape& shape, const Transform& X_WG, const Vector3& n_W) {
          (X_WG.R.transpose() * n_W).cwiseAbs().maxCoeff() > kAligned;
 }
 
-/// ν of (T.121) [m/s], of the place whose outward normal is −n, and the size of what is round
-/// there; ω of the shape against n.
+/// ν of (T.121) [m/s], of the place whose outward normal is −n, and the depths of ContactBias; ω of
+/// the shape against n.
 struct Runs {
   Vector3 along;
-  double size = std::numeric_limits<double>::infinity();
+  double deep = std::numeric_limits<double>::infinity(), deepest = deep;
 };
 
 std::optional<Runs> alongSurface(const Shape& shape, const Transform& X_WG, const Vector3& n,
@@ -32,15 +32,16 @@ std::optional<Runs> alongSurface(const Shape& shape, const Transform& X_WG, cons
   switch (shape.kind) {
     case ShapeKind::sphere:
     case ShapeKind::capsule:
-      return Runs{shape.radius * omega.cross(n), shape.radius};
+      return Runs{shape.radius * omega.cross(n), 0.3 * shape.radius, 0.3 * shape.radius};
     case ShapeKind::box:
       return Runs{Vector3::Zero()};
     case ShapeKind::cylinder: {
       const Vector3 a = X_WG.R.col(2);
       const double slope2 = a.cross(n).squaredNorm(), turns = -a.dot(n.cross(omega.cross(n)));
       if (!(timestep * std::abs(turns) < kGoesRound * slope2)) return std::nullopt;
-      return Runs{turns / slope2 * a.cross(c.p_WC - X_WG.p + 0.5 * c.distance * n),
-                  shape.radius * std::sqrt(slope2)};
+      const double height = shape.radius * std::sqrt(slope2);  // of its middle above the place
+      return Runs{turns / slope2 * a.cross(c.p_WC - X_WG.p + 0.5 * c.distance * n), 0.1 * height,
+                  0.3 * height};
     }
     case ShapeKind::plane:
     case ShapeKind::mesh:
@@ -74,7 +75,8 @@ std::optional<ContactBias> contactBias(const Model& model, const Kinematics& k, 
   const Vector3 v_P = (flatA ? v_B : v_A) + runs->along + 0.5 * c.distance * turns.cross(n) -
                       0.5 * c.n_W.dot(slips) * n;
   ContactBias bias;
-  bias.size = runs->size;
+  bias.deep = runs->deep;
+  bias.deepest = runs->deepest;
   bias.rate.angular = k.A_bias[c.bodyB].angular - k.A_bias[c.bodyA].angular -
                       V_flat.angular.cross(V_B.angular - V_A.angular);
   bias.rate.linear = pointBiasAcceleration(model, k, c.bodyB, c.p_WC) -

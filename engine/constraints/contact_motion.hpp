@@ -30,9 +30,11 @@
 namespace softgauss {
 
 struct ContactBias {
-  Motion rate;        ///< J̇ v, world axes [m/s², rad/s²]
-  double size = 0.0;  ///< of what is round there [m]: the radius of a ball or capsule, the height
-                      ///< of a rim's middle above the place; infinite of a corner
+  Motion rate;  ///< J̇ v, world axes [m/s², rad/s²]
+  /// How deep it counts whatever presses, and where its load presses it so deep [m]: 0.3 of the
+  /// radius of a ball or capsule, 0.1 and 0.3 of the height of a rim's middle above the place,
+  /// which turns the faster the flatter it lies; a corner at any depth.
+  double deep = 0.0, deepest = 0.0;
 };
 
 /// Nothing where J̇ v is not known: neither surface is flat, or both are; a mesh touches; or, in a

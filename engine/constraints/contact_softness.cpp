@@ -54,7 +54,7 @@ std::optional<ReferenceSpring> bouncing(const Impedance& p, const Options& optio
   // (T.115) damps more, never less.
   if (!p.direct && p.dampingRatio > 0.5 * (1.0 + kRounding)) return std::nullopt;
   // k d = K d/d_max², b = B/d_max.
-  const Softness s = softnessAt(p, 0.0, 1.0, options);
+  const Softness s = softnessAt(p, 0.0, 1.0, options.timestep, options.ownSoftness);
   const double dMax = std::clamp(p.dMax, 1e-4, 0.9999);
   const double K = s.stiffness * dMax * dMax / impedanceAt(p, 0.0), B = s.damping * dMax;
   if (!(B * B <= K * (1.0 + kRounding))) return std::nullopt;

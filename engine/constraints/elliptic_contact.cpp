@@ -18,7 +18,7 @@ void EllipticContact::assemble(const Assembly& in) {
       const std::optional<Touch> touch = touchAt(in, i);
       if (!touch || touch->frictionDim == 0) continue;
       const BlockMotion moves = addBlock(in, i, *touch, static_cast<int>(reference.size()));
-      const Softness soft = soften(in, *touch, moves.velocity, 1);
+      const Softness soft = soften(in, *touch, moves.velocity);
       perInertia_.push_back(soft.perInertia);
       cones_.push_back({touch->frictionDim + 1, 1.0 / soft.R,
                         touch->mu() / std::sqrt(options.impedanceRatio), touch->friction});

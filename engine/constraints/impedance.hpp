@@ -15,6 +15,7 @@
 /// (T.115). tc is at least 2h, as MuJoCo's is, so that h B ≤ 1. Beyond that, where it is asked for:
 ///   tc ζ ≥ 2h,   or, given directly,   h B ≤ 1,  h² K ≤ max(¼, h B);      h B ≥ (h² K)^1.5/8
 /// The first is half a radian a step, the last what a body brings that arrives within a step.
+/// And of the row, whatever shares its load: h b ≤ 1.1 (T.126).
 
 #include <algorithm>
 #include <cmath>
@@ -110,10 +111,25 @@ inline Softness softnessAt(const Impedance& p, double distance, double inverseIn
   return s;
 }
 
-/// The same by the options of a model: in `--compatibility mujoco` references are as MuJoCo's.
+/// The row with the same spring k d/R and damper b/R that takes ẋ at most 1.1 times in a step,
+/// whatever it moves (T.126): 1.1, that time constants of two steps stay as MuJoCo's where d_max is
+/// at least 0.91.
+inline Softness takingItOnce(Softness s, double timestep) {
+  constexpr double kMost = 1.1;
+  const double adds = std::max(1.0, timestep * s.damping / kMost);
+  s.R = std::max(kSmallestRegulariser, s.R / adds);
+  s.perInertia /= adds;
+  s.stiffness /= adds;
+  s.damping /= adds;
+  return s;
+}
+
+/// The same by the options of a model: in `--compatibility mujoco` rows are as MuJoCo's.
 inline Softness softnessAt(const Impedance& p, double distance, double inverseInertia,
                            const Options& options) {
-  return softnessAt(p, distance, inverseInertia, options.timestep, options.ownSoftness);
+  const double h = options.timestep;
+  if (!options.ownSoftness) return softnessAt(p, distance, inverseInertia, h);
+  return takingItOnce(softnessAt(p, distance, inverseInertia, h, true), h);
 }
 
 }  // namespace softgauss

@@ -30,7 +30,7 @@ void PyramidalContact::assemble(const Assembly& in) {
     toEdges(moves.velocity.data(), touch->frictionDim, touch->friction, velocity);
     toEdges(moves.bias.data(), touch->frictionDim, touch->friction, bias);
     const int edges = std::max(1, 2 * touch->frictionDim);
-    const Softness soft = soften(in, *touch, moves.velocity, edges);
+    const Softness soft = soften(in, *touch, moves.velocity);
     for (int edge = 0; edge < edges; ++edge) {
       reference.push_back(nextReference(in, soft, velocity[edge], touch->distance, bias[edge]));
       pushSoftness(soft);

@@ -331,8 +331,8 @@ TEST(Goals, ContactsMadeAndBrokenAtEveryStep) {
       int changes = 0, last = 0;
       const int steps = static_cast<int>(2.0 / timestep);
       for (int i = 0; i < steps; ++i) {
-        // 20 g up and 20 g down in turn: at 2 ms 0.8 mm, more than the depth of the soles.
-        c.input.tau[2] = i % 2 == 0 ? 20.0 * weight : -20.0 * weight;
+        // 25 g up and 25 g down in turn: at 2 ms 1 mm, more than the depth of the soles.
+        c.input.tau[2] = i % 2 == 0 ? 25.0 * weight : -25.0 * weight;
         if (!c.step()) break;
         changes += c.data.stats.rows != last;
         last = c.data.stats.rows;

@@ -168,6 +168,51 @@ TEST(Softness, WhatAStepFollowsStaysAsItIs) {
   EXPECT_TRUE(same(direct));
 }
 
+/// The row that a step of 2 ms takes, of d = `impedance` everywhere.
+Softness taken(double impedance, double timeConstant, bool ownSoftness) {
+  Impedance p;
+  p.dMin = p.dMax = impedance;
+  p.timeConstant = timeConstant;
+  Options options;
+  options.timestep = 0.002;
+  options.ownSoftness = ownSoftness;
+  return softnessAt(p, -1.0, 3.0, options);
+}
+
+// (T.126): the spring and the damper that were asked for, in N/m and N s/m; MuJoCo's row where that
+// takes a velocity at most 1.1 times in a step.
+TEST(Softness, TakesAVelocityAtMostOnceAStep) {
+  const double h = 0.002;
+  for (const double d : {1e-4, 0.01, 0.1, 0.5, 0.9, 0.95, 0.9999})
+    for (const double timeConstant : {1e-5, 0.004, 0.005, 0.02, 1.0}) {
+      const Softness own = taken(d, timeConstant, true), mujoco = taken(d, timeConstant, false);
+      EXPECT_LE(h * own.damping, 1.1 * (1.0 + kRounding));
+      EXPECT_SMALL(own.stiffness / own.R / (mujoco.stiffness / mujoco.R) - 1.0, kRounding);
+      EXPECT_SMALL(own.damping / own.R / (mujoco.damping / mujoco.R) - 1.0, kRounding);
+      EXPECT_SMALL(own.perInertia * 3.0 / own.R - 1.0, kRounding);
+      if (h * mujoco.damping <= 1.1) {
+        EXPECT_EQ(own.R, mujoco.R);
+        EXPECT_EQ(own.damping, mujoco.damping);
+        EXPECT_EQ(own.stiffness, mujoco.stiffness);
+      }
+    }
+}
+
+// (T.126): however much more than its own A the row moves, x̂ = A′/(A′ + R) a_ref, no motion grows.
+TEST(Softness, IsStableWhateverItMoves) {
+  const double h = 0.002;
+  for (const double d : {1e-4, 0.01, 0.1, 0.5, 0.95})
+    for (const double timeConstant : {0.004, 0.02, 0.1})
+      for (double more = 1.0; more < 1e9; more *= 3.0) {
+        const Softness s = taken(d, timeConstant, true);
+        const double moves = 3.0 * more / (3.0 * more + s.R);
+        // λ² − (1 + α − κ) λ + α of r⁺ = r + h v⁺, v⁺ = α v − κ r/h has both |λ| < 1.
+        const double alpha = 1.0 - h * moves * s.damping, kappa = h * h * moves * s.stiffness;
+        EXPECT_LT(std::abs(alpha), 1.0);
+        EXPECT_LT(kappa, 2.0 * (1.0 + alpha));
+      }
+}
+
 // The two forms agree: 1/(tc ζ)² and 2/tc.
 TEST(Softness, OfADirectReferenceIsThatOfItsTimeConstant) {
   Impedance standard, direct;
