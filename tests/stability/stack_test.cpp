@@ -118,16 +118,11 @@ Model restingPile(int bodies, double timestep, Cone cone, unsigned seed = 7) {
   return model;
 }
 
-/// 1e-6 J is a body of 0.5 kg at 2 mm/s.
-constexpr double kAtRest = 1e-6;
-
-// Of 200 bodies none leaves the bin or sinks, and all come to rest. Returns their kinetic energy;
-// where that is `counted` elsewhere it is not expected to be small here.
-double pileRests(int bodies, double seconds, double timestep, Cone cone, unsigned seed = 7,
-                 bool counted = false) {
+// Of 200 bodies none leaves the bin or sinks, and all come to rest.
+void pileRests(int bodies, double seconds, double timestep, Cone cone, unsigned seed = 7) {
   Trial t("pile of " + std::to_string(bodies), restingPile(bodies, timestep, cone, seed));
-  t.mayGain = 1e-6;  // of tens of joules
-  t.mayRound = cone == Cone::elliptic;
+  t.mayGain = 1e-6;                                        // of tens of joules
+  t.mayRound = cone == Cone::elliptic && timestep < 0.01;  // at 10 ms none does
   t.run(seconds);
   EXPECT_EQ(t.rounded > 0, t.mayRound);
   double highest = 0.0, lowest = 1.0, farthest = 0.0;
@@ -139,11 +134,11 @@ double pileRests(int bodies, double seconds, double timestep, Cone cone, unsigne
   }
   t.expect("farthest from the middle", farthest, 0.5, "m");
   t.expect("highest", highest, 0.15 + 0.18 * (bodies / 25), "m");
-  t.expect("below the floor", std::min(0.0, lowest - 0.018), 0.0, "m");
-  t.expect("penetration at rest", t.data->stats.maxPenetration, 2e-3 * slowed(timestep), "m");
-  const double kinetic = t.energy().kinetic;
-  if (!counted) t.expect("kinetic energy at rest", kinetic, kAtRest * bodies, "J");
-  return kinetic;
+  const double deepest = t.data->stats.maxPenetration;
+  t.expect("below the floor", std::min(0.0, lowest + deepest - 0.018), 0.0, "m");
+  t.expect("penetration at rest", deepest, 2e-3 * slowed(timestep), "m");
+  // 1e-6 J is a body of 0.5 kg at 2 mm/s.
+  t.expect("kinetic energy at rest", t.energy().kinetic, 1e-6 * bodies, "J");
 }
 
 TEST(Stack, PileComesToRest) { pileRests(40, 4.0, 0.005, Cone::pyramidal); }
@@ -155,12 +150,9 @@ TEST(Stack, PileAt5msOnConesLong) { pileRests(200, 10.0, 0.005, Cone::elliptic);
 TEST(Stack, PileAt2msOnPyramidsLong) { pileRests(200, 10.0, 0.002, Cone::pyramidal); }
 TEST(Stack, PileAt2msOnConesLong) { pileRests(200, 10.0, 0.002, Cone::elliptic); }
 
-// At 5 ms on pyramids a pile may slip on into gaps for long: of five the first does so for 36 s.
+// At 5 ms on pyramids bodies slip into gaps for some 12 s.
 TEST(Stack, PilesAt5msOnPyramidsLong) {
-  int atRest = 0;
-  for (unsigned seed = 7; seed < 12; ++seed)
-    atRest += pileRests(200, 14.0, 0.005, Cone::pyramidal, seed, true) <= kAtRest * 200;
-  EXPECT_GE(atRest, 4);
+  for (unsigned seed = 7; seed < 12; ++seed) pileRests(200, 14.0, 0.005, Cone::pyramidal, seed);
 }
 
 /// How far the upper of two slabs, one on the other on a slope whose tangent is half the friction,
