@@ -151,9 +151,9 @@ TEST(Stack, PileAt2msOnPyramidsLong) { pileRests(200, 10.0, 0.002, Cone::pyramid
 TEST(Stack, PileAt2msOnConesLong) { pileRests(200, 10.0, 0.002, Cone::elliptic); }
 
 // At 5 ms on pyramids bodies slip into gaps for some 12 s.
-TEST(Stack, PilesAt5msOnPyramidsLong) {
-  for (unsigned seed = 7; seed < 12; ++seed) pileRests(200, 14.0, 0.005, Cone::pyramidal, seed);
-}
+class PilesAt5msLong : public testing::TestWithParam<unsigned> {};
+TEST_P(PilesAt5msLong, OnPyramidsRest) { pileRests(200, 14.0, 0.005, Cone::pyramidal, GetParam()); }
+INSTANTIATE_TEST_SUITE_P(Seeds, PilesAt5msLong, testing::Range(7u, 12u));
 
 /// How far the upper of two slabs, one on the other on a slope whose tangent is half the friction,
 /// goes in ten seconds [m]; `soft`: with friction that does not harden.
