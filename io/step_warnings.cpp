@@ -184,6 +184,30 @@ void tiedSwings(const Model& model, const ContactSet& touching, std::vector<std:
           model.bodyNames[idx(b)], swing, h, kFastestTie, h * kFastestTie / swing));
 }
 
+/// `implicit` makes energy where links swing freely in each other.
+void freeLinks(const Model& model, std::vector<std::string>& out) {
+  const Options& options = model.options;
+  if (options.integrator != Integrator::implicit || !options.effects.has(Effect::coriolis)) return;
+  Kind kind(out);
+  for (const Tree& tree : model.trees) {
+    int turning = 0, free = -1;
+    for (int b = tree.rootBody; b < tree.bodyEnd; ++b) {
+      const Body& body = model.bodies[idx(b)];
+      if (body.joint != JointKind::revolute) continue;
+      ++turning;
+      const bool damped =
+          options.effects.has(Effect::damping) && model.dofs[idx(body.v)].damping > 0.0;
+      if (!damped && free < 0) free = b;
+    }
+    const bool floats = model.bodies[idx(tree.rootBody)].joint == JointKind::floating;
+    if (free < 0 || turning + floats < 2) continue;
+    kind.add(fmt::format(
+        "joint '{}' has no damping, and links that swing freely gain energy by the integrator "
+        "implicit, by as much as they have within seconds; try semi-implicit-euler, or a damping",
+        model.jointNames[idx(free)]));
+  }
+}
+
 void overlaps(const Model& model, const ContactSet& touching, std::vector<std::string>& out) {
   std::map<std::pair<int, int>, double> deepest;
   for (const Contact& c : touching.contacts)
@@ -218,6 +242,7 @@ std::vector<std::string> stepWarnings(const Model& model, const ContactSet& touc
   joints(model, out);
   references(model, out);
   tiedSwings(model, touching, out);
+  freeLinks(model, out);
   overlaps(model, touching, out);
   return out;
 }

@@ -12,6 +12,8 @@
 ///   reference    what a step of h does not follow counts as what it does (T.115); as MuJoCo has it
 ///                it is taken as it is, and grows where h² K + 2 h B > 4
 ///   time constant below 2 h              (T.11): it counts as 2 h
+///   light body   h ω > 1 of (T.127)      it swings between its ties by more than a radian in a
+///   step `implicit`   a joint without damping among links: they gain energy by that integrator
 
 #include <string>
 #include <vector>

@@ -153,6 +153,7 @@ std::string Summary::json() const {
         {"refused_guesses", fallbacks.refusedGuesses},
         {"kept_slips", fallbacks.keptSlips},
         {"abandoned_trees", fallbacks.abandonedTrees},
+        {"held_swings", fallbacks.heldSwings},
         {"jumps", fallbacks.jumps},
         {"unseen", fallbacks.unseen}}},
       {"goals", goalList},

@@ -50,6 +50,7 @@ struct Fallbacks {
   long refusedGuesses = 0;  ///< warm starts that were not finite
   long keptSlips = 0;       ///< no_slip: second solves that failed
   long abandonedTrees = 0;  ///< not followed through the step
+  long heldSwings = 0;      ///< bodies that swing too fast between connections, held
   long jumps = 0;           ///< shortest parts of a step, taken in spite of their estimate
   long unseen = 0;          ///< parts in which shapes may have passed through each other unseen
 };

@@ -212,6 +212,7 @@ class Runner {
     f.refusedGuesses += stats.refusedGuesses;
     f.keptSlips += stats.keptSlips;
     f.abandonedTrees += stats.abandonedTrees;
+    f.heldSwings += stats.swings;
     f.jumps += stats.jumps;
     f.unseen += stats.unseen;
     io::IntegrationCounts& i = summary_.integration;

@@ -11,6 +11,9 @@ bool same(const std::vector<Segment>& a, const std::vector<Segment>& b) {
                     [](Segment s, Segment t) { return s.begin == t.begin && s.end == t.end; });
 }
 
+/// Made of what connections do, after them.
+bool isSwing(int kind) { return kind == static_cast<int>(RowKind::swing); }
+
 bool isContact(int kind) {
   return kind == static_cast<int>(RowKind::pyramid) ||
          kind == static_cast<int>(RowKind::ellipticCone);
@@ -30,7 +33,8 @@ void Constraints::assemble(const Assembly& given) {
   active_ = RowKinds::none();
   visitThese(*this, planned_, [&](auto& c, int kind) {
     // Without contacts there is nothing to look at, but old rows to drop.
-    if (isContact(kind) && in.contacts.size() == 0 && c.rowCount() == 0) return;
+    const bool nothing = isSwing(kind) || (isContact(kind) && in.contacts.size() == 0);
+    if (nothing && c.rowCount() == 0) return;
     ++calls_[kind];
     c.assemble(in);
     if (c.rowCount() > 0) active_.insert(kind);
@@ -56,6 +60,16 @@ void Constraints::assemble(const Assembly& given) {
     lastCouplingEnd_ = couplingEnd_;
   }
   sparsity_ = &coupled_;
+}
+
+int Constraints::holdSwings(const Assembly& in) {
+  if (!planned_.has(RowKind::swing) || !active_.has(RowKind::connection)) return 0;
+  rowForces_.setZero(in.model.nv);
+  addForce(rowForces_);
+  const int held = swing.hold(in, connection, rowForces_);
+  // Between bodies that the connections couple already: the pattern of P is as it was.
+  if (held > 0) active_.insert(RowKind::swing);
+  return held;
 }
 
 int Constraints::rowCount() const {

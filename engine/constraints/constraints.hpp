@@ -18,6 +18,7 @@
 #include "engine/constraints/joint_coupling.hpp"
 #include "engine/constraints/joint_limit.hpp"
 #include "engine/constraints/pyramidal_contact.hpp"
+#include "engine/constraints/swing_damping.hpp"
 #include "engine/constraints/weld.hpp"
 #include "engine/model/plan.hpp"
 
@@ -53,6 +54,7 @@ class Constraints {
   CouplingRows coupling;
   DryFriction dryFriction;
   JointLimit jointLimit;
+  SwingDamping swing;
   PyramidalContact contact;
   EllipticContact ellipticContact;
 
@@ -98,6 +100,9 @@ class Constraints {
   }
 
   void assemble(const Assembly& in);
+  /// Makes rows against what swings too fast on the connections, by their forces (T.128); returns
+  /// how many bodies they hold.
+  int holdSwings(const Assembly& in);
   int rowCount() const;
   /// Kinds that may make rows, and those that have some in this step.
   RowKinds planned() const { return planned_; }
@@ -186,6 +191,7 @@ class Constraints {
     call(self.coupling, RowKind::coupling, kinds, f);
     call(self.dryFriction, RowKind::dryFriction, kinds, f);
     call(self.jointLimit, RowKind::jointLimit, kinds, f);
+    call(self.swing, RowKind::swing, kinds, f);
   }
   template <class C, class F>
   static void call(C& c, RowKind kind, RowKinds kinds, F&& f) {
@@ -208,6 +214,7 @@ class Constraints {
   NearbyPoses nearby_;
   const TreeSparsity* sparsity_ = nullptr;
   TreeSparsity coupled_;
+  VectorX rowForces_;  ///< (nv) Jᵀf
   std::vector<Segment> couplings_, lastCouplings_;
   std::vector<int> couplingEnd_, lastCouplingEnd_;
 };
@@ -217,6 +224,7 @@ static_assert(SoftConstraint<WeldRows>);
 static_assert(SoftConstraint<CouplingRows>);
 static_assert(SoftConstraint<DryFriction>);
 static_assert(SoftConstraint<JointLimit>);
+static_assert(SoftConstraint<SwingDamping>);
 static_assert(SoftConstraint<PyramidalContact>);
 static_assert(SoftConstraint<EllipticContact>);
 

@@ -359,6 +359,7 @@ void Islands::collectStats() {
     stats_.followedTrees += s.followedTrees;
     stats_.abandonedTrees += s.abandonedTrees;
     stats_.kicks += s.kicks;
+    stats_.swings += s.swings;
     stats_.substeps += s.substeps;
     stats_.shortSolves += s.shortSolves;
     stats_.roundedSolves += s.roundedSolves;

@@ -188,6 +188,10 @@ struct Model {
   int bodyCount() const { return static_cast<int>(bodies.size()); }
   /// The last dof that moves a body, −1 for the world.
   int lastDof(int body) const { return bodies[body].v + bodies[body].dofs - 1; }
+  /// A body that floats and carries no other.
+  bool isFree(int body) const {
+    return bodies[body].joint == JointKind::floating && bodies[body].subtreeEnd == body + 1;
+  }
   double totalMass() const;                      ///< of all moving bodies [kg]
   int findFrame(const std::string& name) const;  ///< index or −1
   int findJoint(const std::string& name) const;  ///< body that the joint carries, or −1

@@ -36,6 +36,18 @@ EffectSet possibleContacts(const Model& model) {
   return possible;
 }
 
+/// Whether a connection has a lever on a free body, which may swing too fast for a step (T.127).
+bool maySwing(const Model& model) {
+  const Options& o = model.options;
+  if (!o.ownSoftness || o.looksWithin() || o.integrator == Integrator::implicit) return false;
+  const auto hasLever = [&](int body, const Vector3& p_BP) {
+    return model.isFree(body) && p_BP != model.bodies[body].com;
+  };
+  return std::any_of(model.connections.begin(), model.connections.end(), [&](const Connection& c) {
+    return hasLever(c.bodyA, c.p_AP) || hasLever(c.bodyB, c.p_BP);
+  });
+}
+
 }  // namespace
 
 Plan::Plan(const Model& model) : options_(model.options) {
@@ -86,6 +98,7 @@ Plan::Plan(const Model& model) : options_(model.options) {
   if (run(Effect::equality,
           !model.connections.empty() || !model.welds.empty() || !model.couplings.empty())) {
     if (!model.connections.empty()) rows.insert(RowKind::connection);
+    if (maySwing(model)) rows.insert(RowKind::swing);
     if (!model.welds.empty()) rows.insert(RowKind::weld);
     if (!model.couplings.empty()) rows.insert(RowKind::coupling);
   }

@@ -21,10 +21,11 @@ enum class RowKind : std::uint8_t {
   coupling,
   dryFriction,
   jointLimit,
+  swing,
   pyramid,
   ellipticCone
 };
-inline constexpr int kRowKinds = 7;
+inline constexpr int kRowKinds = 8;
 
 /// A set of them.
 class RowKinds {
@@ -52,7 +53,7 @@ constexpr RowKinds builtRows() {
   const auto add = [&](RowKind kind, auto... effects) {
     if ((kBuiltEffects.has(effects) || ...)) rows.insert(kind);
   };
-  for (const RowKind kind : {RowKind::connection, RowKind::weld, RowKind::coupling})
+  for (const RowKind kind : {RowKind::connection, RowKind::weld, RowKind::coupling, RowKind::swing})
     add(kind, Effect::equality);
   add(RowKind::dryFriction, Effect::dryFriction);
   add(RowKind::jointLimit, Effect::jointLimit);

@@ -54,6 +54,7 @@ struct StepStats {
   int followedTrees = 0;   ///< whose free motion was followed within the step (T.93)
   int abandonedTrees = 0;  ///< that needed more sub-steps than allowed and took (T.16) instead
   int kicks = 0;           ///< second solves, where rows push a followed tree
+  int swings = 0;          ///< bodies that swing too fast, held in a second solve (T.128)
   int substeps = 0;        ///< of followed trees, over all of them; parts of a step in parts
   int evaluations = 0;     ///< of forward dynamics, where the step looks within itself
   int rejections = 0;      ///< parts of the step that were tried and shortened

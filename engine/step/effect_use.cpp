@@ -44,7 +44,7 @@ std::array<EffectUse, kEffects> effectUse(const Model& model, const Data& data,
   at(Effect::dryFriction) = of(rows.dryFriction, RowKind::dryFriction);
   for (const EffectUse& kind :
        {of(rows.connection, RowKind::connection), of(rows.weld, RowKind::weld),
-        of(rows.coupling, RowKind::coupling)}) {
+        of(rows.coupling, RowKind::coupling), of(rows.swing, RowKind::swing)}) {
     EffectUse& equality = at(Effect::equality);
     equality.calls += kind.calls;
     equality.rows += kind.rows;

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
+#include "engine/engine.hpp"
 #include "tests/support/sample_models.hpp"
 
 namespace softgauss::test {
@@ -70,6 +73,52 @@ TEST(StepWarnings, NameTheBodyThatIsLightForWhatHangsOnIt) {
   EXPECT_NE(told[0].find("try a step below 0.00092 s"), std::string::npos) << told[0];
   builder.options.timestep = 0.0009;
   EXPECT_TRUE(io::stepWarnings(builder.build(), {}).empty());
+}
+
+/// Largest energy above the start in ten seconds of two links on hinges that are thrown against
+/// each other, of what their motion and weight have; ∞ where a step is refused.
+double gainOfTwoLinks(Integrator integrator, double damping) {
+  ModelBuilder builder("two links");
+  LinkSpec world;
+  world.name = "world";
+  builder.link(world);
+  for (int i = 0; i < 2; ++i) {
+    const std::string link = "link" + std::to_string(i);
+    builder.link(boxLink(link, 1.0, Vector3(0.15, 0.02, 0.02), Vector3(0.15, 0, 0)));
+    JointSpec joint =
+        jointSpec("hinge" + std::to_string(i), JointType::continuous, i ? "link0" : "world", link,
+                  {Matrix3::Identity(), Vector3(i ? 0.3 : 0, 0, 0)}, Vector3::UnitY());
+    joint.damping = damping;
+    builder.joint(joint);
+  }
+  builder.options.integrator = integrator;
+  builder.options.timestep = 0.002;
+  const Model model = builder.build();
+  const std::vector<std::string> told = io::stepWarnings(model, {});
+  EXPECT_EQ(told.size(), integrator == Integrator::implicit && damping == 0.0 ? 1u : 0u);
+  if (!told.empty()) expectOne(told, "joint 'hinge0' has no damping", "try semi-implicit-euler");
+  State state(model);
+  state.v << 10.0, -10.0;
+  Data data(model);
+  Kinematics k(model);
+  const auto energy = [&] {
+    computeKinematics(model, state, k);
+    return computeEnergy(model, k, state.q, state.v);
+  };
+  const double start = energy().total(), has = energy().kinetic + 2.0 * 9.81 * 0.3;
+  double gain = 0.0;
+  for (int i = 0; i < 5000; ++i) {
+    if (isRefused(step(model, {}, state, data, nullptr))) return kInfinity;
+    gain = std::max(gain, (energy().total() - start) / has);
+  }
+  return gain;
+}
+
+// What the warning says is so, and what it says to try does.
+TEST(StepWarnings, NameTheJointsByWhichLinksGainWithImplicit) {
+  EXPECT_GT(gainOfTwoLinks(Integrator::implicit, 0.0), 0.5);
+  EXPECT_LT(gainOfTwoLinks(Integrator::semiImplicitEuler, 0.0), 0.01);
+  EXPECT_LT(gainOfTwoLinks(Integrator::implicit, 0.1), 1e-6);
 }
 
 TEST(StepWarnings, NameTheSurfaceThatIsFasterThanTheStep) {

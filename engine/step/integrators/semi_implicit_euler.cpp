@@ -49,12 +49,28 @@ bool tooFast(const Model& model, const VectorX& v) {
   });
 }
 
+/// Solves again where rows have to hold what swings too fast (T.128). False: not finite.
+bool holdSwings(const Model& model, Data& data, const State& state) {
+  data.stats.swings = data.constraints.holdSwings(
+      {model, state, data.kinematics, data.contacts, data.weights, data.inertia.sparsity});
+  if (data.stats.swings == 0) return true;
+  data.acceleration = data.forward.a;
+  const SolveStatus status = forwardDynamics(model, &data.acceleration, data);
+  const NewtonReport& report = data.forward.report;
+  data.stats.iterations += report.iterations;
+  data.stats.factorizations += report.factorizations;
+  data.stats.residual = std::max(data.stats.residual, report.residual);
+  if (status != SolveStatus::converged) data.stats.status = status;
+  return status != SolveStatus::notFinite;
+}
+
 }  // namespace
 
 bool semiImplicitEuler(const Model& model, Data& data, State& state) {
   const double h = model.options.timestep;
   ForwardSolution& s = data.forward;
   const Plan& plan = data.plan;
+  if (plan.rows.has(RowKind::swing) && !holdSwings(model, data, state)) return false;
   const bool stiff = anyStiffSpring(model, data);
   const bool midpoint = plan.midpoint, implicit = plan.damped() || stiff;
   const bool rows = !data.constraints.active().empty();

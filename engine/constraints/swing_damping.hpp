@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// What holds a free body that swings between connections faster than a step follows.
+///
+/// Connections that pull at levers a from the centre of mass with forces f turn the body back as
+/// the string turns back a bead. With its inertia I, and F what all rows do to it together,
+///   K = η Σ κ (1 − â âᵀ),   κ = ½ (|a||f| + a·f),   η = clamp(5 (1 − |F|/Σ |f|), 0, 1)
+///   ω² = ½ tr(I⁻¹ K)                                                                    (T.127)
+/// F is what its own motion and weight take, the rest goes through it. A light body that
+/// bears a great load swings fast, and where h ω > 2 a step that takes the levers where they are at
+/// its start makes energy of it. At the step's end each has gone on by h ω⁺ × a, and its moment is
+/// less by h η κ ω⁺. So from half a radian a step on each connection holds the body against the
+/// other one, with ω_r, α_r the turning of the one against the other:
+///   s = ½ C |(1 − â âᵀ)(h α_r + ω_r)|²/h,      C = h η κ (1 − ¼/(h ω)²)                 (T.128)
+/// as a pin does whose radius is the way of the lever in a step. Against what the force has no
+/// lever on, the world or a body that is tied at its centre of mass, ω_r is left out: there C h is
+/// an inertia, and a pendulum goes on as it does. f is that of a solve without all this. Momentum
+/// is kept, and what turns together is as it was.
+
+#include <vector>
+
+#include "engine/constraints/assembly.hpp"
+#include "engine/constraints/block_rows.hpp"
+
+namespace softgauss {
+
+class ConnectionRows;
+
+class SwingDamping : public BlockRows {
+ public:
+  /// None: they are made of the forces of connections, by hold().
+  void assemble(const Assembly& /*in*/) {
+    clearBlocks();
+    resizeRows(0);
+  }
+  /// Rows against the swings that these forces make; returns how many bodies they hold. `rows`:
+  /// (nv) Jᵀf of all kinds.
+  int hold(const Assembly& in, const ConnectionRows& connections, const VectorX& rows);
+
+  std::size_t bytes() const { return BlockRows::bytes() + bytesOfAll(pulls_, swings_); }
+
+ private:
+  /// What a connection with another body does to a free one.
+  struct Pull {
+    int body, other;
+    Vector3 a_W;     ///< lever [m]
+    double force;    ///< |f| [N]
+    double moment;   ///< κ > 0 [N m]
+    bool hasLevers;  ///< on both bodies
+  };
+  /// Of a free body.
+  struct Swing {
+    Matrix3 K = Matrix3::Zero();  ///< Σ κ (1 − â âᵀ) [N m/rad]
+    double force = 0.0;           ///< Σ |f| [N]
+    double share = 0.0;           ///< η (1 − ¼/(h ω)²), ≤ 0 where a step follows it
+  };
+  void findPulls(const Assembly& in, const ConnectionRows& connections);
+  void addRows(const Assembly& in, const Pull& pull, double share);
+
+  std::vector<Pull> pulls_;
+  std::vector<Swing> swings_;  ///< of each tree
+};
+
+}  // namespace softgauss
