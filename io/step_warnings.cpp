@@ -20,6 +20,7 @@ constexpr double kFarthestDrive = M_PI;    // h² u w [rad or m]
 constexpr double kFastestSpring = 1.0;     // h √(k w)
 constexpr double kHardestDamping = 100.0;  // h d w
 constexpr double kFastestTie = 1.0;        // h √(ΣL g |r|/I)
+constexpr double kLeastDamping = 0.1;      // d w [1/s]
 constexpr int kMostTold = 8;               // of one kind
 
 std::size_t idx(int i) { return static_cast<std::size_t>(i); }
@@ -188,21 +189,22 @@ void tiedSwings(const Model& model, const ContactSet& touching, std::vector<std:
 void freeLinks(const Model& model, std::vector<std::string>& out) {
   const Options& options = model.options;
   if (options.integrator != Integrator::implicit || !options.effects.has(Effect::coriolis)) return;
+  const InverseWeights weights(model);
   Kind kind(out);
   for (const Tree& tree : model.trees) {
-    int turning = 0, free = -1;
+    int joints = 0, free = -1;
     for (int b = tree.rootBody; b < tree.bodyEnd; ++b) {
       const Body& body = model.bodies[idx(b)];
-      if (body.joint != JointKind::revolute) continue;
-      ++turning;
-      const bool damped =
-          options.effects.has(Effect::damping) && model.dofs[idx(body.v)].damping > 0.0;
-      if (!damped && free < 0) free = b;
+      if (body.joint == JointKind::floating) continue;
+      ++joints;
+      const double takes = model.dofs[idx(body.v)].damping * weights.dof[idx(body.v)];
+      const bool damped = options.effects.has(Effect::damping) && takes > kLeastDamping;
+      if (body.joint == JointKind::revolute && !damped && free < 0) free = b;
     }
     const bool floats = model.bodies[idx(tree.rootBody)].joint == JointKind::floating;
-    if (free < 0 || turning + floats < 2) continue;
+    if (free < 0 || joints + floats < 2) continue;
     kind.add(fmt::format(
-        "joint '{}' has no damping, and links that swing freely gain energy by the integrator "
+        "joint '{}' is hardly damped, and links that swing freely gain energy by the integrator "
         "implicit, by as much as they have within seconds; try semi-implicit-euler, or a damping",
         model.jointNames[idx(free)]));
   }

@@ -12,8 +12,10 @@
 ///   reference    what a step of h does not follow counts as what it does (T.115); as MuJoCo has it
 ///                it is taken as it is, and grows where h² K + 2 h B > 4
 ///   time constant below 2 h              (T.11): it counts as 2 h
-///   light body   h ω > 1 of (T.127)      it swings between its ties by more than a radian in a
-///   step `implicit`   a joint without damping among links: they gain energy by that integrator
+///   light body   h ω > 1                 between ties under their load it swings by more than a
+///   radian `implicit`   a joint of several takes less than a tenth of its speed in a second: by
+///   that
+///                integrator links that swing freely gain energy
 
 #include <string>
 #include <vector>

@@ -26,14 +26,17 @@ Vector3 leverOn(const Assembly& in, int body, const Vector3& p_BP) {
 int SwingDamping::hold(const Assembly& in, const ConnectionRows& connections, const VectorX& rows) {
   constexpr double kFollowed = 0.5;  // h ω [rad]
   constexpr double kThrough = 0.2;   // of the forces: what counts as all
+  constexpr double kTouched = 1e-6;  // of the forces: less is rounding
+  constexpr double kStringDrag = 0.1;
   const Model& model = in.model;
   clearBlocks();
   findPulls(in, connections);
   swings_.assign(model.trees.size(), {});
   for (const Pull& p : pulls_) {
     Swing& swing = swings_[model.bodies[p.body].tree];
-    swing.K += p.moment * across(p.a_W);
-    swing.force += p.force;
+    if (p.moment > 0.0) swing.K += p.moment * across(p.a_W);
+    swing.force += p.f_W.norm();
+    swing.sum += p.f_W;
   }
   int held = 0;
   for (std::size_t t = 0; t < model.trees.size(); ++t) {
@@ -41,19 +44,21 @@ int SwingDamping::hold(const Assembly& in, const ConnectionRows& connections, co
     if (swing.K.isZero(0.0)) continue;
     const int root = model.trees[t].rootBody;
     const Body& body = model.bodies[root];
-    const double through =
-        std::min(1.0, (1.0 - rows.segment<3>(body.v).norm() / swing.force) / kThrough);
+    const Vector3 all = rows.segment<3>(body.v);
+    const double through = std::min(1.0, (1.0 - all.norm() / swing.force) / kThrough);
     if (!(through > 0.0)) continue;
     const Matrix3& R = in.kinematics.X_WB[root].R;
     const Matrix3 K = through * (R.transpose() * swing.K * R);
     const double turn =
         model.options.timestep * std::sqrt(0.5 * body.I_Bcm.matrix().ldlt().solve(K).trace());
     swing.share = through * (1.0 - kFollowed * kFollowed / (turn * turn));
+    // What touches it, or welds it, presses at once and not as a string does.
+    swing.drag = (all - swing.sum).norm() > kTouched * swing.force ? 1.0 : kStringDrag;
     held += swing.share > 0.0;
   }
   for (const Pull& p : pulls_) {
-    const double share = swings_[model.bodies[p.body].tree].share;
-    if (share > 0.0) addRows(in, p, share);
+    const Swing& swing = swings_[model.bodies[p.body].tree];
+    if (p.moment > 0.0 && swing.share > 0.0) addRows(in, p, swing);
   }
   resizeRows(reference.size());
   return held;
@@ -65,17 +70,18 @@ void SwingDamping::findPulls(const Assembly& in, const ConnectionRows& connectio
     const Connection& c = in.model.connections[i];
     const Vector3 f_W = Eigen::Map<const Vector3>(connections.f.data() + 3 * i);
     const Vector3 a_A = leverOn(in, c.bodyA, c.p_AP), a_B = leverOn(in, c.bodyB, c.p_BP);
-    const bool both = !a_A.isZero(0.0) && !a_B.isZero(0.0);
-    const auto pull = [&](int body, int other, const Vector3& a_W, const Vector3& on_W) {
-      const double force = on_W.norm(), moment = 0.5 * (a_W.dot(on_W) + a_W.norm() * force);
-      if (moment > 0.0) pulls_.push_back({body, other, a_W, force, moment, both});
+    const auto pull = [&](int body, int other, const Vector3& a_W, const Vector3& b_W,
+                          const Vector3& on_W) {
+      if (!in.model.isFree(body)) return;
+      const double a = a_W.norm(), moment = 0.5 * (a_W.dot(on_W) + a * on_W.norm());
+      pulls_.push_back({body, other, a_W, on_W, moment, std::min(1.0, b_W.norm() / a)});
     };
-    pull(c.bodyA, c.bodyB, a_A, f_W);
-    pull(c.bodyB, c.bodyA, a_B, -f_W);
+    pull(c.bodyA, c.bodyB, a_A, a_B, f_W);
+    pull(c.bodyB, c.bodyA, a_B, a_A, -f_W);
   }
 }
 
-void SwingDamping::addRows(const Assembly& in, const Pull& pull, double share) {
+void SwingDamping::addRows(const Assembly& in, const Pull& pull, const Swing& swing) {
   const double dt = in.model.options.timestep;
   RelativeMotion motion;
   motion.bodyA = pull.other;
@@ -88,8 +94,8 @@ void SwingDamping::addRows(const Assembly& in, const Pull& pull, double share) {
   turns.rate = motion.angular.transpose() *
                (in.kinematics.V[pull.body].angular - in.kinematics.V[pull.other].angular);
   Softness softness;
-  softness.R = 1.0 / (dt * dt * pull.moment * share);
-  softness.damping = pull.hasLevers ? 1.0 / dt : 0.0;
+  softness.R = 1.0 / (dt * dt * pull.moment * swing.share);
+  softness.damping = swing.drag * pull.levers / dt;
   pushRows(motion, turns, softness);
   D[D.size() - 3] = 0.0;  // about the lever
 }

@@ -12,11 +12,13 @@
 /// its start makes energy of it. At the step's end each has gone on by h ω⁺ × a, and its moment is
 /// less by h η κ ω⁺. So from half a radian a step on each connection holds the body against the
 /// other one, with ω_r, α_r the turning of the one against the other:
-///   s = ½ C |(1 − â âᵀ)(h α_r + ω_r)|²/h,      C = h η κ (1 − ¼/(h ω)²)                 (T.128)
-/// as a pin does whose radius is the way of the lever in a step. Against what the force has no
-/// lever on, the world or a body that is tied at its centre of mass, ω_r is left out: there C h is
-/// an inertia, and a pendulum goes on as it does. f is that of a solve without all this. Momentum
-/// is kept, and what turns together is as it was.
+///   s = ½ C |(1 − â âᵀ)(h α_r + δ ω_r)|²/h,      C = h η κ (1 − ¼/(h ω)²)               (T.128)
+/// With δ = 1 that is the friction C ω_r⁺ of a pin whose radius is the way of the lever in a step;
+/// with δ = 0 an inertia against turning, and what turns evenly goes on. Forces of a string change
+/// slowly, so δ = 0.1; those of what touches the body come at once, and then δ = 1. Either times
+/// min(1, |a_o|/|a|), a_o the lever on the other body: the turning of the world, or of what is tied
+/// at its centre of mass, says nothing of the string's. f is that of a solve without all this.
+/// Momentum is kept, and what turns together is as it was.
 
 #include <vector>
 
@@ -44,19 +46,21 @@ class SwingDamping : public BlockRows {
   /// What a connection with another body does to a free one.
   struct Pull {
     int body, other;
-    Vector3 a_W;     ///< lever [m]
-    double force;    ///< |f| [N]
-    double moment;   ///< κ > 0 [N m]
-    bool hasLevers;  ///< on both bodies
+    Vector3 a_W;    ///< lever [m]
+    Vector3 f_W;    ///< [N]
+    double moment;  ///< κ ≥ 0 [N m]
+    double levers;  ///< that on the other one per |a|, at most 1
   };
   /// Of a free body.
   struct Swing {
-    Matrix3 K = Matrix3::Zero();  ///< Σ κ (1 − â âᵀ) [N m/rad]
-    double force = 0.0;           ///< Σ |f| [N]
-    double share = 0.0;           ///< η (1 − ¼/(h ω)²), ≤ 0 where a step follows it
+    Matrix3 K = Matrix3::Zero();    ///< Σ κ (1 − â âᵀ) [N m/rad]
+    double force = 0.0;             ///< Σ |f| [N]
+    Vector3 sum = Vector3::Zero();  ///< Σ f [N]
+    double drag = 0.0;              ///< of δ: what its forces call for
+    double share = 0.0;             ///< η (1 − ¼/(h ω)²), ≤ 0 where a step follows it
   };
   void findPulls(const Assembly& in, const ConnectionRows& connections);
-  void addRows(const Assembly& in, const Pull& pull, double share);
+  void addRows(const Assembly& in, const Pull& pull, const Swing& swing);
 
   std::vector<Pull> pulls_;
   std::vector<Swing> swings_;  ///< of each tree

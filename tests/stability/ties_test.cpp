@@ -103,6 +103,7 @@ TEST(Ties, HoldWhatSwings) {
         if ((bars > 1 && swing(load, timestep) > kHeld) || (timestep < 5e-4 && bars != 3)) continue;
         Trial t(named("bars that swing", load, bars), with(rope(bars, load), timestep));
         stretch(t, Vector3::UnitX());
+        t.mayRound = load > 100.0;  // of masses of 1:10⁴; whether one does is up to rounding
         // v is that of half a step before: up to 20 rad/s, and E off by ⅛ (h ω)² of it.
         t.mayGain = 0.01 * load * 9.81 * kLength * bars;
         double off = 0.0;
