@@ -12,10 +12,8 @@
 ///   reference    what a step of h does not follow counts as what it does (T.115); as MuJoCo has it
 ///                it is taken as it is, and grows where h² K + 2 h B > 4
 ///   time constant below 2 h              (T.11): it counts as 2 h
-///   light body   h ω > 1                 between ties under their load it swings by more than a
-///   radian `implicit`   a joint of several takes less than a tenth of its speed in a second: by
-///   that
-///                integrator links that swing freely gain energy
+///   light body   h ω > 1                 between its ties it swings by more than a radian a step
+///   `implicit`   d w_i < 0.1/s            a joint among others that gain energy by it
 
 #include <string>
 #include <vector>

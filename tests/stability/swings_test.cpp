@@ -67,8 +67,7 @@ double tumble(int seed, double timestep, double ratio, double turn, double rises
   const Vector3 omega = random.vector3(turn), v = random.vector3(1.0);
   t.state.v << v, omega, v + omega.cross(Vector3(0.21, 0, 0)), omega;
   const double has = t.energy().kinetic + 0.3 * 9.81 * (1.0 + heavy);
-  const double gain = gainOf(t, has, rises);
-  return gain;
+  return gainOf(t, has, rises);
 }
 
 // Before light bodies were held, one of 60 gained 23 times what it had, at 10 ms.

@@ -41,8 +41,7 @@ bool rolls(const Model& model, const Data& data, const FollowedTrees& f, int t) 
   const Tree& tree = model.trees[t];
   if (!(f.turn[t] < kRollingTurn)) return false;
   return !f.tied[t] ||
-         (isSingle(tree) && model.bodies[tree.rootBody].joint == JointKind::floating &&
-          stepAngle(model, data, tree.rootBody) <= kTiedTurn);
+         (model.isFree(tree.rootBody) && stepAngle(model, data, tree.rootBody) <= kTiedTurn);
 }
 
 void setRowForces(const Data& data, VectorX& rows) {
