@@ -43,10 +43,9 @@ class Kind {
   int count_ = 0;
 };
 
-void joints(const Model& model, std::vector<std::string>& out) {
+void joints(const Model& model, const InverseWeights& weights, std::vector<std::string>& out) {
   const double h = model.options.timestep;
   const EffectSet& effects = model.options.effects;
-  const InverseWeights weights(model);
   Kind springs(out), dampings(out), drives(out);
   for (int i = 0; i < model.nv; ++i) {
     const Dof& dof = model.dofs[idx(i)];
@@ -151,14 +150,15 @@ void references(const Model& model, std::vector<std::string>& out) {
 
 /// A free body that hangs on ties swings about its centre, as a bead on a string does: the string's
 /// force is L g on each, at its arm r, against the least inertia across r.
-void tiedSwings(const Model& model, const ContactSet& touching, std::vector<std::string>& out) {
+void tiedSwings(const Model& model, const InverseWeights& weights, const ContactSet& touching,
+                std::vector<std::string>& out) {
   const double h = model.options.timestep, g = model.options.gravity.norm();
   const EffectSet& effects = model.options.effects;
   if (!effects.has(Effect::equality) || !effects.has(Effect::gravity)) return;
   Kinematics kinematics(model);
   computeKinematics(model, State(model), kinematics);
   CarriedLoad load;
-  load.assemble(model, kinematics, touching, InverseWeights(model));
+  load.assemble(model, kinematics, touching, weights);
   std::vector<double> squares(model.bodies.size(), 0.0);  // ω²
   const auto add = [&](int body, int other, const Vector3& p_BP) {
     const Body& b = model.bodies[idx(body)];
@@ -186,10 +186,9 @@ void tiedSwings(const Model& model, const ContactSet& touching, std::vector<std:
 }
 
 /// `implicit` makes energy where links swing freely in each other.
-void freeLinks(const Model& model, std::vector<std::string>& out) {
+void freeLinks(const Model& model, const InverseWeights& weights, std::vector<std::string>& out) {
   const Options& options = model.options;
   if (options.integrator != Integrator::implicit || !options.effects.has(Effect::coriolis)) return;
-  const InverseWeights weights(model);
   Kind kind(out);
   for (const Tree& tree : model.trees) {
     int joints = 0, free = -1;
@@ -241,10 +240,11 @@ void overlaps(const Model& model, const ContactSet& touching, std::vector<std::s
 
 std::vector<std::string> stepWarnings(const Model& model, const ContactSet& touching) {
   std::vector<std::string> out;
-  joints(model, out);
+  const InverseWeights weights(model);
+  joints(model, weights, out);
   references(model, out);
-  tiedSwings(model, touching, out);
-  freeLinks(model, out);
+  tiedSwings(model, weights, touching, out);
+  freeLinks(model, weights, out);
   overlaps(model, touching, out);
   return out;
 }

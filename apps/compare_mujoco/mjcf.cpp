@@ -57,8 +57,9 @@ class Writer {
     const bool gravity = o.effects.has(Effect::gravity);
     line("<mujoco model=\"comparison\">");
     line("<compiler angle=\"radian\" boundmass=\"0\"/>");
-    line("<option timestep=\"{}\" gravity=\"{}\" impratio=\"{}\"/>", text(o.timestep),
-         text(gravity ? o.gravity : Vector3(Vector3::Zero())), text(o.impedanceRatio));
+    line("<option timestep=\"{}\" gravity=\"{}\" cone=\"{}\" impratio=\"{}\"/>", text(o.timestep),
+         text(gravity ? o.gravity : Vector3(Vector3::Zero())),
+         o.cone == Cone::elliptic ? "elliptic" : "pyramidal", text(o.impedanceRatio));
     line("<size njmax=\"5000\" nconmax=\"1000\"/>");
     writeMeshes();
     line("<worldbody>");

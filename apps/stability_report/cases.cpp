@@ -164,6 +164,7 @@ Figure missedWhenCoarse(Figure figure, const std::string& why) {
 
 std::vector<HardCase> hardCases() {
   constexpr double kWeight = 9.81;
+  const std::string chatters = "the box is lifted and falls by a step";
   return {
       {"boxes_1_on_1", "1 kg on 1 kg", 5.0, {overlapAtRest(0.5), tiltOf("upper", 0.1)}},
       {"boxes_1000_on_1",
@@ -215,6 +216,14 @@ std::vector<HardCase> hardCases() {
        60.0,
        {missed(creep("box", 60.0, 5.0),
                "of a pyramid's edges one bears all, and the box chatters")}},
+      {"slope_edge_hard",
+       "the same, impedance_ratio 10",
+       60.0,
+       {missedWhenCoarse(creep("box", 60.0, 5.0), chatters)}},
+      {"slope_edge_elliptic",
+       "the same, elliptic cones",
+       60.0,
+       {missedWhenCoarse(creep("box", 60.0, 5.0), chatters)}},
       {"held", "dry friction beyond any torque", 60.0, {jointCreep(1e-6)}},
       {"springs", "springs of h/10", 5.0, {speedAtRest(1e-3)}},
       // A ball of 0.004 kg m² at 2 rad/s has 8 mJ.

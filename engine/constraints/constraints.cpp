@@ -43,7 +43,10 @@ void Constraints::assemble(const Assembly& given) {
     sparsity_ = &in.tree;
     return;
   }
+  couple(in.tree);
+}
 
+void Constraints::couple(const TreeSparsity& tree) {
   couplings_.clear();
   couplingEnd_.clear();
   visit([&](const auto& c) {
@@ -51,11 +54,11 @@ void Constraints::assemble(const Assembly& given) {
       c.appendCouplings(couplings_, couplingEnd_);
   });
   if (couplings_.empty()) {
-    sparsity_ = &in.tree;
+    sparsity_ = &tree;
     return;
   }
   if (!same(couplings_, lastCouplings_) || couplingEnd_ != lastCouplingEnd_) {
-    coupled_.couple(in.tree, couplings_, couplingEnd_);
+    coupled_.couple(tree, couplings_, couplingEnd_);
     lastCouplings_ = couplings_;
     lastCouplingEnd_ = couplingEnd_;
   }
@@ -67,8 +70,10 @@ int Constraints::holdSwings(const Assembly& in) {
   rowForces_.setZero(in.model.nv);
   addForce(rowForces_);
   const int held = swing.hold(in, connection, rowForces_);
-  // Between bodies that the connections couple already: the pattern of P is as it was.
-  if (held > 0) active_.insert(RowKind::swing);
+  if (held > 0) {
+    active_.insert(RowKind::swing);
+    couple(in.tree);
+  }
   return held;
 }
 

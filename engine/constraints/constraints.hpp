@@ -193,6 +193,8 @@ class Constraints {
     call(self.jointLimit, RowKind::jointLimit, kinds, f);
     call(self.swing, RowKind::swing, kinds, f);
   }
+  /// Sets the pattern of P.
+  void couple(const TreeSparsity& tree);
   template <class C, class F>
   static void call(C& c, RowKind kind, RowKinds kinds, F&& f) {
     if (!kBuiltRows.has(kind) || !kinds.has(kind)) return;

@@ -15,10 +15,13 @@ Matrix3 across(const Vector3& a) {
   return Matrix3::Identity() - a * a.transpose() / a.squaredNorm();
 }
 
-/// From the centre of mass of a body that is free by itself; nothing on others.
+/// A point as seen from what the body turns about: its centre of mass where it floats, or its
+/// joint; nothing where neither turns it.
 Vector3 leverOn(const Assembly& in, int body, const Vector3& p_BP) {
-  if (!in.model.isFree(body)) return Vector3::Zero();
-  return in.kinematics.X_WB[body].R * (p_BP - in.model.bodies[body].com);
+  const Body& b = in.model.bodies[body];
+  const Matrix3& R = in.kinematics.X_WB[body].R;
+  if (b.joint == JointKind::floating) return R * (p_BP - b.com);
+  return b.joint == JointKind::revolute ? Vector3(R * p_BP) : Vector3::Zero();
 }
 
 }  // namespace
@@ -33,10 +36,11 @@ int SwingDamping::hold(const Assembly& in, const ConnectionRows& connections, co
   findPulls(in, connections);
   swings_.assign(model.trees.size(), {});
   for (const Pull& p : pulls_) {
-    Swing& swing = swings_[model.bodies[p.body].tree];
-    if (p.moment > 0.0) swing.K += p.moment * across(p.a_W);
-    swing.force += p.f_W.norm();
-    swing.sum += p.f_W;
+    Swing* swing = swingOf(model, p);
+    if (!swing) continue;
+    if (p.moment > 0.0) swing->K += p.moment * across(p.a_W);
+    swing->force += p.f_W.norm();
+    swing->sum += p.f_W;
   }
   int held = 0;
   for (std::size_t t = 0; t < model.trees.size(); ++t) {
@@ -56,12 +60,17 @@ int SwingDamping::hold(const Assembly& in, const ConnectionRows& connections, co
     swing.drag = (all - swing.sum).norm() > kTouched * swing.force ? 1.0 : kStringDrag;
     held += swing.share > 0.0;
   }
-  for (const Pull& p : pulls_) {
-    const Swing& swing = swings_[model.bodies[p.body].tree];
-    if (p.moment > 0.0 && swing.share > 0.0) addRows(in, p, swing);
-  }
+  for (std::size_t i = 0; i < pulls_.size(); ++i)
+    if (const Swing* swing = swingOf(model, pulls_[i]);
+        swing && swing->share > 0.0 && pulls_[i].moment > 0.0)
+      addRows(in, i, *swing);
   resizeRows(reference.size());
   return held;
+}
+
+SwingDamping::Swing* SwingDamping::swingOf(const Model& model, const Pull& pull) {
+  const Body& body = model.bodies[pull.body];
+  return body.joint == JointKind::floating ? &swings_[body.tree] : nullptr;
 }
 
 void SwingDamping::findPulls(const Assembly& in, const ConnectionRows& connections) {
@@ -69,22 +78,42 @@ void SwingDamping::findPulls(const Assembly& in, const ConnectionRows& connectio
   for (std::size_t i = 0; i < in.model.connections.size(); ++i) {
     const Connection& c = in.model.connections[i];
     const Vector3 f_W = Eigen::Map<const Vector3>(connections.f.data() + 3 * i);
-    const Vector3 a_A = leverOn(in, c.bodyA, c.p_AP), a_B = leverOn(in, c.bodyB, c.p_BP);
-    const auto pull = [&](int body, int other, const Vector3& a_W, const Vector3& b_W,
-                          const Vector3& on_W) {
-      if (!in.model.isFree(body)) return;
-      const double a = a_W.norm(), moment = 0.5 * (a_W.dot(on_W) + a * on_W.norm());
-      pulls_.push_back({body, other, a_W, on_W, moment, std::min(1.0, b_W.norm() / a)});
+    const auto pull = [&](int body, int other, const Vector3& p_BP, const Vector3& on_W) {
+      const Vector3 a_W = leverOn(in, body, p_BP);
+      const double moment = 0.5 * (a_W.dot(on_W) + a_W.norm() * on_W.norm());
+      pulls_.push_back({body, other, a_W, on_W, moment});
     };
-    pull(c.bodyA, c.bodyB, a_A, a_B, f_W);
-    pull(c.bodyB, c.bodyA, a_B, a_A, -f_W);
+    pull(c.bodyA, c.bodyB, c.p_AP, f_W);
+    pull(c.bodyB, c.bodyA, c.p_BP, -f_W);
   }
 }
 
-void SwingDamping::addRows(const Assembly& in, const Pull& pull, const Swing& swing) {
+const SwingDamping::Pull* SwingDamping::beyond(const Model& model, std::size_t pull) const {
+  const int bead = pulls_[pull].other;
+  if (!model.isFree(bead)) return nullptr;
+  const Pull* hardest = nullptr;
+  for (const Pull& p : pulls_)
+    if (p.other == bead && p.body != pulls_[pull].body &&
+        (!hardest || p.f_W.squaredNorm() > hardest->f_W.squaredNorm()))
+      hardest = &p;
+  return hardest;
+}
+
+void SwingDamping::addRows(const Assembly& in, std::size_t i, const Swing& swing) {
+  const Pull &pull = pulls_[i], &onOther = pulls_[i ^ 1];
+  const auto levers = [&](const Pull& p) { return std::min(1.0, p.a_W.norm() / pull.a_W.norm()); };
+  const double near = levers(onOther);
+  const Pull* far = near < 1.0 ? beyond(in.model, i) : nullptr;
+  if (!far) return addRows(in, pull, pull.other, swing.share, near * swing.drag);
+  if (near > 0.0) addRows(in, pull, pull.other, near * swing.share, swing.drag);
+  addRows(in, pull, far->body, (1.0 - near) * swing.share, levers(*far) * swing.drag);
+}
+
+void SwingDamping::addRows(const Assembly& in, const Pull& pull, int other, double share,
+                           double drag) {
   const double dt = in.model.options.timestep;
   RelativeMotion motion;
-  motion.bodyA = pull.other;
+  motion.bodyA = other;
   motion.bodyB = pull.body;
   motion.angularDim = 3;
   motion.angular = frameFromNormal(pull.a_W.normalized());
@@ -92,10 +121,10 @@ void SwingDamping::addRows(const Assembly& in, const Pull& pull, const Swing& sw
   Offset turns{};
   turns.r = turns.bias = Vector3::Zero();
   turns.rate = motion.angular.transpose() *
-               (in.kinematics.V[pull.body].angular - in.kinematics.V[pull.other].angular);
+               (in.kinematics.V[pull.body].angular - in.kinematics.V[other].angular);
   Softness softness;
-  softness.R = 1.0 / (dt * dt * pull.moment * swing.share);
-  softness.damping = swing.drag * pull.levers / dt;
+  softness.R = 1.0 / (dt * dt * pull.moment * share);
+  softness.damping = drag / dt;
   pushRows(motion, turns, softness);
   D[D.size() - 3] = 0.0;  // about the lever
 }

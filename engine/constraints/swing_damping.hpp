@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// What holds a free body that swings between connections faster than a step follows.
+/// What holds a floating body that swings between connections faster than a step follows.
 ///
 /// Connections that pull at levers a from the centre of mass with forces f turn the body back as
-/// the string turns back a bead. With its inertia I, and F what all rows do to it together,
+/// the string turns back a bead. With its inertia I, and F what all rows do to its tree,
 ///   K = η Σ κ (1 − â âᵀ),   κ = ½ (|a||f| + a·f),   η = clamp(5 (1 − |F|/Σ |f|), 0, 1)
 ///   ω² = ½ tr(I⁻¹ K)                                                                    (T.127)
 /// F is what its own motion and weight take, the rest goes through it. A light body that
@@ -15,10 +15,15 @@
 ///   s = ½ C |(1 − â âᵀ)(h α_r + δ ω_r)|²/h,      C = h η κ (1 − ¼/(h ω)²)               (T.128)
 /// With δ = 1 that is the friction C ω_r⁺ of a pin whose radius is the way of the lever in a step;
 /// with δ = 0 an inertia against turning, and what turns evenly goes on. Forces of a string change
-/// slowly, so δ = 0.1; those of what touches the body come at once, and then δ = 1. Either times
-/// min(1, |a_o|/|a|), a_o the lever on the other body: the turning of the world, or of what is tied
-/// at its centre of mass, says nothing of the string's. f is that of a solve without all this.
-/// Momentum is kept, and what turns together is as it was.
+/// slowly, so δ = 0.1; those of what touches the body come at once, and then δ = 1.
+///
+/// *The other body* has a lever a_o too, from its centre of mass where it floats and else from its
+/// joint. Where that is shorter, its turning says little of the string's: a bead that is threaded
+/// at its centre turns as it likes. With λ = min(1, |a_o|/|a|) the body is held against it by λ C
+/// and δ, and by (1 − λ) C and λ δ, λ of its own lever, against what pulls hardest on the other
+/// side of the bead. Where nothing does, by C and λ δ against the other body alone.
+///
+/// f is that of a solve without all this. Momentum is kept, and what turns together is as it was.
 
 #include <vector>
 
@@ -43,27 +48,32 @@ class SwingDamping : public BlockRows {
   std::size_t bytes() const { return BlockRows::bytes() + bytesOfAll(pulls_, swings_); }
 
  private:
-  /// What a connection with another body does to a free one.
+  /// What a connection does to one of its bodies; the next one or the last is what it does to the
+  /// other.
   struct Pull {
     int body, other;
     Vector3 a_W;    ///< lever [m]
     Vector3 f_W;    ///< [N]
     double moment;  ///< κ ≥ 0 [N m]
-    double levers;  ///< that on the other one per |a|, at most 1
   };
-  /// Of a free body.
+  /// Of a floating body.
   struct Swing {
     Matrix3 K = Matrix3::Zero();    ///< Σ κ (1 − â âᵀ) [N m/rad]
     double force = 0.0;             ///< Σ |f| [N]
     Vector3 sum = Vector3::Zero();  ///< Σ f [N]
-    double drag = 0.0;              ///< of δ: what its forces call for
+    double drag = 0.0;              ///< δ: what its forces call for
     double share = 0.0;             ///< η (1 − ¼/(h ω)²), ≤ 0 where a step follows it
   };
   void findPulls(const Assembly& in, const ConnectionRows& connections);
-  void addRows(const Assembly& in, const Pull& pull, const Swing& swing);
+  /// How a pull's body swings; null where it does not float.
+  Swing* swingOf(const Model& model, const Pull& pull);
+  /// The pull on the other side of a pull's other body; the hardest of several, null if none.
+  const Pull* beyond(const Model& model, std::size_t pull) const;
+  void addRows(const Assembly& in, std::size_t pull, const Swing& swing);
+  void addRows(const Assembly& in, const Pull& pull, int other, double share, double drag);
 
   std::vector<Pull> pulls_;
-  std::vector<Swing> swings_;  ///< of each tree
+  std::vector<Swing> swings_;  ///< of each tree's root
 };
 
 }  // namespace softgauss

@@ -41,7 +41,8 @@ bool maySwing(const Model& model) {
   const Options& o = model.options;
   if (!o.ownSoftness || o.looksWithin() || o.integrator == Integrator::implicit) return false;
   const auto hasLever = [&](int body, const Vector3& p_BP) {
-    return model.isFree(body) && p_BP != model.bodies[body].com;
+    const Body& b = model.bodies[body];
+    return b.joint == JointKind::floating && p_BP != b.com;
   };
   return std::any_of(model.connections.begin(), model.connections.end(), [&](const Connection& c) {
     return hasLever(c.bodyA, c.p_AP) || hasLever(c.bodyB, c.p_BP);

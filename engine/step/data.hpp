@@ -4,6 +4,7 @@
 /// Everything a step computes, as stages. Each stage is written by exactly one function, and
 /// algorithms take the stages they need, so a signature is the data flow (docs/the_step.md).
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 
@@ -68,6 +69,16 @@ struct StepStats {
   int unseen = 0;          ///< parts in which shapes may have passed through each other unseen
   int badDof = -1;         ///< with SolveStatus::notFinite: the first dof that is not finite
   StepTimes times;
+
+  /// Counts another solve within the step, and how it ended; false where it has no result.
+  bool count(const NewtonReport& solve) {
+    iterations += solve.iterations;
+    factorizations += solve.factorizations;
+    residual = std::max(residual, solve.residual);
+    if (solve.status == SolveStatus::notFinite) return false;
+    if (solve.status != SolveStatus::converged) status = solve.status;
+    return true;
+  }
 };
 
 struct IntegratorStages;

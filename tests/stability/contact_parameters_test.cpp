@@ -183,8 +183,8 @@ TEST(ContactParameters, SlopeAtTheEdgeOfTheConeForAMinuteLong) {
 // With pyramids friction lifts as it creeps. Of a contact's four edges, κ = −k r and s = b μ v, one
 // bears D (κ + s), two D κ and one nothing, so that f_t/(μ f_n) = (κ + s)/(3 κ + s) = 0.99 asks for
 // s = 197 κ: v = 0.985 f_n R/(b μ), at a two hundredth of the depth of rest. So near to leaving,
-// the box chatters (docs/stability.md): it is borne in every other step, at twice that speed, and
-// falls downhill in the others.
+// the box chatters (docs/stability_limits.md): it is borne in every other step, at twice that
+// speed, and falls downhill in the others.
 TEST(ContactParameters, SlopeAtTheEdgeOfThePyramid) {
   constexpr double kMu = 0.8, kWeight = 9.81, kSoftness = (1.0 - 0.9) / 0.9,
                    kB = 2.0 / (0.95 * 0.02);

@@ -52,11 +52,6 @@ double speed(const Model& model, const State& state, const Data& data) {
   return v.cwiseQuotient(data.inertia.forceScale).maxCoeff();
 }
 
-bool isFreeBody(const Model& model, const Tree& tree) {
-  return model.bodies[tree.rootBody].joint == JointKind::floating &&
-         tree.dofEnd == tree.firstDof + 6;
-}
-
 }  // namespace
 
 EnergyWatch::EnergyWatch(const Model& model)
@@ -97,7 +92,7 @@ void EnergyWatch::setRestForce(const State& state) {
 double EnergyWatch::turning(const State& state) {
   VectorX v = state.v;
   for (const Tree& tree : model_.trees)
-    if (isFreeBody(model_, tree)) v.segment<3>(tree.firstDof).setZero();
+    if (model_.isFree(tree.rootBody)) v.segment<3>(tree.firstDof).setZero();
   return computeEnergy(model_, kinematics_, state.q, v).kinetic;
 }
 
@@ -108,7 +103,7 @@ double EnergyWatch::offset(const State& state, const Input& input) {
   VectorX force = data_.forces.net;
   for (std::size_t t = 0; t < model_.trees.size(); ++t) {
     const Tree& tree = model_.trees[t];
-    if (isFreeBody(model_, tree)) force.segment<3>(tree.firstDof).setZero();
+    if (model_.isFree(tree.rootBody)) force.segment<3>(tree.firstDof).setZero();
     if (!state.velocityOf.empty() && state.velocityOf[t] == VelocityOf::now)
       force.segment(tree.firstDof, tree.dofEnd - tree.firstDof).setZero();
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/stability/scenes.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace softgauss::test {
@@ -68,6 +69,17 @@ ModelBuilder levelArm() {
 
 double tilt(Trial& trial, const std::string& link) {
   return std::acos(std::min(1.0, trial.rotation(link)(2, 2)));
+}
+
+double widestTie(Trial& t) {
+  computeKinematics(t.model, t.state, t.data->kinematics);
+  const std::vector<Transform>& X_WB = t.data->kinematics.X_WB;
+  double off = 0.0;
+  for (const Connection& c : t.model.connections)
+    off = std::max(off, (X_WB[c.bodyA] * c.p_AP - X_WB[c.bodyB] * c.p_BP).norm());
+  for (const Weld& w : t.model.welds)
+    off = std::max(off, (X_WB[w.bodyA] * w.X_AF.p - X_WB[w.bodyB] * w.X_BF.p).norm());
+  return off;
 }
 
 }  // namespace softgauss::test

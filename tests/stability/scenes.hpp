@@ -28,6 +28,9 @@ ModelBuilder levelArm();
 /// Largest tilt of a link's z axis from the vertical [rad].
 double tilt(Trial& trial, const std::string& link);
 
+/// How far connections and welds are off at most [m].
+double widestTie(Trial& trial);
+
 /// A builder with this step and cone.
 inline ModelBuilder with(ModelBuilder builder, double timestep, Cone cone = Cone::pyramidal) {
   builder.options.timestep = timestep;

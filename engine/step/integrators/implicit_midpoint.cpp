@@ -87,8 +87,8 @@ class Part {
     if (!s_.state.q.allFinite() || !s_.state.v.allFinite()) return false;
     if (computeStages(model_, s_.input, s_.state, s_.data, contacts_) == SolveStatus::notFinite)
       return false;
-    const SolveStatus status = forwardDynamics(model_, &s_.acceleration[0], s_.data);
-    if (!countEvaluation(s_.data, status, stats_)) return false;
+    forwardDynamics(model_, &s_.acceleration[0], s_.data);
+    if (!countEvaluation(s_.data, stats_)) return false;
     s_.acceleration[0] = s_.data.forward.a;
     return true;
   }

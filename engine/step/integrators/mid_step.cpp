@@ -80,12 +80,8 @@ bool MidStep::answer(const Model& model, Data& data, const State& present, const
                                        mostIterations(model.options.maxIterations, rows.rowCount()),
                                        gradient_, direction_, s.cellFactored);
   s.cellFactored = (s.cellFactored || report.factorizations > 0) && !objective.cellChanged();
-  data.stats.iterations += report.iterations;
-  data.stats.factorizations += report.factorizations;
   data.stats.roundedSolves += report.rounded;
-  data.stats.residual = std::max(data.stats.residual, report.residual);
-  if (report.status == SolveStatus::notFinite) return false;
-  if (report.status != SolveStatus::converged) data.stats.status = report.status;
+  if (!data.stats.count(report)) return false;
   middle_ = s.a;
   s.a = a_;
   s.Ma = Ma_;

@@ -50,15 +50,10 @@ struct IntegratorStages {
 inline bool isShortest(double length, double shortest) { return length <= shortest * (1.0 + 1e-9); }
 
 /// Adds what the last solve of `data` has counted; false where its result is no acceleration.
-inline bool countEvaluation(const Data& data, SolveStatus status, StepStats& stats) {
+inline bool countEvaluation(const Data& data, StepStats& stats) {
   ++stats.evaluations;
-  stats.iterations += data.forward.report.iterations;
-  stats.factorizations += data.forward.report.factorizations;
-  stats.residual = std::max(stats.residual, data.forward.report.residual);
   stats.maxPenetration = std::max(stats.maxPenetration, data.stats.maxPenetration);
-  if (status == SolveStatus::notFinite) return false;
-  if (status != SolveStatus::converged) stats.status = status;
-  return true;
+  return stats.count(data.forward.report);
 }
 
 }  // namespace softgauss

@@ -21,7 +21,8 @@ bool take(double h, ContactSource* contacts, IntegratorStages& s, State& state, 
   model.options.timestep = h;
   if (computeStages(model, s.input, state, s.data, contacts) == SolveStatus::notFinite)
     return false;
-  if (!countEvaluation(s.data, forwardDynamics(model, state, s.data), stats)) return false;
+  forwardDynamics(model, state, s.data);
+  if (!countEvaluation(s.data, stats)) return false;
   if (!moveOnce(model, s.data, state)) return false;
   state.warmstart.a = s.data.forward.a;
   state.warmstart.valid = true;
