@@ -15,13 +15,18 @@ Matrix3 across(const Vector3& a) {
   return Matrix3::Identity() - a * a.transpose() / a.squaredNorm();
 }
 
-/// A point as seen from what the body turns about: its centre of mass where it floats, or its
-/// joint; nothing where neither turns it.
-Vector3 leverOn(const Assembly& in, int body, const Vector3& p_BP) {
+bool floats(const Model& model, const Tree& tree) {
+  return model.bodies[tree.rootBody].joint == JointKind::floating;
+}
+
+/// A point as seen from what the body turns about: its centre of mass, or its joint in a tree that
+/// does not float; nothing where neither turns it.
+Vector3 leverOn(const Assembly& in, int body, const Vector3& p_WP) {
   const Body& b = in.model.bodies[body];
-  const Matrix3& R = in.kinematics.X_WB[body].R;
-  if (b.joint == JointKind::floating) return R * (p_BP - b.com);
-  return b.joint == JointKind::revolute ? Vector3(R * p_BP) : Vector3::Zero();
+  if (b.tree < 0) return Vector3::Zero();
+  const Transform& X_WB = in.kinematics.X_WB[body];
+  if (floats(in.model, in.model.trees[b.tree])) return p_WP - X_WB * b.com;
+  return b.joint == JointKind::revolute ? Vector3(p_WP - X_WB.p) : Vector3::Zero();
 }
 
 }  // namespace
@@ -29,62 +34,78 @@ Vector3 leverOn(const Assembly& in, int body, const Vector3& p_BP) {
 int SwingDamping::hold(const Assembly& in, const ConnectionRows& connections, const VectorX& rows) {
   constexpr double kFollowed = 0.5;  // h ω [rad]
   constexpr double kThrough = 0.2;   // of the forces: what counts as all
-  constexpr double kTouched = 1e-6;  // of the forces: less is rounding
-  constexpr double kStringDrag = 0.1;
   const Model& model = in.model;
   clearBlocks();
   findPulls(in, connections);
-  swings_.assign(model.trees.size(), {});
-  for (const Pull& p : pulls_) {
-    Swing* swing = swingOf(model, p);
-    if (!swing) continue;
-    if (p.moment > 0.0) swing->K += p.moment * across(p.a_W);
-    swing->force += p.f_W.norm();
-    swing->sum += p.f_W;
-  }
+  pressed_.assign(model.trees.size(), 0.0);
   int held = 0;
   for (std::size_t t = 0; t < model.trees.size(); ++t) {
-    Swing& swing = swings_[t];
-    if (swing.K.isZero(0.0)) continue;
-    const int root = model.trees[t].rootBody;
-    const Body& body = model.bodies[root];
-    const Vector3 all = rows.segment<3>(body.v);
-    const double through = std::min(1.0, (1.0 - all.norm() / swing.force) / kThrough);
-    if (!(through > 0.0)) continue;
-    const Matrix3& R = in.kinematics.X_WB[root].R;
-    const Matrix3 K = through * (R.transpose() * swing.K * R);
-    const double turn =
-        model.options.timestep * std::sqrt(0.5 * body.I_Bcm.matrix().ldlt().solve(K).trace());
-    swing.share = through * (1.0 - kFollowed * kFollowed / (turn * turn));
-    // What touches it, or welds it, presses at once and not as a string does.
-    swing.drag = (all - swing.sum).norm() > kTouched * swing.force ? 1.0 : kStringDrag;
-    held += swing.share > 0.0;
+    const Tree& tree = model.trees[t];
+    if (!floats(model, tree)) continue;
+    for (int b = tree.rootBody; b < tree.bodyEnd; ++b) {
+      Swing& swing = swings_[b];
+      const Body& body = model.bodies[b];
+      Vector3 all = swing.sum;
+      if (b == tree.rootBody) {
+        all = rows.segment<3>(body.v);
+        // What touches it, or welds it, presses at once and not as a string does.
+        if (swing.force > 0.0) pressed_[t] = (all - swing.sum).norm() / (kThrough * swing.force);
+      }
+      if (body.massless || swing.K.isZero(0.0)) continue;
+      const double through = std::min(1.0, (1.0 - all.norm() / swing.force) / kThrough);
+      if (!(through > 0.0)) continue;
+      const Matrix3& R = in.kinematics.X_WB[b].R;
+      const Matrix3 K = through * (R.transpose() * swing.K * R);
+      const double turn =
+          model.options.timestep * std::sqrt(0.5 * body.I_Bcm.matrix().ldlt().solve(K).trace());
+      swing.share = through * (1.0 - kFollowed * kFollowed / (turn * turn));
+      held += swing.share > 0.0;
+    }
   }
-  for (std::size_t i = 0; i < pulls_.size(); ++i)
-    if (const Swing* swing = swingOf(model, pulls_[i]);
-        swing && swing->share > 0.0 && pulls_[i].moment > 0.0)
-      addRows(in, i, *swing);
+  for (std::size_t i = 0; i < pulls_.size(); ++i) {
+    const double share = swings_[pulls_[i].body].share;
+    if (share > 0.0 && pulls_[i].moment > 0.0)
+      addRows(in, i, share, pressed_[model.bodies[pulls_[i].body].tree]);
+  }
   resizeRows(reference.size());
   return held;
 }
 
-SwingDamping::Swing* SwingDamping::swingOf(const Model& model, const Pull& pull) {
-  const Body& body = model.bodies[pull.body];
-  return body.joint == JointKind::floating ? &swings_[body.tree] : nullptr;
+void SwingDamping::findPulls(const Assembly& in, const ConnectionRows& connections) {
+  const Model& model = in.model;
+  pulls_.clear();
+  swings_.assign(model.bodies.size(), {});
+  for (std::size_t i = 0; i < model.connections.size(); ++i) {
+    const Connection& c = model.connections[i];
+    const Vector3 f_W = Eigen::Map<const Vector3>(connections.f.data() + 3 * i);
+    addPulls(in, c.bodyA, c.bodyB, in.kinematics.X_WB[c.bodyA] * c.p_AP,
+             in.kinematics.X_WB[c.bodyB] * c.p_BP, f_W);
+  }
+  for (const Tree& tree : model.trees)
+    if (floats(model, tree)) addJointPulls(in, tree);
 }
 
-void SwingDamping::findPulls(const Assembly& in, const ConnectionRows& connections) {
-  pulls_.clear();
-  for (std::size_t i = 0; i < in.model.connections.size(); ++i) {
-    const Connection& c = in.model.connections[i];
-    const Vector3 f_W = Eigen::Map<const Vector3>(connections.f.data() + 3 * i);
-    const auto pull = [&](int body, int other, const Vector3& p_BP, const Vector3& on_W) {
-      const Vector3 a_W = leverOn(in, body, p_BP);
-      const double moment = 0.5 * (a_W.dot(on_W) + a_W.norm() * on_W.norm());
-      pulls_.push_back({body, other, a_W, on_W, moment});
-    };
-    pull(c.bodyA, c.bodyB, c.p_AP, f_W);
-    pull(c.bodyB, c.bodyA, c.p_BP, -f_W);
+void SwingDamping::addPulls(const Assembly& in, int bodyA, int bodyB, const Vector3& p_WA,
+                            const Vector3& p_WB, const Vector3& f_W) {
+  const auto pull = [&](int body, int other, const Vector3& p_W, const Vector3& on_W) {
+    const Vector3 a_W = leverOn(in, body, p_W);
+    const double moment = 0.5 * (a_W.dot(on_W) + a_W.norm() * on_W.norm());
+    pulls_.push_back({body, other, a_W, on_W, moment});
+    Swing& swing = swings_[body];
+    if (moment > 0.0) swing.K += moment * across(a_W);
+    swing.force += on_W.norm();
+    swing.sum += on_W;
+  };
+  pull(bodyA, bodyB, p_WA, f_W);
+  pull(bodyB, bodyA, p_WB, -f_W);
+}
+
+void SwingDamping::addJointPulls(const Assembly& in, const Tree& tree) {
+  for (int b = tree.bodyEnd - 1; b > tree.rootBody; --b) {
+    const Vector3 f_W = swings_[b].sum;  // with what its children have passed on
+    if (f_W.isZero(0.0)) continue;
+    const Vector3 p_W = in.kinematics.X_WB[b].p;
+    addPulls(in, in.model.bodies[b].parent, b, p_W, p_W, f_W);
   }
 }
 
@@ -99,18 +120,20 @@ const SwingDamping::Pull* SwingDamping::beyond(const Model& model, std::size_t p
   return hardest;
 }
 
-void SwingDamping::addRows(const Assembly& in, std::size_t i, const Swing& swing) {
+void SwingDamping::addRows(const Assembly& in, std::size_t i, double share, double pressed) {
   const Pull &pull = pulls_[i], &onOther = pulls_[i ^ 1];
   const auto levers = [&](const Pull& p) { return std::min(1.0, p.a_W.norm() / pull.a_W.norm()); };
   const double near = levers(onOther);
   const Pull* far = near < 1.0 ? beyond(in.model, i) : nullptr;
-  if (!far) return addRows(in, pull, pull.other, swing.share, near * swing.drag);
-  if (near > 0.0) addRows(in, pull, pull.other, near * swing.share, swing.drag);
-  addRows(in, pull, far->body, (1.0 - near) * swing.share, levers(*far) * swing.drag);
+  if (!far) return addRows(in, pull, pull.other, share, near, pressed);
+  if (near > 0.0) addRows(in, pull, pull.other, near * share, 1.0, pressed);
+  addRows(in, pull, far->body, (1.0 - near) * share, levers(*far), pressed);
 }
 
 void SwingDamping::addRows(const Assembly& in, const Pull& pull, int other, double share,
-                           double drag) {
+                           double levers, double pressed) {
+  constexpr double kStringDrag = 0.1;
+  constexpr double kTurnsFar = 0.25;  // of one body against the other in a step [rad]
   const double dt = in.model.options.timestep;
   RelativeMotion motion;
   motion.bodyA = other;
@@ -122,9 +145,11 @@ void SwingDamping::addRows(const Assembly& in, const Pull& pull, int other, doub
   turns.r = turns.bias = Vector3::Zero();
   turns.rate = motion.angular.transpose() *
                (in.kinematics.V[pull.body].angular - in.kinematics.V[other].angular);
+  const double turn = dt * turns.rate.tail<2>().norm() / kTurnsFar;
+  const double drag = std::min(1.0, kStringDrag + std::pow(turn, 4) + pressed);
   Softness softness;
   softness.R = 1.0 / (dt * dt * pull.moment * share);
-  softness.damping = drag / dt;
+  softness.damping = levers * drag / dt;
   pushRows(motion, turns, softness);
   D[D.size() - 3] = 0.0;  // about the lever
 }

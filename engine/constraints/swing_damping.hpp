@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// What holds a floating body that swings between connections faster than a step follows.
+/// What holds a light body that swings between connections faster than a step follows.
 ///
 /// Connections that pull at levers a from the centre of mass with forces f turn the body back as
-/// the string turns back a bead. With its inertia I, and F what all rows do to its tree,
+/// the string turns back a bead; so does a joint, with what the connections of all bodies beyond it
+/// pull. With its inertia I, and F what all rows do to it together,
 ///   K = η Σ κ (1 − â âᵀ),   κ = ½ (|a||f| + a·f),   η = clamp(5 (1 − |F|/Σ |f|), 0, 1)
 ///   ω² = ½ tr(I⁻¹ K)                                                                    (T.127)
 /// F is what its own motion and weight take, the rest goes through it. A light body that
@@ -14,16 +15,21 @@
 /// other one, with ω_r, α_r the turning of the one against the other:
 ///   s = ½ C |(1 − â âᵀ)(h α_r + δ ω_r)|²/h,      C = h η κ (1 − ¼/(h ω)²)               (T.128)
 /// With δ = 1 that is the friction C ω_r⁺ of a pin whose radius is the way of the lever in a step;
-/// with δ = 0 an inertia against turning, and what turns evenly goes on. Forces of a string change
-/// slowly, so δ = 0.1; those of what touches the body come at once, and then δ = 1.
+/// with δ = 0 an inertia against turning, and what turns evenly goes on. But C comes and goes with
+/// the forces, and an inertia that comes while the body turns has energy that it never had. Forces
+/// of a string change slowly, unless it turns far in a step, those of what else touches the body at
+/// once:
+///   δ = min(1, 0.1 + (4 h |ω_r|)⁴ + 5 |F − Σ f|/Σ |f|)
+/// the last of the root of the body's tree.
 ///
-/// *The other body* has a lever a_o too, from its centre of mass where it floats and else from its
-/// joint. Where that is shorter, its turning says little of the string's: a bead that is threaded
-/// at its centre turns as it likes. With λ = min(1, |a_o|/|a|) the body is held against it by λ C
-/// and δ, and by (1 − λ) C and λ δ, λ of its own lever, against what pulls hardest on the other
-/// side of the bead. Where nothing does, by C and λ δ against the other body alone.
+/// *The other body* has a lever a_o too, from its centre of mass or, in a tree that does not float,
+/// from its joint. Where that is shorter, its turning says little of the string's: a bead that is
+/// threaded at its centre turns as it likes. With λ = min(1, |a_o|/|a|) the body is held against it
+/// by λ C and δ, and by (1 − λ) C and λ δ, λ of its own lever, against what pulls hardest on the
+/// other side of the bead. Where nothing does, by C and λ δ against the other body alone.
 ///
 /// f is that of a solve without all this. Momentum is kept, and what turns together is as it was.
+/// Trees that do not float are not held: their joints have inertias of their own.
 
 #include <vector>
 
@@ -45,35 +51,39 @@ class SwingDamping : public BlockRows {
   /// (nv) Jᵀf of all kinds.
   int hold(const Assembly& in, const ConnectionRows& connections, const VectorX& rows);
 
-  std::size_t bytes() const { return BlockRows::bytes() + bytesOfAll(pulls_, swings_); }
+  std::size_t bytes() const { return BlockRows::bytes() + bytesOfAll(pulls_, swings_, pressed_); }
 
  private:
-  /// What a connection does to one of its bodies; the next one or the last is what it does to the
-  /// other.
+  /// What a connection or a joint does to one of its bodies; the next one or the last is what it
+  /// does to the other.
   struct Pull {
     int body, other;
     Vector3 a_W;    ///< lever [m]
     Vector3 f_W;    ///< [N]
     double moment;  ///< κ ≥ 0 [N m]
   };
-  /// Of a floating body.
+  /// Of a body of a floating tree.
   struct Swing {
     Matrix3 K = Matrix3::Zero();    ///< Σ κ (1 − â âᵀ) [N m/rad]
     double force = 0.0;             ///< Σ |f| [N]
     Vector3 sum = Vector3::Zero();  ///< Σ f [N]
-    double drag = 0.0;              ///< δ: what its forces call for
     double share = 0.0;             ///< η (1 − ¼/(h ω)²), ≤ 0 where a step follows it
   };
   void findPulls(const Assembly& in, const ConnectionRows& connections);
-  /// How a pull's body swings; null where it does not float.
-  Swing* swingOf(const Model& model, const Pull& pull);
+  /// f_W pulls A at one point and −f_W B at the other.
+  void addPulls(const Assembly& in, int bodyA, int bodyB, const Vector3& p_WA, const Vector3& p_WB,
+                const Vector3& f_W);
+  void addJointPulls(const Assembly& in, const Tree& tree);
   /// The pull on the other side of a pull's other body; the hardest of several, null if none.
   const Pull* beyond(const Model& model, std::size_t pull) const;
-  void addRows(const Assembly& in, std::size_t pull, const Swing& swing);
-  void addRows(const Assembly& in, const Pull& pull, int other, double share, double drag);
+  void addRows(const Assembly& in, std::size_t pull, double share, double pressed);
+  /// `levers`: λ of the other body.
+  void addRows(const Assembly& in, const Pull& pull, int other, double share, double levers,
+               double pressed);
 
   std::vector<Pull> pulls_;
-  std::vector<Swing> swings_;  ///< of each tree's root
+  std::vector<Swing> swings_;    ///< of each body
+  std::vector<double> pressed_;  ///< of each tree: 5 |F − Σ f|/Σ |f| of its root
 };
 
 }  // namespace softgauss

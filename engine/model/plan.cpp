@@ -36,13 +36,16 @@ EffectSet possibleContacts(const Model& model) {
   return possible;
 }
 
-/// Whether a connection has a lever on a free body, which may swing too fast for a step (T.127).
+/// Whether a connection has a lever on a floating tree, which may swing too fast for a step
+/// (T.127).
 bool maySwing(const Model& model) {
   const Options& o = model.options;
   if (!o.ownSoftness || o.looksWithin() || o.integrator == Integrator::implicit) return false;
   const auto hasLever = [&](int body, const Vector3& p_BP) {
     const Body& b = model.bodies[body];
-    return b.joint == JointKind::floating && p_BP != b.com;
+    if (b.tree < 0) return false;
+    const int root = model.trees[b.tree].rootBody;
+    return model.bodies[root].joint == JointKind::floating && !(body == root && p_BP == b.com);
   };
   return std::any_of(model.connections.begin(), model.connections.end(), [&](const Connection& c) {
     return hasLever(c.bodyA, c.p_AP) || hasLever(c.bodyB, c.p_BP);

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/step/integrators/implicit_forces.hpp"
+
 namespace softgauss::test {
 namespace {
 
@@ -87,6 +89,9 @@ void EnergyWatch::setRestForce(const State& state) {
   still.v.setZero();
   computeStages(model_, {}, still, data_, nullptr);
   restForce_ = data_.forces.net;
+  for (const Plan::Spring& s : data_.plan.springs)  // no part of a half step: taken at its end
+    if (isStiffSpring(model_, data_, s))
+      restForce_[s.dof] += s.stiffness * (state.q[s.q] - s.reference);
 }
 
 double EnergyWatch::turning(const State& state) {

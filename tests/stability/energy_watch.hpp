@@ -31,8 +31,8 @@
 /// way of free bodies. One that is followed has v at q, and keeps its energy to the tolerance of
 /// its sub-steps: each may put kTolerance of the tree's speed u = max_i (|v_i| + h |a_i|) √M_ii
 /// into a dof, and |(M v)_i| ≤ √(2 K M_ii), so that ε = kTolerance u √(2 K); where rows push it, v
-/// is without half a step of F_s, what weight and springs do: E there is that of q and v, and ½ h
-/// v·F_s. Which of these a start is, is what the first step has made of it.
+/// is without half a step of F_s, what weight and springs that a step follows do: E there is that
+/// of q and v, and ½ h v·F_s. Which of these a start is, is what the first step has made of it.
 
 #include <cstdint>
 #include <vector>

@@ -74,6 +74,8 @@ FollowedTrees::FollowedTrees(const Model& model)
       q(model.q0),
       tied(model.trees.size(), 0),
       motion(model) {
+  atEnd.stiff.reserve(model.dofs.size());
+  atEnd.inertia = VectorX::Zero(model.nv);
   const auto ties = [&](int body) {
     if (model.bodies[body].tree >= 0) tied[model.bodies[body].tree] = 1;
   };
@@ -206,9 +208,17 @@ void FollowedTrees::follow(const Model& model, Data& data, State& state, VectorX
   push = held - data.forces.net;  // Jᵀf
   setRowForces(data, smooth);     // of trees that are not followed it stays so below
   held += data.forces.bias;
-  for (const Plan::Spring& spring : data.plan.springs)
+  atEnd.stiff.clear();
+  atEnd.inertia.setZero();
+  for (const Plan::Spring& spring : data.plan.springs) {
     held[spring.dof] += spring.stiffness * (state.q[spring.q] - spring.reference);
-  if (data.plan.damped()) held += data.plan.damping.cwiseProduct(state.v);
+    atEnd.stiff.push_back(isStiffSpring(model, data, spring));
+    if (atEnd.stiff.back()) atEnd.inertia[spring.dof] = h * h * spring.stiffness;
+  }
+  if (data.plan.damped()) {
+    held += data.plan.damping.cwiseProduct(state.v);
+    atEnd.inertia += h * data.plan.damping;
+  }
 
   for (std::size_t t = 0; t < model.trees.size(); ++t) {
     const Tree& tree = model.trees[t];
@@ -227,10 +237,15 @@ void FollowedTrees::follow(const Model& model, Data& data, State& state, VectorX
       instant = VelocityOf::halfAStepAgo;
       continue;
     }
-    if (!free) {  // Q is what is left for the step's course; the kick is of rows and damping
+    if (!free) {  // Q is what is left for the step's course; the kick is of what is stiff
       part(held) -= part(push);
       if (data.plan.damped())
-        part(push) -= data.plan.damping.segment(first, dofs).cwiseProduct(part(vPlus));
+        part(push) -= data.plan.damping.segment(first, dofs).cwiseProduct(part(state.v));
+      for (std::size_t i = 0; i < atEnd.stiff.size(); ++i) {
+        const Plan::Spring& s = data.plan.springs[i];
+        if (atEnd.stiff[i] && s.dof >= first && s.dof < tree.dofEnd)
+          push[s.dof] -= s.stiffness * (state.q[s.q] + h * state.v[s.dof] - s.reference);
+      }
     }
     const Body& root = model.bodies[tree.rootBody];
     Vector3 heldInWorld = Vector3::Zero();
@@ -240,7 +255,7 @@ void FollowedTrees::follow(const Model& model, Data& data, State& state, VectorX
       heldInWorld = data.kinematics.X_WB[tree.rootBody].R * (held.segment<3>(root.v + 3) - own);
       held.segment<3>(root.v + 3) = own;
     }
-    motion.start(model, state, tree, free);
+    motion.start(model, state, tree, free, atEnd);
     if (!followed[t]) {
       motion.atRest(model, data.plan, tree, held, heldInWorld, kicked);
       part(vPlus) -= 0.5 * h * part(kicked);
@@ -300,7 +315,7 @@ void FollowedTrees::copyPositions(const Model& model, VectorX& qPlus) const {
 
 std::size_t FollowedTrees::bytes() const {
   return bytesOfAll(turn, followed, pushed, push, coriolis, a, net, bias, smooth, kicked, q, tied,
-                    references) +
+                    atEnd.stiff, atEnd.inertia, references) +
          motion.bytes();
 }
 

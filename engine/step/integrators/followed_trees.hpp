@@ -28,14 +28,17 @@
 /// What rows and the applied τ do to a followed tree that rows push is done at the step's start, at
 /// once, and the tree goes on without them:
 ///
-///   v ← v + ½ h a_s(q) + h M⁻¹(Jᵀf + τ − D v′),  then (T.91),  then v⁺ ← v − ½ h a_s(q⁺)
+///   v ← v + ½ h a_s(q) + h M̂⁻¹(Jᵀf + τ − D v − K (q + h v − q_s)),  then (T.91),
+///   then v⁺ ← v − ½ h a_s(q⁺)                                                         (T.130)
 ///
-/// with a_s the acceleration that gravity, springs and wrenches give at rest. A force that is held
-/// while the tree turns works where it is not any more, and positions that move with half of what
-/// it does make energy out of a stiff contact, as explicit Euler does. f is that of (T.1) without
-/// what the velocities of these trees make, Coriolis forces and J̇ v of their rows: over the step
-/// these turn, and (T.91) has them. Then a kick takes velocity out of the rows and puts none in,
-/// however far the tree turns.
+/// with K the stiff springs, those of (T.95), a_s the acceleration that gravity, the other springs
+/// and wrenches give at rest, and M̂ = M + h D + h² K in all of it, on the way too: what damping and
+/// stiff springs do is that of the step's end, and a joint that they hold does not whip between. A
+/// force that is held while the tree turns works where it is not any more, and positions that move
+/// with half of what it does make energy out of a stiff contact, as explicit Euler does. f is that
+/// of (T.1) without what the velocities of these trees make, Coriolis forces and J̇ v of their rows:
+/// over the step these turn, and (T.91) has them. Then a kick takes velocity out of the rows and
+/// puts none in, however far the tree turns.
 ///
 /// With turn < 0.05 a single body without ties is not followed while rows push it: (T.123) has its
 /// Coriolis forces and the rows' answer. Links without ties, and single bodies on ties that turn by
@@ -66,6 +69,7 @@ struct FollowedTrees {
   std::vector<double> references;      ///< of its rows
   VectorX q;                           ///< (nq) scratch
   std::vector<std::uint8_t> tied;      ///< (trees) 1: connections or welds hold it
+  TreeMotion::AtEnd atEnd;             ///< of the model's joints
   TreeMotion motion;
 
   FollowedTrees() = default;

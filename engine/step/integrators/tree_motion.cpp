@@ -137,16 +137,20 @@ void TreeMotion::derivative(const Model& model, const Plan& plan, const Tree& tr
   for (int i = tree.firstDof; i < tree.dofEnd; ++i) dv_[i] = (*held_)[i];
   if (damped_ && plan.damped())
     for (int i = tree.firstDof; i < tree.dofEnd; ++i) dv_[i] -= plan.damping[i] * w_[i];
-  for (const Plan::Spring& s : plan.springs)
-    if (s.dof >= tree.firstDof && s.dof < tree.dofEnd)
-      dv_[s.dof] -= s.stiffness * (q_[s.q] + u_[s.dof] - s.reference);
+  const bool softOnly = atEnd_ && (resting_ || !damped_);
+  for (std::size_t i = 0; i < plan.springs.size(); ++i) {
+    const Plan::Spring& s = plan.springs[i];
+    if (s.dof < tree.firstDof || s.dof >= tree.dofEnd || (softOnly && atEnd_->stiff[i])) continue;
+    dv_[s.dof] -= s.stiffness * (q_[s.q] + u_[s.dof] - s.reference);
+  }
   for (int b = tree.bodyEnd - 1; b >= first; --b) {
     const Body& body = model.bodies[b];
     if (body.joint == JointKind::floating) break;  // the root
     Node& n = nodes_[b - first];
     const Vector6 S = vec(n.S);
     n.U.noalias() = n.IA * S;
-    n.inverse = 1.0 / (S.dot(n.U) + (armature ? model.dofs[body.v].armature : 0.0));
+    n.inverse = 1.0 / (S.dot(n.U) + (armature ? model.dofs[body.v].armature : 0.0) +
+                       (damped_ ? 0.0 : atEnd_->inertia[body.v]));
     n.u = dv_[body.v] - S.dot(n.pA);
     if (b == first) break;
     Node& parent = nodes_[body.parent - first];
@@ -211,12 +215,16 @@ void TreeMotion::atRest(const Model& model, const Plan& plan, const Tree& tree, 
   w_.segment(f, n).setZero();
   held_ = &held;
   heldInWorld_ = heldInWorld;
+  resting_ = true;
   derivative(model, plan, tree);
+  resting_ = false;
   vdot.segment(f, n) = dv_.segment(f, n);
 }
 
-void TreeMotion::start(const Model& model, const State& state, const Tree& tree, bool damped) {
+void TreeMotion::start(const Model& model, const State& state, const Tree& tree, bool damped,
+                       const AtEnd& atEnd) {
   damped_ = damped;
+  atEnd_ = &atEnd;
   const int n = tree.dofEnd - tree.firstDof;
   const Body& root = model.bodies[tree.rootBody];
   const int coordinates = root.joint == JointKind::floating ? n + 1 : n;

@@ -28,8 +28,15 @@ class TreeMotion {
   /// Memory for the largest tree of the model.
   explicit TreeMotion(const Model& model);
 
-  /// Where the motion begins. Not `damped`: without D v.
-  void start(const Model& model, const State& state, const Tree& tree, bool damped = true);
+  /// What the step takes at its end: joint damping and stiff springs (T.95). They are no part of
+  /// the course of a motion that is not `damped`, but the inertia that they are in such a step is.
+  struct AtEnd {
+    std::vector<std::uint8_t> stiff;  ///< (springs of the plan) 1: it is
+    VectorX inertia;                  ///< (nv) h D + h² K
+  };
+  /// Where the motion begins; `atEnd` stays where it is.
+  void start(const Model& model, const State& state, const Tree& tree, bool damped,
+             const AtEnd& atEnd);
   /// Adds `change` (the tree's dofs) to the velocity.
   template <class Change>
   void kick(const Tree& tree, const Change& change) {
@@ -44,7 +51,8 @@ class TreeMotion {
               const Vector3& heldInWorld, const VectorX& scale, double speed, double duration,
               double firstStep);
 
-  /// v̇ of (T.91) where the motion is, were it at rest: no Coriolis forces. `vdot` (nv).
+  /// v̇ of (T.91) where the motion is, were it at rest: no Coriolis forces, and no stiff springs.
+  /// `vdot` (nv).
   void atRest(const Model& model, const Plan& plan, const Tree& tree, const VectorX& held,
               const Vector3& heldInWorld, VectorX& vdot);
 
@@ -88,7 +96,8 @@ class TreeMotion {
   VectorX du_, dv_;                 ///< its result
   std::array<VectorX, 7> Ku_, Kv_;  ///< stages
   std::vector<Node> nodes_;
-  bool damped_ = true;
+  const AtEnd* atEnd_ = nullptr;
+  bool damped_ = true, resting_ = false;
   int substeps_ = 0;
 };
 
