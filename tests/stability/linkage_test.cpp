@@ -10,7 +10,6 @@
 
 #include "engine/core/rotation.hpp"
 #include "tests/stability/scenes.hpp"
-#include "tests/support/random.hpp"
 
 namespace softgauss::test {
 namespace {
@@ -160,11 +159,8 @@ TEST(Linkage, CamsNeitherGainNorBrake) {
 /// at its dead centre, as fast as the flywheel turns, and is left to itself.
 void crank(int seed, double timestep) {
   Random random(seed);
-  const auto decades = [&](double low, double high) {
-    return std::exp(random.uniform(std::log(low), std::log(high)));
-  };
-  const double rod = decades(0.003, 0.05), speed = random.uniform(10.0, 60.0);
-  const double flywheel = decades(0.1, 20.0), slider = decades(0.02, 2.0);
+  const double rod = decades(random, 0.003, 0.05), speed = random.uniform(10.0, 60.0);
+  const double flywheel = decades(random, 0.1, 20.0), slider = decades(random, 0.02, 2.0);
   const double radius = random.uniform(0.02, 0.1), length = radius + random.uniform(0.05, 0.3);
   ModelBuilder builder = with(ModelBuilder("crank"), timestep);
   builder.base = BaseKind::floating;

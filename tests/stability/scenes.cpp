@@ -71,6 +71,10 @@ double tilt(Trial& trial, const std::string& link) {
   return std::acos(std::min(1.0, trial.rotation(link)(2, 2)));
 }
 
+double decades(Random& random, double low, double high) {
+  return std::exp(random.uniform(std::log(low), std::log(high)));
+}
+
 double widestTie(Trial& t) {
   computeKinematics(t.model, t.state, t.data->kinematics);
   const std::vector<Transform>& X_WB = t.data->kinematics.X_WB;

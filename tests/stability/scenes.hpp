@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tests/stability/trial.hpp"
+#include "tests/support/random.hpp"
 
 namespace softgauss::test {
 
@@ -27,6 +28,9 @@ ModelBuilder levelArm();
 
 /// Largest tilt of a link's z axis from the vertical [rad].
 double tilt(Trial& trial, const std::string& link);
+
+/// exp of something even between two logarithms.
+double decades(Random& random, double low, double high);
 
 /// How far connections and welds are off at most [m].
 double widestTie(Trial& trial);

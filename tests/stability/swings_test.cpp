@@ -13,11 +13,6 @@
 namespace softgauss::test {
 namespace {
 
-/// exp of something even between two logarithms.
-double decades(Random& random, double low, double high) {
-  return std::exp(random.uniform(std::log(low), std::log(high)));
-}
-
 /// Any impedance of constant d, some with a reference that is given directly.
 Impedance anyImpedance(Random& random, bool direct) {
   Impedance p;
