@@ -7,6 +7,7 @@
 #include <map>
 #include <tuple>
 
+#include "engine/constraints/carried_load.hpp"
 #include "engine/constraints/contact.hpp"
 #include "engine/constraints/contact_softness.hpp"
 #include "engine/constraints/inverse_weight.hpp"
@@ -24,7 +25,7 @@ std::size_t idx(int i) { return static_cast<std::size_t>(i); }
 struct Rest {
   int geometryA = 0, geometryB = 0;
   double mass = 0.0;    ///< that rests [kg]
-  double weight = 0.0;  ///< w_A + w_B [1/kg]
+  double weight = 0.0;  ///< A [1/kg], as (T.80) and (T.131) have it
   double sinks = 0.0;   ///< rises with the depth
 };
 
@@ -32,6 +33,7 @@ struct Rest {
 struct Group {
   std::string surfaces;
   Rest least, most;
+  bool within = false;  ///< one robot; told where nothing else has these surfaces
 };
 
 std::string surfaceName(const Geometry& g, const ExplainContext& context) {
@@ -51,6 +53,8 @@ std::vector<Group> groupsOf(const Model& model, const ExplainContext& context) {
     Rest rest{a, b, restingMass(model, first.body, second.body),
               weights.translation[idx(first.body)] + weights.translation[idx(second.body)], 0.0};
     if (rest.mass == 0.0) continue;
+    if (model.options.ownSoftness)
+      rest.weight = carrying(rest.weight, partOnContact(model, first.body, second.body, 1, 1));
     std::pair<std::string, std::string> key = std::minmax(names[idx(a)], names[idx(b)]);
     std::string surfaces = key.first == key.second
                                ? fmt::format("{} on itself", key.first)
@@ -64,8 +68,11 @@ std::vector<Group> groupsOf(const Model& model, const ExplainContext& context) {
       key = {surfaces, ""};
     }
     rest.sinks = rest.mass * (first.material.spring || second.material.spring ? 1.0 : rest.weight);
-    const auto [at, isNew] = groups.try_emplace(key, Group{surfaces, rest, rest});
+    const bool within = model.bodies[idx(first.body)].tree == model.bodies[idx(second.body)].tree;
+    const auto [at, isNew] = groups.try_emplace(key, Group{surfaces, rest, rest, within});
     Group& group = at->second;
+    if (within && !group.within) continue;
+    if (group.within && !within) group = {surfaces, rest, rest, false};
     if (rest.sinks < group.least.sinks) group.least = rest;
     if (rest.sinks > group.most.sinks) group.most = rest;
   }

@@ -10,9 +10,11 @@
 namespace softgauss {
 namespace {
 
-/// A tree on a fixed base, or none: the world carries it.
-bool standsStill(const Model& model, int tree) {
-  return tree < 0 || model.bodies[model.trees[tree].rootBody].joint != JointKind::floating;
+/// (T.131) [kg]
+double partOf(const Model& model, int tree, int held) {
+  constexpr double kOfContacts = 0.2;
+  const Tree& t = model.trees[tree];
+  return t.bodyEnd - t.rootBody > 1 && held > 0 ? kOfContacts * t.mass / held : 0.0;
 }
 
 /// Calls f(bodyA, bodyB, isTie) for every contact and every tie that carries.
@@ -29,10 +31,27 @@ void visitPairs(const Model& model, const ContactSet& contacts, F&& f) {
 
 }  // namespace
 
+double partOnContact(const Model& model, int bodyA, int bodyB, int heldA, int heldB) {
+  const int a = model.bodies[bodyA].tree, b = model.bodies[bodyB].tree;
+  if (a == b) return 0.0;
+  double most = 0.0;
+  if (a >= 0 && (b < 0 || model.floats(a))) most = partOf(model, a, heldA);
+  if (b >= 0 && (a < 0 || model.floats(b))) most = std::max(most, partOf(model, b, heldB));
+  return most;
+}
+
 void CarriedLoad::Load::add(const Load& other, double parts) {
   mass += other.mass / parts;
   moment += other.moment / parts;
   turning += other.turning / parts;
+}
+
+void CarriedLoad::Load::growTo(double m) {
+  if (!(mass > 0.0 && mass < m)) return;
+  const double by = m / mass;
+  mass = m;
+  moment *= by;
+  turning *= by;
 }
 
 double CarriedLoad::Load::about(const Vector3& p) const {
@@ -47,14 +66,37 @@ int CarriedLoad::root(int tree) {
 void CarriedLoad::assemble(const Model& model, const Kinematics& kinematics,
                            const ContactSet& contacts, const InverseWeights& weights) {
   any_ = false;
-  visitPairs(model, contacts, [&](int bodyA, int bodyB, bool) {
+  held_.assign(model.trees.size(), {});
+  visitPairs(model, contacts, [&](int bodyA, int bodyB, bool isTie) {
     const int a = model.bodies[bodyA].tree, b = model.bodies[bodyB].tree;
-    any_ |= a >= 0 && b >= 0 && a != b;
+    if (a == b) return;
+    any_ |= a >= 0 && b >= 0;
+    for (const int tree : {a, b})
+      if (tree >= 0) ++(isTie ? held_[tree].ties : held_[tree].contacts);
   });
   if (!any_) return;
   weigh(model, kinematics, contacts, weights);
   findLayers();
-  passDown();
+  passDown(model);
+}
+
+double CarriedLoad::partOnContact(const Model& model, int bodyA, int bodyB) const {
+  const auto held = [&](int body) {
+    const int tree = model.bodies[body].tree;
+    return tree < 0 ? 0 : held_[tree].all();
+  };
+  return softgauss::partOnContact(model, bodyA, bodyB, held(bodyA), held(bodyB));
+}
+
+double CarriedLoad::partOnTie(const Model& model, int bodyA, int bodyB) const {
+  const int a = model.bodies[bodyA].tree, b = model.bodies[bodyB].tree;
+  if (a == b) return 0.0;
+  double most = 0.0;
+  for (const int tree : {a, b}) {
+    if (!model.floats(tree) || model.isFree(model.trees[tree].rootBody)) continue;
+    most = std::max(most, model.trees[tree].mass / held_[tree].ties);
+  }
+  return most;
 }
 
 /// m of all trees, the islands' largest, and who holds whom.
@@ -74,7 +116,7 @@ void CarriedLoad::weigh(const Model& model, const Kinematics& kinematics,
     const int a = model.bodies[bodyA].tree, b = model.bodies[bodyB].tree;
     if (a == b) return;
     for (const auto& [body, tree, other] : {std::tuple(bodyA, a, b), std::tuple(bodyB, b, a)}) {
-      const bool stands = standsStill(model, tree);
+      const bool stands = !model.floats(tree);
       if (tree < 0 || (stands && !isTie)) continue;
       const double most = model.trees[tree].mass, w = weights.translation[body];
       const double mass = w * most > 1.0 ? 1.0 / w : most;
@@ -88,7 +130,7 @@ void CarriedLoad::weigh(const Model& model, const Kinematics& kinematics,
         }
       }
       if (stands) continue;
-      if (standsStill(model, other)) {
+      if (!model.floats(other)) {
         if (layer_[tree] == 0) order_.push_back(tree);
         layer_[tree] = 1;
         continue;
@@ -98,6 +140,8 @@ void CarriedLoad::weigh(const Model& model, const Kinematics& kinematics,
     }
     if (a >= 0 && b >= 0) parent_[root(a)] = root(b);
   });
+  for (int t = 0; t < static_cast<int>(trees); ++t)
+    if (model.floats(t)) own_[t].growTo(partOf(model, t, held_[t].all()));
   island_.resize(trees);
   largest_.assign(trees, {});
   for (int t = 0; t < static_cast<int>(trees); ++t) {
@@ -124,15 +168,19 @@ void CarriedLoad::findLayers() {
 }
 
 /// From the farthest layer towards the world.
-void CarriedLoad::passDown() {
+void CarriedLoad::passDown(const Model& model) {
   passed_ = own_;
   for (std::size_t i = order_.size(); i-- > 0;) {
     const int tree = order_[i];
     const auto below = [&](const Link& link) { return layer_[link.other] == layer_[tree] - 1; };
     int shares = 0;
     for (int l = head_[tree]; l >= 0; l = links_[l].next) shares += below(links_[l]);
+    Load whole = own_[tree], all = passed_[tree];
+    whole.growTo(model.trees[tree].mass);
+    all.add(own_[tree], -1.0);
+    all.add(whole, 1.0);
     for (int l = head_[tree]; l >= 0; l = links_[l].next)
-      if (below(links_[l])) passed_[links_[l].other].add(passed_[tree], shares);
+      if (below(links_[l])) passed_[links_[l].other].add(all, shares);
   }
 }
 

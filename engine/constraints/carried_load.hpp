@@ -11,7 +11,7 @@
 /// one on a fixed base over tied bodies only: contacts feel it as the world. What stands on the
 /// world passes its load down: the layer of a tree is the number of contacts and ties between it
 /// and the world, and each of its n_T ones with the layer below takes an equal share,
-///   P_T = m_T + Σ P_U/n_U,   over those with trees U of the layer above
+///   P_T = m_T + Σ (M_U + P_U − m_U)/n_U,   over those with trees U of the layer above, of mass M_U
 /// One between the trees S and T has to carry
 ///   L = max(largest m of the island,  P of the one that is farther from the world)
 /// of two that are equally far the larger P; with the world, or in one tree,
@@ -26,6 +26,15 @@
 /// apart, that is I_T + m_T |c_T − p|², what is passed down adds up as P does, and I, the largest
 /// of both kinds as L is, bounds the A of its three rows of rotation: A = min(w^r_A + w^r_B, 1/I)
 /// (T.119)
+///
+/// What stands on a light foot or hangs from a light hook through joints is of the same tree, and
+/// no body of it tells its weight: what a contact or tie feels of the foot is what turns it about
+/// its ankle. So the n_T contacts and ties that hold a tree T of several bodies to others share it,
+///   L ← max(L, mass of T/ties)     of a tie, of those that float                       (T.129)
+///   L ← max(L, mass of T/(5 n_T))  of a contact, of those that float, and with the world of
+///                                  those on a base too                                 (T.131)
+/// and m_T is at least that of (T.131). Contacts count to a fifth: those of robots in use are as
+/// hard by their feet alone, and hardly change.
 
 #include <vector>
 
@@ -40,12 +49,20 @@ inline double carrying(double weight, double load) {
   return load * weight > 1.0 ? 1.0 / load : weight;
 }
 
+/// What a contact bears at least of trees of several bodies, where so many contacts and ties hold
+/// that of A, and that of B, to others (T.131) [kg].
+double partOnContact(const Model& model, int bodyA, int bodyB, int heldA, int heldB);
+
 class CarriedLoad {
  public:
   void assemble(const Model& model, const Kinematics& kinematics, const ContactSet& contacts,
                 const InverseWeights& weights);
   /// L between bodies of which a contact or a tie is [kg].
   double mass(const Model& model, int bodyA, int bodyB) const;
+  /// Of a tree of several bodies that floats, what a tie bears of it (T.129) [kg]; 0 of others.
+  double partOnTie(const Model& model, int bodyA, int bodyB) const;
+  /// What a contact bears at least of such trees (T.131) [kg].
+  double partOnContact(const Model& model, int bodyA, int bodyB) const;
   /// I between bodies that a weld ties, about p_W [kg m²].
   double inertia(const Model& model, int bodyA, int bodyB, const Vector3& p_W) const;
 
@@ -58,7 +75,14 @@ class CarriedLoad {
 
     /// Adds one of so many parts of the other.
     void add(const Load& other, double parts);
+    /// Of one that has less mass than m, all of it by as much.
+    void growTo(double m);
     double about(const Vector3& p) const;
+  };
+  /// How many contacts and ties hold a tree to others.
+  struct Held {
+    int contacts = 0, ties = 0;
+    int all() const { return contacts + ties; }
   };
   /// A contact or tie as one of its two trees sees it.
   struct Link {
@@ -84,11 +108,12 @@ class CarriedLoad {
   void weigh(const Model& model, const Kinematics& kinematics, const ContactSet& contacts,
              const InverseWeights& weights);
   void findLayers();
-  void passDown();
+  void passDown(const Model& model);
   Carried between(const Model& model, int bodyA, int bodyB) const;
 
   bool any_ = false;                  ///< two trees touch, or are tied
   Vector3 origin_ = Vector3::Zero();  ///< of moments (world) [m]
+  std::vector<Held> held_;            ///< of each tree
   std::vector<int> parent_;       ///< of a tree in its island, towards the one that stands for it
   std::vector<Load> own_;         ///< m_T, c_T, I_T
   std::vector<Load> passed_;      ///< P_T

@@ -6,25 +6,6 @@
 #include "engine/constraints/contact_softness.hpp"
 
 namespace softgauss {
-namespace {
-
-/// (T.129): what each of the ties that hold a tree to others bears of it [kg]; 0 of single bodies,
-/// whose weight is known, and of what stands on a base of its own.
-double shareOf(const Model& model, int body) {
-  const int tree = model.bodies[body].tree;
-  if (tree < 0 || model.isFree(model.trees[tree].rootBody)) return 0.0;
-  if (model.bodies[model.trees[tree].rootBody].joint != JointKind::floating) return 0.0;
-  int ties = 0;
-  const auto count = [&](int bodyA, int bodyB) {
-    const int a = model.bodies[bodyA].tree, b = model.bodies[bodyB].tree;
-    ties += a != b && (a == tree || b == tree);
-  };
-  for (const Connection& c : model.connections) count(c.bodyA, c.bodyB);
-  for (const Weld& w : model.welds) count(w.bodyA, w.bodyB);
-  return ties > 0 ? model.trees[tree].mass / ties : 0.0;
-}
-
-}  // namespace
 
 PointOffset::PointOffset(const Assembly& in, int bodyA, const Vector3& p_AP, int bodyB,
                          const Vector3& p_BP)
@@ -53,10 +34,8 @@ bool carries(const Assembly& in, const Impedance& tie) {
 double tieWeight(const Assembly& in, const Impedance& tie, int bodyA, int bodyB) {
   const double weight = in.weights.translation[bodyA] + in.weights.translation[bodyB];
   if (!carries(in, tie)) return weight;
-  double load = in.load->mass(in.model, bodyA, bodyB);
-  if (in.model.bodies[bodyA].tree != in.model.bodies[bodyB].tree)
-    load = std::max({load, shareOf(in.model, bodyA), shareOf(in.model, bodyB)});
-  return carrying(weight, load);
+  return carrying(weight, std::max(in.load->mass(in.model, bodyA, bodyB),
+                                   in.load->partOnTie(in.model, bodyA, bodyB)));
 }
 
 RelativeMotion offsetMotion(int bodyA, const Vector3& p_WA, int bodyB, const Vector3& p_WB) {

@@ -148,8 +148,9 @@ std::optional<Touch> touchAt(const Assembly& in, int i) {
   if (touch.distance >= 0.0) return std::nullopt;  // NaN makes rows, so that the solve reports it
   touch.frictionDim = frictionDim(material, model.options.effects);
   double weight = in.weights.translation[c.bodyA] + in.weights.translation[c.bodyB];
-  const double load = in.load ? in.load->mass(model, c.bodyA, c.bodyB) : 0.0;
+  double load = in.load ? in.load->mass(model, c.bodyA, c.bodyB) : 0.0;
   touch.carries = load > 0.0 && !material.spring;  // springs keep their depth of rest and bounce
+  if (in.load) load = std::max(load, in.load->partOnContact(model, c.bodyA, c.bodyB));
   if (!material.spring) touch.hardening = std::max(1.0, load * weight);
   weight = carrying(weight, load);
   touch.inverseMass = weight;

@@ -15,17 +15,13 @@ Matrix3 across(const Vector3& a) {
   return Matrix3::Identity() - a * a.transpose() / a.squaredNorm();
 }
 
-bool floats(const Model& model, const Tree& tree) {
-  return model.bodies[tree.rootBody].joint == JointKind::floating;
-}
-
 /// A point as seen from what the body turns about: its centre of mass, or its joint in a tree that
 /// does not float; nothing where neither turns it.
 Vector3 leverOn(const Assembly& in, int body, const Vector3& p_WP) {
   const Body& b = in.model.bodies[body];
   if (b.tree < 0) return Vector3::Zero();
   const Transform& X_WB = in.kinematics.X_WB[body];
-  if (floats(in.model, in.model.trees[b.tree])) return p_WP - X_WB * b.com;
+  if (in.model.floats(b.tree)) return p_WP - X_WB * b.com;
   return b.joint == JointKind::revolute ? Vector3(p_WP - X_WB.p) : Vector3::Zero();
 }
 
@@ -41,7 +37,7 @@ int SwingDamping::hold(const Assembly& in, const ConnectionRows& connections, co
   int held = 0;
   for (std::size_t t = 0; t < model.trees.size(); ++t) {
     const Tree& tree = model.trees[t];
-    if (!floats(model, tree)) continue;
+    if (!model.floats(static_cast<int>(t))) continue;
     for (int b = tree.rootBody; b < tree.bodyEnd; ++b) {
       Swing& swing = swings_[b];
       const Body& body = model.bodies[b];
@@ -82,7 +78,7 @@ void SwingDamping::findPulls(const Assembly& in, const ConnectionRows& connectio
              in.kinematics.X_WB[c.bodyB] * c.p_BP, f_W);
   }
   for (const Tree& tree : model.trees)
-    if (floats(model, tree)) addJointPulls(in, tree);
+    if (model.floats(model.bodies[tree.rootBody].tree)) addJointPulls(in, tree);
 }
 
 void SwingDamping::addPulls(const Assembly& in, int bodyA, int bodyB, const Vector3& p_WA,

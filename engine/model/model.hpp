@@ -192,6 +192,10 @@ struct Model {
   bool isFree(int body) const {
     return bodies[body].joint == JointKind::floating && bodies[body].subtreeEnd == body + 1;
   }
+  /// Whether a tree, −1 for the world, stands on no base: its first joint lets it go everywhere.
+  bool floats(int tree) const {
+    return tree >= 0 && bodies[trees[tree].rootBody].joint == JointKind::floating;
+  }
   double totalMass() const;                      ///< of all moving bodies [kg]
   int findFrame(const std::string& name) const;  ///< index or −1
   int findJoint(const std::string& name) const;  ///< body that the joint carries, or −1

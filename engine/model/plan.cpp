@@ -44,8 +44,8 @@ bool maySwing(const Model& model) {
   const auto hasLever = [&](int body, const Vector3& p_BP) {
     const Body& b = model.bodies[body];
     if (b.tree < 0) return false;
-    const int root = model.trees[b.tree].rootBody;
-    return model.bodies[root].joint == JointKind::floating && !(body == root && p_BP == b.com);
+    const bool isRoot = body == model.trees[b.tree].rootBody;
+    return model.floats(b.tree) && !(isRoot && p_BP == b.com);
   };
   return std::any_of(model.connections.begin(), model.connections.end(), [&](const Connection& c) {
     return hasLever(c.bodyA, c.p_AP) || hasLever(c.bodyB, c.p_BP);

@@ -61,8 +61,8 @@ class Trial {
   double mayRise = 1e-12, perStep = 0.0;
   /// Steps whose solve may end short of its tolerance; their residual is in `worstResidual`.
   int mayStall = 0;
-  /// Solves may end by rounding, within 10³ of their tolerance (StepStats::roundedSolves); a test
-  /// that allows it asserts that one did.
+  /// Solves may end by rounding, within 10³ of their tolerance (StepStats::roundedSolves). A
+  /// test that allows it fails where none of its trials has one.
   bool mayRound = false;
 
   // Measured over all steps so far.

@@ -238,6 +238,65 @@ TEST(CarriedLoad, LeavesALoneRobotAsItIs) {
   EXPECT_EQ(with, stiffnesses(scene, false));
 }
 
+/// A leg of 90 kg and at its end a foot of 10 kg on a hinge.
+Model footed(BaseKind base) {
+  ModelBuilder builder("footed");
+  builder.base = base;
+  if (base == BaseKind::fixed) builder.link(emptyLink("world"));
+  builder.link(sphereLink("leg", 90.0, 0.1));
+  builder.link(sphereLink("foot", 10.0, 0.1));
+  if (base == BaseKind::fixed)
+    builder.joint(jointSpec("slide", JointType::prismatic, "world", "leg"));
+  builder.joint(jointSpec("ankle", JointType::continuous, "leg", "foot",
+                          {Matrix3::Identity(), Vector3(0, 0, -1)}, Vector3::UnitY()));
+  builder.link(sphereLink("ball", 1.0, 0.1));
+  JointSpec free = jointSpec("free", JointType::floating, "world", "ball");
+  if (base == BaseKind::fixed) builder.joint(free);
+  return builder.build();
+}
+
+// The contacts of a foot share a fifth of the tree above it (T.131), with the world on any base,
+// with others where it floats.
+TEST(CarriedLoad, OfLightFeetIsAPartOfTheTree) {
+  for (const BaseKind base : {BaseKind::floating, BaseKind::fixed}) {
+    const Model model = footed(base);
+    ASSERT_EQ(model.trees.size(), 2u);
+    const bool floats = base == BaseKind::floating;
+    const InverseWeights weights(model);
+    CarriedLoad load;
+    ContactSet contacts;
+    for (int n = 1; n <= 20; ++n) {
+      Contact c;
+      c.bodyA = 0, c.bodyB = 2;
+      contacts.add(c);
+      load.assemble(model, Kinematics(model), contacts, weights);
+      EXPECT_SMALL(load.partOnContact(model, 0, 2) - 20.0 / n, 1e-12);
+      EXPECT_SMALL(load.partOnContact(model, 3, 2) - (floats ? 20.0 / n : 0.0), 1e-12);
+      EXPECT_EQ(load.partOnContact(model, 0, 3), 0.0);  // one body
+      EXPECT_EQ(load.partOnContact(model, 1, 2), 0.0);  // one tree
+      EXPECT_EQ(load.mass(model, 0, 2), 0.0);
+    }
+  }
+}
+
+// Where a ball lies on the foot too, the island knows the tree by that part.
+TEST(CarriedLoad, OfWhatLiesOnLightFeetIsAPartOfTheTree) {
+  const Model model = footed(BaseKind::floating);
+  InverseWeights weights(model);
+  weights.translation[2] = 10.0;  // a foot that feels as light as 0.1 kg
+  ContactSet contacts;
+  for (const auto& [a, b] : {std::pair(0, 2), std::pair(2, 3)}) {
+    Contact c;
+    c.bodyA = a, c.bodyB = b;
+    contacts.add(c);
+  }
+  CarriedLoad load;
+  load.assemble(model, Kinematics(model), contacts, weights);
+  EXPECT_SMALL(load.mass(model, 2, 3) - 10.0, 1e-12);  // 100 kg/(5·2), and the ball 1 kg
+  EXPECT_SMALL(load.mass(model, 0, 2) - 1.0, 1e-12);   // the ball; the foot's own is the part
+  EXPECT_SMALL(load.partOnContact(model, 0, 2) - 10.0, 1e-12);
+}
+
 // Between trees no row becomes softer, and some become harder.
 TEST(CarriedLoad, OnlyStiffens) {
   int harder = 0, rows = 0;
