@@ -118,5 +118,59 @@ TEST(LightFeet, BearARobotOnABoard) {
     }
 }
 
+/// A body of 1 to 100 kg with one to five legs of one to three hinges, whose feet of 5 to 500 g are
+/// boxes or, every other seed, balls.
+ModelBuilder anyRobot(Random& random, bool round) {
+  ModelBuilder builder("any robot");
+  builder.base = BaseKind::floating;
+  builder.geometry(groundSpec(1.0));
+  const Vector3 half(0.3, 0.2, 0.1);
+  builder.link(boxLink("body", decades(random, 1.0, 100.0), half));
+  builder.geometry(geometrySpec("body", Shape::box(half), 1.0));
+  const int legs = 1 + random.index(5);
+  for (int leg = 0; leg < legs; ++leg) {
+    const int joints = 1 + random.index(3);
+    std::string last = "body";
+    Vector3 at(random.uniform(-0.25, 0.25), random.uniform(-0.2, 0.2), -0.1);
+    for (int i = 1; i <= joints; ++i) {
+      const std::string name = "leg" + std::to_string(leg) + "_" + std::to_string(i);
+      const double length = random.uniform(0.02, 0.3);
+      const Transform middle{Matrix3::Identity(), Vector3(0, 0, -0.5 * length)};
+      const double mass = decades(random, 0.005, i < joints ? 3.0 : 0.5);
+      const Vector3 sole(0.08, 0.03, kSole);
+      const bool ball = i == joints && round;
+      builder.link(i < joints ? boxLink(name, mass, Vector3(0.02, 0.02, 0.5 * length), middle.p)
+                   : ball     ? sphereLink(name, mass, 0.03)
+                              : boxLink(name, mass, sole, middle.p));
+      if (i == joints)
+        builder.geometry(ball ? geometrySpec(name, Shape::sphere(0.03), 0.8)
+                              : geometrySpec(name, Shape::box(sole), 0.8, middle));
+      builder.joint(jointSpec(name + "_joint", JointType::continuous, last, name,
+                              {Matrix3::Identity(), at}, random.direction()));
+      last = name;
+      at = Vector3(0, 0, -length);
+    }
+  }
+  return builder;
+}
+
+// Contacts that come and go change how much of a robot each bears, and what it stores (T.131).
+TEST(LightFeet, RobotsThatAreThrownGainNothing) {
+  for (int seed = 0; seed < 40; ++seed)
+    for (const double timestep : {0.0005, 0.002, 0.005, 0.01}) {
+      Random random(seed);
+      Trial t("thrown robot " + std::to_string(seed),
+              with(anyRobot(random, seed % 2 == 1), timestep, kCones[seed / 2 % 2]));
+      t.state.q[2] = random.uniform(1.0, 2.0);
+      const Quaternion turn = random.quaternion();
+      t.state.q.segment<4>(3) << turn.w(), turn.vec();
+      t.state.v = random.vector(t.model.nv, decades(random, 0.1, 10.0));
+      t.state.v.head<3>() = random.vector3(1.0);
+      const double scale = t.energy().kinetic + t.model.totalMass() * 9.81 * 0.5;
+      t.mayGain = t.mayRise = 0.01 * scale;
+      t.run(1.5);
+    }
+}
+
 }  // namespace
 }  // namespace softgauss::test
