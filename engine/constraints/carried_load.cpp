@@ -10,11 +10,11 @@
 namespace softgauss {
 namespace {
 
-/// (T.131) [kg]
+/// (T.131) [kg]; 0 of a single body that is free, whose weight is known.
 double partOf(const Model& model, int tree, int held) {
   constexpr double kOfContacts = 0.2;
-  const Tree& t = model.trees[tree];
-  return t.bodyEnd - t.rootBody > 1 && held > 0 ? kOfContacts * t.mass / held : 0.0;
+  if (tree < 0 || held == 0 || model.isFree(model.trees[tree].rootBody)) return 0.0;
+  return kOfContacts * model.trees[tree].mass / held;
 }
 
 /// Calls f(bodyA, bodyB, isTie) for every contact and every tie that carries.
@@ -33,11 +33,7 @@ void visitPairs(const Model& model, const ContactSet& contacts, F&& f) {
 
 double partOnContact(const Model& model, int bodyA, int bodyB, int heldA, int heldB) {
   const int a = model.bodies[bodyA].tree, b = model.bodies[bodyB].tree;
-  if (a == b) return 0.0;
-  double most = 0.0;
-  if (a >= 0 && (b < 0 || model.floats(a))) most = partOf(model, a, heldA);
-  if (b >= 0 && (a < 0 || model.floats(b))) most = std::max(most, partOf(model, b, heldB));
-  return most;
+  return a == b ? 0.0 : std::max(partOf(model, a, heldA), partOf(model, b, heldB));
 }
 
 void CarriedLoad::Load::add(const Load& other, double parts) {
@@ -116,17 +112,19 @@ void CarriedLoad::weigh(const Model& model, const Kinematics& kinematics,
     const int a = model.bodies[bodyA].tree, b = model.bodies[bodyB].tree;
     if (a == b) return;
     for (const auto& [body, tree, other] : {std::tuple(bodyA, a, b), std::tuple(bodyB, b, a)}) {
-      const bool stands = !model.floats(tree);
-      if (tree < 0 || (stands && !isTie)) continue;
+      if (tree < 0) continue;
+      const bool stands = !model.floats(tree), isPart = stands && !isTie;
       const double most = model.trees[tree].mass, w = weights.translation[body];
-      const double mass = w * most > 1.0 ? 1.0 / w : most;
+      const double mass = isPart           ? partOf(model, tree, held_[tree].all())
+                          : w * most > 1.0 ? 1.0 / w
+                                           : most;
       if (mass > own_[tree].mass) {
         Load& own = own_[tree] = {mass};
         if (turning) {
           const Vector3 c = kinematics.X_WB[body] * model.bodies[body].com - origin_;
           const double w_r = weights.rotation[body];
           own.moment = mass * c;
-          own.turning = mass * c.squaredNorm() + (w_r > 0.0 ? 1.0 / w_r : 0.0);
+          own.turning = mass * c.squaredNorm() + (w_r > 0.0 && !isPart ? 1.0 / w_r : 0.0);
         }
       }
       if (stands) continue;

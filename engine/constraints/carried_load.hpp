@@ -8,7 +8,7 @@
 /// free base counts in it with the largest inertia that a contact or tie feels on one of its
 /// bodies,
 ///   m_T = min(mass of T, max over touched and tied bodies B of 1/w_B)
-/// one on a fixed base over tied bodies only: contacts feel it as the world. What stands on the
+/// one on a fixed base over tied bodies only: what touches it stands on it. What stands on the
 /// world passes its load down: the layer of a tree is the number of contacts and ties between it
 /// and the world, and each of its n_T ones with the layer below takes an equal share,
 ///   P_T = m_T + Σ (M_U + P_U − m_U)/n_U,   over those with trees U of the layer above, of mass M_U
@@ -29,12 +29,13 @@
 ///
 /// What stands on a light foot or hangs from a light hook through joints is of the same tree, and
 /// no body of it tells its weight: what a contact or tie feels of the foot is what turns it about
-/// its ankle. So the n_T contacts and ties that hold a tree T of several bodies to others share it,
-///   L ← max(L, mass of T/ties)     of a tie, of those that float                       (T.129)
-///   L ← max(L, mass of T/(5 n_T))  of a contact, of those that float, and with the world of
-///                                  those on a base too                                 (T.131)
-/// and m_T is at least that of (T.131). Contacts count to a fifth: those of robots in use are as
-/// hard by their feet alone, and hardly change.
+/// its ankle. So the n_T contacts and ties that hold a tree T, no single free body, to others share
+/// it,
+///   L ← max(L, mass of T/ties)     of a tie, where T floats                            (T.129)
+///   L ← max(L, mass of T/(5 n_T))  of a contact                                        (T.131)
+/// and m_T is at least that of (T.131), on a fixed base too: a rail bears none of what slides on
+/// it. Contacts count to a fifth: those of robots in use are as hard by their feet alone, and
+/// hardly change.
 
 #include <vector>
 
@@ -49,8 +50,8 @@ inline double carrying(double weight, double load) {
   return load * weight > 1.0 ? 1.0 / load : weight;
 }
 
-/// What a contact bears at least of trees of several bodies, where so many contacts and ties hold
-/// that of A, and that of B, to others (T.131) [kg].
+/// What a contact bears at least of robots, where so many contacts and ties hold that of A, and
+/// that of B, to others (T.131) [kg].
 double partOnContact(const Model& model, int bodyA, int bodyB, int heldA, int heldB);
 
 class CarriedLoad {
@@ -61,7 +62,7 @@ class CarriedLoad {
   double mass(const Model& model, int bodyA, int bodyB) const;
   /// Of a tree of several bodies that floats, what a tie bears of it (T.129) [kg]; 0 of others.
   double partOnTie(const Model& model, int bodyA, int bodyB) const;
-  /// What a contact bears at least of such trees (T.131) [kg].
+  /// What a contact bears at least of robots (T.131) [kg].
   double partOnContact(const Model& model, int bodyA, int bodyB) const;
   /// I between bodies that a weld ties, about p_W [kg m²].
   double inertia(const Model& model, int bodyA, int bodyB, const Vector3& p_W) const;

@@ -156,6 +156,9 @@ std::optional<Touch> touchAt(const Assembly& in, int i) {
   touch.inverseMass = weight;
   touch.softness =
       contactSoftness(material, touch.frictionDim, touch.distance, weight, model.options);
+  if (model.options.ownSoftness && !material.spring &&
+      (isSprung(model, c.bodyA) || isSprung(model, c.bodyB)))
+    touch.softness = withLeastMass(touch.softness, model.options.timestep);
   if (touch.frictionDim > 0) {
     const double mu = material.slidingFriction;
     const double spin = std::max(material.torsionalFriction, kSmallestFriction);

@@ -99,6 +99,26 @@ Softness contactSoftness(const Material& pair, int frictionDim, double distance,
   return s;
 }
 
+bool isSprung(const Model& model, int body) {
+  const int t = model.bodies[body].tree;
+  if (t < 0 || !model.options.effects.has(Effect::spring)) return false;
+  const auto first = model.dofs.begin() + model.trees[t].firstDof;
+  return std::any_of(first, model.dofs.begin() + model.trees[t].dofEnd,
+                     [](const Dof& dof) { return dof.stiffness != 0.0; });
+}
+
+Softness withLeastMass(Softness s, double timestep) {
+  constexpr double kSomeMass = 1e-6;  // of a row without spring and damper
+  const double mass = timestep * std::max(s.damping, timestep * s.stiffness);
+  if (!(mass < 1.0)) return s;
+  const double less = 1.0 / std::max(mass, kSomeMass);
+  s.R *= less;
+  s.perInertia *= less;
+  s.stiffness *= less;
+  s.damping *= less;
+  return s;
+}
+
 ContactAtRest contactAtRest(const Material& pair, double weight, double load,
                             const Options& options) {
   const int dim = frictionDim(pair, options.effects);

@@ -13,6 +13,14 @@
 /// What bounces, a reference of an impedance that is at most half damped, is such a spring too, of
 /// the mass that the two trees have by themselves (T.117): a reference pushes whatever mass is
 /// behind it, so that a light body that is pressed in as it bounces would throw up a heavy one.
+///
+/// The force of a reference, f = −D (y + b ẏ + k d r), is that of a spring D k d, a damper D b, and
+/// a mass D that moves with the contact while it lasts: what comes in with the speed ẏ is given
+/// ½ D ẏ². The damper takes it, where nothing else does. A joint's spring does: the foot of a
+/// sprung leg comes in alone, and is then pushed out under the load that the spring has come to. So
+/// rows that come and go on trees with sprung joints have the least mass that the step can follow,
+///   (R, k d, b) ← (R, k d, b)/μ,   μ = h max(b, h k d) < 1                           (T.132)
+/// which is the same spring and damper, with the mass μ D.
 
 #include <optional>
 
@@ -54,6 +62,12 @@ int frictionDim(const Material& pair, const EffectSet& effects);
 /// measured from the margin, `weight` is w_A + w_B [1/kg].
 Softness contactSoftness(const Material& pair, int frictionDim, double distance, double weight,
                          const Options& options);
+
+/// Whether a joint that moves the tree of a body has a spring.
+bool isSprung(const Model& model, int body);
+
+/// The row with the same spring and damper, and the least mass (T.132).
+Softness withLeastMass(Softness s, double timestep);
 
 /// One contact that holds still under a load along its normal.
 struct ContactAtRest {

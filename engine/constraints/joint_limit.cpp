@@ -1,9 +1,40 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/constraints/joint_limit.hpp"
 
-#include "engine/constraints/impedance.hpp"
+#include "engine/constraints/contact_softness.hpp"
 
 namespace softgauss {
+namespace {
+
+/// M_ii of the joint of a body: the inertia of all that it carries [kg or kg m²].
+double carriedInertia(const Assembly& in, int body) {
+  const Model& model = in.model;
+  const Kinematics& k = in.kinematics;
+  const Body& joint = model.bodies[body];
+  const Motion& axis = k.S[joint.v];
+  double inertia = model.options.effects.has(Effect::armature) ? model.dofs[joint.v].armature : 0.0;
+  for (int b = body; b < joint.subtreeEnd; ++b) {
+    const Body& carried = model.bodies[b];
+    if (carried.massless) continue;
+    const Vector3 r = k.X_WB[b] * carried.com - k.p_WO[joint.tree];
+    const Vector3 turns = k.X_WB[b].R.transpose() * axis.angular;
+    inertia += carried.mass * (axis.linear + axis.angular.cross(r)).squaredNorm() +
+               turns.dot(carried.I_Bcm * turns);
+  }
+  return inertia;
+}
+
+/// w_i, or less where the joint carries far more than it feels (T.133). Of what is sprung the
+/// springs press and not the inertia, and a harder row has more mass to give them (T.132).
+double limitWeight(const Assembly& in, int body) {
+  constexpr double kOfCarried = 0.2;
+  const double weight = in.weights.dof[in.model.bodies[body].v];
+  if (!in.model.options.ownSoftness || isSprung(in.model, body)) return weight;
+  const double load = kOfCarried * carriedInertia(in, body);
+  return load * weight > 1.0 ? 1.0 / load : weight;
+}
+
+}  // namespace
 
 void JointLimit::assemble(const Assembly& in) {
   const Model& model = in.model;
@@ -17,7 +48,9 @@ void JointLimit::assemble(const Assembly& in) {
         const double bound = sign > 0.0 ? range.lower : range.upper;
         const double r = sign * (in.state.q[body.q] - bound) - range.margin;
         if (!(r < 0.0)) continue;
-        const Softness soft = softnessAt(range.impedance, r, in.weights.dof[body.v], model.options);
+        Softness soft = softnessAt(range.impedance, r, limitWeight(in, range.body), model.options);
+        if (model.options.ownSoftness && isSprung(model, range.body))
+          soft = withLeastMass(soft, model.options.timestep);
         dof_.push_back(body.v);
         sign_.push_back(sign);
         reference.push_back(soft.referenceAcceleration(sign * in.state.v[body.v], r));

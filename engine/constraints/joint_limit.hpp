@@ -5,7 +5,7 @@
 ///
 /// Distance r = q − q_min (lower) or q_max − q (upper), so J = ±eᵢ and a force ≥ 0 pushes inward:
 ///   x = ±aᵢ − a_ref,   a_ref = −b ṙ − k d (r − margin),   s(x) = ½ D min(x, 0)²          (T.13)
-/// b, k, D come from the joint's Impedance. Contract: f ≥ 0, f·max(x, 0) = 0.
+/// b, k, D: of the joint's Impedance, A of (T.133). Contract: f ≥ 0, f·max(x, 0) = 0.
 
 #include <vector>
 

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <tuple>
 
 #include "tests/stability/scenes.hpp"
 
@@ -100,6 +101,33 @@ TEST(LightFeet, BearAHopperOnARail) {
     t.state.q[0] = 0.2 + ankle.height + kSole;
     comesToRest(t, timestep);
   });
+}
+
+// A ram that slides on a rail, which bears none of it, on plates that are free.
+TEST(LightFeet, PlatesBearARamOnARail) {
+  for (const auto& [mass, plates, plate] :
+       {std::tuple(10.0, 1, 0.1), std::tuple(100.0, 1, 1.0), std::tuple(100.0, 3, 0.1),
+        std::tuple(1000.0, 1, 1.0), std::tuple(1000.0, 3, 0.1)})
+    for (const double timestep : kSteps)
+      for (const Cone cone : kCones) {
+        ModelBuilder builder("ram");
+        builder.base = BaseKind::fixed;
+        builder.link(emptyLink("world"));
+        builder.geometry(groundSpec(1.0));
+        builder.link(boxLink("ram", mass, Vector3::Constant(0.1)));
+        builder.joint(jointSpec("rail", JointType::prismatic, "world", "ram"));
+        builder.geometry(geometrySpec("ram", Shape::box(Vector3::Constant(0.1))));
+        for (int i = 0; i < plates; ++i)
+          addBody(builder, "plate" + std::to_string(i), Shape::box(Vector3(0.15, 0.15, 0.03)),
+                  plate, {Matrix3::Identity(), Vector3(0, 0, 0.03 + 0.06 * i)});
+        Trial t("a ram of " + std::to_string(mass) + " kg on " + std::to_string(plates) +
+                    " plates of " + std::to_string(plate) + " kg",
+                with(builder, timestep, cone));
+        for (const Tree& tree : t.model.trees)
+          if (!t.model.floats(t.model.bodies[tree.rootBody].tree))
+            t.state.q[t.model.bodies[tree.rootBody].q] = 0.1 + 0.06 * plates;
+        comesToRest(t, timestep);
+      }
 }
 
 // A robot on a board of 0.1 kg, which bears it on fewer contacts.

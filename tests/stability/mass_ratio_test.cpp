@@ -72,6 +72,45 @@ TEST(MassRatio, LightGripperHoldsHeavyLoad) {
     }
 }
 
+/// Two slides, or two hinges that the weight turns, one on the other, both at the ends of their
+/// ranges.
+ModelBuilder stopped(bool slide, double light, double heavy) {
+  ModelBuilder builder("stopped");
+  builder.base = BaseKind::fixed;
+  builder.link(emptyLink("world"));
+  const Vector3 com = slide ? Vector3::Zero() : Vector3(0.2, 0, 0);
+  Vector3 at = Vector3::Zero();
+  std::string last = "world";
+  for (const auto& [name, mass] : {std::pair("stage", light), std::pair("load", heavy)}) {
+    builder.link(boxLink(name, mass, Vector3::Constant(0.05), com));
+    JointSpec joint = jointSpec(
+        name + std::string("_joint"), slide ? JointType::prismatic : JointType::revolute, last,
+        name, {Matrix3::Identity(), at}, slide ? Vector3::UnitZ() : Vector3::UnitY());
+    joint.lower = slide ? 0.0 : -1.0, joint.upper = slide ? 1.0 : 0.0;
+    builder.joint(joint);
+    last = name, at = 2.0 * com;
+  }
+  return builder;
+}
+
+// A range feels the link that it stops, and bears what slides or turns on it (T.133): 100 kg on a
+// stage of 1 kg came to lie 20 mm below both stops, and fell on through one of 10 g.
+TEST(MassRatio, RangesBearWhatMovesOnThem) {
+  for (const bool slide : {true, false})
+    for (const double light : {0.01, 1.0})
+      for (const double heavy : {1.0, 100.0, 1000.0})
+        for (const double timestep : kSteps) {
+          Trial t(std::to_string(heavy) + " kg at the end of its range on " +
+                      std::to_string(light) + (slide ? " kg, slides" : " kg, hinges"),
+                  with(stopped(slide, light, heavy), timestep));
+          t.run(3.0);
+          const double soft = std::pow(std::max(1.0, timestep / 0.01), 2.0);
+          t.expect("beyond its range", t.state.q.cwiseAbs().maxCoeff(),
+                   (slide ? 1e-3 : 5e-3) * soft, slide ? "m" : "rad");
+          t.expect("speed at rest", t.state.v.cwiseAbs().maxCoeff(), 1e-6, slide ? "m/s" : "rad/s");
+        }
+}
+
 /// Two links of 1 kg and 0.3 m, at their end a link of `mass` and a thousandth of a millimetre's
 /// radius, hinged about all three axes in turn.
 ModelBuilder lightTip(double mass, double armature) {

@@ -234,6 +234,33 @@ TEST(ContactAtRest, EquivalentImpedanceMakesTheSameRows) {
     }
 }
 
+// (T.132): the same spring and damper, and the mass of a step, for what has a spring on a joint.
+TEST(LeastMass, OfSprungTreesHasLittleMass) {
+  for (const double timestep : {0.0005, 0.002, 0.01, 0.02})
+    for (const double damping : {0.0, 20.0, 100.0}) {
+      const Softness s{0.3, 0.1, 2500.0, damping}, least = withLeastMass(s, timestep);
+      EXPECT_SMALL(least.stiffness / least.R / (s.stiffness / s.R) - 1.0, kRounding);
+      EXPECT_SMALL(least.damping * s.R - s.damping * least.R, kRounding * s.damping * least.R);
+      const double share = std::min(1.0, timestep * std::max(damping, timestep * s.stiffness));
+      EXPECT_SMALL(s.R / least.R - share, kRounding);
+      EXPECT_SMALL(s.perInertia / least.perInertia - share, kRounding);
+    }
+  for (const double spring : {0.0, 5.0}) {
+    ModelBuilder builder("leg");
+    builder.base = BaseKind::floating;
+    builder.link(sphereLink("body", 2.0, 0.1)).link(sphereLink("foot", 1.0, 0.1));
+    JointSpec joint = jointSpec("leg", JointType::prismatic, "body", "foot");
+    joint.stiffness = spring;
+    builder.joint(joint);
+    Model model = builder.build();
+    EXPECT_FALSE(isSprung(model, 0));
+    EXPECT_EQ(isSprung(model, 1), spring > 0.0);
+    EXPECT_EQ(isSprung(model, 2), spring > 0.0);
+    model.options.effects.remove(Effect::spring);
+    EXPECT_FALSE(isSprung(model, 2));
+  }
+}
+
 TEST(ContactAtRest, WithoutAReferenceSpringSinksForEver) {
   Material pair;
   pair.impedance.direct = {0.0, 10.0};
