@@ -173,10 +173,13 @@ void CarriedLoad::passDown(const Model& model) {
     const auto below = [&](const Link& link) { return layer_[link.other] == layer_[tree] - 1; };
     int shares = 0;
     for (int l = head_[tree]; l >= 0; l = links_[l].next) shares += below(links_[l]);
-    Load whole = own_[tree], all = passed_[tree];
-    whole.growTo(model.trees[tree].mass);
-    all.add(own_[tree], -1.0);
-    all.add(whole, 1.0);
+    Load all = passed_[tree];
+    if (!model.isFree(model.trees[tree].rootBody)) {  // whose m_T is its mass
+      Load whole = own_[tree];
+      whole.growTo(model.trees[tree].mass);
+      all.add(own_[tree], -1.0);
+      all.add(whole, 1.0);
+    }
     for (int l = head_[tree]; l >= 0; l = links_[l].next)
       if (below(links_[l])) passed_[links_[l].other].add(all, shares);
   }
