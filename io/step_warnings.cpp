@@ -200,7 +200,7 @@ void freeLinks(const Model& model, const InverseWeights& weights, std::vector<st
       const bool damped = options.effects.has(Effect::damping) && takes > kLeastDamping;
       if (body.joint == JointKind::revolute && !damped && free < 0) free = b;
     }
-    const bool floats = model.bodies[idx(tree.rootBody)].joint == JointKind::floating;
+    const bool floats = model.floats(model.bodies[idx(tree.rootBody)].tree);
     if (free < 0 || joints + floats < 2) continue;
     kind.add(fmt::format(
         "joint '{}' is hardly damped, and links that swing freely gain energy by the integrator "

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/constraints/joint_limit.hpp"
 
+#include "engine/constraints/carried_load.hpp"
 #include "engine/constraints/contact_softness.hpp"
 
 namespace softgauss {
@@ -24,14 +25,16 @@ double carriedInertia(const Assembly& in, int body) {
   return inertia;
 }
 
-/// w_i, or less where the joint carries far more than it feels (T.133). Of what is sprung the
-/// springs press and not the inertia, and a harder row has more mass to give them (T.132).
-double limitWeight(const Assembly& in, int body) {
+/// Harder where the joint carries far more than it feels (T.133). Of what is sprung the springs
+/// press and not the inertia, and a harder row has more mass to give them (T.132).
+Softness limitSoftness(const Assembly& in, const JointRange& range, double r) {
   constexpr double kOfCarried = 0.2;
-  const double weight = in.weights.dof[in.model.bodies[body].v];
-  if (!in.model.options.ownSoftness || isSprung(in.model, body)) return weight;
-  const double load = kOfCarried * carriedInertia(in, body);
-  return load * weight > 1.0 ? 1.0 / load : weight;
+  const Options& options = in.model.options;
+  const double weight = in.weights.dof[in.model.bodies[range.body].v];
+  const auto softness = [&](double A) { return softnessAt(range.impedance, r, A, options); };
+  if (!options.ownSoftness) return softness(weight);
+  if (isSprung(in.model, range.body)) return withLeastMass(softness(weight), options.timestep);
+  return softness(carrying(weight, kOfCarried * carriedInertia(in, range.body)));
 }
 
 }  // namespace
@@ -48,9 +51,7 @@ void JointLimit::assemble(const Assembly& in) {
         const double bound = sign > 0.0 ? range.lower : range.upper;
         const double r = sign * (in.state.q[body.q] - bound) - range.margin;
         if (!(r < 0.0)) continue;
-        Softness soft = softnessAt(range.impedance, r, limitWeight(in, range.body), model.options);
-        if (model.options.ownSoftness && isSprung(model, range.body))
-          soft = withLeastMass(soft, model.options.timestep);
+        const Softness soft = limitSoftness(in, range, r);
         dof_.push_back(body.v);
         sign_.push_back(sign);
         reference.push_back(soft.referenceAcceleration(sign * in.state.v[body.v], r));
