@@ -23,7 +23,7 @@ ModelError meshError(const Mesh& mesh, const std::string& problem) {
 
 /// Points that span the mesh: two ends of a long diagonal, the vertex farthest from that line, and
 /// the largest distance from the plane of the three.
-struct Extent {
+struct Span {
   Vector3 origin;
   Vector3 x, y, normal;    ///< axes of the plane
   double length = 0.0;     ///< along x
@@ -39,8 +39,8 @@ const Vector3& farthest(const std::vector<Vector3>& points, Distance&& distance)
   });
 }
 
-Extent extentOf(const std::vector<Vector3>& points) {
-  Extent e;
+Span spanOf(const std::vector<Vector3>& points) {
+  Span e;
   e.origin = farthest(points, [&](const Vector3& v) { return (v - points[0]).squaredNorm(); });
   const Vector3 far =
       farthest(points, [&](const Vector3& v) { return (v - e.origin).squaredNorm(); });
@@ -67,7 +67,7 @@ Extent extentOf(const std::vector<Vector3>& points) {
 }
 
 /// Planar hull by the monotone chain, as a polygon with two sides.
-ConvexHull flatHull(const std::vector<Vector3>& points, const Extent& e) {
+ConvexHull flatHull(const std::vector<Vector3>& points, const Span& e) {
   std::vector<Eigen::Vector2d> flat;
   flat.reserve(points.size());
   for (const Vector3& v : points) flat.emplace_back(e.x.dot(v - e.origin), e.y.dot(v - e.origin));
@@ -245,7 +245,7 @@ ConvexHull makeConvexHull(const Mesh& mesh) {
   for (const Vector3& v : mesh.vertices)
     if (!v.allFinite()) throw meshError(mesh, "a vertex is not finite");
 
-  const Extent extent = extentOf(mesh.vertices);
+  const Span extent = spanOf(mesh.vertices);
   const double tolerance = kRelativeThickness * extent.size;
   if (extent.width <= tolerance)
     throw meshError(mesh, "all its vertices lie on one line, a surface was expected");

@@ -13,7 +13,7 @@ namespace {
 /// Of |p|, |q|: what rounding may violate.
 constexpr double kRounding = 1e-13;
 /// A constraint of which less than this share (squared) is new depends on the others.
-constexpr double kDependent = 1e-12;
+constexpr double kDependentFace = 1e-12;
 
 SOFTGAUSS_VECTOR_CLONES double dotPadded(const double* x, const double* y, int n) {
   return dot(x, y, n);
@@ -81,7 +81,7 @@ bool ProgramFace::solveMultipliers() {
   if (!gram_.compute(G_.topLeftCorner(m, m))) return false;
   for (int a = 0; a < m; ++a) {
     const double inverse = gram_.inverse()[a];
-    if (!(1.0 > kDependent * G_(a, a) * inverse * inverse)) return false;
+    if (!(1.0 > kDependentFace * G_(a, a) * inverse * inverse)) return false;
   }
   nu_.assign(static_cast<std::size_t>(gram_.stride()), 0.0);
   std::copy_n(rest_.begin(), m, nu_.begin());

@@ -15,7 +15,7 @@ namespace {
 /// Of the bound, and of the largest p on the way: what rounding may violate.
 constexpr double kFeasible = 1e-12;
 /// A normal of which less than this share (squared) is new depends on the active ones.
-constexpr double kDependent = 1e-18;
+constexpr double kDependentRow = 1e-18;
 
 /// X ← L⁻ᵀ, upper triangular, by columns; X must be zero.
 SOFTGAUSS_VECTOR_CLONES void invertTransposed(const double* L, int n, int stride,
@@ -197,7 +197,7 @@ bool QuadraticProgram::minimizeByDual(const ProgramData& program) {
       rotatedNormal(entering);
       // Direction in p, and the rate of the active multipliers.
       const double fresh = d_.tail(n - m).squaredNorm();
-      const bool dependent = !(fresh > kDependent * d_.squaredNorm());
+      const bool dependent = !(fresh > kDependentRow * d_.squaredNorm());
       r_ = d_;
       for (int k = m - 1; k >= 0; --k) {  // r ← R⁻¹d over the active ones
         r_[k] /= R_(k, k);

@@ -10,7 +10,7 @@ namespace softgauss::gdd {
 namespace {
 
 /// A column of which less than this share is new depends on those before.
-constexpr double kDependent = 1e-10;
+constexpr double kDependentColumn = 1e-10;
 
 [[noreturn]] void fail(const Actuator& actuator, const std::string& problem) {
   throw ModelError(actuator.where, "actuator '" + actuator.name + "'", problem);
@@ -95,12 +95,12 @@ void Transmission::setBlock(const std::vector<int>& dofs, const std::vector<int>
     const VectorX column = B.col(c).normalized();
     VectorX fresh = column;
     for (int pass = 0; pass < 2; ++pass) fresh -= basis * (basis.transpose() * fresh);
-    if (fresh.norm() <= kDependent) {
+    if (fresh.norm() <= kDependentColumn) {
       // Of which it is a combination: the least number of them is what the message names.
       const VectorX share = B.leftCols(c).colPivHouseholderQr().solve(B.col(c));
       std::vector<std::string> others;
       for (Eigen::Index i = 0; i < c; ++i)
-        if (std::abs(share[i]) * B.col(i).norm() > kDependent * B.col(c).norm())
+        if (std::abs(share[i]) * B.col(i).norm() > kDependentColumn * B.col(c).norm())
           others.push_back(actuators_[static_cast<std::size_t>(members[i])].name);
       fail(actuator, "pulls as a combination of " + quoted(others) +
                          " does, expected actuators that are linearly independent");

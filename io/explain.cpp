@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 
+#include "engine/core/index.hpp"
 #include "engine/islands/units.hpp"
 #include "io/detail/text.hpp"
 #include "io/detail/text_table.hpp"
@@ -17,8 +18,6 @@ namespace {
 
 using detail::counted;
 using detail::listed;
-
-std::size_t idx(int i) { return static_cast<std::size_t>(i); }
 
 const char* kindName(JointKind kind) {
   switch (kind) {

@@ -12,14 +12,13 @@
 #include "engine/constraints/contact_softness.hpp"
 #include "engine/constraints/inverse_weight.hpp"
 #include "engine/constraints/sticking_friction.hpp"
+#include "engine/core/index.hpp"
 #include "io/detail/text.hpp"
 #include "io/detail/text_table.hpp"
 #include "io/explain.hpp"
 
 namespace softgauss::io {
 namespace {
-
-std::size_t idx(int i) { return static_cast<std::size_t>(i); }
 
 /// A body that rests on another, by one contact.
 struct Rest {

@@ -11,6 +11,7 @@
 #include "engine/constraints/carried_load.hpp"
 #include "engine/constraints/contact.hpp"
 #include "engine/constraints/inverse_weight.hpp"
+#include "engine/core/index.hpp"
 #include "engine/core/rotation.hpp"
 
 namespace softgauss::io {
@@ -22,8 +23,6 @@ constexpr double kHardestDamping = 100.0;  // h d w
 constexpr double kFastestTie = 1.0;        // h √(ΣL g |r|/I)
 constexpr double kLeastDamping = 0.1;      // d w [1/s]
 constexpr int kMostTold = 8;               // of one kind
-
-std::size_t idx(int i) { return static_cast<std::size_t>(i); }
 
 /// Warnings of one kind: the first ones, and how many more there are.
 class Kind {

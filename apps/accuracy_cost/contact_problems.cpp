@@ -32,7 +32,7 @@ ModelBuilder floating(const LinkSpec& link, const Shape& solid, double friction,
   return builder;
 }
 
-void addGround(ModelBuilder& builder, double friction) {
+void addRoughGround(ModelBuilder& builder, double friction) {
   builder.geometry(shape("world", Shape::plane(), friction));
 }
 
@@ -68,7 +68,7 @@ Problem slidingBlock() {
     const Vector3 half(0.1, 0.1, 0.05);
     ModelBuilder builder =
         floating(boxLink("block", 1.0, half), Shape::box(half), 0.3, {0, 0, 0.05});
-    addGround(builder, 0.3);
+    addRoughGround(builder, 0.3);
     return builder;
   };
   p.start = [](const Model&, State& state) { state.v[0] = 2.0; };
@@ -79,7 +79,7 @@ Problem bouncingBall() {
   Problem p = contactProblem("bouncing_ball", "Ball that falls, bounces and rolls, mu = 0.5", 31);
   p.build = [] {
     ModelBuilder builder = floating(ball("ball", 1.0, 0.1), Shape::sphere(0.1), 0.5, {0, 0, 0.3});
-    addGround(builder, 0.5);
+    addRoughGround(builder, 0.5);
     return builder;
   };
   p.start = [](const Model&, State& state) { state.v[0] = 1.0; };
@@ -95,7 +95,7 @@ Problem boxStack() {
       builder.add(floating(boxLink("box", 1.0, half), Shape::box(half), 0.7,
                            {0.01 * (i % 2), 0.0, 0.1 + 0.205 * i}),
                   fmt::format("b{}", i));
-    addGround(builder, 0.7);
+    addRoughGround(builder, 0.7);
     return builder;
   };
   return p;
@@ -116,7 +116,7 @@ Problem capsules() {
       one.X_WRoot.R = Eigen::AngleAxisd(0.8 * i, axis).toRotationMatrix();
       builder.add(one, fmt::format("c{}", i));
     }
-    addGround(builder, 0.5);
+    addRoughGround(builder, 0.5);
     return builder;
   };
   return p;
@@ -127,7 +127,7 @@ Problem humanoid(const std::string& robots) {
   p.build = [robots] {
     ModelBuilder builder = io::readUrdf(robots + "/humanoid.urdf");
     builder.base = BaseKind::floating;
-    addGround(builder, 0.8);
+    addRoughGround(builder, 0.8);
     return builder;
   };
   p.start = [](const Model& model, State& state) {

@@ -9,6 +9,7 @@
 #include <random>
 
 #include "apps/compare_mujoco/mujoco_load.hpp"
+#include "engine/core/index.hpp"
 #include "engine/engine.hpp"
 
 namespace softgauss::app {
@@ -20,7 +21,6 @@ constexpr int kStates = 20;
 constexpr double kSameShape = 1e-6;  ///< [m] a shape is found where nothing differs by more
 constexpr double kRange = 1e-9;      ///< two ranges are the same
 
-std::size_t idx(int i) { return static_cast<std::size_t>(i); }
 Vector3 vectorAt(const mjtNum* x, int i) { return Eigen::Map<const Vector3>(x + 3 * i); }
 Matrix3 rotationAt(const mjtNum* q, int i) {
   return Quaternion(q[4 * i], q[4 * i + 1], q[4 * i + 2], q[4 * i + 3]).toRotationMatrix();

@@ -11,7 +11,7 @@ namespace softgauss::app {
 namespace {
 
 constexpr double kLongestStep = 1.0;  // [s]
-constexpr double kMostSteps = 1e9;
+constexpr double kMostStepsOfARun = 1e9;
 constexpr double kFarthest = 1e6;  // [m] farther out, doubles no longer resolve a contact
 
 std::vector<std::string> split(const std::string& text, char separator) {
@@ -108,9 +108,9 @@ void checkOutputs(const SimulateOptions& options, const std::vector<std::filesys
 void checkSteps(const SimulateOptions& options, double timestep) {
   if (timestep > kLongestStep)
     throw UsageError(fmt::format("--timestep {}: expected at most {} s", timestep, kLongestStep));
-  if (options.duration / timestep > kMostSteps)
+  if (options.duration / timestep > kMostStepsOfARun)
     throw UsageError(fmt::format("--duration {} is more than {:g} steps of {} s", options.duration,
-                                 kMostSteps, timestep));
+                                 kMostStepsOfARun, timestep));
 }
 
 bool SimulateOptions::isScene() const {

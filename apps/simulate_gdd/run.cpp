@@ -8,6 +8,7 @@
 #include <cmath>
 #include <optional>
 
+#include "apps/shared/wall_clock.hpp"
 #include "apps/simulate_gdd/error_estimate.hpp"
 #include "apps/simulate_gdd/island_run.hpp"
 #include "apps/simulate_gdd/outside_input.hpp"
@@ -23,12 +24,6 @@ namespace softgauss::app {
 namespace {
 
 volatile sig_atomic_t interruptRequested = 0;
-
-using Clock = std::chrono::steady_clock;
-
-double secondsSince(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 /// Largest |g(q, v, a) − (u, 0)|: recomputed by inverse dynamics, not taken from the solver.
 double physicsViolation(const Model& model, Data& data, VectorX& scratch) {

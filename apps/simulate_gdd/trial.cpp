@@ -5,21 +5,16 @@
 #include <chrono>
 
 #include "apps/shared/median.hpp"
+#include "apps/shared/wall_clock.hpp"
 #include "engine/engine.hpp"
 
 namespace softgauss::app {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 constexpr int kStates = 100;
 constexpr double kSeconds = 0.5;
 /// Steps at one state; the least time counts, as anything else that runs only adds to it.
 constexpr int kRepetitions = 3;
-
-double secondsSince(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 /// The scene with some of its effects.
 struct Variant {

@@ -4,76 +4,73 @@
 #include <algorithm>
 
 #include "engine/constraints/contact.hpp"
+#include "engine/core/index.hpp"
 
 namespace softgauss::collision::detail {
-namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
-}  // namespace
+namespace {}  // namespace
 
 Neighbours::Neighbours(const Model& model, const Units& units, HullCache& hulls)
     : set_(model, hulls),
       units_(units),
-      parts_(at(units.size())),
+      parts_(idx(units.size())),
       X_WB_(model.trees.size()),
       centre_(model.geometries.size(), Vector3::Zero()),
       X_WG_(model.geometries.size()),
-      posed_(at(units.size()), 0),
-      box_(at(units.size())),
-      fat_(at(units.size())),
-      near_(at(units.size())),
-      awake_(at(units.size()), 0) {
+      posed_(idx(units.size()), 0),
+      box_(idx(units.size())),
+      fat_(idx(units.size())),
+      near_(idx(units.size())),
+      awake_(idx(units.size()), 0) {
   for (int g = 0; g < static_cast<int>(model.geometries.size()); ++g) {
-    const Geometry& geometry = model.geometries[at(g)];
-    const int tree = model.bodies[at(geometry.body)].tree;
+    const Geometry& geometry = model.geometries[idx(g)];
+    const int tree = model.bodies[idx(geometry.body)].tree;
     if (tree < 0) continue;
-    parts_[at(units.ofTree[at(tree)])].push_back(
-        {g, tree, geometry.body - model.trees[at(tree)].rootBody,
-         geometry.X_BG * set_.centreInG[at(g)],
-         set_.isPlane(g) ? kInfinity : set_.radius[at(g)] + set_.marginShare(g)});
+    parts_[idx(units.ofTree[idx(tree)])].push_back(
+        {g, tree, geometry.body - model.trees[idx(tree)].rootBody,
+         geometry.X_BG * set_.centreInG[idx(g)],
+         set_.isPlane(g) ? kInfinity : set_.radius[idx(g)] + set_.marginShare(g)});
   }
 }
 
 void Neighbours::place(int tree, std::span<const Transform> X_WB) noexcept {
-  X_WB_[at(tree)] = X_WB;
-  const int unit = units_.ofTree[at(tree)];
+  X_WB_[idx(tree)] = X_WB;
+  const int unit = units_.ofTree[idx(tree)];
   if (moved_.empty() || moved_.back() != unit) moved_.push_back(unit);
 }
 
 void Neighbours::measure(int unit) {
-  Box& box = box_[at(unit)];
+  Box& box = box_[idx(unit)];
   box = Box();
-  for (const Part& part : parts_[at(unit)]) {
+  for (const Part& part : parts_[idx(unit)]) {
     const Vector3 centre = pose(part) * part.centreInB;
-    centre_[at(part.geometry)] = centre;
+    centre_[idx(part.geometry)] = centre;
     box.add(centre, part.radius);
   }
-  posed_[at(unit)] = 0;
+  posed_[idx(unit)] = 0;
 }
 
 void Neighbours::poseParts(int unit) {
-  if (posed_[at(unit)]) return;
-  for (const Part& part : parts_[at(unit)])
-    X_WG_[at(part.geometry)] = pose(part) * set_.geometry(part.geometry).X_BG;
-  posed_[at(unit)] = 1;
+  if (posed_[idx(unit)]) return;
+  for (const Part& part : parts_[idx(unit)])
+    X_WG_[idx(part.geometry)] = pose(part) * set_.geometry(part.geometry).X_BG;
+  posed_[idx(unit)] = 1;
 }
 
 void Neighbours::search(int unit) {
   // The part of a unit's size that it may move before its neighbours are looked for again.
   constexpr double kSlack = 0.1;
   ++searches_;
-  const Box& box = box_[at(unit)];
-  Box& fat = fat_[at(unit)];
+  const Box& box = box_[idx(unit)];
+  Box& fat = fat_[idx(unit)];
   const double slack = kSlack * (box.upper - box.lower).norm();
   fat.lower = (box.lower.array() - slack).matrix();
   fat.upper = (box.upper.array() + slack).matrix();
-  for (const int other : near_[at(unit)]) std::erase(near_[at(other)], unit);
-  near_[at(unit)].clear();
+  for (const int other : near_[idx(unit)]) std::erase(near_[idx(other)], unit);
+  near_[idx(unit)].clear();
   for (int other = 0; other < units_.size(); ++other) {
-    if (other == unit || !fat.overlaps(fat_[at(other)])) continue;
-    near_[at(unit)].push_back(other);
-    std::vector<int>& list = near_[at(other)];
+    if (other == unit || !fat.overlaps(fat_[idx(other)])) continue;
+    near_[idx(unit)].push_back(other);
+    std::vector<int>& list = near_[idx(other)];
     list.insert(std::lower_bound(list.begin(), list.end(), unit), unit);
   }
 }
@@ -82,11 +79,11 @@ const std::vector<Neighbours::Row>& Neighbours::rowsOf(int i, int j) {
   constexpr double kRounding = 1e-9;  // far above that of positions [m]
   const auto [place, isNew] = rows_.try_emplace({std::min(i, j), std::max(i, j)});
   if (!isNew) return place->second;
-  for (const Part& one : parts_[at(i)])
-    for (const Part& other : parts_[at(j)]) {
+  for (const Part& one : parts_[idx(i)])
+    for (const Part& other : parts_[idx(j)]) {
       const GeometryPair pair = inOrder(set_.model, one.geometry, other.geometry);
       const double margin = pairMaterial(set_.model, pair.a, pair.b).margin;
-      const double reach = set_.radius[at(pair.a)] + set_.radius[at(pair.b)] + margin + kRounding;
+      const double reach = set_.radius[idx(pair.a)] + set_.radius[idx(pair.b)] + margin + kRounding;
       place->second.push_back({pair.a, pair.b, reach, margin, set_.isPlane(pair.a)});
     }
   return place->second;
@@ -94,10 +91,10 @@ const std::vector<Neighbours::Row>& Neighbours::rowsOf(int i, int j) {
 
 bool Neighbours::touch(int i, int j) {
   for (const Row& row : rowsOf(i, j)) {
-    const Vector3 &a = centre_[at(row.a)], &b = centre_[at(row.b)];
+    const Vector3 &a = centre_[idx(row.a)], &b = centre_[idx(row.b)];
     if (!row.plane && !((b - a).squaredNorm() < row.reach * row.reach)) continue;
     poseParts(i), poseParts(j);
-    const Transform &X_WA = X_WG_[at(row.a)], &X_WB = X_WG_[at(row.b)];
+    const Transform &X_WA = X_WG_[idx(row.a)], &X_WB = X_WG_[idx(row.b)];
     if (row.plane && !(X_WA.R.col(2).dot(b - X_WA.p) < row.reach)) continue;
     // A pair whose test fails says nothing; within an island it is counted.
     if (set_.test(row.a, X_WA, row.b, X_WB, row.margin, found_) && found_.count > 0) return true;
@@ -109,20 +106,20 @@ void Neighbours::findTouching(const std::vector<int>& awake, const std::vector<i
                               std::vector<std::pair<int, int>>& touching) noexcept {
   const auto update = [&](int unit) {
     measure(unit);
-    if (!parts_[at(unit)].empty() && !fat_[at(unit)].contains(box_[at(unit)])) search(unit);
+    if (!parts_[idx(unit)].empty() && !fat_[idx(unit)].contains(box_[idx(unit)])) search(unit);
   };
   for (const int unit : moved_) update(unit);
   moved_.clear();
-  for (const int unit : awake) update(unit), awake_[at(unit)] = 1;
+  for (const int unit : awake) update(unit), awake_[idx(unit)] = 1;
   for (const int unit : awake)
-    for (const int other : near_[at(unit)]) {
-      if (groupOf[at(unit)] == groupOf[at(other)]) continue;
+    for (const int other : near_[idx(unit)]) {
+      if (groupOf[idx(unit)] == groupOf[idx(other)]) continue;
       // Of two that are awake the first one asks.
-      if (other < unit && awake_[at(other)]) continue;
-      if (box_[at(unit)].overlaps(box_[at(other)]) && touch(unit, other))
+      if (other < unit && awake_[idx(other)]) continue;
+      if (box_[idx(unit)].overlaps(box_[idx(other)]) && touch(unit, other))
         touching.emplace_back(unit, other);
     }
-  for (const int unit : awake) awake_[at(unit)] = 0;
+  for (const int unit : awake) awake_[idx(unit)] = 0;
 }
 
 }  // namespace softgauss::collision::detail

@@ -3,21 +3,12 @@
 
 #include <Eigen/Cholesky>
 
-#include "engine/core/rotation.hpp"
+#include "engine/core/spatial_matrix.hpp"
 
 namespace softgauss {
 namespace {
 
 using Matrix6X = Eigen::Matrix<double, 6, Eigen::Dynamic>;
-
-Vector6 vec(const Motion& m) { return (Vector6() << m.angular, m.linear).finished(); }
-Vector6 vec(const Force& f) { return (Vector6() << f.moment, f.force).finished(); }
-
-Matrix6 matrix(const Inertia& I) {
-  Matrix6 m;
-  m << I.I_O.matrix(), skew(I.h), -skew(I.h), I.mass * Matrix3::Identity();
-  return m;
-}
 
 }  // namespace
 
@@ -35,14 +26,14 @@ VectorX articulatedBodyAcceleration(const Model& model, const Kinematics& k,
   for (int b = 1; b < bodies; ++b) {
     const Body& body = model.bodies[b];
     S[b].resize(6, body.dofs);
-    for (int i = 0; i < body.dofs; ++i) S[b].col(i) = vec(k.S[body.v + i]);
+    for (int i = 0; i < body.dofs; ++i) S[b].col(i) = stacked(k.S[body.v + i]);
     if (body.massless) continue;
-    IA[b] = matrix(inertia.body[b]);
-    if (coriolis) pA[b] = vec(crossForce(k.V[b], inertia.body[b] * k.V[b]));
+    IA[b] = spatialMatrix(inertia.body[b]);
+    if (coriolis) pA[b] = stacked(crossForce(k.V[b], inertia.body[b] * k.V[b]));
   }
   // Velocity-product acceleration of joint b alone.
   const auto c = [&](int b) {
-    return coriolis ? Vector6(vec(k.A_bias[b] - k.A_bias[model.bodies[b].parent]))
+    return coriolis ? Vector6(stacked(k.A_bias[b] - k.A_bias[model.bodies[b].parent]))
                     : Vector6::Zero();
   };
   for (int b = bodies - 1; b > 0; --b) {

@@ -6,15 +6,15 @@
 #include <span>
 #include <utility>
 
+#include "engine/core/index.hpp"
+
 namespace softgauss {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 std::vector<int> treesOf(const Units& units, const std::vector<int>& some) {
   std::vector<int> trees;
   for (const int unit : some)
-    trees.insert(trees.end(), units.trees[at(unit)].begin(), units.trees[at(unit)].end());
+    trees.insert(trees.end(), units.trees[idx(unit)].begin(), units.trees[idx(unit)].end());
   std::sort(trees.begin(), trees.end());
   return trees;
 }
@@ -34,9 +34,9 @@ std::vector<double> gyrationRadii(const Model& model) {
 std::vector<double> rotorLevers(const Model& model) {
   std::vector<double> levers;
   for (const Dof& dof : model.dofs) {
-    const Tree& tree = model.trees[at(model.bodies[at(dof.body)].tree)];
+    const Tree& tree = model.trees[idx(model.bodies[idx(dof.body)].tree)];
     double mass = 0.0;
-    for (int b = tree.rootBody; b < tree.bodyEnd; ++b) mass += model.bodies[at(b)].mass;
+    for (int b = tree.rootBody; b < tree.bodyEnd; ++b) mass += model.bodies[idx(b)].mass;
     levers.push_back(std::sqrt(dof.armature / (mass > 0.0 ? mass : 1.0)));
   }
   return levers;
@@ -45,11 +45,11 @@ std::vector<double> rotorLevers(const Model& model) {
 /// Velocity of a link's centre of mass, and of its radius of gyration [m/s].
 Motion linkVelocity(const Islands::Island& island, int b) {
   const Kinematics& k = island.data.kinematics;
-  const Body& body = island.part.model.bodies[at(b)];
-  const Motion& V = k.V[at(b)];
-  const Vector3 com = k.X_WB[at(b)] * body.com - k.p_WO[at(body.tree)];
+  const Body& body = island.part.model.bodies[idx(b)];
+  const Motion& V = k.V[idx(b)];
+  const Vector3 com = k.X_WB[idx(b)] * body.com - k.p_WO[idx(body.tree)];
   Motion v;
-  v.angular = island.gyration[at(b)] * V.angular;
+  v.angular = island.gyration[idx(b)] * V.angular;
   v.linear = V.linear + V.angular.cross(com);
   return v;
 }
@@ -78,8 +78,8 @@ Islands::Islands(const Model& model, IslandContacts* contacts, Sleep sleep,
                      "are stepped by semi-implicit-euler, not by " +
                          std::string(integratorName(model.options.integrator)) +
                          ", which evaluates the dynamics within the step");
-  islandOf_.resize(at(units_.size()), nullptr);
-  groupOf_.resize(at(units_.size()), 0);
+  islandOf_.resize(idx(units_.size()), nullptr);
+  groupOf_.resize(idx(units_.size()), 0);
   acceleration_ = VectorX::Zero(model.nv);
   setState(State(model));
 }
@@ -96,7 +96,7 @@ void Islands::setState(const State& state) {
 
 void Islands::wake(int body) {
   const int unit = units_.ofBody(model_, body);
-  if (unit >= 0) wake(*islandOf_[at(unit)]);
+  if (unit >= 0) wake(*islandOf_[idx(unit)]);
   refreshLists();
 }
 
@@ -118,8 +118,8 @@ void Islands::activate(Island& island) {
   island.awake = false;
   ++active_;
   for (const int unit : island.units) {
-    islandOf_[at(unit)] = &island;
-    groupOf_[at(unit)] = island.units.front();
+    islandOf_[idx(unit)] = &island;
+    groupOf_[idx(unit)] = island.units.front();
   }
   wake(island);
   place(island);
@@ -131,7 +131,7 @@ void Islands::place(const Island& island) {
     const Tree& tree = island.part.model.trees[t];
     contacts_->place(island.part.trees[t],
                      std::span(island.data.kinematics.X_WB)
-                         .subspan(at(tree.rootBody), at(tree.bodyEnd - tree.rootBody)));
+                         .subspan(idx(tree.rootBody), idx(tree.bodyEnd - tree.rootBody)));
   }
 }
 
@@ -176,7 +176,7 @@ void Islands::refreshLists() {
 /// A force that is not zero keeps an island awake, and wakes it.
 void Islands::wakeWhatIsPushed(const Input& input) {
   const auto push = [&](int tree) {
-    Island& island = *islandOf_[at(units_.ofTree[at(tree)])];
+    Island& island = *islandOf_[idx(units_.ofTree[idx(tree)])];
     if (!island.awake) ++islandStats_.wakeups, wake(island);
     island.resting = 0.0;
   };
@@ -188,7 +188,7 @@ void Islands::wakeWhatIsPushed(const Input& input) {
     }
   for (const ExternalWrench& w : input.wrenches) {
     const bool none = w.F_Bo_W.force.isZero(0.0) && w.F_Bo_W.moment.isZero(0.0);
-    const int tree = model_.bodies[at(w.body)].tree;
+    const int tree = model_.bodies[idx(w.body)].tree;
     if (!none && tree >= 0) push(tree);
   }
 }
@@ -199,7 +199,7 @@ void Islands::wakeWhatIsControlled() {
   changed_.clear();
   controls_->begin(state_.time, changed_);
   for (const int tree : changed_) {
-    Island& island = *islandOf_[at(units_.ofTree[at(tree)])];
+    Island& island = *islandOf_[idx(units_.ofTree[idx(tree)])];
     if (!island.awake) ++islandStats_.wakeups, wake(island);
     island.resting = 0.0;
   }
@@ -223,7 +223,7 @@ SolveStatus Islands::take(Island& island, const Input& input) {
   part.wrenches.clear();
   for (ExternalWrench wrench : input.wrenches) {
     const int unit = units_.ofBody(model_, wrench.body);
-    if (unit < 0 || islandOf_[at(unit)] != &island) continue;
+    if (unit < 0 || islandOf_[idx(unit)] != &island) continue;
     wrench.body = island.part.bodyOf(model_, wrench.body);
     part.wrenches.push_back(wrench);
   }
@@ -294,9 +294,9 @@ SolveStatus Islands::fail(const Island& island) {
   stats_ = island.data.stats;
   if (stats_.badDof >= 0) {
     const int tree =
-        island.part.model.bodies[at(island.part.model.dofs[at(stats_.badDof)].body)].tree;
-    stats_.badDof += model_.trees[at(island.part.trees[at(tree)])].firstDof -
-                     island.part.model.trees[at(tree)].firstDof;
+        island.part.model.bodies[idx(island.part.model.dofs[idx(stats_.badDof)].body)].tree;
+    stats_.badDof += model_.trees[idx(island.part.trees[idx(tree)])].firstDof -
+                     island.part.model.trees[idx(tree)].firstDof;
   }
   for (Island* other : awake_) {
     other->part.gather(model_, state_, other->state);
@@ -312,15 +312,15 @@ bool Islands::rests(Island& island) const {
   const bool begins = island.resting == 0.0;
   double fastest = 0.0, change = 0.0;
   for (int b = 1; b < model.bodyCount(); ++b) {
-    if (model.bodies[at(b)].massless) continue;
+    if (model.bodies[idx(b)].massless) continue;
     const Motion v = linkVelocity(island, b);
     fastest = std::max(fastest, sizeOf(v));
-    Motion& rest = island.rest[at(b)];
+    Motion& rest = island.rest[idx(b)];
     if (begins) rest = v;
     change = std::max(change, (v.linear - rest.linear).norm() + (v.angular - rest.angular).norm());
   }
   for (int i = 0; i < model.nv; ++i)
-    fastest = std::max(fastest, island.rotor[at(i)] * std::abs(island.state.v[i]));
+    fastest = std::max(fastest, island.rotor[idx(i)] * std::abs(island.state.v[i]));
   if (!(fastest <= sleep_.speed)) return false;
   if (begins) island.restSpeed = std::max(fastest, 1e-3 * sleep_.speed);
   return change <= 0.1 * sleep_.speed && fastest <= island.restSpeed;

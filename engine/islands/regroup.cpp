@@ -4,15 +4,12 @@
 
 #include <algorithm>
 
+#include "engine/core/index.hpp"
 #include "engine/islands/islands.hpp"
 #include "engine/islands/union_find.hpp"
 
 namespace softgauss {
-namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
-}  // namespace
+namespace {}  // namespace
 
 /// Makes an island of each set of the units of `old` islands, unless there is such a one already.
 void Islands::makeIslands(const std::vector<Island*>& old, UnionFind& sets) {
@@ -46,8 +43,8 @@ void Islands::part() {
   UnionFind sets(units_.size());
   for (const Island* island : affected_) {
     const auto unitOf = [&](int body) {
-      const int tree = island->part.model.bodies[at(body)].tree;
-      return tree < 0 ? -1 : units_.ofTree[at(island->part.trees[at(tree)])];
+      const int tree = island->part.model.bodies[idx(body)].tree;
+      return tree < 0 ? -1 : units_.ofTree[idx(island->part.trees[idx(tree)])];
     };
     for (const Contact& c : island->data.contacts.contacts) {
       const int a = unitOf(c.bodyA), b = unitOf(c.bodyB);
@@ -66,7 +63,7 @@ void Islands::join() {
   affected_.clear();
   for (const auto& [i, j] : touching_) {
     sets.unite(i, j);
-    for (Island* island : {islandOf_[at(i)], islandOf_[at(j)]})
+    for (Island* island : {islandOf_[idx(i)], islandOf_[idx(j)]})
       if (std::find(affected_.begin(), affected_.end(), island) == affected_.end())
         affected_.push_back(island);
   }

@@ -8,10 +8,6 @@
 namespace softgauss::test {
 namespace {
 
-std::vector<std::string> passiveArm(const std::string& duration) {
-  return {dataFile("robots/arm.urdf"), "--passive", "--quiet", "--duration", duration};
-}
-
 TEST(Accuracy, IsALength) {
   for (const char* accuracy : {"nan", "inf", "-1", "0"}) {
     std::vector<std::string> arguments = passiveArm("0.1");

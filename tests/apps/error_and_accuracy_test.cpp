@@ -78,10 +78,6 @@ app::PoseError trueError(const std::string& log, Truth truth) {
   return {std::sqrt(sum.total / count), std::sqrt(sum.orientation / count)};
 }
 
-std::vector<std::string> passiveArm(const std::string& duration) {
-  return {dataFile("robots/arm.urdf"), "--passive", "--quiet", "--duration", duration};
-}
-
 // Half steps tell the error of whole ones up to terms of the next order in h.
 TEST(ReportError, IsTheErrorOfTheRun) {
   for (const IntegratorName& name : kIntegratorNames) {

@@ -28,7 +28,7 @@ Outcome run(const std::string& scene, std::vector<std::string> more, const std::
   return simulate(arguments);
 }
 
-struct Case {
+struct ControlCase {
   std::string scene;  ///< its options
   std::vector<std::string> arguments;
   std::string expected;  ///< in the message, or the integrator
@@ -36,7 +36,7 @@ struct Case {
 
 TEST(ErrorControl, RefusesWhatChangesNothing) {
   const std::string rk4 = "  integrator: runge-kutta-4\n";
-  for (const Case& c : std::vector<Case>{
+  for (const ControlCase& c : std::vector<ControlCase>{
            {"", {"--step-doubling", "--integrator", "runge-kutta-4"}, "beside runge-kutta-4"},
            {"", {"--step-doubling", "--integrator", "dormand-prince"}, "beside dormand-prince"},
            {"",
@@ -68,7 +68,7 @@ TEST(ErrorControl, RefusesWhatChangesNothing) {
 TEST(ErrorControl, FollowsFromWhatIsGiven) {
   const std::string tolerance = "  integration_tolerance: 1e-5\n",
                     doubled = "  step_doubling: true\n";
-  for (const Case& c : std::vector<Case>{
+  for (const ControlCase& c : std::vector<ControlCase>{
            {"", {}, "semi-implicit-euler"},
            {"", {"--step-doubling"}, "semi-implicit-euler, doubled"},
            {"", {"--integration-tolerance", "1e-5"}, "dormand-prince"},

@@ -10,23 +10,23 @@
 namespace softgauss::test {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 /// The figures of a run, read from its --json file.
-Json benchmark(std::vector<std::string> arguments) {
+OrderedJson benchmark(std::vector<std::string> arguments) {
   const io::TempFolder folder;
   const std::string file = folder.path() / "figures.json";
   arguments.insert(arguments.end(), {"--robots", dataFile("robots"), "--json", file});
   const Outcome outcome = runProgram("gdd_benchmark", arguments);
   EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "");
-  return Json::parse(readFile(file));
+  return OrderedJson::parse(readFile(file));
 }
 
 /// Without the clock's figures, whose keys end in _us.
-Json withoutTimes(const Json& json) {
+OrderedJson withoutTimes(const OrderedJson& json) {
   if (!json.is_structured()) return json;
-  Json rest = json.is_array() ? Json::array() : Json::object();
+  OrderedJson rest = json.is_array() ? OrderedJson::array() : OrderedJson::object();
   for (const auto& [key, value] : json.items()) {
     if (json.is_array())
       rest.push_back(withoutTimes(value));
@@ -40,20 +40,20 @@ TEST(GddBenchmark, SameSeedSameFigures) {
   const auto run = [](const char* seed) {
     return withoutTimes(benchmark({"--records", "600", "--passes", "1", "--seed", seed}));
   };
-  const Json first = run("7");
+  const OrderedJson first = run("7");
   EXPECT_EQ(first, run("7"));
   EXPECT_NE(first["datasets"], run("8")["datasets"]);
 }
 
 // Otherwise the solvers are not measured on what happened.
 TEST(GddBenchmark, ReplayTakesTheRecordedSteps) {
-  const Json json = benchmark({"--records", "600", "--passes", "2"});
+  const OrderedJson json = benchmark({"--records", "600", "--passes", "2"});
   ASSERT_EQ(json["datasets"].size(), 3u);
-  for (const Json& dataset : json["datasets"]) {
+  for (const OrderedJson& dataset : json["datasets"]) {
     EXPECT_EQ(dataset["records"], 600);
     EXPECT_EQ(dataset["goals"], 2);
     EXPECT_EQ(dataset["passes"], 2);
-    for (const Json& solver : dataset["solvers"])
+    for (const OrderedJson& solver : dataset["solvers"])
       if (solver["name"] == dataset["recorder"]) {
         EXPECT_EQ(solver["controls_unlike_recorded"], 0);
       }
@@ -62,9 +62,9 @@ TEST(GddBenchmark, ReplayTakesTheRecordedSteps) {
 
 TEST(GddBenchmark, ASolverIsAsGoodAsItself) {
   const char* const solver = "augmented-lagrangian";
-  const Json json = benchmark({"--records", "300", "--passes", "1", "--models", "humanoid",
-                               "--solvers", std::string(solver) + "," + solver});
-  const Json& comparison = json["datasets"][0]["comparisons"][0];
+  const OrderedJson json = benchmark({"--records", "300", "--passes", "1", "--models", "humanoid",
+                                      "--solvers", std::string(solver) + "," + solver});
+  const OrderedJson& comparison = json["datasets"][0]["comparisons"][0];
   EXPECT_EQ(comparison["equal"], 300);
   EXPECT_EQ(comparison["first_lower"], 0);
   EXPECT_EQ(comparison["second_lower"], 0);
@@ -74,16 +74,16 @@ TEST(GddBenchmark, ASolverIsAsGoodAsItself) {
 // with room for so few; solver 2's are what is asked of 20,000 by the goals' weight, with half as
 // many iterations again at 95 % for so few.
 TEST(GddBenchmark, StatisticsStayMet) {
-  const Json json = benchmark({"--records", "1200", "--passes", "1", "--weight", "1", "--weight",
-                               "100", "--weight", "1000"});
+  const OrderedJson json = benchmark({"--records", "1200", "--passes", "1", "--weight", "1",
+                                      "--weight", "100", "--weight", "1000"});
   ASSERT_EQ(json["datasets"].size(), 9u);
   const struct {
     double median, most, certified;
   } asked[] = {{1, 3, 0.9999}, {2, 9, 0.999}, {4, 18, 0.999}};
   int place = 0;
-  for (const Json& dataset : json["datasets"]) {
+  for (const OrderedJson& dataset : json["datasets"]) {
     const auto& bound = asked[place++ % 3];
-    for (const Json& solver : dataset["solvers"]) {
+    for (const OrderedJson& solver : dataset["solvers"]) {
       const auto label = [&] {
         return dataset["model"].dump() + ", " + dataset["goal_weight_kg"].dump() + " kg: ";
       };
@@ -135,7 +135,7 @@ TEST(GddBenchmark, InterruptGivesTheTablesOfWhatWasDone) {
                                      2.0, file);
   EXPECT_EQ(outcome.exitCode, 130) << outcome.err;
   EXPECT_NE(outcome.out.find("humanoid: "), std::string::npos);
-  EXPECT_EQ(Json::parse(readFile(file))["datasets"].size(), 1u);
+  EXPECT_EQ(OrderedJson::parse(readFile(file))["datasets"].size(), 1u);
 }
 
 TEST(GddBenchmark, BadUsageIsToldAndNothingRuns) {

@@ -82,6 +82,10 @@ std::string dataFile(const std::string& path) {
   return std::string(SOFTGAUSS_SOURCE_DIR) + "/data/" + path;
 }
 
+std::vector<std::string> passiveArm(const std::string& duration) {
+  return {dataFile("robots/arm.urdf"), "--passive", "--quiet", "--duration", duration};
+}
+
 Csv::Csv(const std::string& text) {
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) {

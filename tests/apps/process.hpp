@@ -30,6 +30,9 @@ std::string readFile(const std::string& path);
 /// A file of data/ or of its subfolders.
 std::string dataFile(const std::string& path);
 
+/// Arguments of simulate_gdd: the arm, left to itself for `duration` [s].
+std::vector<std::string> passiveArm(const std::string& duration);
+
 /// A table of numbers with a header, as --log writes it.
 struct Csv {
   std::vector<std::string> columns;

@@ -16,13 +16,13 @@ namespace {
 
 constexpr int kPoses = 1000;
 
-struct Kinds {
+struct KindPair {
   ShapeKind a, b;
 };
 
-std::vector<Kinds> closedForms() {
+std::vector<KindPair> closedForms() {
   using enum ShapeKind;
-  std::vector<Kinds> all;
+  std::vector<KindPair> all;
   for (ShapeKind a : {plane, sphere, capsule, cylinder, box})
     for (ShapeKind b : {sphere, capsule, cylinder, box})
       if (a <= b && hasClosedForm(a, b)) all.push_back({a, b});
@@ -42,7 +42,7 @@ double nearestTo(const PairContact& contact, const PairContacts& set) {
 /// Visits random pairs of every closed form that touch.
 template <class Visit>
 void forTouching(unsigned seed, double margin, Visit&& visit) {
-  for (const Kinds& kinds : closedForms()) {
+  for (const KindPair& kinds : closedForms()) {
     SCOPED_TRACE("kinds " + std::to_string(static_cast<int>(kinds.a)) + " and " +
                  std::to_string(static_cast<int>(kinds.b)));
     RandomPairs random(seed);
@@ -205,7 +205,7 @@ TEST(Pairs, MarginIsStrict) {
 TEST(Pairs, CoincidentCentresGiveUnitNormals) {
   using enum ShapeKind;
   RandomPairs random(8);
-  for (const Kinds& kinds : closedForms()) {
+  for (const KindPair& kinds : closedForms()) {
     for (const Transform& X : {at(0, 0, 0), random.pose(1.0)}) {
       const PairContacts contacts = contactsOf(random.shape(kinds.a), X, random.shape(kinds.b), X);
       EXPECT_GT(contacts.count, 0);

@@ -127,8 +127,6 @@ Comparison compare(const std::string& instant, RobotScene& r) {
   return c;
 }
 
-constexpr double kWeight = 400.0;  ///< of the humanoid [N]
-
 /// Stands with a hand that seeks `target`.
 std::unique_ptr<RobotScene> standing(const std::vector<GeometrySpec>& fixtures,
                                      const Vector3& target, double weight) {
@@ -152,7 +150,7 @@ GeometrySpec wall(double x) {
   return g;
 }
 
-void run(RobotScene& r, double seconds) {
+void stepFor(RobotScene& r, double seconds) {
   for (int i = 0; i < seconds / r.model.options.timestep; ++i) {
     ASSERT_NE(r.step(), SolveStatus::notFinite);
   }
@@ -165,7 +163,7 @@ TYPED_TEST_SUITE(ContactConsistency, GddSolvers);
 
 TYPED_TEST(ContactConsistency, StandingOnTwoFeet) {
   const auto r = standing({}, Vector3(0.45, -0.25, 1.10), 1e5);
-  run(*r, 1.0);
+  stepFor(*r, 1.0);
   const Comparison still = compare<TypeParam>("stands", *r);
   EXPECT_SMALL(still.goalDirected.mismatch() / kWeight, 1e-8);
 
@@ -184,7 +182,7 @@ TYPED_TEST(ContactConsistency, StandingOnTwoFeet) {
 
 TYPED_TEST(ContactConsistency, PushingAWall) {
   const auto r = standing({wall(0.30)}, Vector3(0.30, -0.25, 1.10), 3000.0);
-  run(*r, 0.6);
+  stepFor(*r, 0.6);
   const Comparison pushing = compare<TypeParam>("pushes", *r);
   EXPECT_SMALL(pushing.goalDirected.mismatch() / kWeight, 1e-8);
   EXPECT_LT(pushing.goalDirected.acting.at("right_hand").x(), -5.0) << "it is to push";
@@ -207,7 +205,7 @@ TYPED_TEST(ContactConsistency, PushingAWall) {
 // The reference is what it says: forces in their cones, controls in their box, Newton's law.
 TEST(ConvexController, ObeysItsConstraints) {
   const auto r = standing({}, Vector3(0.45, -0.25, 1.10), 1e5);
-  run(*r, 0.1);
+  stepFor(*r, 0.1);
   Instant now(*r);
   for (const bool stance : {false, true}) {
     const ConvexControl c = now.convexOnly(stance);

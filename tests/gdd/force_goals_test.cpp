@@ -11,8 +11,6 @@
 namespace softgauss::test {
 namespace {
 
-constexpr double kWeight = 400.0;  ///< of the humanoid [N]
-
 /// What the world exerts on geometries of a link (all moving ones: ""), by the rows' forces: the
 /// plain sum over contacts.
 struct GroundWrench {

@@ -82,12 +82,12 @@ double missingConstant(const DenseGdd& d) {
   return d.metric == 0.0 ? 0.0 : 0.5 * d.offset.dot(d.M * d.offset) / d.metric;
 }
 
-struct Tally {
+struct PatternTally {
   int problems = 0, global = 0, local = 0, claimed = 0, kinks = 0;
   int patterns = 0, programs = 0;
   double worstGap = 0.0, steepest = 0.0;
 
-  Tally& operator+=(const Tally& t) {
+  PatternTally& operator+=(const PatternTally& t) {
     problems += t.problems, global += t.global, local += t.local, claimed += t.claimed;
     kinks += t.kinks, patterns += t.patterns, programs += t.programs;
     worstGap = std::max(worstGap, t.worstGap);
@@ -99,7 +99,7 @@ struct Tally {
 
 /// Solves, and follows with forward dynamics of the clamped control: what would be simulated.
 template <class Solver>
-void addTo(Tally& tally, GddScene& s, const CellMinimum& least) {
+void addTo(PatternTally& tally, GddScene& s, const CellMinimum& least) {
   const DenseGdd& d = s.dense;
   Solver solver(s.model());
   const gdd::GddReport report =
@@ -132,7 +132,7 @@ void addTo(Tally& tally, GddScene& s, const CellMinimum& least) {
   tally.local += slope <= Bounds<Solver>::slope;
 }
 
-void tell(const std::string& what, double weight, const Tally& t) {
+void tell(const std::string& what, double weight, const PatternTally& t) {
   if (!std::getenv("SOFTGAUSS_TABLES")) return;
   std::cout << what << "  weight " << weight << "  problems " << t.problems << "  global "
             << t.global << "  worst gap " << t.worstGap << "  certified " << t.claimed << "  local "
@@ -167,7 +167,7 @@ class GlobalMinimum : public testing::Test {
 
   void trees(int count, bool boxed) {
     for (const double weight : kWeights) {
-      Tally tally;
+      PatternTally tally;
       for (int seed = 0; tally.problems < count; ++seed) {
         GddScene s = treeScene(seed);
         if (s.dense.rows() == 0 || s.dense.rows() > kMostRows || patternCount(s.dense) > 3000.0)
@@ -186,7 +186,7 @@ class GlobalMinimum : public testing::Test {
   template <class Prepare>
   void family(const std::string& what, int contacts, int count, Prepare&& prepare, double share) {
     for (const double weight : kWeights) {
-      Tally tally;
+      PatternTally tally;
       for (int seed = 0; seed < count; ++seed) {
         GddScene s = chainScene(seed, contacts);
         addGoal(s, seed, weight);
@@ -208,7 +208,7 @@ class GlobalMinimum : public testing::Test {
   }
 
   // A family of `problems` may miss the share by three standard deviations of its count.
-  void finish(const std::string& what, double weight, const Tally& t, double share) {
+  void finish(const std::string& what, double weight, const PatternTally& t, double share) {
     tell(what, weight, t);
     total_ += t;
     const double deviation = std::sqrt(share * (1.0 - share) / t.problems);
@@ -218,7 +218,7 @@ class GlobalMinimum : public testing::Test {
   }
 
  protected:
-  Tally total_;
+  PatternTally total_;
 };
 
 TYPED_TEST_SUITE(GlobalMinimum, GddSolvers);

@@ -14,6 +14,8 @@
 
 namespace softgauss::test {
 
+inline constexpr double kWeight = 400.0;  ///< of the humanoid [N]
+
 struct RobotScene {
   Model model;
   State state;

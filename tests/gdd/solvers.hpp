@@ -7,9 +7,13 @@
 
 #include "gdd/active_set.hpp"
 #include "gdd/augmented_lagrangian.hpp"
+#include "gdd/goal_directed_step.hpp"
 
 namespace softgauss::test {
 
 using GddSolvers = testing::Types<gdd::AugmentedLagrangian, gdd::ActiveSet>;
+
+inline constexpr gdd::GddSolver kSolvers[] = {gdd::GddSolver::activeSet,
+                                              gdd::GddSolver::augmentedLagrangian};
 
 }  // namespace softgauss::test

@@ -14,14 +14,14 @@ namespace softgauss::io {
 namespace {
 
 /// The goals of the items, each on a line of its own from line 2 on.
-Goals read(const std::string& items) {
+Goals readItems(const std::string& items) {
   const TempFolder folder;
   return readGoals(folder.write("goals.yaml", "goals:\n" + items), sampleModel(), sampleState());
 }
 
 template <class Kind>
 std::unique_ptr<Kind> readOne(const std::string& item) {
-  Goals goals = read("  - " + item + "\n");
+  Goals goals = readItems("  - " + item + "\n");
   EXPECT_EQ(goals.size(), 1u);
   Kind* kind = dynamic_cast<Kind*>(goals.at(0).release());
   EXPECT_NE(kind, nullptr) << item;
@@ -29,10 +29,10 @@ std::unique_ptr<Kind> readOne(const std::string& item) {
 }
 
 /// What reading the item ends in, after `goals.yaml:2: goal 1 `.
-std::string errorOf(const std::string& item) {
+std::string errorOfItem(const std::string& item) {
   const std::string start = "goals.yaml:2: goal 1 ";
   try {
-    read("  - " + item + "\n");
+    readItems("  - " + item + "\n");
   } catch (const ModelError& error) {
     const std::string message = error.what();
     const std::size_t at = message.find(start);
@@ -48,9 +48,9 @@ TEST(GoalTimesInFiles, AreOfEveryKind) {
   EXPECT_EQ(goal->endTime, 2.5);
   const auto forever = readOne<gdd::VirtualDamping>("damping: {}");
   EXPECT_TRUE(forever->actsAt(-1e300) && forever->actsAt(1e300));
-  EXPECT_EQ(errorOf("damping: {start: 1, end: 1}"),
+  EXPECT_EQ(errorOfItem("damping: {start: 1, end: 1}"),
             "'damping': key 'end': found 1 s, expected a time after the start at 1 s");
-  EXPECT_EQ(errorOf("damping: {end: .inf}"),
+  EXPECT_EQ(errorOfItem("damping: {end: .inf}"),
             "'damping': key 'end': found '.inf', expected a finite number");
 }
 
@@ -74,7 +74,7 @@ TEST(GoalNumbersInFiles, AtTheirLargestKeepStepsFinite) {
       "capture_point: {target: [1e12, 0, 0], weight: 1e12, rate: 1e12}"};
   for (const std::string& item : items) {
     gdd::GoalDirectedController controller(sampleModel());
-    controller.goals = read("  - " + item + "\n");
+    controller.goals = readItems("  - " + item + "\n");
     Data data(sampleModel());
     State state = sampleState();
     EXPECT_NE(controller.step(sampleModel(), {}, state, data, nullptr), SolveStatus::notFinite)
@@ -97,7 +97,7 @@ TEST(LinkAccelerationInFiles, ArrivesWithItsValues) {
   EXPECT_FALSE(
       readOne<gdd::LinkAcceleration>("link_acceleration: {link: arm, linear: [1, 2, 3]}")->angular);
   EXPECT_EQ(
-      errorOf("link_acceleration: {link: arm, linear: [1, 2, 3], rotation_weight: 1}"),
+      errorOfItem("link_acceleration: {link: arm, linear: [1, 2, 3], rotation_weight: 1}"),
       "'link_acceleration': key 'rotation_weight': found without a rotation, expected angular "
       "beside it");
 }
@@ -106,7 +106,7 @@ TEST(DampingInFiles, HasTwoMetrics) {
   EXPECT_EQ(readOne<gdd::VirtualDamping>("damping: {}")->metric, gdd::DampingMetric::inertia);
   EXPECT_EQ(readOne<gdd::VirtualDamping>("damping: {metric: inverse_inertia}")->metric,
             gdd::DampingMetric::inverseInertia);
-  EXPECT_EQ(errorOf("damping: {metric: R}"),
+  EXPECT_EQ(errorOfItem("damping: {metric: R}"),
             "'damping': key 'metric': found 'R', expected one of inertia, inverse_inertia");
 }
 
@@ -129,17 +129,17 @@ TEST(JointGoalsInFiles, ArriveWithTheirValues) {
 }
 
 TEST(JointGoalsInFiles, BadOnesAreRefused) {
-  EXPECT_EQ(errorOf("acceleration: {}"),
+  EXPECT_EQ(errorOfItem("acceleration: {}"),
             "'acceleration': key 'joints': found no such key, expected a map of joints, {joint: "
             "number}");
-  EXPECT_EQ(errorOf("joint_posture: {joints: {}}"),
+  EXPECT_EQ(errorOfItem("joint_posture: {joints: {}}"),
             "'joint_posture': key 'joints': found an empty map, expected at least one joint");
-  EXPECT_EQ(errorOf("acceleration: {joints: {sholder: 1}}"),
+  EXPECT_EQ(errorOfItem("acceleration: {joints: {sholder: 1}}"),
             "'acceleration': key 'joints.sholder': found an unknown joint, expected one of model "
             "'sample', did you mean 'shoulder'?");
-  EXPECT_EQ(errorOf("acceleration: {joints: {shoulder: 1}, weight: -1}"),
+  EXPECT_EQ(errorOfItem("acceleration: {joints: {shoulder: 1}, weight: -1}"),
             "'acceleration': key 'weight': found '-1', expected a finite number >= 0");
-  EXPECT_EQ(errorOf("acceleration: {joints: {shoulder: 1}, stiffness: 1}"),
+  EXPECT_EQ(errorOfItem("acceleration: {joints: {shoulder: 1}, stiffness: 1}"),
             "'acceleration': key 'stiffness': found an unknown key, expected one of joints, "
             "weight, start, end");
 }
@@ -194,23 +194,23 @@ TEST(LinkGoalsInFiles, LookAtAndHoldArriveWithTheirValues) {
 
 TEST(LinkGoalsInFiles, BadOnesAreRefused) {
   const std::string reach = "reach: {link: arm, target: [1, 2, 3], ";
-  EXPECT_EQ(errorOf(reach + "rpy: [0, 0, 0], quaternion: [1, 0, 0, 0]}"),
+  EXPECT_EQ(errorOfItem(reach + "rpy: [0, 0, 0], quaternion: [1, 0, 0, 0]}"),
             "'reach': key 'quaternion': found beside rpy in line 2, expected one of them");
-  EXPECT_EQ(errorOf(reach + "quaternion: [1, 1, 0, 0]}"),
+  EXPECT_EQ(errorOfItem(reach + "quaternion: [1, 1, 0, 0]}"),
             "'reach': key 'quaternion': found a list of 4, expected four numbers [w, x, y, z] of "
             "length 1");
-  EXPECT_EQ(errorOf(reach + "rotation_weight: 1}"),
+  EXPECT_EQ(errorOfItem(reach + "rotation_weight: 1}"),
             "'reach': key 'rotation_weight': found without an orientation, expected rpy or "
             "quaternion beside it");
-  EXPECT_EQ(errorOf(reach + "metric: consistant}").substr(0, 41),
+  EXPECT_EQ(errorOfItem(reach + "metric: consistant}").substr(0, 41),
             "'reach': key 'metric': found 'consistant'");
-  EXPECT_EQ(errorOf("look_at: {link: arm, target: [1, 2, 3], axis: [0, 0, 0]}"),
+  EXPECT_EQ(errorOfItem("look_at: {link: arm, target: [1, 2, 3], axis: [0, 0, 0]}"),
             "'look_at': key 'axis': found a vector of length 0, expected a direction");
-  EXPECT_EQ(errorOf("look_at: {link: arm}"),
+  EXPECT_EQ(errorOfItem("look_at: {link: arm}"),
             "'look_at': key 'target': found no such key, expected three numbers [x, y, z]");
-  EXPECT_EQ(errorOf("hold: {}"),
+  EXPECT_EQ(errorOfItem("hold: {}"),
             "'hold': key 'link': found no such key, expected the name of a link");
-  EXPECT_EQ(errorOf("hold: {link: arm, point: [0, 0, 0], rotation_weight: 1}"),
+  EXPECT_EQ(errorOfItem("hold: {link: arm, point: [0, 0, 0], rotation_weight: 1}"),
             "'hold': key 'rotation_weight': found beside a point, expected the whole link to be "
             "held");
 }
@@ -250,15 +250,15 @@ TEST(BalanceGoalsInFiles, ArriveWithTheirValues) {
 
 TEST(BalanceGoalsInFiles, BadOnesAreRefused) {
   for (const char* const axes : {"xx", "w", "xyzx", "''"})
-    EXPECT_NE(errorOf(std::string("center_of_mass: {axes: ") + axes + "}").find("key 'axes'"),
+    EXPECT_NE(errorOfItem(std::string("center_of_mass: {axes: ") + axes + "}").find("key 'axes'"),
               std::string::npos)
         << axes;
-  EXPECT_EQ(errorOf("center_of_mass: {link: amr}"),
+  EXPECT_EQ(errorOfItem("center_of_mass: {link: amr}"),
             "'center_of_mass': key 'link': found 'amr', expected a link of model 'sample', did "
             "you mean 'arm'?");
-  EXPECT_EQ(errorOf("momentum: {rate: -1}"),
+  EXPECT_EQ(errorOfItem("momentum: {rate: -1}"),
             "'momentum': key 'rate': found '-1', expected a finite number >= 0");
-  EXPECT_EQ(errorOf("capture_point: {}"),
+  EXPECT_EQ(errorOfItem("capture_point: {}"),
             "'capture_point': key 'target': found no such key, expected three numbers [x, y, z]");
 }
 
@@ -269,18 +269,18 @@ TEST(EffortInFiles, IsOfTheActuatedJointsNamed) {
   const int dof =
       sampleModel().bodies[static_cast<std::size_t>(sampleModel().findJoint("shoulder"))].v;
   EXPECT_EQ(readOne<gdd::Effort>("effort: {joints: [shoulder]}")->dofs, std::vector<int>{dof});
-  EXPECT_EQ(errorOf("effort: {joints: [sholder]}"),
+  EXPECT_EQ(errorOfItem("effort: {joints: [sholder]}"),
             "'effort': key 'joints': found 'sholder', expected actuated joints of model 'sample', "
             "did you mean 'shoulder'?");
-  EXPECT_EQ(errorOf("effort: {joints: [base]}").substr(0, 39),
+  EXPECT_EQ(errorOfItem("effort: {joints: [base]}").substr(0, 39),
             "'effort': key 'joints': found 'base', e");
-  EXPECT_EQ(errorOf("effort: {joints: [shoulder, shoulder]}"),
+  EXPECT_EQ(errorOfItem("effort: {joints: [shoulder, shoulder]}"),
             "'effort': key 'joints': found 'shoulder' twice, expected once");
-  EXPECT_EQ(errorOf("effort: {joints: []}"),
+  EXPECT_EQ(errorOfItem("effort: {joints: []}"),
             "'effort': key 'joints': found an empty list, expected at least one joint");
-  EXPECT_EQ(errorOf("effort: {joints: [{a: 1}]}").substr(0, 36),
+  EXPECT_EQ(errorOfItem("effort: {joints: [{a: 1}]}").substr(0, 36),
             "'effort': key 'joints': found a map,");
-  EXPECT_EQ(errorOf("effort: {weight: -1}"),
+  EXPECT_EQ(errorOfItem("effort: {weight: -1}"),
             "'effort': key 'weight': found '-1', expected a finite number >= 0");
 }
 
@@ -318,31 +318,31 @@ TEST(ContactGoalsInFiles, APressureArrivesWithItsValues) {
 
 TEST(ContactGoalsInFiles, BadOnesAreRefused) {
   const std::string force = "contact_force: {link: arm, force: [1, 2, 3]";
-  EXPECT_EQ(errorOf("contact_force: {link: arm}"),
+  EXPECT_EQ(errorOfItem("contact_force: {link: arm}"),
             "'contact_force': key 'force': found no such key, expected three numbers [x, y, z]");
-  EXPECT_EQ(errorOf("contact_force: {link: amr, force: [1, 2, 3]}"),
+  EXPECT_EQ(errorOfItem("contact_force: {link: amr, force: [1, 2, 3]}"),
             "'contact_force': key 'link': found 'amr', expected a link of model 'sample', did you "
             "mean 'arm'?");
-  EXPECT_EQ(errorOf(force + ", by: bass}"),
+  EXPECT_EQ(errorOfItem(force + ", by: bass}"),
             "'contact_force': key 'by': found 'bass', expected world or a link of model 'sample' "
             "with collision geometry, did you mean 'base'?");
-  EXPECT_EQ(errorOf(force + ", by: arm}"),
+  EXPECT_EQ(errorOfItem(force + ", by: arm}"),
             "'contact_force': key 'by': found the link itself, expected world or another link");
-  EXPECT_EQ(errorOf(force + ", weight: -1}"),
+  EXPECT_EQ(errorOfItem(force + ", weight: -1}"),
             "'contact_force': key 'weight': found '-1', expected a finite number >= 0");
-  EXPECT_NE(errorOf(force + ", axes: xx}").find("key 'axes'"), std::string::npos);
+  EXPECT_NE(errorOfItem(force + ", axes: xx}").find("key 'axes'"), std::string::npos);
   const std::string pressure = "center_of_pressure: {target: [1, 2, 3]";
-  EXPECT_EQ(errorOf("center_of_pressure: {}"),
+  EXPECT_EQ(errorOfItem("center_of_pressure: {}"),
             "'center_of_pressure': key 'target': found no such key, expected three numbers [x, y, "
             "z]");
-  EXPECT_EQ(errorOf(pressure + ", links: [amr]}"),
+  EXPECT_EQ(errorOfItem(pressure + ", links: [amr]}"),
             "'center_of_pressure': key 'links': found 'amr', expected links that move of model "
             "'sample' with collision geometry, did you mean 'arm'?");
-  EXPECT_EQ(errorOf(pressure + ", links: [arm, arm]}"),
+  EXPECT_EQ(errorOfItem(pressure + ", links: [arm, arm]}"),
             "'center_of_pressure': key 'links': found 'arm' twice, expected once");
-  EXPECT_EQ(errorOf(pressure + ", links: []}"),
+  EXPECT_EQ(errorOfItem(pressure + ", links: []}"),
             "'center_of_pressure': key 'links': found an empty list, expected at least one link");
-  EXPECT_EQ(errorOf(pressure + ", link: arm, links: [arm]}"),
+  EXPECT_EQ(errorOfItem(pressure + ", link: arm, links: [arm]}"),
             "'center_of_pressure': key 'links': found beside link, expected one of them");
 }
 

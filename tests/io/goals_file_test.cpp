@@ -15,7 +15,7 @@ namespace softgauss::io {
 namespace {
 
 /// What reading the text ends in, from the line on; nothing where it is read.
-std::string errorOf(const std::string& text) {
+std::string errorOfFile(const std::string& text) {
   const TempFolder folder;
   const std::string file = folder.write("goals.yaml", text).string();
   try {
@@ -29,15 +29,15 @@ std::string errorOf(const std::string& text) {
 // A scene file may be given as a file of goals. Its keys are then a scene's, and no others.
 TEST(GoalsFile, OfASceneHasTheKeysOfAScene) {
   const std::string goals = "goals: [damping: {}]\n";
-  EXPECT_EQ(errorOf("robots: []\ntimestep: 0.001\n" + goals), "");
-  EXPECT_EQ(errorOf("objects: []\n" + goals), "");
+  EXPECT_EQ(errorOfFile("robots: []\ntimestep: 0.001\n" + goals), "");
+  EXPECT_EQ(errorOfFile("objects: []\n" + goals), "");
   for (const std::string scene : {"robots: []\n", "objects: []\n"}) {
-    const std::string error = errorOf(scene + "goalz: 3\n" + goals);
+    const std::string error = errorOfFile(scene + "goalz: 3\n" + goals);
     EXPECT_TRUE(error.starts_with("2: key 'goalz': found an unknown key, expected one of "))
         << error;
     EXPECT_TRUE(error.ends_with(", did you mean 'goals'?")) << error;
   }
-  EXPECT_EQ(errorOf("timestep: 0.001\n" + goals),
+  EXPECT_EQ(errorOfFile("timestep: 0.001\n" + goals),
             "1: key 'timestep': found an unknown key, expected one of goals");
 }
 

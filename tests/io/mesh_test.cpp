@@ -81,7 +81,7 @@ std::string collada(const std::string& upAxis) {
 )";
 }
 
-std::string errorOf(const std::string& name, const std::string& text) {
+std::string errorOfMesh(const std::string& name, const std::string& text) {
   const TempFolder folder;
   try {
     readMesh(folder.write(name, text));
@@ -138,12 +138,13 @@ TEST(Collada, UnitScalesUpAxisDoesNotTurnNodesMoveAndLinesAreLeftOut) {
 }
 
 TEST(Mesh, ThatCannotBeUsedIsNamed) {
-  EXPECT_NE(errorOf("a.stl", "nonsense").find("a.stl: mesh: "), std::string::npos);
-  EXPECT_NE(errorOf("a.step", "").find("expected .stl, .obj or .dae"), std::string::npos);
-  EXPECT_NE(errorOf("a.obj", "v 0 0 0\nv 1 0 0\nl 1 2\n").find("a.obj: mesh: "), std::string::npos);
-  EXPECT_NE(errorOf("a.obj", "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n").find("a.obj: mesh: "),
+  EXPECT_NE(errorOfMesh("a.stl", "nonsense").find("a.stl: mesh: "), std::string::npos);
+  EXPECT_NE(errorOfMesh("a.step", "").find("expected .stl, .obj or .dae"), std::string::npos);
+  EXPECT_NE(errorOfMesh("a.obj", "v 0 0 0\nv 1 0 0\nl 1 2\n").find("a.obj: mesh: "),
             std::string::npos);
-  EXPECT_NE(errorOf("a.dae", "<COLLADA/>").find("a.dae: mesh: "), std::string::npos);
+  EXPECT_NE(errorOfMesh("a.obj", "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n").find("a.obj: mesh: "),
+            std::string::npos);
+  EXPECT_NE(errorOfMesh("a.dae", "<COLLADA/>").find("a.dae: mesh: "), std::string::npos);
 }
 
 TEST(MeshCache, ReadsAFileOncePerScale) {

@@ -16,7 +16,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-Model sampleModel() {
+Model sampleRobot() {
   const TempFolder folder;
   return loadUrdf(folder.write("r.urdf", kSampleUrdf));
 }
@@ -54,7 +54,7 @@ std::vector<std::string> keysOf(const ordered_json& object) {
 }
 
 TEST(Summary, OptionsAreThoseOfTheModel) {
-  Model model = sampleModel();
+  Model model = sampleRobot();
   model.options.cone = Cone::elliptic;
   model.options.impedanceRatio = 4.0;
   model.options.noSlip = model.options.exactDiagonal = true;
@@ -66,7 +66,7 @@ TEST(Summary, OptionsAreThoseOfTheModel) {
 }
 
 TEST(Summary, HasTheKeysOfTheInterfaceInOrder) {
-  const ordered_json json = ordered_json::parse(sampleSummary(sampleModel()).json());
+  const ordered_json json = ordered_json::parse(sampleSummary(sampleRobot()).json());
   using Keys = std::vector<std::string>;
   EXPECT_EQ(keysOf(json), (Keys{"version",
                                 "model",
@@ -106,7 +106,7 @@ TEST(Summary, HasTheKeysOfTheInterfaceInOrder) {
 }
 
 TEST(Summary, CountsAndMeasures) {
-  const ordered_json json = ordered_json::parse(sampleSummary(sampleModel()).json());
+  const ordered_json json = ordered_json::parse(sampleSummary(sampleRobot()).json());
   EXPECT_EQ(json["model"]["name"], "sample");
   EXPECT_EQ(json["model"]["links"], 2);
   EXPECT_EQ(json["model"]["dof"], 7);
@@ -135,7 +135,7 @@ TEST(Summary, PercentilesAreByNearestRank) {
 }
 
 TEST(Summary, OfNoStepsAndOddNamesIsStillJson) {
-  Model m = sampleModel();
+  Model m = sampleRobot();
   m.name = "caf\xe9 \"x\"";
   const ordered_json json = ordered_json::parse(Summary(m).json());
   EXPECT_EQ(json["steps"], 0);
@@ -144,7 +144,7 @@ TEST(Summary, OfNoStepsAndOddNamesIsStillJson) {
 
 TEST(Summary, IsWrittenOrRefused) {
   const TempFolder folder;
-  const Summary summary = sampleSummary(sampleModel());
+  const Summary summary = sampleSummary(sampleRobot());
   summary.write(folder.path() / "s.json");
   EXPECT_GT(std::filesystem::file_size(folder.path() / "s.json"), 100u);
   EXPECT_THROW(summary.write(folder.path() / "none" / "s.json"), ModelError);
@@ -160,7 +160,7 @@ TEST(GoalOutcome, AGoalThatWasThereHasACentimetreToLose) {
 }
 
 TEST(SummaryTable, EndsInAVerdict) {
-  Summary summary = sampleSummary(sampleModel());
+  Summary summary = sampleSummary(sampleRobot());
   EXPECT_TRUE(summary.table().ends_with("completed: reach arm: 90 % of the way, 50 mm left\n"))
       << summary.table();
   summary.goals.push_back({"reach base", 0.1, 0.2});
@@ -197,12 +197,12 @@ TEST(Explain, TellsHowManyRowsThereMayBe) {
   ExplainContext context;
   context.costs["gravity"] = {};
   context.costs["joint_limit"] = {.rows = 1};
-  const std::string text = explain(sampleModel(), context);
+  const std::string text = explain(sampleRobot(), context);
   EXPECT_TRUE(std::regex_search(text, std::regex("joint_limit +1 +1 "))) << text;
 }
 
 TEST(EffectNotes, FollowTheSceneAndTheSwitches) {
-  Model m = sampleModel();
+  Model m = sampleRobot();
   const auto note = [&](const std::string& name) {
     for (const EffectNote& n : effectNotes(m))
       if (n.name == name) return n;

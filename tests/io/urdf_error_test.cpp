@@ -9,7 +9,7 @@ namespace softgauss::io {
 namespace {
 
 /// What loading the text ends in; file names without their folder.
-std::string errorOf(const std::string& text) {
+std::string errorOfUrdf(const std::string& text) {
   const TempFolder folder;
   const std::string file = folder.write("bad.urdf", text).string();
   try {
@@ -35,7 +35,7 @@ class Urdf : public testing::TestWithParam<BadInput> {};
 
 TEST_P(Urdf, RefusesWithFileLineAndElement) {
   const BadInput& bad = GetParam();
-  const std::string message = errorOf(with(kSampleUrdf, bad.from, bad.to));
+  const std::string message = errorOfUrdf(with(kSampleUrdf, bad.from, bad.to));
   EXPECT_TRUE(message.starts_with(bad.message)) << message << "\nexpected " << bad.message;
 }
 
@@ -163,22 +163,23 @@ TEST(UrdfFile, ThatIsNotThereIsNamed) {
 }
 
 TEST(UrdfFile, EmptyOrBinaryIsRefused) {
-  EXPECT_TRUE(errorOf("").starts_with("bad.urdf:1: XML: is empty"));
-  EXPECT_TRUE(errorOf(std::string("\n\n<robot\0", 9)).starts_with("bad.urdf:3: XML: holds a zero"));
-  EXPECT_TRUE(errorOf("solid cube").starts_with("bad.urdf:1: XML:"));
+  EXPECT_TRUE(errorOfUrdf("").starts_with("bad.urdf:1: XML: is empty"));
+  EXPECT_TRUE(
+      errorOfUrdf(std::string("\n\n<robot\0", 9)).starts_with("bad.urdf:3: XML: holds a zero"));
+  EXPECT_TRUE(errorOfUrdf("solid cube").starts_with("bad.urdf:1: XML:"));
 }
 
 TEST(UrdfFile, WithoutLinksOrMassIsRefused) {
-  EXPECT_EQ(errorOf("<robot name='r'/>"),
+  EXPECT_EQ(errorOfUrdf("<robot name='r'/>"),
             "bad.urdf:1: robot: has no <link>, expected at least one");
-  EXPECT_TRUE(errorOf("<robot name='r'><link name='ghost'/></robot>")
+  EXPECT_TRUE(errorOfUrdf("<robot name='r'><link name='ghost'/></robot>")
                   .starts_with("bad.urdf:1: link 'ghost': moves on joint 'ghost' but neither"));
 }
 
 TEST(UrdfFile, ErrorsPrintNothing) {
   testing::internal::CaptureStderr();
   testing::internal::CaptureStdout();
-  errorOf(with(kSampleUrdf, "name=\"sample\"", "name=\"sample\" version=\"x\""));
+  errorOfUrdf(with(kSampleUrdf, "name=\"sample\"", "name=\"sample\" version=\"x\""));
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
   EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
 }

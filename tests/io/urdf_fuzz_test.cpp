@@ -14,7 +14,7 @@ namespace softgauss::io {
 namespace {
 
 /// Flips bytes, deletes and repeats parts, duplicates lines.
-std::string mutated(std::string text, std::mt19937& random) {
+std::string mutatedUrdf(std::string text, std::mt19937& random) {
   const auto below = [&](std::size_t n) {
     return std::uniform_int_distribution<std::size_t>(0, n - 1)(random);
   };
@@ -55,7 +55,7 @@ TEST(UrdfFuzz, MutatedFilesLoadOrThrowModelError) {
   std::mt19937 random(20240601);
   int loaded = 0, refused = 0;
   for (int i = 0; i < 2000; ++i) {
-    const std::string text = mutated(kSampleUrdf, random);
+    const std::string text = mutatedUrdf(kSampleUrdf, random);
     const auto file = folder.write("fuzz.urdf", text);
     try {
       const Model m = loadUrdf(file);

@@ -29,7 +29,7 @@ void addSolid(ModelBuilder& builder, const std::string& name, const Shape& shape
   builder.add(one, "");
 }
 
-void addCreature(ModelBuilder& builder, const std::string& name, const Transform& X_WB) {
+void addCreatureAt(ModelBuilder& builder, const std::string& name, const Transform& X_WB) {
   ModelBuilder one(name);
   one.base = BaseKind::floating;
   one.X_WRoot = X_WB;
@@ -58,7 +58,7 @@ void addCube(ModelBuilder& builder, const std::string& name, const Vector3& p) {
 }
 
 void addCreature(ModelBuilder& builder, const std::string& name, const Vector3& p) {
-  addCreature(builder, name, Transform{Matrix3::Identity(), p});
+  addCreatureAt(builder, name, Transform{Matrix3::Identity(), p});
 }
 
 ModelBuilder heap(int count, std::uint64_t seed) {
@@ -81,7 +81,7 @@ ModelBuilder heap(int count, std::uint64_t seed) {
         addSolid(builder, name, Shape::capsule(0.06, 0.08), X_WB);
         break;
       default:
-        addCreature(builder, name, X_WB);
+        addCreatureAt(builder, name, X_WB);
     }
   }
   return builder;

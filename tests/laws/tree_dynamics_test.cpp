@@ -11,7 +11,7 @@
 namespace softgauss::test {
 namespace {
 
-constexpr int kSeeds = 40;
+constexpr int kForests = 40;
 
 // Condition numbers of these mass matrices reach 1e5; an inverse loses that many of 16 digits.
 constexpr double kTreeTolerance = 1e-11;
@@ -28,7 +28,7 @@ VectorX abaAcceleration(const Scene& s, const VectorX& tau) {
 }
 
 TEST(Rnea, InvertsAba) {
-  for (int seed = 0; seed < kSeeds; ++seed) {
+  for (int seed = 0; seed < kForests; ++seed) {
     const Scene s = randomScene(seed, 0);
     const VectorX tau = s.input.tau;
     EXPECT_APPROX(treeTorque(s, abaAcceleration(s, tau)), tau, kTreeTolerance) << "seed " << seed;
@@ -36,7 +36,7 @@ TEST(Rnea, InvertsAba) {
 }
 
 TEST(Aba, InvertsRnea) {
-  for (int seed = 0; seed < kSeeds; ++seed) {
+  for (int seed = 0; seed < kForests; ++seed) {
     const Scene s = randomScene(seed, 0);
     Random random(seed);
     const VectorX vdot = random.vector(s.model.nv, 10.0);
@@ -45,7 +45,7 @@ TEST(Aba, InvertsRnea) {
 }
 
 TEST(Crba, ColumnIsRneaOfUnitAcceleration) {
-  for (int seed = 0; seed < kSeeds; ++seed) {
+  for (int seed = 0; seed < kForests; ++seed) {
     const Scene s = randomScene(seed, 0);
     const int n = s.model.nv;
     MatrixX M(n, n);
@@ -57,7 +57,7 @@ TEST(Crba, ColumnIsRneaOfUnitAcceleration) {
 }
 
 TEST(Crba, MassMatrixIsPositiveDefinite) {
-  for (int seed = 0; seed < kSeeds; ++seed) {
+  for (int seed = 0; seed < kForests; ++seed) {
     const Scene s = randomScene(seed, 0);
     const Eigen::LLT<MatrixX> llt(s.data->inertia.M.dense());
     EXPECT_EQ(llt.info(), Eigen::Success) << "seed " << seed;
@@ -65,7 +65,7 @@ TEST(Crba, MassMatrixIsPositiveDefinite) {
 }
 
 TEST(Bias, IsRneaAtZeroAcceleration) {
-  for (int seed = 0; seed < kSeeds; ++seed) {
+  for (int seed = 0; seed < kForests; ++seed) {
     const Scene s = randomScene(seed, 0);
     EXPECT_APPROX(s.data->forces.bias, treeTorque(s, VectorX::Zero(s.model.nv)), 1e-13)
         << "seed " << seed;
@@ -76,7 +76,7 @@ TEST(Bias, IsRneaAtZeroAcceleration) {
 // Lagrangian: d/dt (M v) − ∂T/∂q + ∂V/∂q = τ. It knows nothing of spatial algebra. In coordinates
 // where v is not q̇ it needs extra terms, so trees without floating joints are used.
 TEST(Rnea, IsLagrangesEquation) {
-  for (int seed = 0; seed < kSeeds; ++seed) {
+  for (int seed = 0; seed < kForests; ++seed) {
     RandomTreeOptions options;
     options.trees = 2;
     Random random(seed);
@@ -111,7 +111,7 @@ TEST(Rnea, IsLagrangesEquation) {
 }
 
 TEST(Forward, EqualsAbaWithoutConstraints) {
-  for (int seed = 0; seed < kSeeds; ++seed) {
+  for (int seed = 0; seed < kForests; ++seed) {
     RandomTreeOptions options;
     options.ranges = false;
     Scene s = randomScene(seed, 0, options);
@@ -124,7 +124,7 @@ TEST(Forward, EqualsAbaWithoutConstraints) {
 }
 
 TEST(ExternalWrench, IsJacobianTransposeTimesForce) {
-  for (int seed = 0; seed < kSeeds; ++seed) {
+  for (int seed = 0; seed < kForests; ++seed) {
     Scene s = randomScene(seed, 0);
     VectorX expected = s.data->forces.bias;
     for (int i = 0; i < s.model.nv; ++i) expected[i] += s.model.dofs[i].damping * s.state.v[i];

@@ -17,6 +17,9 @@ namespace softgauss::test {
 /// forces near 0 has no relative error.
 double relativeDifference(const MatrixX& a, const MatrixX& b, double floor);
 
+/// Forces and accelerations of two converged solvers, relative.
+inline constexpr double kForward = 1e-7;
+
 /// Accelerations below this count as 0 [m/s² or rad/s²].
 inline constexpr double kSmallAcceleration = 1.0;
 /// Forces below what gives such an acceleration count as 0.

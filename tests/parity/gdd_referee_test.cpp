@@ -19,6 +19,7 @@
 #include "gdd/gdd.hpp"
 #include "io/urdf.hpp"
 #include "tests/parity/comparison.hpp"
+#include "tests/parity/json_vector.hpp"
 #include "tests/parity/reference_log.hpp"
 #include "tests/support/tolerance.hpp"
 
@@ -26,21 +27,14 @@ namespace softgauss::test {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::json;
 
-constexpr double kFound = 1e-6;    // two solvers, each at its own tolerance, and the clamp between
-constexpr double kForward = 1e-7;  // two converged forward solves, as in parity_test.cpp
-constexpr double kStays = 1e-6;    // of a control, where multipliers start at 0
+constexpr double kFound = 1e-6;  // two solvers, each at its own tolerance, and the clamp between
+constexpr double kStays = 1e-6;  // of a control, where multipliers start at 0
 constexpr double kSmallForce = 1.0;  // controls below this count as 0 [N m]
 
 Json jsonOf(const fs::path& file) {
   std::ifstream in(file);
   return Json::parse(in);
-}
-
-VectorX vectorOf(const Json& list) {
-  const auto values = list.get<std::vector<double>>();
-  return VectorX::Map(values.data(), static_cast<Eigen::Index>(values.size()));
 }
 
 /// A file of states, beside what MuJoCo says to it.

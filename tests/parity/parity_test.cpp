@@ -29,7 +29,6 @@ namespace {
 constexpr double kSmooth = 1e-10;     // M and bias, relative
 constexpr double kContact = 1e-9;     // points [m], normals, distances [m]
 constexpr double kRows = 1e-9;        // J, a_ref, D, relative
-constexpr double kForward = 1e-7;     // forces and accelerations of two converged solvers
 constexpr double kInverse = 1e-9;     // inverse dynamics, relative
 constexpr double kTrajectory = 1e-6;  // 1 s of a free run [m, rad, m/s, rad/s]
 

@@ -8,21 +8,15 @@
 #include <memory>
 #include <stdexcept>
 
+#include "tests/parity/json_vector.hpp"
 #include "tests/parity/reference_scene.hpp"
 
 namespace softgauss::test {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::json;
 
 fs::path folder() { return fs::path(SOFTGAUSS_SOURCE_DIR) / "data" / "reference"; }
-
-VectorX vectorOf(const Json& list) {
-  VectorX x(static_cast<Eigen::Index>(list.size()));
-  for (std::size_t i = 0; i < list.size(); ++i) x[static_cast<Eigen::Index>(i)] = list[i];
-  return x;
-}
 
 std::vector<VectorX> samplesOf(const Json& lists) {
   std::vector<VectorX> samples;

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "gdd/gdd.hpp"
+#include "tests/gdd/solvers.hpp"
 #include "tests/stability/energy_watch.hpp"
 #include "tests/stability/scenes.hpp"
 
@@ -169,9 +170,6 @@ struct Reaching {
     return controller.step(model, in, s, data, &contacts);
   }
 };
-
-constexpr gdd::GddSolver kSolvers[] = {gdd::GddSolver::activeSet,
-                                       gdd::GddSolver::augmentedLagrangian};
 
 // A goal whose target is not finite.
 TEST(Fault, GoalsAreRefusedAndForgotten) {

@@ -12,6 +12,7 @@
 #include <string>
 
 #include "gdd/gdd.hpp"
+#include "tests/gdd/solvers.hpp"
 #include "tests/stability/energy_watch.hpp"
 #include "tests/stability/scenes.hpp"
 #include "tests/support/random.hpp"
@@ -20,9 +21,6 @@
 
 namespace softgauss::test {
 namespace {
-
-constexpr gdd::GddSolver kSolvers[] = {gdd::GddSolver::activeSet,
-                                       gdd::GddSolver::augmentedLagrangian};
 
 /// A robot under goals, watched at every step: the state is finite, every control within its box,
 /// forward dynamics converged, and the goal directed solve ended with a certificate or is counted.

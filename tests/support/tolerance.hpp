@@ -12,6 +12,9 @@
 
 namespace softgauss::test {
 
+inline constexpr double kUnitRounding = 1e-15;  ///< a few roundings of numbers of size 1
+inline constexpr double kRounding = 1e-14;      ///< a few roundings of sums of products of size 10
+
 inline double toleranceScale() {
   static const double scale = [] {
     const char* text = std::getenv("TOL_SCALE");

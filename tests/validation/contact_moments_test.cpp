@@ -5,11 +5,12 @@
 #include "engine/constraints/impedance.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/scene.hpp"
+#include "tests/validation/shared.hpp"
 
 namespace softgauss::test {
 namespace {
 
-constexpr double kGravity = 9.81, kRadius = 0.1, kMass = 2.0;
+constexpr double kMass = 2.0;
 constexpr double kInertia = 0.4 * kMass * kRadius * kRadius;
 
 /// A ball on the ground at its depth of rest; impedance that does not depend on depth.

@@ -4,11 +4,10 @@
 #include "engine/constraints/impedance.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/scene.hpp"
+#include "tests/validation/shared.hpp"
 
 namespace softgauss::test {
 namespace {
-
-constexpr double kGravity = 9.81;
 
 /// Impedance that does not depend on depth, so that rest states have closed forms.
 void flatten(Model& model, double d = 0.9) {

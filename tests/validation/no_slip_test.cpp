@@ -5,6 +5,7 @@
 #include "engine/step/snapshot.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/scene.hpp"
+#include "tests/validation/shared.hpp"
 
 namespace softgauss::test {
 namespace {
@@ -22,7 +23,7 @@ Scene boxOnSlope(double theta, double mu, Cone cone, bool noSlip) {
   return s;
 }
 
-double downhillSpeed(const Scene& s, double theta) {
+double speedDownhill(const Scene& s, double theta) {
   return (Eigen::AngleAxisd(theta, Vector3::UnitY()).toRotationMatrix().col(0))
       .dot(s.state.v.head<3>());
 }
@@ -32,8 +33,6 @@ double physicsViolation(Scene& s) {
   inverseDynamics(s.model, s.data->forward.a, *s.data, tau);
   return (tau - s.data->forces.tau).cwiseAbs().maxCoeff();
 }
-
-constexpr Cone kCones[] = {Cone::pyramidal, Cone::elliptic};
 
 // The creep of a load f_t is R_t f_t/b, and R_t is 10⁴ times smaller.
 TEST(NoSlip, BoundsTheCreepOfALoad) {
@@ -45,9 +44,9 @@ TEST(NoSlip, BoundsTheCreepOfALoad) {
         Scene soft = boxOnSlope(theta, mu, cone, false), stiff = boxOnSlope(theta, mu, cone, true);
         soft.steps(2000);
         stiff.steps(2000);
-        const double creep = downhillSpeed(soft, theta);
+        const double creep = speedDownhill(soft, theta);
         EXPECT_GT(creep, 1e-5);
-        const double ratio = downhillSpeed(stiff, theta) * StickingFriction::kStiffer / creep;
+        const double ratio = speedDownhill(stiff, theta) * StickingFriction::kStiffer / creep;
         if (share < 0.5 || cone == Cone::elliptic) {
           EXPECT_SMALL(ratio - 1.0, 1e-2) << "friction " << mu << ", share " << share;
         } else {
@@ -71,7 +70,7 @@ TEST(NoSlip, SlidesAsWithout) {
       contactForces(*stiff.data, contacts);
       for (const Snapshot::ContactForce& c : contacts) {
         const Vector3 friction = c.force - c.normalForce() * c.n_W;
-        if (downhillSpeed(stiff, theta) < 0.1 || c.normalForce() < 1e-3) continue;
+        if (speedDownhill(stiff, theta) < 0.1 || c.normalForce() < 1e-3) continue;
         ++pressed;
         EXPECT_LE(friction.norm(), mu * c.normalForce() * (1.0 + 1e-9));
         // A pyramid that slides slowly leaves some of the load to edges that do not rub.
@@ -81,7 +80,7 @@ TEST(NoSlip, SlidesAsWithout) {
       }
     }
     EXPECT_GT(pressed, 200);
-    EXPECT_SMALL(downhillSpeed(stiff, theta) / downhillSpeed(soft, theta) - 1.0, 1e-6);
+    EXPECT_SMALL(speedDownhill(stiff, theta) / speedDownhill(soft, theta) - 1.0, 1e-6);
   }
 }
 

@@ -5,13 +5,12 @@
 #include "tests/support/matchers.hpp"
 #include "tests/support/reference_solver.hpp"
 #include "tests/support/scene.hpp"
+#include "tests/validation/shared.hpp"
 
 namespace softgauss::test {
 namespace {
 
 // As many digits as were recorded.
-constexpr double kDigits12 = 2e-11;
-constexpr double kDigits15 = 1e-12;
 
 /// A sphere of 10 cm and 1 kg that slides and sinks into the ground.
 Scene slidingSphere() {

@@ -8,11 +8,12 @@
 #include "engine/constraints/contact_softness.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/scene.hpp"
+#include "tests/validation/shared.hpp"
 
 namespace softgauss::test {
 namespace {
 
-constexpr double kGravity = 9.81, kRadius = 0.1, kHalfHeight = 0.02;
+constexpr double kHalfHeight = 0.02;
 constexpr double kFrictions[] = {0.1, 0.5, 1.0, 2.0};
 constexpr double kMasses[] = {1e-3, 1.0, 1e3};  // [kg]
 
@@ -48,8 +49,6 @@ double Form::closedDepth(double mass, double share) const {
   return material.spring->restDepth > 0.0 ? material.spring->restDepth / share
                                           : mass * kGravity / share / material.spring->stiffness;
 }
-
-constexpr Cone kCones[] = {Cone::pyramidal, Cone::elliptic};
 
 /// A body on the ground that stays upright. A sphere on slides, so that it cannot roll; a box that
 /// is free, on its four corners.

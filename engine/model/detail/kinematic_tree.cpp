@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/model/detail/kinematic_tree.hpp"
 
+#include "engine/core/index.hpp"
+
 namespace softgauss::detail {
 namespace {
-
-std::size_t idx(int i) { return static_cast<std::size_t>(i); }
 
 /// " (line 12)", or nothing when the line is unknown.
 std::string atLine(const SourceLocation& where) {

@@ -7,31 +7,11 @@
 
 #include "engine/core/memory.hpp"
 #include "engine/core/rotation.hpp"
+#include "engine/core/spatial_matrix.hpp"
 #include "engine/step/integrators/tableau.hpp"
 
 namespace softgauss {
 namespace {
-
-Vector6 vec(const Motion& m) {
-  Vector6 x;
-  x << m.angular, m.linear;
-  return x;
-}
-
-Vector6 vec(const Force& f) {
-  Vector6 x;
-  x << f.moment, f.force;
-  return x;
-}
-
-Matrix6 matrix(const Inertia& I) {
-  Matrix6 m;
-  m.topLeftCorner<3, 3>() = I.I_O.matrix();
-  m.topRightCorner<3, 3>() = skew(I.h);
-  m.bottomLeftCorner<3, 3>() = -skew(I.h);
-  m.bottomRightCorner<3, 3>() = I.mass * Matrix3::Identity();
-  return m;
-}
 
 Quaternion quaternionAt(const VectorX& q, int i) { return {q[i], q[i + 1], q[i + 2], q[i + 3]}; }
 
@@ -128,9 +108,9 @@ void TreeMotion::derivative(const Model& model, const Plan& plan, const Tree& tr
     }
     const Inertia I =
         Inertia::fromCentral(body.mass, n.R * body.com + n.r, rotated(n.R, body.I_Bcm));
-    n.IA = matrix(I);
+    n.IA = spatialMatrix(I);
     if (coriolis)
-      n.pA = vec(crossForce(n.V, I * n.V));
+      n.pA = stacked(crossForce(n.V, I * n.V));
     else
       n.pA.setZero();
   }
@@ -147,7 +127,7 @@ void TreeMotion::derivative(const Model& model, const Plan& plan, const Tree& tr
     const Body& body = model.bodies[b];
     if (body.joint == JointKind::floating) break;  // the root
     Node& n = nodes_[b - first];
-    const Vector6 S = vec(n.S);
+    const Vector6 S = stacked(n.S);
     n.U.noalias() = n.IA * S;
     n.inverse = 1.0 / (S.dot(n.U) + (armature ? model.dofs[body.v].armature : 0.0) +
                        (damped_ ? 0.0 : atEnd_->inertia[body.v]));
@@ -157,7 +137,7 @@ void TreeMotion::derivative(const Model& model, const Plan& plan, const Tree& tr
     n.IA.noalias() -= (n.inverse * n.U) * n.U.transpose();
     parent.IA += n.IA;
     parent.pA += n.pA + n.U * (n.inverse * n.u);
-    if (coriolis) parent.pA.noalias() += n.IA * vec(n.c);
+    if (coriolis) parent.pA.noalias() += n.IA * stacked(n.c);
   }
   const Vector3 g = plan.gravity ? model.options.gravity : Vector3::Zero();
   for (int b = first; b < tree.bodyEnd; ++b) {
@@ -167,14 +147,14 @@ void TreeMotion::derivative(const Model& model, const Plan& plan, const Tree& tr
       n.A << Vector3::Zero(), -g;
     else
       n.A = nodes_[body.parent - first].A;
-    n.A += vec(n.c);
+    n.A += stacked(n.c);
     if (body.joint == JointKind::floating) {
       root(model, body);
       continue;
     }
     const double vdot = n.inverse * (n.u - n.U.dot(n.A));
     dv_[body.v] = vdot;
-    n.A += vdot * vec(n.S);
+    n.A += vdot * stacked(n.S);
   }
 }
 

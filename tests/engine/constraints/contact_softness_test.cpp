@@ -9,11 +9,10 @@
 #include "engine/step/snapshot.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/scene.hpp"
+#include "tests/support/tolerance.hpp"
 
 namespace softgauss::test {
 namespace {
-
-constexpr double kRounding = 1e-14;
 
 /// A ball of 1.5 kg on the ground, both of the same surface, one contact.
 Scene ball(const Material& material, double timestep = 0.002) {

@@ -2,20 +2,19 @@
 #include "engine/constraints/impedance.hpp"
 
 #include "tests/support/matchers.hpp"
+#include "tests/support/tolerance.hpp"
 
 namespace softgauss::test {
 namespace {
 
-constexpr double kRounding = 1e-15;
-
 TEST(Impedance, ClosedFormPoints) {
   const Impedance p;  // 0.9 → 0.95 over 1 mm, parabolas that meet in the middle
-  EXPECT_SMALL(impedanceAt(p, 0.0) - 0.9, kRounding);
-  EXPECT_SMALL(impedanceAt(p, -0.25e-3) - (0.9 + 0.05 * 0.125), kRounding);
-  EXPECT_SMALL(impedanceAt(p, -0.5e-3) - 0.925, kRounding);
-  EXPECT_SMALL(impedanceAt(p, -0.75e-3) - (0.9 + 0.05 * 0.875), kRounding);
-  EXPECT_SMALL(impedanceAt(p, -1e-3) - 0.95, kRounding);
-  EXPECT_SMALL(impedanceAt(p, -1.0) - 0.95, kRounding);
+  EXPECT_SMALL(impedanceAt(p, 0.0) - 0.9, kUnitRounding);
+  EXPECT_SMALL(impedanceAt(p, -0.25e-3) - (0.9 + 0.05 * 0.125), kUnitRounding);
+  EXPECT_SMALL(impedanceAt(p, -0.5e-3) - 0.925, kUnitRounding);
+  EXPECT_SMALL(impedanceAt(p, -0.75e-3) - (0.9 + 0.05 * 0.875), kUnitRounding);
+  EXPECT_SMALL(impedanceAt(p, -1e-3) - 0.95, kUnitRounding);
+  EXPECT_SMALL(impedanceAt(p, -1.0) - 0.95, kUnitRounding);
 }
 
 // Powers 1, 2 and 3 about other midpoints: y = xᵖ/mᵖ⁻¹ below m, mirrored above.
@@ -29,8 +28,8 @@ TEST(Impedance, FollowsThePowerCurve) {
     p.power = power;
     const double low = std::pow(0.2, power) / std::pow(0.3, power - 1);
     const double high = 1 - std::pow(0.4, power) / std::pow(0.7, power - 1);
-    EXPECT_SMALL(impedanceAt(p, -0.4) - (0.2 + 0.6 * low), kRounding) << power;
-    EXPECT_SMALL(impedanceAt(p, -1.2) - (0.2 + 0.6 * high), kRounding) << power;
+    EXPECT_SMALL(impedanceAt(p, -0.4) - (0.2 + 0.6 * low), kUnitRounding) << power;
+    EXPECT_SMALL(impedanceAt(p, -1.2) - (0.2 + 0.6 * high), kUnitRounding) << power;
   }
 }
 
@@ -73,7 +72,7 @@ TEST(Impedance, IsClampedAwayFromZeroAndOne) {
 TEST(Impedance, WithoutWidthIsTheMean) {
   Impedance p;
   p.width = 0.0;
-  EXPECT_SMALL(impedanceAt(p, -0.1) - 0.925, kRounding);
+  EXPECT_SMALL(impedanceAt(p, -0.1) - 0.925, kUnitRounding);
   p.width = 0.001;
   p.dMax = p.dMin;
   EXPECT_EQ(impedanceAt(p, -0.1), 0.9);
@@ -85,9 +84,9 @@ TEST(Softness, IsTheReferenceSpringDamper) {
   p.dampingRatio = 0.7;
   const double r = -0.5e-3, d = 0.925, A = 3.0;
   const Softness s = softnessAt(p, r, A, 0.002);
-  EXPECT_SMALL(s.R - (1 - d) / d * A, kRounding);
-  EXPECT_SMALL(s.stiffness / (d / std::pow(0.95 * 0.05 * 0.7, 2)) - 1.0, kRounding);
-  EXPECT_SMALL(s.damping / (2 / (0.95 * 0.05)) - 1.0, kRounding);
+  EXPECT_SMALL(s.R - (1 - d) / d * A, kUnitRounding);
+  EXPECT_SMALL(s.stiffness / (d / std::pow(0.95 * 0.05 * 0.7, 2)) - 1.0, kUnitRounding);
+  EXPECT_SMALL(s.damping / (2 / (0.95 * 0.05)) - 1.0, kUnitRounding);
   EXPECT_EQ(s.referenceAcceleration(0.3, r), -s.damping * 0.3 - s.stiffness * r);
 }
 
@@ -108,10 +107,10 @@ TEST(Softness, OfADirectReferenceIsThatReferenceWhereDeep) {
   p.direct = {3000.0, 40.0};
   for (const double timestep : {1e-4, 0.1}) {
     const Softness deep = softnessAt(p, -1.0, 3.0, timestep);
-    EXPECT_SMALL(0.95 * deep.stiffness / 3000.0 - 1.0, kRounding);
-    EXPECT_SMALL(0.95 * deep.damping / 40.0 - 1.0, kRounding);
+    EXPECT_SMALL(0.95 * deep.stiffness / 3000.0 - 1.0, kUnitRounding);
+    EXPECT_SMALL(0.95 * deep.damping / 40.0 - 1.0, kUnitRounding);
     const Softness shallow = softnessAt(p, 0.0, 3.0, timestep);
-    EXPECT_SMALL(shallow.stiffness / deep.stiffness - 0.9 / 0.95, kRounding);
+    EXPECT_SMALL(shallow.stiffness / deep.stiffness - 0.9 / 0.95, kUnitRounding);
     EXPECT_EQ(shallow.damping, deep.damping);
     EXPECT_EQ(shallow.R, softnessAt(Impedance{}, 0.0, 3.0, timestep).R);
   }
@@ -186,10 +185,10 @@ TEST(Softness, TakesAVelocityAtMostOnceAStep) {
   for (const double d : {1e-4, 0.01, 0.1, 0.5, 0.9, 0.95, 0.9999})
     for (const double timeConstant : {1e-5, 0.004, 0.005, 0.02, 1.0}) {
       const Softness own = taken(d, timeConstant, true), mujoco = taken(d, timeConstant, false);
-      EXPECT_LE(h * own.damping, 1.1 * (1.0 + kRounding));
-      EXPECT_SMALL(own.stiffness / own.R / (mujoco.stiffness / mujoco.R) - 1.0, kRounding);
-      EXPECT_SMALL(own.damping / own.R / (mujoco.damping / mujoco.R) - 1.0, kRounding);
-      EXPECT_SMALL(own.perInertia * 3.0 / own.R - 1.0, kRounding);
+      EXPECT_LE(h * own.damping, 1.1 * (1.0 + kUnitRounding));
+      EXPECT_SMALL(own.stiffness / own.R / (mujoco.stiffness / mujoco.R) - 1.0, kUnitRounding);
+      EXPECT_SMALL(own.damping / own.R / (mujoco.damping / mujoco.R) - 1.0, kUnitRounding);
+      EXPECT_SMALL(own.perInertia * 3.0 / own.R - 1.0, kUnitRounding);
       if (h * mujoco.damping <= 1.1) {
         EXPECT_EQ(own.R, mujoco.R);
         EXPECT_EQ(own.damping, mujoco.damping);
@@ -221,8 +220,8 @@ TEST(Softness, OfADirectReferenceIsThatOfItsTimeConstant) {
   direct.direct = {1.0 / std::pow(0.03 * 0.6, 2), 2.0 / 0.03};
   for (const double r : {0.0, -0.3e-3, -0.1}) {
     const Softness a = softnessAt(standard, r, 2.0, 0.002), b = softnessAt(direct, r, 2.0, 0.002);
-    EXPECT_SMALL(a.stiffness / b.stiffness - 1.0, kRounding);
-    EXPECT_SMALL(a.damping / b.damping - 1.0, kRounding);
+    EXPECT_SMALL(a.stiffness / b.stiffness - 1.0, kUnitRounding);
+    EXPECT_SMALL(a.damping / b.damping - 1.0, kUnitRounding);
   }
 }
 

@@ -3,12 +3,12 @@
 
 #include "tests/support/matchers.hpp"
 #include "tests/support/random.hpp"
+#include "tests/support/tolerance.hpp"
 
 namespace softgauss::test {
 namespace {
 
 // A few roundings of numbers of size 1.
-constexpr double kRounding = 1e-15;
 
 struct NamedVector {
   const char* name;
@@ -35,11 +35,11 @@ TEST(QuaternionExp, IsUnitAndRotatesByTheVector) {
   for (const auto& [name, phi] : rotationVectors()) {
     SCOPED_TRACE(name);
     const Quaternion q = quaternionExp(phi);
-    EXPECT_SMALL(q.norm() - 1.0, kRounding);
+    EXPECT_SMALL(q.norm() - 1.0, kUnitRounding);
     const double angle = phi.norm();
     const Matrix3 R = angle > 0.0 ? Eigen::AngleAxisd(angle, phi / angle).toRotationMatrix()
                                   : Matrix3(Matrix3::Identity());
-    EXPECT_APPROX(q.toRotationMatrix(), R, 2 * kRounding);
+    EXPECT_APPROX(q.toRotationMatrix(), R, 2 * kUnitRounding);
   }
 }
 
@@ -47,9 +47,9 @@ TEST(QuaternionLog, InvertsExp) {
   for (const auto& [name, phi] : rotationVectors()) {
     SCOPED_TRACE(name);
     const Vector3 back = quaternionLog(quaternionExp(phi));
-    EXPECT_APPROX(back, phi, 4 * kRounding);
+    EXPECT_APPROX(back, phi, 4 * kUnitRounding);
     // Also relative to a tiny vector.
-    EXPECT_SMALL((back - phi).norm() / std::max(phi.norm(), 1e-300), 4 * kRounding);
+    EXPECT_SMALL((back - phi).norm() / std::max(phi.norm(), 1e-300), 4 * kUnitRounding);
   }
 }
 
@@ -58,7 +58,7 @@ TEST(QuaternionLog, TakesTheShorterRotation) {
     SCOPED_TRACE(name);
     Quaternion q = quaternionExp(phi);
     q.coeffs() *= -1.0;
-    EXPECT_APPROX(quaternionLog(q), phi, 4 * kRounding);
+    EXPECT_APPROX(quaternionLog(q), phi, 4 * kUnitRounding);
   }
 }
 
@@ -68,7 +68,7 @@ TEST(QuaternionExp, OfParallelVectorsAdds) {
     const Vector3 n = random.direction();
     const double a = random.uniform(-3.0, 3.0), b = random.uniform(-3.0, 3.0);
     const Quaternion product = quaternionExp(a * n) * quaternionExp(b * n);
-    EXPECT_APPROX(product.coeffs(), quaternionExp((a + b) * n).coeffs(), 2 * kRounding);
+    EXPECT_APPROX(product.coeffs(), quaternionExp((a + b) * n).coeffs(), 2 * kUnitRounding);
   }
 }
 
@@ -77,25 +77,25 @@ TEST(AxisRotation, IsExpOfTheAxis) {
   for (const double angle : {0.0, 1e-8, 0.7, -2.0, M_PI, 7.0}) {
     const Vector3 n = random.direction();
     const Matrix3 R = axisRotation(n, angle);
-    EXPECT_APPROX(R, quaternionExp(angle * n).toRotationMatrix(), 4 * kRounding);
-    EXPECT_APPROX(R * R.transpose(), Matrix3::Identity(), 4 * kRounding);
+    EXPECT_APPROX(R, quaternionExp(angle * n).toRotationMatrix(), 4 * kUnitRounding);
+    EXPECT_APPROX(R * R.transpose(), Matrix3::Identity(), 4 * kUnitRounding);
   }
 }
 
 TEST(Skew, IsTheCrossProduct) {
   Random random(4);
   const Vector3 a = random.vector3(2.0), b = random.vector3(2.0);
-  EXPECT_APPROX(skew(a) * b, a.cross(b), kRounding);
+  EXPECT_APPROX(skew(a) * b, a.cross(b), kUnitRounding);
 }
 
 // A URDF's rpy turns about fixed axes: first roll about x, then pitch about y, then yaw about z.
 TEST(RpyRotation, TurnsAboutFixedAxesInOrder) {
   const double h = M_PI / 2;
   // x goes along z's plane: roll keeps x, pitch takes x to −z, yaw keeps z.
-  EXPECT_APPROX(rpyRotation({0.3, h, 0.4}) * Vector3::UnitX(), -Vector3::UnitZ(), kRounding);
+  EXPECT_APPROX(rpyRotation({0.3, h, 0.4}) * Vector3::UnitX(), -Vector3::UnitZ(), kUnitRounding);
   // roll takes y to z, pitch takes z to x, yaw takes x to y.
-  EXPECT_APPROX(rpyRotation({h, h, h}) * Vector3::UnitY(), Vector3::UnitY(), kRounding);
-  EXPECT_APPROX(rpyRotation({0, 0, h}) * Vector3::UnitX(), Vector3::UnitY(), kRounding);
+  EXPECT_APPROX(rpyRotation({h, h, h}) * Vector3::UnitY(), Vector3::UnitY(), kUnitRounding);
+  EXPECT_APPROX(rpyRotation({0, 0, h}) * Vector3::UnitX(), Vector3::UnitY(), kUnitRounding);
 }
 
 TEST(FrameFromNormal, IsRightHandedWithTheNormalFirst) {
@@ -103,9 +103,9 @@ TEST(FrameFromNormal, IsRightHandedWithTheNormalFirst) {
   for (int i = 0; i < 100; ++i) {
     const Vector3 n = i == 0 ? Vector3(Vector3::UnitY()) : random.direction();
     const Matrix3 R = frameFromNormal(n);
-    EXPECT_APPROX(R.col(0), n, kRounding);
-    EXPECT_APPROX(R.transpose() * R, Matrix3::Identity(), 4 * kRounding);
-    EXPECT_SMALL(R.determinant() - 1.0, 4 * kRounding);
+    EXPECT_APPROX(R.col(0), n, kUnitRounding);
+    EXPECT_APPROX(R.transpose() * R, Matrix3::Identity(), 4 * kUnitRounding);
+    EXPECT_SMALL(R.determinant() - 1.0, 4 * kUnitRounding);
   }
 }
 

@@ -4,11 +4,10 @@
 #include "engine/core/rotation.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/random.hpp"
+#include "tests/support/tolerance.hpp"
 
 namespace softgauss::test {
 namespace {
-
-constexpr double kRounding = 1e-14;  // a few roundings of sums of products of size 10
 
 Motion randomMotion(Random& r) { return {r.vector3(2.0), r.vector3(2.0)}; }
 Force randomForce(Random& r) { return {r.vector3(2.0), r.vector3(2.0)}; }

@@ -10,19 +10,20 @@
 namespace softgauss::test {
 namespace {
 
-constexpr int kSeeds = 15;
+constexpr int kForests = 15;
 // Central differences with ε = 1e-6 of positions of a few m: rounding 1e-16·5/1e-6.
 constexpr double kDifferenceTolerance = 3e-9;
 
 using Matrix3X = Eigen::Matrix<double, 3, Eigen::Dynamic>;
 
 /// A random forest at a random state with a point fixed to each of its bodies.
-struct Probe {
+struct MovedForest {
   Model model;
   State state;
   Kinematics k;
 
-  explicit Probe(std::uint64_t seed) : model(randomForest(seed).build()), state(model), k(model) {
+  explicit MovedForest(std::uint64_t seed)
+      : model(randomForest(seed).build()), state(model), k(model) {
     Random random(seed);
     state = randomState(model, random);
     computeKinematics(model, state, k);
@@ -39,8 +40,8 @@ struct Probe {
 };
 
 TEST(Jacobian, IsDerivativeOfPose) {
-  for (int seed = 0; seed < kSeeds; ++seed) {
-    const Probe p(seed);
+  for (int seed = 0; seed < kForests; ++seed) {
+    const MovedForest p(seed);
     Matrix3X Jp(3, p.model.nv), Jr(3, p.model.nv);
     for (int b = 1; b < p.model.bodyCount(); ++b) {
       pointJacobian(p.model, p.k, b, p.point(b), Jp);
@@ -61,8 +62,8 @@ TEST(Jacobian, IsDerivativeOfPose) {
 }
 
 TEST(Velocity, IsJacobianTimesV) {
-  for (int seed = 0; seed < kSeeds; ++seed) {
-    const Probe p(seed);
+  for (int seed = 0; seed < kForests; ++seed) {
+    const MovedForest p(seed);
     Matrix3X J(3, p.model.nv);
     for (int b = 1; b < p.model.bodyCount(); ++b) {
       pointJacobian(p.model, p.k, b, p.point(b), J);
@@ -74,8 +75,8 @@ TEST(Velocity, IsJacobianTimesV) {
 }
 
 TEST(Velocity, IsDerivativeOfPosition) {
-  for (int seed = 0; seed < kSeeds; ++seed) {
-    const Probe p(seed);
+  for (int seed = 0; seed < kForests; ++seed) {
+    const MovedForest p(seed);
     for (int b = 1; b < p.model.bodyCount(); ++b) {
       const VectorX rate = alongMotion(p.model, p.state.q, p.state.v, [&](const VectorX& q) {
         return VectorX(p.poseAt(q, b) * Vector3(0.1, -0.2, 0.3));
@@ -87,8 +88,8 @@ TEST(Velocity, IsDerivativeOfPosition) {
 
 // J̇ v: the acceleration of a point of the body when v stays the same.
 TEST(BiasAcceleration, IsDerivativeOfVelocityAtConstantV) {
-  for (int seed = 0; seed < kSeeds; ++seed) {
-    const Probe p(seed);
+  for (int seed = 0; seed < kForests; ++seed) {
+    const MovedForest p(seed);
     const VectorX zero = VectorX::Zero(p.model.nv);
     for (int b = 1; b < p.model.bodyCount(); ++b) {
       const VectorX rate = alongTrajectory(p.model, p.state, zero, [&](const State& s) {
@@ -103,7 +104,7 @@ TEST(BiasAcceleration, IsDerivativeOfVelocityAtConstantV) {
 }
 
 TEST(Kinematics, OfTheWorldIsAtRest) {
-  const Probe p(1);
+  const MovedForest p(1);
   Matrix3X J = Matrix3X::Ones(3, p.model.nv);
   pointJacobian(p.model, p.k, 0, Vector3(1, 2, 3), J);
   EXPECT_EQ(J, Matrix3X::Zero(3, p.model.nv));

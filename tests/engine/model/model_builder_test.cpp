@@ -6,11 +6,10 @@
 #include "tests/support/matchers.hpp"
 #include "tests/support/sample_models.hpp"
 #include "tests/support/scene.hpp"
+#include "tests/support/tolerance.hpp"
 
 namespace softgauss::test {
 namespace {
-
-constexpr double kRounding = 1e-14;
 
 // ---- Merging
 // -------------------------------------------------------------------------------------

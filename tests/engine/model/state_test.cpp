@@ -3,11 +3,10 @@
 
 #include "tests/support/matchers.hpp"
 #include "tests/support/scene.hpp"
+#include "tests/support/tolerance.hpp"
 
 namespace softgauss::test {
 namespace {
-
-constexpr double kRounding = 1e-14;
 
 TEST(State, StartsAtRestInTheInitialConfiguration) {
   const Model model = humanoid().build();

@@ -21,7 +21,7 @@ ModelBuilder bareChain() {
   return builder;
 }
 
-struct Case {
+struct EffectCase {
   Effect effect;
   std::function<void(ModelBuilder&)> call;  ///< adds what calls for the effect
   bool rows = false;                        ///< the effect makes rows, and does so at once
@@ -37,8 +37,8 @@ void limit(JointSpec& joint, double lower) {
   joint.upper = 1.0;
 }
 
-const std::vector<Case>& cases() {
-  static const std::vector<Case> all = {
+const std::vector<EffectCase>& cases() {
+  static const std::vector<EffectCase> all = {
       {Effect::gravity, [](ModelBuilder& b) { b.options.gravity = Vector3(0, 0, -9.81); }},
       {Effect::damping, [](ModelBuilder& b) { onJoint(b, [](JointSpec& j) { j.damping = 0.1; }); }},
       {Effect::spring,
@@ -117,7 +117,7 @@ TEST(Plan, CollisionWithoutPairsHoldsNothing) {
 TEST(Plan, CalledEffectAloneIsCalled) {
   Scene bare = moving(bareChain());
   bare.steps(10);
-  for (const Case& c : cases()) {
+  for (const EffectCase& c : cases()) {
     ModelBuilder with = bareChain();
     c.call(with);
     Scene on = moving(with);
@@ -128,7 +128,7 @@ TEST(Plan, CalledEffectAloneIsCalled) {
     if (c.rows) {
       EXPECT_GT(useOf(on, c.effect).rows, 0) << name;
     }
-    for (const Case& other : cases()) {
+    for (const EffectCase& other : cases()) {
       if (other.effect == c.effect) continue;
       EXPECT_EQ(useOf(on, other.effect).calls, 0) << effectName(other.effect) << " by " << name;
       EXPECT_EQ(useOf(on, other.effect).bytes, 0u) << effectName(other.effect) << " by " << name;
