@@ -6,6 +6,7 @@
 #include <random>
 #include <vector>
 
+#include "fuzz.hpp"
 #include "io/urdf.hpp"
 #include "sample_urdf.hpp"
 #include "temp_folder.hpp"
@@ -54,7 +55,7 @@ TEST(UrdfFuzz, MutatedFilesLoadOrThrowModelError) {
   const TempFolder folder;
   std::mt19937 random(20240601);
   int loaded = 0, refused = 0;
-  for (int i = 0; i < 2000; ++i) {
+  for (int i = 0; i < 2000 * fuzzScale(); ++i) {
     const std::string text = mutatedUrdf(kSampleUrdf, random);
     const auto file = folder.write("fuzz.urdf", text);
     try {
