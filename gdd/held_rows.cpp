@@ -42,7 +42,7 @@ void HeldRows::holdOnRay(Constraints& constraints) const {
 void HeldRows::projectPrepared(VectorX& d) {
   // Cholesky of S = J H⁻¹ Jᵀ, leaving out rows that depend on those before (a pyramid's four
   // edges at their knots have rank three).
-  constexpr double kDependentPivot = 1e-9;
+  constexpr double kDependent = 1e-9;
   for (int i = 0; i < count_; ++i) {
     Row& row = rows_[i];
     row.multiplier = row.J.dot(d) + row.drift;
@@ -56,7 +56,7 @@ void HeldRows::projectPrepared(VectorX& d) {
     const double diagonal = row.J.dot(row.HinvJ);
     double pivot = diagonal;
     for (int k = 0; k < i; ++k) pivot -= S_(i, k) * S_(i, k);
-    row.dependent = !(pivot > kDependentPivot * diagonal);
+    row.dependent = !(pivot > kDependent * diagonal);
     S_(i, i) = row.dependent ? 1.0 : std::sqrt(pivot);
   }
   // μ = S⁻¹ (J d + x)

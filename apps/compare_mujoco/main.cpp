@@ -11,7 +11,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -20,6 +19,7 @@
 #include "apps/compare_mujoco/mujoco.hpp"
 #include "apps/compare_mujoco/urdf_copy.hpp"
 #include "apps/compare_mujoco/urdf_reading.hpp"
+#include "apps/shared/wall_clock.hpp"
 #include "collision/lowest_point.hpp"
 #include "collision/scene_contacts.hpp"
 #include "engine/engine.hpp"
@@ -103,10 +103,9 @@ struct Duel {
 
   template <class F>
   static void time(std::vector<double>& out, F&& work) {
-    const auto start = std::chrono::steady_clock::now();
+    const auto start = app::Clock::now();
     work();
-    out.push_back(1e6 *
-                  std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    out.push_back(1e6 * app::secondsSince(start));
   }
   Json json() const {
     const double a = percentile(ours, 0.5), b = percentile(mujoco, 0.5);

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "engine/constraints/contact.hpp"
+#include "engine/core/index.hpp"
 #include "engine/dynamics/kinematics.hpp"
 
 namespace softgauss::app {
@@ -83,8 +84,6 @@ class Writer {
   }
 
  private:
-  static std::size_t idx(int i) { return static_cast<std::size_t>(i); }
-
   template <class... T>
   void line(fmt::format_string<T...> format, T&&... values) {
     fmt::format_to(std::back_inserter(out_), format, std::forward<T>(values)...);

@@ -2,7 +2,6 @@
 #include "apps/simulate_gdd/trial.hpp"
 
 #include <algorithm>
-#include <chrono>
 
 #include "apps/shared/median.hpp"
 #include "apps/shared/wall_clock.hpp"

@@ -9,7 +9,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <chrono>
 #include <fstream>
 #include <functional>
 #include <map>
@@ -17,6 +16,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/shared/median.hpp"
+#include "apps/shared/wall_clock.hpp"
 #include "apps/step_benchmark/crowds.hpp"
 #include "apps/step_benchmark/in_turn.hpp"
 #include "apps/step_benchmark/ladder.hpp"
@@ -52,9 +52,9 @@ class Recorder {
     row_.q = before.q;
     row_.v = before.v;
     row_.u = scene.data->forces.tau;
-    const auto start = std::chrono::steady_clock::now();
+    const auto start = app::Clock::now();
     scene.recording->addStep(row_, *scene.data);
-    seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    seconds_ += app::secondsSince(start);
     ++steps_;
   }
   double mean() const { return 1e6 * seconds_ / steps_; }
@@ -79,10 +79,9 @@ void timeScene(benchmark::State& state, const std::function<std::unique_ptr<Scen
     for (int i = 0; i < kPieces * kTimedSteps; ++i) {
       if (i % kTimedSteps == 0) scene->restore(saved);
       if (scene->recording) before = scene->state;
-      const auto start = std::chrono::steady_clock::now();
+      const auto start = app::Clock::now();
       scene->step();
-      const double seconds =
-          std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+      const double seconds = app::secondsSince(start);
       if (scene->recording) recorder.addStep(*scene, before);
       const StepStats& stats = scene->stats();
       values["step.us"].push_back(1e6 * seconds);

@@ -7,8 +7,6 @@
 #include "engine/core/index.hpp"
 
 namespace softgauss::collision::detail {
-namespace {}  // namespace
-
 Neighbours::Neighbours(const Model& model, const Units& units, HullCache& hulls)
     : set_(model, hulls),
       units_(units),

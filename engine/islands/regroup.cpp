@@ -9,8 +9,6 @@
 #include "engine/islands/union_find.hpp"
 
 namespace softgauss {
-namespace {}  // namespace
-
 /// Makes an island of each set of the units of `old` islands, unless there is such a one already.
 void Islands::makeIslands(const std::vector<Island*>& old, UnionFind& sets) {
   std::map<int, std::vector<int>> groups;  // by first unit

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "engine/core/index.hpp"
 #include "engine/model/capsule_recognition.hpp"
 #include "engine/model/detail/contact_pairs.hpp"
 #include "engine/model/detail/equalities.hpp"
@@ -169,8 +170,6 @@ class Assembler {
   }
 
  private:
-  static std::size_t idx(int i) { return static_cast<std::size_t>(i); }
-
   int addBody(JointKind kind, int parent, const Transform& X_PB, const Vector3& axis,
               const std::string& jointName, int link) {
     Body body;

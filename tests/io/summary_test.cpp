@@ -7,19 +7,12 @@
 #include <regex>
 
 #include "io/explain.hpp"
-#include "io/urdf.hpp"
-#include "sample_urdf.hpp"
-#include "temp_folder.hpp"
+#include "sample_goals.hpp"
 
 namespace softgauss::io {
 namespace {
 
 using nlohmann::ordered_json;
-
-Model sampleRobot() {
-  const TempFolder folder;
-  return loadUrdf(folder.write("r.urdf", kSampleUrdf));
-}
 
 /// 100 steps whose numbers are 1 to 100, and a final state.
 Summary sampleSummary(const Model& m) {
@@ -54,7 +47,7 @@ std::vector<std::string> keysOf(const ordered_json& object) {
 }
 
 TEST(Summary, OptionsAreThoseOfTheModel) {
-  Model model = sampleRobot();
+  Model model = sampleModel();
   model.options.cone = Cone::elliptic;
   model.options.impedanceRatio = 4.0;
   model.options.noSlip = model.options.exactDiagonal = true;
@@ -66,7 +59,7 @@ TEST(Summary, OptionsAreThoseOfTheModel) {
 }
 
 TEST(Summary, HasTheKeysOfTheInterfaceInOrder) {
-  const ordered_json json = ordered_json::parse(sampleSummary(sampleRobot()).json());
+  const ordered_json json = ordered_json::parse(sampleSummary(sampleModel()).json());
   using Keys = std::vector<std::string>;
   EXPECT_EQ(keysOf(json), (Keys{"version",
                                 "model",
@@ -106,7 +99,7 @@ TEST(Summary, HasTheKeysOfTheInterfaceInOrder) {
 }
 
 TEST(Summary, CountsAndMeasures) {
-  const ordered_json json = ordered_json::parse(sampleSummary(sampleRobot()).json());
+  const ordered_json json = ordered_json::parse(sampleSummary(sampleModel()).json());
   EXPECT_EQ(json["model"]["name"], "sample");
   EXPECT_EQ(json["model"]["links"], 2);
   EXPECT_EQ(json["model"]["dof"], 7);
@@ -135,7 +128,7 @@ TEST(Summary, PercentilesAreByNearestRank) {
 }
 
 TEST(Summary, OfNoStepsAndOddNamesIsStillJson) {
-  Model m = sampleRobot();
+  Model m = sampleModel();
   m.name = "caf\xe9 \"x\"";
   const ordered_json json = ordered_json::parse(Summary(m).json());
   EXPECT_EQ(json["steps"], 0);
@@ -144,7 +137,7 @@ TEST(Summary, OfNoStepsAndOddNamesIsStillJson) {
 
 TEST(Summary, IsWrittenOrRefused) {
   const TempFolder folder;
-  const Summary summary = sampleSummary(sampleRobot());
+  const Summary summary = sampleSummary(sampleModel());
   summary.write(folder.path() / "s.json");
   EXPECT_GT(std::filesystem::file_size(folder.path() / "s.json"), 100u);
   EXPECT_THROW(summary.write(folder.path() / "none" / "s.json"), ModelError);
@@ -160,7 +153,7 @@ TEST(GoalOutcome, AGoalThatWasThereHasACentimetreToLose) {
 }
 
 TEST(SummaryTable, EndsInAVerdict) {
-  Summary summary = sampleSummary(sampleRobot());
+  Summary summary = sampleSummary(sampleModel());
   EXPECT_TRUE(summary.table().ends_with("completed: reach arm: 90 % of the way, 50 mm left\n"))
       << summary.table();
   summary.goals.push_back({"reach base", 0.1, 0.2});
@@ -197,12 +190,12 @@ TEST(Explain, TellsHowManyRowsThereMayBe) {
   ExplainContext context;
   context.costs["gravity"] = {};
   context.costs["joint_limit"] = {.rows = 1};
-  const std::string text = explain(sampleRobot(), context);
+  const std::string text = explain(sampleModel(), context);
   EXPECT_TRUE(std::regex_search(text, std::regex("joint_limit +1 +1 "))) << text;
 }
 
 TEST(EffectNotes, FollowTheSceneAndTheSwitches) {
-  Model m = sampleRobot();
+  Model m = sampleModel();
   const auto note = [&](const std::string& name) {
     for (const EffectNote& n : effectNotes(m))
       if (n.name == name) return n;

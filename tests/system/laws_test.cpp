@@ -3,21 +3,19 @@
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <fstream>
+#include <algorithm>
 #include <regex>
 #include <set>
-#include <sstream>
+
+#include "tests/system/source_rules.hpp"
 
 namespace softgauss::test {
 namespace {
 
-namespace fs = std::filesystem;
-
-std::string textOf(const fs::path& file) {
-  std::ostringstream text;
-  text << std::ifstream(file).rdbuf();
-  return text.str();
+std::string textOf(const SourceFile& file) {
+  std::string text;
+  for (const std::string& line : file.lines) text += line + "\n";
+  return text;
 }
 
 /// "Suite.Name" of every test below tests/.
@@ -25,9 +23,9 @@ std::set<std::string> namesOfTests() {
   static const std::regex test(
       R"(\nTEST(?:_F|_P)?\((\w+),\s*(\w+)\)|\nTYPED_TEST\((\w+),\s*(\w+)\))");
   std::set<std::string> names;
-  for (const auto& entry : fs::recursive_directory_iterator(SOFTGAUSS_SOURCE_DIR "/tests")) {
-    if (!entry.path().string().ends_with("_test.cpp")) continue;
-    const std::string text = textOf(entry.path());
+  for (const SourceFile& file : tree()) {
+    if (!file.path.ends_with("_test.cpp")) continue;
+    const std::string text = textOf(file);
     for (std::sregex_iterator m(text.begin(), text.end(), test), end; m != end; ++m)
       names.insert((*m)[1].str() + (*m)[3].str() + "." + (*m)[2].str() + (*m)[4].str());
   }
@@ -59,7 +57,11 @@ bool exists(const NamedTest& test, const std::set<std::string>& names) {
 
 TEST(TableOfLaws, NamesTestsThatExist) {
   const std::set<std::string> names = namesOfTests();
-  const std::vector<NamedTest> laws = testsOfLaws(textOf(SOFTGAUSS_SOURCE_DIR "/docs/testing.md"));
+  const auto page = std::find_if(tree().begin(), tree().end(), [](const SourceFile& file) {
+    return file.path == "docs/testing.md";
+  });
+  ASSERT_NE(page, tree().end());
+  const std::vector<NamedTest> laws = testsOfLaws(textOf(*page));
   EXPECT_GT(laws.size(), 25u);
   for (const NamedTest& law : laws) EXPECT_TRUE(exists(law, names)) << law.name;
 }

@@ -119,6 +119,11 @@ std::vector<SourceFile> readTree(const std::string& root) {
   return files;
 }
 
+const std::vector<SourceFile>& tree() {
+  static const std::vector<SourceFile> files = readTree(SOFTGAUSS_SOURCE_DIR);
+  return files;
+}
+
 Complaints checkIncludes(const SourceFile& file) {
   static const std::regex pattern("^\\s*#\\s*include\\s*([\"<])([^\">]+)[\">].*");
   Complaints complaints;

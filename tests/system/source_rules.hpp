@@ -28,6 +28,9 @@ using Complaints = std::vector<std::string>;  ///< `path:line: what is wrong`
 /// the recorded logs.
 std::vector<SourceFile> readTree(const std::string& root);
 
+/// The tree that these tests were built from, read once.
+const std::vector<SourceFile>& tree();
+
 /// The directions of inclusion, and which libraries a folder may see.
 Complaints checkIncludes(const SourceFile& file);
 

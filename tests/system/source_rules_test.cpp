@@ -8,11 +8,6 @@
 namespace softgauss::test {
 namespace {
 
-const std::vector<SourceFile>& tree() {
-  static const std::vector<SourceFile> files = readTree(SOFTGAUSS_SOURCE_DIR);
-  return files;
-}
-
 template <class Rule>
 void expectHolds(const Rule& rule) {
   for (const SourceFile& file : tree())
