@@ -10,13 +10,14 @@
 namespace softgauss::collision {
 namespace {
 
-/// The link name that scenes give to what stands in the world by itself.
-constexpr std::string_view kSceneLink = "world";
-
 bool isPlane(const Geometry& g) { return g.shape.kind == ShapeKind::plane; }
 
-/// Part of a robot, as opposed to the ground and other scenery.
-bool isRobotPart(const Geometry& g) { return g.body != 0 || (!isPlane(g) && g.link != kSceneLink); }
+/// Both of one robot, whose designer may let them overlap: they move, or one is of the base that
+/// carries the other. Scenery and the bases of other robots are of no robot here.
+bool ofOneRobot(const Model& model, const Geometry& a, const Geometry& b) {
+  if (a.body == 0 || b.body == 0) return a.base >= 0 && a.base == b.base;
+  return contactEffect(model, a.body, b.body) == Effect::selfCollision;
+}
 
 bool hasGeometry(const Model& model, int body) {
   return std::any_of(model.geometries.begin(), model.geometries.end(),
@@ -52,10 +53,6 @@ bool adjacentThroughParents(const std::vector<int>& parents, int a, int b) {
 
 }  // namespace
 
-bool areAdjacent(const Model& model, int bodyA, int bodyB) {
-  return solidParent(model, bodyA) == bodyB || solidParent(model, bodyB) == bodyA;
-}
-
 Effect contactEffect(const Model& model, int bodyA, int bodyB) {
   if (bodyA == 0 || bodyB == 0) return Effect::groundContact;
   const bool oneRobot = model.bodies[static_cast<std::size_t>(bodyA)].robot ==
@@ -89,12 +86,8 @@ PairFilter makePairFilter(const Model& model, const InitialDistance& initialDist
     ExcludedPair& pair = excluded[links];
     pair.linkA = links[0].second;
     pair.linkB = links[1].second;
+    pair.withBase = a.body == 0 || b.body == 0;
     return pair;
-  };
-
-  const auto mayOverlapByDesign = [&](const Geometry& a, const Geometry& b) {
-    return isRobotPart(a) && isRobotPart(b) &&
-           contactEffect(model, a.body, b.body) != Effect::objectContact;
   };
 
   // First pass: what no configuration can change, and the overlaps in the initial one.
@@ -108,7 +101,8 @@ PairFilter makePairFilter(const Model& model, const InitialDistance& initialDist
         ++filter.rigidPairs;
         continue;
       }
-      if (isRobotPart(a) && isRobotPart(b) && adjacentThroughParents(parents, a.body, b.body)) {
+      const bool oneRobot = ofOneRobot(model, a, b);
+      if (oneRobot && adjacentThroughParents(parents, a.body, b.body)) {
         ExcludedPair& pair = entry(a, b);
         pair.reason = ExclusionReason::adjacent;
         ++pair.geometryPairs;
@@ -124,7 +118,7 @@ PairFilter makePairFilter(const Model& model, const InitialDistance& initialDist
         continue;
       }
       candidates.push_back(pair);
-      if (!mayOverlapByDesign(a, b)) continue;
+      if (!oneRobot) continue;
       const double depth = -initialDistance(pair);
       if (depth <= kInitialOverlap) continue;
       ExcludedPair& overlap = entry(a, b);
@@ -137,7 +131,7 @@ PairFilter makePairFilter(const Model& model, const InitialDistance& initialDist
   for (const GeometryPair& pair : candidates) {
     const Geometry& a = model.geometries[static_cast<std::size_t>(pair.a)];
     const Geometry& b = model.geometries[static_cast<std::size_t>(pair.b)];
-    if (mayOverlapByDesign(a, b)) {
+    if (ofOneRobot(model, a, b)) {
       const auto found = excluded.find(linkPair(model, a, b));
       if (found != excluded.end() && found->second.reason == ExclusionReason::overlapsInitially) {
         ++found->second.geometryPairs;
@@ -162,6 +156,19 @@ std::string describe(const ExcludedPair& pair) {
   }
   return text + " (" + std::to_string(pair.geometryPairs) +
          (pair.geometryPairs == 1 ? " pair)" : " pairs)");
+}
+
+std::optional<std::string> baseWarning(const PairFilter& filter) {
+  constexpr int kMostTold = 8;
+  std::string told;
+  int count = 0;
+  for (const ExcludedPair& pair : filter.excluded)
+    if (pair.withBase && ++count <= kMostTold) told += (count > 1 ? "; " : "") + describe(pair);
+  if (count == 0) return std::nullopt;
+  if (count > kMostTold)
+    told += " and " + std::to_string(count - kMostTold) + " more, which --explain lists";
+  return "never tested for contact, as parts of one robot with its fixed base: " + told +
+         "; what shall stop the robot belongs to another object, or to a link fixed to 'world'";
 }
 
 }  // namespace softgauss::collision

@@ -6,10 +6,12 @@
 /// A pair is left out when
 ///   rigid      both geometries are on one body, or both are fixed to the world;
 ///   adjacent   a joint connects their bodies. Intermediate bodies without mass and shapes are
-///              looked through: a hip of three hinges still joins thigh and pelvis. The static base
-///              of a robot is adjacent to the first body that moves on it; a ground plane and a
-///              floating base are adjacent to nothing;
-///   overlap    they belong to two links of one robot that overlap in the initial configuration.
+///              looked through: a hip of three hinges still joins thigh and pelvis. The fixed base
+///              of a robot is adjacent to the first body that moves on it. Scenery (the ground,
+///              fixed objects, the shapes of a link called world and of links fixed to it that
+///              carry no other) and the bases of other robots are adjacent to nothing;
+///   overlap    they belong to two links of one robot, its fixed base among them, that overlap in
+///              the initial configuration.
 ///              Designers let the shapes of neighbouring links run into each other; a contact there
 ///              would push the robot apart from the first step on. All geometries of two such links
 ///              are left out, since the ones beside the overlap mean as little;
@@ -18,8 +20,8 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "engine/model/model.hpp"
@@ -42,6 +44,7 @@ struct ExcludedPair {
   ExclusionReason reason = ExclusionReason::adjacent;
   int geometryPairs = 0;  ///< how many pairs of geometries this concerns
   double depth = 0.0;     ///< deepest overlap in the initial configuration [m], ≥ 0
+  bool withBase = false;  ///< one of the links is fixed to the world
 };
 
 struct PairFilter {
@@ -71,13 +74,13 @@ GeometryPair inOrder(const Model& model, int i, int j);
 /// Into the order of PairFilter::pairs.
 void sortPairs(const Model& model, std::vector<GeometryPair>& pairs);
 
-/// Whether a joint connects the bodies, looking through empty bodies; symmetric.
-bool areAdjacent(const Model& model, int bodyA, int bodyB);
-
 /// The effect that makes contacts between two bodies, of which at least one moves.
 Effect contactEffect(const Model& model, int bodyA, int bodyB);
 
 /// One line such as "thigh – pelvis: joined by a joint (3 pairs)".
 std::string describe(const ExcludedPair& pair);
+
+/// Which parts of fixed bases are excluded, for those who expect a robot to be stopped by them.
+std::optional<std::string> baseWarning(const PairFilter& filter);
 
 }  // namespace softgauss::collision

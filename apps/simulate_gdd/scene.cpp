@@ -131,6 +131,8 @@ std::unique_ptr<Scene> loadScene(const SimulateOptions& options) {
         {options.model.string(), 0}, "model '" + scene->model.name + "'",
         fmt::format("has {} degrees of freedom, expected at most {}", scene->model.nv, kMostDofs));
   scene->contacts = std::make_unique<collision::SceneContacts>(scene->model);
+  if (std::optional<std::string> told = collision::baseWarning(scene->contacts->filter()))
+    scene->model.warnings.push_back(std::move(*told));
   addStepWarnings(*scene);
   return scene;
 }

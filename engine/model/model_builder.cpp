@@ -58,6 +58,7 @@ bool isWorld(const LinkSpec& link) { return link.name == "world"; }
 struct Placement {
   int body = 0;
   Transform X_BL;
+  int base = -1;  ///< Geometry::base of its geometries
 };
 
 /// Turns checked specs into a Model, link by link, parents first.
@@ -73,8 +74,9 @@ class Assembler {
     where_.push_back(nullptr);
   }
 
-  /// A root link: the world itself, welded to the world, or free.
-  void addRoot(int link, BaseKind base, const Transform& X_WRoot) {
+  /// A root link: the world itself, a part of it that has a name (standsForWorld), welded to the
+  /// world, or free.
+  void addRoot(int link, BaseKind base, const Transform& X_WRoot, bool standsForWorld) {
     const LinkSpec& spec = links_[static_cast<std::size_t>(link)];
     robot_ = robots_++;
     const bool floats =
@@ -82,7 +84,7 @@ class Assembler {
     if (isWorld(spec)) {
       place(link, {0, Transform{}});
     } else if (!floats) {
-      place(link, {0, X_WRoot});
+      place(link, {0, X_WRoot, standsForWorld ? -1 : bases_++});
     } else {
       const int body = addBody(JointKind::floating, 0, X_WRoot, Vector3::UnitZ(), spec.name, link);
       place(link, {body, Transform{}});
@@ -95,9 +97,12 @@ class Assembler {
     const Transform X_BC = parent.X_BL * joint.X_PC;
     const Vector3 axis = joint.axis.normalized();
     switch (joint.type) {
-      case JointType::fixed:
-        place(edge.child, {parent.body, X_BC});
+      case JointType::fixed: {
+        // What is fixed to the world itself is a base, or scenery: what hangs from it shows.
+        const bool startsBase = parent.body == 0 && parent.base < 0;
+        place(edge.child, {parent.body, X_BC, startsBase ? bases_++ : parent.base});
         return;
+      }
       case JointType::floating: {
         if (parent.body != 0)
           throw ModelError(joint.where, "joint '" + joint.name + "'",
@@ -117,7 +122,7 @@ class Assembler {
         addDofData(body, joint, false);
         body = addBody(JointKind::revolute, body, {}, axis, joint.name + ".rz", edge.child);
         addDofData(body, joint, false);
-        place(edge.child, {body, {}});
+        place(edge.child, {body, {}, parent.base});
         return;
       }
       case JointType::revolute:
@@ -129,7 +134,7 @@ class Assembler {
         const bool powerless = joint.effort && *joint.effort == 0.0 && !zeroEffortIsUnlimited;
         if (powerless && !joint.mimic) powerless_.push_back(joint.name);
         addDofData(body, joint, !powerless && !joint.mimic);
-        place(edge.child, {body, {}});
+        place(edge.child, {body, {}, parent.base});
         if (joint.type != JointType::continuous && joint.lower && joint.upper) {
           JointRange range;
           range.body = body;
@@ -252,6 +257,7 @@ class Assembler {
   std::vector<std::string> powerless_;
   int robots_ = 0;  ///< so far
   int robot_ = -1;  ///< of the present root
+  int bases_ = 0;   ///< so far
 };
 
 /// Configuration at zero, or at the middle of the range where zero lies outside it; a joint that
@@ -298,9 +304,9 @@ Model ModelBuilder::build() const {
       const auto root =
           std::find_if(roots_.begin(), roots_.end(), [&](const Root& r) { return r.link == link; });
       if (root == roots_.end())
-        assembler.addRoot(edge.child, base, X_WRoot);
+        assembler.addRoot(edge.child, base, X_WRoot, false);
       else
-        assembler.addRoot(edge.child, root->base, root->X_WRoot);
+        assembler.addRoot(edge.child, root->base, root->X_WRoot, root->isWorld);
     } else
       assembler.addJoint(edge, zeroEffortIsUnlimited);
   }
@@ -316,7 +322,7 @@ Model ModelBuilder::build() const {
   for (const GeometrySpec& spec : recogniseCapsules(geometries_)) {
     const Placement at = placementOf(spec.link, spec.where, "geometry '" + spec.name + "'");
     model.geometries.push_back(
-        {spec.name, spec.link, at.body, at.X_BL * spec.X_LG, spec.shape, spec.material});
+        {spec.name, spec.link, at.body, at.X_BL * spec.X_LG, spec.shape, spec.material, at.base});
   }
   for (const VisualSpec& spec : visuals_) {
     const Placement at = placementOf(spec.link, {}, "visual");

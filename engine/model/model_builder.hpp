@@ -147,6 +147,7 @@ class ModelBuilder {
     std::string link;
     BaseKind base;
     Transform X_WRoot;
+    bool isWorld;  ///< called "world" in its own description
   };
 
   std::string name_;

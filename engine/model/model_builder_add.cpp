@@ -38,7 +38,8 @@ ModelBuilder& ModelBuilder::add(const ModelBuilder& other, const std::string& pr
       const bool floats =
           kind == BaseKind::floating || (kind == BaseKind::automatic && link.name != "world");
       roots_.push_back({own(link.name), floats ? BaseKind::floating : BaseKind::fixed,
-                        root == other.roots_.end() ? other.X_WRoot : root->X_WRoot});
+                        root == other.roots_.end() ? other.X_WRoot : root->X_WRoot,
+                        root == other.roots_.end() ? link.name == "world" : root->isWorld});
     }
     link.name = own(link.name);
     links_.push_back(std::move(link));

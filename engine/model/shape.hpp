@@ -83,6 +83,9 @@ struct Geometry {
   Transform X_BG;    ///< pose in the body
   Shape shape;
   Material material;
+  /// The fixed base of a robot that it is part of, or that the first joint of its tree hangs from;
+  /// −1 for scenery, and on what floats or hangs from the world itself.
+  int base = -1;
 };
 
 /// A pair of geometries with a surface of its own, in place of the mix of theirs.

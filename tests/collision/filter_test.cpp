@@ -135,6 +135,57 @@ TEST(Filter, StaticBaseIsAdjacentToItsFirstMovingLinkOnly) {
   EXPECT_FALSE(tests(model, scene.filter(), "world", "a0"));  // both fixed
 }
 
+/// A robot of one rail and a lift, beside things that are fixed to the world, all of which overlap
+/// at the start. A link that hangs from "world" has no base.
+ModelBuilder cartAmongFixedThings(const std::string& root) {
+  const auto fixed = [](const std::string& link) {
+    ModelBuilder builder;
+    builder.base = BaseKind::fixed;
+    return builder.link(sphereLink(link, 1.0, 0.1))
+        .geometry(geometrySpec(link, Shape::sphere(0.1)));
+  };
+  ModelBuilder robot = fixed(root);
+  for (const char* link : {"cart", "lift", "post"})
+    robot.link(sphereLink(link, 1.0, 0.1)).geometry(geometrySpec(link, Shape::sphere(0.1)));
+  robot.joint(jointSpec("rail", JointType::prismatic, root, "cart", offset(0.05)));
+  robot.joint(jointSpec("up", JointType::prismatic, "cart", "lift", offset(0.05)));
+  robot.joint(jointSpec("bolt", JointType::fixed, root, "post"));
+  ModelBuilder other = fixed("base");
+  other.link(sphereLink("arm", 1.0, 0.1));
+  other.joint(jointSpec("hinge", JointType::revolute, "base", "arm"));
+  ModelBuilder scene;
+  scene.add(robot, "c").add(fixed("wall"), "").add(other, "other");
+  return scene;
+}
+
+TEST(Filter, FixedThingsAreTestedWithTheFirstLinkAndWithWhatStartsInsideThem) {
+  for (const char* root : {"base", "world"}) {
+    const Model model = cartAmongFixedThings(root).build();
+    const SceneContacts scene(model);
+    for (const char* link : {"c/cart", "c/lift"})
+      for (const char* thing : {"wall", "other/base"})
+        EXPECT_TRUE(tests(model, scene.filter(), link, thing)) << root << link << thing;
+  }
+}
+
+TEST(Filter, ABaseIsWhatTheFirstJointHangsFrom) {
+  for (const char* root : {"base", "world"}) {
+    const Model model = cartAmongFixedThings(root).build();
+    const SceneContacts scene(model);
+    const bool isWorld = root == std::string("world");
+    for (const std::string& thing : {std::string("c/") + root, std::string("c/post")})
+      for (const char* link : {"c/cart", "c/lift"})
+        EXPECT_EQ(tests(model, scene.filter(), link, thing), isWorld) << link << thing;
+    const std::optional<std::string> told = baseWarning(scene.filter());
+    ASSERT_EQ(told.has_value(), !isWorld);
+    if (isWorld) continue;
+    for (const char* words :
+         {"c/base – c/cart: joined by a joint", "c/post – c/lift: overlap by 100 mm at the start"})
+      EXPECT_NE(told->find(words), std::string::npos) << words << *told;
+    EXPECT_EQ(told->find("wall"), std::string::npos) << *told;
+  }
+}
+
 TEST(Filter, EffectsSwitchTheirPairsOff) {
   ModelBuilder builder;
   addRow(builder, "a", 3, 0.3);
