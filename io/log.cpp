@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <stdexcept>
@@ -24,6 +25,15 @@ constexpr const char* kStepColumns[] = {"contacts",     "constraints",       "it
                                         "stationarity", "forward_us",        "gdd_us",
                                         "step_us",      "energy_J",          "max_penetration_m"};
 
+/// What columns call a joint; for what floats, so that its parts have names of their own.
+std::string columnName(const Model& model, int body) {
+  const std::string& name = model.jointNames[static_cast<std::size_t>(body)];
+  if (model.bodies[static_cast<std::size_t>(body)].joint != JointKind::floating) return name;
+  const bool taken = std::any_of(std::begin(kPoseParts), std::end(kPoseParts),
+                                 [&](auto part) { return model.findJoint(name + part) >= 0; });
+  return taken ? name + "(floating)" : name;
+}
+
 void appendValues(std::string& out, const VectorX& values) {
   for (const double x : values) {
     out += ',';
@@ -37,7 +47,7 @@ std::vector<std::string> logColumns(const Model& model) {
   std::vector<std::string> columns = {"time_s"};
   const auto addGroup = [&](const std::string& prefix, auto&& floatingParts) {
     for (int b = 1; b < model.bodyCount(); ++b) {
-      const std::string name = prefix + model.jointNames[static_cast<std::size_t>(b)];
+      const std::string name = prefix + columnName(model, b);
       if (model.bodies[static_cast<std::size_t>(b)].joint != JointKind::floating)
         columns.push_back(name);
       else

@@ -4,7 +4,8 @@
 /// The log of a run: comma-separated values, a header, then one row a step.
 ///
 /// Columns: time_s; q:, v:, a:, u: of every joint [rad, m, N m, N and rates]; a floating joint as
-/// q:<joint>.x .y .z .qw .qx .qy .qz and v:, a:<joint>.vx .vy .vz .wx .wy .wz, without u:; then
+/// q:<joint>.x .y .z .qw .qx .qy .qz and v:, a:<joint>.vx .vy .vz .wx .wy .wz, without u:, or
+/// q:<joint>(floating).x … where a planar joint of that name has the others; then
 /// contacts, constraints, iterations, dual_updates, physics_violation, gdd_violation, stationarity,
 /// forward_us, gdd_us, step_us, energy_J, max_penetration_m.
 /// Numbers are the shortest that read back bit for bit (at most 17 significant digits). A joint

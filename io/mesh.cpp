@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "engine/core/check.hpp"
+#include "io/detail/text.hpp"
 
 namespace softgauss::io {
 namespace {
@@ -88,14 +89,28 @@ class Collector {
   throw ModelError({file.string(), 0}, "mesh", problem);
 }
 
-/// Keeps assimp from guessing a format by the content of a file that is something else.
-void checkFormat(const std::filesystem::path& file) {
+/// A letter of A to Z made small.
+char small(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
+
+/// The extension; keeps assimp from guessing a format by the content of a file that is something
+/// else.
+std::string formatOf(const std::filesystem::path& file) {
   std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(), [](char c) {
-    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  });
+  std::transform(extension.begin(), extension.end(), extension.begin(), small);
   if (extension != ".stl" && extension != ".obj" && extension != ".dae")
     fail(file, fmt::format("unknown format '{}', expected .stl, .obj or .dae", extension));
+  return extension;
+}
+
+/// The text of an ASCII STL in small letters, which assimp's reader wants; nothing for other files.
+std::optional<std::string> smallStl(const std::filesystem::path& file) {
+  std::optional<std::string> text = detail::readFile(file.string());
+  // A binary one holds zero bytes, whatever it begins with.
+  if (!text || text->find('\0') != std::string::npos) return std::nullopt;
+  std::transform(text->begin(), text->end(), text->begin(), small);
+  const std::size_t begin = text->find_first_not_of(" \t\r\n");
+  if (begin == std::string::npos || text->compare(begin, 5, "solid") != 0) return std::nullopt;
+  return text->substr(begin);
 }
 
 void scale(Mesh& mesh, const Vector3& factors) {
@@ -107,13 +122,17 @@ void scale(Mesh& mesh, const Vector3& factors) {
 }  // namespace
 
 Mesh readMesh(const std::filesystem::path& file, const Vector3& factors) {
-  checkFormat(file);
+  const std::string format = formatOf(file);
   Assimp::Importer importer;
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE,
                               aiPrimitiveType_POINT | aiPrimitiveType_LINE);
+  constexpr unsigned kSteps = aiProcess_Triangulate | aiProcess_SortByPType;
+  std::optional<std::string> text;
+  if (format == ".stl") text = smallStl(file);
   const aiScene* scene =
-      importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_SortByPType);
+      text ? importer.ReadFileFromMemory(text->data(), text->size(), kSteps, "stl")
+           : importer.ReadFile(file.string(), kSteps);
   if (!scene || !scene->mRootNode)
     fail(file, fmt::format("cannot be read: {}", importer.GetErrorString()));
 

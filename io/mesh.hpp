@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// Triangle meshes from STL (ASCII and binary), OBJ and DAE files.
+/// Triangle meshes from STL (ASCII in any letters, and binary), OBJ and DAE files.
 ///
 /// Triangles only: polygons are triangulated, lines and points are left out. Corners with exactly
 /// the same coordinates become one vertex. Transforms of the file's nodes are applied.

@@ -3,10 +3,12 @@
 
 /// Reads URDF files.
 ///
+/// Versions 1.0, 1.1 (quat_xyzw, capsule) and 1.2 (more limits, which have no effect).
 /// Everything that carries physics is read strictly: a number that is no number, a missing part, an
-/// unknown link or type, a mesh that is not there end in a ModelError `file:line: element: what was
-/// found, what was expected`. What is not read (transmissions, sensors, …), and what a user should
-/// know, is in Model::warnings. Angles [rad], SI units throughout.
+/// unknown link or type, a pose or a version that is not known, a mesh that is not there end in a
+/// ModelError `file:line: element: what was found, what was expected`. What is not read
+/// (transmissions, sensors, …), and what a user should know, is in Model::warnings. Angles [rad],
+/// SI units throughout.
 ///
 /// effort is the box of the control, |u| ≤ effort; 0 means not actuated (ModelBuilder says which);
 /// none means no box. A mimic joint is coupled to its leader (T.30) and not actuated.

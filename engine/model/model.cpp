@@ -18,8 +18,13 @@ int Model::findFrame(const std::string& frameName) const {
 }
 
 int Model::findJoint(const std::string& jointName) const {
-  const auto it = std::find(jointNames.begin() + 1, jointNames.end(), jointName);
-  return it == jointNames.end() ? -1 : static_cast<int>(it - jointNames.begin());
+  // What floats may have the name of its link, which may be that of a joint too.
+  int found = -1;
+  for (int b = bodyCount() - 1; b > 0; --b)
+    if (jointNames[static_cast<std::size_t>(b)] == jointName &&
+        (found < 0 || bodies[static_cast<std::size_t>(b)].joint != JointKind::floating))
+      found = b;
+  return found;
 }
 
 }  // namespace softgauss

@@ -115,12 +115,14 @@ class Assembler {
       case JointType::planar: {
         // Two slides along the plane, then a hinge about its normal, as three bodies.
         const Matrix3 R = Quaternion::FromTwoVectors(Vector3::UnitZ(), axis).toRotationMatrix();
-        int body =
-            addBody(JointKind::prismatic, parent.body, X_BC, R.col(0), joint.name + ".x", -1);
+        int body = addBody(JointKind::prismatic, parent.body, X_BC, R.col(0),
+                           joint.name + detail::kPlanarParts[0], -1);
         addDofData(body, joint, false);
-        body = addBody(JointKind::prismatic, body, {}, R.col(1), joint.name + ".y", -1);
+        body = addBody(JointKind::prismatic, body, {}, R.col(1),
+                       joint.name + detail::kPlanarParts[1], -1);
         addDofData(body, joint, false);
-        body = addBody(JointKind::revolute, body, {}, axis, joint.name + ".rz", edge.child);
+        body = addBody(JointKind::revolute, body, {}, axis, joint.name + detail::kPlanarParts[2],
+                       edge.child);
         addDofData(body, joint, false);
         place(edge.child, {body, {}, parent.base});
         return;

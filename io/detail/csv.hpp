@@ -16,7 +16,9 @@ std::string quotedCsv(const std::string& field);
 /// Reads records one after another; quoted fields may hold line breaks.
 class CsvReader {
  public:
-  explicit CsvReader(std::string_view text) : rest_(text) {}
+  /// A byte-order mark, which spreadsheets write first, is no part of the text.
+  explicit CsvReader(std::string_view text)
+      : rest_(text.starts_with(kByteOrderMark) ? text.substr(kByteOrderMark.size()) : text) {}
 
   /// Fields of the next record that is not empty; nothing at the end of the text.
   const std::vector<std::string>* next();
@@ -25,6 +27,8 @@ class CsvReader {
   bool quoteIsOpen() const { return openQuote_; }  ///< the text ended inside quotes
 
  private:
+  static constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+
   void readRecord();
 
   std::string_view rest_;

@@ -2,7 +2,9 @@
 #include "io/detail/resources.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cstdlib>
+#include <string_view>
 #include <system_error>
 
 namespace softgauss::io::detail {
@@ -21,6 +23,23 @@ bool lookAt(const fs::path& path, FoundFile& found) {
   if (!isFile(path)) return false;
   found.path = path;
   return true;
+}
+
+/// With / for each back-slash, and the byte XY for each %XY.
+std::string plainUri(const std::string& uri) {
+  std::string plain;
+  for (std::size_t i = 0; i < uri.size(); ++i) {
+    unsigned char byte = 0;
+    const char* const hex = uri.data() + i + 1;
+    if (uri[i] == '%' && i + 2 < uri.size() &&
+        std::from_chars(hex, hex + 2, byte, 16).ptr == hex + 2) {
+      plain += static_cast<char>(byte);
+      i += 2;
+    } else {
+      plain += uri[i] == '\\' ? '/' : uri[i];
+    }
+  }
+  return plain;
 }
 
 std::vector<fs::path> rosPackagePath() {
@@ -50,12 +69,22 @@ ResourceFinder::ResourceFinder(const fs::path& urdf, const std::vector<fs::path>
 }
 
 FoundFile ResourceFinder::find(const std::string& uri) const {
-  const std::string package = "package://", file = "file://";
-  if (uri.starts_with(package)) {
+  FoundFile found = findAsWritten(uri);
+  const std::string plain = plainUri(uri);
+  if (!found.path.empty() || plain == uri) return found;
+  FoundFile other = findAsWritten(plain);
+  other.searched.insert(other.searched.begin(), found.searched.begin(), found.searched.end());
+  return other;
+}
+
+FoundFile ResourceFinder::findAsWritten(const std::string& uri) const {
+  for (const std::string_view package : {"package://", "model://"}) {
+    if (!uri.starts_with(package)) continue;
     const std::string rest = uri.substr(package.size());
     const std::size_t slash = std::min(rest.find('/'), rest.size());
     return findInPackage(rest.substr(0, slash), rest.substr(std::min(slash + 1, rest.size())));
   }
+  const std::string file = "file://";
   FoundFile found;
   const fs::path path = uri.starts_with(file) ? uri.substr(file.size()) : uri;
   lookAt(path.is_absolute() ? path : (folder_ / path).lexically_normal(), found);

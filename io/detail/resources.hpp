@@ -3,10 +3,12 @@
 
 /// Where the files that a URDF names are found.
 ///
-/// package://NAME/x is sought as folder/NAME/x, or folder/x in a folder itself called NAME, in
+/// package://NAME/x, or model://NAME/x, is sought as folder/NAME/x, or folder/x in a folder itself
+/// called NAME, in
 ///  1. the folders given by the caller, 2. those of ROS_PACKAGE_PATH, 3. the URDF's own folder and
 ///  its parents, nearest first.
-/// file://x is the path x, any other path is relative to the URDF's folder.
+/// file://x is the path x, any other path is relative to the URDF's folder. What is not found as it
+/// is written is sought with / for each back-slash, and the byte XY for each %XY.
 
 #include <filesystem>
 #include <string>
@@ -27,6 +29,7 @@ class ResourceFinder {
   FoundFile find(const std::string& uri) const;
 
  private:
+  FoundFile findAsWritten(const std::string& uri) const;
   FoundFile findInPackage(const std::string& package, const std::string& path) const;
 
   std::filesystem::path folder_;                     ///< of the URDF

@@ -86,6 +86,31 @@ void separateBySingleSpaces(tinyxml2::XMLElement& element) {
     separateBySingleSpaces(*child);
 }
 
+/// Roll, pitch and yaw [rad] of R. Roll is that which is left beside yaw: at a pitch of ±π/2, where
+/// only their sum counts, it is right too.
+Vector3 rollPitchYaw(const Matrix3& R) {
+  const double yaw = std::atan2(R(1, 0), R(0, 0)), s = std::sin(yaw), c = std::cos(yaw);
+  return {std::atan2(s * R(0, 2) - c * R(1, 2), c * R(1, 1) - s * R(0, 1)),
+          std::atan2(-R(2, 0), std::hypot(R(0, 0), R(1, 0))), yaw};
+}
+
+/// The linked urdfdom may know version 1.0 alone: what 1.1 and 1.2 add is written as 1.0 has it.
+void writeAsVersion10(tinyxml2::XMLElement& element) {
+  const std::string_view tag = element.Name();
+  if (const char* quaternion = element.Attribute("quat_xyzw"); quaternion && tag == "origin") {
+    const std::vector<double> q = parseNumbers(quaternion).value();
+    const Vector3 rpy =
+        rollPitchYaw(Quaternion(q[3], q[0], q[1], q[2]).normalized().toRotationMatrix());
+    element.DeleteAttribute("quat_xyzw");
+    element.SetAttribute("rpy",
+                         fmt::format("{:.17g} {:.17g} {:.17g}", rpy.x(), rpy.y(), rpy.z()).c_str());
+  }
+  if (tag == "capsule") element.SetName("cylinder");
+  for (tinyxml2::XMLElement* child = element.FirstChildElement(); child;
+       child = child->NextSiblingElement())
+    writeAsVersion10(*child);
+}
+
 void addWhatUrdfdomDemands(tinyxml2::XMLElement& robot) {
   for (tinyxml2::XMLElement* joint = robot.FirstChildElement("joint"); joint;
        joint = joint->NextSiblingElement("joint")) {
@@ -96,6 +121,8 @@ void addWhatUrdfdomDemands(tinyxml2::XMLElement& robot) {
     if (limit) {
       setDefault(*limit, "effort");
       setDefault(*limit, "velocity");
+      // As it is read: a negative limit is none.
+      if (limit->DoubleAttribute("velocity") < 0.0) limit->SetAttribute("velocity", "0");
     }
     if (tinyxml2::XMLElement* dynamics = joint->FirstChildElement("dynamics"))
       setDefault(*dynamics, "damping");
@@ -148,7 +175,9 @@ void compare(const UrdfShape& ours, const urdf::Collision* theirs) {
     is.expect(ours.shape.kind == ShapeKind::sphere, "geometry");
     is.number(ours.shape.radius, sphere->radius, "radius");
   } else if (const auto* cylinder = dynamic_cast<const urdf::Cylinder*>(theirs->geometry.get())) {
-    is.expect(ours.shape.kind == ShapeKind::cylinder, "geometry");
+    const bool isRound =
+        ours.shape.kind == ShapeKind::cylinder || ours.shape.kind == ShapeKind::capsule;
+    is.expect(isRound, "geometry");
     is.number(ours.shape.radius, cylinder->radius, "radius");
     is.number(2.0 * ours.shape.halfLength, cylinder->length, "length");
   } else if (const auto* mesh = dynamic_cast<const urdf::Mesh*>(theirs->geometry.get())) {
@@ -249,6 +278,8 @@ std::string compareWithUrdfdom(const XmlFile& file, const UrdfDescription& urdf)
   if (!isTree(urdf)) return "its links form no tree";
   const std::string text = file.edited([](tinyxml2::XMLElement& robot) {
     removeUnread(robot);
+    robot.DeleteAttribute("version");
+    writeAsVersion10(robot);
     separateBySingleSpaces(robot);
     addWhatUrdfdomDemands(robot);
   });

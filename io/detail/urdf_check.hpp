@@ -18,9 +18,10 @@ namespace softgauss::io::detail {
 /// What urdfdom found wrong, if it refused the file; nothing printed. Otherwise compares its model
 /// with `urdf` and throws ModelError where they differ.
 ///
-/// urdfdom sees a copy without the parts that softgauss does not read, and with the attributes
-/// that urdfdom demands and softgauss does not (effort, velocity; a limit on every revolute and
-/// prismatic joint), and single spaces between numbers, as urdfdom knows no other blank.
+/// urdfdom sees a copy in URDF 1.0 without the parts that softgauss does not read, and with the
+/// attributes that urdfdom demands and softgauss does not (effort, velocity; a limit on every
+/// revolute and prismatic joint), and single spaces between numbers, as urdfdom knows no other
+/// blank.
 std::string compareWithUrdfdom(const XmlFile& file, const UrdfDescription& urdf);
 
 }  // namespace softgauss::io::detail

@@ -50,6 +50,10 @@ void readSolid(const XmlElement& solid, UrdfShape& shape) {
     const double radius = positive(solid.requiredNumber("radius"), "radius", solid, shape);
     const double length = positive(solid.requiredNumber("length"), "length", solid, shape);
     shape.shape = Shape::cylinder(radius, 0.5 * length);
+  } else if (tag == "capsule" && solid.urdfMinorVersion() >= 1) {
+    const double radius = positive(solid.requiredNumber("radius"), "radius", solid, shape);
+    const double length = positive(solid.requiredNumber("length"), "length", solid, shape);
+    shape.shape = Shape::capsule(radius, 0.5 * length);
   } else if (tag == "mesh") {
     shape.shape = Shape::hull(nullptr);
     shape.meshUri = solid.requiredText("filename");
@@ -57,8 +61,9 @@ void readSolid(const XmlElement& solid, UrdfShape& shape) {
     if ((shape.scale.array() == 0.0).any())
       shape.defect = ModelError(solid.where(), solid.label(), "scale holds a zero, expected none");
   } else {
-    const char* hint = tag == "capsule" ? " (a cylinder with a sphere of its radius on each end "
-                                          "is simulated as a capsule)"
+    const char* hint = tag == "capsule" ? " (capsule is of URDF 1.1, which version=\"1.1\" in "
+                                          "<robot> says; in 1.0 a cylinder with a sphere of its "
+                                          "radius on each end is simulated as a capsule)"
                                         : "";
     shape.defect =
         ModelError(solid.where(), solid.label(),
@@ -103,6 +108,18 @@ void readMaterial(const XmlElement& visual, UrdfShape& shape, UrdfDescription& u
   if (shape.rgba && !shape.material.empty()) urdf.colours.emplace(shape.material, *shape.rgba);
 }
 
+/// What is wrong with it stops no simulation: it becomes the shape's defect.
+UrdfShape readVisual(const XmlElement& element, UrdfDescription& urdf) {
+  UrdfShape shape;
+  try {
+    shape = readShape(element);
+    readMaterial(element, shape, urdf);
+  } catch (const ModelError& error) {
+    shape.defect = error;
+  }
+  return shape;
+}
+
 UrdfLink readLink(const XmlElement& unnamed, UrdfDescription& urdf) {
   UrdfLink link;
   link.spec.name = unnamed.named("link").requiredText("name");
@@ -117,11 +134,8 @@ UrdfLink readLink(const XmlElement& unnamed, UrdfDescription& urdf) {
     if (shape.defect) throw *shape.defect;
     link.collisions.push_back(std::move(shape));
   }
-  for (const XmlElement& visual : element.children("visual")) {
-    UrdfShape shape = readShape(visual);
-    readMaterial(visual, shape, urdf);
-    link.visuals.push_back(std::move(shape));
-  }
+  for (const XmlElement& visual : element.children("visual"))
+    link.visuals.push_back(readVisual(visual, urdf));
   return link;
 }
 
@@ -157,6 +171,7 @@ void checkRoots(const XmlElement& robot, const UrdfDescription& urdf) {
 UrdfDescription describeUrdf(const XmlElement& robot) {
   UrdfDescription urdf;
   urdf.name = robot.requiredText("name");
+  robot.urdfMinorVersion();  // refuses one that is not known
   for (const XmlElement& material : robot.children("material"))
     if (const auto rgba = readColour(material, urdf.warnings))
       urdf.colours[material.text("name").value_or("")] = *rgba;

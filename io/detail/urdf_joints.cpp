@@ -30,7 +30,8 @@ JointType readType(const XmlElement& joint) {
 
 /// Joints of a kind worth one warning each kind.
 struct Notes {
-  std::vector<std::string> noRange, halfRange, unusedRange, unusedDynamics, fixedMimics;
+  std::vector<std::string> noRange, halfRange, unusedRange, unusedDynamics, fixedMimics,
+      negativeVelocity;
 
   void appendTo(std::vector<std::string>& warnings) const {
     const auto add = [&](const std::vector<std::string>& joints, const char* text) {
@@ -41,6 +42,7 @@ struct Notes {
     add(unusedRange, "a range has no meaning on a continuous, planar or floating joint, ignored: ");
     add(unusedDynamics, "damping and friction of a floating joint are ignored: ");
     add(fixedMimics, "mimic of a fixed joint is ignored: ");
+    add(negativeVelocity, "a negative velocity limit is taken as none: ");
   }
 };
 
@@ -57,6 +59,11 @@ void readLimit(const XmlElement& limit, JointSpec& joint, Notes& notes) {
     upper = limit.number("upper");
     joint.effort = limit.number("effort");
     joint.velocity = limit.number("velocity");
+    if (joint.velocity.value_or(0.0) < 0.0) {
+      notes.negativeVelocity.push_back(
+          fmt::format("{} ({})", joint.name, shortNumber(*joint.velocity)));
+      joint.velocity.reset();
+    }
   }
   if (!takesRange) {
     if (joint.type != JointType::fixed && lower.value_or(0.0) != upper.value_or(0.0))

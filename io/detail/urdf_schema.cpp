@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <map>
 
+#include "io/detail/text.hpp"
+
 namespace softgauss::io::detail {
 namespace {
 
@@ -22,13 +24,14 @@ const std::vector<KnownElement>& knownElements() {
       {"inertial", {"origin", "mass", "inertia"}, {}},
       {"mass", {}, {"value"}},
       {"inertia", {}, {"ixx", "ixy", "ixz", "iyy", "iyz", "izz"}},
-      {"origin", {}, {"xyz", "rpy"}},
+      {"origin", {}, {"xyz", "rpy", "quat_xyzw"}},
       {"collision", {"origin", "geometry"}, {"name"}},
       {"visual", {"origin", "geometry", "material"}, {"name"}},
-      {"geometry", {"box", "sphere", "cylinder", "mesh"}, {}},
+      {"geometry", {"box", "sphere", "cylinder", "capsule", "mesh"}, {}},
       {"box", {}, {"size"}},
       {"sphere", {}, {"radius"}},
       {"cylinder", {}, {"radius", "length"}},
+      {"capsule", {}, {"radius", "length"}},
       {"mesh", {}, {"filename", "scale"}},
       {"material", {"color", "texture"}, {"name"}},
       {"color", {}, {"rgba"}},
@@ -56,17 +59,38 @@ bool contains(const std::vector<std::string_view>& list, std::string_view item) 
   return std::find(list.begin(), list.end(), item) != list.end();
 }
 
-void collect(const XmlElement& element, std::map<std::string, int>& counts) {
+/// Whether an attribute is part of a pose that is not zero.
+bool movesSomething(const XmlElement& element, const std::string& name) {
+  const std::string zero = name == "quat_xyzw" ? "0 0 0 1" : "0 0 0";
+  return contains(findElement("origin")->attributes, name) &&
+         parseNumbers(element.text(name.c_str()).value_or("")) != parseNumbers(zero);
+}
+
+[[noreturn]] void refusePose(const XmlElement& element, const std::string& name) {
+  element.fail(
+      fmt::format("attribute '{}' is not read here; expected <origin xyz=… rpy=…/> in "
+                  "<joint>, <inertial> or <collision>",
+                  name));
+}
+
+/// Refuses a pose where none is read: what it moves would stand otherwise. Not in a visual.
+void collect(const XmlElement& element, bool isVisual, std::map<std::string, int>& counts) {
   const KnownElement* known = findElement(element.tag());
   // A name or a colour in an unusual place changes nothing worth a warning.
-  for (const std::string& name : element.attributes())
-    if (!contains(known->attributes, name) && name != "name" && !name.starts_with("xmlns"))
-      ++counts[fmt::format("attribute '{}' of <{}>", name, element.tag())];
+  for (const std::string& name : element.attributes()) {
+    if (contains(known->attributes, name) || name == "name" || name.starts_with("xmlns")) continue;
+    if (!isVisual && movesSomething(element, name)) refusePose(element, name);
+    ++counts[fmt::format("attribute '{}' of <{}>", name, element.tag())];
+  }
   for (const XmlElement& child : element.children()) {
-    if (contains(known->children, child.tag()))
-      collect(child, counts);
-    else if (child.tag() != "material")
-      ++counts[fmt::format("<{}>", child.tag())];
+    if (contains(known->children, child.tag())) {
+      collect(child, isVisual || child.tag() == "visual", counts);
+      continue;
+    }
+    if (child.tag() == "origin" && !isVisual)
+      for (const std::string& name : child.attributes())
+        if (movesSomething(child, name)) refusePose(child, name);
+    if (child.tag() != "material") ++counts[fmt::format("<{}>", child.tag())];
   }
 }
 
@@ -79,7 +103,7 @@ bool isReadElement(std::string_view parent, std::string_view child) {
 
 std::vector<std::string> ignoredParts(const XmlElement& robot) {
   std::map<std::string, int> counts;
-  collect(robot, counts);
+  collect(robot, false, counts);
   std::vector<std::string> parts;
   for (const auto& [part, count] : counts) parts.push_back(fmt::format("{} {}", count, part));
   return parts;

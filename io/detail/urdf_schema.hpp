@@ -15,6 +15,7 @@ namespace softgauss::io::detail {
 bool isReadElement(std::string_view parent, std::string_view child);
 
 /// What is in the file but not read, with counts, e.g. "3 <gazebo>", "1 attribute 'x' of <joint>".
+/// Throws ModelError where that is a pose other than zero, but for those of visuals.
 std::vector<std::string> ignoredParts(const XmlElement& robot);
 
 }  // namespace softgauss::io::detail

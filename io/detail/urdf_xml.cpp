@@ -5,6 +5,7 @@
 #include <tinyxml2.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "engine/core/rotation.hpp"
 #include "io/detail/text.hpp"
@@ -133,8 +134,43 @@ Transform XmlElement::origin() const {
   if (!origin) return {};
   Transform X;
   X.p = origin.vector3("xyz").value_or(Vector3::Zero());
-  if (const std::optional<Vector3> rpy = origin.vector3("rpy")) X.R = rpyRotation(*rpy);
+  const std::optional<Vector3> rpy = origin.vector3("rpy");
+  const std::optional<std::string> quaternion = origin.text("quat_xyzw");
+  if (rpy && quaternion) origin.fail("holds rpy and quat_xyzw, expected one of them");
+  if (rpy) X.R = rpyRotation(*rpy);
+  if (quaternion) X.R = origin.quaternion(*quaternion);
+  for (const std::string& name : origin.attributes())
+    if (name != "xyz" && name != "rpy" && name != "quat_xyzw")
+      origin.fail(
+          fmt::format("attribute '{}' is not known, and a pose that is not read moves the "
+                      "robot; expected xyz and rpy, or quat_xyzw",
+                      name));
   return X;
+}
+
+Matrix3 XmlElement::quaternion(const std::string& text) const {
+  constexpr double kUnit = 1e-3;  // of the length: numbers of four digits are meant to be unit
+  if (urdfMinorVersion() < 1)
+    fail(
+        "quat_xyzw is of URDF 1.1, and the file is of 1.0; expected rpy, or version=\"1.1\" in "
+        "<robot>");
+  const std::optional<std::vector<double>> x = parseNumbers(text);
+  if (!x || x->size() != 4)
+    fail(fmt::format("quat_xyzw is '{}', expected four finite numbers x y z w{}", text,
+                     hintFor(text)));
+  const Quaternion q((*x)[3], (*x)[0], (*x)[1], (*x)[2]);
+  if (std::abs(q.norm() - 1.0) > kUnit)
+    fail(fmt::format("quat_xyzw is '{}', of length {}, expected length 1", text,
+                     shortNumber(q.norm())));
+  return q.normalized().toRotationMatrix();
+}
+
+int XmlElement::urdfMinorVersion() const {
+  const XmlElement robot(file_, element_->GetDocument()->RootElement(), "robot");
+  const std::string version = robot.text("version").value_or("1.0");
+  for (const int minor : {0, 1, 2})
+    if (version == fmt::format("1.{}", minor)) return minor;
+  robot.fail(fmt::format("version is '{}', expected 1.0, 1.1 or 1.2", version));
 }
 
 XmlFile::XmlFile(const std::string& path, const std::string& text)

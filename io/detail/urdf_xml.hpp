@@ -52,13 +52,20 @@ class XmlElement {
   std::optional<Vector3> vector3(const char* attribute) const;
   Vector3 requiredVector3(const char* attribute) const;
 
-  /// The child `origin` with its xyz [m] and rpy [rad]; identity where absent.
+  /// The child `origin` with its xyz [m] and rpy [rad], or from URDF 1.1 on quat_xyzw; identity
+  /// where absent.
   Transform origin() const;
+
+  /// The file's version of URDF: y of 1.y, as its <robot> names it; 0 where it names none. Throws
+  /// where it names one that is not known.
+  int urdfMinorVersion() const;
 
   /// The same element, called `label` in messages.
   XmlElement named(std::string label) const { return {file_, element_, std::move(label)}; }
 
  private:
+  Matrix3 quaternion(const std::string& text) const;
+
   const std::string* file_ = nullptr;
   const tinyxml2::XMLElement* element_ = nullptr;
   std::string label_;

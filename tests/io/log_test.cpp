@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <random>
+#include <set>
 
 #include "engine/model/model_builder.hpp"
 #include "io/detail/csv.hpp"
@@ -105,6 +106,39 @@ TEST(Log, ColumnsAreThoseOfTheInterface) {
   EXPECT_EQ(logColumns(sampleModel()), expected);
 }
 
+/// A floating link "a" that carries another on a joint "a".
+ModelBuilder sameNames(JointType type) {
+  ModelBuilder builder("names");
+  for (const char* name : {"a", "b"}) {
+    LinkSpec link;
+    link.name = name;
+    link.mass = 1.0;
+    link.I_Lcm = Matrix3::Identity();
+    builder.link(link);
+  }
+  JointSpec joint;
+  joint.name = "a";
+  joint.type = type;
+  joint.parent = "a";
+  joint.child = "b";
+  return builder.joint(joint);
+}
+
+TEST(Log, ColumnsHaveNamesOfTheirOwn) {
+  for (const JointType type : {JointType::planar, JointType::revolute}) {
+    const Model model = sameNames(type).build();
+    const std::vector<std::string> columns = logColumns(model);
+    EXPECT_EQ(std::set<std::string>(columns.begin(), columns.end()).size(), columns.size());
+    const auto has = [&](const char* name) {
+      return std::find(columns.begin(), columns.end(), name) != columns.end();
+    };
+    EXPECT_TRUE(has(type == JointType::planar ? "q:a(floating).x" : "q:a.x"));
+    EXPECT_TRUE(has(type == JointType::planar ? "q:a.x" : "q:a"));
+  }
+  EXPECT_EQ(sameNames(JointType::revolute).build().findJoint("a"), 2)
+      << "the joint, not the link that floats";
+}
+
 TEST(Log, ReadsBackBitForBit) {
   const Model m = sampleModel();
   const TempFolder folder;
@@ -195,6 +229,15 @@ TEST(TorqueTable, ReadsALogAndHoldsEachRow) {
   EXPECT_TRUE(u.isZero(0.0));
   table.controlAt(1e6, u);
   EXPECT_EQ(u[6], torques.back());
+}
+
+TEST(TorqueTable, MayBeginWithAByteOrderMark) {
+  const TempFolder folder;
+  const TorqueTable table = TorqueTable::read(
+      folder.write("u.csv", "\xEF\xBB\xBFtime_s,\"u:left, \"\"elbow\"\"\"\n0,3\n"), sampleModel());
+  VectorX u;
+  table.controlAt(0.0, u);
+  EXPECT_EQ(u[6], 3.0);
 }
 
 std::string torqueErrorOf(const std::string& text) {

@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cctype>
 #include <cstring>
 
 #include "engine/core/check.hpp"
+#include "sample_urdf.hpp"
 #include "temp_folder.hpp"
 
 namespace softgauss::io {
@@ -37,6 +39,11 @@ std::string asciiStl() {
     text += "endloop\nendfacet\n";
   }
   return text + "endsolid t\n";
+}
+
+std::string inCapitals(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::toupper(c));
+  return text;
 }
 
 std::string binaryStl() {
@@ -94,6 +101,9 @@ std::string errorOfMesh(const std::string& name, const std::string& text) {
 TEST(Mesh, ReadsEveryFormatAsTheSameSolid) {
   const TempFolder folder;
   for (const auto& file : {folder.write("a.stl", asciiStl()), folder.write("b.STL", binaryStl()),
+                           folder.write("d.stl", inCapitals(asciiStl())),
+                           folder.write("e.stl", "\n  " + inCapitals(asciiStl())),
+                           folder.write("f.stl", with(binaryStl(), "     ", "SOLID")),
                            folder.write("c.obj", kTetrahedronObj)}) {
     const Mesh mesh = readMesh(file);
     EXPECT_EQ(mesh.vertices.size(), 4u) << file << ": equal corners are one vertex";

@@ -142,7 +142,24 @@ const BadInput kBadInputs[] = {
      "bad.urdf:7: link 'base': inertial: mass: value is '${mass}', expected one finite number "
      "(a xacro expression: run xacro first)"},
     {"Version", "name=\"sample\"", "name=\"sample\" version=\"x\"",
-     "bad.urdf:2: robot: urdfdom refuses the file"},
+     "bad.urdf:2: robot: version is 'x', expected 1.0, 1.1 or 1.2"},
+    {"LaterVersion", "name=\"sample\"", "name=\"sample\" version=\"1.3\"",
+     "bad.urdf:2: robot: version is '1.3', expected 1.0, 1.1 or 1.2"},
+    // Poses that would be left out
+    {"QuaternionOfAJoint", "rpy=\"0.1 0.2 0.3\"", "quat_xyzw=\"0 0 0 1\"",
+     "bad.urdf:20: joint 'shoulder': origin: quat_xyzw is of URDF 1.1, and the file is of 1.0"},
+    {"QuaternionOfAnInertia", "rpy=\"0 0 1.5707963267948966\"", "quat_xyzw=\"0 0 0 1\"",
+     "bad.urdf:6: link 'base': inertial: origin: quat_xyzw is of URDF 1.1"},
+    {"QuaternionOfAShape", "<origin xyz=\"1 2 3\"/>", "<origin quat_xyzw=\"0 0 0 1\"/>",
+     "bad.urdf:10: link 'base': collision: origin: quat_xyzw is of URDF 1.1"},
+    {"UnknownPose", "rpy=\"0.1 0.2 0.3\"", "quaternion=\"0 0 0 1\"",
+     "bad.urdf:20: joint 'shoulder': origin: attribute 'quaternion' is not known"},
+    {"PoseOfNoOrigin", "type=\"revolute\"", "type=\"revolute\" rpy=\"0 0 1\"",
+     "bad.urdf:17: robot: joint: attribute 'rpy' is not read here; expected <origin"},
+    {"OriginOfALink", "<link name=\"arm\">", "<link name=\"arm\"><origin xyz=\"0 0 1\"/>",
+     "bad.urdf:13: robot: link: origin: attribute 'xyz' is not read here; expected <origin"},
+    {"QuaternionBesideRpy", "rpy=\"0.1 0.2 0.3\"", "rpy=\"0 0 0\" quat_xyzw=\"0 0 0 1\"",
+     "bad.urdf:20: joint 'shoulder': origin: holds rpy and quat_xyzw"},
 };
 
 INSTANTIATE_TEST_SUITE_P(BadInput, Urdf, testing::ValuesIn(kBadInputs),
@@ -176,10 +193,21 @@ TEST(UrdfFile, WithoutLinksOrMassIsRefused) {
                   .starts_with("bad.urdf:1: link 'ghost': moves on joint 'ghost' but neither"));
 }
 
+TEST(UrdfFile, OfVersionOneOneHasQuaternionsOfLengthOne) {
+  const std::string version =
+      with(kSampleUrdf, "name=\"sample\"", "name=\"sample\" version=\"1.1\"");
+  for (const char* quaternion : {"0 0 0 2", "0 0 0", "0 0 0 0", "0 0 0 x", ""}) {
+    const std::string message = errorOfUrdf(
+        with(version, "rpy=\"0.1 0.2 0.3\"", std::string("quat_xyzw=\"") + quaternion + "\""));
+    EXPECT_TRUE(message.starts_with("bad.urdf:20: joint 'shoulder': origin: quat_xyzw is '"))
+        << message;
+  }
+}
+
 TEST(UrdfFile, ErrorsPrintNothing) {
   testing::internal::CaptureStderr();
   testing::internal::CaptureStdout();
-  errorOfUrdf(with(kSampleUrdf, "name=\"sample\"", "name=\"sample\" version=\"x\""));
+  errorOfUrdf(with(kSampleUrdf, "</robot>", "<link name=\"arm\"/></robot>"));
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
   EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
 }

@@ -51,12 +51,19 @@ std::string mutatedUrdf(std::string text, std::mt19937& random) {
   return text;
 }
 
+/// The sample with what URDF 1.1 adds.
+std::string modernUrdf() {
+  return with(with(with(kSampleUrdf, "name=\"sample\"", "name=\"sample\" version=\"1.1\""),
+                   "rpy=\"0.1 0.2 0.3\"", "quat_xyzw=\"0.5 0.5 -0.5 0.5\""),
+              "<cylinder", "<capsule");
+}
+
 TEST(UrdfFuzz, MutatedFilesLoadOrThrowModelError) {
   const TempFolder folder;
   std::mt19937 random(20240601);
   int loaded = 0, refused = 0;
   for (int i = 0; i < 2000 * fuzzScale(); ++i) {
-    const std::string text = mutatedUrdf(kSampleUrdf, random);
+    const std::string text = mutatedUrdf(i % 2 ? modernUrdf() : kSampleUrdf, random);
     const auto file = folder.write("fuzz.urdf", text);
     try {
       const Model m = loadUrdf(file);

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/urdf.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstdlib>
 
 #include "engine/core/rotation.hpp"
+#include "load_urdf.hpp"
 #include "sample_urdf.hpp"
-#include "temp_folder.hpp"
 
 namespace softgauss::io {
 namespace {
@@ -17,17 +15,6 @@ namespace {
 const char* const kTriangle =
     "solid t\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
     "endloop\nendfacet\nendsolid t\n";
-
-Model load(const std::string& text, const UrdfOptions& options = {}) {
-  const TempFolder folder;
-  return loadUrdf(folder.write("robot.urdf", text), options);
-}
-
-bool hasWarning(const Model& model, const std::string& part) {
-  for (const std::string& warning : model.warnings)
-    if (warning.find(part) != std::string::npos) return true;
-  return false;
-}
 
 TEST(UrdfContent, EveryPhysicsElementArrives) {
   const Model m = load(kSampleUrdf);
@@ -136,6 +123,12 @@ TEST(UrdfLimit, WithOneEndTakesZeroForTheOtherAndSaysSo) {
   EXPECT_TRUE(hasWarning(m, "shoulder"));
 }
 
+TEST(UrdfLimit, OfANegativeVelocityIsNoneAndSaysSo) {
+  const Model m = load(with(kSampleUrdf, "velocity=\"3\"", "velocity=\"-1\""));
+  EXPECT_EQ(m.dofs[6].velocityLimit, kInfinity);
+  EXPECT_TRUE(hasWarning(m, "a negative velocity limit is taken as none: shoulder (-1)"));
+}
+
 TEST(UrdfLimit, OfAContinuousJointIsNoRange) {
   const Model m = load(with(kSampleUrdf, "type=\"revolute\"", "type=\"continuous\""));
   EXPECT_TRUE(m.ranges.empty());
@@ -176,6 +169,13 @@ TEST(UrdfWarning, CountsWhatIsNotRead) {
   EXPECT_EQ(m.warnings[0], "ignored: 2 <gazebo>, 1 <transmission>");
 }
 
+TEST(UrdfWarning, APoseOfZeroWhereNoneIsReadMovesNothing) {
+  const Model m = load(with(with(kSampleUrdf, "<axis", "<axis rpy=\"0 0.0 0\""), "<inertial><mass",
+                            "<origin xyz=\"0 0 0\" quat_xyzw=\"0 0 0 1\"/><inertial><mass"));
+  ASSERT_EQ(m.warnings.size(), 1u);
+  EXPECT_EQ(m.warnings[0], "ignored: 1 <origin>, 1 attribute 'rpy' of <axis>");
+}
+
 TEST(UrdfWarning, ForInertiaThatNoBodyCanHave) {
   EXPECT_TRUE(hasWarning(load(with(kSampleUrdf, "izz=\"0.25\"", "izz=\"0.31\"")), "base"));
 }
@@ -204,6 +204,27 @@ TEST(UrdfMesh, IsFoundRelativeToTheFileByFileAndByPackage) {
   EXPECT_THROW(loadMesh("package://missing/t.stl"), ModelError);
 }
 
+// As exporters of Gazebo and of Windows write them; a file that is called so comes first.
+TEST(UrdfMesh, MayBeNamedAsAModelByPercentsAndByBackslashes) {
+  const TempFolder folder;
+  folder.write("pkg/my meshes/t.stl", kTriangle);
+  folder.write("pkg/a%20b.stl", kTriangle);
+  folder.write("pkg/a b.stl", kTriangle);
+  const auto found = [&](const std::string& uri) {
+    const Model m =
+        loadUrdf(folder.write("pkg/r.urdf", with(kSampleUrdf, "<box size=\"0.2 0.4 0.6\"/>",
+                                                 "<mesh filename=\"" + uri + "\"/>")));
+    return std::filesystem::path(m.geometries[0].shape.mesh->file).lexically_normal();
+  };
+  for (const char* uri :
+       {"model://pkg/my meshes/t.stl", "package://pkg/my%20meshes/t.stl", "my%20meshes\\t.stl",
+        "package:\\\\pkg\\my meshes\\t.stl", "model://pkg/my%20meshes%2Ft.stl"})
+    EXPECT_EQ(found(uri), folder.path() / "pkg/my meshes/t.stl") << uri;
+  EXPECT_EQ(found("a%20b.stl"), folder.path() / "pkg/a%20b.stl");
+  EXPECT_THROW(found("a%2xb.stl"), ModelError);
+  EXPECT_THROW(found("a%"), ModelError);
+}
+
 TEST(UrdfMesh, PackagePathsAreSoughtInOrder) {
   const TempFolder folder;
   folder.write("a/pkg/t.stl", kTriangle);
@@ -227,6 +248,29 @@ TEST(UrdfMesh, OfAVisualMayBeMissing) {
   EXPECT_TRUE(m.visuals.empty());
   ASSERT_EQ(m.warnings.size(), 1u);
   EXPECT_EQ(m.warnings[0], "1 visual mesh file not found, not shown: package://none/t.stl");
+}
+
+TEST(UrdfVisual, ThatIsFaultyStopsNothingAndIsNamed) {
+  const std::string whole =
+      "<visual><geometry><sphere radius=\"0.3\"/></geometry><material name=\"red\"/></visual>";
+  for (const char* faulty :
+       {"<visual/>", "<visual><geometry/></visual>",
+        "<visual><geometry><ball/></geometry></visual>",
+        "<visual><geometry><box size=\"1 2\"/></geometry></visual>",
+        "<visual><geometry><mesh filename=\"\"/></geometry></visual>",
+        "<visual><geometry><sphere radius=\"0\"/></geometry></visual>",
+        "<visual><origin xyz=\"a\"/><geometry><sphere radius=\"1\"/></geometry></visual>",
+        "<visual><geometry><sphere radius=\"1\"/></geometry><geometry/></visual>"}) {
+    const Model m = load(with(kSampleUrdf, whole, whole + faulty));
+    EXPECT_EQ(m.visuals.size(), 1u) << faulty;
+    EXPECT_TRUE(hasWarning(m, "not shown: ")) << faulty;
+    EXPECT_TRUE(hasWarning(m, "robot.urdf:11")) << faulty;
+  }
+  const Model m = load(with(kSampleUrdf, "<material name=\"red\">",
+                            "<material/><material><color/></material>"
+                            "<material name=\"red\">"));
+  EXPECT_EQ(m.visuals[0].rgba, Eigen::Vector4d(1, 0, 0, 0.5));
+  EXPECT_EQ(m.warnings.size(), 1u) << "the colour that is empty";
 }
 
 TEST(UrdfMesh, OfAVisualIsReadOnlyWhenAskedFor) {

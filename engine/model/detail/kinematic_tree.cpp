@@ -51,6 +51,14 @@ LinkOrder orderLinks(const std::string& modelName, const std::vector<LinkSpec>& 
     children[idx(parent)].push_back({static_cast<int>(j), parent, child});
   }
 
+  for (const JointSpec& joint : joints)
+    if (joint.type == JointType::planar)
+      for (const char* part : kPlanarParts)
+        if (const auto other = jointNames.find(joint.name + part); other != jointNames.end())
+          throw ModelError(joints[idx(other->second)].where, "joint '" + other->first + "'",
+                           "has the name of a part of the planar joint '" + joint.name + "'" +
+                               atLine(joint.where) + ", expected a name of its own");
+
   // Depth first from every root, without recursion: chains may be thousands of links long.
   std::vector<bool> seen(links.size(), false);
   std::vector<TreeEdge> stack;

@@ -27,6 +27,9 @@ struct LinkOrder {
   }
 };
 
+/// What the names of the three joints that a planar joint is made of end in.
+inline constexpr const char* kPlanarParts[] = {".x", ".y", ".rz"};
+
 /// Throws ModelError on duplicate names, unknown links, two parents, a cycle.
 LinkOrder orderLinks(const std::string& modelName, const std::vector<LinkSpec>& links,
                      const std::vector<JointSpec>& joints);

@@ -157,6 +157,14 @@ TEST(PlanarJoint, IsTwoSlidesAndAHinge) {
   EXPECT_APPROX(m.bodies[1].axis.cross(m.bodies[2].axis), normal, kRounding);
 }
 
+TEST(PlanarJoint, SharesTheNamesOfItsPartsWithNoOther) {
+  ModelBuilder builder;
+  for (const char* link : {"world", "cart", "arm"}) builder.link(test::sphereLink(link, 1.0, 0.1));
+  builder.joint(test::jointSpec("j", JointType::planar, "world", "cart"));
+  builder.joint(test::jointSpec("j.rz", JointType::revolute, "cart", "arm"));
+  EXPECT_THROW(builder.build(), ModelError);
+}
+
 TEST(Base, FollowsItsKind) {
   const auto built = [](const char* name, BaseKind base) {
     ModelBuilder builder("base");
