@@ -246,16 +246,12 @@ class SceneReader {
     link.name = name;
     link.where = {map.file(), map.line()};
     if (!fixed) {
-      MassProperties solid =
+      if (const YamlMap::Entry* mesh = map.find("mesh")) detail::expectVolume(map, *mesh, shape);
+      const MassProperties solid =
           solidOf(shape, density ? map.number(*density, Range::positive) : kWater);
-      const YamlMap::Entry* mesh = map.find("mesh");
-      if (!(solid.mass > 0.0) && !mesh)
+      if (!(solid.mass > 0.0))
         throw ModelError(link.where, "object '" + name + "'",
                          "is too small to have a volume, expected larger numbers");
-      if (!(solid.mass > 0.0))
-        map.fail(*mesh,
-                 "found a mesh without a volume, so it has no mass; expected a "
-                 "closed mesh whose triangles face outwards");
       const double scale = mass ? map.number(*mass, Range::positive) / solid.mass : 1.0;
       link.mass = scale * solid.mass;
       link.com = solid.com;

@@ -18,8 +18,8 @@ struct MassProperties {
   Matrix3 I_Gcm = Matrix3::Zero();  ///< central inertia in the axes of G [kg m²]
 };
 
-/// Of a solid of the given density [kg/m³]. A plane has no mass. A mesh that is not closed, or
-/// whose triangles face inwards, gives a mass that is not positive or an inertia that no body has.
+/// Of a solid of the given density [kg/m³]. A plane has no mass. A mesh must enclose a volume: any
+/// other with defects (closed_surface.hpp) has a mass that depends on where its origin is.
 MassProperties solidOf(const Shape& shape, double density);
 
 }  // namespace softgauss

@@ -7,6 +7,8 @@
 
 #include "engine/core/check.hpp"
 #include "engine/core/rotation.hpp"
+#include "engine/model/closed_surface.hpp"
+#include "engine/model/mass_properties.hpp"
 #include "io/detail/text.hpp"
 
 namespace softgauss::io::detail {
@@ -194,6 +196,26 @@ Shape readShape(const YamlMap& map, MeshCache& meshes) {
   size.expectOnly({"radius", "length"});
   const double radius = length("radius"), half = 0.5 * length("length");
   return only->key == "cylinder" ? Shape::cylinder(radius, half) : Shape::capsule(radius, half);
+}
+
+void expectVolume(const YamlMap& map, const YamlMap::Entry& entry, const Shape& shape) {
+  const SurfaceDefects defects = surfaceDefects(*shape.mesh);
+  std::vector<std::string> found;
+  const auto add = [&](int count, const char* noun, const char* what) {
+    if (count > 0)
+      found.push_back(fmt::format("{} {}", counted(static_cast<std::size_t>(count), noun), what));
+  };
+  add(defects.openEdges, "edge", "at holes");
+  add(defects.turnedEdges, "edge", "between triangles that face opposite sides");
+  add(defects.insideOutShells, "shell", "of triangles that face inwards");
+  if (found.empty() && !(solidOf(shape, 1.0).mass > 0.0))
+    found.push_back("triangles that enclose nothing");
+  if (!found.empty())
+    map.fail(entry, fmt::format("found a mesh with {}: its volume, and so its mass, is undefined; "
+                                "expected a closed mesh whose triangles face outwards; try a mesh "
+                                "tool that fills holes and orients faces, or a robot, whose URDF "
+                                "gives the inertia",
+                                listed(found)));
 }
 
 std::filesystem::path existingFile(const YamlMap& map, const YamlMap::Entry& entry,

@@ -58,6 +58,9 @@ inline const std::vector<std::string> kShapeKeys = {"sphere",  "box",  "cylinder
                                                     "capsule", "mesh", "plane"};
 Shape readShape(const YamlMap& map, MeshCache& meshes);
 
+/// Refuses a mesh that encloses no volume, and so gives no mass.
+void expectVolume(const YamlMap& map, const YamlMap::Entry& entry, const Shape& shape);
+
 /// A file named relative to the scene's own folder; it must exist.
 std::filesystem::path existingFile(const YamlMap& map, const YamlMap::Entry& entry,
                                    const std::string& text);

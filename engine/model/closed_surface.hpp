@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Whether the triangles of a mesh enclose a volume.
+///
+/// They do if each edge is run through as often one way as the other: then the signed sum over
+/// triangles (mass_properties.hpp) is the same from any origin. A shell, triangles that hang
+/// together by edges, must enclose a positive volume, unless it bounds a cavity within another.
+
+#include "engine/model/shape.hpp"
+
+namespace softgauss {
+
+struct SurfaceDefects {
+  int openEdges = 0;        ///< of an odd number of triangles: the rim of a hole
+  int turnedEdges = 0;      ///< whose triangles face opposite sides
+  int insideOutShells = 0;  ///< closed, facing inwards, and within no other
+
+  bool any() const { return openEdges + turnedEdges + insideOutShells > 0; }
+};
+
+SurfaceDefects surfaceDefects(const Mesh& mesh);
+
+}  // namespace softgauss
