@@ -14,6 +14,7 @@
 #include "io/detail/scene_options.hpp"
 #include "io/detail/scene_parts.hpp"
 #include "io/detail/text.hpp"
+#include "io/detail/unit_mistakes.hpp"
 
 namespace softgauss::io {
 namespace {
@@ -136,6 +137,20 @@ class SceneReader {
     return entry ? map.boolean(*entry) : otherwise;
   }
 
+  /// The pose of a robot or an object, with a warning where its angles are probably degrees.
+  Transform readPose(const YamlMap& map) {
+    const Transform X = detail::readPose(map);
+    if (const YamlMap::Entry* rpy = map.find("rpy")) {
+      const Vector3 angles = map.vector3(*rpy);
+      const std::string meant = detail::radiansMeant({angles.x(), angles.y(), angles.z()});
+      if (!meant.empty())
+        scene_.builder.warning(fmt::format(
+            "rpy of more than a turn, used as written: line {} ({} if it is in degrees)", rpy->line,
+            meant));
+    }
+    return X;
+  }
+
   /// How a floating root starts; a fixed one has no such keys.
   void readStart(const YamlMap& map, const std::string& root, bool floats) {
     SceneFile::Start start;
@@ -181,7 +196,7 @@ class SceneReader {
       expectNames(joints, contents.scalarJoints, "joint of one degree of freedom");
       detail::readJointParameters(joints, robot);
     }
-    robot.X_WRoot = detail::readPose(map);
+    robot.X_WRoot = readPose(map);
     scene_.builder.add(robot, name);
 
     const std::string prefix = name.empty() ? "" : name + "/";
@@ -259,7 +274,7 @@ class SceneReader {
     }
     ModelBuilder object;
     object.base = fixed ? BaseKind::fixed : BaseKind::floating;
-    object.X_WRoot = detail::readPose(map);
+    object.X_WRoot = readPose(map);
     GeometrySpec geometry;
     geometry.name = name;
     geometry.link = name;

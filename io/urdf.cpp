@@ -7,6 +7,7 @@
 
 #include "io/detail/resources.hpp"
 #include "io/detail/text.hpp"
+#include "io/detail/unit_mistakes.hpp"
 #include "io/detail/urdf_check.hpp"
 #include "io/detail/urdf_description.hpp"
 #include "io/mesh.hpp"
@@ -112,7 +113,7 @@ ModelBuilder readUrdf(const std::filesystem::path& file, const UrdfOptions& opti
   const std::optional<std::string> text = detail::readFile(file.string());
   if (!text) throw ModelError({file.string(), 0}, "file", "cannot be read, expected a URDF file");
   const detail::XmlFile xml(file.string(), *text);
-  const UrdfDescription urdf = detail::describeUrdf(xml.robot());
+  UrdfDescription urdf = detail::describeUrdf(xml.robot());
 
   ModelBuilder builder(urdf.name);
   builder.base = options.base;
@@ -126,14 +127,21 @@ ModelBuilder readUrdf(const std::filesystem::path& file, const UrdfOptions& opti
   }
 
   ShapeReader shapes(file, options);
-  for (const detail::UrdfLink& link : urdf.links) {
-    for (std::size_t i = 0; i < link.collisions.size(); ++i)
-      builder.geometry(shapes.collision(link.collisions[i], link.spec.name, i));
-    for (const UrdfShape& shape : link.visuals)
-      if (std::optional<VisualSpec> visual = shapes.visual(shape, link.spec.name, urdf))
+  for (detail::UrdfLink& link : urdf.links) {
+    for (std::size_t i = 0; i < link.collisions.size(); ++i) {
+      GeometrySpec collision = shapes.collision(link.collisions[i], link.spec.name, i);
+      link.collisions[i].shape.mesh = collision.shape.mesh;
+      builder.geometry(std::move(collision));
+    }
+    for (UrdfShape& shape : link.visuals)
+      if (std::optional<VisualSpec> visual = shapes.visual(shape, link.spec.name, urdf)) {
+        shape.shape.mesh = visual->shape.mesh;
         builder.visual(std::move(*visual));
+      }
   }
   for (const std::string& warning : urdf.warnings) builder.warning(warning);
+  for (const std::string& warning : detail::unitMistakes(xml.robot(), urdf))
+    builder.warning(warning);
   shapes.appendWarnings(builder);
 
   if (contents) {
