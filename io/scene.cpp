@@ -8,6 +8,7 @@
 
 #include "engine/core/check.hpp"
 #include "engine/core/rotation.hpp"
+#include "engine/model/followers.hpp"
 #include "engine/model/mass_properties.hpp"
 #include "io/detail/scene_actuators.hpp"
 #include "io/detail/scene_constraints.hpp"
@@ -308,12 +309,19 @@ class SceneReader {
 
 }  // namespace
 
+std::set<int> SceneFile::placedJoints(const Model& model) const {
+  std::set<int> bodies;
+  for (const auto& [joint, value] : positions) bodies.insert(model.findJoint(joint));
+  return bodies;
+}
+
 State SceneFile::initialState(const Model& model) const {
   State state(model);
   const auto dofOf = [&](const std::string& joint) {
     return model.bodies[static_cast<std::size_t>(model.findJoint(joint))];
   };
   for (const auto& [joint, value] : positions) state.q[dofOf(joint).q] = value;
+  placeFollowers(model, placedJoints(model), state.q);
   for (const auto& [joint, value] : velocities) state.v[dofOf(joint).v] = value;
   for (const Start& start : starts) {
     const Frame& frame = model.frames[static_cast<std::size_t>(model.findFrame(start.link))];

@@ -10,6 +10,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -54,7 +55,8 @@ struct SceneFile {
     bool onGround = false;  ///< raised or lowered until its lowest point touches the ground
   };
   std::vector<Start> starts;
-  std::vector<std::pair<std::string, double>> positions;   ///< of scalar joints [rad or m]
+  /// Of scalar joints [rad or m]; what follows another and is not here is where its leader has it.
+  std::vector<std::pair<std::string, double>> positions;
   std::vector<std::pair<std::string, double>> velocities;  ///< of scalar joints [rad/s or m/s]
 
   IntegrationKeys integration;
@@ -64,6 +66,8 @@ struct SceneFile {
   bool hasGoals = false;                    ///< has a list that readGoals() reads
   std::optional<gdd::GddSolver> gddSolver;  ///< that follows them, where the file names one
 
+  /// The bodies of the joints in `positions`.
+  std::set<int> placedJoints(const Model& model) const;
   /// The state in which it starts, but for the heights of what stands on the ground. `model` was
   /// built by `builder`.
   State initialState(const Model& model) const;

@@ -8,6 +8,7 @@
 #include "apps/shared/ground.hpp"
 #include "apps/simulate_gdd/error_control.hpp"
 #include "apps/simulate_gdd/trial.hpp"
+#include "engine/model/followers.hpp"
 #include "io/explain.hpp"
 #include "io/goals.hpp"
 #include "io/scene.hpp"
@@ -19,7 +20,9 @@ namespace {
 /// More would take minutes to load and gigabytes to hold.
 constexpr int kMostDofs = 2000;
 
-void setJointPositions(const SimulateOptions& options, const Model& model, State& state) {
+/// `placed` are the bodies of joints whose position is given already.
+void setJointPositions(const SimulateOptions& options, const Model& model, std::set<int> placed,
+                       State& state) {
   std::set<std::string> seen;
   for (const auto& [name, value] : options.q0) {
     const int body = model.findJoint(name);
@@ -33,7 +36,9 @@ void setJointPositions(const SimulateOptions& options, const Model& model, State
                          fmt::format("{} lies outside the joint's range {} .. {}", value,
                                      range.lower, range.upper));
     state.q[model.bodies[body].q] = value;
+    placed.insert(body);
   }
+  placeFollowers(model, placed, state.q);
 }
 
 void setOptions(const SimulateOptions& options, ModelBuilder& builder) {
@@ -70,7 +75,7 @@ void loadRobot(const SimulateOptions& options, Scene& scene) {
     scene.model = builder.build();
   }
   scene.initial = State(scene.model);
-  setJointPositions(options, scene.model, scene.initial);
+  setJointPositions(options, scene.model, {}, scene.initial);
   if (options.baseHeight) {
     for (const Tree& tree : scene.model.trees)
       if (scene.model.bodies[tree.rootBody].joint == JointKind::floating)
@@ -97,7 +102,7 @@ void loadSceneFile(const SimulateOptions& options, Scene& scene) {
   scene.actuators = file.actuators;
   scene.schedule = io::WrenchSchedule(scene.model, file.wrenches);
   scene.initial = file.initialState(scene.model);
-  setJointPositions(options, scene.model, scene.initial);
+  setJointPositions(options, scene.model, file.placedJoints(scene.model), scene.initial);
   if (!ground) return;
   std::vector<std::string> standing;
   for (const io::SceneFile::Start& start : file.starts)

@@ -10,6 +10,7 @@
 #include "engine/model/detail/equalities.hpp"
 #include "engine/model/detail/kinematic_tree.hpp"
 #include "engine/model/detail/spec_checks.hpp"
+#include "engine/model/followers.hpp"
 
 namespace softgauss {
 
@@ -276,7 +277,7 @@ VectorX initialConfiguration(const Model& model) {
     const int i = model.bodies[static_cast<std::size_t>(range.body)].q;
     if (range.lower > 0.0 || range.upper < 0.0) q[i] = 0.5 * (range.lower + range.upper);
   }
-  detail::applyCouplings(model, q);
+  placeFollowers(model, {}, q);
   return q;
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Scene files on the command line.
 
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -78,6 +80,68 @@ TEST(SceneRun, PairsOptionsAndWrenchesAct) {
   for (const char* words : {"external_wrench", "2 wrenches, first 'rough'", "(2, 0, 0) N",
                             "1 pair with a surface of its own"})
     EXPECT_NE(told.out.find(words), std::string::npos) << words << "\n" << told.out;
+}
+
+/// A hand whose followers stand before their leader in the file, some in a chain, on oblique axes.
+std::string handOfFollowers() {
+  std::string urdf = "<robot name=\"hand\"><link name=\"world\"/>";
+  for (const char* link : {"l0", "l1", "l2", "l3"})
+    urdf += std::string("<link name=\"") + link +
+            "\"><inertial><mass value=\"0.3\"/><inertia ixx=\"0.01\" iyy=\"0.02\" izz=\"0.03\" "
+            "ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial></link>";
+  const auto joint = [&](const char* name, const char* type, const char* parent, const char* child,
+                         const char* mimic) {
+    urdf += fmt::format(
+        "<joint name=\"{}\" type=\"{}\"><parent link=\"{}\"/><child link=\"{}\"/><axis xyz=\"0.3 "
+        "-0.4 2\"/><limit lower=\"-3\" upper=\"3\" effort=\"9\" velocity=\"9\"/>{}</joint>",
+        name, type, parent, child, mimic);
+  };
+  joint("sib", "revolute", "world", "l1",
+        "<mimic joint=\"lead\" multiplier=\"-0.5\" offset=\"0.2\"/>");
+  joint("lead", "revolute", "world", "l0", "");
+  joint("second", "revolute", "l1", "l2",
+        "<mimic joint=\"sib\" multiplier=\"2\" offset=\"-0.1\"/>");
+  joint("slide", "prismatic", "l0", "l3",
+        "<mimic joint=\"lead\" multiplier=\"0.1\" offset=\"0.05\"/>");
+  return urdf + "</robot>";
+}
+
+// Without forces nothing moves where each follower is where its leader has it.
+TEST(SceneRun, FollowersStartWhereTheirLeaderHasThem) {
+  const io::TempFolder folder;
+  const std::string urdf = folder.write("hand.urdf", handOfFollowers());
+  const std::string scene = folder.write(
+      "scene.yaml", "ground: none\nrobots: [{urdf: hand.urdf, joints: {lead: 0.6}}]\n");
+  const std::string named = folder.write(
+      "named.yaml", "ground: none\nrobots: [{urdf: hand.urdf, joints: {lead: 0.3, sib: 0.7}}]\n");
+  const std::string log = folder.path() / "log.csv";
+  const auto run = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.end(), {"--passive", "--effects", "no_gravity", "--duration", "0.5",
+                                       "--log", log, "--quiet"});
+    const Outcome outcome = simulate(arguments);
+    EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+    return Csv(readFile(log));
+  };
+  const double sib = -0.5 * 0.6 + 0.2;
+  const std::pair<const char*, double> expected[] = {{"q:lead", 0.6},
+                                                     {"q:sib", sib},
+                                                     {"q:second", 2.0 * sib - 0.1},
+                                                     {"q:slide", 0.1 * 0.6 + 0.05}};
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{urdf, "--q0", "lead=0.6"},
+        {scene},
+        {folder.write("plain.yaml", "ground: none\nrobots: [{urdf: hand.urdf}]\n"), "--q0",
+         "lead=0.6"}}) {
+    const Csv csv = run(arguments);
+    for (const int row : {0, static_cast<int>(csv.rows.size()) - 1})
+      for (const auto& [column, value] : expected)
+        EXPECT_NEAR(csv.number(row, column), value, 1e-12) << column << " in row " << row;
+  }
+  // What is named itself stays where it is named, and its own followers go with it.
+  const Csv csv = run({named, "--q0", "lead=0.6"});
+  EXPECT_EQ(csv.number(0, "q:lead"), 0.6);
+  EXPECT_EQ(csv.number(0, "q:sib"), 0.7);
+  EXPECT_NEAR(csv.number(0, "q:second"), 2.0 * 0.7 - 0.1, 1e-12);
 }
 
 /// gdd_solver and the warnings in the summary of a short run.

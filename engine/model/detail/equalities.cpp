@@ -128,15 +128,4 @@ void addCouplings(Model& model, const std::vector<JointSpec>& joints,
   }
 }
 
-void applyCouplings(const Model& model, VectorX& q) {
-  // A chain of followers is settled after as many rounds as it is long.
-  for (std::size_t round = 0; round < model.couplings.size(); ++round)
-    for (const JointCoupling& c : model.couplings) {
-      const double leader =
-          c.leader == 0 ? 0.0 : q[model.bodies[static_cast<std::size_t>(c.leader)].q];
-      q[model.bodies[static_cast<std::size_t>(c.follower)].q] =
-          c.leader == 0 ? c.polynomial[0] : c.value(leader);
-    }
-}
-
 }  // namespace softgauss::detail

@@ -17,7 +17,4 @@ void addWelds(Model& model, const std::vector<WeldSpec>& specs);
 void addCouplings(Model& model, const std::vector<JointSpec>& joints,
                   const std::vector<CouplingSpec>& specs);
 
-/// Puts every joint that follows another where its coupling wants it.
-void applyCouplings(const Model& model, VectorX& q);
-
 }  // namespace softgauss::detail
