@@ -14,7 +14,7 @@ ActiveSet::ActiveSet(const Model& model) : path_(model) {
 /// B u − g(a), with the rows as they were last evaluated.
 void ActiveSet::computeResidual(const Data& data) {
   data.inertia.M.multiply(path_.a, Ma_);
-  residual_ = force_ - Ma_ - data.forces.c;
+  residual_ = force_ - Ma_ - data.inertia.added.cwiseProduct(path_.a) - data.forces.c;
   data.constraints.addForce(residual_);
 }
 
@@ -70,7 +70,8 @@ const VectorX& ActiveSet::costSlope(Data& data) {
 /// q = Bᵀ(R B u + P⁻¹∇ℓ); false when not finite.
 bool ActiveSet::computeGradient(Data& data) {
   cell_.multiplyTransposed(costSlope(data), gradient_);
-  merit_ = effort() + std::abs(path_.value) + forces_.value();
+  merit_ =
+      effort() + cell_.price().freeCost() + std::abs(path_.value - constant_) + forces_.value();
   gradient_ += effortSlope_;
   return gradient_.allFinite() && std::isfinite(merit_);
 }
@@ -279,6 +280,7 @@ GddReport ActiveSet::solve(const Model& model, GoalCost& cost, const ControlBox&
     report_.status = GddStatus::badBox;
     return report_;
   }
+  constant_ = cost.expansionStart();
   report_.status = start(model, cost, box, data, warm);
   if (report_.status == GddStatus::notFinite) return report_;
   if (cell_.columns() > 0)

@@ -103,15 +103,16 @@ class ActiveSet {
   VectorX distances_;
   VectorX gradient_;       ///< q
   RowMajorMatrixX sides_;  ///< a row for each row held
-  VectorX effortSlope_;    ///< BᵀR B u, and of forces where the box has no width
-  VectorX givenSlope_;     ///< BᵀR of those forces alone
+  VectorX effortSlope_;    ///< of the price of force in u
+  VectorX givenSlope_;     ///< the same at u = 0: BᵀR (given force − ĝ)
   double givenEffort_ = 0.0;
   VectorX force_;  ///< B u (nv)
   VectorX Ma_, adjoint_, residual_, rate_;
-  double merit_ = 0.0;    ///< size of the objective
-  bool known_ = false;    ///< started from a last step
-  bool ready_ = false;    ///< R is that of this solve
-  bool entered_ = false;  ///< the response is that of the cell at a
+  double merit_ = 0.0;     ///< size of the objective
+  double constant_ = 0.0;  ///< in it, of functions: what they are worth whatever is done
+  bool known_ = false;     ///< started from a last step
+  bool ready_ = false;     ///< R is that of this solve
+  bool entered_ = false;   ///< the response is that of the cell at a
   GddReport report_;
   Solution first_;      ///< while another is looked for
   int searchAge_ = 0;   ///< WarmStart::gddSearchAge

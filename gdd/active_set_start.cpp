@@ -65,13 +65,13 @@ void ActiveSet::evaluateForces(Data& data) {
   forces_.evaluate(data.constraints);
 }
 
-/// The gradient in u of ½ τᵀR τ, τ = B u + what is given.
+/// The gradient in u of the price of τ = B u + what is given.
 void ActiveSet::computeEffortSlope() {
   cell_.multiplyForcePrice(u_, effortSlope_);
   effortSlope_ += givenSlope_;
 }
 
-/// ½ τᵀR τ, by its gradient.
+/// The price of τ, by its gradient.
 double ActiveSet::effort() const {
   return 0.5 * (u_.dot(effortSlope_) + u_.dot(givenSlope_)) + givenEffort_;
 }
@@ -84,9 +84,13 @@ bool ActiveSet::setInertia(const GoalCost& cost, const TreeFactor* massFactor, c
   }
   givenEffort_ = 0.0;
   givenSlope_.setZero(cell_.columns());
-  if ((cell_.given().array() == 0.0).all()) return true;
-  cell_.multiplyR(cell_.given(), rate_);
-  givenEffort_ = 0.5 * cell_.given().dot(rate_);
+  const ForcePrice& price = cell_.price();
+  const bool given = (cell_.given().array() != 0.0).any();
+  if (!given && !price.hasFree()) return true;
+  rate_.setZero();
+  if (given) cell_.multiplyR(cell_.given(), rate_);
+  givenEffort_ = price.value(cell_.given(), rate_);
+  if (price.hasFree()) rate_ -= price.freeSlope();
   cell_.select(rate_, givenSlope_);
   return true;
 }

@@ -18,8 +18,8 @@ void AugmentedLagrangian::evaluate(Data& data) {
   data.constraints.setResidual(a_);
   held_.place(data.constraints);
   data.constraints.evaluate(rowsChanged_);
-  // −g = Jᵀf − M a − c, as addForce() adds.
-  g_ = -Ma_ - data.forces.c;
+  // −g = Jᵀf − M̂ a − c, as addForce() adds.
+  g_ = -Ma_ - data.inertia.added.cwiseProduct(a_) - data.forces.c;
   data.constraints.addForce(g_);
   g_ = -g_;
 }
@@ -37,6 +37,7 @@ bool AugmentedLagrangian::gradient(const BoundPenalty& bounds, const GoalCost& c
     curvature_[i] = psi.curvature;
   }
   w_ = Rg_;
+  if (cost.price().hasFree()) w_ -= cost.price().freeSlope();
   bounds.box.addSlope(slope_, w_);
   if (rowsChanged_) {
     hessian_.setCell(data);
@@ -78,9 +79,11 @@ double AugmentedLagrangian::gap(const ControlBox& box) const {
 }
 
 /// ρ as R has it: penalty · w, or more where R is larger; of a coordinate, along its column of T.
+/// w, the inverse inertia of a dof, with what implicit forces add: 1/(1/w + added).
 void AugmentedLagrangian::setPenalties(const GoalCost& cost, const ControlBox& box,
                                        const Data& data) {
   scratch_ = Eigen::Map<const VectorX>(data.weights.dof.data(), rho_.size());
+  scratch_.array() /= 1.0 + scratch_.array() * data.inertia.added.array();
   if (!cost.price().hasInverseMass()) {
     w_ = cost.price().diagonal();
     for (int k = 0; k < cost.price().directionCount(); ++k)
@@ -139,7 +142,9 @@ GddReport AugmentedLagrangian::minimizeFrom(const Model& model, GoalCost& cost,
   };
   if (model.nv == 0) return report;
   const TreeMatrix& M = data.inertia.M;
-  if (!data.forces.c.allFinite() || !massFactor_.compute(M)) return end(GddStatus::notFinite);
+  if (!data.forces.c.allFinite() || !massFactor_.compute(data.inertia.hat()))
+    return end(GddStatus::notFinite);
+  cost.preparePrice(massFactor_);
   start(cost, box, data, warm);
   const BoundPenalty bounds{box, lambda_, rho_, &cost.price()};
   const double forceScale = std::max(1.0, data.forces.c.cwiseAbs().maxCoeff());
@@ -151,7 +156,7 @@ GddReport AugmentedLagrangian::minimizeFrom(const Model& model, GoalCost& cost,
   for (;;) {
     if (!gradient(bounds, cost, data)) return end(GddStatus::notFinite);
     report.violation = box.violation(g_);
-    report.objective = 0.5 * g_.dot(Rg_) + cost.value(a_, Ma_) + forces_.value();
+    report.objective = cost.price().value(g_, Rg_) + cost.value(a_, Ma_) + forces_.value();
     if (report.iterations == options.maxIterations) return end(GddStatus::iterationLimit);
 
     // Direction in this cell.
@@ -170,7 +175,7 @@ GddReport AugmentedLagrangian::minimizeFrom(const Model& model, GoalCost& cost,
     // that promises no less than the first has reached rounding. A decrement that the objective
     // cannot show leaves a gradient of its root times the stiffness of H: where nothing is held,
     // one more step is worth taking if that gradient is large.
-    const double merit = std::abs(report.objective) + penalty_;
+    const double merit = std::abs(report.objective) + cost.price().freeCost() + penalty_;
     const bool unseen = decrement <= 1e-14 * merit;
     const bool last = unseen && held_.empty() && !lastTaken && report.stationarity > kSmallGradient;
     const bool rounding = (unseen && !last) || (sameCell && decrement > 0.01 * promised);
@@ -211,6 +216,7 @@ GddReport AugmentedLagrangian::minimizeFrom(const Model& model, GoalCost& cost,
       costSlope -= forces_.slope();
     }
     const double costCurvature = cost.curvatureAlong(direction_, Md_);
+    Md_ += data.inertia.added.cwiseProduct(direction_);  // M̂ d
     const RayResult ray = data.constraints.piecewiseQuadratic()
                               ? ray_.minimize(data.constraints, massFactor_, bounds, g_, scratch_,
                                               costSlope, costCurvature, forces_)

@@ -31,7 +31,7 @@ void CellModel::set(GoalCost& cost, const ControlBox& box, Data& data, const Vec
   const MatrixX mass = M.dense();
   const ForcePrice& price = cost.price();
   if (price.hasInverseMass())
-    Q_ = P_ * mass.llt().solve(P_);
+    Q_ = P_ * data.inertia.hat().dense().llt().solve(P_);
   else
     Q_.setZero(n, n);
   // ½ c (x·g)²

@@ -91,7 +91,13 @@ bool CellResponse::setInertia(const Data& data, const TreeFactor* massFactor,
   cost_ = &cost;
   price_ = cost.price();
   massFactor_ = massFactor ? massFactor : &ownMassFactor_;
-  if (!massFactor && !ownMassFactor_.compute(data.inertia.M)) return false;
+  if (!massFactor && !ownMassFactor_.compute(data.inertia.hat())) return false;
+  // Goals weigh by M itself.
+  goalMassFactor_ = data.inertia.anyAdded ? &ownGoalMassFactor_ : massFactor_;
+  if (data.inertia.anyAdded && cost.metricWeight() != 0.0 &&
+      !ownGoalMassFactor_.compute(data.inertia.M))
+    return false;
+  price_.prepare(*massFactor_);
   computeForcePrice();
   return true;
 }
@@ -136,7 +142,7 @@ void CellResponse::multiplyForcePrice(const VectorX& p, VectorX& y) const {
 
 bool CellResponse::enter(Data& data) {
   P_.resize(data.constraints.sparsity());
-  P_.assign(data.inertia.M);
+  P_.assign(data.inertia.hat());
   data.constraints.addCurvature(P_);
   enterWith(ownFactor_);
   return ownFactor_.compute(P_);
@@ -198,7 +204,7 @@ void CellResponse::computeHessian() {
                       S_);
     K_ = forcePrice_;
     rootS_.resize(S_.rows(), S_.cols());
-    cost_->addReducedCurvature(*massFactor_, S_, rootS_, K_);
+    cost_->addReducedCurvature(*goalMassFactor_, S_, rootS_, K_);
     correctionsInS_ = correctionCount_;
   }
   for (; correctionsInS_ < correctionCount_; ++correctionsInS_)

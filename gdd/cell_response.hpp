@@ -28,8 +28,8 @@ class CellResponse {
 
   /// Takes B from the box.
   void setDriven(const Model& model, const ControlBox& box);
-  /// Takes R from the cost and M, and ∇²ℓ from the cost; M and the cost must stay. `massFactor`, of
-  /// M, may be null. Returns false when M is not positive definite.
+  /// Takes R from the cost and M̂, and ∇²ℓ from the cost; M and the cost must stay. `massFactor`, of
+  /// M̂, may be null. Returns false when M is not positive definite.
   bool setInertia(const Data& data, const TreeFactor* massFactor, const GoalCost& cost);
 
   /// P of the cell in which the rows are kept. Returns false when it cannot be factored.
@@ -66,6 +66,7 @@ class CellResponse {
   void multiplyTransposed(const VectorX& x, VectorX& y) const;
   void multiply(const VectorX& p, VectorX& a) const { a.noalias() = S_.leftCols(columns()) * p; }
   void multiplyR(const VectorX& x, VectorX& Rx) const;          ///< Rx ← R x
+  const ForcePrice& price() const { return price_; }            ///< prepared
   void multiplyForcePrice(const VectorX& p, VectorX& y) const;  ///< y ← BᵀR B p
   /// Lower triangle.
   auto hessian() const { return (withForces_ ? forceK_ : K_).topLeftCorner(columns(), columns()); }
@@ -85,6 +86,8 @@ class CellResponse {
   VectorX fixed_, givenForce_;  ///< coordinates that the box fixes, else 0; the force they make
   TreeFactor ownMassFactor_, ownFactor_;
   const TreeFactor* massFactor_ = &ownMassFactor_;
+  TreeFactor ownGoalMassFactor_;
+  const TreeFactor* goalMassFactor_ = &ownMassFactor_;  ///< of M
   const TreeMatrix* M_ = nullptr;
   const GoalCost* cost_ = nullptr;
   const TreeFactor* factor_ = &ownFactor_;  ///< of P before the corrections

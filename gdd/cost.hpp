@@ -70,6 +70,9 @@ class GoalCost {
     metricSlope_ += scratch_;
   }
 
+  /// The price of force counts from `force` (nv) [N, N m], not from 0. To be called before goals
+  /// add to the price.
+  void setFreeForce(const VectorX& force) { price_.setFree(force); }
   /// ½ weight g_dof².
   void addForcePrice(int dof, double weight) { price_.add(dof, weight); }
   /// ½ weight (c·g)².
@@ -84,14 +87,17 @@ class GoalCost {
   GoalWorkspace& workspace() { return workspace_; }
   double metricWeight() const { return metricWeight_; }
   const ForcePrice& price() const { return price_; }  ///< R + W
+  /// For a factor of the M in R.
+  void preparePrice(const TreeFactor& massFactor) { price_.prepare(massFactor); }
 
   bool hasFunctions() const { return !functions_.empty(); }
   /// From here on the functions count as their expansion m about a (T.52). Returns false when it is
   /// not finite.
   bool expand(const TreeMatrix& M, const VectorX& a, double mu);
-  double expansionValue(const VectorX& a) const;      ///< m(a)
-  VectorX expansionGradient(const VectorX& a) const;  ///< ∇m(a)
-  double functionValue(const VectorX& a);             ///< φ(a)
+  double expansionStart() const { return hasFunctions() ? expansionStart_ : 0.0; }  ///< φ there
+  double expansionValue(const VectorX& a) const;                                    ///< m(a)
+  VectorX expansionGradient(const VectorX& a) const;                                ///< ∇m(a)
+  double functionValue(const VectorX& a);                                           ///< φ(a)
   /// φ(a); writes ∇φ (nv) and ∇²φ (nv × nv).
   double functions(const VectorX& a, VectorX& gradient, MatrixX& hessian);
   /// H ← H with its eigenvalues against M that are below −0.9 σ raised to that. Where R is M⁻¹,

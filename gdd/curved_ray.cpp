@@ -47,6 +47,10 @@ RayResult CurvedRay::minimize(Constraints& constraints, const TreeFactor& massFa
     bounds.box.coordinates(rate_, yRate_);
     Jet jet{0.5 * g_.dot(Rg_) + alpha * (costSlope + 0.5 * alpha * costCurvature),
             Rg_.dot(rate_) + costSlope + alpha * costCurvature, 0.0};
+    if (const VectorX* free = bounds.freeSlope()) {
+      jet.value -= free->dot(g_);
+      jet.slope -= free->dot(rate_);
+    }
     if (forces.active()) {
       forces.evaluate(constraints);
       forces.setRate(constraints);
@@ -64,7 +68,7 @@ RayResult CurvedRay::minimize(Constraints& constraints, const TreeFactor& massFa
   RayResult result;
   const Jet start = phi(0.0);
   if (!(start.slope < 0.0)) return result;
-  const double ceiling = start.value + kRounding * std::abs(start.value);
+  const double ceiling = start.value + kRounding * (std::abs(start.value) + bounds.freeCost());
   double lower = 0.0, upper = kInfinity;
   double lowerSlope = start.slope, upperSlope = kNaN;  // NaN: no use for a secant
   // Looks at α and draws the bracket around the minimum; true where it is there.

@@ -8,7 +8,7 @@ namespace softgauss::gdd {
 VectorX ExpandedSolve::freeAcceleration(const Data& data) {
   VectorX a = -data.forces.c;
   TreeFactor factor;
-  if (factor.compute(data.inertia.M)) factor.solve(a);
+  if (factor.compute(data.inertia.hat())) factor.solve(a);
   return a;
 }
 

@@ -77,9 +77,9 @@ class ExpandedSolve {
       const double gap = cost.expansionError(trial, data.inertia.forceScale);
       const double equal = 1e-13 * std::abs(best);
       const bool first = best == kInfinity, still = !guessed && !first && promised <= equal;
-      const bool noBetter = still && mu == 0.0;
       const bool falls = best - value > equal && best - value >= 0.1 * promised;
       const bool closes = !first && value <= best + equal && gap < 0.5 * bestGap;
+      const bool noBetter = still && mu == 0.0 && !closes;
       if (std::isfinite(value) && (first || falls || closes)) {
         if (!guessed && best - value >= 0.7 * promised) mu = mu > 1e-3 ? 0.25 * mu : 0.0;
         best = value;

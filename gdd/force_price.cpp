@@ -53,7 +53,30 @@ void ForcePrice::set(const ForceMetric& R) {
   else
     diagonal_.setZero();
   count_ = 0;
+  hasFree_ = false;
+  freeCost_ = 0.0;
   for (Eigen::Index k = 0; k < R.root().cols(); ++k) add(R.root().col(k), 1.0);
+}
+
+void ForcePrice::setFree(const VectorX& force) {
+  SOFTGAUSS_ASSERT(force.size() == diagonal_.size());
+  hasFree_ = true;
+  free_ = force;
+  freeSlope_.resize(force.size());  // copies keep their memory
+  scratch_.resize(force.size());
+  freeExplicit_ = diagonal_.cwiseProduct(force);
+  for (int k = 0; k < count_; ++k) freeExplicit_ += direction(k).dot(force) * direction(k);
+}
+
+void ForcePrice::prepare(const TreeFactor& massFactor) {
+  if (!hasFree_) return;
+  freeSlope_ = freeExplicit_;
+  if (inverseMass_) {
+    scratch_ = free_;
+    massFactor.solve(scratch_);
+    freeSlope_ += scratch_;
+  }
+  freeCost_ = 0.5 * free_.dot(freeSlope_);
 }
 
 void ForcePrice::add(const Eigen::Ref<const VectorX>& c, double weight) {

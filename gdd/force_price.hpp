@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// What force costs: ½ gᵀ(R + W) g, with g the generalised force on the dofs (T.17), (T.66).
+/// What force costs: ½ (g − ĝ)ᵀR (g − ĝ) + ½ gᵀW g, with g the generalised force on the dofs
+/// (T.17), (T.66).
 ///
 ///   R + W = [M⁻¹] + diag(r) + Σ_k d_k d_kᵀ
-/// R is M⁻¹ or a matrix that the user gives: a diagonal goes into r, any other as its columns of
-/// Cholesky, R = L Lᵀ = Σ l_k l_kᵀ. W is what goals add (T.50): w on a single force adds to r, w on
-/// a force along a direction c, ½ w (c·g)², adds the column √w c.
+/// ĝ, 0 unless it is set, is force that costs nothing, such as what holds the robot against gravity
+/// (holding_force.hpp). In g the price has the slope (R + W) g − R ĝ. R is M⁻¹ or a matrix that the
+/// user gives: a diagonal goes into r, any other as its columns of Cholesky, R = L Lᵀ = Σ l_k l_kᵀ.
+/// W is what goals add (T.50): w on a single force adds to r, w on a force along a direction c, ½ w
+/// (c·g)², adds the column √w c.
 
 #include "engine/dynamics/tree_matrix.hpp"
 
@@ -37,12 +40,17 @@ class ForcePrice {
  public:
   explicit ForcePrice(int dofs = 0) : diagonal_(VectorX::Zero(dofs)) {}
 
-  /// R alone. Keeps its memory.
+  /// R alone, with ĝ = 0. Keeps its memory.
   void set(const ForceMetric& R);
+  /// ĝ (nv) [N, N m]. To be called after set(), before W is added.
+  void setFree(const VectorX& force);
   /// Adds ½ weight g_dof².
   void add(int dof, double weight) { diagonal_[dof] += weight; }
   /// Adds ½ weight (c·g)².
   void add(const Eigen::Ref<const VectorX>& c, double weight);
+
+  /// R ĝ and ½ ĝᵀR ĝ, for a factor of the M in R. To be called before slope() and value().
+  void prepare(const TreeFactor& massFactor);
 
   bool hasInverseMass() const { return inverseMass_; }
   const VectorX& diagonal() const { return diagonal_; }  ///< r (nv)
@@ -51,14 +59,26 @@ class ForcePrice {
 
   /// R + W without M⁻¹ (nv × nv).
   MatrixX dense() const;
-  /// Rx ← (R + W) x. `massFactor` is of M.
+  /// Rx ← (R + W) x. `massFactor` is of M̂.
   void multiply(const TreeFactor& massFactor, const VectorX& x, VectorX& Rx) const;
+  bool hasFree() const { return hasFree_; }                ///< whether there is a ĝ other than 0
+  const VectorX& freeSlope() const { return freeSlope_; }  ///< R ĝ (nv)
+  double freeCost() const { return freeCost_; }            ///< ½ ĝᵀR ĝ: what it would cost
+  /// The price at g, of which Rg = (R + W) g.
+  double value(const VectorX& g, const VectorX& Rg) const {
+    return hasFree_ ? 0.5 * g.dot(Rg) - g.dot(freeSlope_) + freeCost_ : 0.5 * g.dot(Rg);
+  }
 
  private:
   bool inverseMass_ = true;
   VectorX diagonal_;
   MatrixX directions_;  ///< (nv × room), the first count_ columns are in use
   int count_ = 0;
+  bool hasFree_ = false;
+  VectorX free_;          ///< ĝ (nv)
+  VectorX freeExplicit_;  ///< (R − [M⁻¹]) ĝ (nv)
+  VectorX freeSlope_, scratch_;
+  double freeCost_ = 0.0;
 };
 
 }  // namespace softgauss::gdd

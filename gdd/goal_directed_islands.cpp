@@ -90,6 +90,7 @@ class GoalDirectedIslands::Control final : public IslandControl {
     part_->goals = std::move(goals);
     part_->box = std::move(box);
     part_->forceMetric = metricWithin(from.forceMetric, whole, island_);
+    part_->controlCost = from.controlCost;
     part_->solver = from.solver;
     part_->augmentedLagrangian.options = from.augmentedLagrangian.options;
     part_->activeSet.options = from.activeSet.options;

@@ -34,6 +34,8 @@ SolveStatus GoalDirectedController::solveAndAdvance(Solver& used, const Model& m
   // A disturbance is not the control's: it belongs to what the control has to cope with.
   data.forces.c -= data.forces.tau;
   cost_.clear(forceMetric);
+  if (controlCost == ControlCost::aboutGravity && box.firstBad(model.nv) < 0)
+    cost_.setFreeForce(holding_.compute(model, state, box, data));
   for (const auto& goal : goals)
     if (goal->actsAt(state.time)) goal->addCost({model, state, data}, cost_);
   data.stats.refusedGuesses += refuses(used, state.warmstart);
@@ -52,7 +54,9 @@ SolveStatus GoalDirectedController::solveAndAdvance(Solver& used, const Model& m
     held_.tau = held_.tau.size() == model.nv ? held_.tau + control : control;
   const SolveStatus status =
       advance(model, held_, contacts, &expansion.acceleration(), data, state);
-  if (!softgauss::isRefused(status)) expansion.keepWarmStart(state.warmstart);
+  if (softgauss::isRefused(status)) return status;
+  data.stats.realised = deviation(data.acceleration, expansion.acceleration());
+  expansion.keepWarmStart(state.warmstart);
   return status;
 }
 

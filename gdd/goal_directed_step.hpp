@@ -15,12 +15,19 @@
 #include "gdd/augmented_lagrangian.hpp"
 #include "gdd/expanded_solve.hpp"
 #include "gdd/goal.hpp"
+#include "gdd/holding_force.hpp"
 
 namespace softgauss::gdd {
 
 enum class GddSolver {
   augmentedLagrangian,  ///< solver 1, over accelerations
   activeSet             ///< solver 2, over controls; where contacts have elliptic cones, solver 1
+};
+
+/// From where the price of force counts.
+enum class ControlCost {
+  aboutGravity,  ///< what holds the robot at rest against gravity: the price pulls nowhere then
+  total          ///< zero, as in the paper
 };
 
 /// Goals, solver and memory of a controlled simulation. One a thread.
@@ -31,6 +38,7 @@ class GoalDirectedController {
   std::vector<std::unique_ptr<Goal>> goals;
   ControlBox box;  ///< what the actuators can do; change it, or give them gears and couplings
   ForceMetric forceMetric;  ///< R, M⁻¹ unless set
+  ControlCost controlCost = ControlCost::aboutGravity;
   GddSolver solver = GddSolver::activeSet;
   AugmentedLagrangian augmentedLagrangian;
   ActiveSet activeSet;
@@ -59,6 +67,7 @@ class GoalDirectedController {
                               ContactSource* contacts);
 
   GoalCost cost_;
+  HoldingForce holding_;
   VectorX coordinates_;  ///< y of the control (nv)
   Input held_;           ///< over the step, with soft friction; its τ is the control's at the end
 };

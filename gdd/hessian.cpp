@@ -40,7 +40,7 @@ void GaussNewtonHessian::setCell(Data& data) {
   data.constraints.addCurvature(G_);
   P_.resize(pattern);
   P_.assign(G_);
-  P_.add(data.inertia.M);
+  P_.add(data.inertia.hat());
 }
 
 bool GaussNewtonHessian::factorize(const Data& data, const TreeFactor& massFactor,
@@ -49,13 +49,12 @@ bool GaussNewtonHessian::factorize(const Data& data, const TreeFactor& massFacto
   const int n = H_.size();
   H_.setZero();
   if (cost.price().hasInverseMass()) {
-    // (1 + m) M + 2 G
-    H_.add(data.inertia.M, 1.0 + cost.metricWeight());
+    // M̂ + 2 G + G M̂⁻¹G
+    H_.add(data.inertia.hat());
     H_.add(G_, 2.0);
     addReflectedContacts(data, massFactor);
-  } else {
-    H_.add(data.inertia.M, cost.metricWeight());
   }
+  H_.add(data.inertia.M, cost.metricWeight());
   addForceTerms(boundCurvature, box, cost.price());
   cost.addRowCurvature(H_);
   if (forces.active()) {

@@ -26,7 +26,7 @@ class GaussNewtonHessian {
 
   /// G and P = M + G of the cell in which the rows were last evaluated.
   void setCell(Data& data);
-  /// Factors H, with ∇²ℓ of contact forces in this cell. `massFactor` is of M, `boundCurvature` ψ″
+  /// Factors H, with ∇²ℓ of contact forces in this cell. `massFactor` is of M̂, `boundCurvature` ψ″
   /// of every coordinate. Returns false when H is not positive definite.
   bool factorize(const Data& data, const TreeFactor& massFactor, const VectorX& boundCurvature,
                  const ControlBox& box, GoalCost& cost, ForceTerms& forces);

@@ -38,6 +38,7 @@ RayResult Ray::minimize(const Constraints& constraints, const TreeFactor& massFa
     bounds.box.coordinates(g_, y_);
     bounds.box.coordinates(rate_, yRate_);
     smoothSlope_ = g_.dot(Rrate_) + costSlope + result.alpha * costCurvature;
+    if (const VectorX* free = bounds.freeSlope()) smoothSlope_ -= free->dot(rate_);
     smoothCurvature_ = rate_.dot(Rrate_) + costCurvature;
     if (forces.active()) {
       smoothSlope_ += forces.slope();

@@ -31,6 +31,11 @@ struct BoundPenalty {
     Rx = x;
     massFactor.solve(Rx);
   }
+  /// R ĝ, the part of the price's slope that does not depend on g; none where ĝ = 0.
+  const VectorX* freeSlope() const {
+    return price && price->hasFree() ? &price->freeSlope() : nullptr;
+  }
+  double freeCost() const { return price ? price->freeCost() : 0.0; }  ///< ½ ĝᵀR ĝ
   /// ½ ρ (t − clamp t)², its slope and curvature in y_i. A bound just met has curvature 0.
   Jet at(Eigen::Index i, double y) const {
     const double t = y + lambda[i] / rho[i];

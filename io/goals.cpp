@@ -81,8 +81,12 @@ GoalPointer readGoal(const std::string& file, const YamlValue& item, std::size_t
 
 }  // namespace
 
-std::vector<std::unique_ptr<gdd::Goal>> readGoals(const std::filesystem::path& file,
-                                                  const Model& model, const State& initial) {
+void GoalFile::giveTo(gdd::GoalDirectedController& controller) && {
+  controller.goals = std::move(goals);
+  if (controlCost) controller.controlCost = *controlCost;
+}
+
+GoalFile readGoalFile(const std::filesystem::path& file, const Model& model, const State& initial) {
   SOFTGAUSS_ASSERT(initial.q.size() == model.nq);
   const std::string path = file.string();
   const std::optional<std::string> text = detail::readFile(path);
@@ -94,17 +98,26 @@ std::vector<std::unique_ptr<gdd::Goal>> readGoals(const std::filesystem::path& f
   const YamlMap top(path, "", "", root);
   // A scene file may hold goals too.
   const bool isScene = top.find("robots") || top.find("objects");
-  top.expectOnly(isScene ? detail::kSceneKeys : std::vector<std::string>{"goals"});
+  top.expectOnly(isScene ? detail::kSceneKeys : std::vector<std::string>{"goals", "control_cost"});
   const YamlMap::Entry& list = top.required("goals", "a list of goals");
   if (list.value.items.empty())
     top.fail(list,
              fmt::format("found {}, expected a list of at least one goal", list.value.described()));
 
-  std::vector<std::unique_ptr<gdd::Goal>> goals;
+  GoalFile result;
   for (const YamlValue& item : list.value.items)
-    goals.push_back(readGoal(path, item, goals.size() + 1, {model, initial}));
-  detail::joinLines(goals);
-  return goals;
+    result.goals.push_back(readGoal(path, item, result.goals.size() + 1, {model, initial}));
+  detail::joinLines(result.goals);
+  if (const YamlMap::Entry* cost = top.find("control_cost"))
+    result.controlCost = top.choice(*cost, {"about_gravity", "total"}) == "total"
+                             ? gdd::ControlCost::total
+                             : gdd::ControlCost::aboutGravity;
+  return result;
+}
+
+std::vector<std::unique_ptr<gdd::Goal>> readGoals(const std::filesystem::path& file,
+                                                  const Model& model, const State& initial) {
+  return readGoalFile(file, model, initial).goals;
 }
 
 }  // namespace softgauss::io

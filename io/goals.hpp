@@ -9,16 +9,28 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "engine/model/state.hpp"
-#include "gdd/goal.hpp"
+#include "gdd/goal_directed_step.hpp"
 
 namespace softgauss::io {
 
-/// The goals of the file, in its order; none is added. `initial` is the state from which the
+struct GoalFile {
+  std::vector<std::unique_ptr<gdd::Goal>> goals;  ///< in the order of the file; none is added
+  std::optional<gdd::ControlCost> controlCost;    ///< where the file has the key `control_cost`
+
+  /// Makes them the goals of the controller, in place of those it has.
+  void giveTo(gdd::GoalDirectedController& controller) &&;
+};
+
+/// A file of goals, or a scene, of which the goals are taken. `initial` is the state from which the
 /// simulation starts: the reference of a posture and the start of a minimum-jerk reach.
 /// Throws ModelError.
+GoalFile readGoalFile(const std::filesystem::path& file, const Model& model, const State& initial);
+
+/// The goals alone.
 std::vector<std::unique_ptr<gdd::Goal>> readGoals(const std::filesystem::path& file,
                                                   const Model& model, const State& initial);
 

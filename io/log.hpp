@@ -35,6 +35,7 @@ struct StepRecord {
   double physicsViolation = 0.0;  ///< largest |g(q,v,a) − (u,0)| [N m or N]
   double gddViolation = 0.0;      ///< the same at the GDD solver's own acceleration
   double stationarity = 0.0;      ///< certificate of the GDD solver
+  double realised = 0.0;          ///< StepStats::realised; not in the log
   double forwardUs = 0.0;         ///< time of the forward step [µs]
   double gddUs = 0.0;             ///< time of the GDD solve [µs]
   double stepUs = 0.0;            ///< time of the whole step [µs]

@@ -86,6 +86,7 @@ void Summary::addStep(const StepRecord& r) {
   iterations_.values.push_back(r.iterations);
   dualUpdates_.values.push_back(r.dualUpdates);
   physicsViolation_.values.push_back(r.physicsViolation);
+  realised_.values.push_back(r.realised);
   gddViolation_.values.push_back(r.gddViolation);
   stationarity_.values.push_back(r.stationarity);
   for (const Bounded& control : bounded_)
@@ -125,7 +126,8 @@ std::string Summary::json() const {
         {"impedance_ratio", impedanceRatio_},
         {"exact_diagonal", exactDiagonal_},
         {"no_slip", noSlip_},
-        {"gdd_solver", gddSolver}}},
+        {"gdd_solver", gddSolver},
+        {"control_cost", controlCost}}},
       {"outcome", outcome},
       {"steps", steps_},
       {"simulated_s", simulatedSeconds()},
@@ -140,6 +142,7 @@ std::string Summary::json() const {
       {"physics_violation", spreadOf(physicsViolation_)},
       {"gdd_violation", spreadOf(gddViolation_)},
       {"stationarity", spreadOf(stationarity_)},
+      {"realised", spreadOf(realised_)},
       {"gdd_minima",
        {{"certified", gdd.certified},
         {"kinks", gdd.kinks},

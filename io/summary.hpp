@@ -118,6 +118,7 @@ class Summary {
   std::string version;
   std::string integrator;  ///< preset to the model's
   std::string gddSolver = "active-set";
+  std::string controlCost = "about_gravity";  ///< or "total"
   std::string outcome = "completed";
   double wallSeconds = 0.0;
   double massKg = 0.0;  ///< of all links; preset to that of the moving bodies
@@ -152,7 +153,7 @@ class Summary {
   double initialEnergy_ = 0.0, finalEnergy_ = 0.0;
   double maxPenetration_ = 0.0, maxControlRatio_ = 0.0;
   Series forwardUs_, gddUs_, stepUs_, constraints_, iterations_, dualUpdates_;
-  Series physicsViolation_, gddViolation_, stationarity_;
+  Series physicsViolation_, gddViolation_, stationarity_, realised_;
 };
 
 }  // namespace softgauss::io

@@ -69,6 +69,7 @@ std::string Summary::table() const {
   if (gddUs_.max() > 0.0) {
     addRow(out, "GDD violation", "N, N m", gddViolation_);
     addRow(out, "stationarity", "", stationarity_);
+    addRow(out, "realised, relative", "", realised_);
   }
   if (gdd.all() > 0)
     add(fmt::format("  minima of goals: {:.4g} % certified, {:.3g} % of all at kinks",

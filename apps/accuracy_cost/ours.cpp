@@ -49,7 +49,7 @@ class Ours final : public Contestant {
     builder.options.cone = method.cone;
     if (method.tolerance > 0.0) builder.options.tolerance = method.tolerance;
     if (method.integrator == kMujocoEuler)
-      builder.options.midpointCoriolis = false;
+      builder.options.implicitInSolve = builder.options.midpointCoriolis = false;
     else
       builder.options.integrator = integratorFromName(method.integrator).value();
     builder.options.stepDoubling = method.doubling;

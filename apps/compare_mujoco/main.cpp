@@ -48,7 +48,7 @@ Model loadModel(const Arguments& arguments) {
                                                 : BaseKind::automatic;
   ModelBuilder builder = io::readUrdf(arguments.model, options);
   builder.options.timestep = arguments.timestep;
-  builder.options.midpointCoriolis = builder.options.ownSoftness = false;  // as MuJoCo has it
+  builder.options.useMujocoModel();
   Model model = builder.build();
   const auto floats = [](const Body& body) { return body.joint == JointKind::floating; };
   if (std::none_of(model.bodies.begin(), model.bodies.end(), floats)) return model;

@@ -250,6 +250,7 @@ void Setting::setOptions(double period, Options& options) const {
   if (integrationTolerance > 0.0) options.integrationTolerance = integrationTolerance;
   options.tolerance = tolerance;
   options.midpointCoriolis = options.midpointCoriolis && midpointCoriolis;
+  options.implicitInSolve = options.implicitInSolve && midpointCoriolis;
 }
 
 std::string Setting::text(double period) const {

@@ -81,9 +81,7 @@ TrialRun Trials::run(Model model, int periods, int steps, double mostSeconds) {
   State state = scene_.initial;
   Input input;
   gdd::GoalDirectedController controller(model);
-  if (!options_.passive && options_.torques.empty()) controller.goals = makeGoals(options_, scene_);
-  controller.solver = scene_.gddSolver;
-  controller.box = io::controlBox(model, scene_.actuators);
+  setUp(options_, scene_, controller);
 
   TrialRun result;
   result.touches = false;

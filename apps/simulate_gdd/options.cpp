@@ -25,7 +25,14 @@ std::vector<std::string> split(const std::string& text, char separator) {
   return parts;
 }
 
-double parseNumber(const std::string& text, const std::string& context) {
+/// Without blanks at its ends.
+std::string trimmed(const std::string& text) {
+  const std::size_t begin = text.find_first_not_of(" \t"), end = text.find_last_not_of(" \t");
+  return begin == std::string::npos ? "" : text.substr(begin, end - begin + 1);
+}
+
+double parseNumber(const std::string& given, const std::string& context) {
+  const std::string text = trimmed(given);
   double value = 0.0;
   const char* end = text.data() + text.size();
   const auto [rest, error] = std::from_chars(text.data(), end, value);
@@ -42,19 +49,45 @@ Vector3 parsePoint(const std::string& text, const std::string& context) {
           parseNumber(parts[2], context)};
 }
 
+/// As a file of goals has them.
+double parseWeight(const std::string& text, const std::string& context) {
+  constexpr double kLargest = 1e12;
+  const double weight = parseNumber(text, context);
+  if (!(weight >= 0.0 && weight <= kLargest))
+    throw UsageError(fmt::format("{}: found the weight {}, expected 0 to 1e12", context, weight));
+  return weight;
+}
+
 ReachArgument parseReach(const std::string& text) {
   const std::string context = "--reach " + text;
   const std::size_t equals = text.rfind('=');
   if (equals == std::string::npos)
     throw UsageError(context + ": expected LINK=x,y,z or LINK:ox,oy,oz=x,y,z");
   ReachArgument reach;
-  reach.link = text.substr(0, equals);
-  reach.p_WTarget = parsePoint(text.substr(equals + 1), context);
+  reach.link = trimmed(text.substr(0, equals));
+  std::string place = text.substr(equals + 1);
+  if (const std::size_t at = place.find('@'); at != std::string::npos) {
+    reach.weight = parseWeight(place.substr(at + 1), context);
+    place.resize(at);
+  }
+  reach.p_WTarget = parsePoint(place, context);
   if (const std::size_t colon = reach.link.rfind(':'); colon != std::string::npos) {
     reach.p_FP = parsePoint(reach.link.substr(colon + 1), context);
     reach.link.resize(colon);
   }
   return reach;
+}
+
+/// What integrators are also called.
+constexpr std::pair<const char*, const char*> kShortNames[] = {{"euler", "semi-implicit-euler"},
+                                                               {"midpoint", "implicit-midpoint"},
+                                                               {"rk4", "runge-kutta-4"},
+                                                               {"dopri5", "dormand-prince"}};
+
+std::string fullName(const std::string& integrator) {
+  for (const auto& [name, full] : kShortNames)
+    if (integrator == name) return full;
+  return integrator;
 }
 
 EffectSet parseEffects(const std::string& text) {
@@ -124,7 +157,7 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
       "bring it nearer its goals, with the contact forces that then act.");
   app.set_version_flag("--version", std::string("softgauss ") + SOFTGAUSS_VERSION);
   std::string base = "automatic", ground, effects, zeroEffort = "passive", integrator, cone, solver,
-              compatibility, islands;
+              controlCost, compatibility, islands, posture;
   std::vector<std::string> reach, q0;
   for (int i = 0; i < argc; ++i)
     options.commandLine +=
@@ -146,6 +179,7 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
       ->group(scene);
   app.add_option("--q0", q0, "initial joint positions NAME=VALUE,… [rad or m]")
       ->delimiter(',')
+      ->allow_extra_args(false)
       ->group(scene);
   app.add_option("--effects", effects,
                  "the effects to simulate: auto, none, a list, or no_NAME,… for all but those")
@@ -156,14 +190,25 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
       ->group(scene);
   app.add_option("--package-path", options.packagePaths,
                  "where package://NAME/… is looked for first; repeatable")
+      ->allow_extra_args(false)
       ->group(scene);
 
   const char* const goals = "Goals";
   app.add_option(
          "--reach", reach,
-         "LINK=x,y,z: the link's origin seeks a place in the world [m]; LINK:ox,oy,oz=x,y,z: "
-         "a point of the link; repeatable")
+         "LINK=x,y,z: the link's origin seeks a place in the world [m]; LINK:ox,oy,oz=x,y,z:\n"
+         "a point of the link; …@WEIGHT: not with the default weight [kg]; repeatable")
+      ->allow_extra_args(false)
       ->group(goals);
+  app.add_option("--hold", options.hold, "LINK: it stays where and as it is; repeatable")
+      ->allow_extra_args(false)
+      ->group(goals);
+  CLI::Option* const keepsPosture =
+      app.add_flag(
+             "--posture{1000}", posture,
+             "all joints and the base seek the initial posture; --posture=WEIGHT [-], default "
+             "1000")
+          ->group(goals);
   app.add_option("--goals", options.goals, "a .yaml file of goals, see docs/goals.md")
       ->group(goals);
   app.add_option("--torques", options.torques,
@@ -183,6 +228,7 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
                       (integrators.empty() ? " (default): " : ": ") + std::string(i.description);
     integrators.emplace_back(i.name);
   }
+  for (const auto& [name, full] : kShortNames) integrators.emplace_back(name);
   app.add_option("--integrator", integrator, integratorHelp)
       ->check(CLI::IsMember(integrators))
       ->group(simulation);
@@ -220,6 +266,12 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
          "augmented-lagrangian: the paper's primal-dual Gauss-Newton solver, slower with\n"
          "strong goals; it also solves where contacts have elliptic cones")
       ->check(CLI::IsMember({"active-set", "augmented-lagrangian"}))
+      ->group(simulation);
+  app.add_option("--control-cost", controlCost,
+                 "about-gravity (default): force costs by how far it is from what holds the robot\n"
+                 "at rest, so that a reach ends at its place; total: all force costs, as in the\n"
+                 "paper, and whatever is held against gravity sags a little")
+      ->check(CLI::IsMember({"about-gravity", "total"}))
       ->group(simulation);
   app.add_option(
          "--compatibility", compatibility,
@@ -286,11 +338,14 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
     if (base == "fixed")
       throw UsageError("--base-height is for a floating base, and --base is fixed");
   }
-  if (!integrator.empty()) options.integrator = integratorFromName(integrator);
+  if (!integrator.empty()) options.integrator = integratorFromName(fullName(integrator));
   if (!cone.empty()) options.cone = cone == "elliptic" ? Cone::elliptic : Cone::pyramidal;
   if (!solver.empty())
     options.gddSolver =
         solver == "active-set" ? gdd::GddSolver::activeSet : gdd::GddSolver::augmentedLagrangian;
+  if (!controlCost.empty())
+    options.controlCost =
+        controlCost == "total" ? gdd::ControlCost::total : gdd::ControlCost::aboutGravity;
   if (!compatibility.empty()) options.likeMujoco = compatibility == "mujoco";
   options.islands = !islands.empty();
   options.sleep.enabled = islands == "sleep" || islands == "sleep-all";
@@ -303,10 +358,12 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
     mustBeNear(options.reach.back().p_WTarget.cwiseAbs().maxCoeff(), "--reach " + text);
     mustBeNear(options.reach.back().p_FP.cwiseAbs().maxCoeff(), "--reach " + text);
   }
+  if (keepsPosture->count() > 0) options.posture = parseWeight(posture, "--posture");
   for (const std::string& text : q0) {
     const std::size_t equals = text.rfind('=');
     if (equals == std::string::npos) throw UsageError("--q0 " + text + ": expected NAME=VALUE");
-    options.q0.emplace_back(text.substr(0, equals), parseNumber(text.substr(equals + 1), "--q0"));
+    options.q0.emplace_back(trimmed(text.substr(0, equals)),
+                            parseNumber(text.substr(equals + 1), "--q0"));
   }
   checkOutputs(options, {});
   if (options.isScene())
@@ -315,9 +372,10 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
                                         std::pair{"--ground", !ground.empty()}})
       if (given)
         throw UsageError(fmt::format("{} is for a URDF; a scene file says it itself", option));
-  const bool hasGoals = !options.reach.empty() || !options.goals.empty();
+  const bool hasGoals = options.hasOwnGoals() || !options.goals.empty();
   if (int{options.passive} + int{!options.torques.empty()} + int{hasGoals} > 1)
-    throw UsageError("choose one of goals (--reach, --goals), --torques and --passive");
+    throw UsageError(
+        "choose one of goals (--reach, --hold, --posture, --goals), --torques and --passive");
   if (!options.isScene() && !options.passive && options.torques.empty() && !hasGoals &&
       !options.explain)
     throw UsageError(

@@ -14,11 +14,12 @@
 
 namespace softgauss::app {
 
-/// `--reach LINK[:ox,oy,oz]=x,y,z`
+/// `--reach LINK[:ox,oy,oz]=x,y,z[@WEIGHT]`
 struct ReachArgument {
   std::string link;
   Vector3 p_FP = Vector3::Zero();  ///< point in the link's frame [m]
   Vector3 p_WTarget = Vector3::Zero();
+  std::optional<double> weight;  ///< absent: the goal's own [kg]
 };
 
 struct SimulateOptions {
@@ -30,6 +31,11 @@ struct SimulateOptions {
   double duration = 2.0;
   std::optional<double> timestep;  ///< absent: the model's own [s]
   std::vector<ReachArgument> reach;
+  std::vector<std::string> hold;  ///< links
+  std::optional<double> posture;  ///< weight of a posture about the start [-]
+
+  /// Goals on the command line itself.
+  bool hasOwnGoals() const { return !reach.empty() || !hold.empty() || posture; }
   bool passive = false;
   std::filesystem::path goals, torques;
   std::vector<std::pair<std::string, double>> q0;
@@ -37,8 +43,9 @@ struct SimulateOptions {
   bool zeroEffortIsUnlimited = false;
   bool noSlip = false;
   bool exactDiagonal = false;
-  std::optional<Cone> cone;                 ///< absent: the scene's own, or pyramidal
-  std::optional<gdd::GddSolver> gddSolver;  ///< absent: the scene's own, or the active set
+  std::optional<Cone> cone;                     ///< absent: the scene's own, or pyramidal
+  std::optional<gdd::GddSolver> gddSolver;      ///< absent: the scene's own, or the active set
+  std::optional<gdd::ControlCost> controlCost;  ///< absent: the files' own, or about gravity
   std::optional<Integrator> integrator;
   std::optional<double> integrationTolerance;
   bool stepDoubling = false;

@@ -63,9 +63,7 @@ class Runner {
         controller_(model_),
         outside_(options, scene),
         summary_(model_) {
-    if (!options.passive && options.torques.empty()) controller_.goals = makeGoals(options, scene);
-    controller_.solver = scene.gddSolver;
-    controller_.box = io::controlBox(model_, scene.actuators);
+    setUp(options, scene, controller_);
     if (!options.log.empty()) log_.emplace(options.log, model_);
     summary_.version = SOFTGAUSS_VERSION;
     summary_.massKg = scene.contents.mass;
@@ -174,6 +172,7 @@ class Runner {
     record_.dualUpdates = gdd ? controller_.report.dualUpdates : 0;
     record_.gddViolation = gdd ? controller_.report.violation : 0.0;
     record_.stationarity = gdd ? controller_.report.stationarity : 0.0;
+    record_.realised = stats.realised;
     record_.gddUs = gdd ? 1e6 * controller_.solveTime : 0.0;
     record_.forwardUs = record_.stepUs - record_.gddUs;
     record_.physicsViolation =
@@ -296,6 +295,8 @@ class Runner {
   void tellSolver() {
     const bool cones = stepsWithCones_ > 0 && !controller_.goals.empty();
     const bool chosen = controller_.solver == gdd::GddSolver::activeSet;
+    summary_.controlCost =
+        controller_.controlCost == gdd::ControlCost::total ? "total" : "about_gravity";
     summary_.gddSolver = chosen && !cones ? "active-set" : "augmented-lagrangian";
     if (chosen && cones && options_.gddSolver)
       summary_.warnings.push_back(

@@ -47,8 +47,7 @@ void setOptions(const SimulateOptions& options, ModelBuilder& builder) {
   if (options.noSlip) builder.options.noSlip = true;
   if (options.cone) builder.options.cone = *options.cone;
   if (options.effects) builder.options.effects = *options.effects;
-  if (options.likeMujoco)
-    builder.options.midpointCoriolis = builder.options.ownSoftness = !*options.likeMujoco;
+  if (options.likeMujoco) builder.options.useMujocoModel(*options.likeMujoco);
 }
 
 io::UrdfOptions urdfOptions(const SimulateOptions& options) {
@@ -142,19 +141,38 @@ std::unique_ptr<Scene> loadScene(const SimulateOptions& options) {
   return scene;
 }
 
-std::vector<std::unique_ptr<gdd::Goal>> makeGoals(const SimulateOptions& options,
-                                                  const Scene& scene) {
+/// Of the posture about the start that goals on the command line come with: it holds what they
+/// leave free, and takes less than a millimetre of a reach.
+constexpr double kWeakPosture = 0.01;
+
+void setUp(const SimulateOptions& options, const Scene& scene,
+           gdd::GoalDirectedController& controller) {
+  controller.solver = scene.gddSolver;
+  controller.box = io::controlBox(scene.model, scene.actuators);
+  if (options.passive || !options.torques.empty()) return;
   std::vector<std::unique_ptr<gdd::Goal>> goals;
   for (const std::filesystem::path& file :
        {scene.hasGoals ? options.model : std::filesystem::path(), options.goals}) {
     if (file.empty()) continue;
-    for (std::unique_ptr<gdd::Goal>& goal : io::readGoals(file, scene.model, scene.initial))
-      goals.push_back(std::move(goal));
+    io::GoalFile asked = io::readGoalFile(file, scene.model, scene.initial);
+    if (asked.controlCost) controller.controlCost = *asked.controlCost;
+    for (std::unique_ptr<gdd::Goal>& goal : asked.goals) goals.push_back(std::move(goal));
   }
-  for (const ReachArgument& r : options.reach)
-    goals.push_back(std::make_unique<gdd::Reach>(scene.model, r.link, r.p_WTarget, r.p_FP));
-  if (!options.reach.empty()) goals.push_back(std::make_unique<gdd::VirtualDamping>());
-  return goals;
+  for (const ReachArgument& r : options.reach) {
+    auto goal = std::make_unique<gdd::Reach>(scene.model, r.link, r.p_WTarget, r.p_FP);
+    if (r.weight) goal->weight = *r.weight;
+    goals.push_back(std::move(goal));
+  }
+  for (const std::string& link : options.hold)
+    goals.push_back(std::make_unique<gdd::Hold>(scene.model, link));
+  if (options.hasOwnGoals()) {
+    auto posture = std::make_unique<gdd::Posture>(scene.initial.q);
+    posture->weight = options.posture.value_or(kWeakPosture);
+    goals.push_back(std::move(posture));
+    goals.push_back(std::make_unique<gdd::VirtualDamping>());
+  }
+  if (options.controlCost) controller.controlCost = *options.controlCost;
+  controller.goals = std::move(goals);
 }
 
 std::string explainScene(const Scene& scene) {

@@ -34,10 +34,12 @@ struct Scene {
 /// Throws ModelError.
 std::unique_ptr<Scene> loadScene(const SimulateOptions& options);
 
-/// The goals of the scene file, of --goals and of --reach, the latter with virtual damping (26).
-/// Throws ModelError.
-std::vector<std::unique_ptr<gdd::Goal>> makeGoals(const SimulateOptions& options,
-                                                  const Scene& scene);
+/// What the scene and the options ask of the control: its solver, what the actuators can do, and
+/// the goals of the scene file, of --goals and of the command line, the latter with a weak posture
+/// and virtual damping (26); no goals where the motion is passive or driven by torques. Throws
+/// ModelError.
+void setUp(const SimulateOptions& options, const Scene& scene,
+           gdd::GoalDirectedController& controller);
 
 /// The text of --explain.
 std::string explainScene(const Scene& scene);

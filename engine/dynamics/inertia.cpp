@@ -9,7 +9,8 @@ MassMatrix::MassMatrix(const Model& model)
     : body(model.bodies.size()), composite(model.bodies.size()), sparsity(model) {
   M.resize(sparsity);
   M.setZero();
-  forceScale = VectorX::Zero(model.nv);
+  Mhat.resize(sparsity);
+  forceScale = motionScale = added = VectorX::Zero(model.nv);
 }
 
 void computeMassMatrix(const Model& model, const Kinematics& k, MassMatrix& stage) {
@@ -36,8 +37,11 @@ void computeMassMatrix(const Model& model, const Kinematics& k, MassMatrix& stag
     for (const Segment* s = stage.sparsity.begin(i); s != stage.sparsity.end(i); ++s)
       for (int j = s->begin; j < s->end; ++j) row[j] = dot(k.S[j], F);
     if (armature) row[i] += dof.armature;
-    stage.forceScale[i] = 1.0 / std::sqrt(row[i]);
+    stage.motionScale[i] = 1.0 / std::sqrt(row[i]);
   }
+  stage.forceScale = stage.motionScale;
+  stage.added.setZero();
+  stage.anyAdded = false;
 }
 
 }  // namespace softgauss

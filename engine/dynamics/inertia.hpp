@@ -20,8 +20,15 @@ struct MassMatrix {
   std::vector<Inertia> body;       ///< (bodies) inertia of each body alone, about O
   std::vector<Inertia> composite;  ///< (bodies) of its subtree
   TreeSparsity sparsity;
-  TreeMatrix M;        ///< (nv × nv)
-  VectorX forceScale;  ///< (nv) 1/√M_ii: forces so scaled share one unit
+  TreeMatrix M;         ///< (nv × nv)
+  VectorX motionScale;  ///< (nv) 1/√M_ii
+  VectorX added;        ///< (nv) what implicit forces add to the diagonal (implicit_forces.hpp)
+  TreeMatrix Mhat;      ///< M + diag(added), where anyAdded
+  bool anyAdded = false;
+  VectorX forceScale;  ///< (nv) 1/√M̂_ii: forces so scaled share one unit
+
+  /// The inertia M̂ that the step solves with.
+  const TreeMatrix& hat() const { return anyAdded ? Mhat : M; }
 
   MassMatrix() = default;
   explicit MassMatrix(const Model& model);

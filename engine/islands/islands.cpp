@@ -354,6 +354,7 @@ void Islands::collectStats() {
     stats_.iterations += s.iterations;
     stats_.factorizations += s.factorizations;
     stats_.residual = std::max(stats_.residual, s.residual);
+    stats_.realised = std::max(stats_.realised, s.realised);
     stats_.maxPenetration = std::max(stats_.maxPenetration, s.maxPenetration);
     stats_.pairsSkipped += s.pairsSkipped;
     stats_.followedTrees += s.followedTrees;

@@ -143,6 +143,8 @@ struct Options {
   double integrationTolerance = 1e-6;
   /// Error control for integrators of one solve (integrators/step_doubling.hpp).
   bool stepDoubling = false;
+  /// Joint damping and stiff springs are in the solve, as inertia (T.16), or follow it as MuJoCo's.
+  bool implicitInSolve = true;
   bool midpointCoriolis = true;  ///< see integrators/semi_implicit_euler.hpp
   Cone cone = Cone::pyramidal;   ///< of contacts with friction
   double impedanceRatio = 1.0;   ///< impratio: friction against normal impedance
@@ -154,6 +156,10 @@ struct Options {
   int maxIterations = 400;     ///< Newton
   double tolerance = 1e-12;    ///< Newton: scaled gradient, see solver/newton.hpp
 
+  /// Softness and Euler's step as MuJoCo has them, `--compatibility mujoco`, or as softgauss does.
+  void useMujocoModel(bool mujoco = true) {
+    implicitInSolve = midpointCoriolis = ownSoftness = !mujoco;
+  }
   /// The integrator moves on with one solve, that of the step's start, unless it is doubled.
   bool solvesOnce() const {
     return integrator == Integrator::semiImplicitEuler || integrator == Integrator::implicit;

@@ -77,8 +77,9 @@ Plan::Plan(const Model& model) : options_(model.options) {
                  std::any_of(model.bodies.begin(), model.bodies.end(), [](const Body& body) {
                    return body.joint == JointKind::revolute || body.joint == JointKind::floating;
                  }));
-  midpoint = coriolis && model.options.midpointCoriolis &&
-             model.options.integrator == Integrator::semiImplicitEuler;
+  const bool euler = model.options.integrator == Integrator::semiImplicitEuler;
+  midpoint = coriolis && model.options.midpointCoriolis && euler;
+  inSolve = model.options.implicitInSolve && euler;
   if (run(Effect::damping, anyDof([](const Dof& d) { return d.damping > 0.0; }))) {
     damping.resize(model.nv);
     for (int i = 0; i < model.nv; ++i) damping[i] = model.dofs[i].damping;
@@ -135,7 +136,8 @@ bool Plan::fits(const Model& model) const {
     if (now.effects.has(Effect::damping) && dof.damping != planned) return false;
   }
   return now.effects == then.effects && now.gravity == then.gravity &&
-         now.midpointCoriolis == then.midpointCoriolis && now.integrator == then.integrator &&
+         now.midpointCoriolis == then.midpointCoriolis &&
+         now.implicitInSolve == then.implicitInSolve && now.integrator == then.integrator &&
          now.cone == then.cone && now.exactDiagonal == then.exactDiagonal;
 }
 

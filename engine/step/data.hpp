@@ -24,7 +24,7 @@ struct ForwardSolution {
   VectorX Ma;             ///< M a
   VectorX gradient;       ///< M a + c − τ − Jᵀf, the residual force [N, N m]
   TreeFactor factor;      ///< of P = M + Jᵀ∇²s J in the last cell, or of M
-  TreeFactor massFactor;  ///< of M, or of M + h D where damping is implicit
+  TreeFactor massFactor;  ///< of M, or of M + h D where damping follows the solve
   NewtonReport report;
   bool massFactored = false;  ///< by the last solve, with M alone
   bool cellFactored = false;  ///< `factor` is of the cell of the solution
@@ -49,7 +49,10 @@ struct StepStats {
   int rows = 0;
   int iterations = 0;
   int factorizations = 0;
-  double residual = 0.0;        ///< of the solve (the larger one of two, T.123), scaled
+  double residual = 0.0;  ///< of the solve (the larger one of two, T.123), scaled
+  /// Whether what moves is what was solved: the largest |(v⁺ − v)/h − a|, a of the solve, of the
+  /// goal directed one where goals act, over max(|a|∞, 1).
+  double realised = 0.0;
   double maxPenetration = 0.0;  ///< deepest overlap of a contact [m], ≥ 0
   std::int64_t pairsSkipped = 0;
   int followedTrees = 0;   ///< whose free motion was followed within the step (T.93)

@@ -35,7 +35,7 @@ int mostIterations(int option, int rows) {
 
 bool solveMass(Data& data, const VectorX* diagonal, VectorX& x) {
   ForwardSolution& s = data.forward;
-  const TreeMatrix& M = data.inertia.M;
+  const TreeMatrix& M = data.inertia.hat();
   if (data.plan.diagonal) {
     for (int i = 0; i < M.size(); ++i) {
       const double pivot = M.row(i)[i] + (diagonal ? (*diagonal)[i] : 0.0);
@@ -96,7 +96,7 @@ SolveStatus minimizeGauss(const Model& model, const VectorX* guess, Data& data) 
     if (s.report.residual <= model.options.tolerance) return finish();
   }
   // Without rows the minimiser is M⁻¹(τ − c).
-  if (!s.massFactor.compute(data.inertia.M)) {
+  if (!s.massFactor.compute(data.inertia.hat())) {
     data.stats.badDof = s.massFactor.failedRow();
     return notPositive();
   }

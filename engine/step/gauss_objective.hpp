@@ -15,7 +15,7 @@ class GaussObjective {
   /// `net`: τ − c, and what else is constant.
   GaussObjective(const MassMatrix& inertia, const VectorX& net, Rows& rows,
                  ForwardSolution& solution)
-      : M_(inertia.M), net_(net), rows_(rows), s_(solution) {
+      : M_(inertia.hat()), net_(net), rows_(rows), s_(solution) {
     // The largest of the smooth forces, in their common unit, sets the scale.
     s_.scale = inertia.forceScale;
     const double largest = std::max(1.0, net_.cwiseProduct(s_.scale).cwiseAbs().maxCoeff());

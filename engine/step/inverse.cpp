@@ -9,7 +9,7 @@ void inverseDynamics(const Model&, const VectorX& a, Data& data, VectorX& tau) {
   data.constraints.evaluate(changed);
   // −τ = −M a − c + Jᵀf, as addForce() adds.
   VectorX& Ma = data.forward.Md;
-  data.inertia.M.multiply(a, Ma);
+  data.inertia.hat().multiply(a, Ma);
   tau = -Ma - data.forces.c;
   data.constraints.addForce(tau);
   tau = -tau;
@@ -17,7 +17,7 @@ void inverseDynamics(const Model&, const VectorX& a, Data& data, VectorX& tau) {
 
 void inverseDynamicsJacobian(Data& data, TreeMatrix& P) {
   P.resize(data.constraints.sparsity());
-  P.assign(data.inertia.M);
+  P.assign(data.inertia.hat());
   data.constraints.addCurvature(P);
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "engine/step/forward.hpp"
+#include "engine/step/integrators/implicit_forces.hpp"
 #include "engine/step/integrators/implicit_midpoint.hpp"
 #include "engine/step/integrators/runge_kutta.hpp"
 #include "engine/step/integrators/sight.hpp"
@@ -109,6 +110,7 @@ SolveStatus computeStages(const Model& model, const Input& input, const State& s
   if (!posed) computeKinematics(model, state, data.kinematics);
   computeMassMatrix(model, data.kinematics, data.inertia);
   computeSmoothForces(model, data.plan, state, input, data.kinematics, data.inertia, data.forces);
+  if (data.plan.inSolve) putInSolve(model, state, data);
   data.stats.times.kinematics = lap(clock);
 
   if (looksForContacts(data, contacts)) {
@@ -175,6 +177,7 @@ SolveStatus advance(const Model& model, const Input& held, ContactSource* contac
     stats.badDof = worstDof(model, data, state);
     return stats.status;
   }
+  stats.realised = deviation(data.acceleration, data.forward.a);
   stats.shortSolves += stats.status != SolveStatus::converged;
   state.warmstart.a = data.forward.a;
   state.warmstart.valid = true;
@@ -194,6 +197,11 @@ SolveStatus computeStagesAt(const Model& model, const Input& input, const State&
                             ContactSource* contacts) noexcept {
   Clock::time_point clock;
   return computeStages(model, input, state, data, contacts, clock, true);
+}
+
+double deviation(const VectorX& realised, const VectorX& solved) noexcept {
+  if (solved.size() == 0) return 0.0;
+  return (realised - solved).cwiseAbs().maxCoeff() / std::max(solved.cwiseAbs().maxCoeff(), 1.0);
 }
 
 SolveStatus advance(const Model& model, const Input& held, ContactSource* contacts,

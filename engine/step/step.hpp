@@ -25,6 +25,9 @@ SolveStatus computeStagesAt(const Model& model, const Input& input, const State&
 SolveStatus advance(const Model& model, const Input& held, ContactSource* contacts,
                     const VectorX* guess, Data& data, State& state) noexcept;
 
+/// The largest |realised − solved| over max(|solved|∞, 1): StepStats::realised.
+double deviation(const VectorX& realised, const VectorX& solved) noexcept;
+
 /// computeStages, then advance. `contacts` may be null: nothing collides. On
 /// SolveStatus::notFinite and notClosed (isRefused()) the state is left as it was, data.stats tells
 /// the dof. Other statuses

@@ -79,8 +79,7 @@ IntegrationKeys readOptions(const YamlMap& map, Options& options,
   map.read("impedance_ratio", options.impedanceRatio, Range::positive);
   if (const auto* entry = map.find("effects")) options.effects = readEffects(map, *entry);
   if (const auto* entry = map.find("compatibility"))
-    options.midpointCoriolis = options.ownSoftness =
-        map.choice(*entry, {"none", "mujoco"}) == "none";
+    options.useMujocoModel(map.choice(*entry, {"none", "mujoco"}) == "mujoco");
   return integration;
 }
 

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
 
 #include "tests/apps/process.hpp"
 #include "tests/support/tolerance.hpp"
@@ -32,6 +34,54 @@ TEST(Behaviour, HumanoidStandsAndReachesForTenSeconds) {
                          dataFile("goals/stand_and_reach.yaml"), "--duration", "10"});
   ASSERT_EQ(log.rows.size(), 5001u);
   EXPECT_GT(lowest(log, "q:pelvis.z"), 0.9) << "it stands with the pelvis at 0.92 m";
+}
+
+/// The last error of the first goal [m] of a run of the arm.
+double lastError(std::vector<std::string> arguments) {
+  const io::TempFolder folder;
+  const std::string summary = folder.path() / "summary.json";
+  arguments.insert(arguments.end(), {"--summary", summary, "--quiet", dataFile("robots/arm.urdf")});
+  const Outcome outcome = simulate(arguments);
+  EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+  const auto json = nlohmann::json::parse(readFile(summary));
+  return json["goals"][0]["final_error_m"];
+}
+
+// MODEL comes last: options of several values leave it alone. A place may have blanks.
+TEST(Behaviour, AReachAloneEndsAtItsPlace) {
+  EXPECT_SMALL(lastError({"--duration", "4", "--reach", "hand=0.5, 0.3, 0.5"}), 1e-3);
+  EXPECT_GT(
+      lastError({"--duration", "4", "--control-cost", "total", "--reach", "hand=0.5,0.3,0.5"}),
+      1e-3);
+  EXPECT_SMALL(lastError({"--integrator", "rk4", "--duration", "4", "--reach", "hand=0.5,0.3,0.5"}),
+               1e-3);
+}
+
+TEST(Behaviour, AHeavierReachLeavesLessToThePosture) {
+  double last = std::numeric_limits<double>::infinity();
+  for (const char* weight : {"1", "100", "1e4"}) {
+    const double left = lastError(
+        {"--duration", "6", "--posture=1", "--reach", std::string("hand=0.5,0.3,0.5@") + weight});
+    EXPECT_LT(left, 0.5 * last) << weight;
+    last = left;
+  }
+}
+
+TEST(Behaviour, WhatIsHeldStays) {
+  const Csv log = logOf({"--hold", "hand", "--duration", "1", dataFile("robots/arm.urdf")});
+  const int last = static_cast<int>(log.rows.size()) - 1;
+  for (const std::string& column : log.columns)
+    if (column.starts_with("q:")) {
+      EXPECT_SMALL(log.number(last, column) - log.number(0, column), 1e-6) << column;
+    }
+}
+
+TEST(Behaviour, AWeightBelowZeroIsRefused) {
+  for (const std::string option : {"--reach=hand=0.5,0.3,0.5@-1", "--posture=-2"}) {
+    const Outcome outcome = simulate({option, dataFile("robots/arm.urdf")});
+    EXPECT_EQ(outcome.exitCode, 2) << option;
+    EXPECT_NE(outcome.err.find("expected 0 to 1e12"), std::string::npos) << outcome.err;
+  }
 }
 
 // Half a second for the hand to close; then the ball hangs on the fingers alone.

@@ -169,6 +169,7 @@ TEST(SummaryFile, HasTheKeysOfTheInterfaceAndNoOthers) {
                              "physics_violation",
                              "gdd_violation",
                              "stationarity",
+                             "realised",
                              "gdd_minima",
                              "fallbacks",
                              "goals",
@@ -179,12 +180,12 @@ TEST(SummaryFile, HasTheKeysOfTheInterfaceAndNoOthers) {
   EXPECT_EQ(keysOf(j["model"]), (Keys{"name", "links", "dof", "actuated", "mass_kg"}));
   EXPECT_EQ(keysOf(j["options"]),
             (Keys{"timestep_s", "integrator", "step_doubling", "tolerance", "cone",
-                  "impedance_ratio", "exact_diagonal", "no_slip", "gdd_solver"}));
+                  "impedance_ratio", "exact_diagonal", "no_slip", "gdd_solver", "control_cost"}));
   EXPECT_EQ(keysOf(j["time_us"]), (Keys{"forward", "gdd", "step"}));
   for (const char* stage : {"forward", "gdd", "step"})
     EXPECT_EQ(keysOf(j["time_us"][stage]), (Keys{"mean", "p50", "p95"})) << stage;
   for (const char* series : {"constraints", "iterations", "dual_updates", "physics_violation",
-                             "gdd_violation", "stationarity"})
+                             "gdd_violation", "stationarity", "realised"})
     EXPECT_EQ(keysOf(j[series]), (Keys{"p50", "p95", "max"})) << series;
   EXPECT_EQ(keysOf(j["energy_J"]), (Keys{"initial", "final"}));
   ASSERT_EQ(j["goals"].size(), 1u) << "damping is no place to be";
@@ -206,6 +207,7 @@ TEST(SummaryFile, TellsTheRun) {
   EXPECT_EQ(j["goals"][0]["name"], "reach right_hand");
   EXPECT_NEAR(j["goals"][0]["initial_error_m"].get<double>(), 0.432, 0.005);
   EXPECT_LE(j["physics_violation"]["p95"].get<double>(), 1e-8);
+  EXPECT_LE(j["realised"]["p50"].get<double>(), j["realised"]["max"].get<double>());
   EXPECT_LE(j["max_control_ratio"].get<double>(), 1.0);
   EXPECT_GT(j["constraints"]["p50"].get<double>(), 0.0) << "it stands";
   for (const char* effect : {"gravity", "joint_limit", "ground_contact"})

@@ -68,15 +68,15 @@ class Actuation : public testing::Test {
         if (s.box.lower[i] < s.box.upper[i])
           s.box.lower[i] = -kInfinity, s.box.upper[i] = kInfinity;
       const DenseGdd& d = s.dense;
-      const MatrixX B = openColumns(s.box), S = d.M.llt().solve(B);
-      const VectorX a0 = -d.M.llt().solve(d.c);
+      const MatrixX B = openColumns(s.box), S = d.Mhat.llt().solve(B);
+      const VectorX a0 = -d.Mhat.llt().solve(d.c);
       const MatrixX K = B.transpose() * R * B + S.transpose() * d.goalHessian() * S;
       const VectorX tau = B * K.llt().solve(-S.transpose() * d.goalGradient(a0));
       const VectorX a = solve(s);
       EXPECT_EQ(s.report.status, gdd::GddStatus::converged) << "seed " << seed;
       EXPECT_EQ(s.dense.rows(), 0);
       worst = std::max(worst, (force_ - tau).norm() / std::max(tau.norm(), d.c.norm()));
-      worst = std::max(worst, (a - a0 - d.M.llt().solve(tau)).norm() / a.norm());
+      worst = std::max(worst, (a - a0 - d.Mhat.llt().solve(tau)).norm() / a.norm());
     }
     return worst;
   }

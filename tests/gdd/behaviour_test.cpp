@@ -65,6 +65,7 @@ TEST(GddBehaviour, HeavierGoalsLeaveLess) {
   for (const double weight : {50.0, 500.0, 5000.0}) {
     RobotScene r("arm");
     const Vector3 target(0.5, 0.3, 0.5);
+    r.controller.controlCost = gdd::ControlCost::total;
     r.addReach("hand", target).weight = weight;
     r.addDamping();
     for (int i = 0; i < 1000; ++i) ASSERT_EQ(r.step(), SolveStatus::converged);

@@ -20,7 +20,7 @@ class Search {
   }
 
   CellMinimum run() {
-    branch(0, d_.M, d_.c);
+    branch(0, d_.Mhat, d_.c);
     return best_;
   }
 

@@ -42,7 +42,7 @@ class Enumeration {
 
   /// P, the affine part of g and the knots of a pattern.
   void setRows(long pattern) {
-    P_ = d_.M;
+    P_ = d_.Mhat;
     offset_ = d_.c;
     knots_.clear();
     for (int i = 0; i < d_.rows(); ++i) {

@@ -209,7 +209,7 @@ TEST(ConvexController, ObeysItsConstraints) {
   Instant now(*r);
   for (const bool stance : {false, true}) {
     const ConvexControl c = now.convexOnly(stance);
-    const VectorX balance = r->data.inertia.M.dense() * c.a + r->data.forces.c - c.u -
+    const VectorX balance = r->data.inertia.hat().dense() * c.a + r->data.forces.c - c.u -
                             r->data.constraints.denseJacobian().transpose() * c.f;
     EXPECT_SMALL(balance.cwiseAbs().maxCoeff() / kWeight, 1e-9);
     EXPECT_SMALL(std::min(0.0, c.f.minCoeff()) / kWeight, 1e-9);

@@ -22,14 +22,14 @@ ConvexControl convexControl(const Data& data, const gdd::GoalCost& cost, const g
   for (int i = 0; i < n; ++i)
     if (box.lower[i] < box.upper[i]) actuated.push_back(i);
   const int m = static_cast<int>(actuated.size()), size = n + m + rows;
-  const MatrixX Minv = physics.M.llt().solve(MatrixX::Identity(n, n));
+  const MatrixX M = data.inertia.M.dense(), Minv = physics.M.llt().solve(MatrixX::Identity(n, n));
 
   ConvexQp qp;
   qp.H = MatrixX::Zero(size, size);
   qp.s = VectorX::Zero(size);
   const auto slope = [&](const VectorX& a) {
     VectorX g(n);
-    cost.gradient(a, physics.M * a, g);
+    cost.gradient(a, M * a, g);
     return g;
   };
   const VectorX atZero = slope(VectorX::Zero(n));

@@ -12,10 +12,10 @@ VectorX DenseGdd::force(const VectorX& a) const {
   return force;
 }
 
-VectorX DenseGdd::g(const VectorX& a) const { return M * a + c - J.transpose() * force(a); }
+VectorX DenseGdd::g(const VectorX& a) const { return Mhat * a + c - J.transpose() * force(a); }
 
 MatrixX DenseGdd::P(const VectorX& a) const {
-  MatrixX sum = M;
+  MatrixX sum = Mhat;
   for (int i = 0; i < rows(); ++i)
     if (stiff(i, J.row(i).dot(a) - aRef[i])) sum += D[i] * J.row(i).transpose() * J.row(i);
   return sum;

@@ -4,7 +4,7 @@
 /// The problem of goal directed dynamics in dense matrices, coded anew from its formulae: the
 /// oracle for everything in gdd/.
 ///
-///   g(a) = M a + c − Jᵀf,  f = D (a_ref − J a), bounded                                   (T.2)
+///   g(a) = M̂ a + c − Jᵀf,  f = D (a_ref − J a), bounded                                   (T.2)
 ///   F(a) = ½ gᵀR g + ℓ(a),  ℓ(a) = ½ Σ w (A a − y)² + ½ m aᵀM a + aᵀM o + ℓ_f          (T.17)
 ///   ℓ_f(a) = ½ Σ w_f (B f − y_f)²                                                       (T.53)
 ///   Φ(a) = F(a) + Σ ½ ρ (t − clamp t)²,  t = C g + λ/ρ                                (T.18)
@@ -17,7 +17,8 @@ namespace softgauss::test {
 
 struct DenseGdd {
   MatrixX M;
-  MatrixX Minv;  ///< R, M⁻¹ unless a test puts another there
+  MatrixX Mhat;  ///< M and what implicit forces add
+  MatrixX Minv;  ///< R, M̂⁻¹ unless a test puts another there
   MatrixX C;     ///< coordinates of force on which the bounds are; empty: the identity
   VectorX c;
   MatrixX J;  ///< rows of contacts and limits
@@ -37,7 +38,7 @@ struct DenseGdd {
   VectorX residual(const VectorX& a) const { return J * a - aRef; }
   VectorX force(const VectorX& a) const;  ///< f
   VectorX g(const VectorX& a) const;
-  /// M + Jᵀ D J over the stiff rows: those with f within its bounds.
+  /// M̂ + Jᵀ D J over the stiff rows: those with f within its bounds.
   MatrixX P(const VectorX& a) const;
   /// The knots of a row, ascending, ± ∞ where it has none.
   double lowerKnot(int i) const { return -forceUpper[i] / D[i]; }

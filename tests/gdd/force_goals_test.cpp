@@ -252,7 +252,7 @@ struct LoadError {
 
 LoadError loadError(bool withForceGoal) {
   RobotScene r("humanoid");
-  r.controller.goals = io::readGoals(goalsFile("shift_weight"), r.model, r.state);
+  io::readGoalFile(goalsFile("shift_weight"), r.model, r.state).giveTo(r.controller);
   if (!withForceGoal) r.controller.goals.pop_back();
   run(r, 1.0);
   EXPECT_GT(GroundWrench(r.model, r.data, "right_foot").force.z(), 0.45 * kWeight);
@@ -287,7 +287,7 @@ TEST(ForceBehaviour, TheHumanoidShiftsItsWeight) {
 // again.
 TEST(ForceBehaviour, TheCentreOfPressureGoesWhereItIsAsked) {
   RobotScene r("humanoid");
-  r.controller.goals = io::readGoals(goalsFile("move_pressure"), r.model, r.state);
+  io::readGoalFile(goalsFile("move_pressure"), r.model, r.state).giveTo(r.controller);
   run(r, 1.0);
   const Vector3 target(0.04, 0.0, 0.0);
   const Vector3 left = r.position("left_foot"), right = r.position("right_foot");
@@ -342,7 +342,7 @@ TEST(ForceBehaviour, TheArmPressesATable) {
   Data data(model);
   collision::SceneContacts contacts(model);
   gdd::GoalDirectedController controller(model);
-  controller.goals = io::readGoals(file, model, state);
+  io::readGoalFile(file, model, state).giveTo(controller);
   const gdd::ContactForce hand(model, "hand", Vector3::Zero());
   for (int i = 0; i < 2000; ++i)
     ASSERT_NE(controller.step(model, Input{}, state, data, &contacts), SolveStatus::notFinite);

@@ -122,7 +122,7 @@ TEST(FunctionGoal, ConditionsOfFirstOrderHoldAfterTwoSolves) {
       EXPECT_EQ(e.report.status, gdd::GddStatus::converged);
       fewest = std::min(fewest, e.expansion.solves());
       most = std::max(most, e.expansion.solves());
-      const VectorX g = arm.data->inertia.M.dense() * a + arm.data->forces.c;
+      const VectorX g = arm.data->inertia.hat().dense() * a + arm.data->forces.c;
       const VectorX& scale = arm.data->inertia.forceScale;
       const VectorX off = (g + gradientOf(f, a)).cwiseProduct(scale);
       worst = std::max(worst, off.cwiseAbs().maxCoeff() /

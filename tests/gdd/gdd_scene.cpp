@@ -14,8 +14,9 @@ GddScene::GddScene(Scene s)
       solver(std::make_unique<gdd::AugmentedLagrangian>(scene.model)) {
   const int n = scene.model.nv;
   const ConvexProblem physics = denseProblem(data());
-  dense.M = physics.M;
-  dense.Minv = physics.M.llt().solve(MatrixX::Identity(n, n));
+  dense.M = data().inertia.M.dense();
+  dense.Mhat = physics.M;
+  dense.Minv = dense.Mhat.llt().solve(MatrixX::Identity(n, n));
   dense.c = data().forces.c;
   dense.J = physics.J;
   dense.aRef = physics.aRef;

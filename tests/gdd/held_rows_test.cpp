@@ -90,7 +90,7 @@ GddScene kinkScene(std::uint64_t seed) {
 double slopeTowards(const DenseGdd& s, const VectorX& a, const VectorX& d, double width) {
   const VectorX g = s.g(a), w = s.Minv * g + s.penaltySlope(g);
   const VectorX x = s.residual(a), dx = s.J * d;
-  VectorX rate = s.M * d;
+  VectorX rate = s.Mhat * d;
   std::vector<bool> stiff;
   for (int i = 0; i < s.rows(); ++i) {
     stiff.push_back(s.stiff(i, x[i], dx[i], width));

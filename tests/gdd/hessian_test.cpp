@@ -40,7 +40,7 @@ struct AtPoint {
     a = -s.dense.M.llt().solve(s.dense.c) + random.vector(s.dofs(), 20.0);
     VectorX unused(s.dofs());
     inverseDynamics(s.model(), a, s.data(), unused);
-    massFactor.compute(s.data().inertia.M);
+    massFactor.compute(s.data().inertia.hat());
     hessian.setCell(s.data());
   }
 

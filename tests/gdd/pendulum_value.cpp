@@ -10,11 +10,11 @@
 namespace softgauss::test {
 
 double PendulumPlant::acceleration(double q, double v, double u) const {
-  return (u - gravity * std::sin(q) - damping * v) / M;
+  return (u - gravity * std::sin(q) - damping * v) / felt();
 }
 
 double PendulumPlant::running(double q, double v, double u) const {
-  return 0.5 * u * u / M + angleCost * (1.0 + std::cos(q)) + 0.5 * speedCost * v * v;
+  return 0.5 * u * u / felt() + angleCost * (1.0 + std::cos(q)) + 0.5 * speedCost * v * v;
 }
 
 /// Policy iteration: the best controls of the present V, then V of these
@@ -118,10 +118,11 @@ double PendulumValue::at(double q, double v) const {
 
 double PendulumValue::backup(double q, double v, double &u) const {
   const double free = v + plant_.h * plant_.acceleration(q, v, 0.0);
-  const double price = plant_.M / (plant_.h * plant_.h);  // ½ u²/M = ½ price (v⁺ − free)²
+  const double felt = plant_.felt();
+  const double price = felt / (plant_.h * plant_.h);  // ½ u²/M̂ = ½ price (v⁺ − free)²
   const double next = q + plant_.h * v;
   const auto cost = [&](double w) { return 0.5 * price * (w - free) * (w - free) + at(next, w); };
-  // A mesh over controls of up to four times the weight, then golden section.
+  // A mesh over controls of up to four times the weight, then golden section to its root.
   const double reach = 4.0 * plant_.h * plant_.gravity / plant_.M;
   constexpr int kMesh = 10;
   double least = std::numeric_limits<double>::infinity(), best = free;
@@ -142,8 +143,22 @@ double PendulumValue::backup(double q, double v, double &u) const {
       x2 = low + ratio * (high - low), f2 = cost(x2);
     }
   }
+  // From there to rounding, by the sign of the slope.
+  const auto slope = [&](double x) {
+    double value = 0.0, rises = 0.0, bends = 0.0;
+    at(next, x, value, rises, bends);
+    return price * (x - free) + rises;
+  };
+  const double middle = 0.5 * (low + high);
+  for (double near = 1e-7 * reach; near < 1e-2 * reach; near *= 2.0) {
+    low = middle - near, high = middle + near;
+    if (slope(low) < 0.0 && slope(high) > 0.0) break;
+  }
+  if (slope(low) < 0.0 && slope(high) > 0.0)
+    for (int i = 0; i < 60; ++i)
+      (slope(0.5 * (low + high)) < 0.0 ? low : high) = 0.5 * (low + high);
   const double w = 0.5 * (low + high);
-  u = plant_.M * (w - free) / plant_.h;
+  u = felt * (w - free) / plant_.h;
   return cost(w);
 }
 

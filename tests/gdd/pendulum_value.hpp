@@ -3,8 +3,8 @@
 
 /// The optimal value function of a pendulum that is to stand upright, by value iteration on a grid.
 ///
-///   q⁺ = q + h v,   v⁺ = v + h (u − c)/M,   c = m g l sin q + d v                          (19)
-///   V(q, v) = p(q, v) + min_u ½ u²/M + V(q⁺, v⁺),   p = κ (1 + cos q) + ½ κ_v v²           (21)
+///   q⁺ = q + h v,   v⁺ = v + h (u − c)/M̂, M̂ = M + h d,   c = m g l sin q + d v (19) V(q, v) = p(q,
+///   v) + min_u ½ u²/M̂ + V(q⁺, v⁺),   p = κ (1 + cos q) + ½ κ_v v²           (21)
 ///
 /// q = 0 hangs down. V is periodic in q and zero at rest upright. Between nodes it is a cubic in q
 /// times a cubic in v, with slopes by central differences (C¹), which is what the control acts on.
@@ -22,6 +22,7 @@ struct PendulumPlant {
   double h = 0.02;                           ///< [s]
   double angleCost = 20.0, speedCost = 0.1;  ///< κ, κ_v
 
+  double felt() const { return M + h * damping; }  ///< damping is that of the step's end
   double acceleration(double q, double v, double u) const;
   double running(double q, double v, double u) const;
 };
@@ -34,7 +35,7 @@ class PendulumValue {
   /// V with its first two derivatives in v.
   void at(double q, double v, double& value, double& slope, double& curvature) const;
   double at(double q, double v) const;
-  /// min_u of ½ u²/M + V(q⁺, v⁺), from a mesh of v⁺ refined to rounding; `u`: where.
+  /// min_u of ½ u²/M̂ + V(q⁺, v⁺), from a mesh of v⁺ refined to rounding; `u`: where.
   double backup(double q, double v, double& u) const;
 
  private:

@@ -234,6 +234,7 @@ TEST(GddState, UnreachableAndContradictoryGoalsStayFinite) {
 
 TEST(GddState, GoalsWithoutWeightAskForNothing) {
   RobotScene r("arm");
+  r.controller.controlCost = gdd::ControlCost::total;
   r.addReach("hand", {0.5, 0.3, 0.5}).weight = 0.0;
   ASSERT_EQ(r.step(), SolveStatus::converged);
   // ½ gᵀR g alone: let go.

@@ -89,8 +89,7 @@ class Golden : public testing::TestWithParam<GoldenScene> {};
 TEST_P(Golden, SceneIsWhereItWas) {
   const GoldenScene& scene = GetParam();
   Scene s = scene.make();
-  if (scene.mode == Mode::compatible)
-    s.model.options.ownSoftness = s.model.options.midpointCoriolis = false;
+  if (scene.mode == Mode::compatible) s.model.options.useMujocoModel();
   s.data = std::make_unique<Data>(s.model);
   int rows = 0;
   for (int i = 0; i < scene.steps; ++i) {

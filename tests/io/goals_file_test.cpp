@@ -38,7 +38,7 @@ TEST(GoalsFile, OfASceneHasTheKeysOfAScene) {
     EXPECT_TRUE(error.ends_with(", did you mean 'goals'?")) << error;
   }
   EXPECT_EQ(errorOfFile("timestep: 0.001\n" + goals),
-            "1: key 'timestep': found an unknown key, expected one of goals");
+            "1: key 'timestep': found an unknown key, expected one of goals, control_cost");
 }
 
 /// The lines of the reaches of a file, in its order.

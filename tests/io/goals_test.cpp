@@ -158,9 +158,10 @@ TEST_P(BadGoals, AreRefusedWithFileLineAndKey) {
 const BadGoal kBadGoals[] = {
     // Keys
     {"UnknownTopKey", "goals:", "version: 1\ngoals:",
-     "bad.yaml:2: key 'version': found an unknown key, expected one of goals"},
+     "bad.yaml:2: key 'version': found an unknown key, expected one of goals, control_cost"},
     {"MisspeltTopKey", "goals:", "gaols:",
-     "bad.yaml:2: key 'gaols': found an unknown key, expected one of goals, did you mean 'goals'?"},
+     "bad.yaml:2: key 'gaols': found an unknown key, expected one of goals, control_cost, did you "
+     "mean 'goals'?"},
     {"UnknownKey", "weight: 7", "wieght: 7",
      "bad.yaml:4: goal 1 'reach': key 'wieght': found an unknown key, expected one of link, "
      "target, point, rpy, quaternion, weight, rotation_weight, metric, stiffness, damping, "

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Energy and momentum, whose laws know nothing of how the dynamics are computed.
 
+#include "tests/laws/law_measures.hpp"
 #include "tests/support/finite_difference.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/scene.hpp"
@@ -53,7 +54,7 @@ TEST(Power, EqualsRateOfEnergy) {
     RandomTreeOptions options;
     options.ranges = false;
     options.springs = seed % 2 == 1;
-    Scene s = randomScene(seed, 0, options);
+    Scene s = inContinuousTime(randomScene(seed, 0, options));
     s.forward();
     const double scale = 100.0 + std::abs(appliedPower(s));
     EXPECT_SMALL((energyRate(s, s.data->forward.a) - appliedPower(s)) / scale, kDifferenceTolerance)
@@ -63,7 +64,7 @@ TEST(Power, EqualsRateOfEnergy) {
 
 TEST(Power, EqualsRateOfEnergyWithContactsAndLimits) {
   for (int seed = 0; seed < kSeeds; ++seed) {
-    Scene s = randomScene(seed, 6);
+    Scene s = inContinuousTime(randomScene(seed, 6));
     s.forward();
     const Constraints& rows = s.data->constraints;
     const Kinematics& k = s.data->kinematics;
@@ -85,7 +86,7 @@ TEST(Power, EqualsRateOfEnergyWithContactsAndLimits) {
 
 TEST(Energy, KineticIsHalfVtMv) {
   for (int seed = 0; seed < kSeeds; ++seed) {
-    const Scene s = randomScene(seed, 0);
+    const Scene s = inContinuousTime(randomScene(seed, 0));
     VectorX Mv = VectorX::Zero(s.model.nv);
     s.data->inertia.M.multiply(s.state.v, Mv);
     const double kinetic = computeEnergy(s.model, s.data->kinematics, s.state.q, s.state.v).kinetic;

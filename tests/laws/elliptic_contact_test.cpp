@@ -142,7 +142,7 @@ TEST(EllipticCost, DecreasesEveryIteration) {
   int iterations = 0, most = 0;
   for (int seed = 0; seed < 60; ++seed) {
     Scene s = ellipticScene(seed, 10);
-    const MatrixX M = s.data->inertia.M.dense();
+    const MatrixX M = s.data->inertia.hat().dense();
     double previous = kInfinity;
     for (int limit = 0; limit <= 100; ++limit) {
       s.model.options.maxIterations = limit;

@@ -27,6 +27,14 @@ inline double relativeImbalance(const Scene& s, const VectorX& residual) {
   return size(residual) / std::max({size(s.data->forces.net), size(Ma), 1.0});
 }
 
+/// The scene with M and forces of the bodies alone: damping and springs of now, not of the step's
+/// end.
+inline Scene inContinuousTime(Scene s) {
+  s.model.options.implicitInSolve = false;
+  s.stages();
+  return s;
+}
+
 /// By how much the inverse misses the applied force at the forward solution.
 inline double inverseMiss(Scene& s) {
   return relativeImbalance(s, inverse(s, s.data->forward.a) - s.input.tau);

@@ -4,6 +4,7 @@
 #include <Eigen/Cholesky>
 
 #include "engine/dynamics/aba.hpp"
+#include "tests/laws/law_measures.hpp"
 #include "tests/support/finite_difference.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/scene.hpp"
@@ -46,7 +47,7 @@ TEST(Aba, InvertsRnea) {
 
 TEST(Crba, ColumnIsRneaOfUnitAcceleration) {
   for (int seed = 0; seed < kForests; ++seed) {
-    const Scene s = randomScene(seed, 0);
+    const Scene s = inContinuousTime(randomScene(seed, 0));
     const int n = s.model.nv;
     MatrixX M(n, n);
     const VectorX bias = treeTorque(s, VectorX::Zero(n));
@@ -80,7 +81,7 @@ TEST(Rnea, IsLagrangesEquation) {
     RandomTreeOptions options;
     options.trees = 2;
     Random random(seed);
-    Scene s(randomForest(seed, options).build());
+    Scene s = inContinuousTime(Scene(randomForest(seed, options).build()));
     s.state = randomState(s.model, random);
     const int first = s.model.trees[1].firstDof, n = s.model.nv - first;
     s.state.v.head(first).setZero();
@@ -114,7 +115,7 @@ TEST(Forward, EqualsAbaWithoutConstraints) {
   for (int seed = 0; seed < kForests; ++seed) {
     RandomTreeOptions options;
     options.ranges = false;
-    Scene s = randomScene(seed, 0, options);
+    Scene s = inContinuousTime(randomScene(seed, 0, options));
     ASSERT_EQ(s.data->stats.rows, 0);
     EXPECT_EQ(s.forward(), SolveStatus::converged);
     // τ − c without the bias, which the articulated-body algorithm adds itself.

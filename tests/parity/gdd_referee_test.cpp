@@ -49,7 +49,7 @@ struct Trial {
     ModelBuilder builder = io::readUrdf(
         (data / "robots" / (recorded.at("model").get<std::string>() + ".urdf")).string());
     builder.options.timestep = recorded.at("timestep_s");
-    builder.options.ownSoftness = false;  // as MuJoCo, to which J̇ v of contacts is nothing
+    builder.options.useMujocoModel();
     GeometrySpec ground;
     ground.name = "ground";
     ground.link = "world";

@@ -191,8 +191,7 @@ Model referenceModel(const std::string& name, const Json& scene, const Json& opt
   builder.options.cone = options.at("cone") == "elliptic" ? Cone::elliptic : Cone::pyramidal;
   builder.options.exactDiagonal = options.value("diagexact", false);
   builder.options.impedanceRatio = options.at("impratio");
-  builder.options.ownSoftness = false;
-  builder.options.midpointCoriolis = false;  // MuJoCo's Euler takes them at the start of the step
+  builder.options.useMujocoModel();
   LinkSpec world;
   world.name = "world";
   builder.link(world);

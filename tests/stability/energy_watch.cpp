@@ -51,7 +51,7 @@ bool isPushed(const State& state) {
 /// √(2 K) by its largest part, as sub-steps have it: max_i (|v_i| + h |a_i|) √M_ii.
 double speed(const Model& model, const State& state, const Data& data) {
   const VectorX v = state.v.cwiseAbs() + model.options.timestep * data.acceleration.cwiseAbs();
-  return v.cwiseQuotient(data.inertia.forceScale).maxCoeff();
+  return v.cwiseQuotient(data.inertia.motionScale).maxCoeff();
 }
 
 }  // namespace

@@ -194,6 +194,7 @@ TEST(Goals, WeightsOfSixteenDecades) {
       for (int decade = -8; decade <= 8; decade += 2) {
         Course c("arm, weight 1e" + std::to_string(decade), with(arm(), timestep).build(), solver);
         c.state.q = Vector3(0.1, 0.5, 0.8);
+        c.controller.controlCost = gdd::ControlCost::total;  // about gravity, any weight wins
         c.reach("hand", target, std::pow(10.0, decade));
         c.damping();
         c.run(2.0);
@@ -203,6 +204,7 @@ TEST(Goals, WeightsOfSixteenDecades) {
         if (decade <= -8) {
           Course free("arm, no reach", with(arm(), timestep).build(), solver);
           free.state.q = Vector3(0.1, 0.5, 0.8);
+          free.controller.controlCost = gdd::ControlCost::total;
           free.damping();
           free.run(2.0);
           c.expect("against no reach", (c.state.q - free.state.q).norm(), 1e-6, "rad");

@@ -140,9 +140,7 @@ TEST(LightFeet, BearARobotOnABoard) {
               {Matrix3::Identity(), Vector3(0, 0, 0.02)});
       Trial t("a robot on a board", with(builder, timestep, cone));
       t.state.q[2] = 0.2 + ankle.height + kSole + 0.04;
-      t.mayRound = timestep < 0.001;  // masses of 1:1000 that settle by 10⁻⁹ m a step
       comesToRest(t, timestep);
-      EXPECT_EQ(t.rounded > 0, t.mayRound) << timestep;
     }
 }
 

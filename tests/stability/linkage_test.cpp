@@ -194,7 +194,6 @@ void crank(int seed, double timestep) {
   const double begun = t.energy().kinetic;
   t.mayGain = kInfinity;  // of energies half a step apart; the law has the start too
   t.mayRise = 0.01 * begun;
-  t.mayRound = true;
   t.run(2.0);
 }
 

@@ -11,12 +11,10 @@ namespace softgauss::test {
 namespace {
 
 // MuJoCo 3.12: 0.21 mm for 1 kg on 1 kg; 1,000 kg sinks through 10 cm and topples.
-/// How many solves ended by rounding.
-int carries(double load, double timestep, Cone cone) {
+void carries(double load, double timestep, Cone cone) {
   Trial t(std::to_string(static_cast<int>(load)) + " kg on 1 kg",
           with(tower({1.0, load}), timestep, cone));
   t.mayGain = 1e-9 * load * 9.81;  // a nanometre of the load's height: rounding
-  t.mayRound = load > 1e5;
   t.run(3.0);
   // 2 mm, and the depth goes with the square of the time constant, which is at least two steps.
   const double depth = 2e-3 * std::pow(std::max(1.0, 2.0 * timestep / 0.02), 2.0);
@@ -25,15 +23,12 @@ int carries(double load, double timestep, Cone cone) {
   t.expect("penetration at rest", t.data->stats.maxPenetration, depth, "m");
   t.expect("tilt", tilt(t, "box1"), 1e-3, "rad");
   t.expect("speed at rest", t.state.v.cwiseAbs().maxCoeff(), 1e-4, "m/s");
-  return t.rounded;
 }
 
 TEST(MassRatio, LightBoxCarriesHeavyBox) {
-  int rounded = 0;
   for (const double load : {1.0, 10.0, 100.0, 1e3, 1e4, 1e6})
     for (const double timestep : kSteps)
-      for (const Cone cone : kCones) rounded += carries(load, timestep, cone);
-  EXPECT_GT(rounded, 0);
+      for (const Cone cone : kCones) carries(load, timestep, cone);
 }
 
 /// Two fingers of 10 g on slides, and a cube between their pads, which touch it.

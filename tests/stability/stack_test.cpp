@@ -59,17 +59,14 @@ ModelBuilder pyramid() {
   return builder;
 }
 
-/// How many solves ended by rounding.
-int pyramidStands(double seconds, double timestep, Cone cone) {
+void pyramidStands(double seconds, double timestep, Cone cone) {
   Trial t("pyramid of 55", with(pyramid(), timestep, cone));
-  t.mayRound = cone == Cone::elliptic;
   t.mayGain = 0.5 * std::pow(10.0 * 9.81 * timestep, 2.0);  // as of a tower of ten
   const Vector3 begun = t.origin("box54");
   t.run(seconds);
   t.expect("motion of the top", (t.origin("box54") - begun).norm(), 5e-3 * slowed(timestep), "m");
   t.expect("penetration at rest", t.data->stats.maxPenetration, 1e-3 * slowed(timestep), "m");
   t.expect("speed at rest", t.state.v.cwiseAbs().maxCoeff(), 1e-3, "m/s");
-  return t.rounded;
 }
 
 TEST(Stack, PyramidStands) {
@@ -78,10 +75,8 @@ TEST(Stack, PyramidStands) {
 }
 
 TEST(Stack, PyramidStandsLong) {
-  int rounded = 0;
   for (const double timestep : {0.002, 0.005, 0.01})
-    for (const Cone cone : kCones) rounded += pyramidStands(10.0, timestep, cone);
-  EXPECT_GT(rounded, 0);
+    for (const Cone cone : kCones) pyramidStands(10.0, timestep, cone);
 }
 
 /// Bodies of four shapes above a bin of 1 m × 1 m, layer over layer.
@@ -121,10 +116,8 @@ Model restingPile(int bodies, double timestep, Cone cone, unsigned seed = 7) {
 // Of 200 bodies none leaves the bin or sinks, and all come to rest.
 void pileRests(int bodies, double seconds, double timestep, Cone cone, unsigned seed = 7) {
   Trial t("pile of " + std::to_string(bodies), restingPile(bodies, timestep, cone, seed));
-  t.mayGain = 1e-6;                                        // of tens of joules
-  t.mayRound = cone == Cone::elliptic && timestep < 0.01;  // at 10 ms none does
+  t.mayGain = 1e-6;  // of tens of joules
   t.run(seconds);
-  EXPECT_EQ(t.rounded > 0, t.mayRound);
   double highest = 0.0, lowest = 1.0, farthest = 0.0;
   for (int i = 0; i < bodies; ++i) {
     const Vector3 p = t.origin("body" + std::to_string(i));

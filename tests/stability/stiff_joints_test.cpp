@@ -77,7 +77,7 @@ TEST(StiffJoints, DryFrictionCreepsByItsSoftnessAsInMujoco) {
   for (const double friction : {3.0, 5000.0})
     for (const double h : {0.0005, 0.002, 0.005, 0.01}) {
       Model model = held(h, friction).build();
-      model.options.ownSoftness = model.options.midpointCoriolis = false;
+      model.options.useMujocoModel();
       Trial t("dry friction, soft", std::move(model));
       t.run(0.5);
       const double R = 0.1 / 0.9 * t.data->weights.dof[0],

@@ -30,7 +30,6 @@ Impedance anyImpedance(Random& random, bool direct) {
 double gainOf(Trial& t, double has, double rises) {
   t.mayGain = kInfinity;  // of energies half a step apart
   t.mayRise = rises * has;
-  t.mayRound = true;
   EnergyWatch watch(t.model);
   const double start = watch.energy(t.state);
   double gained = 0.0;

@@ -108,7 +108,7 @@ TEST(Ties, ContactsOfLightFeetBearWhatIsTiedToThem) {
 
 /// Two cubes of 0.2 m side by side, held together in the face that they share, that turn about
 /// their common centre of mass. Returns how many solves ended by rounding.
-int spinsTogether(bool weld, double massA, double massB, double h, double turn, double seconds) {
+void spinsTogether(bool weld, double massA, double massB, double h, double turn, double seconds) {
   ModelBuilder builder("pair");
   builder.base = BaseKind::floating;
   builder.link(boxLink("a", massA, Vector3::Constant(0.1)));
@@ -139,14 +139,11 @@ int spinsTogether(bool weld, double massA, double massB, double h, double turn, 
   t.mayGain = 2.0 * turn * turn * E0;  // of a circle's velocity against the chord's
   // At either instant what the tie itself does in half a step, ⅛ h² FᵀM⁻¹F with F = m ω² r.
   t.mayRise = 0.5 * turn * turn * E0;
-  t.mayRound = true;
   t.run(seconds);
   t.expect("energy gained, relative", std::max(0.0, t.energy().total() / E0 - 1.0), 1e-6, "");
-  return t.rounded;
 }
 
 TEST(Ties, WhatSpinsTogetherGainsNothing) {
-  int rounded = 0;
   for (const bool weld : {true, false})
     for (const double massB : {1.0, 10.0, 100.0})
       for (const double timestep : kSteps)
@@ -154,18 +151,15 @@ TEST(Ties, WhatSpinsTogetherGainsNothing) {
           // Above ω t_c = 1 the tie gives way by as much as the cubes are wide
           // (docs/stability_limits.md).
           if (turn / timestep > 50.0 && timestep < 0.002) continue;
-          rounded += spinsTogether(weld, 1.0, massB, timestep, turn, 5.0);
+          spinsTogether(weld, 1.0, massB, timestep, turn, 5.0);
         }
-  EXPECT_GT(rounded, 0);
 }
 TEST(Ties, WhatSpinsTogetherGainsNothingInAMinuteLong) {
-  int rounded = 0;
   for (const bool weld : {true, false})
     for (const double massB : {10.0, 100.0})
       for (const double timestep : {0.002, 0.01})
         for (const double turn : {0.04, 0.08, 0.12, 0.4})
-          rounded += spinsTogether(weld, 1.0, massB, timestep, turn, 60.0);
-  EXPECT_GT(rounded, 0);
+          spinsTogether(weld, 1.0, massB, timestep, turn, 60.0);
 }
 
 }  // namespace

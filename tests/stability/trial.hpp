@@ -3,9 +3,10 @@
 
 /// A hard case: a scene that is stepped, watched at every step, and measured at the end.
 ///
-/// At every step the state must be finite and the solve converged, nothing may have been done in
-/// place of what was asked (StepStats::abandonedTrees and the like), and a passive scene must gain
-/// no energy, neither against its start nor against any step on the way (energy_watch.hpp):
+/// At every step the state must be finite and the solve converged to 10³ of its tolerance, nothing
+/// may have been done in place of what was asked (StepStats::abandonedTrees and the like), and a
+/// passive scene must gain no energy, neither against its start nor against any step on the way
+/// (energy_watch.hpp):
 ///   E(t) − E(0) − W(t) ≤ mayGain
 ///   E(t) − W(t) ≤ E(s) − W(s) + what rows store at s + what the integrator is off by + mayRise
 /// with E of computeEnergy(), to which what contacts store does not belong, and W what `input.tau`
@@ -61,9 +62,6 @@ class Trial {
   double mayRise = 1e-12, perStep = 0.0;
   /// Steps whose solve may end short of its tolerance; their residual is in `worstResidual`.
   int mayStall = 0;
-  /// Solves may end by rounding, within 10³ of their tolerance (StepStats::roundedSolves). A
-  /// test that allows it fails where none of its trials has one.
-  bool mayRound = false;
 
   // Measured over all steps so far.
   double gained = -kInfinity;  ///< most energy above that of the start and of the work [J]
@@ -73,8 +71,7 @@ class Trial {
   double fastest = 0.0;        ///< largest |v_i| [m/s or rad/s]
   double worstResidual = 0.0;  ///< of the solve, scaled
   int mostIterations = 0;
-  int stalls = 0;   ///< solves that ended short of the tolerance
-  int rounded = 0;  ///< solves that ended by rounding
+  int stalls = 0;  ///< solves that ended short of the tolerance
   int steps = 0;
 
   /// Advances by `seconds`, `each` being called after every step (it may set `input` for the next).

@@ -143,6 +143,7 @@ std::pair<double, double> forceBounds(const Huber& s) { return {-s.limit, s.limi
 ConvexProblem denseProblem(const Data& data) {
   ConvexProblem problem;
   problem.M = data.inertia.M.dense();
+  problem.M.diagonal() += data.inertia.added;
   problem.net = data.forces.net;
   problem.J = data.constraints.denseJacobian();
   const int rows = data.constraints.rowCount();

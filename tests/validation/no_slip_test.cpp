@@ -140,11 +140,11 @@ TEST(NoSlip, ForcesGiveTheAcceleration) {
       s.forward();
       if (s.data->sticking.rowCount() == 0) continue;
       ++solved;
-      const VectorX Ma = s.data->inertia.M.dense() * s.data->forward.a;
+      const VectorX Ma = s.data->inertia.hat().dense() * s.data->forward.a;
       VectorX force = s.data->forces.net;
       s.data->constraints.visitAllButContacts([&](const auto& c) { c.addTransposed(c.f, force); });
       s.data->sticking.addForce(force);
-      const VectorX unit = s.data->inertia.M.dense().diagonal().cwiseSqrt();
+      const VectorX unit = s.data->inertia.hat().dense().diagonal().cwiseSqrt();
       const double scale = 1.0 + Ma.cwiseQuotient(unit).cwiseAbs().maxCoeff();
       EXPECT_SMALL((Ma - force).cwiseQuotient(unit).cwiseAbs().maxCoeff() / scale, 1e-8)
           << "seed " << seed;

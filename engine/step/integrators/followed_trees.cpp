@@ -54,8 +54,7 @@ bool setCoriolis(const Model& model, Data& data, FollowedTrees& f) {
   f.smooth.setZero();
   computeBiasAt(model, data.kinematics, data.inertia, f.smooth, data.forces.work, f.kicked);
   f.coriolis = f.kicked - data.forces.bias;
-  const bool implicit = data.plan.damped() || anyStiffSpring(model, data);
-  return solveMass(data, implicit ? &data.forward.Md : nullptr, f.coriolis);
+  return solveMass(data, implicitFollows(model, data) ? &data.forward.Md : nullptr, f.coriolis);
 }
 
 }  // namespace
@@ -107,7 +106,7 @@ bool FollowedTrees::needed(const Model& model, const Data& data, State& state, c
       if (!multiplied) {  // all trees at once
         data.inertia.M.multiply(dv, smooth);
         data.inertia.M.multiply(state.v, kicked);
-        data.inertia.M.multiply(data.forward.a, push);
+        data.inertia.hat().multiply(data.forward.a, push);
         multiplied = true;
       }
       const auto square = [&](const VectorX& x, const VectorX& Mx) {
@@ -127,7 +126,7 @@ bool FollowedTrees::needed(const Model& model, const Data& data, State& state, c
 }
 
 bool FollowedTrees::anyPushed(const Model& model, const Data& data) {
-  data.inertia.M.multiply(data.forward.a, push);
+  data.inertia.hat().multiply(data.forward.a, push);
   push -= data.forces.net;
   setRowForces(data, smooth);
   bool any = false;
@@ -137,6 +136,10 @@ bool FollowedTrees::anyPushed(const Model& model, const Data& data) {
     // A single body rolls on: (T.123) has its Coriolis forces, and the rows' answer.
     if (pushed[t] && !model.options.noSlip && isSingle(tree) && !tied[t] && turn[t] < kRollingTurn)
       followed[t] = pushed[t] = 0;
+    // Where damping takes all speed in a step, as of massless links, (T.16) has it; where rows
+    // push, (T.130) does.
+    if (followed[t] && !pushed[t] && dampingStops(tree, data, model.options.timestep))
+      followed[t] = 0;
     any = any || pushed[t];
   }
   return any;
@@ -174,15 +177,15 @@ bool FollowedTrees::kick(const Model& model, Data& data, const State& state) {
   if (!data.stats.count(data.forward.report)) return false;
   // a′ by what a has changed, and of pushed trees without what mid-step changes.
   smooth = s.a - a;
-  data.inertia.M.multiply(smooth, kicked);
+  data.inertia.hat().multiply(smooth, kicked);
   for (std::size_t t = 0; t < model.trees.size(); ++t) {
     if (!pushed[t]) continue;
     const int first = model.trees[t].firstDof, dofs = model.trees[t].dofEnd - first;
     kicked.segment(first, dofs) -= data.midStep.change().segment(first, dofs);
   }
-  const bool implicit = data.plan.damped() || anyStiffSpring(model, data);
-  if (implicit) setImplicitForces(model, state, data, smooth);
-  if (!solveMass(data, implicit ? &s.Md : nullptr, kicked)) return false;
+  const bool follows = implicitFollows(model, data);
+  if (follows) setImplicitForces(model, state, data, smooth);
+  if (!solveMass(data, follows ? &s.Md : nullptr, kicked)) return false;
   data.acceleration += kicked;
   return true;
 }
@@ -204,7 +207,7 @@ void FollowedTrees::follow(const Model& model, Data& data, State& state, VectorX
   }
   if (ends && !kicks && !setCoriolis(model, data, *this)) coriolis.setZero();
   // Q = M a + b + D v + K (q − q_s): applied and constraint forces of the step.
-  data.inertia.M.multiply(data.forward.a, held);
+  data.inertia.hat().multiply(data.forward.a, held);
   push = held - data.forces.net;  // Jᵀf
   setRowForces(data, smooth);     // of trees that are not followed it stays so below
   held += data.forces.bias;
@@ -213,7 +216,9 @@ void FollowedTrees::follow(const Model& model, Data& data, State& state, VectorX
   for (const Plan::Spring& spring : data.plan.springs) {
     held[spring.dof] += spring.stiffness * (state.q[spring.q] - spring.reference);
     atEnd.stiff.push_back(isStiffSpring(model, data, spring));
-    if (atEnd.stiff.back()) atEnd.inertia[spring.dof] = h * h * spring.stiffness;
+    if (!atEnd.stiff.back()) continue;
+    atEnd.inertia[spring.dof] = h * h * spring.stiffness;
+    if (data.plan.inSolve) held[spring.dof] += h * spring.stiffness * state.v[spring.dof];
   }
   if (data.plan.damped()) {
     held += data.plan.damping.cwiseProduct(state.v);
@@ -283,7 +288,7 @@ void FollowedTrees::follow(const Model& model, Data& data, State& state, VectorX
     }
     const double firstStep = h * std::min(1.0, 0.2 / std::sqrt(turn[t]));
     const TreeMotion::Outcome outcome =
-        motion.run(model, data.plan, tree, held, heldInWorld, data.inertia.forceScale,
+        motion.run(model, data.plan, tree, held, heldInWorld, data.inertia.motionScale,
                    treeSpeed(tree, data, state.v, h), h, firstStep);
     data.stats.substeps += motion.substeps();
     if (outcome != TreeMotion::Outcome::done) {

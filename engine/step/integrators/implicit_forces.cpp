@@ -2,12 +2,14 @@
 #include "engine/step/integrators/implicit_forces.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace softgauss {
 
 bool isStiffSpring(const Model& model, const Data& data, const Plan::Spring& spring) {
   const double h = model.options.timestep;
-  return model.options.midpointCoriolis &&
+  const Options& o = model.options;
+  return (o.midpointCoriolis || o.implicitInSolve) &&
          h * h * spring.stiffness * data.weights.dof[spring.dof] > 1.0;
 }
 
@@ -16,6 +18,31 @@ bool anyStiffSpring(const Model& model, const Data& data) {
   return std::any_of(springs.begin(), springs.end(), [&](const Plan::Spring& spring) {
     return isStiffSpring(model, data, spring);
   });
+}
+
+bool implicitFollows(const Model& model, const Data& data) {
+  return !data.plan.inSolve && (data.plan.damped() || anyStiffSpring(model, data));
+}
+
+void putInSolve(const Model& model, const State& state, Data& data) {
+  const double h = model.options.timestep;
+  MassMatrix& inertia = data.inertia;
+  if (data.plan.damped()) inertia.added += h * data.plan.damping;
+  for (const Plan::Spring& spring : data.plan.springs) {
+    if (!isStiffSpring(model, data, spring)) continue;
+    inertia.added[spring.dof] += h * h * spring.stiffness;
+    const double ahead = h * spring.stiffness * state.v[spring.dof];
+    data.forces.c[spring.dof] += ahead;
+    data.forces.net[spring.dof] -= ahead;
+  }
+  inertia.anyAdded = (inertia.added.array() != 0.0).any();
+  if (!inertia.anyAdded) return;
+  inertia.Mhat.assign(inertia.M);
+  for (int i = 0; i < model.nv; ++i) {
+    double& pivot = inertia.Mhat.row(i)[i];
+    pivot += inertia.added[i];
+    inertia.forceScale[i] = 1.0 / std::sqrt(pivot);
+  }
 }
 
 void setImplicitForces(const Model& model, const State& state, Data& data, VectorX& net) {

@@ -1,8 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// Joint damping and stiff springs at the end of the step: what the integrators of one solve have
-/// in common (T.95).
+/// Joint damping and stiff springs at the end of the step. Of the velocity v⁺ = v + h a and the
+/// position q + h v⁺ they are
+///
+///   D v⁺ + K (q + h v⁺ − q_s)  =  D v + K (q − q_s) + h K v  +  (h D + h² K) a
+///
+/// so M̂ = M + h D + h² K in place of M, with h K v more in c, makes them part of the solve: (T.1)
+/// stays what it is, convex and with an explicit inverse [Anitescu and Potra 2002, of stiff
+/// springs]. M itself stays that of the bodies, for whoever weighs and prices by it. A spring is
+/// stiff where it swings by more than a radian in a step, h² k w_i > 1 (T.95); slower ones keep
+/// their energy and stay as they are.
 
 #include "engine/step/data.hpp"
 
@@ -12,7 +20,13 @@ namespace softgauss {
 bool isStiffSpring(const Model& model, const Data& data, const Plan::Spring& spring);
 bool anyStiffSpring(const Model& model, const Data& data);
 
-/// data.forward.Md ← h D + h² K_s and net ← net − h K_s v.
+/// Whether there are some that are no part of the solve but follow it.
+bool implicitFollows(const Model& model, const Data& data);
+
+/// M̂ ← M + h D + h² K and c ← c + h K v (Options::implicitInSolve).
+void putInSolve(const Model& model, const State& state, Data& data);
+
+/// The same for what follows the solve: data.forward.Md ← h D + h² K, net ← net − h K v.
 void setImplicitForces(const Model& model, const State& state, Data& data, VectorX& net);
 
 }  // namespace softgauss

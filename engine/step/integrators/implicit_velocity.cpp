@@ -14,7 +14,7 @@ bool implicitVelocity(const Model& model, Data& data, State& state) {
   if (data.constraints.active().empty())
     net = s.Ma;
   else
-    data.inertia.M.multiply(s.a, net);
+    data.inertia.hat().multiply(s.a, net);
   const bool diagonal = data.plan.damped() || anyStiffSpring(model, data);
   if (diagonal) setImplicitForces(model, state, data, net);
   const VectorX* added = diagonal ? &s.Md : nullptr;

@@ -67,7 +67,7 @@ bool MidStep::answer(const Model& model, Data& data, const State& present, const
   }
 
   // What (T.1) is short of at a is none of this: M a − Jᵀf in place of τ − c.
-  data.inertia.M.multiply(a_, Ma_);
+  data.inertia.hat().multiply(a_, Ma_);
   net_ = -Ma_;
   rows.addForce(net_);
   net_ = change_ - net_;
@@ -89,7 +89,7 @@ bool MidStep::answer(const Model& model, Data& data, const State& present, const
   s.scale = scale_;
   rows.setReferences(references_);
   net_ = middle_ - a_;
-  data.inertia.M.multiply(net_, change_);
+  data.inertia.hat().multiply(net_, change_);
   ofTied([&](int first, int dofs) { change_.segment(first, dofs) -= bias.segment(first, dofs); });
   return true;
 }

@@ -25,7 +25,7 @@ bool mayTurnFar(const Model& model, const Data& data, const State& state) {
       const bool floats = body.joint == JointKind::floating;
       for (int i = body.v + (floats ? 3 : 0); i < body.v + (floats ? 6 : 1); ++i) {
         const double ends = std::abs(state.v[i] + h * data.acceleration[i]);
-        const double root = 1.0 / data.inertia.forceScale[i];  // √M_ii
+        const double root = 1.0 / data.inertia.motionScale[i];  // √M_ii
         if (body.joint == JointKind::prismatic) {
           slides = std::max(slides, ends * root);
           continue;
@@ -66,32 +66,31 @@ bool semiImplicitEuler(const Model& model, Data& data, State& state) {
   ForwardSolution& s = data.forward;
   const Plan& plan = data.plan;
   if (plan.rows.has(RowKind::swing) && !holdSwings(model, data, state)) return false;
-  const bool stiff = anyStiffSpring(model, data);
-  const bool midpoint = plan.midpoint, implicit = plan.damped() || stiff;
+  const bool midpoint = plan.midpoint, follows = implicitFollows(model, data);
   const bool rows = !data.constraints.active().empty();
   // With bounded friction (T.34) a is the solution of another problem.
   const bool answers = midpoint && rows && !model.options.noSlip;
   data.acceleration = s.a;
   bool follow = false;
-  if (implicit || midpoint) {
+  if (follows || midpoint) {
     // Right side M a, less what the Coriolis forces gain by mid-step and rows answer to that.
     VectorX& net = data.acceleration;
     if (rows)
-      data.inertia.M.multiply(s.a, net);
+      data.inertia.hat().multiply(s.a, net);
     else
       net = s.Ma;
-    if (implicit) setImplicitForces(model, state, data, net);
+    if (follows) setImplicitForces(model, state, data, net);
     bool factored = false;
-    const auto solve = [&](VectorX& x) {  // x ← (M + h D)⁻¹ x
+    const auto solve = [&](VectorX& x) {  // x ← M̂⁻¹ x
       if (factored && !plan.diagonal)
         s.massFactor.solve(x);
       else
-        factored = solveMass(data, implicit ? &s.Md : nullptr, x);
+        factored = solveMass(data, follows ? &s.Md : nullptr, x);
       return factored;
     };
     if (midpoint) {
       s.start = s.a;
-      if (implicit) {  // a is that of damping and springs that the step does not follow
+      if (follows) {  // a is that of damping and springs that the step does not follow
         s.start = net;
         if (!solve(s.start)) return false;
       }
@@ -112,7 +111,7 @@ bool semiImplicitEuler(const Model& model, Data& data, State& state) {
     if (!solve(net)) return false;
     if (midpoint && mayTurnFar(model, data, state)) {
       // What Δb does to the velocity by itself, damped like the rest.
-      if (implicit || rows)
+      if (follows || rows)
         solve(s.direction);
       else
         s.direction = s.a - net;

@@ -1,19 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// Semi-implicit Euler with implicit joint damping and Coriolis forces of mid-step (T.16):
+/// Semi-implicit Euler with Coriolis forces of mid-step:
 ///
-///   (M + h D) a' = M (a + δ),   v⁺ = v + h a',   q⁺ = q ⊕ h v⁺
+///   v⁺ = v + h (a + δ),   q⁺ = q ⊕ h v⁺                                               (T.16)
 ///
-/// a is the continuous-time acceleration. Damping is taken at v⁺, so any h d is stable; without it
-/// and without Coriolis forces a' = a. Order 1. δ (Options::midpointCoriolis) takes the Coriolis
-/// and gyroscopic forces at the middle of the step, v + ½ h â with (M + h D) â = M a: M δ = −Δb,
-/// and where rows act, what they answer to it (T.123), mid_step.hpp. Taken at its start these
-/// forces feed a body that turns at ω with energy at the relative rate h ω², and fast joints
-/// diverge. Without δ the step is MuJoCo's Euler. With it, springs that swing by more than a radian
-/// in a step, h² k w_i > 1, are taken at its end too: h² K on the left, −h K v on the right (T.95),
-/// stable for any k. Slower ones keep their energy and stay as they are. Trees that turn far in the
-/// step are followed through it (followed_trees.hpp).
+/// with a of (T.1), whose inertia has joint damping and stiff springs at the step's end
+/// (implicit_forces.hpp). Order 1. δ (Options::midpointCoriolis) takes the Coriolis and gyroscopic
+/// forces at the middle of the step, v + ½ h a: M δ = −Δb, and where rows act, what they answer to
+/// it (T.123), mid_step.hpp. Taken at its start these forces feed a body that turns at ω with
+/// energy at the relative rate h ω², and fast joints diverge. Without δ, and with damping that
+/// follows the solve (Options::implicitInSolve), (M + h D) a' = M a, the step is MuJoCo's Euler.
+/// Trees that turn far in the step are followed through it (followed_trees.hpp).
 
 #include "engine/step/data.hpp"
 

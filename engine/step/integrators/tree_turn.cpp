@@ -19,24 +19,23 @@ bool act(const VectorX& forces, const Tree& tree) {
 bool drive(const VectorX& tau, const Tree& tree, const Data& data, const VectorX& v, double h) {
   double most = 0.0;
   for (int i = tree.firstDof; i < tree.dofEnd; ++i)
-    most = std::max(most, std::abs(tau[i]) * data.inertia.forceScale[i]);
+    most = std::max(most, std::abs(tau[i]) * data.inertia.motionScale[i]);
   return h * most > 1e-3 * treeSpeed(tree, data, v, h);
-}
-
-/// Damping stops a joint within the step: what that takes is more than any change gains, and would
-/// cost many sub-steps.
-bool stops(const Tree& tree, const Data& data, double h) {
-  for (int i = tree.firstDof; i < tree.dofEnd; ++i)
-    if (h * data.plan.damping[i] * std::pow(data.inertia.forceScale[i], 2.0) > 1.0) return true;
-  return false;
 }
 
 }  // namespace
 
+bool dampingStops(const Tree& tree, const Data& data, double h) {
+  if (!data.plan.damped()) return false;
+  for (int i = tree.firstDof; i < tree.dofEnd; ++i)
+    if (h * data.plan.damping[i] * std::pow(data.inertia.motionScale[i], 2.0) > 1.0) return true;
+  return false;
+}
+
 Following followingOf(const Tree& tree, bool tied, const Data& data, const VectorX& v, double h) {
   const bool held = tied || isSingle(tree) || drive(data.forces.tau, tree, data, v, h);
   const bool damped = data.plan.damped() && act(data.plan.damping, tree);
-  if (damped && (held || stops(tree, data, h))) return kDamped;
+  if (damped && (held || dampingStops(tree, data, h))) return kDamped;
   return held ? kHeld : kPassive;
 }
 
@@ -48,7 +47,7 @@ double turnRate(const Model& model, const Tree& tree, const Data& data, const Ve
   double speeds[2] = {0.0, 0.0}, fastest = 0.0;
   const auto add = [&](int kind, int begin, int end) {
     for (int i = begin; i < end; ++i) {
-      const double root = 1.0 / data.inertia.forceScale[i];  // √M_ii
+      const double root = 1.0 / data.inertia.motionScale[i];  // √M_ii
       const double speed = std::abs(v[i]) + h * std::abs(data.forward.a[i]);
       changes[kind] = std::max(changes[kind], std::abs(change[i]));
       sizes[kind] = std::max(sizes[kind], h * std::abs(change[i]) * root);
@@ -79,7 +78,7 @@ double treeSpeed(const Tree& tree, const Data& data, const VectorX& v, double h)
   double speed = 0.0;
   for (int i = tree.firstDof; i < tree.dofEnd; ++i)
     speed = std::max(
-        speed, (std::abs(v[i]) + h * std::abs(data.forward.a[i])) / data.inertia.forceScale[i]);
+        speed, (std::abs(v[i]) + h * std::abs(data.forward.a[i])) / data.inertia.motionScale[i]);
   return speed;
 }
 

@@ -31,6 +31,8 @@ double turnRate(const Model& model, const Tree& tree, const Data& data, const Ve
 /// the factor h. Both arguments are squares.
 double energyRate(double change, double motion);
 
+/// Damping stops a joint of the tree within the step: no sub-steps follow that.
+bool dampingStops(const Tree& tree, const Data& data, double h);
 /// √(2 × kinetic energy) of a tree by its largest part: max_i (|v_i| + h |a_i|) √M_ii.
 double treeSpeed(const Tree& tree, const Data& data, const VectorX& v, double h);
 /// By which a body turns in a step [rad].

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gdd/holding_force.hpp"
+
+namespace softgauss::gdd {
+
+/// force ← c(q, 0).
+void HoldingForce::setStatics(const Model& model, const State& state, const Data& data) {
+  const SmoothForces& smooth = data.forces;
+  force_ = smooth.c - smooth.bias;
+  if (data.plan.damped()) force_ -= data.plan.damping.cwiseProduct(state.v);
+  if (!data.plan.gravity) return;
+  const Motion up{Vector3::Zero(), -model.options.gravity};
+  for (int i = 0; i < model.nv; ++i)
+    force_[i] += dot(data.kinematics.S[i], data.inertia.composite[model.dofs[i].body] * up);
+}
+
+/// Whether there is a z.
+bool HoldingForce::findFree(const ControlBox& box) {
+  free_.resize(static_cast<std::size_t>(force_.size()));
+  bool any = false;
+  for (int i = 0; i < force_.size(); ++i) {
+    const bool pulled = box.transmission && box.transmission->pulls(i);
+    free_[i] = !pulled && box.lower[i] == box.upper[i];
+    any |= free_[i] != 0;
+  }
+  return any;
+}
+
+/// force ← force + P x, x the acceleration of z.
+void HoldingForce::stand(const ControlBox& box, Data& data) {
+  constexpr double kStiffer = 1e4;  // κ: rows at rest have carried the weight that this leaves over
+  Constraints& rows = data.constraints;
+  P_.resize(rows.sparsity());
+  P_.setZero();
+  if (rows.rowCount() > 0) {
+    bool changed = false;
+    x_.setZero(force_.size());
+    rows.setResidual(x_);
+    rows.evaluate(changed);
+    rows.addCurvature(P_);
+    P_.add(P_, kStiffer - 1.0);
+  }
+  P_.add(data.inertia.hat());
+
+  masked_.resize(rows.sparsity());
+  masked_.assign(P_);
+  for (int i = 0; i < masked_.size(); ++i) {
+    double* row = masked_.row(i);
+    for (const Segment* s = rows.sparsity().begin(i); s != rows.sparsity().end(i); ++s)
+      for (int j = s->begin; j < s->end; ++j)
+        if (!free_[i] || !free_[j]) row[j] = i == j ? 1.0 : 0.0;
+  }
+  x_.setZero(force_.size());
+  for (int i = 0; i < x_.size(); ++i)
+    if (free_[i]) x_[i] = box.lower[i] - force_[i];
+  if (!factor_.compute(masked_)) return;  // not finite: the solver will say so
+  factor_.solve(x_);
+  Px_.resize(x_.size());
+  P_.multiply(x_, Px_);
+  force_ += Px_;
+}
+
+const VectorX& HoldingForce::compute(const Model& model, const State& state, const ControlBox& box,
+                                     Data& data) {
+  setStatics(model, state, data);
+  if (findFree(box)) stand(box, data);
+  return force_;
+}
+
+}  // namespace softgauss::gdd
