@@ -8,8 +8,6 @@
 /// faces, one for each side. Frame G is that of the mesh.
 
 #include <array>
-#include <map>
-#include <memory>
 #include <span>
 #include <vector>
 
@@ -59,9 +57,6 @@ struct ConvexHull {
 /// Throws ModelError, naming the mesh's file, when there are fewer than three vertices or all lie
 /// on one line: such a mesh has no surface.
 ConvexHull makeConvexHull(const Mesh& mesh);
-
-/// Hulls by mesh, shared by all geometries of that mesh and by the parts of a model.
-using HullCache = std::map<const Mesh*, std::shared_ptr<const ConvexHull>>;
 
 /// The surface of a hull as triangles, for viewers.
 Mesh triangulated(const ConvexHull& hull);

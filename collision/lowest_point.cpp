@@ -21,6 +21,7 @@ double lowestPoint(const Shape& shape, const Transform& X_WG) {
     case ShapeKind::box:
       return X_WG.p.z() - up.cwiseAbs().dot(shape.halfExtents);
     case ShapeKind::mesh:
+    case ShapeKind::triangles:
       break;
   }
   double lowest = kInfinity;

@@ -38,7 +38,7 @@ double untouched(const Flight& a, const Flight& b, Vector3 n, double margin, dou
 
 }  // namespace
 
-Extent extentOf(const Shape& shape, const ConvexHull* hull) {
+Extent extentOf(const Shape& shape, const ConvexHull* hull, const TriangleMesh* surface) {
   switch (shape.kind) {
     case ShapeKind::plane:
       return {kInfinity, 0.0};
@@ -53,6 +53,8 @@ Extent extentOf(const Shape& shape, const ConvexHull* hull) {
       return {2.0 * shape.halfExtents.minCoeff(), shape.halfExtents.norm()};
     case ShapeKind::mesh:
       return {hullThickness(*hull), hull->boundingRadius};
+    case ShapeKind::triangles:
+      return {0.0, surface->boundingRadius()};
   }
   return {};
 }
@@ -75,6 +77,8 @@ double halfWidth(const Flight& f, const Vector3& n) {
       return (f.X_WG->R.transpose() * n).cwiseAbs().dot(shape.halfExtents);
     case ShapeKind::mesh:
       return (f.X_WG->R.transpose() * n).cwiseAbs().dot(f.hull->halfExtents);
+    case ShapeKind::triangles:
+      return (f.X_WG->R.transpose() * n).cwiseAbs().dot(f.surface->halfExtents());
   }
   return 0.0;
 }

@@ -17,6 +17,7 @@
 /// apart; one that merely grazes an edge may be missed.
 
 #include "collision/convex_hull.hpp"
+#include "collision/triangle_mesh.hpp"
 #include "engine/core/check.hpp"
 #include "engine/model/shape.hpp"
 
@@ -30,8 +31,8 @@ struct Extent {
   double lever = 0.0;      ///< ℓ
 };
 
-/// `hull`: of a mesh, else null.
-Extent extentOf(const Shape& shape, const ConvexHull* hull);
+/// `hull`: of a mesh, `surface`: of triangles, else null.
+Extent extentOf(const Shape& shape, const ConvexHull* hull, const TriangleMesh* surface = nullptr);
 
 /// A shape on its way.
 struct Flight {
@@ -41,6 +42,7 @@ struct Flight {
   const Transform* X_WG;  ///< R(:, z) alone is read of a capsule, none of R of a sphere
   Vector3 centre;         ///< world [m]
   Vector3 v, omega;       ///< of the centre, world
+  const TriangleMesh* surface = nullptr;
 
   /// No point is faster [m/s].
   double speed() const { return v.norm() + omega.norm() * extent.lever; }

@@ -19,9 +19,9 @@ bool hasClosedForm(ShapeKind a, ShapeKind b) {
   if (b < a) return hasClosedForm(b, a);
   switch (a) {
     case ShapeKind::plane:
-      return b != ShapeKind::plane;
+      return b != ShapeKind::plane && b != ShapeKind::triangles;
     case ShapeKind::sphere:
-      return b != ShapeKind::mesh;
+      return b != ShapeKind::mesh && b != ShapeKind::triangles;
     case ShapeKind::capsule:
       return b == ShapeKind::capsule || b == ShapeKind::box;
     case ShapeKind::box:

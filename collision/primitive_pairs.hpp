@@ -3,13 +3,15 @@
 
 /// One entrance to all pairs of shapes that are solved in closed form.
 ///
-/// Shapes are ordered by kind, plane < sphere < capsule < cylinder < box < mesh; the lower kind is
+/// Shapes are ordered by kind, plane < sphere < capsule < cylinder < box < mesh
+/// < triangles; the lower kind is
 /// A, and the normal points from A to B. Closed forms:
 ///   plane    with sphere, capsule, cylinder, box, mesh (its hull)      plane_pairs.hpp
 ///   sphere   with sphere, capsule, cylinder                            round_pairs.hpp
 ///   capsule  with capsule                                              round_pairs.hpp
 ///   box      with sphere, capsule, box                                 box_pairs.hpp
-/// The other pairs go through detail/convex_pairs.hpp.
+/// Pairs with triangles go through detail/surface_contacts.hpp, the others through
+/// detail/convex_pairs.hpp.
 
 #include "collision/convex_hull.hpp"
 #include "collision/pair_contact.hpp"

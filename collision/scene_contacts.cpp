@@ -38,7 +38,7 @@ struct SceneContacts::Scene {
   /// How much of a geometry's orientation is ever read.
   enum class Turn : std::uint8_t { none, axis, full };
 
-  Scene(const Model& model, HullCache& hulls);
+  Scene(const Model& model, PreparedMeshes& meshes);
   /// Poses of the geometries of some pair that move, or of all.
   void pose(const Kinematics& kinematics, bool all = false);
   void choosePosed();
@@ -53,6 +53,9 @@ struct SceneContacts::Scene {
   void report(const Row& row, ContactSet& contacts);
   /// Whether the bounding sphere of row.b is within the reach of row.a and `extra` [m].
   bool within(const Row& row, double extra) const;
+  /// Whether, of a surface row.b, any triangle is within the reach of row.a and `extra` [m]; true
+  /// of other shapes.
+  bool surfaceWithin(const Row& row, double extra) const;
   /// Whether the rows that are not near may have come near since findNear().
   bool moved() const;
   void findNear();
@@ -62,7 +65,7 @@ struct SceneContacts::Scene {
   /// Sets flights and which of them are fast; false where none is.
   bool launch(const Kinematics& kinematics, double longest, double sign);
 
-  /// Keeps the hulls alone.
+  /// Keeps the hulls and surfaces alone.
   void forget();
   std::size_t bytes() const;
 
@@ -76,7 +79,7 @@ struct SceneContacts::Scene {
 
   std::vector<Row> planeRows;
   std::vector<Row> rows;
-  PairContacts found;
+  detail::PairTest test;
 
   std::unique_ptr<detail::Broadphase> broadphase;  ///< null in small scenes
   std::vector<int> movable;                        ///< geometries that are no planes
@@ -91,7 +94,7 @@ struct SceneContacts::Scene {
   std::vector<int> firstRow;       ///< rows of geometry a are [firstRow[a], firstRow[a + 1])
 };
 
-SceneContacts::Scene::Scene(const Model& m, HullCache& hulls) : model(m), set(m, hulls) {
+SceneContacts::Scene::Scene(const Model& m, PreparedMeshes& meshes) : model(m), set(m, meshes) {
   const std::size_t count = model.geometries.size();
   X_WG.resize(count);
   centre.resize(count, Vector3::Zero());
@@ -151,7 +154,10 @@ std::size_t SceneContacts::Scene::bytes() const {
 void SceneContacts::Scene::chooseSlack(const std::vector<GeometryPair>& pairs) {
   constexpr double kShare = 0.2;
   double sum = 0.0;
-  for (const GeometryPair& pair : pairs) sum += set.radius[static_cast<std::size_t>(pair.b)];
+  // Of a surface, which may be a landscape, the other shape counts.
+  for (const GeometryPair& pair : pairs)
+    sum += set.radius[static_cast<std::size_t>(
+        set.surface[static_cast<std::size_t>(pair.b)] ? pair.a : pair.b)];
   slack = pairs.empty() ? 0.0 : kShare * sum / static_cast<double>(pairs.size());
 }
 
@@ -170,8 +176,9 @@ void SceneContacts::Scene::makeFlights() {
   for (std::size_t i = 0; i < X_WG.size(); ++i) {
     const Shape& shape = model.geometries[i].shape;
     const ConvexHull* hull = set.hull[i].get();
-    flights.push_back({&shape, hull, extentOf(shape, hull), &X_WG[i], centre[i], Vector3::Zero(),
-                       Vector3::Zero()});
+    const TriangleMesh* surface = set.surface[i].get();
+    flights.push_back({&shape, hull, extentOf(shape, hull, surface), &X_WG[i], centre[i],
+                       Vector3::Zero(), Vector3::Zero(), surface});
   }
   fast.assign(flights.size(), 0);
 }
@@ -190,7 +197,7 @@ void SceneContacts::Scene::pose(const Kinematics& kinematics, bool all) {
     else if (turn[i] == Turn::full)
       X.R.noalias() = X_WB.R * g.X_BG.R;
     centre[i] = X.p;
-    if (set.hull[i]) centre[i].noalias() += X.R * set.centreInG[i];
+    if (set.hull[i] || set.surface[i]) centre[i].noalias() += X.R * set.centreInG[i];
   }
 }
 
@@ -223,7 +230,8 @@ double SceneContacts::Scene::timeInSight(const Kinematics& kinematics, double lo
   double time = longest;
   for (const Row& row : rows) {
     const auto a = static_cast<std::size_t>(row.a), b = static_cast<std::size_t>(row.b);
-    if (fast[a] || fast[b]) time = collision::timeInSight(flights[a], flights[b], row.margin, time);
+    if ((fast[a] || fast[b]) && surfaceWithin(row, time * flights[a].speed()))
+      time = collision::timeInSight(flights[a], flights[b], row.margin, time);
   }
   return time;
 }
@@ -231,8 +239,8 @@ double SceneContacts::Scene::timeInSight(const Kinematics& kinematics, double lo
 double SceneContacts::Scene::distance(const GeometryPair& pair) {
   double deepest = kInfinity;
   if (set.test(pair.a, X_WG[static_cast<std::size_t>(pair.a)], pair.b,
-               X_WG[static_cast<std::size_t>(pair.b)], 0.0, found))
-    for (int i = 0; i < found.count; ++i) deepest = std::min(deepest, found[i].distance);
+               X_WG[static_cast<std::size_t>(pair.b)], 0.0, test))
+    for (int i = 0; i < test.found.count; ++i) deepest = std::min(deepest, test.found[i].distance);
   return deepest;
 }
 
@@ -250,7 +258,7 @@ bool SceneContacts::Scene::stayApart(int a, int b) const {
 
 void SceneContacts::Scene::report(const Row& row, ContactSet& contacts) {
   set.report(row.a, X_WG[static_cast<std::size_t>(row.a)], row.b,
-             X_WG[static_cast<std::size_t>(row.b)], row.margin, found, contacts);
+             X_WG[static_cast<std::size_t>(row.b)], row.margin, test, contacts);
 }
 
 bool SceneContacts::Scene::within(const Row& row, double extra) const {
@@ -261,6 +269,14 @@ bool SceneContacts::Scene::within(const Row& row, double extra) const {
     return X_WP.R.col(2).dot(b - X_WP.p) < reach;
   }
   return (b - centre[static_cast<std::size_t>(row.a)]).squaredNorm() < reach * reach;
+}
+
+bool SceneContacts::Scene::surfaceWithin(const Row& row, double extra) const {
+  const auto a = static_cast<std::size_t>(row.a), b = static_cast<std::size_t>(row.b);
+  // Of a plane that moves nothing is known.
+  if (!set.surface[b] || row.plane) return true;
+  const Vector3 p = X_WG[b].R.transpose() * (centre[a] - X_WG[b].p);
+  return set.surface[b]->comesNear(p, set.radius[a] + row.margin + extra);
 }
 
 bool SceneContacts::Scene::moved() const {
@@ -288,7 +304,8 @@ void SceneContacts::Scene::findNear() {
     sweep();
   else
     for (std::size_t r = 0; r < rows.size(); ++r)
-      if (within(rows[r], slack)) nearRows.push_back(static_cast<int>(r));
+      if (within(rows[r], slack) && surfaceWithin(rows[r], slack))
+        nearRows.push_back(static_cast<int>(r));
   if (slack > 0.0) reference = centre;
 }
 
@@ -309,15 +326,15 @@ void SceneContacts::Scene::sweep() {
     const auto last = rows.begin() + firstRow[static_cast<std::size_t>(a) + 1];
     const auto row =
         std::lower_bound(first, last, b, [](const Row& r, int value) { return r.b < value; });
-    if (row != last && row->b == b && within(*row, slack))
+    if (row != last && row->b == b && within(*row, slack) && surfaceWithin(*row, slack))
       nearRows.push_back(static_cast<int>(row - rows.begin()));
   }
   std::sort(nearRows.begin(), nearRows.end());
 }
 
 SceneContacts::SceneContacts(const Model& model, int broadphasePairs, bool pruning,
-                             HullCache* hulls)
-    : scene_(makeScene(model, hulls)) {
+                             PreparedMeshes* meshes)
+    : scene_(makeScene(model, meshes)) {
   scene_->placeInitially();
   filter_ = makePairFilter(
       model, [&](const GeometryPair& pair) { return scene_->distance(pair); },
@@ -325,17 +342,18 @@ SceneContacts::SceneContacts(const Model& model, int broadphasePairs, bool pruni
   setUp(broadphasePairs, pruning);
 }
 
-SceneContacts::SceneContacts(const Model& model, std::vector<GeometryPair> pairs, HullCache& hulls)
-    : scene_(makeScene(model, &hulls)) {
+SceneContacts::SceneContacts(const Model& model, std::vector<GeometryPair> pairs,
+                             PreparedMeshes& meshes)
+    : scene_(makeScene(model, &meshes)) {
   scene_->placeInitially();
   filter_.pairs = std::move(pairs);
   setUp(kBroadphasePairs, true);
 }
 
 std::unique_ptr<SceneContacts::Scene> SceneContacts::makeScene(const Model& model,
-                                                               HullCache* hulls) {
-  HullCache own;
-  return std::make_unique<Scene>(model, hulls ? *hulls : own);
+                                                               PreparedMeshes* meshes) {
+  PreparedMeshes own;
+  return std::make_unique<Scene>(model, meshes ? *meshes : own);
 }
 
 void SceneContacts::setUp(int broadphasePairs, bool pruning) {

@@ -3,12 +3,13 @@
 
 /// The contacts of a scene: the engine's ContactSource.
 ///
-/// Once per model: hulls of meshes, the pair filter, bounding spheres. Once per step: poses of the
-/// geometries, then every pair of the filter is rejected by its bounding spheres (or plane) or
-/// tested exactly. Pairs whose spheres are far apart are set aside until some shape has moved half
-/// the slack between them, wherever the state that is asked about comes from: a step looks at the
-/// near ones only, and the contacts are the same bit for bit (docs/decisions/0022). Scenes with
-/// more than kBroadphasePairs pairs find the near ones by a sweep instead of a loop over all.
+/// Once per model: hulls and surfaces of meshes, the pair filter, bounding spheres. Once per step:
+/// poses of the geometries, then every pair of the filter is rejected by its bounding spheres (or
+/// plane) or tested exactly. Pairs whose spheres are far apart are set aside until some shape has
+/// moved half the slack between them, wherever the state that is asked about comes from: a step
+/// looks at the near ones only, and the contacts are the same bit for bit (docs/decisions/0022).
+/// Scenes with more than kBroadphasePairs pairs find the near ones by a sweep instead of a loop
+/// over all.
 ///
 /// Contacts appear in the order of the filter's pairs, A and B as there, and depend on the poses
 /// alone. Once its buffers have grown, detect() allocates nothing. A pair whose poses are not
@@ -18,9 +19,9 @@
 #include <memory>
 #include <vector>
 
-#include "collision/convex_hull.hpp"
 #include "collision/filter.hpp"
 #include "collision/pair_contact.hpp"
+#include "collision/prepared_meshes.hpp"
 #include "engine/step/contact_source.hpp"
 
 namespace softgauss::collision {
@@ -32,11 +33,11 @@ class SceneContacts final : public ContactSource {
 
   /// Throws ModelError when a mesh has no surface. The model must outlive this object.
   /// With `pruning` off every pair is looked at in every step.
-  /// Hulls that `hulls` has are taken from there, others are added; null: made anew.
+  /// What `meshes` has is taken from there, the rest is added; null: made anew.
   explicit SceneContacts(const Model& model, int broadphasePairs = kBroadphasePairs,
-                         bool pruning = true, HullCache* hulls = nullptr);
+                         bool pruning = true, PreparedMeshes* meshes = nullptr);
   /// With these pairs instead of the filter's, in the order of PairFilter::pairs.
-  SceneContacts(const Model& model, std::vector<GeometryPair> pairs, HullCache& hulls);
+  SceneContacts(const Model& model, std::vector<GeometryPair> pairs, PreparedMeshes& meshes);
   ~SceneContacts() override;
   SceneContacts(const SceneContacts&) = delete;
   SceneContacts& operator=(const SceneContacts&) = delete;
@@ -59,7 +60,7 @@ class SceneContacts final : public ContactSource {
 
  private:
   struct Scene;
-  static std::unique_ptr<Scene> makeScene(const Model& model, HullCache* hulls);
+  static std::unique_ptr<Scene> makeScene(const Model& model, PreparedMeshes* meshes);
   void setUp(int broadphasePairs, bool pruning);
 
   std::unique_ptr<Scene> scene_;

@@ -87,6 +87,43 @@ SupportFace hullFace(const ConvexHull& hull, const Transform& X_WG, const Vector
   return face;
 }
 
+/// The highest of the corners, and the triangle that faces d most of those that have it.
+struct TopCorner {
+  const Triangle* triangle;
+  std::size_t corner;
+};
+
+TopCorner topCorner(std::span<const Triangle> triangles, const Vector3& d_G) {
+  TopCorner top{nullptr, 0};
+  double height = -kInfinity, facing = -kInfinity;
+  for (const Triangle& t : triangles) {
+    const double faces = t.normal.dot(d_G);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double reach = t.corners[k].dot(d_G);
+      if (reach > height || (reach == height && faces > facing))
+        height = reach, facing = faces, top = {&t, k};
+    }
+  }
+  return top;
+}
+
+/// The triangle where it faces d on either side, else an edge that lies across d, else a corner.
+SupportFace triangleFace(std::span<const Triangle> triangles, const Transform& X_WG,
+                         const Vector3& d_G) {
+  const auto [t, top] = topCorner(triangles, d_G);
+  SupportFace face;
+  if (std::abs(t->normal.dot(d_G)) >= kFacing) {
+    for (const Vector3& corner : t->corners) face.add(X_WG * corner);
+    return face;
+  }
+  const std::size_t i = (top + 1) % 3, j = (top + 2) % 3;
+  const std::size_t next = t->corners[i].dot(d_G) > t->corners[j].dot(d_G) ? i : j;
+  const Vector3 edge = t->corners[top] - t->corners[next];
+  face.add(X_WG * t->corners[top]);
+  if (edge.dot(d_G) < kFacing * edge.norm()) face.add(X_WG * t->corners[next]);
+  return face;
+}
+
 }  // namespace
 
 double coreRadius(const Shape& shape) {
@@ -113,6 +150,10 @@ Vector3 corePoint(const Convex& convex, const Transform& X_WG, const Vector3& d_
     }
     case ShapeKind::mesh:
       return X_WG * convex.hull->support(X_WG.R.transpose() * d_W);
+    case ShapeKind::triangles: {
+      const auto [t, top] = topCorner(convex.triangles, X_WG.R.transpose() * d_W);
+      return X_WG * t->corners[top];
+    }
     case ShapeKind::plane:
       break;
   }
@@ -137,6 +178,8 @@ SupportFace supportFace(const Convex& convex, const Transform& X_WG, const Vecto
       return boxFace(shape.halfExtents, X_WG, X_WG.R.transpose() * d_W);
     case ShapeKind::mesh:
       return hullFace(*convex.hull, X_WG, X_WG.R.transpose() * d_W);
+    case ShapeKind::triangles:
+      return triangleFace(convex.triangles, X_WG, X_WG.R.transpose() * d_W);
     case ShapeKind::sphere:
     case ShapeKind::plane:
       break;
@@ -162,6 +205,12 @@ Vector3 supportFaceNormal(const Convex& convex, const Transform& X_WG, const Vec
           convex.hull->faces[static_cast<std::size_t>(convex.hull->supportFace(d_G))];
       if (face.normal.dot(d_G) < kFacing) break;
       return X_WG.R * face.normal;
+    }
+    case ShapeKind::triangles: {
+      const Vector3& normal = topCorner(convex.triangles, d_G).triangle->normal;
+      const double along = normal.dot(d_G);
+      if (std::abs(along) < kFacing) break;
+      return X_WG.R * normal * std::copysign(1.0, along);
     }
     default:
       break;

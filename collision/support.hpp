@@ -4,13 +4,15 @@
 /// Support points and support faces of convex shapes.
 ///
 /// The support point of a shape along a direction d is its point farthest along d. The support face
-/// is the flat piece of its surface there: the polygon of a box, hull or cylinder end, the straight
-/// line on the side of a cylinder or capsule, or a single point. The separation of two shapes along
+/// is the flat piece of its surface there: the polygon of a box, hull, triangle or cylinder end,
+/// the straight line on the side of a cylinder or capsule or on the rim of a triangle, or a single
+/// point. The separation of two shapes along
 /// a unit vector n,
 ///   σ(n) = min over B of n·x − max over A of n·x,
 /// is a lower bound of their signed distance, and equal to it for the best n.
 
 #include <array>
+#include <span>
 
 #include "collision/convex_hull.hpp"
 #include "engine/core/check.hpp"
@@ -19,10 +21,18 @@
 
 namespace softgauss::collision {
 
-/// A shape of any kind but the plane; a mesh brings its hull.
+/// A triangle of a surface, in the frame G of its mesh.
+struct Triangle {
+  std::array<Vector3, 3> corners;  ///< [m], counter-clockwise seen against the normal
+  Vector3 normal;                  ///< unit
+};
+
+/// A shape of any kind but the plane; a mesh brings its hull, a surface some of its triangles,
+/// which together bound a convex piece.
 struct Convex {
   const Shape* shape = nullptr;
-  const ConvexHull* hull = nullptr;  ///< set when shape->kind is mesh
+  const ConvexHull* hull = nullptr;          ///< set when shape->kind is mesh
+  std::span<const Triangle> triangles = {};  ///< not empty when shape->kind is triangles
 };
 
 /// A flat convex piece of a surface: a point, a segment, or a polygon in the order of its rim.

@@ -16,7 +16,7 @@ UnitContacts::UnitContacts(const Model& model)
     : model_(model),
       units_(model),
       ownPairs_(static_cast<std::size_t>(units_.size())),
-      neighbours_(std::make_unique<Neighbours>(model, units_, hulls_)) {}
+      neighbours_(std::make_unique<Neighbours>(model, units_, meshes_)) {}
 
 UnitContacts::~UnitContacts() = default;
 
@@ -24,7 +24,7 @@ const std::vector<GeometryPair>& UnitContacts::ownPairs(int unit) {
   const auto u = static_cast<std::size_t>(unit);
   if (ownPairs_[u]) return *ownPairs_[u];
   const SubModel alone(model_, units_.trees[u]);
-  const SceneContacts contacts(alone.model, SceneContacts::kBroadphasePairs, true, &hulls_);
+  const SceneContacts contacts(alone.model, SceneContacts::kBroadphasePairs, true, &meshes_);
   ownPairs_[u] = std::make_unique<std::vector<GeometryPair>>(contacts.filter().pairs);
   for (GeometryPair& pair : *ownPairs_[u])
     pair = {alone.geometries[static_cast<std::size_t>(pair.a)],
@@ -62,7 +62,7 @@ std::unique_ptr<ContactSource> UnitContacts::within(const SubModel& island) {
       }
   }
   sortPairs(island.model, pairs);
-  return std::make_unique<SceneContacts>(island.model, std::move(pairs), hulls_);
+  return std::make_unique<SceneContacts>(island.model, std::move(pairs), meshes_);
 }
 
 void UnitContacts::place(int tree, std::span<const Transform> X_WB) noexcept {

@@ -10,8 +10,8 @@
 
 #include <memory>
 
-#include "collision/convex_hull.hpp"
 #include "collision/filter.hpp"
+#include "collision/prepared_meshes.hpp"
 #include "engine/islands/island_contacts.hpp"
 #include "engine/islands/units.hpp"
 
@@ -35,7 +35,7 @@ class UnitContacts final : public IslandContacts {
   struct Neighbours;
   const Model& model_;
   Units units_;
-  HullCache hulls_;
+  PreparedMeshes meshes_;
   /// (units) pairs that a unit has with itself and the world, in the geometries of the model; made
   /// when first needed.
   std::vector<std::unique_ptr<std::vector<GeometryPair>>> ownPairs_;

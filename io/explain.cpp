@@ -135,6 +135,8 @@ const char* shapeName(ShapeKind kind) {
       return "box";
     case ShapeKind::mesh:
       return "mesh";
+    case ShapeKind::triangles:
+      return "triangle mesh";
   }
   return "";
 }

@@ -117,7 +117,7 @@ class Writer {
     line("<asset>");
     std::set<const Mesh*> written;
     for (const Geometry& g : model_.geometries) {
-      if (g.shape.kind != ShapeKind::mesh || !written.insert(g.shape.mesh.get()).second) continue;
+      if (!g.shape.isMesh() || !written.insert(g.shape.mesh.get()).second) continue;
       meshNames_[g.shape.mesh.get()] = fmt::format("m{}", written.size());
       std::string vertices;
       for (const Vector3& v : g.shape.mesh->vertices) vertices += text(v) + " ";
@@ -183,6 +183,7 @@ class Writer {
         shape = fmt::format("type=\"box\" size=\"{}\"", text(s.halfExtents));
         break;
       case ShapeKind::mesh:
+      case ShapeKind::triangles:  // MuJoCo takes the hull of either
         shape = fmt::format("type=\"mesh\" mesh=\"{}\"", meshNames_.at(s.mesh.get()));
         break;
     }

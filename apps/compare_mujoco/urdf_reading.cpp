@@ -157,7 +157,7 @@ class Reading {
     for (const Geometry& geometry : model_.geometries) {
       if (geometry.shape.kind == ShapeKind::plane) continue;
       ++ours;
-      if (geometry.shape.kind == ShapeKind::mesh)
+      if (geometry.shape.isMesh())
         ++meshes;
       else
         found += hasShape(geometry) ? 1 : 0;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "collision/box_pairs.hpp"
 #include "collision/detail/separating_direction.hpp"
@@ -42,7 +43,8 @@ Vector3 betweenLines(const SupportFace& a, const SupportFace& b) {
   return 0.5 * (a[0] + s * u + b[0] + t * w);
 }
 
-/// Where shapes touch whose support faces have no common area.
+}  // namespace
+
 Vector3 deepestPoint(const SupportFace& a, const SupportFace& b, const Vector3& n,
                      double distance) {
   if (b.count == 1) return b[0] - n * (0.5 * distance);
@@ -58,8 +60,6 @@ Vector3 deepestPoint(const SupportFace& a, const SupportFace& b, const Vector3& 
                            : Vector3(extreme(a, 1.0) + n * (0.5 * distance));
 }
 
-}  // namespace
-
 Collider makeCollider(const Shape& shape, const ConvexHull* hull) {
   Collider c;
   c.convex = {&shape, hull};
@@ -68,12 +68,12 @@ Collider makeCollider(const Shape& shape, const ConvexHull* hull) {
   return c;
 }
 
-bool convexConvex(const Collider& a, const Transform& X_WA, const Collider& b,
-                  const Transform& X_WB, double margin, PairContacts& out) {
+Separation separate(const Collider& a, const Transform& X_WA, const Collider& b,
+                    const Transform& X_WB, double margin) {
   // Boxes around the shapes that are apart settle most pairs.
   const Transform boxA{X_WA.R, X_WA * a.boxCentre}, boxB{X_WB.R, X_WB * b.boxCentre};
-  if (separateBoxes(a.boxHalfExtents, boxA, b.boxHalfExtents, boxB, margin).distance >= margin)
-    return true;
+  const BoxSeparation boxes = separateBoxes(a.boxHalfExtents, boxA, b.boxHalfExtents, boxB, margin);
+  if (boxes.distance >= margin) return {boxes.n_W, boxes.distance};
 
   const double size = std::min(a.boxHalfExtents.maxCoeff(), b.boxHalfExtents.maxCoeff());
   const double radii = coreRadius(*a.convex.shape) + coreRadius(*b.convex.shape);
@@ -83,8 +83,8 @@ bool convexConvex(const Collider& a, const Transform& X_WA, const Collider& b,
   // The best of the direction found and the normals of the faces that it meets.
   Vector3 n = found.n_W;
   double distance = found.separation - radii;
-  if (!std::isfinite(distance)) return false;
-  if (distance >= margin) return true;
+  if (!std::isfinite(distance)) return {n, std::numeric_limits<double>::quiet_NaN()};
+  if (distance >= margin) return {n, distance};
   double preference = kFacePreference * size;
   const Vector3 faceA = supportFaceNormal(a.convex, X_WA, found.n_W);
   const Vector3 faceB = -supportFaceNormal(b.convex, X_WB, -found.n_W);
@@ -96,6 +96,13 @@ bool convexConvex(const Collider& a, const Transform& X_WA, const Collider& b,
     distance = separation;
     preference = 0.0;
   }
+  return {n, distance};
+}
+
+bool convexConvex(const Collider& a, const Transform& X_WA, const Collider& b,
+                  const Transform& X_WB, double margin, PairContacts& out) {
+  const auto [n, distance] = separate(a, X_WA, b, X_WB, margin);
+  if (std::isnan(distance)) return false;
   if (distance >= margin) return true;
 
   const SupportFace supportA = supportFace(a.convex, X_WA, n);

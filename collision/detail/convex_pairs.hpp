@@ -24,6 +24,22 @@ struct Collider {
 /// `shape` and `hull` must outlive the result.
 Collider makeCollider(const Shape& shape, const ConvexHull* hull);
 
+/// How two shapes lie to each other.
+struct Separation {
+  Vector3 n_W = Vector3::UnitZ();  ///< unit, from A to B
+  double distance = kInfinity;     ///< σ(n) [m]; NaN where a pose is not finite
+};
+
+/// The direction of the largest separation that is found; where it is `margin` or more, any
+/// direction with that.
+Separation separate(const Collider& a, const Transform& X_WA, const Collider& b,
+                    const Transform& X_WB, double margin);
+
+/// Where shapes at `distance` along the unit vector n touch whose support faces, of A along n and
+/// of B along −n, have no common area.
+Vector3 deepestPoint(const SupportFace& faceA, const SupportFace& faceB, const Vector3& n,
+                     double distance);
+
 /// Returns false when a pose is not finite, so that nothing is known about the pair.
 bool convexConvex(const Collider& a, const Transform& X_WA, const Collider& b,
                   const Transform& X_WB, double margin, PairContacts& out);

@@ -9,7 +9,7 @@
 namespace softgauss::collision::detail {
 namespace {
 
-double boundingRadius(const Shape& shape, const ConvexHull* hull) {
+double boundingRadius(const Shape& shape, const ConvexHull* hull, const TriangleMesh* surface) {
   switch (shape.kind) {
     case ShapeKind::plane:
       return 0.0;
@@ -23,27 +23,32 @@ double boundingRadius(const Shape& shape, const ConvexHull* hull) {
       return shape.halfExtents.norm();
     case ShapeKind::mesh:
       return hull->boundingRadius;
+    case ShapeKind::triangles:
+      return surface->boundingRadius();
   }
   return 0.0;
 }
 
 }  // namespace
 
-GeometrySet::GeometrySet(const Model& m, HullCache& hulls) : model(m) {
+GeometrySet::GeometrySet(const Model& m, PreparedMeshes& meshes) : model(m) {
   const std::size_t count = model.geometries.size();
   hull.resize(count);
+  surface.resize(count);
   colliders.resize(count);
   centreInG.resize(count, Vector3::Zero());
   for (std::size_t i = 0; i < count; ++i) {
     const Shape& shape = model.geometries[i].shape;
     if (shape.kind == ShapeKind::mesh) {
-      auto& shared = hulls[shape.mesh.get()];
-      if (!shared) shared = std::make_shared<ConvexHull>(makeConvexHull(*shape.mesh));
-      hull[i] = shared;
-      centreInG[i] = shared->centre;
+      hull[i] = meshes.hull(shape.mesh);
+      centreInG[i] = hull[i]->centre;
+    } else if (shape.kind == ShapeKind::triangles) {
+      surface[i] = meshes.surface(shape.mesh);
+      centreInG[i] = surface[i]->centre();
     }
-    radius.push_back(boundingRadius(shape, hull[i].get()));
-    if (shape.kind != ShapeKind::plane) colliders[i] = makeCollider(shape, hull[i].get());
+    radius.push_back(boundingRadius(shape, hull[i].get(), surface[i].get()));
+    if (shape.kind != ShapeKind::plane && shape.kind != ShapeKind::triangles)
+      colliders[i] = makeCollider(shape, hull[i].get());
   }
 }
 
@@ -56,37 +61,51 @@ double GeometrySet::marginShare(int g) const {
 }
 
 bool GeometrySet::test(int a, const Transform& X_WA, int b, const Transform& X_WB, double margin,
-                       PairContacts& found) const {
+                       PairTest& test) const {
   const auto i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b);
   const Shape &shapeA = model.geometries[i].shape, &shapeB = model.geometries[j].shape;
-  found.clear();
+  test.found.clear();
+  if (shapeB.kind == ShapeKind::triangles) {
+    const bool known = shapeA.kind == ShapeKind::plane
+                           ? test.surface.findOnPlane(X_WA, *surface[j], X_WB, margin)
+                           : test.surface.find(colliders[i], X_WA, *surface[j], X_WB, margin);
+    if (const PairContact* deepest = test.surface.deepest(); known && deepest)
+      test.found.add(*deepest);
+    return known;
+  }
   if (hasClosedForm(shapeA.kind, shapeB.kind)) {
-    collideInOrder(shapeA, X_WA, shapeB, X_WB, hull[j].get(), margin, found);
+    collideInOrder(shapeA, X_WA, shapeB, X_WB, hull[j].get(), margin, test.found);
     return true;
   }
-  return convexConvex(colliders[i], X_WA, colliders[j], X_WB, margin, found);
+  return convexConvex(colliders[i], X_WA, colliders[j], X_WB, margin, test.found);
 }
 
 void GeometrySet::report(int a, const Transform& X_WA, int b, const Transform& X_WB, double margin,
-                         PairContacts& found, ContactSet& contacts) const {
+                         PairTest& pair, ContactSet& contacts) const {
   ++contacts.pairsTested;
-  if (!test(a, X_WA, b, X_WB, margin, found)) {
+  if (!test(a, X_WA, b, X_WB, margin, pair)) {
     ++contacts.pairsSkipped;
     return;
   }
-  if (found.count == 0) return;
+  if (pair.found.count == 0) return;
   Contact contact;
   contact.geometryA = a;
   contact.geometryB = b;
   contact.bodyA = geometry(a).body;
   contact.bodyB = geometry(b).body;
-  contact.tangent_W = found.tangent_W;
-  for (int i = 0; i < found.count; ++i) {
-    contact.p_WC = found[i].p_WC;
-    contact.n_W = found[i].n_W;
-    contact.distance = found[i].distance;
+  contact.tangent_W = pair.found.tangent_W;
+  const auto add = [&](const PairContact& point) {
+    contact.p_WC = point.p_WC;
+    contact.n_W = point.n_W;
+    contact.distance = point.distance;
     contacts.add(contact);
+  };
+  if (surface[static_cast<std::size_t>(b)]) {
+    for (const PairContact& point : pair.surface.points()) add(point);
+    contacts.pointsReduced += pair.surface.reduced();
+    return;
   }
+  for (int i = 0; i < pair.found.count; ++i) add(pair.found[i]);
 }
 
 }  // namespace softgauss::collision::detail

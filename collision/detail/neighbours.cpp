@@ -7,8 +7,8 @@
 #include "engine/core/index.hpp"
 
 namespace softgauss::collision::detail {
-Neighbours::Neighbours(const Model& model, const Units& units, HullCache& hulls)
-    : set_(model, hulls),
+Neighbours::Neighbours(const Model& model, const Units& units, PreparedMeshes& meshes)
+    : set_(model, meshes),
       units_(units),
       parts_(idx(units.size())),
       X_WB_(model.trees.size()),
@@ -95,7 +95,8 @@ bool Neighbours::touch(int i, int j) {
     const Transform &X_WA = X_WG_[idx(row.a)], &X_WB = X_WG_[idx(row.b)];
     if (row.plane && !(X_WA.R.col(2).dot(b - X_WA.p) < row.reach)) continue;
     // A pair whose test fails says nothing; within an island it is counted.
-    if (set_.test(row.a, X_WA, row.b, X_WB, row.margin, found_) && found_.count > 0) return true;
+    if (set_.test(row.a, X_WA, row.b, X_WB, row.margin, test_) && test_.found.count > 0)
+      return true;
   }
   return false;
 }

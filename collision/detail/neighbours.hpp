@@ -9,32 +9,16 @@
 #include <utility>
 #include <vector>
 
+#include "collision/detail/box.hpp"
 #include "collision/detail/geometry_set.hpp"
 #include "collision/filter.hpp"
 #include "engine/islands/units.hpp"
 
 namespace softgauss::collision::detail {
 
-/// Axis-aligned, in the world [m].
-struct Box {
-  Vector3 lower = Vector3::Constant(kInfinity);
-  Vector3 upper = Vector3::Constant(-kInfinity);
-
-  void add(const Vector3& centre, double radius) {
-    lower = lower.cwiseMin((centre.array() - radius).matrix());
-    upper = upper.cwiseMax((centre.array() + radius).matrix());
-  }
-  bool overlaps(const Box& o) const {
-    return (lower.array() <= o.upper.array()).all() && (o.lower.array() <= upper.array()).all();
-  }
-  bool contains(const Box& o) const {
-    return (lower.array() <= o.lower.array()).all() && (o.upper.array() <= upper.array()).all();
-  }
-};
-
 class Neighbours {
  public:
-  Neighbours(const Model& model, const Units& units, HullCache& hulls);
+  Neighbours(const Model& model, const Units& units, PreparedMeshes& meshes);
 
   void place(int tree, std::span<const Transform> X_WB) noexcept;
   /// As IslandContacts::findTouching().
@@ -78,12 +62,12 @@ class Neighbours {
   std::vector<Vector3> centre_;                   ///< (geometries) of bounding spheres, world
   std::vector<Transform> X_WG_;                   ///< (geometries)
   std::vector<std::uint8_t> posed_;               ///< (units) X_WG_ is that of now
-  std::vector<Box> box_, fat_;                    ///< (units)
+  std::vector<Box> box_, fat_;                    ///< (units) in the world
   std::vector<std::vector<int>> near_;            ///< (units) whose fat boxes overlap its own
   std::map<UnitPair, std::vector<Row>> rows_;     ///< of pairs that have been near
   std::vector<int> moved_;                        ///< placed since the last findTouching()
   std::vector<std::uint8_t> awake_;               ///< (units) scratch
-  PairContacts found_;
+  PairTest test_;
   std::int64_t searches_ = 0;
 };
 

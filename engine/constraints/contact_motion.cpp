@@ -45,6 +45,7 @@ std::optional<Runs> alongSurface(const Shape& shape, const Transform& X_WG, cons
     }
     case ShapeKind::plane:
     case ShapeKind::mesh:
+    case ShapeKind::triangles:
       return std::nullopt;
   }
   return std::nullopt;

@@ -30,11 +30,14 @@ struct ContactSet {
   std::int64_t detections = 0;    ///< times that contacts were looked for since construction
   std::int64_t pairsTested = 0;   ///< exact pair tests of this step
   std::int64_t pairsSkipped = 0;  ///< pairs whose query failed in this step, see ContactSource
+  /// Points of meshes in this step that were left to others beside them, which carry as well.
+  std::int64_t pointsReduced = 0;
 
   void clear() {
     contacts.clear();
     pairsTested = 0;
     pairsSkipped = 0;
+    pointsReduced = 0;
   }
   void add(const Contact& contact) {
     if (contacts.size() == contacts.capacity()) ++growths;

@@ -71,6 +71,7 @@ MassProperties solidOf(const Shape& shape, double density) {
                        mass / 3.0 * (sq.x() + sq.y()));
     }
     case ShapeKind::mesh:
+    case ShapeKind::triangles:
       return solidMesh(*shape.mesh, density);
   }
   return {};

@@ -59,6 +59,7 @@ struct GeometrySpec {
   Shape shape;
   Material material;
   SourceLocation where;
+  bool eitherMesh = false;  ///< as Geometry::eitherMesh
 };
 
 /// Gives what touches each other a surface of its own. A name is that of a link, for all its

@@ -36,7 +36,8 @@ enum class ShapeKind : std::uint8_t {
   capsule,   ///< radius, halfLength of the segment along z of G (without the caps)
   cylinder,  ///< radius, halfLength along z of G
   box,       ///< halfExtents along the axes of G
-  mesh       ///< convex hull of mesh->vertices
+  mesh,      ///< convex hull of mesh->vertices
+  triangles  ///< the surface mesh->triangles, met from the side that it faces; fixed to the world
 };
 
 struct Shape {
@@ -44,7 +45,7 @@ struct Shape {
   double radius = 0.0;                         ///< [m] sphere, capsule, cylinder
   double halfLength = 0.0;                     ///< [m] capsule, cylinder
   Vector3 halfExtents = Vector3::Zero();       ///< [m] box
-  std::shared_ptr<const Mesh> mesh = nullptr;  ///< mesh
+  std::shared_ptr<const Mesh> mesh = nullptr;  ///< mesh, triangles
 
   static Shape plane() { return make(ShapeKind::plane, 0.0, 0.0); }
   static Shape sphere(double radius) { return make(ShapeKind::sphere, radius, 0.0); }
@@ -64,6 +65,13 @@ struct Shape {
     shape.mesh = std::move(mesh);
     return shape;
   }
+  static Shape surface(std::shared_ptr<const Mesh> mesh) {
+    Shape shape = make(ShapeKind::triangles, 0.0, 0.0);
+    shape.mesh = std::move(mesh);
+    return shape;
+  }
+  /// Of a kind that has a mesh, which may not have been read.
+  bool isMesh() const { return kind == ShapeKind::mesh || kind == ShapeKind::triangles; }
 
  private:
   static Shape make(ShapeKind kind, double radius, double halfLength) {
@@ -86,6 +94,7 @@ struct Geometry {
   /// The fixed base of a robot that it is part of, or that the first joint of its tree hangs from;
   /// −1 for scenery, and on what floats or hangs from the world itself.
   int base = -1;
+  bool eitherMesh = false;  ///< of kind mesh or triangles: collision::chooseMeshes() says
 };
 
 /// A pair of geometries with a surface of its own, in place of the mix of theirs.

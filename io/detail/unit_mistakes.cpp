@@ -46,6 +46,7 @@ double farthest(const UrdfShape& shape, const Vector3& p_LP) {
     case ShapeKind::box:
       return centre + s.halfExtents.norm();
     case ShapeKind::mesh:
+    case ShapeKind::triangles:
       break;
   }
   double most = 0.0;
@@ -142,8 +143,7 @@ double robotSize(const UrdfDescription& urdf) {
     if (link.spec.mass > 0.0)
       size = std::max(size, 2.0 * std::sqrt(largestMoment(link.spec) / link.spec.mass));
     for (const UrdfShape& shape : link.collisions)
-      if (shape.shape.kind != ShapeKind::mesh)
-        size = std::max(size, 2.0 * farthest(shape, shape.X_LG.p));
+      if (!shape.shape.isMesh()) size = std::max(size, 2.0 * farthest(shape, shape.X_LG.p));
   }
   return std::max(size, origins.diagonal().norm());
 }

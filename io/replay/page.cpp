@@ -92,6 +92,7 @@ Json toJson(const Shape& shape, MeshWriter& meshes) {
     case ShapeKind::box:
       return {{"kind", "box"}, {"halfExtents", toJson(shape.halfExtents)}};
     case ShapeKind::mesh:
+    case ShapeKind::triangles:
       return {{"kind", "mesh"}, {"mesh", meshes.place(shape.mesh)}};
   }
   return {};

@@ -140,6 +140,26 @@ Complaints checkIncludes(const SourceFile& file) {
   return complaints;
 }
 
+Complaints checkFcl(const SourceFile& file) {
+  static const std::regex inclusion("^\\s*#\\s*include\\s*<(fcl|ccd)/.*");
+  static const std::regex signedDistance("[sS]igned_?[dD]istance");
+  Complaints complaints;
+  if (!file.isCpp() || startsWith(file.path, "tests/system/source_rules")) return complaints;
+  const bool maySee =
+      startsWith(file.path, "tests/") ||
+      (startsWith(file.path, "collision/detail/fcl_") && file.path.ends_with(".cpp"));
+  bool sees = false;
+  for (std::size_t i = 0; i < file.lines.size(); ++i) {
+    const bool includes = std::regex_match(file.lines[i], inclusion);
+    sees = sees || includes;
+    if (includes && !maySee)
+      complaints.push_back(complaint(file, i, "FCL is for collision/detail/fcl_*.cpp"));
+    if (sees && std::regex_search(file.lines[i], signedDistance))
+      complaints.push_back(complaint(file, i, "FCL's signed distance may not end"));
+  }
+  return complaints;
+}
+
 Complaints checkLength(const SourceFile& file) {
   if (!file.isCode() || file.lines.size() <= kMaxLines || kLongFiles.count(file.path) > 0)
     return {};

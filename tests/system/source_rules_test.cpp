@@ -30,6 +30,7 @@ TEST(Tree, IsRead) {
 }
 
 TEST(Tree, IncludesFollowTheLayers) { expectHolds(checkIncludes); }
+TEST(Tree, FclIsFenced) { expectHolds(checkFcl); }
 TEST(Tree, FilesAreShort) { expectHolds(checkLength); }
 TEST(Tree, FilesNameTheirLicence) { expectHolds(checkLicence); }
 TEST(Tree, NamesNoMachineAndNoWorkLeftOver) { expectHolds(checkWords); }
@@ -80,15 +81,27 @@ TEST(SourceRules, LibrariesStayInTheirSources) {
     return count(checkIncludes, path, "#include <" + header + ">");
   };
   EXPECT_EQ(theirs("engine/core/types.hpp", "Eigen/Core"), 0u);
-  EXPECT_EQ(theirs("collision/fcl_contact_source.cpp", "fcl/fcl.h"), 0u);
+  EXPECT_EQ(theirs("collision/detail/fcl_tree.cpp", "fcl/fcl.h"), 0u);
   EXPECT_EQ(theirs("io/urdf.cpp", "tinyxml2.h"), 0u);
   EXPECT_EQ(theirs("apps/simulate_gdd.cpp", "CLI/CLI.hpp"), 0u);
 
-  EXPECT_EQ(theirs("collision/fcl_contact_source.hpp", "fcl/fcl.h"), 1u);
+  EXPECT_EQ(theirs("collision/detail/fcl_tree.hpp", "fcl/fcl.h"), 1u);
   EXPECT_EQ(theirs("engine/model/shape.cpp", "fcl/fcl.h"), 1u);
   EXPECT_EQ(theirs("io/mesh.cpp", "ccd/ccd.h"), 1u);
   EXPECT_EQ(theirs("io/urdf.hpp", "urdf_model/model.h"), 1u);
   EXPECT_EQ(theirs("io/log.cpp", "iostream"), 1u);
+}
+
+TEST(SourceRules, FclOutsideItsFenceIsFound) {
+  const std::string include = "#include <fcl/fcl.h>";
+  EXPECT_EQ(count(checkFcl, "collision/detail/fcl_tree.cpp", include), 0u);
+  EXPECT_EQ(count(checkFcl, "tests/collision/oracle_test.cpp", include), 0u);
+  EXPECT_EQ(count(checkFcl, "collision/detail/fcl_tree.hpp", include), 1u);
+  EXPECT_EQ(count(checkFcl, "collision/manifold.cpp", include), 1u);
+  EXPECT_EQ(count(checkFcl, "apps/a/main.cpp", "#include <ccd/ccd.h>"), 1u);
+  const SourceFile asks{"tests/a.cpp", {include, "request.enable_signed_distance = true;"}};
+  EXPECT_EQ(checkFcl(asks).size(), 1u);
+  EXPECT_EQ(count(checkFcl, "collision/box_pairs.hpp", "/// Signed distance [m]."), 0u);
 }
 
 TEST(SourceRules, FilesThatGoOnAndOnAreFound) {

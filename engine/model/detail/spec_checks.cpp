@@ -164,6 +164,9 @@ void checkGeometry(const GeometrySpec& g, const Options& options) {
     case ShapeKind::mesh:
       if (!g.shape.mesh || g.shape.mesh->vertices.empty()) fail("mesh has no vertices");
       break;
+    case ShapeKind::triangles:
+      if (!g.shape.mesh || g.shape.mesh->triangles.empty()) fail("mesh has no triangles");
+      break;
   }
   checkMaterial(g.material, options, g.where, element);
 }

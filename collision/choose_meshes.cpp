@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "collision/choose_meshes.hpp"
+
+#include <cstdio>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/core/check.hpp"
+#include "engine/model/closed_surface.hpp"
+#include "engine/model/mass_properties.hpp"
+
+namespace softgauss::collision {
+namespace {
+
+/// What is known of a mesh, whatever its geometries.
+struct MeshFacts {
+  SurfaceDefects defects;
+  double volume = 0.0, hullVolume = 0.0;  ///< [m³], of one without defects
+
+  bool isHull() const { return !defects.any() && hullVolume <= (1.0 + kHullExcess) * volume; }
+};
+
+MeshFacts factsOf(const std::shared_ptr<const Mesh>& mesh, PreparedMeshes& meshes) {
+  MeshFacts facts;
+  facts.defects = surfaceDefects(*mesh);
+  if (facts.defects.any()) return facts;
+  const auto hull = std::make_shared<const Mesh>(triangulated(*meshes.hull(mesh)));
+  facts.hullVolume = solidOf(Shape::hull(hull), 1.0).mass;
+  facts.volume = solidOf(Shape::hull(mesh), 1.0).mass;
+  return facts;
+}
+
+std::string liters(double volume) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g l", 1e3 * volume);
+  return text;
+}
+
+std::string fileName(const std::string& path) {
+  const std::size_t slash = path.find_last_of("/\\");
+  return slash == std::string::npos ? path : path.substr(slash + 1);
+}
+
+/// Links of one kind, told in one warning.
+class Told {
+ public:
+  void add(const Geometry& geometry, const std::string& what) {
+    if (++count_ <= kMostTold)
+      text_ += (count_ > 1 ? "; " : "") + ("link '" + geometry.link + "' (" +
+                                           fileName(geometry.shape.mesh->file) + ")" + what);
+  }
+  void appendTo(std::vector<std::string>& warnings, const std::string& before,
+                const std::string& after) const {
+    if (count_ == 0) return;
+    const std::string more =
+        count_ > kMostTold ? " and " + std::to_string(count_ - kMostTold) + " more" : "";
+    warnings.push_back(before + text_ + more + after);
+  }
+
+ private:
+  static constexpr int kMostTold = 8;
+  std::string text_;
+  int count_ = 0;
+};
+
+}  // namespace
+
+void chooseMeshes(Model& model, PreparedMeshes& meshes) {
+  std::map<const Mesh*, MeshFacts> known;
+  Told filled, openHulls, openSurfaces, turned;
+  for (Geometry& g : model.geometries) {
+    if (!g.eitherMesh) continue;
+    g.eitherMesh = false;
+    const auto [at, isNew] = known.try_emplace(g.shape.mesh.get());
+    if (isNew) at->second = factsOf(g.shape.mesh, meshes);
+    const MeshFacts& facts = at->second;
+    if (facts.isHull()) continue;
+    const bool isFixed = g.body == 0;
+    const bool isOpen = facts.defects.openEdges > 0;
+    if (facts.defects.turnedEdges > 0 || facts.defects.insideOutShells > 0) {
+      turned.add(g, facts.defects.turnedEdges > 0 ? "" : ", which faces inwards");
+      continue;
+    }
+    const std::string rims = ", " + std::to_string(facts.defects.openEdges) + " open edges";
+    if (!isFixed) {
+      if (isOpen)
+        openHulls.add(g, rims);
+      else
+        filled.add(g, ": " + liters(facts.volume) + ", hull " + liters(facts.hullVolume));
+      continue;
+    }
+    try {
+      meshes.surface(g.shape.mesh);
+    } catch (const ModelError& error) {
+      turned.add(g, std::string(": ") + error.what());
+      continue;
+    }
+    g.shape.kind = ShapeKind::triangles;
+    if (isOpen) openSurfaces.add(g, rims);
+  }
+  filled.appendTo(model.warnings, "collide as their convex hull, which fills the mesh: ",
+                  "; split a mesh into convex parts to keep its hollows");
+  openHulls.appendTo(model.warnings, "collide as their convex hull, the mesh is not closed: ", "");
+  openSurfaces.appendTo(model.warnings,
+                        "collide from the side that their triangles face, not closed: ", "");
+  turned.appendTo(model.warnings,
+                  "collide as their convex hull, the triangles do not all face outwards: ",
+                  "; try a mesh tool that orients faces");
+}
+
+}  // namespace softgauss::collision

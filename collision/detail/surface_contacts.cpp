@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "collision/detail/surface_contacts.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "collision/detail/fcl_triangle_tree.hpp"
+#include "collision/detail/minkowski.hpp"
+#include "collision/detail/prism_clip.hpp"
+#include "engine/core/index.hpp"
+
+namespace softgauss::collision::detail {
+namespace {
+
+/// Of the directions that are found: those of balls are exact, others are searched for [rad].
+constexpr double kExactTilt = 1e-6, kSearchTilt = 1e-4;
+/// A is sunk so deep, of its size, that it may have the plane of a triangle within it and the
+/// triangle beside it.
+constexpr double kShallow = 0.02;
+
+const Shape kTriangleShape = Shape::surface(nullptr);
+
+Collider colliderOf(std::span<const Triangle> triangles) {
+  Collider c;
+  c.convex = {&kTriangleShape, nullptr, triangles};
+  Vector3 lower = triangles[0].corners[0], upper = lower;
+  for (const Triangle& t : triangles)
+    for (const Vector3& corner : t.corners) {
+      lower = lower.cwiseMin(corner);
+      upper = upper.cwiseMax(corner);
+    }
+  c.boxCentre = 0.5 * (lower + upper);
+  c.boxHalfExtents = 0.5 * (upper - lower);
+  return c;
+}
+
+bool isBall(const Collider& a) { return a.convex.shape->kind == ShapeKind::sphere; }
+
+/// From c to the nearest point of the triangle; `onFace` where that is inside it.
+Vector3 toNearest(const Triangle& triangle, const Vector3& c, bool& onFace) {
+  Simplex simplex;
+  for (const Vector3& corner : triangle.corners) simplex.add(corner - c);
+  const Vector3 v = nearestToOrigin(simplex);
+  onFace = simplex.count == 3;
+  return v;
+}
+
+/// The triangle of the patch that is highest along m, and of those the one that faces m most.
+int highest(const SurfacePatch& patch, const Vector3& m) {
+  std::size_t best = 0;
+  double height = -kInfinity, facing = -kInfinity;
+  for (std::size_t i = 0; i < patch.triangles.size(); ++i) {
+    const Triangle& t = patch.triangles[i];
+    double top = -kInfinity;
+    for (const Vector3& corner : t.corners) top = std::max(top, m.dot(corner));
+    const double faces = t.normal.dot(m);
+    if (top > height || (top == height && faces > facing)) best = i, height = top, facing = faces;
+  }
+  return patch.near[best].t;
+}
+
+}  // namespace
+
+bool SurfaceContacts::find(const Collider& a, const Transform& X_WA, const TriangleMesh& surface,
+                           const Transform& X_WB, double margin) {
+  near_.clear();
+  waiting_.clear();
+  meetings_.clear();
+  points_.clear();
+  reduced_ = 0;
+  const Query q{a, X_WB.inverse() * X_WA, surface, margin, a.boxHalfExtents.minCoeff()};
+  if (!q.X_GA.R.allFinite() || !q.X_GA.p.allFinite()) return false;
+  const Vector3 centre = q.X_GA * a.boxCentre;
+  const Vector3 reach = (q.X_GA.R.cwiseAbs() * a.boxHalfExtents).array() +
+                        (std::max(margin, 0.0) + kExactTilt * q.size);
+  const Vector3 apart = (centre - surface.centre()).cwiseAbs() - surface.halfExtents() - reach;
+  if (apart.maxCoeff() > 0.0) return true;
+
+  surface.tree().within({centre - reach, centre + reach}, found_);
+  for (const int t : found_)
+    if (!lookAt(q, t)) return false;
+  if (isBall(a)) {
+    if (!meetBall(q)) return false;
+  } else {
+    patches_.grow(surface, near_, q.size);
+    for (int p = 0; p < patches_.size(); ++p)
+      if (!meetPatch(q, patches_[p])) return false;
+  }
+  meetWaiting(q);
+  if (points_.empty()) meetDeepest(q);
+  if (points_.empty() && surface.isClosed()) leaveInside(q);
+
+  reduced_ = reduction_.reduce(points_, margin, q.size);
+  for (PairContact& c : points_) {
+    c.p_WC = X_WB * c.p_WC;
+    c.n_W = X_WB.R * c.n_W;
+  }
+  return true;
+}
+
+bool SurfaceContacts::findOnPlane(const Transform& X_WA, const TriangleMesh& surface,
+                                  const Transform& X_WB, double margin) {
+  points_.clear();
+  reduced_ = 0;
+  const Vector3 n = X_WA.R.col(2);
+  if (!X_WA.p.allFinite() || !n.allFinite()) return false;
+  for (int v = 0; v < surface.vertices(); ++v) {
+    const Vector3 x = X_WB * surface.vertex(v);
+    const double distance = n.dot(x - X_WA.p);
+    if (distance < margin) points_.push_back({x - 0.5 * distance * n, n, distance});
+  }
+  reduced_ = reduction_.reduce(points_, margin, surface.halfExtents().maxCoeff());
+  return true;
+}
+
+const PairContact* SurfaceContacts::deepest() const {
+  const auto least = std::min_element(
+      points_.begin(), points_.end(),
+      [](const PairContact& x, const PairContact& y) { return x.distance < y.distance; });
+  return least == points_.end() ? nullptr : &*least;
+}
+
+/// Whether triangle t is in reach. False where a number is not finite.
+bool SurfaceContacts::lookAt(const Query& q, int t) {
+  const Vector3& n = q.surface[t].normal;
+  const double plane = n.dot(q.surface.vertex(q.surface[t].corners[0]));
+  const double low = n.dot(supportPoint(q.a.convex, q.X_GA, -n)) - plane;
+  if (!(low < q.margin)) return std::isfinite(low);
+  if (n.dot(supportPoint(q.a.convex, q.X_GA, n)) < plane) return true;
+  // What is behind an open surface is not in it.
+  if (!q.surface.isClosed() && n.dot(q.X_GA * q.a.boxCentre) < plane) return true;
+  near_.push_back({t, low});
+  return true;
+}
+
+bool SurfaceContacts::meetBall(const Query& q) {
+  const double radius = q.a.convex.shape->radius;
+  std::size_t touched = 0;
+  for (const NearTriangle near : near_) {
+    const Triangle triangle = q.surface.triangle(near.t);
+    bool onFace = false;
+    const Vector3 v = toNearest(triangle, q.X_GA.p, onFace);
+    const double length = v.norm();
+    if (!std::isfinite(length)) return false;
+    if (!(length - radius < q.margin)) continue;
+    near_[touched++] = near;
+    const bool exact = length == 0.0 || (onFace && triangle.normal.dot(v) < 0.0);
+    const Vector3 m = exact ? triangle.normal : Vector3(-v / length);
+    const int owner = q.surface.owner(near.t, m, kExactTilt);
+    if (owner < 0) {
+      waiting_.push_back(near);
+      continue;
+    }
+    const double distance = exact ? near.low : length - radius;
+    meetings_.push_back({m, distance, owner});
+    points_.push_back({q.X_GA.p - (radius + 0.5 * distance) * m, -m, distance});
+  }
+  near_.resize(touched, NearTriangle{});
+  return true;
+}
+
+/// Step 1; where the direction is no normal, the triangles wait for step 2.
+bool SurfaceContacts::meetPatch(const Query& q, const SurfacePatch& patch) {
+  const NearTriangle& first = patch.near[0];
+  if (patch.isPlain && -first.low <= kShallow * q.size) {
+    waiting_.push_back(first);
+    return true;
+  }
+  const Collider collider = colliderOf(patch.triangles);
+  const Separation found = separate(q.a, q.X_GA, collider, Transform(), q.margin);
+  if (std::isnan(found.distance)) return false;
+  if (found.distance >= q.margin) return true;
+  Vector3 m = -found.n_W;
+  double distance = found.distance;
+  const int owner = q.surface.owner(highest(patch, m), m, kSearchTilt);
+  if (owner < 0) {
+    waiting_.insert(waiting_.end(), patch.near.begin(), patch.near.end());
+    return true;
+  }
+  // On a face the normal is known better.
+  if (const Vector3& n = q.surface[owner].normal; n.cross(m).norm() < 2.0 * kSearchTilt) {
+    if (isMet(q, owner)) return true;
+    m = n;
+    distance =
+        n.dot(supportPoint(q.a.convex, q.X_GA, -n) - q.surface.vertex(q.surface[owner].corners[0]));
+  }
+  meetings_.push_back({m, distance, owner});
+  const double lowest = addPointsOver(q, owner, m);
+  if (!(lowest - distance > 0.1 * (q.margin - distance))) return true;
+  // Edges that cross, and what is round.
+  const SupportFace faceA = supportFace(q.a.convex, q.X_GA, -m);
+  const SupportFace faceB = supportFace(collider.convex, Transform(), m);
+  points_.push_back({deepestPoint(faceA, faceB, -m, distance), -m, distance});
+  return true;
+}
+
+/// Whether the plane of a triangle is met along its normal.
+bool SurfaceContacts::isMet(const Query& q, int t) const {
+  return std::any_of(meetings_.begin(), meetings_.end(), [&](const Meeting& other) {
+    return other.m.cross(q.surface[other.owner].normal).norm() < kSearchTilt &&
+           inOnePlane(q.surface, other.owner, t, q.size);
+  });
+}
+
+double SurfaceContacts::addPointsOver(const Query& q, int owner, const Vector3& m) {
+  double lowest = kInfinity;
+  const SupportFace face = supportFace(q.a.convex, q.X_GA, -m);
+  for (const NearTriangle& near : near_) {
+    if (!inOnePlane(q.surface, owner, near.t, q.size)) continue;
+    const Triangle triangle = q.surface.triangle(near.t);
+    if (!(triangle.normal.dot(m) > 0.1)) continue;
+    // What is far below the plane of a triangle need not have come through the triangle.
+    if (-near.low > kShallow * q.size && !isBall(q.a) &&
+        separate(q.a, q.X_GA, colliderOf({&triangle, 1}), Transform(), q.margin).distance >=
+            q.margin)
+      continue;
+    const PlanePiece piece = pieceOf(q.surface, owner, near.t, q.size);
+    const ClippedFace over = clipToPrism(face, piece, m);
+    for (int i = 0; i < over.count; ++i) {
+      const double distance = heightAbove(triangle, over[i], m);
+      if (!(distance < q.margin)) continue;
+      points_.push_back({over[i] - 0.5 * distance * m, -m, distance});
+      lowest = std::min(lowest, distance);
+    }
+  }
+  return lowest;
+}
+
+void SurfaceContacts::meetWaiting(const Query& q) {
+  // The least deep first, so that deeper ones may be left to them.
+  std::sort(waiting_.begin(), waiting_.end(), [](const NearTriangle& x, const NearTriangle& y) {
+    return x.low > y.low || (x.low == y.low && x.t < y.t);
+  });
+  for (const NearTriangle& near : waiting_) {
+    const Vector3& n = q.surface[near.t].normal;
+    if (isMet(q, near.t)) continue;
+    const std::size_t before = points_.size();
+    const double lowest = addPointsOver(q, near.t, n);
+    if (lowest < kInfinity && isLeftToOthers(q, near, -lowest)) {
+      points_.resize(before, PairContact{});
+      continue;
+    }
+    // A plane over which there is nothing is met too.
+    meetings_.push_back({n, lowest, near.t});
+  }
+}
+
+bool SurfaceContacts::isLeftToOthers(const Query& q, const NearTriangle& near, double depth) const {
+  const Triangle triangle = q.surface.triangle(near.t);
+  const double tolerance = kSearchTilt * q.a.boxHalfExtents.norm();
+  for (const Meeting& other : meetings_) {
+    double top = -kInfinity;
+    for (const Vector3& corner : triangle.corners) top = std::max(top, other.m.dot(corner));
+    const double way = top - other.m.dot(supportPoint(q.a.convex, q.X_GA, -other.m));
+    if (!(way <= tolerance - other.distance && way < depth)) continue;
+    return isBall(q.a) ||
+           separate(q.a, q.X_GA, colliderOf({&triangle, 1}), Transform(), q.margin).distance >
+               near.low + kExactTilt * q.size;
+  }
+  return false;
+}
+
+void SurfaceContacts::meetDeepest(const Query& q) {
+  std::sort(near_.begin(), near_.end(), [](const NearTriangle& x, const NearTriangle& y) {
+    return x.low > y.low || (x.low == y.low && x.t < y.t);
+  });
+  for (const NearTriangle& near : near_) {
+    const Triangle triangle = q.surface.triangle(near.t);
+    if (!(near.low < 0.0)) continue;
+    if (!(separate(q.a, q.X_GA, colliderOf({&triangle, 1}), Transform(), 0.0).distance < 0.0))
+      continue;
+    const Vector3& n = triangle.normal;
+    const Vector3 x = supportPoint(q.a.convex, q.X_GA, -n);
+    points_.push_back({x - 0.5 * near.low * n, -n, near.low});
+    return;
+  }
+}
+
+void SurfaceContacts::leaveInside(const Query& q) {
+  const Vector3 centre = q.X_GA * q.a.boxCentre;
+  const Vector3 beyond = (centre - q.surface.centre()).cwiseAbs() - q.surface.halfExtents();
+  if (beyond.maxCoeff() > 0.0 || !q.surface.encloses(centre, found_)) return;
+  // A box about the centre grows until the nearest point is within it.
+  Vector3 nearest = Vector3::Zero();
+  double length = kInfinity;
+  for (double reach = q.size; !(length <= reach); reach *= 2.0) {
+    const Vector3 half = Vector3::Constant(reach);
+    q.surface.tree().within({centre - half, centre + half}, found_);
+    for (const int t : found_) {
+      bool onFace = false;
+      const Vector3 v = toNearest(q.surface.triangle(t), centre, onFace);
+      if (v.norm() < length) length = v.norm(), nearest = v;
+    }
+    if (reach > 4.0 * q.surface.boundingRadius() + q.size) break;
+  }
+  if (!(length < kInfinity) || length == 0.0) return;
+  const Vector3 m = nearest / length;
+  const Vector3 x = supportPoint(q.a.convex, q.X_GA, -m);
+  const double distance = m.dot(x - centre) - length;
+  points_.push_back({x - 0.5 * distance * m, -m, distance});
+}
+
+}  // namespace softgauss::collision::detail

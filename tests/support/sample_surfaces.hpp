@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Meshes made in code: flat ground, bowls, grooves, boxes, balls, rings.
+
+#include <functional>
+#include <memory>
+
+#include "engine/model/shape.hpp"
+#include "tests/support/random.hpp"
+
+namespace softgauss::test {
+
+using MeshPointer = std::shared_ptr<const Mesh>;
+
+/// A height above each point of a grid of nx by ny cells about the origin, facing +z: 2 nx ny
+/// triangles. Inner corners are moved about by up to `jitter` of a cell before their height is
+/// taken.
+MeshPointer gridMesh(int nx, int ny, double cell, double jitter = 0.0,
+                     const std::function<double(double, double)>& height = nullptr);
+
+/// The lower half of a sphere about the origin, facing its centre: rings of 90°/rings.
+MeshPointer bowlMesh(double radius, int rings, int sectors);
+
+/// Two planes that rise by `angle` [rad] from the y axis to both sides, `width` along the slope,
+/// `length` along y, in cells of about `cell`; facing up.
+MeshPointer grooveMesh(double angle, double width, double length, double cell);
+
+/// A closed box whose edges have n cells each.
+MeshPointer boxSurface(const Vector3& halfExtents, int n = 1);
+
+/// A closed ball of rings and sectors.
+MeshPointer ballSurface(double radius, int rings, int sectors);
+
+/// A closed ring about z: a circle of `tube` swept along a circle of `radius`.
+MeshPointer ringSurface(double radius, double tube, int around, int across);
+
+}  // namespace softgauss::test
