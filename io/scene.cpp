@@ -169,7 +169,7 @@ class SceneReader {
     map.expectOnly(std::vector<std::string>{"name", "urdf", "base"} + detail::kPoseKeys +
                    std::vector<std::string>{"velocity", "angular_velocity", "on_ground", "joints",
                                             "joint_velocities", "joint_parameters", "material",
-                                            "materials"});
+                                            "materials", "collide_as"});
     const std::size_t robots = top_.find("robots")->value.items.size();
     const std::string name = ownName(map, robots == 1);
     const YamlMap::Entry& urdf = map.required("urdf", "the name of a URDF file");
@@ -180,6 +180,7 @@ class SceneReader {
     if (const auto* entry = map.find("base"))
       options.base = map.choice(*entry, {"fixed", "floating"}) == "fixed" ? BaseKind::fixed
                                                                           : BaseKind::floating;
+    options.meshes = detail::readMeshUse(map, options.meshes);
     options.material = detail::materialOf(map, materials_);
     if (const auto* entry = map.find("materials")) {
       const YamlMap links = map.map(*entry);
@@ -244,10 +245,15 @@ class SceneReader {
   void readObject(const YamlMap& map) {
     map.expectOnly(std::vector<std::string>{"name"} + detail::kShapeKeys + detail::kPoseKeys +
                    std::vector<std::string>{"mass", "density", "fixed", "velocity",
-                                            "angular_velocity", "on_ground", "material", "color"});
+                                            "angular_velocity", "on_ground", "material", "color",
+                                            "collide_as"});
     const std::string name = ownName(map, false);
-    const Shape shape = detail::readShape(map, meshes_);
-    const bool fixed = flag(map, "fixed", shape.kind == ShapeKind::plane);
+    Shape shape = detail::readShape(map, meshes_);
+    const bool isLandscape = map.find("heights") != nullptr;
+    const bool fixed = flag(map, "fixed", shape.kind == ShapeKind::plane || isLandscape);
+    if (isLandscape) scene_.contents.files.emplace_back(shape.mesh->file);
+    if (!fixed && isLandscape)
+      map.fail(*map.find("heights"), "found a landscape that moves, expected it to be fixed");
     const YamlMap::Entry* mass = map.find("mass");
     const YamlMap::Entry* density = map.find("density");
     for (const YamlMap::Entry* entry : {mass, density})
@@ -257,6 +263,15 @@ class SceneReader {
                fmt::format("found beside mass in line {}, expected one of them", mass->line));
     if (!fixed && shape.kind == ShapeKind::plane)
       map.fail(*map.find("plane"), "found a plane that moves, expected it to be fixed");
+
+    const MeshUse use = detail::readMeshUse(map, urdfOptions_.meshes);
+    if (const YamlMap::Entry* entry = map.find("collide_as")) {
+      if (!map.find("mesh")) map.fail(*entry, "is for a mesh, and this is none");
+      if (!fixed && use == MeshUse::triangles)
+        map.fail(*entry, "found triangles on what moves, expected hull, or fixed: true");
+    }
+    const bool isMesh = shape.kind == ShapeKind::mesh;
+    if (isMesh && fixed && use == MeshUse::triangles) shape = Shape::surface(shape.mesh);
 
     LinkSpec link;
     link.name = name;
@@ -282,6 +297,7 @@ class SceneReader {
     geometry.shape = shape;
     geometry.material = detail::materialOf(map, materials_);
     geometry.where = link.where;
+    geometry.eitherMesh = isMesh && use == MeshUse::automatic;
     VisualSpec visual;
     visual.link = name;
     visual.shape = shape;

@@ -34,7 +34,10 @@ class ShapeReader {
     spec.where = shape.element.where();
     const auto material = options_.linkMaterials.find(link);
     spec.material = material == options_.linkMaterials.end() ? options_.material : material->second;
-    if (shape.shape.kind == ShapeKind::mesh) spec.shape.mesh = mesh(shape);
+    if (shape.shape.kind != ShapeKind::mesh) return spec;
+    spec.shape = options_.meshes == MeshUse::triangles ? Shape::surface(mesh(shape))
+                                                       : Shape::hull(mesh(shape));
+    spec.eitherMesh = options_.meshes == MeshUse::automatic;
     return spec;
   }
 

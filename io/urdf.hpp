@@ -22,6 +22,13 @@
 
 namespace softgauss::io {
 
+/// What meshes collide as.
+enum class MeshUse {
+  automatic,  ///< as Geometry::eitherMesh: their hulls until collision::chooseMeshes()
+  hull,       ///< their convex hulls
+  triangles   ///< their triangles; only what is fixed to the world can
+};
+
 struct UrdfOptions {
   /// Where package://NAME/… is sought first: folders that hold NAME, or are called NAME. Then
   /// ROS_PACKAGE_PATH, then the folders above the URDF.
@@ -29,6 +36,7 @@ struct UrdfOptions {
   /// Read the meshes of visuals too. If not, a visual's Mesh has its file and no vertices.
   bool visualMeshes = false;
   BaseKind base = BaseKind::automatic;
+  MeshUse meshes = MeshUse::automatic;  ///< of collision shapes
   bool zeroEffortIsUnlimited = false;
   Material material;                              ///< of collision shapes
   std::map<std::string, Material> linkMaterials;  ///< of those of some links instead

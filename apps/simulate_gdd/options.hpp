@@ -11,6 +11,7 @@
 #include "engine/islands/islands.hpp"
 #include "engine/model/model_builder.hpp"
 #include "gdd/goal_directed_step.hpp"
+#include "io/urdf.hpp"
 
 namespace softgauss::app {
 
@@ -41,6 +42,7 @@ struct SimulateOptions {
   std::vector<std::pair<std::string, double>> q0;
   std::optional<EffectSet> effects;  ///< absent: the scene's own, or all
   bool zeroEffortIsUnlimited = false;
+  std::optional<io::MeshUse> meshes;  ///< absent: automatic, or hull as MuJoCo has it
   bool noSlip = false;
   bool exactDiagonal = false;
   std::optional<Cone> cone;                     ///< absent: the scene's own, or pyramidal

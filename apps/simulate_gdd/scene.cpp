@@ -8,6 +8,7 @@
 #include "apps/shared/ground.hpp"
 #include "apps/simulate_gdd/error_control.hpp"
 #include "apps/simulate_gdd/trial.hpp"
+#include "collision/choose_meshes.hpp"
 #include "engine/model/followers.hpp"
 #include "io/explain.hpp"
 #include "io/goals.hpp"
@@ -56,6 +57,7 @@ io::UrdfOptions urdfOptions(const SimulateOptions& options) {
   urdf.visualMeshes = !options.view.empty();
   urdf.base = options.base;
   urdf.zeroEffortIsUnlimited = options.zeroEffortIsUnlimited;
+  urdf.meshes = options.meshes.value_or(io::MeshUse::automatic);
   return urdf;
 }
 
@@ -134,7 +136,12 @@ std::unique_ptr<Scene> loadScene(const SimulateOptions& options) {
     throw ModelError(
         {options.model.string(), 0}, "model '" + scene->model.name + "'",
         fmt::format("has {} degrees of freedom, expected at most {}", scene->model.nv, kMostDofs));
-  scene->contacts = std::make_unique<collision::SceneContacts>(scene->model);
+  collision::PreparedMeshes meshes;
+  // MuJoCo takes hulls.
+  if (options.meshes || scene->model.options.ownSoftness)
+    collision::chooseMeshes(scene->model, meshes);
+  scene->contacts = std::make_unique<collision::SceneContacts>(
+      scene->model, collision::SceneContacts::kBroadphasePairs, true, &meshes);
   if (std::optional<std::string> told = collision::baseWarning(scene->contacts->filter()))
     scene->model.warnings.push_back(std::move(*told));
   addStepWarnings(*scene);

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "engine/core/check.hpp"
@@ -10,6 +12,7 @@
 #include "engine/model/closed_surface.hpp"
 #include "engine/model/mass_properties.hpp"
 #include "io/detail/text.hpp"
+#include "io/height_field.hpp"
 
 namespace softgauss::io::detail {
 namespace {
@@ -157,6 +160,34 @@ Transform readPose(const YamlMap& map) {
   return X;
 }
 
+namespace {
+
+/// `heights: {file, size, height, base}`
+Shape readLandscape(const YamlMap& map) {
+  map.expectOnly({"file", "size", "height", "base"});
+  const YamlMap::Entry& file = map.required("file", "the name of a .png or .csv file");
+  const YamlMap::Entry& size = map.required("size", "two lengths [x, y] [m]");
+  std::array<double, 2> lengths{};
+  const std::vector<YamlValue>& items = map.list(size);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const std::optional<double> length = items.size() == 2 ? items[i].finiteNumber() : std::nullopt;
+    if (!length || !(*length > 0.0))
+      map.fail(size, fmt::format("found {}, expected two lengths above 0, [x, y] [m]",
+                                 size.value.described()));
+    lengths[i] = *length;
+  }
+  const double height =
+      map.number(map.required("height", "the height of white, or of 1 in a .csv [m]"), Range::any);
+  double base = 0.5 * std::min(lengths[0], lengths[1]);
+  map.read("base", base, Range::positive);
+  const std::filesystem::path path = existingFile(map, file, map.name(file));
+  Mesh mesh = heightFieldMesh(readHeights(path), lengths[0], lengths[1], height, base);
+  mesh.file = path.string();
+  return Shape::surface(std::make_shared<const Mesh>(std::move(mesh)));
+}
+
+}  // namespace
+
 Shape readShape(const YamlMap& map, MeshCache& meshes) {
   const YamlMap::Entry* only = nullptr;
   for (const std::string& key : kShapeKeys) {
@@ -193,9 +224,16 @@ Shape readShape(const YamlMap& map, MeshCache& meshes) {
     size.read("scale", scale);
     return Shape::hull(meshes.get(existingFile(size, entry, size.name(entry)), scale));
   }
+  if (only->key == "heights") return readLandscape(size);
   size.expectOnly({"radius", "length"});
   const double radius = length("radius"), half = 0.5 * length("length");
   return only->key == "cylinder" ? Shape::cylinder(radius, half) : Shape::capsule(radius, half);
+}
+
+MeshUse readMeshUse(const YamlMap& map, MeshUse otherwise) {
+  const YamlMap::Entry* entry = map.find("collide_as");
+  if (!entry) return otherwise;
+  return map.choice(*entry, {"hull", "triangles"}) == "hull" ? MeshUse::hull : MeshUse::triangles;
 }
 
 void expectVolume(const YamlMap& map, const YamlMap::Entry& entry, const Shape& shape) {

@@ -9,6 +9,7 @@
 #include "engine/model/shape.hpp"
 #include "io/detail/yaml.hpp"
 #include "io/mesh.hpp"
+#include "io/urdf.hpp"
 
 namespace softgauss::io::detail {
 
@@ -54,9 +55,12 @@ inline const std::vector<std::string> kPoseKeys = {"position", "rpy", "quaternio
 Transform readPose(const YamlMap& map);
 
 /// The keys of shapes, of which an object has one, and that shape.
-inline const std::vector<std::string> kShapeKeys = {"sphere",  "box",  "cylinder",
-                                                    "capsule", "mesh", "plane"};
+inline const std::vector<std::string> kShapeKeys = {"sphere", "box",   "cylinder", "capsule",
+                                                    "mesh",   "plane", "heights"};
 Shape readShape(const YamlMap& map, MeshCache& meshes);
+
+/// What the key `collide_as` says, or `otherwise`.
+MeshUse readMeshUse(const YamlMap& map, MeshUse otherwise);
 
 /// Refuses a mesh that encloses no volume, and so gives no mass.
 void expectVolume(const YamlMap& map, const YamlMap::Entry& entry, const Shape& shape);

@@ -51,5 +51,63 @@ TEST(SceneMesh, ThatEnclosesNoVolumeIsRefusedWhereItHasMass) {
   EXPECT_EQ(refusalOf(open, "fixed: true"), "no error") << "it needs no mass";
 }
 
+// ---- Hull or triangles
+
+const Geometry& onlyShape(const Model& model) {
+  EXPECT_EQ(model.geometries.size(), 1u);
+  return model.geometries[0];
+}
+
+TEST(SceneMesh, CollidesAsTheSceneSays) {
+  const auto shapeOf = [](const std::string& keys) {
+    return onlyShape(ofMesh(kClosed, keys).builder.build());
+  };
+  EXPECT_TRUE(shapeOf("fixed: true").eitherMesh);
+  EXPECT_TRUE(shapeOf("density: 100").eitherMesh);
+  for (const char* keys : {"fixed: true, collide_as: hull", "collide_as: hull"}) {
+    EXPECT_EQ(shapeOf(keys).shape.kind, ShapeKind::mesh);
+    EXPECT_FALSE(shapeOf(keys).eitherMesh);
+  }
+  const Geometry surface = shapeOf("fixed: true, collide_as: triangles");
+  EXPECT_EQ(surface.shape.kind, ShapeKind::triangles);
+  EXPECT_EQ(surface.shape.mesh->triangles.size(), 4u);
+}
+
+TEST(SceneMesh, RefusesTrianglesThatMoveAndMeshUseOfOtherShapes) {
+  EXPECT_NE(refusalOf(kClosed, "collide_as: triangles")
+                .find("key 'collide_as': found triangles on what moves, expected hull"),
+            std::string::npos);
+  EXPECT_NE(refusalOf(kClosed, "fixed: true, collide_as: skin").find("'skin'"), std::string::npos);
+  const io::TempFolder folder;
+  try {
+    io::readScene(
+        folder.write("s.yaml", "objects: [{name: b, sphere: {radius: 1}, collide_as: hull}]\n"));
+    FAIL();
+  } catch (const ModelError& error) {
+    EXPECT_NE(std::string(error.what()).find("is for a mesh, and this is none"), std::string::npos)
+        << error.what();
+  }
+}
+
+TEST(SceneMesh, ARobotCollidesAsTheSceneSays) {
+  const io::TempFolder folder;
+  folder.write("w.obj", "v 10 0 0\nv 11 0 0\nv 10 1 0\nv 10 0 1\n" + kClosed);
+  folder.write("r.urdf",
+               "<robot name='r'><link name='world'><collision><geometry>"
+               "<mesh filename='w.obj'/></geometry></collision></link></robot>\n");
+  const auto kindOf = [&](const std::string& keys, io::MeshUse use) {
+    io::UrdfOptions options;
+    options.meshes = use;
+    return onlyShape(
+        io::readScene(
+            folder.write("s.yaml", "ground: none\nrobots: [{urdf: r.urdf" + keys + "}]\n"), options)
+            .builder.build());
+  };
+  EXPECT_TRUE(kindOf("", io::MeshUse::automatic).eitherMesh);
+  EXPECT_EQ(kindOf("", io::MeshUse::triangles).shape.kind, ShapeKind::triangles);
+  EXPECT_EQ(kindOf(", collide_as: hull", io::MeshUse::triangles).shape.kind, ShapeKind::mesh);
+  EXPECT_EQ(kindOf(", collide_as: triangles", io::MeshUse::hull).shape.kind, ShapeKind::triangles);
+}
+
 }  // namespace
 }  // namespace softgauss::test
