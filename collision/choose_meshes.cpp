@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "collision/choose_meshes.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <map>
 #include <optional>
@@ -101,10 +102,20 @@ void chooseMeshes(Model& model, PreparedMeshes& meshes) {
     if (isOpen) openSurfaces.add(g, rims);
   }
   filled.appendTo(model.warnings, "collide as their convex hull, which fills the mesh: ",
-                  "; split a mesh into convex parts to keep its hollows");
+                  "; collide_as: triangles, or --meshes triangles, keeps its hollows");
   openHulls.appendTo(model.warnings, "collide as their convex hull, the mesh is not closed: ", "");
   openSurfaces.appendTo(model.warnings,
                         "collide from the side that their triangles face, not closed: ", "");
+  Told pairs;
+  const auto isSurface = [](const Geometry& g) { return g.shape.kind == ShapeKind::triangles; };
+  for (const Geometry& g : model.geometries)
+    if (isSurface(g) && g.body != 0 &&
+        std::any_of(model.geometries.begin(), model.geometries.end(), [&](const Geometry& other) {
+          return isSurface(other) && other.body != g.body;
+        }))
+      pairs.add(g, "");
+  pairs.appendTo(model.warnings,
+                 "meet other meshes of triangles, of which one counts as its convex hull: ", "");
   turned.appendTo(model.warnings,
                   "collide as their convex hull, the triangles do not all face outwards: ",
                   "; try a mesh tool that orients faces");

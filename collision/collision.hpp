@@ -9,6 +9,7 @@
 
 #include "collision/choose_meshes.hpp"
 #include "collision/convex_hull.hpp"
+#include "collision/fcl_contacts.hpp"
 #include "collision/filter.hpp"
 #include "collision/lowest_point.hpp"
 #include "collision/prepared_meshes.hpp"

@@ -273,8 +273,8 @@ bool SceneContacts::Scene::within(const Row& row, double extra) const {
 
 bool SceneContacts::Scene::surfaceWithin(const Row& row, double extra) const {
   const auto a = static_cast<std::size_t>(row.a), b = static_cast<std::size_t>(row.b);
-  // Of a plane that moves nothing is known.
-  if (!set.surface[b] || row.plane) return true;
+  // What turns may come near with any of its triangles.
+  if (!set.surface[b] || row.plane || model.geometries[b].body != 0) return true;
   const Vector3 p = X_WG[b].R.transpose() * (centre[a] - X_WG[b].p);
   return set.surface[b]->comesNear(p, set.radius[a] + row.margin + extra);
 }
@@ -393,7 +393,8 @@ double SceneContacts::timeInSight(const Model&, const Kinematics& kinematics, do
 std::int64_t SceneContacts::sweeps() const { return scene_->sweeps; }
 
 const ConvexHull* SceneContacts::hull(int geometry) const {
-  return scene_->set.hull[static_cast<std::size_t>(geometry)].get();
+  const bool isHull = scene_->set.geometry(geometry).shape.kind == ShapeKind::mesh;
+  return isHull ? scene_->set.hull[static_cast<std::size_t>(geometry)].get() : nullptr;
 }
 
 }  // namespace softgauss::collision

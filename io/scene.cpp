@@ -82,6 +82,8 @@ class SceneReader {
                        "holds nothing, expected a list of robots or of objects");
     for (const std::filesystem::path& file : meshes_.files()) scene_.contents.files.push_back(file);
     scene_.hasGoals = top_.find("goals") != nullptr;
+    if (const auto* entry = top_.find("collision"))
+      scene_.throughFcl = top_.choice(*entry, {"own", "fcl"}) == "fcl";
     return std::move(scene_);
   }
 
@@ -265,13 +267,10 @@ class SceneReader {
       map.fail(*map.find("plane"), "found a plane that moves, expected it to be fixed");
 
     const MeshUse use = detail::readMeshUse(map, urdfOptions_.meshes);
-    if (const YamlMap::Entry* entry = map.find("collide_as")) {
-      if (!map.find("mesh")) map.fail(*entry, "is for a mesh, and this is none");
-      if (!fixed && use == MeshUse::triangles)
-        map.fail(*entry, "found triangles on what moves, expected hull, or fixed: true");
-    }
+    if (const YamlMap::Entry* entry = map.find("collide_as"); entry && !map.find("mesh"))
+      map.fail(*entry, "is for a mesh, and this is none");
     const bool isMesh = shape.kind == ShapeKind::mesh;
-    if (isMesh && fixed && use == MeshUse::triangles) shape = Shape::surface(shape.mesh);
+    if (isMesh && use == MeshUse::triangles) shape = Shape::surface(shape.mesh);
 
     LinkSpec link;
     link.name = name;

@@ -63,6 +63,7 @@ struct SceneFile {
   std::vector<TimedWrench> wrenches;
   std::vector<SceneActuator> actuators;  ///< controlBox() makes them a box of controls
 
+  bool throughFcl = false;                  ///< contacts are to come through FCL
   bool hasGoals = false;                    ///< has a list that readGoals() reads
   std::optional<gdd::GddSolver> gddSolver;  ///< that follows them, where the file names one
 

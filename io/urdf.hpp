@@ -26,7 +26,7 @@ namespace softgauss::io {
 enum class MeshUse {
   automatic,  ///< as Geometry::eitherMesh: their hulls until collision::chooseMeshes()
   hull,       ///< their convex hulls
-  triangles   ///< their triangles; only what is fixed to the world can
+  triangles   ///< their triangles
 };
 
 struct UrdfOptions {

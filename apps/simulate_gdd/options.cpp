@@ -157,7 +157,7 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
       "bring it nearer its goals, with the contact forces that then act.");
   app.set_version_flag("--version", std::string("softgauss ") + SOFTGAUSS_VERSION);
   std::string base = "automatic", ground, effects, zeroEffort = "passive", integrator, cone, solver,
-              controlCost, compatibility, islands, posture, meshes;
+              controlCost, compatibility, islands, posture, meshes, collision;
   std::vector<std::string> reach, q0;
   for (int i = 0; i < argc; ++i)
     options.commandLine +=
@@ -188,12 +188,16 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
                  "what effort=\"0\" means: passive (not actuated) or unlimited")
       ->check(CLI::IsMember({"passive", "unlimited"}))
       ->group(scene);
-  app.add_option(
-         "--meshes", meshes,
-         "what collision meshes collide as where a scene does not say. hull: their convex\n"
-         "hulls; triangles: themselves, for what is fixed to the world; auto (default): the\n"
-         "hull where it is at most 5 % larger or the mesh moves, else the triangles")
+  app.add_option("--meshes", meshes,
+                 "what collision meshes collide as where a scene does not say. hull: their convex\n"
+                 "hulls; triangles: themselves; auto (default): the hull where it is at most 5 %\n"
+                 "larger or the mesh moves, else the triangles")
       ->check(CLI::IsMember({"hull", "triangles", "auto"}))
+      ->group(scene);
+  app.add_option("--collision", collision,
+                 "where contacts come from. own (default); fcl: FCL finds what touches and along\n"
+                 "which direction, slower, for a second opinion")
+      ->check(CLI::IsMember({"own", "fcl"}))
       ->group(scene);
   app.add_option("--package-path", options.packagePaths,
                  "where package://NAME/… is looked for first; repeatable")
@@ -357,6 +361,9 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
     options.meshes = meshes == "hull"        ? io::MeshUse::hull
                      : meshes == "triangles" ? io::MeshUse::triangles
                                              : io::MeshUse::automatic;
+  if (!collision.empty()) options.throughFcl = collision == "fcl";
+  if (collision == "fcl" && !islands.empty())
+    throw UsageError("--collision fcl looks at the whole scene, expected no --islands");
   if (!compatibility.empty()) options.likeMujoco = compatibility == "mujoco";
   options.islands = !islands.empty();
   options.sleep.enabled = islands == "sleep" || islands == "sleep-all";

@@ -52,6 +52,7 @@ struct SimulateOptions {
   std::optional<double> integrationTolerance;
   bool stepDoubling = false;
   bool reportError = false;
+  std::optional<bool> throughFcl;  ///< --collision; absent: as the scene says, or own
   std::optional<double> accuracy;  ///< that a setting is to be chosen for [m]
   std::optional<bool> likeMujoco;  ///< --compatibility
   bool islands = false;            ///< what does not touch is solved apart

@@ -57,7 +57,7 @@ class Runner {
   Runner(const SimulateOptions& options, Scene& scene)
       : options_(options),
         model_(scene.model),
-        contacts_(*scene.contacts),
+        contacts_(scene.source()),
         state_(scene.initial),
         data_(model_),
         controller_(model_),

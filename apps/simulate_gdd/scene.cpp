@@ -98,6 +98,7 @@ void loadSceneFile(const SimulateOptions& options, Scene& scene) {
   scene.contents = file.contents;
   scene.hasGoals = file.hasGoals;
   if (file.gddSolver) scene.gddSolver = *file.gddSolver;
+  scene.fileSaysFcl = file.throughFcl;
   scene.materials = file.materials;
   scene.wrenches = file.wrenches;
   scene.actuators = file.actuators;
@@ -142,6 +143,11 @@ std::unique_ptr<Scene> loadScene(const SimulateOptions& options) {
     collision::chooseMeshes(scene->model, meshes);
   scene->contacts = std::make_unique<collision::SceneContacts>(
       scene->model, collision::SceneContacts::kBroadphasePairs, true, &meshes);
+  if (scene->fileSaysFcl && !options.throughFcl && options.islands)
+    throw ModelError({options.model.string(), 0}, "key 'collision'",
+                     "found fcl, which looks at the whole scene, expected own beside --islands");
+  if (options.throughFcl.value_or(scene->fileSaysFcl))
+    scene->throughFcl = std::make_unique<collision::FclContacts>(scene->model, &meshes);
   if (std::optional<std::string> told = collision::baseWarning(scene->contacts->filter()))
     scene->model.warnings.push_back(std::move(*told));
   addStepWarnings(*scene);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "apps/simulate_gdd/options.hpp"
+#include "collision/fcl_contacts.hpp"
 #include "collision/scene_contacts.hpp"
 #include "gdd/gdd.hpp"
 #include "io/actuators.hpp"
@@ -21,6 +22,10 @@ struct Scene {
   Model model;
   io::UrdfContents contents;
   std::unique_ptr<collision::SceneContacts> contacts;
+  std::unique_ptr<collision::FclContacts> throughFcl;  ///< in their place, where it was asked for
+  ContactSource& source() {
+    return throughFcl ? static_cast<ContactSource&>(*throughFcl) : *contacts;
+  }
   State initial;
   /// Surfaces by name.
   std::vector<std::pair<std::string, Material>> materials = {{"default", Material{}}};
@@ -28,6 +33,7 @@ struct Scene {
   io::WrenchSchedule schedule;  ///< of those
   std::vector<io::SceneActuator> actuators;
   bool hasGoals = false;  ///< the scene file holds goals
+  bool fileSaysFcl = false;
   gdd::GddSolver gddSolver = gdd::GddSolver::activeSet;
 };
 

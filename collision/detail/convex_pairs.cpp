@@ -68,6 +68,34 @@ Collider makeCollider(const Shape& shape, const ConvexHull* hull) {
   return c;
 }
 
+namespace {
+
+/// The best of a direction and the normals of the faces that it meets.
+Separation withFaces(const Collider& a, const Transform& X_WA, const Collider& b,
+                     const Transform& X_WB, Separation best, double size) {
+  double preference = kFacePreference * size;
+  const Vector3 faceA = supportFaceNormal(a.convex, X_WA, best.n_W);
+  const Vector3 faceB = -supportFaceNormal(b.convex, X_WB, -best.n_W);
+  for (const Vector3& face : {faceA, faceB}) {
+    if (face.isZero(0.0)) continue;
+    const double separation = separationAlong(a.convex, X_WA, b.convex, X_WB, face);
+    if (separation < best.distance - preference) continue;
+    best = {face, separation};
+    preference = 0.0;
+  }
+  return best;
+}
+
+void addManifold(const Collider& a, const Transform& X_WA, const Collider& b, const Transform& X_WB,
+                 const Separation& s, double margin, PairContacts& out) {
+  const SupportFace supportA = supportFace(a.convex, X_WA, s.n_W);
+  const SupportFace supportB = supportFace(b.convex, X_WB, -s.n_W);
+  const PairContact deepest{deepestPoint(supportA, supportB, s.n_W, s.distance), s.n_W, s.distance};
+  addFaceContacts(supportA, supportB, deepest, margin, out);
+}
+
+}  // namespace
+
 Separation separate(const Collider& a, const Transform& X_WA, const Collider& b,
                     const Transform& X_WB, double margin) {
   // Boxes around the shapes that are apart settle most pairs.
@@ -80,23 +108,10 @@ Separation separate(const Collider& a, const Transform& X_WA, const Collider& b,
   const SeparatingDirection found =
       separatingDirection(a.convex, X_WA, b.convex, X_WB, size, margin + radii);
 
-  // The best of the direction found and the normals of the faces that it meets.
-  Vector3 n = found.n_W;
-  double distance = found.separation - radii;
-  if (!std::isfinite(distance)) return {n, std::numeric_limits<double>::quiet_NaN()};
-  if (distance >= margin) return {n, distance};
-  double preference = kFacePreference * size;
-  const Vector3 faceA = supportFaceNormal(a.convex, X_WA, found.n_W);
-  const Vector3 faceB = -supportFaceNormal(b.convex, X_WB, -found.n_W);
-  for (const Vector3& face : {faceA, faceB}) {
-    if (face.isZero(0.0)) continue;
-    const double separation = separationAlong(a.convex, X_WA, b.convex, X_WB, face);
-    if (separation < distance - preference) continue;
-    n = face;
-    distance = separation;
-    preference = 0.0;
-  }
-  return {n, distance};
+  const double distance = found.separation - radii;
+  if (!std::isfinite(distance)) return {found.n_W, std::numeric_limits<double>::quiet_NaN()};
+  if (distance >= margin) return {found.n_W, distance};
+  return withFaces(a, X_WA, b, X_WB, {found.n_W, distance}, size);
 }
 
 bool convexConvex(const Collider& a, const Transform& X_WA, const Collider& b,
@@ -105,11 +120,16 @@ bool convexConvex(const Collider& a, const Transform& X_WA, const Collider& b,
   if (std::isnan(distance)) return false;
   if (distance >= margin) return true;
 
-  const SupportFace supportA = supportFace(a.convex, X_WA, n);
-  const SupportFace supportB = supportFace(b.convex, X_WB, -n);
-  const PairContact deepest{deepestPoint(supportA, supportB, n, distance), n, distance};
-  addFaceContacts(supportA, supportB, deepest, margin, out);
+  addManifold(a, X_WA, b, X_WB, {n, distance}, margin, out);
   return true;
+}
+
+void convexAlong(const Collider& a, const Transform& X_WA, const Collider& b, const Transform& X_WB,
+                 const Vector3& n_W, PairContacts& out) {
+  const double size = std::min(a.boxHalfExtents.maxCoeff(), b.boxHalfExtents.maxCoeff());
+  const double distance = separationAlong(a.convex, X_WA, b.convex, X_WB, n_W);
+  const Separation best = withFaces(a, X_WA, b, X_WB, {n_W, distance}, size);
+  if (best.distance < 0.0) addManifold(a, X_WA, b, X_WB, best, 0.0, out);
 }
 
 }  // namespace softgauss::collision::detail

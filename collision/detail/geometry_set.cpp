@@ -29,6 +29,9 @@ double boundingRadius(const Shape& shape, const ConvexHull* hull, const Triangle
   return 0.0;
 }
 
+/// Its hull is all that a hull has.
+const Shape kHullShape = Shape::hull(nullptr);
+
 }  // namespace
 
 GeometrySet::GeometrySet(const Model& m, PreparedMeshes& meshes) : model(m) {
@@ -46,6 +49,11 @@ GeometrySet::GeometrySet(const Model& m, PreparedMeshes& meshes) : model(m) {
       surface[i] = meshes.surface(shape.mesh);
       centreInG[i] = surface[i]->centre();
     }
+    // Against another surface.
+    if (surface[i] && model.geometries[i].body != 0) {
+      hull[i] = meshes.hull(shape.mesh);
+      colliders[i] = makeCollider(kHullShape, hull[i].get());
+    }
     radius.push_back(boundingRadius(shape, hull[i].get(), surface[i].get()));
     if (shape.kind != ShapeKind::plane && shape.kind != ShapeKind::triangles)
       colliders[i] = makeCollider(shape, hull[i].get());
@@ -60,19 +68,34 @@ double GeometrySet::marginShare(int g) const {
   return margin;
 }
 
+int GeometrySet::hullOf(int a, int b) const {
+  if (geometry(a).body == 0 || geometry(b).body == 0) return geometry(a).body == 0 ? b : a;
+  return radius[static_cast<std::size_t>(b)] < radius[static_cast<std::size_t>(a)] ? b : a;
+}
+
+bool GeometrySet::testSurface(int a, const Transform& X_WA, int b, const Transform& X_WB,
+                              double margin, PairTest& test) const {
+  const auto i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b);
+  SurfaceContacts& contacts = test.surface;
+  bool known = false;
+  if (isPlane(a)) {
+    known = contacts.findOnPlane(X_WA, *surface[j], X_WB, margin);
+  } else if (!surface[i] || hullOf(a, b) == a) {
+    known = contacts.find(colliders[i], X_WA, *surface[j], X_WB, margin);
+  } else {
+    known = contacts.find(colliders[j], X_WB, *surface[i], X_WA, margin);
+    contacts.flip();
+  }
+  if (const PairContact* deepest = contacts.deepest(); known && deepest) test.found.add(*deepest);
+  return known;
+}
+
 bool GeometrySet::test(int a, const Transform& X_WA, int b, const Transform& X_WB, double margin,
                        PairTest& test) const {
   const auto i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b);
   const Shape &shapeA = model.geometries[i].shape, &shapeB = model.geometries[j].shape;
   test.found.clear();
-  if (shapeB.kind == ShapeKind::triangles) {
-    const bool known = shapeA.kind == ShapeKind::plane
-                           ? test.surface.findOnPlane(X_WA, *surface[j], X_WB, margin)
-                           : test.surface.find(colliders[i], X_WA, *surface[j], X_WB, margin);
-    if (const PairContact* deepest = test.surface.deepest(); known && deepest)
-      test.found.add(*deepest);
-    return known;
-  }
+  if (shapeB.kind == ShapeKind::triangles) return testSurface(a, X_WA, b, X_WB, margin, test);
   if (hasClosedForm(shapeA.kind, shapeB.kind)) {
     collideInOrder(shapeA, X_WA, shapeB, X_WB, hull[j].get(), margin, test.found);
     return true;
@@ -87,6 +110,19 @@ void GeometrySet::report(int a, const Transform& X_WA, int b, const Transform& X
     ++contacts.pairsSkipped;
     return;
   }
+  addFound(a, b, pair, contacts);
+}
+
+void GeometrySet::reportAlong(int a, const Transform& X_WA, int b, const Transform& X_WB,
+                              const Vector3& n_W, PairTest& pair, ContactSet& contacts) const {
+  ++contacts.pairsTested;
+  pair.found.clear();
+  convexAlong(colliders[static_cast<std::size_t>(a)], X_WA, colliders[static_cast<std::size_t>(b)],
+              X_WB, n_W, pair.found);
+  addFound(a, b, pair, contacts);
+}
+
+void GeometrySet::addFound(int a, int b, const PairTest& pair, ContactSet& contacts) const {
   if (pair.found.count == 0) return;
   Contact contact;
   contact.geometryA = a;

@@ -24,7 +24,7 @@ struct PairTest {
 
 struct GeometrySet {
   const Model& model;
-  std::vector<std::shared_ptr<const ConvexHull>> hull;       ///< null unless a mesh
+  std::vector<std::shared_ptr<const ConvexHull>> hull;  ///< of meshes, and of triangles that move
   std::vector<std::shared_ptr<const TriangleMesh>> surface;  ///< null unless triangles
   std::vector<Collider> colliders;
   std::vector<Vector3> centreInG;  ///< of the bounding sphere [m]
@@ -39,12 +39,22 @@ struct GeometrySet {
   /// At least half of every margin that a pair of this geometry may have: those of materials add
   /// up.
   double marginShare(int g) const;
+  /// Of two surfaces the one that meets the other as its hull: what moves, or else the smaller.
+  int hullOf(int a, int b) const;
   /// Contacts of a pair, a's kind ≤ b's, with distance < margin; false where a pose is not finite.
   bool test(int a, const Transform& X_WA, int b, const Transform& X_WB, double margin,
             PairTest& test) const;
   /// The same, into contacts; failures and tests are counted there.
   void report(int a, const Transform& X_WA, int b, const Transform& X_WB, double margin,
               PairTest& test, ContactSet& contacts) const;
+  /// Contacts of a convex pair that overlaps, along n_W from a to b or nearly, into contacts.
+  void reportAlong(int a, const Transform& X_WA, int b, const Transform& X_WB, const Vector3& n_W,
+                   PairTest& test, ContactSet& contacts) const;
+
+ private:
+  void addFound(int a, int b, const PairTest& test, ContactSet& contacts) const;
+  bool testSurface(int a, const Transform& X_WA, int b, const Transform& X_WB, double margin,
+                   PairTest& test) const;
 };
 
 }  // namespace softgauss::collision::detail

@@ -113,6 +113,10 @@ bool SurfaceContacts::findOnPlane(const Transform& X_WA, const TriangleMesh& sur
   return true;
 }
 
+void SurfaceContacts::flip() {
+  for (PairContact& c : points_) c.n_W = -c.n_W;
+}
+
 const PairContact* SurfaceContacts::deepest() const {
   const auto least = std::min_element(
       points_.begin(), points_.end(),

@@ -49,6 +49,8 @@ class SurfaceContacts {
   const std::vector<PairContact>& points() const { return points_; }
   /// The one with the least distance; null without points.
   const PairContact* deepest() const;
+  /// Turns the normals over.
+  void flip();
   /// Of the last search: how many points were left to others beside them.
   int reduced() const { return reduced_; }
 

@@ -324,10 +324,6 @@ Model ModelBuilder::build() const {
   for (const GeometrySpec& spec : geometries_) detail::checkGeometry(spec, options);
   for (const GeometrySpec& spec : recogniseCapsules(geometries_)) {
     const Placement at = placementOf(spec.link, spec.where, "geometry '" + spec.name + "'");
-    if (spec.shape.kind == ShapeKind::triangles && at.body != 0)
-      throw ModelError(spec.where, "geometry '" + spec.name + "'",
-                       "found a surface of triangles on what moves, expected it to be fixed to the "
-                       "world; what moves collides as its convex hull (collide_as: hull)");
     model.geometries.push_back({spec.name, spec.link, at.body, at.X_BL * spec.X_LG, spec.shape,
                                 spec.material, at.base, spec.eitherMesh});
   }

@@ -37,7 +37,7 @@ enum class ShapeKind : std::uint8_t {
   cylinder,  ///< radius, halfLength along z of G
   box,       ///< halfExtents along the axes of G
   mesh,      ///< convex hull of mesh->vertices
-  triangles  ///< the surface mesh->triangles, met from the side that it faces; fixed to the world
+  triangles  ///< the surface mesh->triangles, met from the side that it faces
 };
 
 struct Shape {

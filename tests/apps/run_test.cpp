@@ -37,6 +37,8 @@ TEST(Run, HelpAndVersionAreDone) {
                              "--explain",
                              "--log",
                              "--summary",
+                             "--meshes",
+                             "--collision",
                              "--package-path",
                              "--quiet",
                              "--view",

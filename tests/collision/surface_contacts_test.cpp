@@ -296,19 +296,4 @@ TEST(SurfaceContacts, AreThinnedAndCounted) {
   EXPECT_EQ(contacts.pairsSkipped, 0);
 }
 
-// What is meant to move cannot be a surface.
-TEST(SurfaceContacts, SurfacesAreFixed) {
-  ModelBuilder builder = freeBody(boxLink("body", 1.0, {0.1, 0.1, 0.1}));
-  GeometrySpec g = geometrySpec("body", Shape::surface(boxSurface({0.1, 0.1, 0.1})));
-  g.where = {"scene.yaml", 7};
-  builder.geometry(g);
-  try {
-    builder.build();
-    FAIL();
-  } catch (const ModelError& error) {
-    EXPECT_NE(std::string(error.what()).find("scene.yaml:7: geometry"), std::string::npos)
-        << error.what();
-  }
-}
-
 }  // namespace softgauss::test

@@ -107,6 +107,18 @@ MeshPointer boxSurface(const Vector3& h, int n) {
   return mesh;
 }
 
+MeshPointer boxesSurface(const std::vector<BoxPart>& parts) {
+  auto mesh = emptyMesh("boxes");
+  for (const BoxPart& part : parts) {
+    const MeshPointer box = boxSurface(part.halfExtents);
+    const auto first = static_cast<int>(mesh->vertices.size());
+    for (const Vector3& v : box->vertices) mesh->vertices.push_back(part.centre + v);
+    for (const auto& t : box->triangles)
+      mesh->triangles.push_back({first + t[0], first + t[1], first + t[2]});
+  }
+  return mesh;
+}
+
 MeshPointer ballSurface(double radius, int rings, int sectors) {
   auto mesh = emptyMesh("ball");
   addGrid(*mesh, rings, sectors, [&](int i, int j) {

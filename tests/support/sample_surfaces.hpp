@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <memory>
+#include <vector>
 
 #include "engine/model/shape.hpp"
 #include "tests/support/random.hpp"
@@ -28,6 +29,12 @@ MeshPointer grooveMesh(double angle, double width, double length, double cell);
 
 /// A closed box whose edges have n cells each.
 MeshPointer boxSurface(const Vector3& halfExtents, int n = 1);
+
+/// Closed boxes in one mesh, a shell each.
+struct BoxPart {
+  Vector3 halfExtents, centre;
+};
+MeshPointer boxesSurface(const std::vector<BoxPart>& parts);
 
 /// A closed ball of rings and sectors.
 MeshPointer ballSurface(double radius, int rings, int sectors);

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "collision/fcl_contacts.hpp"
+
+#include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
+#include <fcl/geometry/shape/box.h>
+#include <fcl/geometry/shape/capsule.h>
+#include <fcl/geometry/shape/convex.h>
+#include <fcl/geometry/shape/cylinder.h>
+#include <fcl/geometry/shape/halfspace.h>
+#include <fcl/geometry/shape/sphere.h>
+#include <fcl/narrowphase/collision.h>
+
+#include <algorithm>
+#include <exception>
+#include <utility>
+#include <vector>
+
+#include "collision/detail/geometry_set.hpp"
+#include "collision/scene_contacts.hpp"
+#include "engine/constraints/contact.hpp"
+#include "engine/core/index.hpp"
+
+namespace softgauss::collision {
+namespace {
+
+// What both sides of the fence read is laid out alike whatever the processor.
+static_assert(alignof(Transform) == alignof(double) && alignof(Geometry) == alignof(double));
+
+using Geometries = std::shared_ptr<fcl::CollisionGeometryd>;
+
+Geometries convexOf(const ConvexHull& hull) {
+  auto vertices = std::make_shared<std::vector<Vector3>>(hull.vertices);
+  auto faces = std::make_shared<std::vector<int>>();
+  for (const HullFace& face : hull.faces) {
+    faces->push_back(static_cast<int>(face.vertices.size()));
+    faces->insert(faces->end(), face.vertices.begin(), face.vertices.end());
+  }
+  return std::make_shared<fcl::Convexd>(vertices, static_cast<int>(hull.faces.size()), faces);
+}
+
+/// Of a surface the box about it, which FCL's tree alone sees.
+Geometries geometryOf(const Shape& s, const detail::GeometrySet& set, std::size_t i) {
+  switch (s.kind) {
+    case ShapeKind::plane:
+      return std::make_shared<fcl::Halfspaced>(Vector3::UnitZ(), 0.0);
+    case ShapeKind::sphere:
+      return std::make_shared<fcl::Sphered>(s.radius);
+    case ShapeKind::capsule:
+      return std::make_shared<fcl::Capsuled>(s.radius, 2.0 * s.halfLength);
+    case ShapeKind::cylinder:
+      return std::make_shared<fcl::Cylinderd>(s.radius, 2.0 * s.halfLength);
+    case ShapeKind::box:
+      return std::make_shared<fcl::Boxd>(Vector3(2.0 * s.halfExtents));
+    case ShapeKind::mesh:
+      return convexOf(*set.hull[i]);
+    case ShapeKind::triangles:
+      return std::make_shared<fcl::Boxd>(Vector3(2.0 * set.surface[i]->halfExtents()));
+  }
+  return nullptr;
+}
+
+fcl::Transform3d toFcl(const Transform& X) {
+  fcl::Transform3d T = fcl::Transform3d::Identity();
+  T.linear() = X.R;
+  T.translation() = X.p;
+  return T;
+}
+
+}  // namespace
+
+struct FclContacts::Scene {
+  Scene(const Model& model, PreparedMeshes& meshes);
+  void pose(const Kinematics& kinematics);
+  void findNear();
+  void testPair(int pair, ContactSet& contacts);
+  /// FCL's answer for a convex pair; false where it gives up.
+  bool ask(const GeometryPair& pair, bool& touch, Vector3& n_W);
+
+  const Model& model;
+  SceneContacts own;
+  const detail::GeometrySet set;
+  std::vector<Transform> X_WG;
+  std::vector<std::unique_ptr<fcl::CollisionObjectd>> objects;
+  fcl::DynamicAABBTreeCollisionManagerd manager;
+  std::vector<int> always;                           ///< pairs with a half-space, which has no box
+  std::vector<std::pair<GeometryPair, int>> pairAt;  ///< the others, by their geometries in order
+  std::vector<int> near;
+  detail::PairTest test;
+  std::int64_t left = 0;
+};
+
+FclContacts::Scene::Scene(const Model& m, PreparedMeshes& meshes)
+    : model(m), own(m, SceneContacts::kBroadphasePairs, true, &meshes), set(m, meshes) {
+  X_WG.resize(model.geometries.size());
+  for (std::size_t i = 0; i < model.geometries.size(); ++i) {
+    objects.push_back(
+        std::make_unique<fcl::CollisionObjectd>(geometryOf(model.geometries[i].shape, set, i)));
+    objects.back()->setUserData(reinterpret_cast<void*>(i));
+    if (!set.isPlane(static_cast<int>(i))) manager.registerObject(objects.back().get());
+  }
+  const std::vector<GeometryPair>& pairs = own.filter().pairs;
+  for (std::size_t p = 0; p < pairs.size(); ++p) {
+    const auto [a, b] = pairs[p];
+    if (set.isPlane(a))
+      always.push_back(static_cast<int>(p));
+    else
+      pairAt.push_back({{std::min(a, b), std::max(a, b)}, static_cast<int>(p)});
+  }
+  std::sort(pairAt.begin(), pairAt.end(), [](const auto& x, const auto& y) {
+    return std::pair(x.first.a, x.first.b) < std::pair(y.first.a, y.first.b);
+  });
+  manager.setup();
+}
+
+void FclContacts::Scene::pose(const Kinematics& kinematics) {
+  for (std::size_t i = 0; i < X_WG.size(); ++i) {
+    const Geometry& g = model.geometries[i];
+    X_WG[i] = kinematics.X_WB[idx(g.body)] * g.X_BG;
+    Transform X = X_WG[i];
+    if (set.surface[i]) X.p = X * set.surface[i]->centre();
+    objects[i]->setTransform(toFcl(X));
+    objects[i]->computeAABB();
+  }
+}
+
+void FclContacts::Scene::findNear() {
+  near = always;
+  manager.update();
+  manager.collide(this, [](fcl::CollisionObjectd* x, fcl::CollisionObjectd* y, void* data) {
+    auto& scene = *static_cast<Scene*>(data);
+    const auto i = static_cast<int>(reinterpret_cast<std::size_t>(x->getUserData())),
+               j = static_cast<int>(reinterpret_cast<std::size_t>(y->getUserData()));
+    const auto at = std::lower_bound(scene.pairAt.begin(), scene.pairAt.end(),
+                                     std::pair(std::min(i, j), std::max(i, j)),
+                                     [](const auto& entry, const std::pair<int, int>& wanted) {
+                                       return std::pair(entry.first.a, entry.first.b) < wanted;
+                                     });
+    const GeometryPair wanted{std::min(i, j), std::max(i, j)};
+    if (at != scene.pairAt.end() && at->first == wanted) scene.near.push_back(at->second);
+    return false;  // go on
+  });
+  std::sort(near.begin(), near.end());
+}
+
+bool FclContacts::Scene::ask(const GeometryPair& pair, bool& touch, Vector3& n_W) {
+  fcl::CollisionRequestd request(1, true);
+  fcl::CollisionResultd result;
+  try {
+    touch =
+        fcl::collide(objects[idx(pair.a)].get(), objects[idx(pair.b)].get(), request, result) > 0;
+  } catch (const std::exception&) {
+    return false;
+  }
+  if (touch) n_W = result.getContact(0).normal;
+  return !touch || (n_W.allFinite() && n_W.norm() > 0.5);
+}
+
+void FclContacts::Scene::testPair(int p, ContactSet& contacts) {
+  const GeometryPair& pair = own.filter().pairs[idx(p)];
+  const Transform &X_WA = X_WG[idx(pair.a)], &X_WB = X_WG[idx(pair.b)];
+  bool touch = true;
+  Vector3 n;
+  if (!set.surface[idx(pair.b)] && !ask(pair, touch, n)) {
+    ++left;
+    touch = true;
+    n.setZero();
+  }
+  if (!touch) {
+    ++contacts.pairsTested;
+    return;
+  }
+  const bool isOurs = set.isPlane(pair.a) || set.surface[idx(pair.b)] || n.isZero(0.0);
+  if (isOurs) return set.report(pair.a, X_WA, pair.b, X_WB, 0.0, test, contacts);
+  set.reportAlong(pair.a, X_WA, pair.b, X_WB, n.normalized(), test, contacts);
+}
+
+FclContacts::FclContacts(const Model& model, PreparedMeshes* meshes) {
+  PreparedMeshes own;
+  scene_ = std::make_unique<Scene>(model, meshes ? *meshes : own);
+  mayTouch_ = !scene_->own.filter().pairs.empty();
+}
+
+FclContacts::~FclContacts() = default;
+
+void FclContacts::detect(const Model&, const Kinematics& kinematics,
+                         ContactSet& contacts) noexcept {
+  contacts.clear();
+  scene_->pose(kinematics);
+  scene_->findNear();
+  for (const int pair : scene_->near) scene_->testPair(pair, contacts);
+}
+
+double FclContacts::timeInSight(const Model& model, const Kinematics& kinematics, double longest,
+                                Way way) noexcept {
+  return scene_->own.timeInSight(model, kinematics, longest, way);
+}
+
+const PairFilter& FclContacts::filter() const { return scene_->own.filter(); }
+std::int64_t FclContacts::pairsLeft() const { return scene_->left; }
+
+}  // namespace softgauss::collision
