@@ -33,6 +33,7 @@ struct SceneContacts::Scene {
     double reach;   ///< bounding radii and margin together [m]
     double margin;  ///< sum of the two margins [m]
     bool plane;     ///< a is one
+    int surface;    ///< place in `reaches`, −1 where b is no surface
   };
 
   /// How much of a geometry's orientation is ever read.
@@ -53,9 +54,11 @@ struct SceneContacts::Scene {
   void report(const Row& row, ContactSet& contacts);
   /// Whether the bounding sphere of row.b is within the reach of row.a and `extra` [m].
   bool within(const Row& row, double extra) const;
-  /// Whether, of a surface row.b, any triangle is within the reach of row.a and `extra` [m]; true
-  /// of other shapes.
-  bool surfaceWithin(const Row& row, double extra) const;
+  /// The same, of a surface that is fixed, for any of its triangles.
+  bool surfaceWithin(const Row& row, double extra) const {
+    const auto a = static_cast<std::size_t>(row.a), b = static_cast<std::size_t>(row.b);
+    return row.plane || set.comesNear(row.a, centre[a], row.b, X_WG[b], row.margin + extra);
+  }
   /// Whether the rows that are not near may have come near since findNear().
   bool moved() const;
   void findNear();
@@ -80,6 +83,7 @@ struct SceneContacts::Scene {
   std::vector<Row> planeRows;
   std::vector<Row> rows;
   detail::PairTest test;
+  std::vector<detail::SurfaceReach> reaches;
 
   std::unique_ptr<detail::Broadphase> broadphase;  ///< null in small scenes
   std::vector<int> movable;                        ///< geometries that are no planes
@@ -105,6 +109,7 @@ SceneContacts::Scene::Scene(const Model& m, PreparedMeshes& meshes) : model(m), 
 void SceneContacts::Scene::setPairs(const std::vector<GeometryPair>& pairs, int broadphasePairs) {
   for (std::size_t i = 0; i < turn.size(); ++i)
     if (model.geometries[i].shape.kind == ShapeKind::capsule) turn[i] = Turn::axis;
+  int surfaces = 0;
   for (const GeometryPair& pair : pairs) {
     const Geometry& a = model.geometries[static_cast<std::size_t>(pair.a)];
     const Geometry& b = model.geometries[static_cast<std::size_t>(pair.b)];
@@ -112,12 +117,14 @@ void SceneContacts::Scene::setPairs(const std::vector<GeometryPair>& pairs, int 
     const double reach = set.radius[static_cast<std::size_t>(pair.a)] +
                          set.radius[static_cast<std::size_t>(pair.b)] + margin;
     (a.shape.kind == ShapeKind::plane ? planeRows : rows)
-        .push_back({pair.a, pair.b, reach, margin, a.shape.kind == ShapeKind::plane});
+        .push_back({pair.a, pair.b, reach, margin, a.shape.kind == ShapeKind::plane,
+                    set.surface[static_cast<std::size_t>(pair.b)] ? surfaces++ : -1});
     if (hasClosedForm(a.shape.kind, b.shape.kind)) continue;
     for (int g : {pair.a, pair.b})
       if (turn[static_cast<std::size_t>(g)] == Turn::axis)
         turn[static_cast<std::size_t>(g)] = Turn::full;
   }
+  reaches.resize(static_cast<std::size_t>(surfaces));
   if (static_cast<int>(rows.size()) <= broadphasePairs) return;
 
   std::vector<bool> paired(model.geometries.size(), false);
@@ -257,6 +264,7 @@ bool SceneContacts::Scene::stayApart(int a, int b) const {
 }
 
 void SceneContacts::Scene::report(const Row& row, ContactSet& contacts) {
+  test.reach = row.surface < 0 ? nullptr : &reaches[static_cast<std::size_t>(row.surface)];
   set.report(row.a, X_WG[static_cast<std::size_t>(row.a)], row.b,
              X_WG[static_cast<std::size_t>(row.b)], row.margin, test, contacts);
 }
@@ -269,14 +277,6 @@ bool SceneContacts::Scene::within(const Row& row, double extra) const {
     return X_WP.R.col(2).dot(b - X_WP.p) < reach;
   }
   return (b - centre[static_cast<std::size_t>(row.a)]).squaredNorm() < reach * reach;
-}
-
-bool SceneContacts::Scene::surfaceWithin(const Row& row, double extra) const {
-  const auto a = static_cast<std::size_t>(row.a), b = static_cast<std::size_t>(row.b);
-  // What turns may come near with any of its triangles.
-  if (!set.surface[b] || row.plane || model.geometries[b].body != 0) return true;
-  const Vector3 p = X_WG[b].R.transpose() * (centre[a] - X_WG[b].p);
-  return set.surface[b]->comesNear(p, set.radius[a] + row.margin + extra);
 }
 
 bool SceneContacts::Scene::moved() const {

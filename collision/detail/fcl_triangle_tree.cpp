@@ -8,34 +8,32 @@
 #include <stdexcept>
 #include <string>
 
-namespace softgauss::collision::detail {
+#include "engine/core/index.hpp"
 
+namespace softgauss::collision::detail {
 namespace {
 
 /// Nodes that wait on the way down, one for each level.
 constexpr int kWaiting = 128;
 
+using Hierarchy = fcl::BVHModel<fcl::AABBd>;
+
+/// Levels below a node.
+int depthBelow(const Hierarchy& model, int node) {
+  const auto& bv = model.getBV(node);
+  if (bv.isLeaf()) return 0;
+  return 1 + std::max(depthBelow(model, bv.leftChild()), depthBelow(model, bv.rightChild()));
+}
+
 }  // namespace
 
-struct TriangleTree::Hierarchy {
-  fcl::BVHModel<fcl::AABBd> model;
-
-  /// Levels below a node.
-  int depthBelow(int node) const {
-    const auto& bv = model.getBV(node);
-    return bv.isLeaf() ? 0 : 1 + std::max(depthBelow(bv.leftChild()), depthBelow(bv.rightChild()));
-  }
-};
-
 TriangleTree::TriangleTree(const std::vector<Vector3>& vertices,
-                           const std::vector<std::array<int, 3>>& triangles)
-    : hierarchy_(std::make_unique<Hierarchy>()) {
+                           const std::vector<std::array<int, 3>>& triangles) {
   std::vector<fcl::Triangle> corners;
   corners.reserve(triangles.size());
   for (const std::array<int, 3>& t : triangles)
-    corners.emplace_back(static_cast<std::size_t>(t[0]), static_cast<std::size_t>(t[1]),
-                         static_cast<std::size_t>(t[2]));
-  auto& model = hierarchy_->model;
+    corners.emplace_back(idx(t[0]), idx(t[1]), idx(t[2]));
+  Hierarchy model;
   int result =
       model.beginModel(static_cast<int>(triangles.size()), static_cast<int>(vertices.size()));
   if (result == fcl::BVH_OK) result = model.addSubModel(vertices, corners);
@@ -43,29 +41,31 @@ TriangleTree::TriangleTree(const std::vector<Vector3>& vertices,
   if (result != fcl::BVH_OK || model.getNumBVs() == 0)
     throw std::runtime_error("FCL builds no hierarchy of its triangles, code " +
                              std::to_string(result));
-  if (const int depth = hierarchy_->depthBelow(0); depth >= kWaiting)
+  if (const int depth = depthBelow(model, 0); depth >= kWaiting)
     throw std::runtime_error("FCL's hierarchy of its triangles is " + std::to_string(depth) +
                              " levels deep, expected fewer than " + std::to_string(kWaiting));
+  nodes_.reserve(idx(model.getNumBVs()));
+  for (int i = 0; i < model.getNumBVs(); ++i) {
+    const auto& bv = model.getBV(i);
+    nodes_.push_back(
+        {{bv.bv.min_, bv.bv.max_}, bv.isLeaf() ? -(bv.primitiveId() + 1) : bv.leftChild()});
+  }
 }
-
-TriangleTree::~TriangleTree() = default;
 
 template <class Visit>
 void TriangleTree::walk(const Box& box, Visit&& visit) const {
-  const auto& model = hierarchy_->model;
-  const fcl::AABBd wanted(box.lower, box.upper);
   std::array<int, kWaiting> waiting;
   int count = 0;
-  waiting[static_cast<std::size_t>(count++)] = 0;
+  waiting[idx(count++)] = 0;
   while (count > 0) {
-    const auto& node = model.getBV(waiting[static_cast<std::size_t>(--count)]);
-    if (!node.bv.overlap(wanted)) continue;
-    if (node.isLeaf()) {
-      if (!visit(node.primitiveId())) return;
+    const Node& node = nodes_[idx(waiting[idx(--count)])];
+    if (!node.box.overlaps(box)) continue;
+    if (node.first < 0) {
+      if (!visit(-node.first - 1)) return;
       continue;
     }
-    waiting[static_cast<std::size_t>(count++)] = node.rightChild();
-    waiting[static_cast<std::size_t>(count++)] = node.leftChild();
+    waiting[idx(count++)] = node.first + 1;
+    waiting[idx(count++)] = node.first;
   }
 }
 
@@ -85,10 +85,6 @@ bool TriangleTree::anyWithin(const Box& box) const {
     return false;
   });
   return any;
-}
-
-std::size_t TriangleTree::bytes() const {
-  return sizeof(Hierarchy) + static_cast<std::size_t>(hierarchy_->model.memUsage(0));
 }
 
 }  // namespace softgauss::collision::detail

@@ -68,6 +68,15 @@ double GeometrySet::marginShare(int g) const {
   return margin;
 }
 
+bool GeometrySet::comesNear(int a, const Vector3& p_W, int b, const Transform& X_WB,
+                            double reach) const {
+  // What turns may come near with any of its triangles.
+  const auto j = static_cast<std::size_t>(b);
+  if (!surface[j] || geometry(b).body != 0) return true;
+  return surface[j]->comesNear(X_WB.R.transpose() * (p_W - X_WB.p),
+                               radius[static_cast<std::size_t>(a)] + reach);
+}
+
 int GeometrySet::hullOf(int a, int b) const {
   if (geometry(a).body == 0 || geometry(b).body == 0) return geometry(a).body == 0 ? b : a;
   return radius[static_cast<std::size_t>(b)] < radius[static_cast<std::size_t>(a)] ? b : a;
@@ -81,9 +90,9 @@ bool GeometrySet::testSurface(int a, const Transform& X_WA, int b, const Transfo
   if (isPlane(a)) {
     known = contacts.findOnPlane(X_WA, *surface[j], X_WB, margin);
   } else if (!surface[i] || hullOf(a, b) == a) {
-    known = contacts.find(colliders[i], X_WA, *surface[j], X_WB, margin);
+    known = contacts.find(colliders[i], X_WA, *surface[j], X_WB, margin, test.reach);
   } else {
-    known = contacts.find(colliders[j], X_WB, *surface[i], X_WA, margin);
+    known = contacts.find(colliders[j], X_WB, *surface[i], X_WA, margin, test.reach);
     contacts.flip();
   }
   if (const PairContact* deepest = contacts.deepest(); known && deepest) test.found.add(*deepest);

@@ -18,8 +18,9 @@ namespace softgauss::collision::detail {
 
 /// What a test of a pair finds, and the memory that it works in.
 struct PairTest {
-  PairContacts found;       ///< of a pair with a surface, the deepest point alone
-  SurfaceContacts surface;  ///< all points of a pair with a surface
+  PairContacts found;             ///< of a pair with a surface, the deepest point alone
+  SurfaceContacts surface;        ///< all points of a pair with a surface
+  SurfaceReach* reach = nullptr;  ///< of the pair that is tested, where it has one
 };
 
 struct GeometrySet {
@@ -39,6 +40,9 @@ struct GeometrySet {
   /// At least half of every margin that a pair of this geometry may have: those of materials add
   /// up.
   double marginShare(int g) const;
+  /// Whether b is no surface, or moves, or has a triangle within `reach` [m] of the bounding sphere
+  /// of a, whose centre is p_W.
+  bool comesNear(int a, const Vector3& p_W, int b, const Transform& X_WB, double reach) const;
   /// Of two surfaces the one that meets the other as its hull: what moves, or else the smaller.
   int hullOf(int a, int b) const;
   /// Contacts of a pair, a's kind ≤ b's, with distance < margin; false where a pose is not finite.

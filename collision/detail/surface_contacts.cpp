@@ -62,7 +62,7 @@ int highest(const SurfacePatch& patch, const Vector3& m) {
 }  // namespace
 
 bool SurfaceContacts::find(const Collider& a, const Transform& X_WA, const TriangleMesh& surface,
-                           const Transform& X_WB, double margin) {
+                           const Transform& X_WB, double margin, SurfaceReach* memory) {
   near_.clear();
   waiting_.clear();
   meetings_.clear();
@@ -76,7 +76,7 @@ bool SurfaceContacts::find(const Collider& a, const Transform& X_WA, const Trian
   const Vector3 apart = (centre - surface.centre()).cwiseAbs() - surface.halfExtents() - reach;
   if (apart.maxCoeff() > 0.0) return true;
 
-  surface.tree().within({centre - reach, centre + reach}, found_);
+  findTriangles(q, {centre - reach, centre + reach}, memory);
   for (const int t : found_)
     if (!lookAt(q, t)) return false;
   if (isBall(a)) {
@@ -96,6 +96,23 @@ bool SurfaceContacts::find(const Collider& a, const Transform& X_WA, const Trian
     c.n_W = X_WB.R * c.n_W;
   }
   return true;
+}
+
+/// Those whose own boxes overlap `box`, into found_, in rising order.
+void SurfaceContacts::findTriangles(const Query& q, const Box& box, SurfaceReach* reach) {
+  if (!reach) return q.surface.tree().within(box, found_);
+  if (!reach->fat.contains(box)) {
+    const Vector3 slack = Vector3::Constant(0.5 * q.size);
+    reach->fat = {box.lower - slack, box.upper + slack};
+    q.surface.tree().within(reach->fat, reach->triangles);
+  }
+  found_.clear();
+  for (const int t : reach->triangles) {
+    const std::array<int, 3>& c = q.surface[t].corners;
+    const Vector3 &x = q.surface.vertex(c[0]), &y = q.surface.vertex(c[1]),
+                  &z = q.surface.vertex(c[2]);
+    if (box.overlaps({x.cwiseMin(y).cwiseMin(z), x.cwiseMax(y).cwiseMax(z)})) found_.push_back(t);
+  }
 }
 
 bool SurfaceContacts::findOnPlane(const Transform& X_WA, const TriangleMesh& surface,

@@ -27,6 +27,7 @@
 
 #include <vector>
 
+#include "collision/detail/box.hpp"
 #include "collision/detail/convex_pairs.hpp"
 #include "collision/detail/surface_patches.hpp"
 #include "collision/detail/surface_reduction.hpp"
@@ -35,13 +36,20 @@
 
 namespace softgauss::collision::detail {
 
+/// What a pair remembers: the triangles in a box about the shape that is larger than needed, so
+/// that they need not be looked for until the shape has left it. It changes no contact.
+struct SurfaceReach {
+  Box fat;  ///< in the axes of the surface; empty: nothing is known
+  std::vector<int> triangles;
+};
+
 /// Keeps its memory from pair to pair.
 class SurfaceContacts {
  public:
   /// Finds the contacts with distance < margin; false where a pose is not finite. X_WB is that of
-  /// the surface.
+  /// the surface. `reach`: of this pair, or null.
   bool find(const Collider& a, const Transform& X_WA, const TriangleMesh& surface,
-            const Transform& X_WB, double margin);
+            const Transform& X_WB, double margin, SurfaceReach* reach = nullptr);
   /// The same for a half-space A: the corners of the surface that are in it, thinned.
   bool findOnPlane(const Transform& X_WA, const TriangleMesh& surface, const Transform& X_WB,
                    double margin);
@@ -69,6 +77,7 @@ class SurfaceContacts {
     double size;  ///< of A: its least half extent [m]
   };
 
+  void findTriangles(const Query& q, const Box& box, SurfaceReach* reach);
   bool lookAt(const Query& q, int t);
   bool meetBall(const Query& q);
   bool meetPatch(const Query& q, const SurfacePatch& patch);

@@ -194,9 +194,11 @@ TEST(SurfaceContacts, AnOpenSurfaceIsMetFromTheSideThatItFaces) {
   }
 }
 
-// Closed surfaces at random against every kind of shape, from apart to deep inside: nothing that is
-// overlapped is missed, as rays through the surface tell, and every normal is a unit vector.
-TEST(SurfaceContacts, MissNoOverlap) {
+namespace {
+
+/// Closed surfaces at random against every kind of shape, from apart to deep inside: nothing that
+/// is overlapped is missed, as rays through the surface tell, and every normal is a unit vector.
+void expectNoOverlapMissed(int cases) {
   const MeshPointer meshes[] = {ringSurface(0.5, 0.2, 24, 12), boxSurface({0.5, 0.4, 0.3}, 4),
                                 ballSurface(0.5, 12, 16)};
   SurfaceContacts contacts;
@@ -206,7 +208,7 @@ TEST(SurfaceContacts, MissNoOverlap) {
     const TriangleMesh surface(m);
     for (const ShapeKind kind : kConvexKinds) {
       RandomPairs random(9);
-      for (int i = 0; i < 2000; ++i) {
+      for (int i = 0; i < cases; ++i) {
         const Solid a(randomShape(random, kind));
         const Transform X_WA = random.pose(0.8), X_WB = random.pose(0.2);
         SCOPED_TRACE(testing::Message()
@@ -232,9 +234,16 @@ TEST(SurfaceContacts, MissNoOverlap) {
       }
     }
   }
-  EXPECT_GT(overlaps, 5000);
+  EXPECT_GT(overlaps, 2 * cases);
   EXPECT_GT(touching, overlaps);
 }
+
+}  // namespace
+
+TEST(SurfaceContacts, MissNoOverlap) { expectNoOverlapMissed(2000); }
+
+// Of fifteen kinds of pairs, 100,000 poses.
+TEST(SurfaceContactsLong, MissNoOverlap) { expectNoOverlapMissed(6700); }
 
 TEST(SurfaceContacts, PosesThatAreNotFiniteAreTold) {
   const TriangleMesh surface(gridMesh(2, 2, 1.0));
@@ -277,6 +286,35 @@ TEST(SurfaceContacts, AllocateNothingInSteadyStateAndRepeatTheirBits) {
   const Vector3 second = sumOfAll();
   EXPECT_EQ(guard.count(), 0);
   EXPECT_EQ(first, second);
+}
+
+// What a pair remembers of the triangles about it changes no bit.
+TEST(SurfaceContacts, AreTheSameWithWhatThePairRemembers) {
+  const TriangleMesh surface(gridMesh(60, 60, 0.05, 0.2, [](double x, double y) {
+    return 0.03 * std::sin(7.0 * x) * std::sin(5.0 * y);
+  }));
+  SurfaceContacts with, without;
+  int touching = 0;
+  for (const ShapeKind kind : kConvexKinds) {
+    RandomPairs random(4);
+    const Solid a(randomShape(random, kind));
+    Transform X = random.pose(0.1);
+    collision::detail::SurfaceReach reach;
+    for (int i = 0; i < 300; ++i) {
+      X.p += random.vector(0.02);
+      X.p.z() = std::clamp(X.p.z(), -0.05, 0.3);
+      X.R = axisRotation(random.vector(1.0).normalized(), 0.05) * X.R;
+      ASSERT_TRUE(with.find(a.collider, X, surface, Transform(), 0.001, &reach));
+      ASSERT_TRUE(without.find(a.collider, X, surface, Transform(), 0.001));
+      ASSERT_EQ(with.points().size(), without.points().size());
+      for (std::size_t k = 0; k < with.points().size(); ++k) {
+        ASSERT_EQ(with.points()[k].p_WC, without.points()[k].p_WC);
+        ASSERT_EQ(with.points()[k].distance, without.points()[k].distance);
+      }
+      touching += !with.points().empty();
+    }
+  }
+  EXPECT_GT(touching, 500);
 }
 
 // The end of a cylinder has eight corners, of which four carry; the rest is counted.
