@@ -14,8 +14,10 @@ using detail::fetch;
 
 namespace {
 
-/// Four entries become two: two pairs of minimum and maximum, or at first four samples.
+/// Four entries become two: two pairs of extremes, or at first four samples.
 constexpr std::size_t kMerged = 4;
+
+constexpr double kGap = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
 
@@ -56,15 +58,19 @@ void SeriesTable::appendBucket(std::span<const double> times, std::span<const do
   times_.push_back(times.front());
   times_.push_back(times[times.size() / 2]);
   const std::size_t first = rows_.size();
-  rows_.resize(first + 2 * n, std::numeric_limits<double>::quiet_NaN());
-  double* least = rows_.data() + first;
-  double* greatest = least + n;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const double value = rows[i];
-    if (std::isnan(value)) continue;
-    // Also true while they are NaN.
-    if (!(least[i % n] <= value)) least[i % n] = value;
-    if (!(greatest[i % n] >= value)) greatest[i % n] = value;
+  rows_.resize(first + 2 * n);
+  for (std::size_t column = 0; column < n; ++column) {
+    double least = kGap, greatest = kGap;
+    bool falls = false;  // the greatest value comes before the least
+    for (std::size_t i = column; i < rows.size(); i += n) {
+      const double value = rows[i];
+      if (std::isnan(value)) continue;
+      // Also true while they are NaN.
+      if (!(least <= value)) least = value, falls = true;
+      if (!(greatest >= value)) greatest = value, falls = false;
+    }
+    rows_[first + column] = falls ? greatest : least;
+    rows_[first + n + column] = falls ? least : greatest;
   }
 }
 

@@ -5,7 +5,8 @@
 ///
 /// Short runs keep every sample. When the table is full, neighbouring samples become buckets, and a
 /// bucket is kept as two entries: the least and the greatest value of each column, as an
-/// oscilloscope does. So however long the run, a spike of one step is still seen.
+/// oscilloscope does, in the order in which they came. So however long the run, a spike of one step
+/// is still seen, and what falls steadily falls.
 
 #include <span>
 #include <vector>

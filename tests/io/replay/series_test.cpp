@@ -30,7 +30,7 @@ TEST(SeriesTable, KeepsEverySampleOfAShortRun) {
 }
 
 // However many samples: bounded, in order, from the start, and each bucket holds the extremes of
-// its own samples.
+// its own samples, in the order in which they came.
 TEST(SeriesTable, ManySamplesKeepTheExtremesOfEveryBucket) {
   std::mt19937_64 random(7);
   std::normal_distribution<double> normal;
@@ -54,9 +54,22 @@ TEST(SeriesTable, ManySamplesKeepTheExtremesOfEveryBucket) {
       for (int i = 0; i < table.size(); i += 2) {
         const auto begin = all.begin() + i / 2 * width;
         const auto end = all.begin() + std::min(samples, (i / 2 + 1) * width);
-        EXPECT_EQ(table.column(column)[i], *std::min_element(begin, end));
-        EXPECT_EQ(table.column(column)[i + 1], *std::max_element(begin, end));
+        const auto least = std::min_element(begin, end), greatest = std::max_element(begin, end);
+        EXPECT_EQ(table.column(column)[i], *std::min(least, greatest));
+        EXPECT_EQ(table.column(column)[i + 1], *std::max(least, greatest));
       }
+  }
+}
+
+// No saw's teeth: what rises or falls steadily does so however far it is thinned.
+TEST(SeriesTable, RampsStayMonotone) {
+  SeriesTable table(2, 100);
+  for (int i = 0; i < 5003; ++i) add(table, i, {0.1 * i, -0.1 * i});
+  table.finish();
+  for (const SeriesTable& kept : {table, table.thinned(20)}) {
+    const std::vector<double> rises = kept.column(0), falls = kept.column(1);
+    EXPECT_TRUE(std::is_sorted(rises.begin(), rises.end()));
+    EXPECT_TRUE(std::is_sorted(falls.rbegin(), falls.rend()));
   }
 }
 

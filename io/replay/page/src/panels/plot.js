@@ -263,13 +263,14 @@ export class Plot {
 
   /**
    * The values at an entry of the series. In a thinned run entries 2 b and 2 b + 1 are the least
-   * and the greatest value of bucket b: no one value, but a range.
+   * and the greatest value of bucket b, in the order in which they came: no one value, but a range.
    */
   showValues(index) {
     const first = this.panel.bucket > 1 ? index - (index % 2) : index;
     for (const { value, values } of this.curves) {
-      const [least, greatest] = [values[first], values[first + 1]];
-      const isRange = this.panel.bucket > 1 && Number.isFinite(greatest) && least !== greatest;
+      const [one, other] = [values[first], values[first + 1]];
+      const isRange = this.panel.bucket > 1 && Number.isFinite(other) && one !== other;
+      const [least, greatest] = isRange && other < one ? [other, one] : [one, other];
       const text = isRange ? `${number(least, 3)} … ${number(greatest, 3)}` : number(least, 3);
       if (value.textContent !== text) value.textContent = text;
     }
