@@ -84,6 +84,16 @@ TEST(Behaviour, AWeightBelowZeroIsRefused) {
   }
 }
 
+// By the paper's price it would sink: what holds it up costs more than the reach is worth.
+TEST(Behaviour, AReachAloneLeavesTheHumanoidOnItsFeet) {
+  const std::vector<std::string> reach = {dataFile("robots/humanoid.urdf"), "--reach",
+                                          "right_hand=0.45,-0.25,1.1", "--duration", "5"};
+  EXPECT_GT(lowest(logOf(reach), "q:pelvis.z"), 0.9);
+  std::vector<std::string> byPaper = reach;
+  byPaper.insert(byPaper.end(), {"--control-cost", "total"});
+  EXPECT_LT(lowest(logOf(byPaper), "q:pelvis.z"), 0.5);
+}
+
 // Half a second for the hand to close; then the ball hangs on the fingers alone.
 TEST(Behaviour, HandClosesOnABallAndHoldsItForFiveSeconds) {
   const std::string scene = dataFile("scenes/hand_and_ball.yaml");
