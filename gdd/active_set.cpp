@@ -67,7 +67,7 @@ const VectorX& ActiveSet::costSlope(Data& data) {
   return costSlope_;
 }
 
-/// q = Bᵀ(R B u + P⁻¹∇ℓ); false when not finite.
+/// q = Bᵀ(R (B u − ĝ) + P⁻¹∇ℓ); false when not finite.
 bool ActiveSet::computeGradient(Data& data) {
   cell_.multiplyTransposed(costSlope(data), gradient_);
   merit_ =

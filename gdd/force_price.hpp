@@ -49,7 +49,8 @@ class ForcePrice {
   /// Adds ½ weight (c·g)².
   void add(const Eigen::Ref<const VectorX>& c, double weight);
 
-  /// R ĝ and ½ ĝᵀR ĝ, for a factor of the M in R. To be called before slope() and value().
+  /// R ĝ and ½ ĝᵀR ĝ, for a factor of the M in R. To be called before freeSlope(), freeCost() and
+  /// value().
   void prepare(const TreeFactor& massFactor);
 
   bool hasInverseMass() const { return inverseMass_; }

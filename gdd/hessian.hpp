@@ -24,7 +24,7 @@ class GaussNewtonHessian {
   GaussNewtonHessian(const GaussNewtonHessian&) = delete;  // H points at dense_
   GaussNewtonHessian& operator=(const GaussNewtonHessian&) = delete;
 
-  /// G and P = M + G of the cell in which the rows were last evaluated.
+  /// G and P = M̂ + G of the cell in which the rows were last evaluated.
   void setCell(Data& data);
   /// Factors H, with ∇²ℓ of contact forces in this cell. `massFactor` is of M̂, `boundCurvature` ψ″
   /// of every coordinate. Returns false when H is not positive definite.
