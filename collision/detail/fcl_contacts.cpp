@@ -130,12 +130,12 @@ void FclContacts::Scene::findNear() {
     auto& scene = *static_cast<Scene*>(data);
     const auto i = static_cast<int>(reinterpret_cast<std::size_t>(x->getUserData())),
                j = static_cast<int>(reinterpret_cast<std::size_t>(y->getUserData()));
-    const auto at = std::lower_bound(scene.pairAt.begin(), scene.pairAt.end(),
-                                     std::pair(std::min(i, j), std::max(i, j)),
-                                     [](const auto& entry, const std::pair<int, int>& wanted) {
-                                       return std::pair(entry.first.a, entry.first.b) < wanted;
-                                     });
     const GeometryPair wanted{std::min(i, j), std::max(i, j)};
+    const auto at = std::lower_bound(scene.pairAt.begin(), scene.pairAt.end(), wanted,
+                                     [](const auto& entry, const GeometryPair& pair) {
+                                       return std::pair(entry.first.a, entry.first.b) <
+                                              std::pair(pair.a, pair.b);
+                                     });
     if (at != scene.pairAt.end() && at->first == wanted) scene.near.push_back(at->second);
     return false;  // go on
   });
