@@ -119,7 +119,7 @@ class GoalDirectedIslands::Control final : public IslandControl {
 
   SolveStatus step(const Input& input, State& state, Data& data,
                    ContactSource* contacts) noexcept override {
-    const SolveStatus status = part_->stepAt(island_.model, input, state, data, contacts);
+    const SolveStatus status = part_->step(island_.model, input, state, data, contacts, true);
     GoalDirectedController& all = owner_.controller_;
     all.report.add(part_->report);
     all.solveTime += part_->solveTime;

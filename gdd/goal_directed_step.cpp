@@ -27,8 +27,8 @@ bool refuses(const AugmentedLagrangian&, const WarmStart& warm) {
 }  // namespace
 
 template <class Solver>
-SolveStatus GoalDirectedController::solveAndAdvance(Solver& used, const Model& model, State& state,
-                                                    Data& data, ContactSource* contacts) {
+const VectorX* GoalDirectedController::solve(Solver& used, const Model& model, const State& state,
+                                             Data& data) {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point start = Clock::now();
   // A disturbance is not the control's: it belongs to what the control has to cope with.
@@ -40,53 +40,35 @@ SolveStatus GoalDirectedController::solveAndAdvance(Solver& used, const Model& m
     if (goal->actsAt(state.time)) goal->addCost({model, state, data}, cost_);
   data.stats.refusedGuesses += refuses(used, state.warmstart);
   report = expansion.solve(used, model, cost_, box, data, state.warmstart);
-  solveTime = std::chrono::duration<double>(Clock::now() - start).count();
+  solveTime += std::chrono::duration<double>(Clock::now() - start).count();
   if (isRefused(report.status)) {
     data.stats.status = SolveStatus::notFinite;
     data.stats.badDof = used.badDof();
-    return data.stats.status;
+    return nullptr;
   }
 
   box.clamp(expansion.force(), control, coordinates_);
   box.commands(coordinates_, commands);
   setAppliedForce(control, data.forces);
   if (data.stages)  // an integrator that looks at the dynamics again
-    held_.tau = held_.tau.size() == model.nv ? held_.tau + control : control;
-  const SolveStatus status =
-      advance(model, held_, contacts, &expansion.acceleration(), data, state);
-  if (softgauss::isRefused(status)) return status;
-  data.stats.realised = deviation(data.acceleration, expansion.acceleration());
-  expansion.keepWarmStart(state.warmstart);
-  return status;
+    held_.tau = outside_.size() == model.nv ? VectorX(outside_ + control) : control;
+  return &expansion.acceleration();
+}
+
+const VectorX* GoalDirectedController::apply(const Model& model, const State& state,
+                                             Data& data) noexcept {
+  if (solver == GddSolver::activeSet && data.constraints.piecewiseQuadratic())
+    return solve(activeSet, model, state, data);
+  return solve(augmentedLagrangian, model, state, data);
 }
 
 SolveStatus GoalDirectedController::step(const Model& model, const Input& input, State& state,
-                                         Data& data, ContactSource* contacts) noexcept {
-  hold(input);
-  if (computeStages(model, held_, state, data, contacts) == SolveStatus::notFinite)
-    return SolveStatus::notFinite;
-  return finish(model, state, data, contacts);
-}
-
-SolveStatus GoalDirectedController::stepAt(const Model& model, const Input& input, State& state,
-                                           Data& data, ContactSource* contacts) noexcept {
-  hold(input);
-  if (computeStagesAt(model, held_, state, data, contacts) == SolveStatus::notFinite)
-    return SolveStatus::notFinite;
-  return finish(model, state, data, contacts);
-}
-
-void GoalDirectedController::hold(const Input& input) {
+                                         Data& data, ContactSource* contacts, bool posed) noexcept {
   held_ = input;
   held_.softFriction = true;
-}
-
-/// Control and step, where the stages are those of the state.
-SolveStatus GoalDirectedController::finish(const Model& model, State& state, Data& data,
-                                           ContactSource* contacts) {
-  if (solver == GddSolver::activeSet && data.constraints.piecewiseQuadratic())
-    return solveAndAdvance(activeSet, model, state, data, contacts);
-  return solveAndAdvance(augmentedLagrangian, model, state, data, contacts);
+  outside_ = input.tau;
+  solveTime = 0.0;
+  return softgauss::step(model, held_, state, data, contacts, this, posed);
 }
 
 }  // namespace softgauss::gdd

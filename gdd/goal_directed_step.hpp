@@ -31,7 +31,7 @@ enum class ControlCost {
 };
 
 /// Goals, solver and memory of a controlled simulation. One a thread.
-class GoalDirectedController {
+class GoalDirectedController final : public StepControl {
  public:
   explicit GoalDirectedController(const Model& model);
 
@@ -47,29 +47,28 @@ class GoalDirectedController {
   VectorX control;   ///< τ = B u of the last step, 0 on unactuated dofs (nv) [N or N m]
   VectorX commands;  ///< u of the last step, of the actuators of box.transmission, in their order
   GddReport report;  ///< of the last step
-  double solveTime = 0.0;  ///< wall time of the last GDD solve [s]
+  double solveTime = 0.0;  ///< wall time of the last step's GDD solves [s]
 
   /// One step. `input` acts besides the control (disturbances). On SolveStatus::notFinite, also
-  /// where the box is none (GddStatus::badBox), the state is left as it was.
+  /// where the box is none (GddStatus::badBox), the state is left as it was. `posed` as of
+  /// softgauss::step().
   SolveStatus step(const Model& model, const Input& input, State& state, Data& data,
-                   ContactSource* contacts) noexcept;
-  /// The same where data.kinematics is that of the state already.
-  SolveStatus stepAt(const Model& model, const Input& input, State& state, Data& data,
-                     ContactSource* contacts) noexcept;
+                   ContactSource* contacts, bool posed = false) noexcept;
+
+  const VectorX* apply(const Model& model, const State& state, Data& data) noexcept override;
+  void keep(WarmStart& warmstart) noexcept override { expansion.keepWarmStart(warmstart); }
   /// Of the last GDD solve, before the final forward step (nv).
   const VectorX& acceleration() const { return expansion.acceleration(); }
 
  private:
-  void hold(const Input& input);
-  SolveStatus finish(const Model& model, State& state, Data& data, ContactSource* contacts);
   template <class Solver>
-  SolveStatus solveAndAdvance(Solver& used, const Model& model, State& state, Data& data,
-                              ContactSource* contacts);
+  const VectorX* solve(Solver& used, const Model& model, const State& state, Data& data);
 
   GoalCost cost_;
   HoldingForce holding_;
   VectorX coordinates_;  ///< y of the control (nv)
   Input held_;           ///< over the step, with soft friction; its τ is the control's at the end
+  VectorX outside_;      ///< τ of the caller's input (nv), or empty
 };
 
 }  // namespace softgauss::gdd

@@ -169,6 +169,8 @@ std::string Summary::json() const {
                               {"substeps", integration.substeps},
                               {"rejections", integration.rejections},
                               {"glances", integration.glances}};
+  else if (integration.parts > 0)
+    summary["integration"] = {{"parts", integration.parts}, {"repeats", integration.repeats}};
   if (islands.on)
     summary["islands"] = {{"most", islands.most},
                           {"fewest_awake", islands.fewestAwake},

@@ -61,6 +61,8 @@ struct IntegrationCounts {
   long substeps = 0;     ///< parts that steps went in
   long rejections = 0;   ///< parts that were tried and shortened
   long glances = 0;      ///< parts cut short lest shapes pass through each other unseen
+  long parts = 0;        ///< into which the leapfrog has divided steps, summed (T.136)
+  long repeats = 0;      ///< solves of the leapfrog that were repeated, with another prediction
 };
 
 /// Islands over the steps of a run; sums count every step.

@@ -57,6 +57,53 @@ void poseProblem(const gdd::Reach& reach, const gdd::GoalContext& context, gdd::
   gdd::VirtualDamping().addCost(context, cost);
 }
 
+namespace {
+
+/// Puts the scripted goals of an operator to a contestant, step after step, and records what it
+/// finds. A step that is solved again is recorded as it was solved last.
+class Recording final : public StepControl {
+ public:
+  Recording(const Robot& robot, Contestant& recorder, double weight, std::uint64_t seed,
+            Dataset& dataset)
+      : recorder_(recorder),
+        dataset_(dataset),
+        scripted_(robot.model, robot.deviate, robot.lowest, weight, seed),
+        cost_(robot.model.nv),
+        box_(robot.model) {}
+
+  void begin() { begins_ = true; }
+
+  const VectorX* apply(const Model& model, const State& state, Data& data) noexcept override {
+    const auto taken = static_cast<int>(dataset_.records.size());
+    if (begins_ && taken % kStepsPerGoal == 0)
+      dataset_.goals.push_back(scripted_.nextGoal(data.kinematics));
+    poseProblem(dataset_.goals.back(), {model, state, data}, cost_);
+    const gdd::GddReport report = recorder_.solve(model, cost_, box_, data, state.warmstart);
+    if (report.status == gdd::GddStatus::notFinite) {
+      data.stats.status = SolveStatus::notFinite;
+      return nullptr;
+    }
+    if (!begins_) dataset_.records.pop_back();
+    begins_ = false;
+    dataset_.records.push_back({state, box_.clamp(recorder_.force()), recorder_.acceleration(),
+                                report.status, data.stats.contacts,
+                                static_cast<int>(dataset_.goals.size()) - 1});
+    setAppliedForce(dataset_.records.back().control, data.forces);
+    return &recorder_.acceleration();
+  }
+  void keep(WarmStart& warmstart) noexcept override { recorder_.keepWarmStart(warmstart); }
+
+ private:
+  Contestant& recorder_;
+  Dataset& dataset_;
+  ScriptedOperator scripted_;
+  gdd::GoalCost cost_;
+  const gdd::ControlBox box_;
+  bool begins_ = true;
+};
+
+}  // namespace
+
 Dataset recordRun(const Robot& robot, Contestant& recorder, int records, double weight,
                   std::uint64_t seed, Progress& progress) {
   const Model& model = robot.model;
@@ -64,32 +111,16 @@ Dataset recordRun(const Robot& robot, Contestant& recorder, int records, double 
   dataset.recorder = recorder.name();
   dataset.weight = weight * robot.weightScale;
   dataset.records.reserve(records);
-  ScriptedOperator scripted(model, robot.deviate, robot.lowest, dataset.weight, seed);
+  Recording recording(robot, recorder, dataset.weight, seed, dataset);
   State state = robot.initial;
   Data data(model);
-  gdd::GoalCost cost(model.nv);
-  const gdd::ControlBox box(model);
-  const auto fail = [&] {
-    throw std::runtime_error(
-        fmt::format("{}, goal weight {:g} kg: the recording became non-finite at t = {:.6g} s",
-                    robot.name, dataset.weight, state.time));
-  };
   for (int i = 0; i < records && !interrupted(); ++i) {
     progress.show(i, records);
-    if (computeStages(model, {}, state, data, robot.contacts.get()) == SolveStatus::notFinite)
-      fail();
-    if (i % kStepsPerGoal == 0) dataset.goals.push_back(scripted.nextGoal(data.kinematics));
-    poseProblem(dataset.goals.back(), {model, state, data}, cost);
-    const gdd::GddReport report = recorder.solve(model, cost, box, data, state.warmstart);
-    if (report.status == gdd::GddStatus::notFinite) fail();
-    dataset.records.push_back({state, box.clamp(recorder.force()), recorder.acceleration(),
-                               report.status, data.stats.contacts,
-                               static_cast<int>(dataset.goals.size()) - 1});
-    setAppliedForce(dataset.records.back().control, data.forces);
-    if (advance(model, {}, robot.contacts.get(), &recorder.acceleration(), data, state) ==
-        SolveStatus::notFinite)
-      fail();
-    recorder.keepWarmStart(state.warmstart);
+    recording.begin();
+    if (step(model, {}, state, data, robot.contacts.get(), &recording) == SolveStatus::notFinite)
+      throw std::runtime_error(
+          fmt::format("{}, goal weight {:g} kg: the recording became non-finite at t = {:.6g} s",
+                      robot.name, dataset.weight, state.time));
   }
   return dataset;
 }

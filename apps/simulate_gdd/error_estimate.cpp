@@ -32,6 +32,7 @@ double factorOf(const Options& options) {
   if (options.stepDoubling) return 1.0;
   switch (options.integrator) {
     case Integrator::semiImplicitEuler:
+    case Integrator::leapfrog:  // where rows act, and trees that are followed have no error
     case Integrator::implicit:
       return kFirstOrder;
     case Integrator::implicitMidpoint:

@@ -31,7 +31,7 @@ void IslandRun::take(const Input& input, State& state, Data& data) {
   data.stats = islands_.stats();
   collectContacts(data.contacts.contacts);
   if (data.stats.status == SolveStatus::notFinite) return;
-  data.forward.a = islands_.acceleration();
+  data.forward.a = data.acceleration = islands_.acceleration();
   if (controls_)
     data.forces.tau = controller_.control;
   else if (input.tau.size() > 0)

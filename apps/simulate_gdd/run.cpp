@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "apps/shared/wall_clock.hpp"
 #include "apps/simulate_gdd/error_estimate.hpp"
@@ -62,6 +63,7 @@ class Runner {
         data_(model_),
         controller_(model_),
         outside_(options, scene),
+        kinematics_(model_),
         summary_(model_) {
     setUp(options, scene, controller_);
     if (!options.log.empty()) log_.emplace(options.log, model_);
@@ -136,8 +138,8 @@ class Runner {
     record_.time = state_.time;
     record_.q = state_.q;
     record_.v = state_.v;
-    if (islands_) computeKinematics(model_, state_, data_.kinematics);
-    outside_.at(model_, state_, data_.kinematics, input_);
+    computeKinematics(model_, state_, kinematics_);
+    outside_.at(model_, state_, kinematics_, input_);
     if (errorEstimate_) before_ = state_;
     const Clock::time_point start = Clock::now();
     const SolveStatus status = islands_ ? islands_->step(input_)
@@ -164,7 +166,7 @@ class Runner {
   void record() {
     const bool gdd = !controller_.goals.empty();
     const StepStats& stats = data_.stats;
-    record_.a = data_.forward.a;
+    record_.a = data_.plan.drifts ? data_.acceleration : data_.forward.a;
     record_.u = data_.forces.tau;
     record_.contacts = stats.contacts;
     record_.constraints = stats.rows;
@@ -177,7 +179,7 @@ class Runner {
     record_.forwardUs = record_.stepUs - record_.gddUs;
     record_.physicsViolation =
         islands_ ? islands_->physicsViolation() : physicsViolation(model_, data_, scratch_);
-    const Energy energy = computeEnergy(model_, data_.kinematics, record_.q, record_.v);
+    const Energy energy = computeEnergy(model_, kinematics_, record_.q, record_.v);
     record_.energy = energy.total();
     record_.kineticEnergy = energy.kinetic;
     record_.maxPenetration = stats.maxPenetration;
@@ -192,10 +194,13 @@ class Runner {
       if (std::isfinite(bound) && bound > 0.0)
         summary_.addControlRatio(std::abs(controller_.commands[k]) / bound);
     }
+    // What is seen is the step's start, where the record is of.
+    std::swap(data_.kinematics, kinematics_);
     if (islands_)
       replay_->addStep(record_, data_, islands_->contacts());
     else
       replay_->addStep(record_, data_);
+    std::swap(data_.kinematics, kinematics_);
   }
 
   void count(const StepStats& stats) {
@@ -211,6 +216,8 @@ class Runner {
     io::IntegrationCounts& i = summary_.integration;
     i.evaluations += stats.evaluations;
     i.substeps += stats.substeps;
+    i.parts += data_.plan.drifts ? stats.parts : 0;
+    i.repeats += stats.repeats;
     i.rejections += stats.rejections;
     i.glances += stats.glances;
   }
@@ -332,6 +339,7 @@ class Runner {
   gdd::GoalDirectedController controller_;
   const OutsideInput outside_;
   Input input_;
+  Kinematics kinematics_;  ///< at the step's start
   std::optional<IslandRun> islands_;
   std::optional<ErrorEstimate> errorEstimate_;
   State before_;  ///< the step, for that

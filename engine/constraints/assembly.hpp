@@ -18,8 +18,11 @@ struct Assembly {
   /// How far v lies behind q [s]: half a step with leapfrog's integrators (T.116).
   double lag() const {
     const Options& o = model.options;
-    return o.midpointCoriolis && !o.looksWithin() ? 0.5 * o.timestep : 0.0;
+    const bool lags = o.integrator != Integrator::leapfrog && o.midpointCoriolis;
+    return lags && !o.looksWithin() ? 0.5 * o.timestep : 0.0;
   }
+  /// The velocity with which joints turn through the step (nv).
+  const VectorX& turns() const { return turning ? *turning : state.v; }
 
   const Model& model;
   const State& state;
@@ -28,6 +31,7 @@ struct Assembly {
   const InverseWeights& weights;
   const TreeSparsity& tree;             ///< pattern of M: row i lists the dofs that move body(i)
   bool softFriction = false;            ///< Input::softFriction
+  const VectorX* turning = nullptr;     ///< null: State::v
   const CarriedLoad* load = nullptr;    ///< null: no row knows of a load
   const NearbyPoses* nearby = nullptr;  ///< null: no v that lags, no tie, or no turn
 };

@@ -54,8 +54,9 @@ void ConnectionRows::assemble(const Assembly& in) {
   if (model.options.effects.has(Effect::equality)) {
     for (const Connection& c : model.connections) {
       const PointOffset offset(in, c.bodyA, c.p_AP, c.bodyB, c.p_BP);
-      const Softness soft = softnessAt(c.impedance, offset.r.norm(),
-                                       tieWeight(in, c.impedance, c.bodyA, c.bodyB), model.options);
+      const Softness soft =
+          tieSoftness(c.impedance, offset.r.norm(), tieWeight(in, c.impedance, c.bodyA, c.bodyB),
+                      model.options);
       const RelativeMotion motion = offsetMotion(c.bodyA, offset.p_WA, c.bodyB, offset.p_WB);
       jacobian_.add(model, in.kinematics, in.tree, motion);
       pushRows(motion, offset, soft);

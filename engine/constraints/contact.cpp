@@ -158,7 +158,7 @@ std::optional<Touch> touchAt(const Assembly& in, int i) {
       contactSoftness(material, touch.frictionDim, touch.distance, weight, model.options);
   if (model.options.ownSoftness && !material.spring &&
       (isSprung(model, c.bodyA) || isSprung(model, c.bodyB)))
-    touch.softness = withLeastMass(touch.softness, model.options.timestep);
+    touch.softness = withLeastMass(touch.softness, model.options.rowTimestep());
   if (touch.frictionDim > 0) {
     const double mu = material.slidingFriction;
     const double spin = std::max(material.torsionalFriction, kSmallestFriction);

@@ -56,7 +56,7 @@ std::optional<Runs> alongSurface(const Shape& shape, const Transform& X_WG, cons
 std::optional<ContactBias> contactBias(const Model& model, const Kinematics& k, const Contact& c) {
   // What looks within the step asks for the rate at each of its places.
   const double h = model.options.looksWithin() ? 0.0 : model.options.timestep;
-  const Motion &V_A = k.V[c.bodyA], &V_B = k.V[c.bodyB];
+  const Motion &V_A = k.turning()[c.bodyA], &V_B = k.turning()[c.bodyB];
   if (!(h * std::max(c.n_W.cross(V_A.angular).norm(), c.n_W.cross(V_B.angular).norm()) <= kTilts))
     return std::nullopt;
   const Geometry &A = model.geometries[c.geometryA], &B = model.geometries[c.geometryB];
@@ -70,8 +70,8 @@ std::optional<ContactBias> contactBias(const Model& model, const Kinematics& k, 
       alongSurface(flatA ? B.shape : A.shape, flatA ? X_WB : X_WA, n, turns, c, h);
   if (!runs) return std::nullopt;
 
-  const Vector3 v_A = pointVelocity(model, k, c.bodyA, c.p_WC),
-                v_B = pointVelocity(model, k, c.bodyB, c.p_WC);
+  const Vector3 v_A = pointTurning(model, k, c.bodyA, c.p_WC),
+                v_B = pointTurning(model, k, c.bodyB, c.p_WC);
   const Vector3 slips = v_B - v_A;
   const Vector3 v_P = (flatA ? v_B : v_A) + runs->along + 0.5 * c.distance * turns.cross(n) -
                       0.5 * c.n_W.dot(slips) * n;

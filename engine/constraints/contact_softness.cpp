@@ -5,18 +5,6 @@
 #include <cmath>
 
 namespace softgauss {
-namespace {
-
-Softness softnessOf(const ContactSpring& spring, double timestep) {
-  const double D = timestep * (spring.stiffness * timestep + spring.damping);
-  Softness s;
-  s.R = 1.0 / D;
-  s.stiffness = spring.stiffness / D;
-  s.damping = 1.0 / timestep;
-  return s;
-}
-
-}  // namespace
 
 double restingMass(const Model& model, int bodyA, int bodyB) {
   const int a = model.bodies[bodyA].tree, b = model.bodies[bodyB].tree;
@@ -54,7 +42,7 @@ std::optional<ReferenceSpring> bouncing(const Impedance& p, const Options& optio
   // (T.115) damps more, never less.
   if (!p.direct && p.dampingRatio > 0.5 * (1.0 + kRounding)) return std::nullopt;
   // k d = K d/d_max², b = B/d_max.
-  const Softness s = softnessAt(p, 0.0, 1.0, options.timestep, options.ownSoftness);
+  const Softness s = softnessAt(p, 0.0, 1.0, options.rowTimestep(), options.ownSoftness);
   const double dMax = std::clamp(p.dMax, 1e-4, 0.9999);
   const double K = s.stiffness * dMax * dMax / impedanceAt(p, 0.0), B = s.damping * dMax;
   if (!(B * B <= K * (1.0 + kRounding))) return std::nullopt;
@@ -69,7 +57,7 @@ Material inForce(const Material& pair, double mass, const Options& options) {
   Material springy = pair;
   ContactSpring& spring = springy.spring.emplace();
   spring.stiffness = mass * K;
-  spring.damping = mass * std::max(0.0, B - options.timestep * K);
+  spring.damping = mass * std::max(0.0, B - restOfStep(options) * K);
   return springy;
 }
 
@@ -84,7 +72,7 @@ Softness contactSoftness(const Material& pair, int frictionDim, double distance,
                          const Options& options) {
   const bool edges = frictionDim > 0 && options.cone == Cone::pyramidal;
   if (pair.spring) {
-    Softness s = softnessOf(*pair.spring, options.timestep);
+    Softness s = atStepsEnd(pair.spring->stiffness, pair.spring->damping, options);
     if (edges) s.R *= 2.0 * frictionDim;
     return s;
   }

@@ -127,9 +127,40 @@ inline Softness takingItOnce(Softness s, double timestep) {
 /// The same by the options of a model: in `--compatibility mujoco` rows are as MuJoCo's.
 inline Softness softnessAt(const Impedance& p, double distance, double inverseInertia,
                            const Options& options) {
-  const double h = options.timestep;
+  const double h = options.rowTimestep();
   if (!options.ownSoftness) return softnessAt(p, distance, inverseInertia, h);
   return takingItOnce(softnessAt(p, distance, inverseInertia, h, true), h);
+}
+
+/// From where positions are taken to the step's end [s]: the leapfrog takes them at mid-step.
+inline double restOfStep(const Options& options) {
+  return options.integrator == Integrator::leapfrog ? 0.5 * options.timestep : options.timestep;
+}
+
+/// The row whose spring K and damper B are those of the step's end, r + t ẋ⁺ and ẋ⁺ = ẋ + h ẍ with
+/// t the rest of the step:
+///
+///   f = −K (r + t ẋ⁺) − B ẋ⁺ = −D (ẍ + ẋ/h + (K/D) r),     D = h (t K + B)               (T.137)
+///
+/// It has no more mass than its force has work to do: K and B may change from step to step, and
+/// nothing is gained by it.
+inline Softness atStepsEnd(double K, double B, const Options& options) {
+  const double h = options.timestep, D = h * (restOfStep(options) * K + B);
+  Softness s;
+  s.R = 1.0 / D;
+  s.stiffness = K / D;
+  s.damping = 1.0 / h;
+  return s;
+}
+
+/// Of ties: softnessAt(), in the leapfrog as a spring and a damper at the step's end.
+inline Softness tieSoftness(const Impedance& p, double distance, double inverseInertia,
+                            const Options& options) {
+  const Softness s = softnessAt(p, distance, inverseInertia, options);
+  if (options.integrator != Integrator::leapfrog || !(s.damping > 0.0)) return s;
+  Softness atEnd = atStepsEnd(s.stiffness / s.R, s.damping / s.R, options);
+  atEnd.perInertia = s.perInertia * (atEnd.R / s.R);
+  return atEnd;
 }
 
 }  // namespace softgauss

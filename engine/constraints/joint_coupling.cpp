@@ -39,9 +39,9 @@ void CouplingRows::assemble(const Assembly& in) {
         rate -= pair.slope * in.state.v[leader.v];
         if (model.options.ownSoftness) pair.bend = c.curvature(q);
       }
-      const Softness soft = softnessAt(c.impedance, r, weight, model.options);
+      const Softness soft = tieSoftness(c.impedance, r, weight, model.options);
       pair.turning =
-          (1.0 - in.lag() * soft.damping) * -pair.bend * std::pow(in.state.v[pair.leader], 2.0);
+          (1.0 - in.lag() * soft.damping) * -pair.bend * std::pow(in.turns()[pair.leader], 2.0);
       pairs_.push_back(pair);
       reference.push_back(soft.referenceAcceleration(rate, r) - pair.turning);
       pushSoftness(soft);

@@ -33,7 +33,7 @@ Softness limitSoftness(const Assembly& in, const JointRange& range, double r) {
   const double weight = in.weights.dof[in.model.bodies[range.body].v];
   const auto softness = [&](double A) { return softnessAt(range.impedance, r, A, options); };
   if (!options.ownSoftness) return softness(weight);
-  if (isSprung(in.model, range.body)) return withLeastMass(softness(weight), options.timestep);
+  if (isSprung(in.model, range.body)) return withLeastMass(softness(weight), options.rowTimestep());
   return softness(carrying(weight, kOfCarried * carriedInertia(in, range.body)));
 }
 

@@ -23,8 +23,8 @@ struct RotationOffset : Offset {
     J_r = 0.5 * s * E * R_WA.transpose();
     const Kinematics& k = in.kinematics;
     const Motion &A = k.A_bias[weld.bodyA], &B = k.A_bias[weld.bodyB];
-    const Vector3 wA = k.V[weld.bodyA].angular, w = wA - k.V[weld.bodyB].angular;
-    rate = J_r * w;
+    rate = J_r * (k.V[weld.bodyA].angular - k.V[weld.bodyB].angular);
+    const Vector3 wA = k.turning()[weld.bodyA].angular, w = wA - k.turning()[weld.bodyB].angular;
     bias = J_r * (A.angular - B.angular - wA.cross(w)) - 0.25 * w.squaredNorm() * r;
     lag = in.lag();  // of what turns together the rest is nothing
   }
@@ -43,7 +43,7 @@ void WeldRows::assemble(const Assembly& in) {
       const RotationOffset turn(in, weld, X_WA.R, X_WB.R);
       const double distance = std::hypot(point.r.norm(), turn.r.norm());
       const auto softness = [&](double weight) {
-        return softnessAt(weld.impedance, distance, weight, model.options);
+        return tieSoftness(weld.impedance, distance, weight, model.options);
       };
       RelativeMotion motion = offsetMotion(weld.bodyA, X_WA.p, weld.bodyB, X_WB.p);
       const Softness linear = softness(tieWeight(in, weld.impedance, weld.bodyA, weld.bodyB));

@@ -68,6 +68,12 @@ void computePoses(const Model& model, const VectorX& q, Kinematics& k) {
 void computeKinematics(const Model& model, const State& state, Kinematics& k) {
   computePoses(model, state.q, k);
   computeVelocities(model, k, state.v, k.V, k.A_bias);
+  k.V_turning.clear();
+}
+
+void setTurning(const Model& model, const VectorX& v, Kinematics& k) {
+  k.V_turning.resize(model.bodies.size());
+  computeVelocities(model, k, v, k.V_turning, k.A_bias);
 }
 
 void computeVelocities(const Model& model, const Kinematics& k, const VectorX& v,
@@ -89,10 +95,23 @@ void computeVelocities(const Model& model, const Kinematics& k, const VectorX& v
   }
 }
 
-Vector3 pointVelocity(const Model& model, const Kinematics& k, int body, const Vector3& p_WP) {
+namespace {
+
+Vector3 pointAt(const Model& model, const Kinematics& k, const std::vector<Motion>& V, int body,
+                const Vector3& p_WP) {
   if (body == 0) return Vector3::Zero();
   const Vector3 r = p_WP - k.p_WO[model.bodies[body].tree];
-  return k.V[body].linear + k.V[body].angular.cross(r);
+  return V[body].linear + V[body].angular.cross(r);
+}
+
+}  // namespace
+
+Vector3 pointVelocity(const Model& model, const Kinematics& k, int body, const Vector3& p_WP) {
+  return pointAt(model, k, k.V, body, p_WP);
+}
+
+Vector3 pointTurning(const Model& model, const Kinematics& k, int body, const Vector3& p_WP) {
+  return pointAt(model, k, k.turning(), body, p_WP);
 }
 
 Vector3 pointBiasAcceleration(const Model& model, const Kinematics& k, int body,
@@ -100,8 +119,9 @@ Vector3 pointBiasAcceleration(const Model& model, const Kinematics& k, int body,
   if (body == 0) return Vector3::Zero();
   const Vector3 r = p_WP - k.p_WO[model.bodies[body].tree];
   const Motion& A = k.A_bias[body];
-  const Vector3& omega = k.V[body].angular;
-  const Vector3 v = k.V[body].linear + omega.cross(r);
+  const Motion& V = k.turning()[body];
+  const Vector3& omega = V.angular;
+  const Vector3 v = V.linear + omega.cross(r);
   // Classical from spatial acceleration: a = A_lin + α × r + ω × v.
   return A.linear + A.angular.cross(r) + omega.cross(v);
 }

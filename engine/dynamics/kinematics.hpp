@@ -19,6 +19,11 @@ struct Kinematics {
   std::vector<Motion> S;        ///< (nv) motion subspace of each dof, about O
   std::vector<Motion> V;        ///< (bodies) spatial velocity about O
   std::vector<Motion> A_bias;  ///< (bodies) spatial acceleration at v̇ = 0, without gravity: J̇ v
+  /// (bodies) the velocity with which bodies turn through the step, where setTurning() has
+  /// predicted one; empty: V. A_bias is of it.
+  std::vector<Motion> V_turning;
+
+  const std::vector<Motion>& turning() const { return V_turning.empty() ? V : V_turning; }
 
   Kinematics() = default;
   explicit Kinematics(const Model& model);
@@ -26,12 +31,15 @@ struct Kinematics {
 
 /// Poses and axes from q.
 void computePoses(const Model& model, const VectorX& q, Kinematics& kinematics);
-/// These, and velocities from v.
+/// These, and velocities from v, also those of turning.
 void computeKinematics(const Model& model, const State& state, Kinematics& kinematics);
 
 /// Velocities and bias accelerations of all bodies for the joint velocity v, at the poses of k.
 void computeVelocities(const Model& model, const Kinematics& k, const VectorX& v,
                        std::vector<Motion>& V, std::vector<Motion>& A_bias);
+
+/// What turns, does so by this velocity (nv): Coriolis forces and J̇ v are of it, V of State::v.
+void setTurning(const Model& model, const VectorX& v, Kinematics& k);
 
 /// Pose of a named frame in the world.
 inline Transform framePose(const Model& model, const Kinematics& k, int frame) {
@@ -42,7 +50,11 @@ inline Transform framePose(const Model& model, const Kinematics& k, int frame) {
 /// Velocity [m/s] of the point of `body` that is now at p_WP.
 Vector3 pointVelocity(const Model& model, const Kinematics& k, int body, const Vector3& p_WP);
 
-/// Acceleration [m/s²] at v̇ = 0 (that is, J̇ v) of the point of `body` that is now at p_WP.
+/// The same of the velocity of turning.
+Vector3 pointTurning(const Model& model, const Kinematics& k, int body, const Vector3& p_WP);
+
+/// Acceleration [m/s²] at v̇ = 0 (that is, J̇ v, of turning) of the point of `body` that is now at
+/// p_WP.
 Vector3 pointBiasAcceleration(const Model& model, const Kinematics& k, int body,
                               const Vector3& p_WP);
 

@@ -42,7 +42,7 @@ void biasFrom(const Model& model, const Kinematics& k, const std::vector<Motion>
 
 void computeBias(const Model& model, const Kinematics& k, const MassMatrix& inertia,
                  RneaWorkspace& work, VectorX& bias) {
-  biasFrom(model, k, k.V, k.A_bias, inertia, work, bias);
+  biasFrom(model, k, k.turning(), k.A_bias, inertia, work, bias);
 }
 
 void computeBiasAt(const Model& model, const Kinematics& k, const MassMatrix& inertia,
@@ -55,15 +55,16 @@ void inverseDynamicsTree(const Model& model, const Kinematics& k, const MassMatr
                          const VectorX& vdot, RneaWorkspace& work, VectorX& tau) {
   const Vector3 g = gravityOf(model);
   const bool coriolis = model.options.effects.has(Effect::coriolis);
+  const std::vector<Motion>& V = k.turning();
   for (int b = 1; b < model.bodyCount(); ++b) {
     const Body& body = model.bodies[b];
     // Acceleration without the bias part, which the kinematics already hold.
     Motion& A = work.A[b];
     A = body.parent == 0 ? Motion{} : work.A[body.parent];
     for (int i = body.v; i < body.v + body.dofs; ++i) A += k.S[i] * vdot[i];
-    work.F[b] = body.massless ? Force{}
-                              : bodyForce(inertia.body[b], k.V[b], coriolis ? A + k.A_bias[b] : A,
-                                          g, coriolis);
+    work.F[b] = body.massless
+                    ? Force{}
+                    : bodyForce(inertia.body[b], V[b], coriolis ? A + k.A_bias[b] : A, g, coriolis);
   }
   project(model, k, work, tau);
   if (model.options.effects.has(Effect::armature))

@@ -73,9 +73,11 @@ Islands::Island::Island(const Model& whole, std::vector<int> ofUnits, const std:
 Islands::Islands(const Model& model, IslandContacts* contacts, Sleep sleep,
                  IslandControls* controls)
     : model_(model), contacts_(contacts), controls_(controls), sleep_(sleep), units_(model) {
-  if (model.options.integrator != Integrator::semiImplicitEuler || model.options.stepDoubling)
+  const Integrator integrator = model.options.integrator;
+  if ((integrator != Integrator::semiImplicitEuler && integrator != Integrator::leapfrog) ||
+      model.options.stepDoubling)
     throw ModelError({}, "islands",
-                     "are stepped by semi-implicit-euler, not by " +
+                     "are stepped by semi-implicit-euler or leapfrog, not by " +
                          std::string(integratorName(model.options.integrator)) +
                          ", which evaluates the dynamics within the step");
   islandOf_.resize(idx(units_.size()), nullptr);
@@ -154,6 +156,7 @@ void Islands::fallAsleep(Island& island) {
   island.awake = false;
   island.state.v.setZero();
   island.state.warmstart.a.setZero();
+  island.state.a.setZero();
   island.part.scatter(model_, island.state, state_);
   island.part.scatter(model_, island.state.v, acceleration_);
   computeKinematics(island.part.model, island.state, island.data.kinematics);
@@ -206,8 +209,9 @@ void Islands::wakeWhatIsControlled() {
 }
 
 void Islands::pose(Island& island) {
-  if (!island.posed) computeKinematics(island.part.model, island.state, island.data.kinematics);
-  island.posed = true;
+  const bool drifts = island.data.plan.drifts;
+  if (!island.posed || drifts) poseForStep(island.part.model, island.state, island.data);
+  island.posed = !drifts;
 }
 
 /// One step of an island, and the poses where it ends: while its memory is at hand.
@@ -238,11 +242,8 @@ SolveStatus Islands::take(Island& island, const Input& input) {
     return status;
   }
   if (island.control) island.control->release();
-  if (computeStagesAt(model, part, state, island.data, island.contacts.get()) ==
-      SolveStatus::notFinite)
-    return SolveStatus::notFinite;
-  const VectorX* guess = state.warmstart.valid ? &state.warmstart.a : nullptr;
-  const SolveStatus status = advance(model, part, island.contacts.get(), guess, island.data, state);
+  const SolveStatus status =
+      softgauss::step(model, part, state, island.data, island.contacts.get(), nullptr, true);
   if (status == SolveStatus::notFinite) return status;
   if (controls_) {  // a control that comes to act starts from there
     state.warmstart.gddA = state.warmstart.a;
@@ -279,7 +280,9 @@ SolveStatus Islands::step(const Input& input) noexcept {
   state_.warmstart.valid = true;
   for (Island* island : awake_) {
     island->part.scatter(model_, island->state, state_);
-    island->part.scatter(model_, island->data.forward.a, acceleration_);
+    const Data& data = island->data;
+    island->part.scatter(model_, data.plan.drifts ? data.acceleration : data.forward.a,
+                         acceleration_);
     island->lastUse = clock_;
     ++island->age;
     if (island->controlled) state_.warmstart.gddValid = true;
@@ -346,34 +349,8 @@ void Islands::collectStats() {
   islandStats_.islands = active_;
   islandStats_.awake = static_cast<int>(awake_.size());
   for (const Island* island : awake_) {
-    const StepStats& s = island->data.stats;
     islandStats_.controlled += island->controlled;
-    stats_.status = std::max(stats_.status, s.status);
-    stats_.contacts += s.contacts;
-    stats_.rows += s.rows;
-    stats_.iterations += s.iterations;
-    stats_.factorizations += s.factorizations;
-    stats_.residual = std::max(stats_.residual, s.residual);
-    stats_.realised = std::max(stats_.realised, s.realised);
-    stats_.maxPenetration = std::max(stats_.maxPenetration, s.maxPenetration);
-    stats_.pairsSkipped += s.pairsSkipped;
-    stats_.followedTrees += s.followedTrees;
-    stats_.abandonedTrees += s.abandonedTrees;
-    stats_.kicks += s.kicks;
-    stats_.swings += s.swings;
-    stats_.substeps += s.substeps;
-    stats_.shortSolves += s.shortSolves;
-    stats_.roundedSolves += s.roundedSolves;
-    stats_.refusedGuesses += s.refusedGuesses;
-    stats_.keptSlips += s.keptSlips;
-    stats_.jumps += s.jumps;
-    stats_.glances += s.glances;
-    stats_.unseen += s.unseen;
-    stats_.times.kinematics += s.times.kinematics;
-    stats_.times.collision += s.times.collision;
-    stats_.times.rows += s.times.rows;
-    stats_.times.solve += s.times.solve;
-    stats_.times.integrate += s.times.integrate;
+    stats_.add(island->data.stats);
   }
 }
 

@@ -61,8 +61,9 @@ class Islands {
 
   /// `contacts` may be null: nothing collides. `controls` may be null: every step is the ordinary
   /// one. Model, contacts and controls must outlive this object.
-  /// Throws ModelError when the model's integrator is not semi-implicit Euler: the others evaluate
-  /// the dynamics within the step, where islands may meet that were apart at its start.
+  /// Throws ModelError when the model's integrator is neither semi-implicit Euler nor the leapfrog:
+  /// the others evaluate the dynamics within the step, where islands may meet that were apart at
+  /// its start.
   explicit Islands(const Model& model, IslandContacts* contacts, Sleep sleep = {},
                    IslandControls* controls = nullptr);
   ~Islands();

@@ -204,6 +204,8 @@ void SubModel::gather(const Model& whole, const State& from, State& to) const {
       (to.warmstart.*warm).resize(model.nv);
       gather(whole, ofWhole.*warm, to.warmstart.*warm);
     }
+  if (from.a.size() == whole.nv) gather(whole, from.a, to.a);
+  to.aIsKnown = from.aIsKnown;
   to.warmstart.valid = ofWhole.valid;
   to.warmstart.gddValid = ofWhole.gddValid;
   to.time = from.time;
@@ -216,6 +218,10 @@ void SubModel::scatter(const Model& whole, const State& from, State& to) const {
     to.velocityOf[static_cast<std::size_t>(trees[t])] = from.velocityOf[t];
   }
   scatter(whole, from.v, to.v);
+  if (to.a.size() == whole.nv) {
+    scatter(whole, from.a, to.a);
+    to.aIsKnown = to.aIsKnown || from.aIsKnown;
+  }
   for (const auto warm : kWarmVectors)
     if ((from.warmstart.*warm).size() == model.nv && (to.warmstart.*warm).size() == whole.nv)
       scatter(whole, from.warmstart.*warm, to.warmstart.*warm);

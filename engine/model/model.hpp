@@ -98,6 +98,7 @@ enum class Cone : std::uint8_t {
 /// How a step moves the state on; one file each in step/integrators.
 enum class Integrator : std::uint8_t {
   semiImplicitEuler,  ///< order 1, one solve, implicit damping (semi_implicit_euler.hpp)
+  leapfrog,           ///< order 2, one solve, moves as was solved (leapfrog.hpp)
   implicit,           ///< order 1, one solve, Coriolis derivative too (implicit_velocity.hpp)
   implicitMidpoint,   ///< order 2, keeps the energy balance (implicit_midpoint.hpp)
   rungeKutta4,        ///< order 4, four solves (runge_kutta.hpp)
@@ -113,6 +114,8 @@ struct IntegratorName {
 inline constexpr IntegratorName kIntegratorNames[] = {
     {Integrator::semiImplicitEuler, "semi-implicit-euler",
      "order 1, one solve a step, implicit joint damping"},
+    {Integrator::leapfrog, "leapfrog",
+     "order 2, one solve a step, implicit joint damping, moves as goals have been solved"},
     {Integrator::implicit, "implicit",
      "order 1, one solve a step, implicit in velocity, Coriolis forces included"},
     {Integrator::implicitMidpoint, "implicit-midpoint",
@@ -148,6 +151,10 @@ struct Options {
   bool midpointCoriolis = true;  ///< see integrators/semi_implicit_euler.hpp
   Cone cone = Cone::pyramidal;   ///< of contacts with friction
   double impedanceRatio = 1.0;   ///< impratio: friction against normal impedance
+  /// Of the leapfrog: what turns further in a step is stepped in parts (T.136) [rad].
+  double partAngle = 0.1;
+  /// h of the step that this one is a part of, whose rows and stiff springs it keeps; 0: of none.
+  double wholeTimestep = 0.0;
   /// Softness beyond MuJoCo's: (T.80), (T.94), (T.96), (T.97), (T.115), (T.117), and the curvature
   /// of couplings (T.30).
   bool ownSoftness = true;
@@ -159,11 +166,15 @@ struct Options {
   /// Softness and Euler's step as MuJoCo has them, `--compatibility mujoco`, or as softgauss does.
   void useMujocoModel(bool mujoco = true) {
     implicitInSolve = midpointCoriolis = ownSoftness = !mujoco;
+    if (mujoco && integrator == Integrator::leapfrog) integrator = Integrator::semiImplicitEuler;
   }
-  /// The integrator moves on with one solve, that of the step's start, unless it is doubled.
+  /// The integrator moves on with one solve, unless it is doubled.
   bool solvesOnce() const {
-    return integrator == Integrator::semiImplicitEuler || integrator == Integrator::implicit;
+    return integrator == Integrator::semiImplicitEuler || integrator == Integrator::leapfrog ||
+           integrator == Integrator::implicit;
   }
+  /// h by which rows bound their softness: what a whole step follows, a part of it does too [s].
+  double rowTimestep() const { return wholeTimestep > 0.0 ? wholeTimestep : timestep; }
   /// The step evaluates the dynamics again within it.
   bool looksWithin() const { return !solvesOnce() || stepDoubling; }
 };

@@ -79,7 +79,8 @@ Plan::Plan(const Model& model) : options_(model.options) {
                  }));
   const bool euler = model.options.integrator == Integrator::semiImplicitEuler;
   midpoint = coriolis && model.options.midpointCoriolis && euler;
-  inSolve = model.options.implicitInSolve && euler;
+  drifts = model.options.integrator == Integrator::leapfrog;
+  inSolve = (model.options.implicitInSolve && euler) || drifts;
   if (run(Effect::damping, anyDof([](const Dof& d) { return d.damping > 0.0; }))) {
     damping.resize(model.nv);
     for (int i = 0; i < model.nv; ++i) damping[i] = model.dofs[i].damping;

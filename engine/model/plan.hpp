@@ -75,7 +75,8 @@ struct Plan {
   bool gravity = false;         ///< a gravity that is not zero
   bool coriolis = false;        ///< a body that can turn
   bool midpoint = false;        ///< Coriolis forces of mid-step, Options::midpointCoriolis
-  bool inSolve = false;         ///< Options::implicitInSolve, of semi-implicit Euler
+  bool drifts = false;          ///< the leapfrog: positions drift to mid-step before the solve
+  bool inSolve = false;         ///< Options::implicitInSolve, of semi-implicit Euler and leapfrog
   bool externalWrench = false;  ///< wrenches of Input count
   bool diagonal = false;        ///< M is diagonal, and the step needs no factor where no row acts
   VectorX damping;              ///< (nv) of the dofs; empty: none has any

@@ -33,6 +33,7 @@ void mix(std::uint64_t& h, const double* data, Eigen::Index count) {
 
 State::State(const Model& model)
     : q(model.q0), v(VectorX::Zero(model.nv)), velocityOf(model.trees.size(), VelocityOf::asGiven) {
+  a = VectorX::Zero(model.nv);
   warmstart.a = VectorX::Zero(model.nv);
   warmstart.gddA = VectorX::Zero(model.nv);
   warmstart.multipliers = VectorX::Zero(model.nv);
@@ -55,6 +56,7 @@ std::uint64_t hash(const State& state) {
       mixBits(h, static_cast<std::uint64_t>(part));
   for (const VelocityOf instant : state.velocityOf)
     if (instant != VelocityOf::halfAStepAgo) mixBits(h, static_cast<std::uint64_t>(instant));
+  if (state.aIsKnown) mix(h, state.a.data(), state.a.size());
   return h;
 }
 

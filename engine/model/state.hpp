@@ -55,6 +55,8 @@ struct State {
   VectorX v;                           ///< generalised velocity (nv)
   double time = 0.0;                   ///< [s]
   std::vector<VelocityOf> velocityOf;  ///< (trees)
+  VectorX a;              ///< acceleration by which the last step ended (nv), of the leapfrog
+  bool aIsKnown = false;  ///< a is set
   WarmStart warmstart;
 
   State() = default;

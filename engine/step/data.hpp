@@ -59,7 +59,9 @@ struct StepStats {
   int abandonedTrees = 0;  ///< that needed more sub-steps than allowed and took (T.16) instead
   int kicks = 0;           ///< second solves, where rows push a followed tree
   int swings = 0;          ///< bodies that swing too fast, held in a second solve (T.128)
-  int substeps = 0;        ///< of followed trees, over all of them; parts of a step in parts
+  int substeps = 0;        ///< of followed trees, over all of them; parts of a divided step
+  int parts = 1;           ///< into which the leapfrog has divided the step (T.136)
+  int repeats = 0;         ///< solves that were repeated, with another prediction (T.16)
   int evaluations = 0;     ///< of forward dynamics, where the step looks within itself
   int rejections = 0;      ///< parts of the step that were tried and shortened
   int jumps = 0;           ///< shortest parts that were taken in spite of their estimate
@@ -82,9 +84,13 @@ struct StepStats {
     if (solve.status != SolveStatus::converged) status = solve.status;
     return true;
   }
+  /// Adds those of another island, or of the next part of a step: counts and times are sums, the
+  /// rest is the worst.
+  void add(const StepStats& other);
 };
 
 struct IntegratorStages;
+struct StepParts;
 struct VelocityDerivative;
 
 /// Owns all memory of a simulation thread. Copies of the model share nothing. Holds for the model
@@ -110,7 +116,9 @@ struct Data {
   ForwardSolution forward;
   FollowedTrees followed;  ///< of the integrator; empty without Coriolis forces of mid-step
   MidStep midStep;         ///< of the integrator; empty as above, or without rows
+  VectorX turning;         ///< (nv) velocity of turning, v′ of (T.16), of the leapfrog
   VectorX acceleration;    ///< discrete, (v⁺ − v)/h (nv)
+  std::unique_ptr<StepParts> parts;                ///< of the leapfrog, else null
   std::unique_ptr<IntegratorStages> stages;        ///< null where the step is one solve
   std::unique_ptr<VelocityDerivative> derivative;  ///< of the implicit integrators, else null
   StepStats stats;

@@ -14,6 +14,7 @@
 #include "engine/step/integrators/stages.hpp"
 #include "engine/step/integrators/step_doubling.hpp"
 #include "engine/step/integrators/velocity_derivative.hpp"
+#include "engine/step/step_parts.hpp"
 
 namespace softgauss {
 namespace {
@@ -71,6 +72,7 @@ Data::~Data() = default;
 
 Data::Data(const Model& model) : Data(model, Evaluation{}) {
   if (model.options.looksWithin()) stages = std::make_unique<IntegratorStages>(model);
+  if (plan.drifts) parts = std::make_unique<StepParts>(model);
 }
 
 Data::Data(const Model& model, Evaluation)
@@ -83,6 +85,7 @@ Data::Data(const Model& model, Evaluation)
       exactDiagonal(model.options.exactDiagonal ? model.nv : 0),
       followed(plan.midpoint ? FollowedTrees(model) : FollowedTrees()),
       midStep(plan.midpoint && !plan.rows.empty() ? MidStep(model) : MidStep()),
+      turning(VectorX::Zero(plan.drifts ? model.nv : 0)),
       acceleration(VectorX::Zero(model.nv)),
       derivative(isImplicit(model.options.integrator) ? std::make_unique<VelocityDerivative>(model)
                                                       : nullptr) {
@@ -93,7 +96,64 @@ Data::Data(const Model& model, Evaluation)
   constraints.assemble({model, State(model), kinematics, contacts, weights, inertia.sparsity});
 }
 
+void StepStats::add(const StepStats& other) {
+  status = std::max(status, other.status);
+  residual = std::max(residual, other.residual);
+  realised = std::max(realised, other.realised);
+  maxPenetration = std::max(maxPenetration, other.maxPenetration);
+  pairsSkipped += other.pairsSkipped;
+  parts = std::max(parts, other.parts);
+  for (int StepStats::*count :
+       {&StepStats::contacts, &StepStats::rows, &StepStats::iterations, &StepStats::factorizations,
+        &StepStats::followedTrees, &StepStats::abandonedTrees, &StepStats::kicks,
+        &StepStats::swings, &StepStats::substeps, &StepStats::repeats, &StepStats::evaluations,
+        &StepStats::rejections, &StepStats::jumps, &StepStats::glances, &StepStats::shortSolves,
+        &StepStats::roundedSolves, &StepStats::refusedGuesses, &StepStats::keptSlips,
+        &StepStats::unseen})
+    this->*count += other.*count;
+  badDof = std::max(badDof, other.badDof);
+  for (double StepTimes::*time : {&StepTimes::kinematics, &StepTimes::collision, &StepTimes::rows,
+                                  &StepTimes::solve, &StepTimes::integrate})
+    times.*time += other.times.*time;
+}
+
 namespace {
+
+/// What a step is given besides the state.
+struct Given {
+  const Input& input;
+  ContactSource* contacts;
+  StepControl* control;
+};
+
+/// Smooth forces and rows, of the velocity of turning that the state predicts.
+void computeForces(const Model& model, const Input& input, const State& state, Data& data,
+                   Clock::time_point& clock) {
+  if (data.plan.drifts) predictTurning(model, state, data);
+  computeSmoothForces(model, data.plan, state, input, data.kinematics, data.inertia, data.forces);
+  if (data.plan.inSolve) addImplicitForces(model, state, data);
+  data.stats.times.kinematics += lap(clock);
+}
+
+void assembleRows(const Model& model, const Input& input, const State& state, Data& data,
+                  Clock::time_point& clock) {
+  if (kBuiltRows.empty() || data.plan.rows.empty()) return;
+  Assembly assembly{model,
+                    state,
+                    data.kinematics,
+                    data.contacts,
+                    data.weights,
+                    data.inertia.sparsity,
+                    input.softFriction};
+  if (data.plan.drifts && state.aIsKnown) assembly.turning = &data.turning;
+  data.constraints.assemble(assembly);
+  // A mass matrix that cannot be factored is found, and reported, by the solve.
+  if (model.options.exactDiagonal && !data.constraints.active().empty())
+    data.exactDiagonal.apply(data.inertia.M, data.constraints);
+  if (model.options.noSlip) data.sticking.clear();
+  data.stats.rows = data.constraints.rowCount();
+  data.stats.times.rows += lap(clock);
+}
 
 /// computeStages(); `clock` is when the last stage ended. A clock is read only after what has run.
 SolveStatus computeStages(const Model& model, const Input& input, const State& state, Data& data,
@@ -109,9 +169,8 @@ SolveStatus computeStages(const Model& model, const Input& input, const State& s
   clock = Clock::now();
   if (!posed) computeKinematics(model, state, data.kinematics);
   computeMassMatrix(model, data.kinematics, data.inertia);
-  computeSmoothForces(model, data.plan, state, input, data.kinematics, data.inertia, data.forces);
-  if (data.plan.inSolve) putInSolve(model, state, data);
-  data.stats.times.kinematics = lap(clock);
+  if (data.plan.inSolve) addImplicitInertia(model, data);
+  computeForces(model, input, state, data, clock);
 
   if (looksForContacts(data, contacts)) {
     ++data.contacts.detections;
@@ -124,65 +183,135 @@ SolveStatus computeStages(const Model& model, const Input& input, const State& s
   } else {
     data.contacts.clear();
   }
-
-  if (!kBuiltRows.empty() && !data.plan.rows.empty()) {
-    data.constraints.assemble({model, state, data.kinematics, data.contacts, data.weights,
-                               data.inertia.sparsity, input.softFriction});
-    // A mass matrix that cannot be factored is found, and reported, by the solve.
-    if (model.options.exactDiagonal && !data.constraints.active().empty())
-      data.exactDiagonal.apply(data.inertia.M, data.constraints);
-    if (model.options.noSlip) data.sticking.clear();
-    data.stats.rows = data.constraints.rowCount();
-    data.stats.times.rows = lap(clock);
-  }
+  assembleRows(model, input, state, data, clock);
   return SolveStatus::converged;
 }
 
-/// What became of the state; converged where it has moved on.
-SolveStatus integrate(const Model& model, const Input& held, ContactSource* contacts, Data& data,
+/// (8), where there is a control, and (13). `aim`: the acceleration that is to be made.
+SolveStatus solve(const Model& model, const Given& given, const State& state, Data& data,
+                  const VectorX*& aim, Clock::time_point& clock) noexcept {
+  StepStats& stats = data.stats;
+  const VectorX* guess = state.warmstart.valid ? &state.warmstart.a : nullptr;
+  if (given.control) {
+    aim = guess = given.control->apply(model, state, data);
+    if (!guess) return stats.status;
+    lap(clock);
+  }
+  stats.status = forwardDynamics(model, guess, data);
+  stats.iterations += data.forward.report.iterations;
+  stats.factorizations += data.forward.report.factorizations;
+  stats.residual = std::max(stats.residual, data.forward.report.residual);
+  stats.times.solve += lap(clock);
+  if (isRefused(stats.status)) stats.badDof = worstDof(model, data, state);
+  return stats.status;
+}
+
+/// What became of the state; converged where it has moved on. `start`: where the step began.
+SolveStatus integrate(const Model& model, const Given& given, const State& start, Data& data,
                       State& state) noexcept {
   const auto moved = [](bool finite) {
     return finite ? SolveStatus::converged : SolveStatus::notFinite;
   };
   switch (model.options.integrator) {
     case Integrator::semiImplicitEuler:
+    case Integrator::leapfrog:
     case Integrator::implicit:
       if (model.options.stepDoubling)
-        return moved(stepDoubling(model, held, contacts, data, state));
+        return moved(stepDoubling(model, given.input, given.contacts, start, data, state));
       return moved(moveOnce(model, data, state));
     case Integrator::implicitMidpoint:
-      return implicitMidpoint(model, held, contacts, data, state);
+      return implicitMidpoint(model, given.input, given.contacts, data, state);
     case Integrator::rungeKutta4:
-      return moved(rungeKutta(kRungeKutta4, model, held, contacts, data, state));
+      return moved(rungeKutta(kRungeKutta4, model, given.input, given.contacts, data, state));
     case Integrator::dormandPrince:
-      return moved(rungeKutta(kDormandPrince, model, held, contacts, data, state));
+      return moved(rungeKutta(kDormandPrince, model, given.input, given.contacts, data, state));
   }
   return SolveStatus::notFinite;
 }
 
-SolveStatus advance(const Model& model, const Input& held, ContactSource* contacts,
-                    const VectorX* guess, Data& data, State& state,
-                    Clock::time_point& clock) noexcept {
+/// Moves the trees on that are free (T.136), from where the part began.
+bool followFree(const Model& model, const Given& given, const State& start, Data& data,
+                State& state) {
+  StepParts& p = *data.parts;
+  if (!p.freeTrees.follow(model, given.input, p.resolution, start, data, state)) return false;
+  for (std::size_t t = 0; t < model.trees.size(); ++t) {
+    if (!p.resolution.free[t]) continue;
+    const int first = model.trees[t].firstDof, dofs = model.trees[t].dofEnd - first;
+    data.acceleration.segment(first, dofs) =
+        (state.v - start.v).segment(first, dofs) / model.options.timestep;
+    state.a.segment(first, dofs) = data.acceleration.segment(first, dofs);
+  }
+  return state.v.allFinite();
+}
+
+enum class Tried : std::uint8_t { taken, refused, unresolved };
+
+/// A step, or a part of one, from `start`, which is the state: drift, stages, (8), (13), (23).
+/// Where motion is not resolved (T.136) a step that `mayDivide` ends before the solve.
+Tried tryStep(const Model& model, const Given& given, const State& start, bool mayDivide,
+              bool posed, State& state, Data& data) noexcept {
+  Clock::time_point clock;
   StepStats& stats = data.stats;
-  stats.status = forwardDynamics(model, guess, data);
-  stats.iterations = data.forward.report.iterations;
-  stats.factorizations = data.forward.report.factorizations;
-  stats.residual = data.forward.report.residual;
-  stats.times.solve = lap(clock);
-  if (!isRefused(stats.status)) {
-    const SolveStatus moved = integrate(model, held, contacts, data, state);
-    if (isRefused(moved)) stats.status = moved;
+  const bool drifts = data.plan.drifts, resolves = drifts && !model.options.stepDoubling;
+  if (drifts) driftBefore(model, data, state);
+  if (isRefused(computeStages(model, given.input, state, data, given.contacts, clock, posed)))
+    return Tried::refused;
+  const VectorX* aim = nullptr;
+  for (bool again = false;; again = true) {
+    if (resolves) {
+      data.parts->resolution.find(model, state, given.control != nullptr, data);
+      if (mayDivide && data.parts->resolution.parts > 1) return Tried::unresolved;
+    }
+    if (isRefused(solve(model, given, state, data, aim, clock))) return Tried::refused;
+    if (!drifts || again || !forgetsPredicted(model, data, state)) break;
+    ++stats.repeats;
+    computeForces(model, given.input, state, data, clock);
+    assembleRows(model, given.input, state, data, clock);
   }
-  if (isRefused(stats.status)) {
+  SolveStatus moved = integrate(model, given, start, data, state);
+  stats.realised = deviation(data.acceleration, aim ? *aim : data.forward.a);
+  if (!isRefused(moved) && resolves && data.parts->resolution.anyFree &&
+      !followFree(model, given, start, data, state))
+    moved = SolveStatus::notFinite;
+  if (isRefused(moved)) {
+    stats.status = moved;
     stats.badDof = worstDof(model, data, state);
-    return stats.status;
+    return Tried::refused;
   }
-  stats.realised = deviation(data.acceleration, data.forward.a);
   stats.shortSolves += stats.status != SolveStatus::converged;
   state.warmstart.a = data.forward.a;
   state.warmstart.valid = true;
+  if (given.control) given.control->keep(state.warmstart);
   stats.times.integrate = lap(clock);
-  return stats.status;
+  return Tried::taken;
+}
+
+/// The step in parts.resolution.parts steps, each with its own control.
+Tried stepInParts(const Model& model, const Given& given, State& state, Data& data) noexcept {
+  StepParts& p = *data.parts;
+  const int parts = p.resolution.parts;
+  p.model.options = model.options;
+  p.model.options.timestep = model.options.timestep / parts;
+  p.model.options.wholeTimestep = model.options.timestep;
+  p.start = p.before;
+  p.start.a = state.a;  // as predicted
+  p.start.aIsKnown = state.aIsKnown;
+  StepStats total;
+  Tried tried = Tried::taken;
+  for (int k = 0; k < parts && tried == Tried::taken; ++k) {
+    state = p.start;
+    tried = tryStep(p.model, given, p.start, false, false, state, data);
+    total.add(data.stats);
+    p.start = state;
+  }
+  total.contacts = data.stats.contacts;
+  total.rows = data.stats.rows;
+  data.stats = total;
+  data.stats.parts = parts;
+  data.stats.substeps += parts;
+  data.acceleration = (state.v - p.before.v) / model.options.timestep;
+  state.time = p.before.time + model.options.timestep;
+  return tried;
 }
 
 }  // namespace
@@ -193,30 +322,32 @@ SolveStatus computeStages(const Model& model, const Input& input, const State& s
   return computeStages(model, input, state, data, contacts, clock);
 }
 
-SolveStatus computeStagesAt(const Model& model, const Input& input, const State& state, Data& data,
-                            ContactSource* contacts) noexcept {
-  Clock::time_point clock;
-  return computeStages(model, input, state, data, contacts, clock, true);
-}
-
 double deviation(const VectorX& realised, const VectorX& solved) noexcept {
   if (solved.size() == 0) return 0.0;
   return (realised - solved).cwiseAbs().maxCoeff() / std::max(solved.cwiseAbs().maxCoeff(), 1.0);
 }
 
-SolveStatus advance(const Model& model, const Input& held, ContactSource* contacts,
-                    const VectorX* guess, Data& data, State& state) noexcept {
-  Clock::time_point clock = Clock::now();
-  return advance(model, held, contacts, guess, data, state, clock);
+void poseForStep(const Model& model, const State& state, Data& data) {
+  if (!data.plan.drifts) return computeKinematics(model, state, data.kinematics);
+  State& at = data.parts->start;
+  at = state;
+  driftBefore(model, data, at);
+  computeKinematics(model, at, data.kinematics);
 }
 
 SolveStatus step(const Model& model, const Input& input, State& state, Data& data,
-                 ContactSource* contacts) noexcept {
-  Clock::time_point clock;
-  if (computeStages(model, input, state, data, contacts, clock) == SolveStatus::notFinite)
-    return SolveStatus::notFinite;
-  return advance(model, input, contacts, state.warmstart.valid ? &state.warmstart.a : nullptr, data,
-                 state, clock);
+                 ContactSource* contacts, StepControl* control, bool posed) noexcept {
+  const Given given{input, contacts, control};
+  if (!data.plan.drifts) {
+    tryStep(model, given, state, false, posed, state, data);
+    return data.stats.status;
+  }
+  StepParts& p = *data.parts;
+  p.before = state;
+  Tried tried = tryStep(model, given, p.before, !model.options.stepDoubling, posed, state, data);
+  if (tried == Tried::unresolved) tried = stepInParts(model, given, state, data);
+  if (tried == Tried::refused) state = p.before;
+  return data.stats.status;
 }
 
 }  // namespace softgauss

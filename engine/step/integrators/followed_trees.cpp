@@ -100,8 +100,8 @@ bool FollowedTrees::needed(const Model& model, const Data& data, State& state, c
   bool any = false, multiplied = false;
   for (std::size_t t = 0; t < model.trees.size(); ++t) {
     const Tree& tree = model.trees[t];
-    const Following& following = followingOf(tree, tied[t], data, state.v, h);
-    turn[t] = std::max(turn[t], h * turnRate(model, tree, data, state.v, dv));
+    const Following& following = followingOf(tree, tied[t], data, state.v, data.forward.a, h);
+    turn[t] = std::max(turn[t], h * turnRate(model, tree, data, state.v, data.forward.a, dv));
     if (following.byEnergy) {
       if (!multiplied) {  // all trees at once
         data.inertia.M.multiply(dv, smooth);
@@ -289,7 +289,7 @@ void FollowedTrees::follow(const Model& model, Data& data, State& state, VectorX
     const double firstStep = h * std::min(1.0, 0.2 / std::sqrt(turn[t]));
     const TreeMotion::Outcome outcome =
         motion.run(model, data.plan, tree, held, heldInWorld, data.inertia.motionScale,
-                   treeSpeed(tree, data, state.v, h), h, firstStep);
+                   treeSpeed(tree, data, state.v, data.forward.a, h), h, firstStep);
     data.stats.substeps += motion.substeps();
     if (outcome != TreeMotion::Outcome::done) {
       ++data.stats.abandonedTrees;

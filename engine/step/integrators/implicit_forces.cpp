@@ -7,8 +7,8 @@
 namespace softgauss {
 
 bool isStiffSpring(const Model& model, const Data& data, const Plan::Spring& spring) {
-  const double h = model.options.timestep;
   const Options& o = model.options;
+  const double h = o.rowTimestep();
   return (o.midpointCoriolis || o.implicitInSolve) &&
          h * h * spring.stiffness * data.weights.dof[spring.dof] > 1.0;
 }
@@ -24,17 +24,21 @@ bool implicitFollows(const Model& model, const Data& data) {
   return !data.plan.inSolve && (data.plan.damped() || anyStiffSpring(model, data));
 }
 
-void putInSolve(const Model& model, const State& state, Data& data) {
-  const double h = model.options.timestep;
-  MassMatrix& inertia = data.inertia;
-  if (data.plan.damped()) inertia.added += h * data.plan.damping;
+void addImplicitForces(const Model& model, const State& state, Data& data) {
   for (const Plan::Spring& spring : data.plan.springs) {
     if (!isStiffSpring(model, data, spring)) continue;
-    inertia.added[spring.dof] += h * h * spring.stiffness;
-    const double ahead = h * spring.stiffness * state.v[spring.dof];
+    const double ahead = model.options.timestep * spring.stiffness * state.v[spring.dof];
     data.forces.c[spring.dof] += ahead;
     data.forces.net[spring.dof] -= ahead;
   }
+}
+
+void addImplicitInertia(const Model& model, Data& data) {
+  const double h = model.options.timestep;
+  MassMatrix& inertia = data.inertia;
+  if (data.plan.damped()) inertia.added += h * data.plan.damping;
+  for (const Plan::Spring& spring : data.plan.springs)
+    if (isStiffSpring(model, data, spring)) inertia.added[spring.dof] += h * h * spring.stiffness;
   inertia.anyAdded = (inertia.added.array() != 0.0).any();
   if (!inertia.anyAdded) return;
   inertia.Mhat.assign(inertia.M);

@@ -23,8 +23,10 @@ bool anyStiffSpring(const Model& model, const Data& data);
 /// Whether there are some that are no part of the solve but follow it.
 bool implicitFollows(const Model& model, const Data& data);
 
-/// M̂ ← M + h D + h² K and c ← c + h K v (Options::implicitInSolve).
-void putInSolve(const Model& model, const State& state, Data& data);
+/// M̂ ← M + h D + h² K (Options::implicitInSolve).
+void addImplicitInertia(const Model& model, Data& data);
+/// c ← c + h K v, of the same springs.
+void addImplicitForces(const Model& model, const State& state, Data& data);
 
 /// The same for what follows the solve: data.forward.Md ← h D + h² K, net ← net − h K v.
 void setImplicitForces(const Model& model, const State& state, Data& data, VectorX& net);

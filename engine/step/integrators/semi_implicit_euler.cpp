@@ -5,58 +5,17 @@
 
 #include "engine/step/forward.hpp"
 #include "engine/step/integrators/implicit_forces.hpp"
+#include "engine/step/integrators/kick.hpp"
+#include "engine/step/integrators/tree_turn.hpp"
 
 namespace softgauss {
 namespace {
 
-/// A body turns by more than 0.005 rad in the step, or a joint does by the velocity that it ends
-/// with, or slides with as much energy, v_i √M_ii, as the joint of its tree that turns most easily
-/// would have so, or a tree was followed in the last one. Below that (T.93) need not be worked out.
-bool mayTurnFar(const Model& model, const Data& data, const State& state) {
+/// Some tree does, or was followed in the last step.
+bool mayFollow(const Model& model, const Data& data, const State& state) {
   for (const VelocityOf instant : state.velocityOf)
     if (wasFollowed(instant)) return true;
-  const double h = model.options.timestep, fast = 0.005 / h;
-  for (const Motion& V : data.kinematics.V)
-    if (V.angular.squaredNorm() > fast * fast) return true;
-  for (const Tree& tree : model.trees) {
-    double slides = 0.0, lightest = kInfinity;
-    for (int b = tree.rootBody; b < tree.bodyEnd; ++b) {
-      const Body& body = model.bodies[b];
-      const bool floats = body.joint == JointKind::floating;
-      for (int i = body.v + (floats ? 3 : 0); i < body.v + (floats ? 6 : 1); ++i) {
-        const double ends = std::abs(state.v[i] + h * data.acceleration[i]);
-        const double root = 1.0 / data.inertia.motionScale[i];  // √M_ii
-        if (body.joint == JointKind::prismatic) {
-          slides = std::max(slides, ends * root);
-          continue;
-        }
-        if (ends > fast) return true;
-        lightest = std::min(lightest, root);
-      }
-    }
-    if (slides > fast * lightest) return true;
-  }
-  return false;
-}
-
-/// Not finite, or turning so fast that the square of the angle overflows.
-bool tooFast(const Model& model, const VectorX& v) {
-  if (!v.allFinite()) return true;
-  return std::any_of(model.trees.begin(), model.trees.end(), [&](const Tree& tree) {
-    const Body& root = model.bodies[static_cast<std::size_t>(tree.rootBody)];
-    return root.joint == JointKind::floating &&
-           v.segment<3>(root.v + 3).cwiseAbs().maxCoeff() > 1e150;
-  });
-}
-
-/// Solves again where rows have to hold what swings too fast (T.128). False: not finite.
-bool holdSwings(const Model& model, Data& data, const State& state) {
-  data.stats.swings = data.constraints.holdSwings(
-      {model, state, data.kinematics, data.contacts, data.weights, data.inertia.sparsity});
-  if (data.stats.swings == 0) return true;
-  data.acceleration = data.forward.a;
-  forwardDynamics(model, &data.acceleration, data);
-  return data.stats.count(data.forward.report);
+  return mayTurnFar(model, data, state.v, data.acceleration);
 }
 
 }  // namespace
@@ -109,7 +68,7 @@ bool semiImplicitEuler(const Model& model, Data& data, State& state) {
       }
     }
     if (!solve(net)) return false;
-    if (midpoint && mayTurnFar(model, data, state)) {
+    if (midpoint && mayFollow(model, data, state)) {
       // What Δb does to the velocity by itself, damped like the rest.
       if (follows || rows)
         solve(s.direction);

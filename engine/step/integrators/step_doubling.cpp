@@ -13,12 +13,11 @@
 namespace softgauss {
 namespace {
 
-constexpr int kOrder = 1;
-
 /// One whole step of length h on the part's model. False where it is not finite.
 bool take(double h, ContactSource* contacts, IntegratorStages& s, State& state, StepStats& stats) {
   Model& model = *s.part;
   model.options.timestep = h;
+  if (s.data.plan.drifts) driftBefore(model, s.data, state);
   if (computeStages(model, s.input, state, s.data, contacts) == SolveStatus::notFinite)
     return false;
   forwardDynamics(model, state, s.data);
@@ -31,13 +30,16 @@ bool take(double h, ContactSource* contacts, IntegratorStages& s, State& state, 
 
 }  // namespace
 
-bool stepDoubling(const Model& model, const Input& input, ContactSource* contacts, Data& data,
-                  State& state) noexcept {
+bool stepDoubling(const Model& model, const Input& input, ContactSource* contacts,
+                  const State& start, Data& data, State& state) noexcept {
   constexpr double kShortest = 1.0 / 512.0;  // of the step
   const double h = model.options.timestep;
   IntegratorStages& s = *data.stages;
   StepStats& stats = data.stats;
-  s.begin(input, state);
+  s.begin(input, start);
+  s.from.a = state.a;
+  s.from.aIsKnown = state.aIsKnown;
+  const int order = data.plan.drifts ? 2 : 1;
   ++stats.evaluations;
 
   double done = 0.0, length = h;
@@ -53,7 +55,7 @@ bool stepDoubling(const Model& model, const Input& input, ContactSource* contact
     const bool closes = done + length >= h * (1.0 - 1e-12);
     if (closes) length = h - done;
     const double deepest = stats.maxPenetration;
-    s.end = s.from;
+    s.end = first ? state : s.from;
     bool finite = first ? moveOnce(model, data, s.end) : take(length, contacts, s, s.end, stats);
     first = false;
     s.state = s.from;
@@ -68,7 +70,7 @@ bool stepDoubling(const Model& model, const Input& input, ContactSource* contact
     const double ratio = error * h / (length * model.options.integrationTolerance);
     const bool shortest = isShortest(length, kShortest * h);
     if (!std::isfinite(ratio) && shortest) return false;
-    const double factor = stepFactor(ratio, kOrder);
+    const double factor = stepFactor(ratio, order);
     if (ratio > 1.0 && !shortest) {
       ++stats.rejections;
       stats.maxPenetration = deepest;  // what was tried has not happened
@@ -86,9 +88,11 @@ bool stepDoubling(const Model& model, const Input& input, ContactSource* contact
       sight = lengthInSight(model, data, s.kinematics, contacts, h - done);
     }
   }
-  data.acceleration = (s.from.v - state.v) / h;
+  data.acceleration = (s.from.v - start.v) / h;
   state.q = s.from.q;
   state.v = s.from.v;
+  state.a = s.from.a;
+  state.aIsKnown = s.from.aIsKnown;
   state.velocityOf = s.from.velocityOf;
   state.time += h;
   return true;

@@ -15,15 +15,14 @@ bool act(const VectorX& forces, const Tree& tree) {
   return (forces.segment(tree.firstDof, tree.dofEnd - tree.firstDof).array() != 0.0).any();
 }
 
-/// Applied forces change the tree's motion by more than a thousandth in the step.
-bool drive(const VectorX& tau, const Tree& tree, const Data& data, const VectorX& v, double h) {
+}  // namespace
+
+bool drives(const Tree& tree, const Data& data, const VectorX& v, const VectorX& a, double h) {
   double most = 0.0;
   for (int i = tree.firstDof; i < tree.dofEnd; ++i)
-    most = std::max(most, std::abs(tau[i]) * data.inertia.motionScale[i]);
-  return h * most > 1e-3 * treeSpeed(tree, data, v, h);
+    most = std::max(most, std::abs(data.forces.tau[i]) * data.inertia.motionScale[i]);
+  return h * most > 1e-3 * treeSpeed(tree, data, v, a, h);
 }
-
-}  // namespace
 
 bool dampingStops(const Tree& tree, const Data& data, double h) {
   if (!data.plan.damped()) return false;
@@ -32,15 +31,16 @@ bool dampingStops(const Tree& tree, const Data& data, double h) {
   return false;
 }
 
-Following followingOf(const Tree& tree, bool tied, const Data& data, const VectorX& v, double h) {
-  const bool held = tied || isSingle(tree) || drive(data.forces.tau, tree, data, v, h);
+Following followingOf(const Tree& tree, bool tied, const Data& data, const VectorX& v,
+                      const VectorX& a, double h) {
+  const bool held = tied || isSingle(tree) || drives(tree, data, v, a, h);
   const bool damped = data.plan.damped() && act(data.plan.damping, tree);
   if (damped && (held || dampingStops(tree, data, h))) return kDamped;
   return held ? kHeld : kPassive;
 }
 
 double turnRate(const Model& model, const Tree& tree, const Data& data, const VectorX& v,
-                const VectorX& change) {
+                const VectorX& a, const VectorX& change) {
   constexpr double kRounding = 1e-12;
   const double h = model.options.timestep;
   double changes[2] = {0.0, 0.0}, sizes[2] = {0.0, 0.0};  // turning, sliding
@@ -48,7 +48,7 @@ double turnRate(const Model& model, const Tree& tree, const Data& data, const Ve
   const auto add = [&](int kind, int begin, int end) {
     for (int i = begin; i < end; ++i) {
       const double root = 1.0 / data.inertia.motionScale[i];  // √M_ii
-      const double speed = std::abs(v[i]) + h * std::abs(data.forward.a[i]);
+      const double speed = std::abs(v[i]) + h * std::abs(a[i]);
       changes[kind] = std::max(changes[kind], std::abs(change[i]));
       sizes[kind] = std::max(sizes[kind], h * std::abs(change[i]) * root);
       speeds[kind] = std::max(speeds[kind], speed);
@@ -74,16 +74,40 @@ double energyRate(double change, double motion) {
   return change > 0.0 && motion > 0.0 ? 2.0 * std::sqrt(change / motion) : 0.0;
 }
 
-double treeSpeed(const Tree& tree, const Data& data, const VectorX& v, double h) {
+double treeSpeed(const Tree& tree, const Data& data, const VectorX& v, const VectorX& a, double h) {
   double speed = 0.0;
   for (int i = tree.firstDof; i < tree.dofEnd; ++i)
-    speed = std::max(
-        speed, (std::abs(v[i]) + h * std::abs(data.forward.a[i])) / data.inertia.motionScale[i]);
+    speed = std::max(speed, (std::abs(v[i]) + h * std::abs(a[i])) / data.inertia.motionScale[i]);
   return speed;
 }
 
 double stepAngle(const Model& model, const Data& data, int body) {
   return model.options.timestep * data.kinematics.V[body].angular.norm();
+}
+
+bool mayTurnFar(const Model& model, const Data& data, const VectorX& v, const VectorX& a) {
+  const double h = model.options.timestep, fast = 0.005 / h;
+  for (const Motion& V : data.kinematics.V)
+    if (V.angular.squaredNorm() > fast * fast) return true;
+  for (const Tree& tree : model.trees) {
+    double slides = 0.0, lightest = kInfinity;
+    for (int b = tree.rootBody; b < tree.bodyEnd; ++b) {
+      const Body& body = model.bodies[b];
+      const bool floats = body.joint == JointKind::floating;
+      for (int i = body.v + (floats ? 3 : 0); i < body.v + (floats ? 6 : 1); ++i) {
+        const double ends = std::abs(v[i] + h * a[i]);
+        const double root = 1.0 / data.inertia.motionScale[i];  // √M_ii
+        if (body.joint == JointKind::prismatic) {
+          slides = std::max(slides, ends * root);
+          continue;
+        }
+        if (ends > fast) return true;
+        lightest = std::min(lightest, root);
+      }
+    }
+    if (slides > fast * lightest) return true;
+  }
+  return false;
 }
 
 }  // namespace softgauss

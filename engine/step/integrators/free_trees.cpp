@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/step/integrators/free_trees.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/core/memory.hpp"
+#include "engine/forces/external_wrench.hpp"
+#include "engine/step/data.hpp"
+#include "engine/step/integrators/tree_turn.hpp"
+
+namespace softgauss {
+
+FreeTrees::FreeTrees(const Model& model)
+    : held_(VectorX::Zero(model.nv)), pushed_(held_), motion_(model) {
+  none_.inertia = held_;
+}
+
+std::size_t FreeTrees::bytes() const {
+  return bytesOfAll(none_.inertia, held_, pushed_) + motion_.bytes();
+}
+
+bool FreeTrees::follow(const Model& model, const Input& input, const Resolution& resolution,
+                       const State& start, Data& data, State& end) {
+  const double h = model.options.timestep;
+  pushed_.setZero();
+  if (data.plan.pushed())
+    for (const ExternalWrench& wrench : input.wrenches)
+      addExternalWrench(model, data.kinematics, wrench, pushed_);
+  held_ = data.forces.tau - pushed_;
+  for (std::size_t t = 0; t < model.trees.size(); ++t) {
+    if (!resolution.free[t]) continue;
+    const Tree& tree = model.trees[t];
+    const Body& root = model.bodies[tree.rootBody];
+    const int first = tree.firstDof, dofs = tree.dofEnd - first;
+    Vector3 inWorld = Vector3::Zero();
+    int coordinates = dofs;
+    if (root.joint == JointKind::floating) {  // wrenches keep their direction in the world
+      inWorld = -(data.kinematics.X_WB[tree.rootBody].R * pushed_.segment<3>(root.v + 3));
+      held_.segment<3>(root.v + 3) = data.forces.tau.segment<3>(root.v + 3);
+      ++coordinates;
+    }
+    motion_.start(model, start, tree, true, none_);
+    const double firstStep = h * std::min(1.0, 0.2 / std::sqrt(resolution.turn[t]));
+    const TreeMotion::Outcome outcome =
+        motion_.run(model, data.plan, tree, held_, inWorld, data.inertia.motionScale,
+                    treeSpeed(tree, data, start.v, start.a, h), h, firstStep);
+    data.stats.substeps += motion_.substeps();
+    if (outcome == TreeMotion::Outcome::notFinite) return false;
+    if (outcome == TreeMotion::Outcome::limit) {
+      ++data.stats.abandonedTrees;
+      continue;
+    }
+    ++data.stats.followedTrees;
+    end.v.segment(first, dofs) = motion_.v().segment(first, dofs);
+    end.q.segment(root.q, coordinates) = motion_.q().segment(root.q, coordinates);
+  }
+  return true;
+}
+
+}  // namespace softgauss

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/step/integrators/leapfrog.hpp"
+
+#include <cmath>
+
+#include "engine/step/integrators/implicit_forces.hpp"
+#include "engine/step/integrators/kick.hpp"
+
+namespace softgauss {
+namespace {
+
+/// By which a joint may end elsewhere than was predicted [rad].
+constexpr double kForgets = 1e-3;
+
+/// Sets the velocity of joints on stiff springs to `share` of it.
+void scaleStiff(const Model& model, const Data& data, double share, VectorX& v) {
+  for (const Plan::Spring& spring : data.plan.springs)
+    if (isStiffSpring(model, data, spring)) v[spring.dof] *= share;
+}
+
+double worstTurn(const Model& model, const Tree& tree, const VectorX& a, const VectorX& predicted) {
+  double worst = 0.0;
+  for (int b = tree.rootBody; b < tree.bodyEnd; ++b) {
+    const Body& body = model.bodies[b];
+    if (body.joint == JointKind::prismatic) continue;
+    const int first = body.joint == JointKind::floating ? body.v + 3 : body.v;
+    for (int i = first; i < body.v + body.dofs; ++i)
+      worst = std::max(worst, std::abs(a[i] - predicted[i]));
+  }
+  return worst;
+}
+
+}  // namespace
+
+void driftBefore(const Model& model, Data& data, State& state) {
+  VectorX& v = data.forward.direction;
+  v = state.v;
+  scaleStiff(model, data, 0.0, v);
+  integratePosition(model, v, 0.5 * model.options.timestep, state.q);
+}
+
+void predictTurning(const Model& model, const State& state, Data& data) {
+  if (!state.aIsKnown) return;
+  data.turning = state.v + 0.5 * model.options.timestep * state.a;
+  setTurning(model, data.turning, data.kinematics);
+}
+
+bool forgetsPredicted(const Model& model, const Data& data, State& state) {
+  if (!data.plan.coriolis) return false;
+  const double h = model.options.timestep;
+  const VectorX& a = data.forward.a;
+  bool any = false;
+  for (const Tree& tree : model.trees) {
+    // A joint alone has nothing to turn against.
+    if (tree.dofEnd - tree.firstDof == 1) continue;
+    const double off = 0.5 * h * h * worstTurn(model, tree, a, state.a);
+    if (state.aIsKnown && !(off > kForgets)) continue;
+    const int first = tree.firstDof, dofs = tree.dofEnd - first;
+    state.a.segment(first, dofs) = a.segment(first, dofs);
+    any = true;
+  }
+  state.aIsKnown = state.aIsKnown || any;
+  return any;
+}
+
+bool kickAndDrift(const Model& model, Data& data, State& state) {
+  const double h = model.options.timestep;
+  if (data.plan.rows.has(RowKind::swing) && !holdSwings(model, data, state)) return false;
+  VectorX& v = data.forward.start;
+  data.acceleration = data.forward.a;
+  v = state.v + h * data.acceleration;
+  if (tooFast(model, v)) return false;
+  state.v = v;
+  scaleStiff(model, data, 2.0, v);
+  integratePosition(model, v, 0.5 * h, state.q);
+  state.a = data.acceleration;
+  state.aIsKnown = true;
+  state.time += h;
+  return true;
+}
+
+}  // namespace softgauss

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/step/resolution.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/core/memory.hpp"
+#include "engine/step/forward.hpp"
+#include "engine/step/integrators/tree_turn.hpp"
+
+namespace softgauss {
+
+const double Resolution::kFollowedTurn = 1e-4;
+const int Resolution::kMostParts = 400;
+
+namespace {
+
+/// Rate at which a surface turns against what it touches: that about the normal and, of a body of
+/// revolution, its spin leave both as they are.
+double tiltRate(const Geometry& g, const Kinematics& k, const Vector3& n_W) {
+  const ShapeKind kind = g.shape.kind;
+  if (g.body == 0 || kind == ShapeKind::sphere) return 0.0;
+  Vector3 omega = k.turning()[g.body].angular;
+  if (kind == ShapeKind::capsule || kind == ShapeKind::cylinder) {
+    const Vector3 axis = k.X_WB[g.body].R * g.X_BG.R.col(2);
+    omega -= axis * axis.dot(omega);
+  }
+  return (omega - n_W * n_W.dot(omega)).norm();
+}
+
+/// Rate at which the place where a cylinder's rim touches goes round it.
+double rimRate(const Geometry& g, const Kinematics& k, const Vector3& n_W) {
+  if (g.body == 0 || g.shape.kind != ShapeKind::cylinder) return 0.0;
+  const Vector3 axis = k.X_WB[g.body].R * g.X_BG.R.col(2);
+  const Vector3 omega = k.turning()[g.body].angular;
+  const double turns = std::abs(axis.dot(n_W.cross(omega.cross(n_W))));
+  const double slope2 = axis.cross(n_W).squaredNorm();
+  // Lying flat it has no such place.
+  constexpr double kFlat = 1e-12;
+  return slope2 > kFlat && turns > 0.0 ? turns / slope2 : 0.0;
+}
+
+double contactRate(const Model& model, const Data& data) {
+  constexpr double kOfRim = 0.2;
+  const Kinematics& k = data.kinematics;
+  double rate = 0.0;
+  for (const Contact& c : data.contacts.contacts)
+    for (const int i : {c.geometryA, c.geometryB}) {
+      const Geometry& g = model.geometries[i];
+      rate = std::max({rate, tiltRate(g, k, c.n_W), kOfRim * rimRate(g, k, c.n_W)});
+    }
+  return rate;
+}
+
+double tieRate(const Model& model, const Data& data) {
+  double rate = 0.0;
+  const auto add = [&](int body) {
+    rate = std::max(rate, data.kinematics.turning()[body].angular.norm());
+  };
+  for (const Connection& c : model.connections) add(c.bodyA), add(c.bodyB);
+  for (const Weld& w : model.welds) add(w.bodyA), add(w.bodyB);
+  return rate;
+}
+
+}  // namespace
+
+Resolution::Resolution(const Model& model)
+    : turn(model.trees.size(), 0.0),
+      free(model.trees.size(), 0),
+      tied_(model.trees.size(), 0),
+      touched_(model.trees.size(), 0),
+      change_(VectorX::Zero(model.nv)),
+      velocity_(VectorX::Zero(model.nv)),
+      Mx_(VectorX::Zero(model.nv)) {
+  const auto tie = [&](int body) {
+    if (model.bodies[body].tree >= 0) tied_[model.bodies[body].tree] = 1;
+  };
+  for (const Connection& c : model.connections) tie(c.bodyA), tie(c.bodyB);
+  for (const Weld& w : model.welds) tie(w.bodyA), tie(w.bodyB);
+}
+
+std::size_t Resolution::bytes() const {
+  return bytesOfAll(turn, free, tied_, touched_, change_, velocity_, Mx_);
+}
+
+void Resolution::findTouched(const Model& model, const Data& data) {
+  touched_ = tied_;
+  for (const Contact& c : data.contacts.contacts)
+    for (const int body : {c.bodyA, c.bodyB})
+      if (model.bodies[body].tree >= 0) touched_[model.bodies[body].tree] = 1;
+  velocity_.setZero();
+  data.constraints.visitAllButContacts([&](const auto& c) {
+    // Weights that differ, lest two rows of a joint cancel.
+    for (int i = 0; i < c.rowCount(); ++i) c.addRow(i, 1.0 + i, velocity_);
+  });
+  for (std::size_t t = 0; t < model.trees.size(); ++t) {
+    const Tree& tree = model.trees[t];
+    const auto rows = velocity_.segment(tree.firstDof, tree.dofEnd - tree.firstDof);
+    if ((rows.array() != 0.0).any()) touched_[t] = 1;
+  }
+}
+
+/// turn of every tree: Δb = b(q, v′) − b(q, v), of v and the velocity of turning v′.
+void Resolution::findTurns(const Model& model, const State& state, Data& data) {
+  const double h = model.options.timestep;
+  computeBiasAt(model, data.kinematics, data.inertia, state.v, data.forces.work, change_);
+  ++data.forces.calls.coriolis;
+  change_ = data.forces.bias - change_;
+  data.forward.massFactored = false;
+  if (!solveMass(data, nullptr, change_)) return;  // the solve will say so
+  const VectorX& a = state.a;
+  for (std::size_t t = 0; t < model.trees.size(); ++t) {
+    const Tree& tree = model.trees[t];
+    const int first = tree.firstDof, dofs = tree.dofEnd - first;
+    turn[t] = h * turnRate(model, tree, data, state.v, a, change_);
+    if (!followingOf(tree, tied_[t], data, state.v, a, h).byEnergy) continue;
+    const auto square = [&](const VectorX& x) {
+      return x.segment(first, dofs).dot(Mx_.segment(first, dofs));
+    };
+    data.inertia.M.multiply(change_, Mx_);
+    const double changes = square(change_);
+    data.inertia.M.multiply(state.v, Mx_);
+    double moving = square(state.v);
+    data.inertia.M.multiply(a, Mx_);
+    moving += h * h * square(a);
+    turn[t] = std::max(turn[t], h * energyRate(changes, moving));
+  }
+}
+
+/// A control acts on the tree, or applied forces that change its motion by more than a thousandth.
+bool Resolution::driven(const Model& model, const Data& data, const State& state, int t,
+                        bool controlled) const {
+  const Tree& tree = model.trees[t];
+  if (controlled)
+    for (int i = tree.firstDof; i < tree.dofEnd; ++i)
+      if (model.dofs[i].actuated) return true;
+  return drives(tree, data, state.v, state.a, model.options.timestep);
+}
+
+void Resolution::find(const Model& model, const State& state, bool controlled, Data& data) {
+  parts = 1;
+  anyFree = false;
+  std::fill(free.begin(), free.end(), 0);
+  std::fill(turn.begin(), turn.end(), 0.0);
+  if (!data.plan.coriolis || model.options.partAngle == kInfinity ||
+      !mayTurnFar(model, data, state.v, state.a))
+    return;
+  const double h = model.options.timestep;
+  if (state.aIsKnown) findTurns(model, state, data);
+  double rate = std::max(contactRate(model, data), tieRate(model, data));
+  bool touchedKnown = false;
+  for (std::size_t t = 0; t < model.trees.size(); ++t) {
+    if (!(turn[t] > kFollowedTurn)) continue;
+    if (!touchedKnown) findTouched(model, data), touchedKnown = true;
+    const int tree = static_cast<int>(t);
+    const double ofTree = 4.0 * std::sqrt(2.0 * turn[t]) / h;
+    const bool mayFollow = !touched_[t] && !dampingStops(model.trees[t], data, h);
+    const bool tooMany = !(h * ofTree <= kMostParts * model.options.partAngle);
+    if (mayFollow && (tooMany || !driven(model, data, state, tree, controlled)))
+      free[t] = 1, anyFree = true;
+    else
+      rate = std::max(rate, ofTree);
+  }
+  const double needed = std::ceil(h * rate / model.options.partAngle - 1e-9);
+  parts = needed < kMostParts ? std::max(1, static_cast<int>(needed)) : kMostParts;
+}
+
+}  // namespace softgauss

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Into how many parts a step of the leapfrog goes, and which trees move freely through it.
+///
+/// A step takes M, J and the inertial forces in one place. Where these turn far on its way it is
+/// divided: h r ≤ partAngle in each part, with r the fastest of all turning,
+///
+///   r = max( 4 √(2 turn)/h   of each tree's inertial forces, turn of (T.93)
+///            |ω − (ω·n) n|   of what touches, n the normal; a body of revolution without its spin
+///            |s|/5           of a rim, s the rate at which the place of contact goes round it
+///            |ω|             of what connections and welds hold )                          (T.136)
+///
+/// turn is about ½ (h ω)² for a body that tumbles at ω, and nothing for a wheel or a ball. So r is
+/// a function of the state alone, its last acceleration included.
+///
+/// A tree that no row acts on, and no control, needs no parts: it is followed by itself
+/// (free_trees.hpp), from where its turn exceeds kFollowedTurn, and so is one that would need more
+/// than kMostParts. With an infinite partAngle no step is divided and no tree is followed.
+
+#include <cstdint>
+#include <vector>
+
+#include "engine/model/state.hpp"
+
+namespace softgauss {
+
+struct Data;
+
+class Resolution {
+ public:
+  static const double kFollowedTurn;
+  static const int kMostParts;
+
+  int parts = 1;
+  std::vector<double> turn;        ///< (trees) of (T.93), in a step
+  std::vector<std::uint8_t> free;  ///< (trees) 1: it is followed by itself
+  bool anyFree = false;
+
+  Resolution() = default;
+  explicit Resolution(const Model& model);
+
+  /// For the stages of `data`, which are those of `state`. `controlled`: a control acts on all
+  /// trees with actuators.
+  void find(const Model& model, const State& state, bool controlled, Data& data);
+  std::size_t bytes() const;
+
+ private:
+  void findTurns(const Model& model, const State& state, Data& data);
+  void findTouched(const Model& model, const Data& data);
+  bool driven(const Model& model, const Data& data, const State& state, int tree,
+              bool controlled) const;
+
+  std::vector<std::uint8_t> tied_;     ///< (trees) 1: connections or welds hold it
+  std::vector<std::uint8_t> touched_;  ///< (trees) 1: there are rows of it
+  VectorX change_, velocity_, Mx_;     ///< (nv) scratch
+};
+
+}  // namespace softgauss

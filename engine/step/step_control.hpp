@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// What finds the applied force of a step from the step's own problem: goals do this (gdd/).
+
+#include "engine/step/data.hpp"
+
+namespace softgauss {
+
+class StepControl {
+ public:
+  virtual ~StepControl() = default;
+
+  /// (8) of the paper: finds the control and gives it to setAppliedForce(). All stages up to the
+  /// rows are those of the solve that follows; `state` is the one that they were made at. A step
+  /// in parts asks in every part. Returns the acceleration (nv) that the control is to cause, from
+  /// which forward dynamics starts; null where there is none, with data.stats.status and badDof
+  /// set.
+  virtual const VectorX* apply(const Model& model, const State& state, Data& data) noexcept = 0;
+
+  /// What apply() has found has been done: keeps where the next solve may start.
+  virtual void keep(WarmStart& warmstart) noexcept = 0;
+};
+
+}  // namespace softgauss

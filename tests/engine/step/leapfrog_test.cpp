@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The leapfrog: what it keeps, what it predicts, and when a step goes in parts.
+
+#include <cmath>
+
+#include "collision/scene_contacts.hpp"
+#include "engine/engine.hpp"
+#include "engine/step/step_parts.hpp"
+#include "tests/support/matchers.hpp"
+#include "tests/support/sample_models.hpp"
+
+namespace softgauss::test {
+namespace {
+
+ModelBuilder singleLink(double h) {
+  ModelBuilder builder = chain(1);
+  builder.options.integrator = Integrator::leapfrog;
+  builder.options.timestep = h;
+  return builder;
+}
+
+double energyAt(const Model& model, const State& state) {
+  Kinematics k(model);
+  computeKinematics(model, state, k);
+  return computeEnergy(model, k, state.q, state.v).total();
+}
+
+// A pendulum let go at a right angle, h ω₀ = 0.1: the energy of a symplectic method of order 2
+// swings by some (h ω)²/8 of what moves, and comes back.
+TEST(Leapfrog, KeepsTheEnergyOfAPendulum) {
+  const Model model = singleLink(0.01).build();
+  State state(model);
+  state.q[0] = 0.5 * M_PI;
+  Data data(model);
+  const double before = energyAt(model, state);
+  double worst = 0.0, late = 0.0, moves = 0.0;
+  for (int i = 0; i < 3000; ++i) {
+    ASSERT_EQ(step(model, {}, state, data, nullptr), SolveStatus::converged);
+    const double off = energyAt(model, state) - before;
+    worst = std::max(worst, std::abs(off));
+    if (i >= 2000) late = std::max(late, std::abs(off));
+    moves = std::max(moves, 0.5 * data.inertia.M.row(0)[0] * state.v[0] * state.v[0]);
+  }
+  EXPECT_LT(worst / moves, 3e-3);
+  EXPECT_LT(late, 1.01 * worst);  // without a drift
+}
+
+// Where nothing is lost to damping or rows, a step back undoes a step. Coriolis forces at a
+// predicted velocity are the exception, to the order of the prediction: one joint has none.
+TEST(Leapfrog, AStepBackUndoesAStep) {
+  const Model model = singleLink(0.01).build();
+  State state(model);
+  state.q[0] = 0.7;
+  state.v[0] = 2.0;
+  const State start = state;
+  Data data(model);
+  for (int i = 0; i < 100; ++i) step(model, {}, state, data, nullptr);
+  state.v = -state.v;
+  for (int i = 0; i < 100; ++i) step(model, {}, state, data, nullptr);
+  EXPECT_NEAR(state.q[0], start.q[0], 1e-12);
+  EXPECT_NEAR(-state.v[0], start.v[0], 1e-12);
+}
+
+// (v⁺ − v)/h is the solution of the problem that was solved, Coriolis forces, damping and springs
+// included.
+TEST(Leapfrog, MovesAsWasSolved) {
+  for (int seed = 0; seed < 10; ++seed) {
+    RandomTreeOptions options;
+    options.springs = true;
+    Model model = randomForest(static_cast<std::uint64_t>(seed), options).build();
+    model.options.integrator = Integrator::leapfrog;
+    model.options.partAngle = kInfinity;
+    Random random(static_cast<std::uint64_t>(seed));
+    State state = randomState(model, random, 2.0);
+    Data data(model);
+    for (int i = 0; i < 20; ++i) {
+      const VectorX before = state.v;
+      ASSERT_EQ(step(model, {}, state, data, nullptr), SolveStatus::converged);
+      const VectorX moved = (state.v - before) / model.options.timestep;
+      const double scale = std::max(1.0, data.forward.a.cwiseAbs().maxCoeff());
+      EXPECT_SMALL((moved - data.forward.a).cwiseAbs().maxCoeff() / scale, 1e-10);
+      EXPECT_SMALL(data.stats.realised, 1e-14);
+    }
+  }
+}
+
+// A body in weightlessness that tumbles is followed, one that a controlled joint drives goes in
+// parts, and a slow one takes one step.
+TEST(Leapfrog, DividesWhatTurnsFar) {
+  ModelBuilder builder = chain(3);
+  builder.options.integrator = Integrator::leapfrog;
+  builder.options.timestep = 0.01;
+  const Model model = builder.build();
+  State state(model);
+  state.q.setConstant(0.4);
+  Data data(model);
+  step(model, {}, state, data, nullptr);
+  EXPECT_EQ(data.stats.parts, 1);
+  EXPECT_EQ(data.stats.followedTrees, 0);
+  EXPECT_EQ(data.stats.repeats, 1);  // the first: its acceleration is not known
+
+  state.v << 10.0, -20.0, 30.0;
+  step(model, {}, state, data, nullptr);
+  step(model, {}, state, data, nullptr);
+  EXPECT_EQ(data.stats.parts, 1);
+  EXPECT_EQ(data.stats.followedTrees, 1);
+
+  Input driven;
+  driven.tau = VectorX::Constant(model.nv, 5.0);
+  step(model, driven, state, data, nullptr);
+  EXPECT_GT(data.stats.parts, 5);
+  EXPECT_EQ(data.stats.followedTrees, 0);
+  EXPECT_NEAR(state.time, 0.04, 1e-15);
+}
+
+// What divides a step, and all else that the next one depends on, is in the state.
+TEST(Leapfrog, DependsOnTheStateAlone) {
+  ModelBuilder builder = chain(3);
+  builder.options.integrator = Integrator::leapfrog;
+  builder.options.timestep = 0.01;
+  const Model model = builder.build();
+  State state(model);
+  state.q.setConstant(0.4);
+  state.v << 5.0, -9.0, 14.0;
+  Input driven;
+  driven.tau = VectorX::Constant(model.nv, 2.0);
+  Data data(model);
+  for (int i = 0; i < 20; ++i) {
+    State copy = state;
+    Data fresh(model);
+    step(model, driven, copy, fresh, nullptr);
+    step(model, driven, state, data, nullptr);
+    EXPECT_EQ(hash(copy), hash(state)) << i;
+  }
+}
+
+}  // namespace
+}  // namespace softgauss::test
