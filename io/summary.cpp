@@ -169,7 +169,7 @@ std::string Summary::json() const {
                               {"substeps", integration.substeps},
                               {"rejections", integration.rejections},
                               {"glances", integration.glances}};
-  else if (integration.parts > 0)
+  else if (integration.parts > static_cast<long>(steps_) || integration.repeats > 1)
     summary["integration"] = {{"parts", integration.parts}, {"repeats", integration.repeats}};
   if (islands.on)
     summary["islands"] = {{"most", islands.most},

@@ -81,7 +81,7 @@ std::string Summary::table() const {
         "and shortened, {} taken in spite of their error, {} cut short lest shapes pass unseen",
         integration.evaluations, integration.substeps, integration.rejections, fallbacks.jumps,
         integration.glances));
-  else if (integration.parts > static_cast<long>(steps_) || integration.repeats > 0)
+  else if (integration.parts > static_cast<long>(steps_) || integration.repeats > 1)
     add(fmt::format("  integration: {} parts of {} steps, {} solves repeated", integration.parts,
                     steps_, integration.repeats));
   if (islands.on)

@@ -32,7 +32,7 @@ double factorOf(const Options& options) {
   if (options.stepDoubling) return 1.0;
   switch (options.integrator) {
     case Integrator::semiImplicitEuler:
-    case Integrator::leapfrog:  // where rows act, and trees that are followed have no error
+    case Integrator::leapfrog:  // where rows act
     case Integrator::implicit:
       return kFirstOrder;
     case Integrator::implicitMidpoint:
@@ -62,7 +62,12 @@ double ErrorEstimate::Halves::lengthInSight(double half, double left) {
 ErrorEstimate::ErrorEstimate(const Model& model, const State& start, const OutsideInput& outside,
                              bool withGoals)
     : outside_(outside), withGoals_(withGoals), run_(model) {
-  if (model.options.integrator == Integrator::implicitMidpoint)
+  // Ties of the leapfrog are its own (T.137): no other method's motion is theirs.
+  const bool tied = !(model.connections.empty() && model.welds.empty() && model.couplings.empty());
+  const Integrator integrator = model.options.integrator;
+  const bool divides =
+      integrator == Integrator::implicitMidpoint || (integrator == Integrator::leapfrog && !tied);
+  if (divides && !model.options.stepDoubling)
     halves_.push_back(std::make_unique<Halves>(halvedByDormandPrince(model), start, 1.0));
   halves_.push_back(std::make_unique<Halves>(halved(model), start, factorOf(model.options)));
 }

@@ -15,11 +15,16 @@ namespace softgauss {
 struct Assembly {
   /// Whether friction hardens where it sticks.
   bool sticks() const { return model.options.ownSoftness && !softFriction; }
-  /// How far v lies behind q [s]: half a step with leapfrog's integrators (T.116).
+  /// Whether contacts and limits hold at the step's end (T.137): in the parts of a step, which are
+  /// short for what their damping is made for; but not where goals have to know what they answer.
+  bool holdsAtEnd() const { return sticks() && model.options.wholeTimestep > 0.0; }
+  bool drifts() const { return model.options.integrator == Integrator::leapfrog; }
+  /// How far v lies behind q [s]: half a step where q is that of mid-step, or v that of half a step
+  /// earlier (T.116).
   double lag() const {
     const Options& o = model.options;
-    const bool lags = o.integrator != Integrator::leapfrog && o.midpointCoriolis;
-    return lags && !o.looksWithin() ? 0.5 * o.timestep : 0.0;
+    const bool euler = o.midpointCoriolis && !o.looksWithin();
+    return drifts() || euler ? 0.5 * o.timestep : 0.0;
   }
   /// The velocity with which joints turn through the step (nv).
   const VectorX& turns() const { return turning ? *turning : state.v; }

@@ -28,7 +28,7 @@ void Constraints::assemble(const Assembly& given) {
     in.load = &load_;
   }
   const bool ties = !in.model.connections.empty() || !in.model.welds.empty();
-  if (ties && in.lag() > 0.0 && nearby_.assemble(in.model, in.state, in.kinematics))
+  if (ties && !in.drifts() && in.lag() > 0.0 && nearby_.assemble(in.model, in.state, in.kinematics))
     in.nearby = &nearby_;
   active_ = RowKinds::none();
   visitThese(*this, planned_, [&](auto& c, int kind) {

@@ -149,7 +149,8 @@ std::optional<Touch> touchAt(const Assembly& in, int i) {
   touch.frictionDim = frictionDim(material, model.options.effects);
   double weight = in.weights.translation[c.bodyA] + in.weights.translation[c.bodyB];
   double load = in.load ? in.load->mass(model, c.bodyA, c.bodyB) : 0.0;
-  touch.carries = load > 0.0 && !material.spring;  // springs keep their depth of rest and bounce
+  touch.spring = material.spring.has_value();
+  touch.carries = load > 0.0 && !touch.spring;  // springs keep their depth of rest and bounce
   if (in.load) load = std::max(load, in.load->partOnContact(model, c.bodyA, c.bodyB));
   if (!material.spring) touch.hardening = std::max(1.0, load * weight);
   weight = carrying(weight, load);
@@ -224,8 +225,11 @@ ContactBlocks::FrameVector ContactBlocks::biasChange(const Assembly& then, int i
 Softness ContactBlocks::soften(const Assembly& in, const Touch& touch,
                                const FrameVector& velocity) {
   const Softness& soft = touch.softness;
-  if (!touch.carries || !in.sticks() || touch.frictionDim == 0) return soft;
-  if (!(soft.damping * soft.damping >= 4.0 * soft.stiffness)) return soft;  // it bounces
+  const auto held = [&](const Softness& s) {
+    return in.holdsAtEnd() && !touch.spring ? atStepsEnd(s, 0.0, in.model.options) : s;
+  };
+  if (!touch.carries || !in.sticks() || touch.frictionDim == 0) return held(soft);
+  if (!(soft.damping * soft.damping >= 4.0 * soft.stiffness)) return held(soft);  // it bounces
   double squares = 0.0;
   for (int k = 0; k < touch.frictionDim; ++k)
     squares += std::pow(touch.friction[k] * velocity[k + 1], 2.0);
@@ -233,7 +237,7 @@ Softness ContactBlocks::soften(const Assembly& in, const Touch& touch,
   speeds.weight = creepUnderWeight(in.model.options, touch);
   speeds.creep = speeds.weight - soft.stiffness * touch.distance / soft.damping;
   made_.back().slip = speeds.slip();
-  return sticking(soft, made_.back().slip);
+  return held(sticking(soft, made_.back().slip));
 }
 
 void ContactBlocks::indexRows(std::size_t rows) {

@@ -137,15 +137,15 @@ inline double restOfStep(const Options& options) {
   return options.integrator == Integrator::leapfrog ? 0.5 * options.timestep : options.timestep;
 }
 
-/// The row whose spring K and damper B are those of the step's end, r + t ẋ⁺ and ẋ⁺ = ẋ + h ẍ with
-/// t the rest of the step:
+/// The row whose spring K is that of `t` [s] after its r and whose damper B is that of the step's
+/// end, r + t ẋ⁺ and ẋ⁺ = ẋ + h ẍ:
 ///
 ///   f = −K (r + t ẋ⁺) − B ẋ⁺ = −D (ẍ + ẋ/h + (K/D) r),     D = h (t K + B)               (T.137)
 ///
 /// It has no more mass than its force has work to do: K and B may change from step to step, and
 /// nothing is gained by it.
-inline Softness atStepsEnd(double K, double B, const Options& options) {
-  const double h = options.timestep, D = h * (restOfStep(options) * K + B);
+inline Softness atStepsEnd(double K, double B, double t, const Options& options) {
+  const double h = options.timestep, D = h * (t * K + B);
   Softness s;
   s.R = 1.0 / D;
   s.stiffness = K / D;
@@ -153,12 +153,10 @@ inline Softness atStepsEnd(double K, double B, const Options& options) {
   return s;
 }
 
-/// Of ties: softnessAt(), in the leapfrog as a spring and a damper at the step's end.
-inline Softness tieSoftness(const Impedance& p, double distance, double inverseInertia,
-                            const Options& options) {
-  const Softness s = softnessAt(p, distance, inverseInertia, options);
-  if (options.integrator != Integrator::leapfrog || !(s.damping > 0.0)) return s;
-  Softness atEnd = atStepsEnd(s.stiffness / s.R, s.damping / s.R, options);
+/// The row with the same spring k d/R and damper b/R, likewise.
+inline Softness atStepsEnd(const Softness& s, double t, const Options& options) {
+  if (!(s.damping > 0.0)) return s;
+  Softness atEnd = atStepsEnd(s.stiffness / s.R, s.damping / s.R, t, options);
   atEnd.perInertia = s.perInertia * (atEnd.R / s.R);
   return atEnd;
 }

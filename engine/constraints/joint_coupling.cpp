@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/constraints/impedance.hpp"
+#include "engine/constraints/tie_softness.hpp"
 
 namespace softgauss {
 namespace {

@@ -33,8 +33,11 @@ Softness limitSoftness(const Assembly& in, const JointRange& range, double r) {
   const double weight = in.weights.dof[in.model.bodies[range.body].v];
   const auto softness = [&](double A) { return softnessAt(range.impedance, r, A, options); };
   if (!options.ownSoftness) return softness(weight);
-  if (isSprung(in.model, range.body)) return withLeastMass(softness(weight), options.rowTimestep());
-  return softness(carrying(weight, kOfCarried * carriedInertia(in, range.body)));
+  const Softness soft =
+      isSprung(in.model, range.body)
+          ? withLeastMass(softness(weight), options.rowTimestep())
+          : softness(carrying(weight, kOfCarried * carriedInertia(in, range.body)));
+  return in.holdsAtEnd() ? atStepsEnd(soft, 0.0, options) : soft;
 }
 
 }  // namespace
@@ -51,10 +54,11 @@ void JointLimit::assemble(const Assembly& in) {
         const double bound = sign > 0.0 ? range.lower : range.upper;
         const double r = sign * (in.state.q[body.q] - bound) - range.margin;
         if (!(r < 0.0)) continue;
+        const double rate = sign * in.state.v[body.v];
         const Softness soft = limitSoftness(in, range, r);
         dof_.push_back(body.v);
         sign_.push_back(sign);
-        reference.push_back(soft.referenceAcceleration(sign * in.state.v[body.v], r));
+        reference.push_back(soft.referenceAcceleration(rate, r));
         pushSoftness(soft);
       }
     }

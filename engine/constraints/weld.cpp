@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "engine/constraints/connection.hpp"
-#include "engine/constraints/impedance.hpp"
+#include "engine/constraints/tie_softness.hpp"
 #include "engine/core/rotation.hpp"
 
 namespace softgauss {
@@ -27,6 +27,7 @@ struct RotationOffset : Offset {
     const Vector3 wA = k.turning()[weld.bodyA].angular, w = wA - k.turning()[weld.bodyB].angular;
     bias = J_r * (A.angular - B.angular - wA.cross(w)) - 0.25 * w.squaredNorm() * r;
     lag = in.lag();  // of what turns together the rest is nothing
+    if (in.drifts()) r -= 0.5 * lag * lag * bias;
   }
 };
 
@@ -45,7 +46,7 @@ void WeldRows::assemble(const Assembly& in) {
       const auto softness = [&](double weight) {
         return tieSoftness(weld.impedance, distance, weight, model.options);
       };
-      RelativeMotion motion = offsetMotion(weld.bodyA, X_WA.p, weld.bodyB, X_WB.p);
+      RelativeMotion motion = offsetMotion(weld.bodyA, point.p_WA, weld.bodyB, point.p_WB);
       const Softness linear = softness(tieWeight(in, weld.impedance, weld.bodyA, weld.bodyB));
       jacobian_.add(model, k, in.tree, motion);
       pushRows(motion, point, linear);

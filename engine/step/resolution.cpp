@@ -11,20 +11,14 @@
 namespace softgauss {
 
 const double Resolution::kFollowedTurn = 1e-4;
-const int Resolution::kMostParts = 400;
 
 namespace {
 
-/// Rate at which a surface turns against what it touches: that about the normal and, of a body of
-/// revolution, its spin leave both as they are.
+/// Rate at which a surface turns against what it touches: that about the normal leaves both as they
+/// are, and a sphere has nothing to turn.
 double tiltRate(const Geometry& g, const Kinematics& k, const Vector3& n_W) {
-  const ShapeKind kind = g.shape.kind;
-  if (g.body == 0 || kind == ShapeKind::sphere) return 0.0;
-  Vector3 omega = k.turning()[g.body].angular;
-  if (kind == ShapeKind::capsule || kind == ShapeKind::cylinder) {
-    const Vector3 axis = k.X_WB[g.body].R * g.X_BG.R.col(2);
-    omega -= axis * axis.dot(omega);
-  }
+  if (g.body == 0 || g.shape.kind == ShapeKind::sphere) return 0.0;
+  const Vector3& omega = k.turning()[g.body].angular;
   return (omega - n_W * n_W.dot(omega)).norm();
 }
 
@@ -53,13 +47,13 @@ double contactRate(const Model& model, const Data& data) {
 }
 
 double tieRate(const Model& model, const Data& data) {
-  double rate = 0.0;
+  double fastest = 0.0;
   const auto add = [&](int body) {
-    rate = std::max(rate, data.kinematics.turning()[body].angular.norm());
+    fastest = std::max(fastest, data.kinematics.turning()[body].angular.norm());
   };
   for (const Connection& c : model.connections) add(c.bodyA), add(c.bodyB);
   for (const Weld& w : model.welds) add(w.bodyA), add(w.bodyB);
-  return rate;
+  return 4.0 * fastest;
 }
 
 }  // namespace

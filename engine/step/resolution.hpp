@@ -7,12 +7,14 @@
 /// divided: h r ≤ partAngle in each part, with r the fastest of all turning,
 ///
 ///   r = max( 4 √(2 turn)/h   of each tree's inertial forces, turn of (T.93)
-///            |ω − (ω·n) n|   of what touches, n the normal; a body of revolution without its spin
+///            |ω − (ω·n) n|   of what touches, n the normal, but for spheres
 ///            |s|/5           of a rim, s the rate at which the place of contact goes round it
-///            |ω|             of what connections and welds hold )                          (T.136)
+///            4 |ω|           of what connections and welds hold )                          (T.136)
 ///
 /// turn is about ½ (h ω)² for a body that tumbles at ω, and nothing for a wheel or a ball. So r is
 /// a function of the state alone, its last acceleration included.
+///
+/// A part that comes to need more than two itself has the step begin again, in so many more.
 ///
 /// A tree that no row acts on, and no control, needs no parts: it is followed by itself
 /// (free_trees.hpp), from where its turn exceeds kFollowedTurn, and so is one that would need more
@@ -30,7 +32,7 @@ struct Data;
 class Resolution {
  public:
   static const double kFollowedTurn;
-  static const int kMostParts;
+  static constexpr int kMostParts = 400;
 
   int parts = 1;
   std::vector<double> turn;        ///< (trees) of (T.93), in a step

@@ -229,27 +229,12 @@ SolveStatus integrate(const Model& model, const Given& given, const State& start
   return SolveStatus::notFinite;
 }
 
-/// Moves the trees on that are free (T.136), from where the part began.
-bool followFree(const Model& model, const Given& given, const State& start, Data& data,
-                State& state) {
-  StepParts& p = *data.parts;
-  if (!p.freeTrees.follow(model, given.input, p.resolution, start, data, state)) return false;
-  for (std::size_t t = 0; t < model.trees.size(); ++t) {
-    if (!p.resolution.free[t]) continue;
-    const int first = model.trees[t].firstDof, dofs = model.trees[t].dofEnd - first;
-    data.acceleration.segment(first, dofs) =
-        (state.v - start.v).segment(first, dofs) / model.options.timestep;
-    state.a.segment(first, dofs) = data.acceleration.segment(first, dofs);
-  }
-  return state.v.allFinite();
-}
-
 enum class Tried : std::uint8_t { taken, refused, unresolved };
 
 /// A step, or a part of one, from `start`, which is the state: drift, stages, (8), (13), (23).
-/// Where motion is not resolved (T.136) a step that `mayDivide` ends before the solve.
-Tried tryStep(const Model& model, const Given& given, const State& start, bool mayDivide,
-              bool posed, State& state, Data& data) noexcept {
+/// Where motion needs more than `most` parts of it (T.136) it ends before the solve.
+Tried tryStep(const Model& model, const Given& given, const State& start, int most, bool posed,
+              State& state, Data& data) noexcept {
   Clock::time_point clock;
   StepStats& stats = data.stats;
   const bool drifts = data.plan.drifts, resolves = drifts && !model.options.stepDoubling;
@@ -260,19 +245,23 @@ Tried tryStep(const Model& model, const Given& given, const State& start, bool m
   for (bool again = false;; again = true) {
     if (resolves) {
       data.parts->resolution.find(model, state, given.control != nullptr, data);
-      if (mayDivide && data.parts->resolution.parts > 1) return Tried::unresolved;
+      if (data.parts->resolution.parts > most) return Tried::unresolved;
     }
     if (isRefused(solve(model, given, state, data, aim, clock))) return Tried::refused;
-    if (!drifts || again || !forgetsPredicted(model, data, state)) break;
+    if (!drifts || again || !forgetsPredicted(model, data.parts->resolution, data, state)) break;
     ++stats.repeats;
+    stats.residual = 0.0;  // what was predicted by it does not move
     computeForces(model, given.input, state, data, clock);
     assembleRows(model, given.input, state, data, clock);
   }
   SolveStatus moved = integrate(model, given, start, data, state);
   stats.realised = deviation(data.acceleration, aim ? *aim : data.forward.a);
-  if (!isRefused(moved) && resolves && data.parts->resolution.anyFree &&
-      !followFree(model, given, start, data, state))
-    moved = SolveStatus::notFinite;
+  if (!isRefused(moved) && resolves && data.parts->resolution.anyFree) {
+    StepParts& p = *data.parts;
+    const bool finite = p.freeTrees.follow(model, given.input, p.resolution, start, data, state) &&
+                        state.v.allFinite();
+    if (!finite) moved = SolveStatus::notFinite;
+  }
   if (isRefused(moved)) {
     stats.status = moved;
     stats.badDof = worstDof(model, data, state);
@@ -286,21 +275,23 @@ Tried tryStep(const Model& model, const Given& given, const State& start, bool m
   return Tried::taken;
 }
 
-/// The step in parts.resolution.parts steps, each with its own control.
-Tried stepInParts(const Model& model, const Given& given, State& state, Data& data) noexcept {
+/// The step in `parts` steps, each with its own control. A part that comes to need more than two
+/// parts itself ends it, but for the shortest.
+Tried stepInParts(const Model& model, const Given& given, int parts, State& state,
+                  Data& data) noexcept {
   StepParts& p = *data.parts;
-  const int parts = p.resolution.parts;
   p.model.options = model.options;
   p.model.options.timestep = model.options.timestep / parts;
   p.model.options.wholeTimestep = model.options.timestep;
+  const int most = parts < Resolution::kMostParts ? 2 : Resolution::kMostParts;
   p.start = p.before;
-  p.start.a = state.a;  // as predicted
-  p.start.aIsKnown = state.aIsKnown;
+  p.start.a = p.predicted;
+  p.start.aIsKnown = true;
   StepStats total;
   Tried tried = Tried::taken;
   for (int k = 0; k < parts && tried == Tried::taken; ++k) {
     state = p.start;
-    tried = tryStep(p.model, given, p.start, false, false, state, data);
+    tried = tryStep(p.model, given, p.start, most, false, state, data);
     total.add(data.stats);
     p.start = state;
   }
@@ -337,15 +328,21 @@ void poseForStep(const Model& model, const State& state, Data& data) {
 
 SolveStatus step(const Model& model, const Input& input, State& state, Data& data,
                  ContactSource* contacts, StepControl* control, bool posed) noexcept {
+  constexpr int kAny = Resolution::kMostParts;
   const Given given{input, contacts, control};
   if (!data.plan.drifts) {
-    tryStep(model, given, state, false, posed, state, data);
+    tryStep(model, given, state, kAny, posed, state, data);
     return data.stats.status;
   }
   StepParts& p = *data.parts;
   p.before = state;
-  Tried tried = tryStep(model, given, p.before, !model.options.stepDoubling, posed, state, data);
-  if (tried == Tried::unresolved) tried = stepInParts(model, given, state, data);
+  const int most = model.options.stepDoubling ? kAny : 1;
+  Tried tried = tryStep(model, given, p.before, most, posed, state, data);
+  p.predicted = state.a;
+  for (int parts = 1; tried == Tried::unresolved;) {
+    parts = std::min(Resolution::kMostParts, parts * p.resolution.parts);
+    tried = stepInParts(model, given, parts, state, data);
+  }
   if (tried == Tried::refused) state = p.before;
   return data.stats.status;
 }

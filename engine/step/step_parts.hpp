@@ -9,11 +9,18 @@
 namespace softgauss {
 
 struct StepParts {
-  explicit StepParts(const Model& m) : model(m), before(m), start(m), resolution(m), freeTrees(m) {}
+  explicit StepParts(const Model& m)
+      : model(m),
+        before(m),
+        start(m),
+        predicted(VectorX::Zero(m.nv)),
+        resolution(m),
+        freeTrees(m) {}
 
-  Model model;   ///< with the length of a part as its step
-  State before;  ///< where the step begins
-  State start;   ///< where the part begins
+  Model model;        ///< with the length of a part as its step
+  State before;       ///< where the step begins
+  State start;        ///< where the part begins
+  VectorX predicted;  ///< (nv) a₋ of the first part
   Resolution resolution;
   FreeTrees freeTrees;
 };

@@ -58,7 +58,8 @@ double speed(const Model& model, const State& state, const Data& data) {
 
 EnergyWatch::EnergyWatch(const Model& model)
     : model_(model),
-      leapfrog_(model.options.solvesOnce() && !model.options.stepDoubling),
+      leapfrog_(model.options.solvesOnce() && !model.options.stepDoubling &&
+                model.options.integrator != Integrator::leapfrog),
       kinematics_(model),
       data_(model),
       contacts_(model) {}

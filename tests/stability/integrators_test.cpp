@@ -22,6 +22,7 @@ struct Method {
   bool doubling;
 };
 constexpr Method kMethods[] = {{"semi-implicit-euler", Integrator::semiImplicitEuler, false},
+                               {"leapfrog", Integrator::leapfrog, false},
                                {"implicit", Integrator::implicit, false},
                                {"implicit-midpoint", Integrator::implicitMidpoint, false},
                                {"runge-kutta-4", Integrator::rungeKutta4, false},

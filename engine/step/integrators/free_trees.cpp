@@ -42,9 +42,11 @@ bool FreeTrees::follow(const Model& model, const Input& input, const Resolution&
     }
     motion_.start(model, start, tree, true, none_);
     const double firstStep = h * std::min(1.0, 0.2 / std::sqrt(resolution.turn[t]));
-    const TreeMotion::Outcome outcome =
-        motion_.run(model, data.plan, tree, held_, inWorld, data.inertia.motionScale,
-                    treeSpeed(tree, data, start.v, start.a, h), h, firstStep);
+    // From rest it is what a part of the step brings; a is no measure near a singular place.
+    constexpr double kFromRest = 0.01;
+    const double speed = treeSpeed(tree, data, start.v, end.a, kFromRest * h);
+    const TreeMotion::Outcome outcome = motion_.run(model, data.plan, tree, held_, inWorld,
+                                                    data.inertia.motionScale, speed, h, firstStep);
     data.stats.substeps += motion_.substeps();
     if (outcome == TreeMotion::Outcome::notFinite) return false;
     if (outcome == TreeMotion::Outcome::limit) {
@@ -54,6 +56,9 @@ bool FreeTrees::follow(const Model& model, const Input& input, const Resolution&
     ++data.stats.followedTrees;
     end.v.segment(first, dofs) = motion_.v().segment(first, dofs);
     end.q.segment(root.q, coordinates) = motion_.q().segment(root.q, coordinates);
+    end.a.segment(first, dofs) = motion_.vdot().segment(first, dofs);
+    data.acceleration.segment(first, dofs) =
+        (end.v.segment(first, dofs) - start.v.segment(first, dofs)) / h;
   }
   return true;
 }

@@ -17,9 +17,9 @@ class FreeTrees {
   FreeTrees() = default;
   explicit FreeTrees(const Model& model);
 
-  /// Follows those that `resolution` calls free, from where `start` is, and overwrites their q and
-  /// v in `end`. A tree that needs more sub-steps than allowed stays as `end` has it
-  /// (StepStats::abandonedTrees). False: not finite.
+  /// Follows those that `resolution` calls free, from where `start` is, and overwrites their q, v
+  /// and last acceleration in `end`, and data.acceleration. A tree that needs more sub-steps than
+  /// allowed stays as `end` has it (StepStats::abandonedTrees). False: not finite.
   bool follow(const Model& model, const Input& input, const Resolution& resolution,
               const State& start, Data& data, State& end);
   std::size_t bytes() const;

@@ -45,14 +45,16 @@ void predictTurning(const Model& model, const State& state, Data& data) {
   setTurning(model, data.turning, data.kinematics);
 }
 
-bool forgetsPredicted(const Model& model, const Data& data, State& state) {
+bool forgetsPredicted(const Model& model, const Resolution& resolution, const Data& data,
+                      State& state) {
   if (!data.plan.coriolis) return false;
   const double h = model.options.timestep;
   const VectorX& a = data.forward.a;
   bool any = false;
-  for (const Tree& tree : model.trees) {
+  for (std::size_t t = 0; t < model.trees.size(); ++t) {
+    const Tree& tree = model.trees[t];
     // A joint alone has nothing to turn against.
-    if (tree.dofEnd - tree.firstDof == 1) continue;
+    if (resolution.free[t] || tree.dofEnd - tree.firstDof == 1) continue;
     const double off = 0.5 * h * h * worstTurn(model, tree, a, state.a);
     if (state.aIsKnown && !(off > kForgets)) continue;
     const int first = tree.firstDof, dofs = tree.dofEnd - first;

@@ -17,6 +17,7 @@
 /// with a in its place.
 
 #include "engine/step/data.hpp"
+#include "engine/step/resolution.hpp"
 
 namespace softgauss {
 
@@ -26,8 +27,10 @@ void driftBefore(const Model& model, Data& data, State& state);
 /// The velocity of turning v′ (T.138), and what depends on it, into data.kinematics.
 void predictTurning(const Model& model, const State& state, Data& data);
 
-/// Where a tree ends elsewhere than a₋ has it, or a₋ is not known: state.a ← a, and true.
-bool forgetsPredicted(const Model& model, const Data& data, State& state);
+/// Where a tree that is not free ends elsewhere than a₋ has it, or a₋ is not known: state.a ← a,
+/// and true.
+bool forgetsPredicted(const Model& model, const Resolution& resolution, const Data& data,
+                      State& state);
 
 /// v⁺ and q⁺ of a state at q_m; writes data.acceleration and the state. Returns false, with the
 /// state untouched, when the result is not finite.

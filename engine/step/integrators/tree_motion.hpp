@@ -58,6 +58,8 @@ class TreeMotion {
 
   const VectorX& q() const { return q_; }  ///< (nq), of the tree moved
   const VectorX& v() const { return v_; }  ///< (nv), of the tree moved
+  /// (nv) v̇ where it has ended, of the tree moved.
+  const VectorX& vdot() const { return Kv_[6]; }
   int substeps() const { return substeps_; }
   std::size_t bytes() const;
 

@@ -199,6 +199,67 @@ TEST(Equality, PointsOfAVelocityThatLagsTellByTheirSteps) {
   EXPECT_GT(largest, 100.0);
 }
 
+// In the leapfrog, however stretched and however turned, a tie makes no moment: its force acts in
+// one place. Two bodies in weightlessness keep their momentum to rounding, and to the order of the
+// method their angular momentum.
+TEST(Equality, KeepsMomentumHoweverStretched) {
+  for (int seed = 0; seed < 20; ++seed) {
+    Random random(static_cast<std::uint64_t>(seed));
+    ModelBuilder builder("pair");
+    builder.base = BaseKind::floating;
+    builder.link(boxLink("a", 1.0, {0.1, 0.2, 0.3})).link(boxLink("b", 5.0, {0.2, 0.1, 0.1}));
+    if (seed % 2 == 0) {
+      ConnectSpec tie;
+      tie.linkA = "a", tie.linkB = "b";
+      tie.p_LAP = random.vector3(0.2), tie.p_LBP = random.vector3(0.2);
+      builder.connect(tie);
+    } else {
+      WeldSpec weld;
+      weld.linkA = "a", weld.linkB = "b";
+      weld.X_LAF.p = random.vector3(0.2);
+      builder.weld(weld);
+    }
+    builder.options.gravity.setZero();
+    builder.options.integrator = Integrator::leapfrog;
+    Scene s(builder.build());
+    s.state = randomState(s.model, random, 3.0);
+    Kinematics k(s.model);
+    computeKinematics(s.model, s.state, k);
+    const Momentum before = computeMomentum(s.model, k);
+    for (int i = 0; i < 100; ++i) ASSERT_NE(s.step(), SolveStatus::notFinite);
+    computeKinematics(s.model, s.state, k);
+    const Momentum after = computeMomentum(s.model, k);
+    EXPECT_SMALL((after.linear - before.linear).norm() / before.linear.norm(), 1e-11) << seed;
+    EXPECT_SMALL((after.angular - before.angular).norm() / before.angular.norm(), 1e-3) << seed;
+  }
+}
+
+// (T.137): the force of a tie is that of a spring and a damper in the state in which the step ends.
+// K and B appear here as such, not as D and a_ref.
+TEST(Equality, ForceIsThatOfTheStepsEnd) {
+  for (const double h : {0.0005, 0.002, 0.01})
+    for (const double speed : {-1.0, 0.0, 0.3}) {
+      ModelBuilder builder("slider");
+      builder.link(emptyLink("world")).link(boxLink("body", 3.0, {0.1, 0.1, 0.1}));
+      builder.joint(jointSpec("rail", JointType::prismatic, "world", "body", {}, Vector3::UnitX()));
+      CouplingSpec spec;
+      spec.follower = "rail";
+      builder.couple(spec);
+      builder.options.timestep = h;
+      builder.options.integrator = Integrator::leapfrog;
+      Scene s(builder.build());
+      s.state.q[0] = 0.004;
+      s.state.v[0] = speed;
+      const double before = s.state.q[0] + 0.5 * h * speed;  // where the step takes its rows
+      s.step();
+      const Softness soft =
+          softnessAt({}, std::abs(before), s.data->weights.dof[0], s.model.options);
+      const double K = soft.stiffness / soft.R, B = soft.damping / soft.R;
+      const double end = -K * s.state.q[0] - B * s.state.v[0];
+      EXPECT_SMALL(s.data->constraints.coupling.f[0] / end - 1.0, 1e-10) << h << ", " << speed;
+    }
+}
+
 TEST(Coupling, BetweenBranchesEntersThePattern) {
   int coupled = 0, within = 0;
   for (int seed = 0; seed < 40; ++seed) {

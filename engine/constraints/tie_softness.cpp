@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/constraints/tie_softness.hpp"
+
+#include <algorithm>
+
+#include "engine/constraints/contact_softness.hpp"
+
+namespace softgauss {
+
+Softness tieSoftness(const Impedance& p, double distance, double inverseInertia,
+                     const Options& options) {
+  const Softness s = softnessAt(p, distance, inverseInertia, options);
+  if (options.integrator != Integrator::leapfrog) return s;
+  const std::optional<ReferenceSpring> reference = bouncing(p, options);
+  const double rest = restOfStep(options);
+  if (!reference) return atStepsEnd(s, rest, options);
+  const double K = reference->stiffness, B = std::max(0.0, reference->damping - rest * K);
+  return atStepsEnd(K / inverseInertia, B / inverseInertia, rest, options);
+}
+
+}  // namespace softgauss

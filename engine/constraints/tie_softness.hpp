@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// How soft connections, welds and couplings are. In the leapfrog they hold at the step's end
+/// (T.137).
+
+#include "engine/constraints/impedance.hpp"
+
+namespace softgauss {
+
+/// softnessAt(), in the leapfrog as a spring and a damper at the step's end. A tie that bounces has
+/// the spring of its reference on what it moves (T.117), else the one of its row.
+Softness tieSoftness(const Impedance& p, double distance, double inverseInertia,
+                     const Options& options);
+
+}  // namespace softgauss
