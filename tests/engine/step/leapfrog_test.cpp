@@ -8,14 +8,15 @@
 #include "engine/step/step_parts.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/sample_models.hpp"
+#include "tests/support/scene.hpp"
 
 namespace softgauss::test {
 namespace {
 
 const Vector3 kCorner(0.05, 0.1, 0.15);
 
-ModelBuilder singleLink(double h) {
-  ModelBuilder builder = chain(1);
+ModelBuilder links(int count, double h) {
+  ModelBuilder builder = chain(count);
   builder.options.integrator = Integrator::leapfrog;
   builder.options.timestep = h;
   return builder;
@@ -30,7 +31,7 @@ double energyAt(const Model& model, const State& state) {
 // A pendulum let go at a right angle, h ω₀ = 0.1: the energy of a symplectic method of order 2
 // swings by some (h ω)²/8 of what moves, and comes back.
 TEST(Leapfrog, KeepsTheEnergyOfAPendulum) {
-  const Model model = singleLink(0.01).build();
+  const Model model = links(1, 0.01).build();
   State state(model);
   state.q[0] = 0.5 * M_PI;
   Data data(model);
@@ -50,7 +51,7 @@ TEST(Leapfrog, KeepsTheEnergyOfAPendulum) {
 // Where nothing is lost to damping or rows, a step back undoes a step. Coriolis forces at a
 // predicted velocity are the exception, to the order of the prediction: one joint has none.
 TEST(Leapfrog, AStepBackUndoesAStep) {
-  const Model model = singleLink(0.01).build();
+  const Model model = links(1, 0.01).build();
   State state(model);
   state.q[0] = 0.7;
   state.v[0] = 2.0;
@@ -89,10 +90,7 @@ TEST(Leapfrog, MovesAsWasSolved) {
 // A body in weightlessness that tumbles is followed, one that a controlled joint drives goes in
 // parts, and a slow one takes one step.
 TEST(Leapfrog, DividesWhatTurnsFar) {
-  ModelBuilder builder = chain(3);
-  builder.options.integrator = Integrator::leapfrog;
-  builder.options.timestep = 0.01;
-  const Model model = builder.build();
+  const Model model = links(3, 0.01).build();
   State state(model);
   state.q.setConstant(0.4);
   Data data(model);
@@ -117,10 +115,7 @@ TEST(Leapfrog, DividesWhatTurnsFar) {
 
 // What divides a step, and all else that the next one depends on, is in the state.
 TEST(Leapfrog, DependsOnTheStateAlone) {
-  ModelBuilder builder = chain(3);
-  builder.options.integrator = Integrator::leapfrog;
-  builder.options.timestep = 0.01;
-  const Model model = builder.build();
+  const Model model = links(3, 0.01).build();
   State state(model);
   state.q.setConstant(0.4);
   state.v << 5.0, -9.0, 14.0;
@@ -227,14 +222,12 @@ TEST(Leapfrog, WhatSpinsTogetherGainsNothing) {
 // an arm that a tie pulls from a metre beyond its reach is never faster than the tie takes its end
 // home, 1.15 m in a time constant of 0.02 s, at a lever of a link.
 TEST(Leapfrog, BeginsAgainInShorterParts) {
-  ModelBuilder builder = chain(3);
+  ModelBuilder builder = links(3, 0.01);
   ConnectSpec tie;
   tie.linkA = "link2", tie.linkB = "world";
   tie.p_LAP = Vector3(0, 0, -0.2), tie.p_LBP = Vector3(0, 0, -1.6);
   builder.connect(tie);
   builder.options.gravity.setZero();
-  builder.options.timestep = 0.01;
-  builder.options.integrator = Integrator::leapfrog;
   const Model model = builder.build();
   State state(model);
   state.q << 0.1, -0.2, 0.15;
