@@ -65,7 +65,9 @@ Resolution::Resolution(const Model& model)
       touched_(model.trees.size(), 0),
       change_(VectorX::Zero(model.nv)),
       velocity_(VectorX::Zero(model.nv)),
-      Mx_(VectorX::Zero(model.nv)) {
+      Mchange_(change_),
+      Mv_(change_),
+      Ma_(change_) {
   const auto tie = [&](int body) {
     if (model.bodies[body].tree >= 0) tied_[model.bodies[body].tree] = 1;
   };
@@ -74,7 +76,7 @@ Resolution::Resolution(const Model& model)
 }
 
 std::size_t Resolution::bytes() const {
-  return bytesOfAll(turn, free, tied_, touched_, change_, velocity_, Mx_);
+  return bytesOfAll(turn, free, tied_, touched_, change_, velocity_, Mchange_, Mv_, Ma_);
 }
 
 void Resolution::findTouched(const Model& model, const Data& data) {
@@ -103,21 +105,23 @@ void Resolution::findTurns(const Model& model, const State& state, Data& data) {
   data.forward.massFactored = false;
   if (!solveMass(data, nullptr, change_)) return;  // the solve will say so
   const VectorX& a = state.a;
+  bool multiplied = false;
   for (std::size_t t = 0; t < model.trees.size(); ++t) {
     const Tree& tree = model.trees[t];
     const int first = tree.firstDof, dofs = tree.dofEnd - first;
     turn[t] = h * turnRate(model, tree, data, state.v, a, change_);
     if (!followingOf(tree, tied_[t], data, state.v, a, h).byEnergy) continue;
-    const auto square = [&](const VectorX& x) {
-      return x.segment(first, dofs).dot(Mx_.segment(first, dofs));
+    if (!multiplied) {
+      data.inertia.M.multiply(change_, Mchange_);
+      data.inertia.M.multiply(state.v, Mv_);
+      data.inertia.M.multiply(a, Ma_);
+      multiplied = true;
+    }
+    const auto dot = [&](const VectorX& x, const VectorX& y) {
+      return x.segment(first, dofs).dot(y.segment(first, dofs));
     };
-    data.inertia.M.multiply(change_, Mx_);
-    const double changes = square(change_);
-    data.inertia.M.multiply(state.v, Mx_);
-    double moving = square(state.v);
-    data.inertia.M.multiply(a, Mx_);
-    moving += h * h * square(a);
-    turn[t] = std::max(turn[t], h * energyRate(changes, moving));
+    const double moving = dot(state.v, Mv_) + h * h * dot(a, Ma_);
+    turn[t] = std::max(turn[t], h * energyRate(dot(change_, Mchange_), moving));
   }
 }
 

@@ -55,7 +55,8 @@ class Resolution {
 
   std::vector<std::uint8_t> tied_;     ///< (trees) 1: connections or welds hold it
   std::vector<std::uint8_t> touched_;  ///< (trees) 1: there are rows of it
-  VectorX change_, velocity_, Mx_;     ///< (nv) scratch
+  VectorX change_, velocity_;          ///< (nv) scratch
+  VectorX Mchange_, Mv_, Ma_;          ///< (nv) scratch: M times these
 };
 
 }  // namespace softgauss
