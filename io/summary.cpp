@@ -61,6 +61,7 @@ Summary::Summary(const Model& model)
       impedanceRatio_(model.options.impedanceRatio),
       exactDiagonal_(model.options.exactDiagonal),
       noSlip_(model.options.noSlip),
+      levelSlip_(model.options.levelsSlip()),
       stepDoubling_(model.options.stepDoubling),
       tolerance_(model.options.tolerance) {
   for (int i = 0; i < model.nv; ++i) {
@@ -126,6 +127,7 @@ std::string Summary::json() const {
         {"impedance_ratio", impedanceRatio_},
         {"exact_diagonal", exactDiagonal_},
         {"no_slip", noSlip_},
+        {"level_slip", levelSlip_},
         {"gdd_solver", gddSolver},
         {"control_cost", controlCost}}},
       {"outcome", outcome},

@@ -147,7 +147,7 @@ class Summary {
   double timestep_ = 0.0;
   std::string cone_;
   double impedanceRatio_ = 1.0;
-  bool exactDiagonal_ = false, noSlip_ = false, stepDoubling_ = false;
+  bool exactDiagonal_ = false, noSlip_ = false, levelSlip_ = false, stepDoubling_ = false;
   double tolerance_ = 0.0;
   std::vector<Bounded> bounded_;  ///< controls with a box
   std::size_t steps_ = 0;

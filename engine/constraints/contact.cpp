@@ -25,13 +25,14 @@ double shareOf(double a, double b) {
 /// the angle between it and the normal.
 constexpr double kSmallestSine = 1e-6;
 
-Matrix3 contactFrame(const Contact& c) {
-  Vector3 t = c.tangent_W - c.n_W * c.n_W.dot(c.tangent_W);
+/// Columns n, t₁, t₂, with t₁ along what is `wished` of the plane.
+Matrix3 contactFrame(const Vector3& n_W, const Vector3& wished) {
+  Vector3 t = wished - n_W * n_W.dot(wished);
   const double length = t.norm();
-  if (!(length > kSmallestSine * c.tangent_W.norm())) return frameFromNormal(c.n_W);
+  if (!(length > kSmallestSine * wished.norm())) return frameFromNormal(n_W);
   t /= length;
   Matrix3 R;
-  R << c.n_W, t, c.n_W.cross(t);
+  R << n_W, t, n_W.cross(t);
   return R;
 }
 
@@ -64,6 +65,20 @@ double residualUnder(double acceleration, const Options& options, const Touch& t
 /// Speed at which it creeps under its weight [m/s].
 double creepUnderWeight(const Options& options, const Touch& touch) {
   return residualUnder(options.gravity.norm(), options, touch) / touch.softness.damping;
+}
+
+/// Whether a pyramid turns with the slip (T.139): where its depth and normal speed let it slide,
+/// and ten times its weight would. There friction then points against the slip, whatever tangents
+/// the pyramid has.
+bool slides(const Options& options, const Touch& touch, const Vector3& n_W, const Vector3& slip) {
+  constexpr double kSure = 10.0;
+  if (touch.frictionDim == 0 || options.cone != Cone::pyramidal || !options.levelsSlip())
+    return false;
+  const double normal = n_W.dot(slip);
+  const double push = touch.softness.referenceAcceleration(normal, touch.distance);
+  const double weight = residualUnder(options.gravity.norm(), options, touch);
+  return touch.mu() * touch.softness.damping * (slip - normal * n_W).norm() >
+         touch.frictionDim * std::max(push, kSure * weight);
 }
 
 /// What presses by the weight and by J̇ v [m/s²].
@@ -173,7 +188,13 @@ ContactBlocks::BlockMotion ContactBlocks::addBlock(const Assembly& in, int i, co
                                                    int row) {
   const Model& model = in.model;
   const Contact& c = in.contacts.contacts[i];
-  const Matrix3 R_WC = contactFrame(c);
+  const Kinematics& k = in.kinematics;
+  const Motion slips{
+      k.V[c.bodyB].angular - k.V[c.bodyA].angular,
+      pointVelocity(model, k, c.bodyB, c.p_WC) - pointVelocity(model, k, c.bodyA, c.p_WC)};
+  const Matrix3 R_WC = slides(model.options, touch, c.n_W, slips.linear)
+                           ? contactFrame(c.n_W, slips.linear)
+                           : contactFrame(c.n_W, c.tangent_W);
   // The contacts of a pair are neighbours in the set.
   const std::vector<Contact>& all = in.contacts.contacts;
   int place = 0;
@@ -192,10 +213,6 @@ ContactBlocks::BlockMotion ContactBlocks::addBlock(const Assembly& in, int i, co
   motion.angularDim = std::max(0, touch.frictionDim - 2);
   jacobian_.add(model, in.kinematics, in.tree, motion);
 
-  const Kinematics& k = in.kinematics;
-  const Motion slips{
-      k.V[c.bodyB].angular - k.V[c.bodyA].angular,
-      pointVelocity(model, k, c.bodyB, c.p_WC) - pointVelocity(model, k, c.bodyA, c.p_WC)};
   BlockMotion moves;
   moves.velocity = inFrame(R_WC, touch.frictionDim, slips);
   bias_.push_back(std::nullopt);

@@ -111,11 +111,10 @@ class ContactBlocks {
   BlockMotion addBlock(const Assembly& in, int i, const Touch& touch, int row);
   /// How soft the last block is: as it is, or harder where it sticks (T.97).
   Softness soften(const Assembly& in, const Touch& touch, const FrameVector& velocity);
-  /// a_ref of the next row (T.122).
-  double nextReference(const Assembly& in, const Softness& soft, double velocity, double distance,
-                       double bias) {
+  /// a_ref of the next row (T.122), of what it asks for where J̇ v is none.
+  double nextReference(const Assembly& in, const Softness& soft, double asked, double bias) {
     turning_.push_back((1.0 - in.lag() * soft.damping) * bias);
-    return soft.referenceAcceleration(velocity, distance) - turning_.back();
+    return asked - turning_.back();
   }
   /// J̇ v of contact i with the velocities of `then`, less what it is; 0 where it is not known.
   FrameVector biasChange(const Assembly& then, int i) const;

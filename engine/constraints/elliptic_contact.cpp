@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/constraints/slip_push.hpp"
+
 namespace softgauss {
 
 void EllipticContact::assemble(const Assembly& in) {
@@ -22,9 +24,19 @@ void EllipticContact::assemble(const Assembly& in) {
       perInertia_.push_back(soft.perInertia);
       cones_.push_back({touch->frictionDim + 1, 1.0 / soft.R,
                         touch->mu() / std::sqrt(options.impedanceRatio), touch->friction});
-      for (int k = 0; k <= touch->frictionDim; ++k)
-        reference.push_back(nextReference(in, soft, moves.velocity[k],
-                                          k == 0 ? touch->distance : 0.0, moves.bias[k]));
+      double push = soft.referenceAcceleration(moves.velocity[0], touch->distance);
+      if (options.levelsSlip()) {
+        double squares = 0.0;
+        for (int k = 0; k < touch->frictionDim; ++k)
+          squares += std::pow(touch->friction[k] * moves.velocity[k + 1], 2.0);
+        const double friction = soft.damping * std::sqrt(squares);
+        push -= made_.back().slip * SlipPush::share(touch->mu()) *
+                SlipPush(push, soft.damping, options.timestep).ofCone(friction, cones_.back().mu);
+      }
+      reference.push_back(nextReference(in, soft, push, moves.bias[0]));
+      for (int k = 1; k <= touch->frictionDim; ++k)
+        reference.push_back(
+            nextReference(in, soft, -soft.damping * moves.velocity[k], moves.bias[k]));
       damping.resize(reference.size(), soft.damping);
     }
   }

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "engine/constraints/slip_push.hpp"
+
 namespace softgauss {
 namespace {
 
@@ -31,8 +33,17 @@ void PyramidalContact::assemble(const Assembly& in) {
     toEdges(moves.bias.data(), touch->frictionDim, touch->friction, bias);
     const int edges = std::max(1, 2 * touch->frictionDim);
     const Softness soft = soften(in, *touch, moves.velocity);
+    double asks[10], level[10];
+    for (int edge = 0; edge < edges; ++edge)
+      asks[edge] = level[edge] = soft.referenceAcceleration(velocity[edge], touch->distance);
+    if (touch->frictionDim > 0 && options.levelsSlip()) {
+      const double push = soft.referenceAcceleration(moves.velocity[0], touch->distance);
+      SlipPush(push, soft.damping, options.timestep).level(level, edges);
+    }
+    const double counts = made_.back().slip * SlipPush::share(touch->mu());
     for (int edge = 0; edge < edges; ++edge) {
-      reference.push_back(nextReference(in, soft, velocity[edge], touch->distance, bias[edge]));
+      const double asked = asks[edge] - counts * (asks[edge] - level[edge]);
+      reference.push_back(nextReference(in, soft, asked, bias[edge]));
       pushSoftness(soft);
     }
   }

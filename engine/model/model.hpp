@@ -158,6 +158,9 @@ struct Options {
   /// Softness beyond MuJoCo's: (T.80), (T.94), (T.96), (T.97), (T.115), (T.117), and the curvature
   /// of couplings (T.30).
   bool ownSoftness = true;
+  /// Slip adds no push to a contact (T.135), and pyramids turn with it (T.139): what slides stays
+  /// level and keeps its line. Beside `ownSoftness` alone.
+  bool levelSlip = false;
   bool exactDiagonal = false;  ///< see constraints/exact_diagonal.hpp
   bool noSlip = false;         ///< friction without creep (step/no_slip.hpp)
   int maxIterations = 400;     ///< Newton
@@ -173,6 +176,7 @@ struct Options {
     return integrator == Integrator::semiImplicitEuler || integrator == Integrator::leapfrog ||
            integrator == Integrator::implicit;
   }
+  bool levelsSlip() const { return ownSoftness && levelSlip; }
   /// h by which rows bound their softness: what a whole step follows, a part of it does too [s].
   double rowTimestep() const { return wholeTimestep > 0.0 ? wholeTimestep : timestep; }
   /// The step evaluates the dynamics again within it.

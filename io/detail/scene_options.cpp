@@ -56,8 +56,8 @@ IntegrationKeys readIntegration(const YamlMap& map, Options& options) {
 IntegrationKeys readOptions(const YamlMap& map, Options& options,
                             std::optional<gdd::GddSolver>& solver) {
   map.expectOnly({"integrator", "integration_tolerance", "step_doubling", "cone", "no_slip",
-                  "exact_diagonal", "tolerance", "max_iterations", "impedance_ratio", "effects",
-                  "compatibility", "gdd_solver"});
+                  "level_slip", "exact_diagonal", "tolerance", "max_iterations", "impedance_ratio",
+                  "effects", "compatibility", "gdd_solver"});
   const IntegrationKeys integration = readIntegration(map, options);
   if (const auto* entry = map.find("cone"))
     options.cone = map.choice(*entry, {"pyramidal", "elliptic"}) == "elliptic" ? Cone::elliptic
@@ -67,6 +67,7 @@ IntegrationKeys readOptions(const YamlMap& map, Options& options,
                  ? gdd::GddSolver::activeSet
                  : gdd::GddSolver::augmentedLagrangian;
   if (const auto* entry = map.find("no_slip")) options.noSlip = map.boolean(*entry);
+  if (const auto* entry = map.find("level_slip")) options.levelSlip = map.boolean(*entry);
   if (const auto* entry = map.find("exact_diagonal")) options.exactDiagonal = map.boolean(*entry);
   map.read("tolerance", options.tolerance, Range::notNegative);
   if (const auto* entry = map.find("max_iterations")) {
