@@ -6,7 +6,8 @@
 namespace softgauss::app {
 
 std::vector<std::string> setErrorControl(const SimulateOptions& options,
-                                         const io::IntegrationKeys& scene, ModelBuilder& builder) {
+                                         const io::IntegrationKeys& scene, bool hasGoals,
+                                         ModelBuilder& builder) {
   std::vector<std::string> warnings;
   Options& o = builder.options;
   const bool named = options.integrator || scene.integrator;
@@ -17,6 +18,8 @@ std::vector<std::string> setErrorControl(const SimulateOptions& options,
     o.integrator = Integrator::semiImplicitEuler;
   else if (!named && options.integrationTolerance)
     o.integrator = Integrator::dormandPrince;
+  else if (!named && hasGoals && o.ownSoftness)  // `--compatibility mujoco` has MuJoCo's step
+    o.integrator = Integrator::leapfrog;
 
   const std::string_view name = integratorName(o.integrator);
   const auto ignored = [&](const char* key, const char* reason) {

@@ -151,7 +151,10 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
   std::string integratorHelp;
   for (const IntegratorName& i : kIntegratorNames) {
     integratorHelp += std::string(integrators.empty() ? "" : ";\n") + std::string(i.name) +
-                      (integrators.empty() ? " (default): " : ": ") + std::string(i.description);
+                      (i.integrator == Integrator::semiImplicitEuler ? " (default without goals): "
+                       : i.integrator == Integrator::leapfrog        ? " (default with goals): "
+                                                                     : ": ") +
+                      std::string(i.description);
     integrators.emplace_back(i.name);
   }
   for (const auto& [name, full] : kShortNames) integrators.emplace_back(name);
@@ -185,6 +188,10 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
   app.add_flag("--no-slip", options.noSlip,
                "friction without creep, by a second solve bounded by the first; inverse\n"
                "dynamics then miss the control by what the summary calls physics violation")
+      ->group(simulation);
+  app.add_flag("--level-slip", options.levelSlip,
+               "slip adds no push to contacts, and pyramids turn with it: what slides stays\n"
+               "level and keeps its line")
       ->group(simulation);
   app.add_option(
          "--gdd-solver", solver,
@@ -305,7 +312,7 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
                                         std::pair{"--ground", !ground.empty()}})
       if (given)
         throw UsageError(fmt::format("{} is for a URDF; a scene file says it itself", option));
-  const bool hasGoals = options.hasOwnGoals() || !options.goals.empty();
+  const bool hasGoals = options.hasGoals();
   if (int{options.passive} + int{!options.torques.empty()} + int{hasGoals} > 1)
     throw UsageError(
         "choose one of goals (--reach, --hold, --posture, --goals), --torques and --passive");

@@ -37,13 +37,14 @@ struct SimulateOptions {
 
   /// Goals on the command line itself.
   bool hasOwnGoals() const { return !reach.empty() || !hold.empty() || posture; }
+  bool hasGoals() const { return hasOwnGoals() || !goals.empty(); }  ///< or of --goals
   bool passive = false;
   std::filesystem::path goals, torques;
   std::vector<std::pair<std::string, double>> q0;
   std::optional<EffectSet> effects;  ///< absent: the scene's own, or all
   bool zeroEffortIsUnlimited = false;
   std::optional<io::MeshUse> meshes;  ///< absent: automatic, or hull as MuJoCo has it
-  bool noSlip = false;
+  bool noSlip = false, levelSlip = false;
   bool exactDiagonal = false;
   std::optional<Cone> cone;                     ///< absent: the scene's own, or pyramidal
   std::optional<gdd::GddSolver> gddSolver;      ///< absent: the scene's own, or the active set

@@ -46,6 +46,7 @@ void setOptions(const SimulateOptions& options, ModelBuilder& builder) {
   if (options.timestep) builder.options.timestep = *options.timestep;
   if (options.exactDiagonal) builder.options.exactDiagonal = true;
   if (options.noSlip) builder.options.noSlip = true;
+  if (options.levelSlip) builder.options.levelSlip = true;
   if (options.cone) builder.options.cone = *options.cone;
   if (options.effects) builder.options.effects = *options.effects;
   if (options.likeMujoco) builder.options.useMujocoModel(*options.likeMujoco);
@@ -65,7 +66,7 @@ io::UrdfOptions urdfOptions(const SimulateOptions& options) {
 void loadRobot(const SimulateOptions& options, Scene& scene) {
   ModelBuilder builder = io::readUrdf(options.model, urdfOptions(options), &scene.contents);
   setOptions(options, builder);
-  setErrorControl(options, {}, builder);
+  setErrorControl(options, {}, options.hasGoals(), builder);
   scene.model = builder.build();
 
   // Whether there is ground by default is known only once the base is.
@@ -89,7 +90,9 @@ void loadRobot(const SimulateOptions& options, Scene& scene) {
 void loadSceneFile(const SimulateOptions& options, Scene& scene) {
   io::SceneFile file = io::readScene(options.model, urdfOptions(options));
   setOptions(options, file.builder);
-  std::vector<std::string> warnings = setErrorControl(options, file.integration, file.builder);
+  const bool goalsOfFile = file.hasGoals && !options.passive && options.torques.empty();
+  std::vector<std::string> warnings =
+      setErrorControl(options, file.integration, options.hasGoals() || goalsOfFile, file.builder);
   std::optional<double> ground = file.ground;
   if (!ground && !file.noGround && !file.starts.empty()) ground = 0.0;
   if (ground) addGround(file.builder, *ground, file.groundMaterial);

@@ -130,5 +130,20 @@ TEST(ErrorControl, IsCounted) {
   EXPECT_FALSE(Json::parse(readFile(summary)).contains("integration"));
 }
 
+// Where nobody names an integrator, what has goals moves as they have been solved.
+TEST(ErrorControl, GoalsMoveAsSolvedByDefault) {
+  for (const char* h : {"0.002", "0.01"}) {
+    const io::TempFolder folder;
+    const std::string summary = folder.path() / "summary.json";
+    const Outcome outcome = simulate({dataFile("robots/humanoid.urdf"), "--goals",
+                                      dataFile("goals/stand_and_reach.yaml"), "--duration", "1",
+                                      "--timestep", h, "--summary", summary});
+    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    const auto json = nlohmann::json::parse(readFile(summary));
+    EXPECT_EQ(json["options"]["integrator"], "leapfrog");
+    EXPECT_LT(double{json["realised"]["p95"]}, 1e-9) << h;
+  }
+}
+
 }  // namespace
 }  // namespace softgauss::test

@@ -302,7 +302,9 @@ TEST(SceneRun, GoalsActOnIslands) {
   for (const char* islands : {"", "apart", "sleep", "sleep-all"}) {
     const std::string log = folder.path() / "log.csv", summary = folder.path() / "summary.json";
     std::vector<std::string> arguments = {
-        dataFile("scenes/two_arms.yaml"), "--duration", "1", "--log", log, "--summary", summary};
+        dataFile("scenes/two_arms.yaml"), "--duration", "1", "--log", log, "--summary", summary,
+        // The leapfrog goes in parts by what turns: in the whole scene, or in an island.
+        "--integrator", "semi-implicit-euler"};
     if (*islands) arguments.insert(arguments.end(), {"--islands", islands});
     const Outcome outcome = simulate(arguments);
     ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
