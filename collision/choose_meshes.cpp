@@ -106,16 +106,6 @@ void chooseMeshes(Model& model, PreparedMeshes& meshes) {
   openHulls.appendTo(model.warnings, "collide as their convex hull, the mesh is not closed: ", "");
   openSurfaces.appendTo(model.warnings,
                         "collide from the side that their triangles face, not closed: ", "");
-  Told pairs;
-  const auto isSurface = [](const Geometry& g) { return g.shape.kind == ShapeKind::triangles; };
-  for (const Geometry& g : model.geometries)
-    if (isSurface(g) && g.body != 0 &&
-        std::any_of(model.geometries.begin(), model.geometries.end(), [&](const Geometry& other) {
-          return isSurface(other) && other.body != g.body;
-        }))
-      pairs.add(g, "");
-  pairs.appendTo(model.warnings,
-                 "meet other meshes of triangles, of which one counts as its convex hull: ", "");
   turned.appendTo(model.warnings,
                   "collide as their convex hull, the triangles do not all face outwards: ",
                   "; try a mesh tool that orients faces");

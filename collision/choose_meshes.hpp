@@ -13,9 +13,6 @@
 /// A mesh that is not closed has no volume: fixed to the world it collides as its triangles, and
 /// what moves as its hull, both with a warning. A mesh whose triangles face mixed sides collides as
 /// its hull, with a warning.
-///
-/// Surfaces of triangles are met by every other shape as they are. Two of them meet as the surface
-/// of one and the hull of the other: the one that moves, or the smaller. A warning tells it.
 
 #include "collision/prepared_meshes.hpp"
 #include "engine/model/model.hpp"

@@ -44,6 +44,10 @@ TriangleMesh::TriangleMesh(std::shared_ptr<const Mesh> mesh) : mesh_(std::move(m
   joinEdges();
   closed_ = closed_ && sixVolumes() > 0.0;
   findHollows();
+  const bool isHollow = std::any_of(triangles_.begin(), triangles_.end(), [](const auto& t) {
+    return t.isHollow[0] || t.isHollow[1] || t.isHollow[2];
+  });
+  convex_ = closed_ && !isHollow && isOnePiece();
   std::vector<std::array<int, 3>> corners;
   corners.reserve(triangles_.size());
   for (const SurfaceTriangle& t : triangles_) corners.push_back(t.corners);
@@ -141,6 +145,24 @@ void TriangleMesh::findHollows() {
     }
 }
 
+bool TriangleMesh::isOnePiece() const {
+  std::vector<bool> seen(triangles_.size(), false);
+  std::vector<int> waiting{0};
+  seen[0] = true;
+  std::size_t count = 0;
+  while (!waiting.empty()) {
+    const SurfaceTriangle& t = (*this)[waiting.back()];
+    waiting.pop_back();
+    ++count;
+    for (const int beyond : t.across) {
+      if (beyond < 0) return false;
+      if (!seen[idx(beyond)]) waiting.push_back(beyond);
+      seen[idx(beyond)] = true;
+    }
+  }
+  return count == triangles_.size();
+}
+
 Triangle TriangleMesh::triangle(int t) const {
   const SurfaceTriangle& s = (*this)[t];
   return {{vertex(s.corners[0]), vertex(s.corners[1]), vertex(s.corners[2])}, s.normal};
@@ -168,7 +190,6 @@ int TriangleMesh::owner(int t, const Vector3& m, double tilt) const {
   if (isTop[0] && isTop[1] && isTop[2]) return own.normal.dot(m) > 0.0 ? t : -1;
 
   int best = t;
-  bool atRim = false;
   const auto compare = [&](int other) {
     const double gain = (*this)[other].normal.dot(m) - (*this)[best].normal.dot(m);
     if (gain > kFlat || (gain > -kFlat && other < best)) best = other;
@@ -179,18 +200,16 @@ int TriangleMesh::owner(int t, const Vector3& m, double tilt) const {
                                                                     : 3);
   if (edge < 3) {
     const int other = own.across[edge];
-    atRim = other < 0;
-    if (!atRim && !staysBelow(other, own.corners[edge], m, tilt)) return -1;
-    if (!atRim) compare(other);
+    if (other < 0) return t;
+    if (!staysBelow(other, own.corners[edge], m, tilt)) return -1;
+    compare(other);
   } else {
     for (const int other : around(top)) {
       if (!staysBelow(other, top, m, tilt)) return -1;
       compare(other);
-      for (const int beyond : (*this)[other].across) atRim = atRim || beyond < 0;
     }
   }
-  // A rim is met from the front alone.
-  return atRim && !((*this)[best].normal.dot(m) >= 0.0) ? -1 : best;
+  return best;
 }
 
 bool TriangleMesh::encloses(const Vector3& p, std::vector<int>& scratch) const {
@@ -219,6 +238,13 @@ bool TriangleMesh::encloses(const Vector3& p, std::vector<int>& scratch) const {
     if (n.z() != 0.0 && n.dot(vertex(c[0]) - p) / n.z() >= 0.0) ++crossings;
   }
   return crossings % 2 == 1;
+}
+
+bool TriangleMesh::holds(const Transform& X_WG, const TriangleMesh& other, const Transform& X_WO,
+                         std::vector<int>& scratch) const {
+  if (!closed_) return false;
+  const Vector3 x = X_WG.inverse() * (X_WO * other.vertex(other[0].corners[0]));
+  return ((x - centre_).cwiseAbs() - halfExtents_).maxCoeff() <= 0.0 && encloses(x, scratch);
 }
 
 bool TriangleMesh::comesNear(const Vector3& p, double radius) const {

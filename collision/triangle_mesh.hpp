@@ -13,8 +13,9 @@
 ///   on a corner    m·(w − x) ≤ 0 for all corners w around
 ///
 /// So a point inside an edge between coplanar triangles has one normal, whichever of the two found
-/// it: inner edges do not show.  (The regions over faces, edges and corners are Voronoi's: Mirtich,
-/// V-Clip, ACM Transactions on Graphics 17(3), 1998.)
+/// it: inner edges do not show. A rim, beyond which there is nothing, is met from all around.  (The
+/// regions over faces, edges and corners are Voronoi's: Mirtich, V-Clip, ACM Transactions on
+/// Graphics 17(3), 1998.)
 
 #include <array>
 #include <map>
@@ -63,9 +64,15 @@ class TriangleMesh {
   /// Whether the surface encloses a solid: no edge is a rim, and it faces outwards. What is closed
   /// and faces inwards is the wall of a room.
   bool isClosed() const { return closed_; }
+  /// Whether it is the surface of a convex body: closed, of one piece, without hollow edges.
+  bool isConvex() const { return convex_; }
   /// Whether a closed surface encloses a point, by the number of its triangles above it. `scratch`
   /// keeps memory from call to call.
   bool encloses(const Vector3& p_G, std::vector<int>& scratch) const;
+  /// Whether a closed surface encloses another one that it does not touch. At the poses X_WG of
+  /// this and X_WO of the other.
+  bool holds(const Transform& X_WG, const TriangleMesh& other, const Transform& X_WO,
+             std::vector<int>& scratch) const;
 
   /// Whether any triangle's own box comes nearer than `radius` to a point, along each axis of G.
   bool comesNear(const Vector3& p_G, double radius) const;
@@ -81,6 +88,8 @@ class TriangleMesh {
   void joinEdges();
   double sixVolumes() const;
   void findHollows();
+  /// Of a closed surface without hollow edges: whether all of it hangs together.
+  bool isOnePiece() const;
   /// All triangles around vertex v.
   std::span<const int> around(int v) const { return around_.of(v); }
   /// Whether no corner of a triangle lies higher along m than vertex v.
@@ -93,7 +102,7 @@ class TriangleMesh {
   Vector3 centre_ = Vector3::Zero();
   Vector3 halfExtents_ = Vector3::Zero();
   int withoutArea_ = 0;
-  bool closed_ = true;
+  bool closed_ = true, convex_ = false;
 };
 
 }  // namespace softgauss::collision

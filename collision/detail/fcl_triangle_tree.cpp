@@ -25,6 +25,21 @@ int depthBelow(const Hierarchy& model, int node) {
   return 1 + std::max(depthBelow(model, bv.leftChild()), depthBelow(model, bv.rightChild()));
 }
 
+/// The box about a box of other axes, and `reach` more.
+struct Turned {
+  Turned(const Transform& X, double reach) : X_(X), extent_(X.R.cwiseAbs()), reach_(reach) {}
+  Box operator()(const Box& box) const {
+    const Vector3 centre = X_ * Vector3(0.5 * (box.lower + box.upper));
+    const Vector3 half = (0.5 * (extent_ * (box.upper - box.lower))).array() + reach_;
+    return {centre - half, centre + half};
+  }
+
+ private:
+  Transform X_;
+  Matrix3 extent_;
+  double reach_;
+};
+
 }  // namespace
 
 TriangleTree::TriangleTree(const std::vector<Vector3>& vertices,
@@ -75,6 +90,31 @@ void TriangleTree::within(const Box& box, std::vector<int>& found) const {
     found.push_back(t);
     return true;
   });
+  std::sort(found.begin(), found.end());
+}
+
+void TriangleTree::near(const TriangleTree& other, const Transform& X, double reach,
+                        std::vector<std::pair<int, int>>& found) const {
+  found.clear();
+  const Turned there(X, reach), back(X.inverse(), reach);
+  std::array<std::pair<int, int>, 2 * kWaiting> waiting;
+  int count = 0;
+  waiting[idx(count++)] = {0, 0};
+  while (count > 0) {
+    const auto [i, j] = waiting[idx(--count)];
+    const Node &node = nodes_[idx(i)], &far = other.nodes_[idx(j)];
+    if (!there(far.box).overlaps(node.box) || !back(node.box).overlaps(far.box)) continue;
+    if (node.first < 0 && far.first < 0) {
+      found.push_back({-node.first - 1, -far.first - 1});
+      continue;
+    }
+    const bool goDown =
+        far.first < 0 || (node.first >= 0 && (node.box.upper - node.box.lower).squaredNorm() >
+                                                 (far.box.upper - far.box.lower).squaredNorm());
+    for (const int next : {1, 0})
+      waiting[idx(count++)] =
+          goDown ? std::pair(node.first + next, j) : std::pair(i, far.first + next);
+  }
   std::sort(found.begin(), found.end());
 }
 

@@ -9,9 +9,11 @@
 /// built with, whatever the others are.
 
 #include <array>
+#include <utility>
 #include <vector>
 
 #include "collision/detail/box.hpp"
+#include "engine/core/spatial.hpp"
 
 namespace softgauss::collision::detail {
 
@@ -25,6 +27,10 @@ class TriangleTree {
   void within(const Box& box, std::vector<int>& found) const;
   /// Whether there is any.
   bool anyWithin(const Box& box) const;
+  /// Pairs of a triangle of this tree and one of another, at pose X in the axes of this one, whose
+  /// own boxes come nearer than `reach`, in rising order, into `found` (cleared first).
+  void near(const TriangleTree& other, const Transform& X, double reach,
+            std::vector<std::pair<int, int>>& found) const;
   std::size_t bytes() const { return nodes_.capacity() * sizeof(Node); }
 
  private:

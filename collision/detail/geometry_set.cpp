@@ -34,6 +34,13 @@ const Shape kHullShape = Shape::hull(nullptr);
 
 }  // namespace
 
+const PairContact* PairTest::deepest() const {
+  const auto least = std::min_element(
+      points->begin(), points->end(),
+      [](const PairContact& x, const PairContact& y) { return x.distance < y.distance; });
+  return least == points->end() ? nullptr : &*least;
+}
+
 GeometrySet::GeometrySet(const Model& m, PreparedMeshes& meshes) : model(m) {
   const std::size_t count = model.geometries.size();
   hull.resize(count);
@@ -50,7 +57,7 @@ GeometrySet::GeometrySet(const Model& m, PreparedMeshes& meshes) : model(m) {
       centreInG[i] = surface[i]->centre();
     }
     // Against another surface.
-    if (surface[i] && model.geometries[i].body != 0) {
+    if (surface[i] && (model.geometries[i].body != 0 || surface[i]->isConvex())) {
       hull[i] = meshes.hull(shape.mesh);
       colliders[i] = makeCollider(kHullShape, hull[i].get());
     }
@@ -82,20 +89,38 @@ int GeometrySet::hullOf(int a, int b) const {
   return radius[static_cast<std::size_t>(b)] < radius[static_cast<std::size_t>(a)] ? b : a;
 }
 
+bool GeometrySet::testSurfaces(int a, const Transform& X_WA, int b, const Transform& X_WB,
+                               double margin, PairTest& test) const {
+  const auto i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b);
+  int hulled = surface[i]->isConvex() ? a : surface[j]->isConvex() ? b : -1;
+  if (hulled < 0) {
+    if (!test.pairs.find(*surface[i], X_WA, *surface[j], X_WB, margin)) return false;
+    const bool isWithin =
+        !test.pairs.touch() && (surface[j]->holds(X_WB, *surface[i], X_WA, test.scratch) ||
+                                surface[i]->holds(X_WA, *surface[j], X_WB, test.scratch));
+    if (!isWithin) {
+      test.take(test.pairs);
+      return true;
+    }
+    hulled = hullOf(a, b);
+  }
+  const bool isA = hulled == a;
+  const bool known =
+      isA ? test.surface.find(colliders[i], X_WA, *surface[j], X_WB, margin, test.reach)
+          : test.surface.find(colliders[j], X_WB, *surface[i], X_WA, margin, test.reach);
+  if (!isA) test.surface.flip();
+  test.take(test.surface);
+  return known;
+}
+
 bool GeometrySet::testSurface(int a, const Transform& X_WA, int b, const Transform& X_WB,
                               double margin, PairTest& test) const {
   const auto i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b);
-  SurfaceContacts& contacts = test.surface;
-  bool known = false;
-  if (isPlane(a)) {
-    known = contacts.findOnPlane(X_WA, *surface[j], X_WB, margin);
-  } else if (!surface[i] || hullOf(a, b) == a) {
-    known = contacts.find(colliders[i], X_WA, *surface[j], X_WB, margin, test.reach);
-  } else {
-    known = contacts.find(colliders[j], X_WB, *surface[i], X_WA, margin, test.reach);
-    contacts.flip();
-  }
-  if (const PairContact* deepest = contacts.deepest(); known && deepest) test.found.add(*deepest);
+  if (surface[i]) return testSurfaces(a, X_WA, b, X_WB, margin, test);
+  const bool known =
+      isPlane(a) ? test.surface.findOnPlane(X_WA, *surface[j], X_WB, margin)
+                 : test.surface.find(colliders[i], X_WA, *surface[j], X_WB, margin, test.reach);
+  test.take(test.surface);
   return known;
 }
 
@@ -104,7 +129,11 @@ bool GeometrySet::test(int a, const Transform& X_WA, int b, const Transform& X_W
   const auto i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b);
   const Shape &shapeA = model.geometries[i].shape, &shapeB = model.geometries[j].shape;
   test.found.clear();
-  if (shapeB.kind == ShapeKind::triangles) return testSurface(a, X_WA, b, X_WB, margin, test);
+  if (surface[j]) {
+    const bool known = testSurface(a, X_WA, b, X_WB, margin, test);
+    if (const PairContact* deepest = test.deepest(); known && deepest) test.found.add(*deepest);
+    return known;
+  }
   if (hasClosedForm(shapeA.kind, shapeB.kind)) {
     collideInOrder(shapeA, X_WA, shapeB, X_WB, hull[j].get(), margin, test.found);
     return true;
@@ -146,8 +175,8 @@ void GeometrySet::addFound(int a, int b, const PairTest& pair, ContactSet& conta
     contacts.add(contact);
   };
   if (surface[static_cast<std::size_t>(b)]) {
-    for (const PairContact& point : pair.surface.points()) add(point);
-    contacts.pointsReduced += pair.surface.reduced();
+    for (const PairContact& point : *pair.points) add(point);
+    contacts.pointsReduced += pair.reduced;
     return;
   }
   for (int i = 0; i < pair.found.count; ++i) add(pair.found[i]);

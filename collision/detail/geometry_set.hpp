@@ -9,6 +9,7 @@
 
 #include "collision/detail/convex_pairs.hpp"
 #include "collision/detail/surface_contacts.hpp"
+#include "collision/detail/surface_pairs.hpp"
 #include "collision/pair_contact.hpp"
 #include "collision/prepared_meshes.hpp"
 #include "engine/constraints/contact_set.hpp"
@@ -19,13 +20,27 @@ namespace softgauss::collision::detail {
 /// What a test of a pair finds, and the memory that it works in.
 struct PairTest {
   PairContacts found;             ///< of a pair with a surface, the deepest point alone
-  SurfaceContacts surface;        ///< all points of a pair with a surface
+  SurfaceContacts surface;        ///< of a pair with a surface
+  SurfacePairs pairs;             ///< of a pair of two
   SurfaceReach* reach = nullptr;  ///< of the pair that is tested, where it has one
+  const std::vector<PairContact>* points = nullptr;  ///< all of a pair with a surface
+  int reduced = 0;                                   ///< left to others beside them
+
+  std::vector<int> scratch;
+
+  template <class Found>
+  void take(const Found& from) {
+    points = &from.points();
+    reduced = from.reduced();
+  }
+  /// Of the points the one with the least distance; null without points.
+  const PairContact* deepest() const;
 };
 
 struct GeometrySet {
   const Model& model;
-  std::vector<std::shared_ptr<const ConvexHull>> hull;  ///< of meshes, and of triangles that move
+  std::vector<std::shared_ptr<const ConvexHull>> hull;       ///< of meshes, and of triangles that
+                                                             ///< move or are convex
   std::vector<std::shared_ptr<const TriangleMesh>> surface;  ///< null unless triangles
   std::vector<Collider> colliders;
   std::vector<Vector3> centreInG;  ///< of the bounding sphere [m]
@@ -43,7 +58,8 @@ struct GeometrySet {
   /// Whether b is no surface, or moves, or has a triangle within `reach` [m] of the bounding sphere
   /// of a, whose centre is p_W.
   bool comesNear(int a, const Vector3& p_W, int b, const Transform& X_WB, double reach) const;
-  /// Of two surfaces the one that meets the other as its hull: what moves, or else the smaller.
+  /// Of two surfaces, one within the other, the one that is pushed out as its hull: what moves, or
+  /// else the smaller.
   int hullOf(int a, int b) const;
   /// Contacts of a pair, a's kind ≤ b's, with distance < margin; false where a pose is not finite.
   bool test(int a, const Transform& X_WA, int b, const Transform& X_WB, double margin,
@@ -57,6 +73,8 @@ struct GeometrySet {
 
  private:
   void addFound(int a, int b, const PairTest& test, ContactSet& contacts) const;
+  bool testSurfaces(int a, const Transform& X_WA, int b, const Transform& X_WB, double margin,
+                    PairTest& test) const;
   bool testSurface(int a, const Transform& X_WA, int b, const Transform& X_WB, double margin,
                    PairTest& test) const;
 };

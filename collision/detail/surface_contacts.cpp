@@ -12,29 +12,16 @@
 namespace softgauss::collision::detail {
 namespace {
 
-/// Of the directions that are found: those of balls are exact, others are searched for [rad].
-constexpr double kExactTilt = 1e-6, kSearchTilt = 1e-4;
 /// A is sunk so deep, of its size, that it may have the plane of a triangle within it and the
 /// triangle beside it.
 constexpr double kShallow = 0.02;
 
-const Shape kTriangleShape = Shape::surface(nullptr);
-
-Collider colliderOf(std::span<const Triangle> triangles) {
-  Collider c;
-  c.convex = {&kTriangleShape, nullptr, triangles};
-  Vector3 lower = triangles[0].corners[0], upper = lower;
-  for (const Triangle& t : triangles)
-    for (const Vector3& corner : t.corners) {
-      lower = lower.cwiseMin(corner);
-      upper = upper.cwiseMax(corner);
-    }
-  c.boxCentre = 0.5 * (lower + upper);
-  c.boxHalfExtents = 0.5 * (upper - lower);
-  return c;
-}
-
 bool isBall(const Collider& a) { return a.convex.shape->kind == ShapeKind::sphere; }
+
+/// Which of two triangles the shape lies less deep behind.
+bool isLessDeep(const NearTriangle& x, const NearTriangle& y) {
+  return x.low > y.low || (x.low == y.low && x.t < y.t);
+}
 
 /// From c to the nearest point of the triangle; `onFace` where that is inside it.
 Vector3 toNearest(const Triangle& triangle, const Vector3& c, bool& onFace) {
@@ -43,20 +30,6 @@ Vector3 toNearest(const Triangle& triangle, const Vector3& c, bool& onFace) {
   const Vector3 v = nearestToOrigin(simplex);
   onFace = simplex.count == 3;
   return v;
-}
-
-/// The triangle of the patch that is highest along m, and of those the one that faces m most.
-int highest(const SurfacePatch& patch, const Vector3& m) {
-  std::size_t best = 0;
-  double height = -kInfinity, facing = -kInfinity;
-  for (std::size_t i = 0; i < patch.triangles.size(); ++i) {
-    const Triangle& t = patch.triangles[i];
-    double top = -kInfinity;
-    for (const Vector3& corner : t.corners) top = std::max(top, m.dot(corner));
-    const double faces = t.normal.dot(m);
-    if (top > height || (top == height && faces > facing)) best = i, height = top, facing = faces;
-  }
-  return patch.near[best].t;
 }
 
 }  // namespace
@@ -82,7 +55,8 @@ bool SurfaceContacts::find(const Collider& a, const Transform& X_WA, const Trian
   if (isBall(a)) {
     if (!meetBall(q)) return false;
   } else {
-    patches_.grow(surface, near_, q.size);
+    if (!meetEach(q)) return false;
+    patches_.grow(surface, open_, q.size);
     for (int p = 0; p < patches_.size(); ++p)
       if (!meetPatch(q, patches_[p])) return false;
   }
@@ -134,13 +108,6 @@ void SurfaceContacts::flip() {
   for (PairContact& c : points_) c.n_W = -c.n_W;
 }
 
-const PairContact* SurfaceContacts::deepest() const {
-  const auto least = std::min_element(
-      points_.begin(), points_.end(),
-      [](const PairContact& x, const PairContact& y) { return x.distance < y.distance; });
-  return least == points_.end() ? nullptr : &*least;
-}
-
 /// Whether triangle t is in reach. False where a number is not finite.
 bool SurfaceContacts::lookAt(const Query& q, int t) {
   const Vector3& n = q.surface[t].normal;
@@ -180,7 +147,47 @@ bool SurfaceContacts::meetBall(const Query& q) {
   return true;
 }
 
-/// Step 1; where the direction is no normal, the triangles wait for step 2.
+/// Step 1. Leaves in open_ what A overlaps and none of the meetings frees it of.
+bool SurfaceContacts::meetEach(const Query& q) {
+  open_ = near_;
+  if (q.surface.isConvex()) return true;
+  std::sort(open_.begin(), open_.end(), isLessDeep);
+  std::size_t left = 0;
+  for (const NearTriangle near : open_) {
+    if (isMet(q, near.t)) continue;
+    const Triangle triangle = q.surface.triangle(near.t);
+    const Collider collider = colliderOf({&triangle, 1});
+    const Separation found = separate(q.a, q.X_GA, collider, Transform(), q.margin);
+    if (std::isnan(found.distance)) return false;
+    if (found.distance >= q.margin) continue;
+    // On a face nearly along m there is no other normal.
+    const bool isFace = triangle.normal.dot(-found.n_W) > kNearlyFace;
+    const Vector3 m = isFace ? triangle.normal : Vector3(-found.n_W);
+    const int owner = isFace ? near.t : q.surface.owner(near.t, m, kSearchTilt);
+    if (owner < 0)
+      open_[left++] = near;
+    else
+      meetAt(q, collider, owner, m, found.distance);
+  }
+  open_.resize(left, NearTriangle{});
+  std::erase_if(open_, [&](const NearTriangle& near) {
+    return std::any_of(meetings_.begin(), meetings_.end(),
+                       [&](const Meeting& m) { return frees(q, m, near.t); });
+  });
+  std::sort(open_.begin(), open_.end(),
+            [](const NearTriangle& x, const NearTriangle& y) { return x.t < y.t; });
+  return true;
+}
+
+/// Whether A, moved out along a meeting by its depth, leaves a triangle.
+bool SurfaceContacts::frees(const Query& q, const Meeting& meeting, int t) const {
+  const Triangle triangle = q.surface.triangle(t);
+  Transform X = q.X_GA;
+  X.p += (kSearchTilt * q.size + std::max(0.0, -meeting.distance)) * meeting.m;
+  return separate(q.a, X, colliderOf({&triangle, 1}), Transform(), 0.0).distance >= 0.0;
+}
+
+/// Step 2; where the direction is no normal, the triangles wait for step 3.
 bool SurfaceContacts::meetPatch(const Query& q, const SurfacePatch& patch) {
   const NearTriangle& first = patch.near[0];
   if (patch.isPlain && -first.low <= kShallow * q.size) {
@@ -191,28 +198,37 @@ bool SurfaceContacts::meetPatch(const Query& q, const SurfacePatch& patch) {
   const Separation found = separate(q.a, q.X_GA, collider, Transform(), q.margin);
   if (std::isnan(found.distance)) return false;
   if (found.distance >= q.margin) return true;
-  Vector3 m = -found.n_W;
-  double distance = found.distance;
-  const int owner = q.surface.owner(highest(patch, m), m, kSearchTilt);
+  const Vector3 m = -found.n_W;
+  const int owner = q.surface.owner(patch.highest(m), m, kSearchTilt);
   if (owner < 0) {
     waiting_.insert(waiting_.end(), patch.near.begin(), patch.near.end());
     return true;
   }
+  meetAt(q, collider, owner, m, found.distance);
+  return true;
+}
+
+/// A contact along m, at the triangle `owner`; `collider` is what was found to be at the distance.
+void SurfaceContacts::meetAt(const Query& q, const Collider& collider, int owner, Vector3 m,
+                             double distance) {
   // On a face the normal is known better.
   if (const Vector3& n = q.surface[owner].normal; n.cross(m).norm() < 2.0 * kSearchTilt) {
-    if (isMet(q, owner)) return true;
+    if (isMet(q, owner)) return;
     m = n;
     distance =
         n.dot(supportPoint(q.a.convex, q.X_GA, -n) - q.surface.vertex(q.surface[owner].corners[0]));
   }
+  const auto isSame = [&](const Meeting& other) {
+    return other.owner == owner && other.m.cross(m).norm() < kSearchTilt;
+  };
+  if (std::any_of(meetings_.begin(), meetings_.end(), isSame)) return;
   meetings_.push_back({m, distance, owner});
   const double lowest = addPointsOver(q, owner, m);
-  if (!(lowest - distance > 0.1 * (q.margin - distance))) return true;
+  if (!(lowest - distance > 0.1 * (q.margin - distance))) return;
   // Edges that cross, and what is round.
   const SupportFace faceA = supportFace(q.a.convex, q.X_GA, -m);
   const SupportFace faceB = supportFace(collider.convex, Transform(), m);
   points_.push_back({deepestPoint(faceA, faceB, -m, distance), -m, distance});
-  return true;
 }
 
 /// Whether the plane of a triangle is met along its normal.
@@ -249,9 +265,7 @@ double SurfaceContacts::addPointsOver(const Query& q, int owner, const Vector3& 
 
 void SurfaceContacts::meetWaiting(const Query& q) {
   // The least deep first, so that deeper ones may be left to them.
-  std::sort(waiting_.begin(), waiting_.end(), [](const NearTriangle& x, const NearTriangle& y) {
-    return x.low > y.low || (x.low == y.low && x.t < y.t);
-  });
+  std::sort(waiting_.begin(), waiting_.end(), isLessDeep);
   for (const NearTriangle& near : waiting_) {
     const Vector3& n = q.surface[near.t].normal;
     if (isMet(q, near.t)) continue;
@@ -282,9 +296,7 @@ bool SurfaceContacts::isLeftToOthers(const Query& q, const NearTriangle& near, d
 }
 
 void SurfaceContacts::meetDeepest(const Query& q) {
-  std::sort(near_.begin(), near_.end(), [](const NearTriangle& x, const NearTriangle& y) {
-    return x.low > y.low || (x.low == y.low && x.t < y.t);
-  });
+  std::sort(near_.begin(), near_.end(), isLessDeep);
   for (const NearTriangle& near : near_) {
     const Triangle triangle = q.surface.triangle(near.t);
     if (!(near.low < 0.0)) continue;

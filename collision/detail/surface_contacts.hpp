@@ -8,19 +8,22 @@
 /// remains falls into patches (surface_patches.hpp): pieces of the surface that are convex, or
 /// flat.
 ///
-///   1. A patch is met as a convex body is (convex_pairs.hpp): along the direction m in which it
-///   and
-///      A are farthest apart, or overlap least, if m is a normal of the surface there
-///      (triangle_mesh.hpp). The patch of one plane into which A is sunk a little is met along n.
-///   2. m is none where A is deeper in the surface than the patch is wide, or beside it. Then each
-///      triangle is met along its n, if some of A lies over it. But where another contact frees A
-///      of T by a shorter way, and T itself can be left by a shorter way than along n, T is left to
-///      that: of a wall, the far side does not pull what has entered from the near one.
-///   3. If nothing came of 1 and 2, of the triangles that A overlaps the one whose plane is nearest
+///   1. Each triangle that A overlaps is met along the direction m in which it and A do so least
+///      (convex_pairs.hpp), if m is a normal of the surface there (triangle_mesh.hpp). Nothing that
+///      has been pushed in by δ is deeper than δ along it.
+///   2. m is none where A is deeper in the surface than the triangle is wide. Triangles of which no
+///      contact of 1 frees A, if it is moved out along it by its depth, are met by patches, as
+///      convex bodies are. The patch of one plane into which A is sunk a little is met along n.
+///      What is convex as a whole is a patch from the start.
+///   3. Where that m is no normal either, each triangle is met along its n, if some of A lies over
+///      it. But where another contact frees A of T by a shorter way, and T itself can be left by a
+///      shorter way than along n, T is left to that: of a wall, the far side does not pull what has
+///      entered from the near one.
+///   4. If nothing came of 1 to 3, of the triangles that A overlaps the one whose plane is nearest
 ///      gives one contact; and if A overlaps none but its centre is inside a closed surface, the
 ///      nearest point of the surface does.
 ///
-/// A ball needs no patches: its contact with a triangle is exact, and 1 asks the triangle alone.
+/// A ball needs 1 alone: its contact with a triangle is exact.
 ///
 /// A contact has the points of A's face along −m that lie over its triangle or over those in one
 /// plane with it (prism_clip.hpp). Points are then thinned (surface_reduction.hpp).
@@ -55,8 +58,6 @@ class SurfaceContacts {
                    double margin);
   /// Of the last search: in the world, normals from A to the surface.
   const std::vector<PairContact>& points() const { return points_; }
-  /// The one with the least distance; null without points.
-  const PairContact* deepest() const;
   /// Turns the normals over.
   void flip();
   /// Of the last search: how many points were left to others beside them.
@@ -80,7 +81,10 @@ class SurfaceContacts {
   void findTriangles(const Query& q, const Box& box, SurfaceReach* reach);
   bool lookAt(const Query& q, int t);
   bool meetBall(const Query& q);
+  bool meetEach(const Query& q);
   bool meetPatch(const Query& q, const SurfacePatch& patch);
+  void meetAt(const Query& q, const Collider& collider, int owner, Vector3 m, double distance);
+  bool frees(const Query& q, const Meeting& meeting, int t) const;
   bool isMet(const Query& q, int t) const;
   void meetWaiting(const Query& q);
   bool isLeftToOthers(const Query& q, const NearTriangle& near, double depth) const;
@@ -90,7 +94,7 @@ class SurfaceContacts {
   void leaveInside(const Query& q);
 
   std::vector<int> found_;
-  std::vector<NearTriangle> near_, waiting_;
+  std::vector<NearTriangle> near_, open_, waiting_;
   SurfacePatches patches_;
   std::vector<Meeting> meetings_;
   std::vector<PairContact> points_;

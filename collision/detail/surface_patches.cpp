@@ -33,7 +33,36 @@ int alongOutline(const TriangleMesh& surface, int owner, int t, int v, int u, do
   return u;
 }
 
+const Shape kTriangleShape = Shape::surface(nullptr);
+
 }  // namespace
+
+Collider colliderOf(std::span<const Triangle> triangles) {
+  Collider c;
+  c.convex = {&kTriangleShape, nullptr, triangles};
+  Vector3 lower = triangles[0].corners[0], upper = lower;
+  for (const Triangle& t : triangles)
+    for (const Vector3& corner : t.corners) {
+      lower = lower.cwiseMin(corner);
+      upper = upper.cwiseMax(corner);
+    }
+  c.boxCentre = 0.5 * (lower + upper);
+  c.boxHalfExtents = 0.5 * (upper - lower);
+  return c;
+}
+
+int SurfacePatch::highest(const Vector3& m) const {
+  std::size_t best = 0;
+  double height = -kInfinity, facing = -kInfinity;
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    const Triangle& t = triangles[i];
+    double top = -kInfinity;
+    for (const Vector3& corner : t.corners) top = std::max(top, m.dot(corner));
+    const double faces = t.normal.dot(m);
+    if (top > height || (top == height && faces > facing)) best = i, height = top, facing = faces;
+  }
+  return near[best].t;
+}
 
 bool inOnePlane(const TriangleMesh& surface, int s, int t, double size) {
   /// Directions that differ by less are one [rad]: small triangles in single precision.
@@ -128,6 +157,11 @@ void SurfacePatches::grow(const TriangleMesh& surface, std::span<const NearTrian
     isPlain_.push_back(isPlain ? 1 : 0);
     begin_.push_back(static_cast<int>(order_.size()));
   }
+}
+
+int SurfacePatches::of(int t, std::span<const NearTriangle> near) const {
+  const int place = placeOf(near, t);
+  return place < 0 ? -1 : patchOf_[idx(place)];
 }
 
 SurfacePatch SurfacePatches::operator[](int p) const {

@@ -11,10 +11,17 @@
 #include <span>
 #include <vector>
 
+#include "collision/detail/convex_pairs.hpp"
 #include "collision/detail/prism_clip.hpp"
 #include "collision/triangle_mesh.hpp"
 
 namespace softgauss::collision::detail {
+
+/// What the directions of contacts may be off by: those of balls and of pairs of triangles are
+/// exact, others are searched for [rad].
+inline constexpr double kExactTilt = 1e-6, kSearchTilt = 1e-4;
+/// Cosine of 1e-3: what lies so nearly flat on a face touches it along its normal.
+inline constexpr double kNearlyFace = 1.0 - 0.5e-6;
 
 /// A triangle in reach: its plane is crossed, or nearly.
 struct NearTriangle {
@@ -26,7 +33,13 @@ struct SurfacePatch {
   std::span<const NearTriangle> near;
   std::span<const Triangle> triangles;  ///< theirs
   bool isPlain;  ///< all in one plane, which goes on or rises beyond every edge
+
+  /// The triangle that is highest along m, and of those the one that faces m most.
+  int highest(const Vector3& m) const;
 };
+
+/// What convex_pairs.hpp sees of triangles, which must outlive it.
+Collider colliderOf(std::span<const Triangle> triangles);
 
 /// Whether two triangles of a surface lie in one plane, to the rounding of small triangles; `size`
 /// [m] is that of the shape that tells a step from none.
@@ -42,6 +55,8 @@ class SurfacePatches {
   void grow(const TriangleMesh& surface, std::span<const NearTriangle> near, double size);
   int size() const { return static_cast<int>(begin_.size()) - 1; }
   SurfacePatch operator[](int p) const;
+  /// The patch of triangle t of `near`, as given to grow(); −1 where it is not among them.
+  int of(int t, std::span<const NearTriangle> near) const;
 
  private:
   void growFrom(const TriangleMesh& surface, std::span<const NearTriangle> near, int seed);

@@ -139,4 +139,60 @@ MeshPointer ringSurface(double radius, double tube, int around, int across) {
   return mesh;
 }
 
+MeshPointer washerSurface(double outer, double inner, double h) {
+  auto mesh = emptyMesh("washer");
+  for (const double z : {-h, h})
+    for (const double r : {outer, inner})
+      for (int k = 0; k < 4; ++k)
+        mesh->vertices.push_back({k == 0 || k == 3 ? -r : r, k < 2 ? -r : r, z});
+  const auto quad = [&](int a, int b, int c, int d) {
+    mesh->triangles.push_back({a, b, c});
+    mesh->triangles.push_back({a, c, d});
+  };
+  for (int k = 0; k < 4; ++k) {
+    const int n = (k + 1) % 4;
+    quad(8 + k, 8 + n, 12 + n, 12 + k);  // above
+    quad(n, k, 4 + k, 4 + n);            // below
+    quad(k, n, 8 + n, 8 + k);            // outside
+    quad(4 + n, 4 + k, 12 + k, 12 + n);  // in the hole
+  }
+  return mesh;
+}
+
+MeshPointer clampSurface(const Vector3& h, double wall) {
+  auto mesh = emptyMesh("clamp");
+  const double outline[8][2] = {{-h.x(), -h.z()},
+                                {h.x(), -h.z()},
+                                {h.x(), h.z()},
+                                {h.x() - wall, h.z()},
+                                {h.x() - wall, wall - h.z()},
+                                {wall - h.x(), wall - h.z()},
+                                {wall - h.x(), h.z()},
+                                {-h.x(), h.z()}};
+  for (const double y : {-h.y(), h.y()})
+    for (const auto& [x, z] : outline) mesh->vertices.push_back({x, y, z});
+  for (int k = 0; k < 8; ++k) {
+    const int n = (k + 1) % 8;
+    mesh->triangles.push_back({k, 8 + n, n});
+    mesh->triangles.push_back({k, 8 + k, 8 + n});
+  }
+  constexpr int kEnds[6][3] = {{0, 1, 4}, {1, 2, 3}, {1, 3, 4}, {0, 4, 5}, {0, 5, 7}, {5, 6, 7}};
+  for (const auto& [a, b, c] : kEnds) {
+    mesh->triangles.push_back({a, b, c});
+    mesh->triangles.push_back({8 + a, 8 + c, 8 + b});
+  }
+  return mesh;
+}
+
+MeshPointer joined(const std::vector<MeshPart>& parts) {
+  auto mesh = emptyMesh("joined");
+  for (const MeshPart& part : parts) {
+    const auto first = static_cast<int>(mesh->vertices.size());
+    for (const Vector3& v : part.mesh->vertices) mesh->vertices.push_back(part.X_GM * v);
+    for (const auto& t : part.mesh->triangles)
+      mesh->triangles.push_back({first + t[0], first + t[1], first + t[2]});
+  }
+  return mesh;
+}
+
 }  // namespace softgauss::test

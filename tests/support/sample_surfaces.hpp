@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// Meshes made in code: flat ground, bowls, grooves, boxes, balls, rings.
+/// Meshes made in code: flat ground, bowls, grooves, boxes, balls, rings, and hollow bodies of
+/// these.
 
 #include <functional>
 #include <memory>
 #include <vector>
 
+#include "engine/core/spatial.hpp"
 #include "engine/model/shape.hpp"
 #include "tests/support/random.hpp"
 
@@ -41,5 +43,20 @@ MeshPointer ballSurface(double radius, int rings, int sectors);
 
 /// A closed ring about z: a circle of `tube` swept along a circle of `radius`.
 MeshPointer ringSurface(double radius, double tube, int around, int across);
+
+/// A closed square plate with a square hole in its middle: half sides across, half thickness along
+/// z.
+MeshPointer washerSurface(double outer, double inner, double halfThickness);
+
+/// A closed U of two walls on a floor, open towards +z: outer half extents, walls and floor of
+/// `wall`.
+MeshPointer clampSurface(const Vector3& halfExtents, double wall);
+
+/// All of some meshes in one, each at its pose.
+struct MeshPart {
+  MeshPointer mesh;
+  Transform X_GM;
+};
+MeshPointer joined(const std::vector<MeshPart>& parts);
 
 }  // namespace softgauss::test
