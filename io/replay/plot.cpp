@@ -142,24 +142,34 @@ class Script {
     line("set size {:.6f},{:.6f}", width / kWidth, height / height_);
   }
 
-  /// A range that holds all that is drawn, also where nothing moves.
-  void range(const std::vector<Curve>& curves, bool logarithmic) {
+  /// Sets a range that holds all that is drawn, also where nothing moves. Returns the limits that
+  /// are marked, those near their curves.
+  std::vector<double> range(const std::vector<Curve>& curves, bool logarithmic) {
     double least = kInfinity, greatest = -kInfinity;
+    std::vector<double> marked;
     for (const Curve& curve : curves) {
+      double low = kInfinity, high = -kInfinity;
       for (const double value : series_.column(curve.column)) {
         if (!std::isfinite(value) || (logarithmic && value <= 0.0)) continue;
-        least = std::min(least, value);
-        greatest = std::max(greatest, value);
+        low = std::min(low, value);
+        high = std::max(high, value);
       }
-      if (std::isfinite(curve.lower)) least = std::min(least, curve.lower);
-      if (std::isfinite(curve.upper)) greatest = std::max(greatest, curve.upper);
+      const NearLimits near(curve, low, high);
+      if (near.lower) marked.push_back(curve.lower);
+      if (near.upper) marked.push_back(curve.upper);
+      least = std::min(least, low);
+      greatest = std::max(greatest, high);
+    }
+    for (const double limit : marked) {
+      least = std::min(least, limit);
+      greatest = std::max(greatest, limit);
     }
     if (logarithmic) {
       const bool empty = !(greatest > 0.0);
       line("set logscale y; set format y '%.0e'");
       line("set ytics autofreq");
       line("set yrange [{:.6g}:{:.6g}]", empty ? 0.1 : 0.5 * least, empty ? 1.0 : 2.0 * greatest);
-      return;
+      return marked;
     }
     if (least > greatest) least = greatest = 0.0;
     const double pad = greatest - least > 1e-9 * std::max(std::abs(least), std::abs(greatest))
@@ -168,6 +178,7 @@ class Script {
     line("unset logscale y; set format y '%h'; set ytics {:.9g}",
          niceStep((greatest - least + 2.0 * pad) / 2.5));
     line("set yrange [{:.9g}:{:.9g}]", least - pad, greatest + pad);
+    return marked;
   }
 
   void heading(const CurveGroup& group) {
@@ -186,11 +197,9 @@ class Script {
       place(column * width, top_ + kHeading + row * kCell, width, kCell);
       line("set title {} font 'Helvetica,10' offset 0,-0.8", literal(curve.name));
       line("set lmargin 8; set rmargin 1.5; set tmargin 1.6; set bmargin 1.8");
-      range({curve}, group.logarithmic);
       std::string limits;
-      for (const double limit : {curve.lower, curve.upper})
-        if (std::isfinite(limit))
-          limits += fmt::format(", {:.9g} dashtype 2 linecolor '#c00000' linewidth 0.8", limit);
+      for (const double limit : range({curve}, group.logarithmic))
+        limits += fmt::format(", {:.9g} dashtype 2 linecolor '#c00000' linewidth 0.8", limit);
       line("plot {} using 1:{} linecolor '{}' linewidth 1.3{}", data, i + 2, kColours[0], limits);
       line("unset label 1; unset label 2; unset label 3");
     }

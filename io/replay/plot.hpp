@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// The curves of a run drawn by gnuplot, for print: axes with units, limits dashed.
+/// The curves of a run drawn by gnuplot, for print: axes with units, at the scale of the
+/// curves; limits that are near are dashed.
 ///
 /// A file `.svg` holds all groups of curves, a folder one file a group. Groups whose curves have
 /// limits, or that are many, are drawn as a grid with a small drawing for each curve.

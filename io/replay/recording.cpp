@@ -10,10 +10,19 @@ namespace {
 
 constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
 
+constexpr double kNearShare = 0.02;  ///< of the range between two limits
+
 /// Entries of a series however many columns: 128 MB of samples at most.
 int mostEntries(int columns) { return std::min(20000, (16 << 20) / std::max(1, columns)); }
 
 }  // namespace
+
+NearLimits::NearLimits(const Curve& curve, double least, double greatest) {
+  const double range = curve.upper - curve.lower;
+  const double near = std::max(greatest - least, std::isfinite(range) ? kNearShare * range : 0.0);
+  lower = std::isfinite(curve.lower) && least - curve.lower <= near;
+  upper = std::isfinite(curve.upper) && curve.upper - greatest <= near;
+}
 
 Recording::Recording(const Model& model, const std::vector<std::unique_ptr<gdd::Goal>>& goals,
                      const gdd::GoalContext& start)

@@ -25,6 +25,16 @@ struct Curve {
   double upper = kInfinity;
 };
 
+/// Whether a limit is near what a curve comes to: within its span, or within 2 % of the range
+/// between the limits. A curve is drawn at its own scale, and only limits that are near are marked:
+/// a motor of 87 N m that gives 3 would else be a flat line.
+struct NearLimits {
+  bool lower = false;
+  bool upper = false;
+  /// `least`, `greatest`: of the curve.
+  NearLimits(const Curve& curve, double least, double greatest);
+};
+
 /// Curves of one unit that belong together, a plot.
 struct CurveGroup {
   std::string name;
@@ -35,7 +45,7 @@ struct CurveGroup {
 
 /// How the run ended.
 struct Outcome {
-  std::string kind = "completed";  ///< or "non-finite", "interrupted"
+  std::string kind = "completed";  ///< or "fell", "non-finite", "interrupted"
   std::string message;             ///< the reason, when it did not complete
 };
 

@@ -189,6 +189,33 @@ export class Truth {
       });
     }
     await this.page.evaluate(() => softgauss.setView({ limits: false }));
+    await this.#nearLimits(frame, groups);
+  }
+
+  /** Unless others are asked for, limits are marked that are near what the curves come to. */
+  async #nearLimits(frame, groups) {
+    const { drawn } = await this.at(frame, { withPlots: true });
+    for (const [name, letter, limits] of groups) {
+      if (!limits) continue;
+      const plot = drawn.plots.find(({ group }) => group === name);
+      for (const { name: joint } of plot.curves) {
+        const urdf = this.urdf.joints.find((other) => other.name === joint);
+        if (urdf.type === 'continuous' && letter === 'q') continue;
+        const values = this.rows.slice(0, -1).map((row) => row.get(`${letter}:${joint}`));
+        const [least, greatest] = [Math.min(...values), Math.max(...values)];
+        const [lower, upper] = limits(urdf);
+        const near = Math.max(greatest - least, 0.02 * (upper - lower));
+        const lines = plot.limits.filter((line) => line.curve === joint).map(({ value }) => value);
+        for (const [limit, gap] of [
+          [lower, least - lower],
+          [upper, upper - greatest],
+        ]) {
+          const isMarked = lines.some((value) => Math.abs(value - limit) < 1e-6 * (1 + near));
+          if (Math.abs(gap - near) > 1e-3 * near)
+            assert.equal(isMarked, gap < near, `limit ${limit} of ${letter}:${joint}`);
+        }
+      }
+    }
   }
 
   /** A thinned run: legends give the least and the greatest value of the bucket at a time. */

@@ -43,7 +43,8 @@ function showHeader(run) {
   byId('summary').textContent = header.facts[0]?.[1] ?? '';
   const { kind, message } = header.outcome;
   const reason = message || `the run ended early: ${kind}`;
-  if (kind !== 'completed') complain('banner', `${reason[0].toUpperCase()}${reason.slice(1)}.`);
+  if (!['completed', 'fell'].includes(kind))
+    complain('banner', `${reason[0].toUpperCase()}${reason.slice(1)}.`);
 }
 
 function start(run, begun) {

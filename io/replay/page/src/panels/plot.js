@@ -4,6 +4,7 @@
 import uPlot from 'uplot';
 import { element, number } from '../app/dom.js';
 import { curveColor } from './colors.js';
+import { nearLimits } from './limits.js';
 
 const HEIGHT = 168;
 
@@ -25,6 +26,7 @@ export class Plot {
       shown: true,
       values: panel.run.array(curve.values),
     }));
+    for (const curve of this.curves) curve.near = nearLimits(curve);
     this.hovered = null;
     this.limitLines = [];
     this.chart = element('div', { class: 'chart' });
@@ -96,18 +98,16 @@ export class Plot {
     return this.curves.filter((curve) => curve.shown && this.panel.selection.concerns(curve));
   }
 
-  /** Curves whose limits are drawn. */
+  /** Limits that are drawn: those near their curves; all of chosen curves, or where asked for. */
   #limited() {
-    const shown = this.curves.filter((curve) => curve.shown);
     const chosen = this.#emphasised();
-    const candidates = this.panel.limits
-      ? shown
-      : chosen.length > 0
-        ? chosen
-        : shown.length === 1
-          ? shown
-          : [];
-    return candidates.filter((curve) => curve.lower !== undefined || curve.upper !== undefined);
+    return this.curves
+      .filter((curve) => curve.shown)
+      .map((curve) => ({
+        curve,
+        ...(this.panel.limits || chosen.includes(curve) ? curve : curve.near),
+      }))
+      .filter(({ lower, upper }) => lower !== undefined || upper !== undefined);
   }
 
   build() {
@@ -173,13 +173,13 @@ export class Plot {
 
   #range(low, high) {
     if (low == null || (low === 0 && high === 0)) return [-1, 1];
-    const span = high - low;
-    for (const curve of this.#limited()) {
-      // Limits far beyond the curve would flatten it, unless they were asked for.
-      const near = (limit) =>
-        limit !== undefined && (this.panel.limits || (limit > low - span && limit < high + span));
-      if (near(curve.lower)) low = Math.min(low, curve.lower);
-      if (near(curve.upper)) high = Math.max(high, curve.upper);
+    // Limits far beyond the curves would flatten them, unless they were asked for.
+    for (const { curve, lower, upper } of this.#limited()) {
+      const { near } = curve;
+      if (lower !== undefined && (this.panel.limits || near.lower !== undefined))
+        low = Math.min(low, lower);
+      if (upper !== undefined && (this.panel.limits || near.upper !== undefined))
+        high = Math.max(high, upper);
     }
     return uPlot.rangeNum(low, high, 0.08, true);
   }
@@ -187,21 +187,21 @@ export class Plot {
   /** Dashed lines at the limits, a shade beyond them when they are of one curve. */
   #drawLimits() {
     const { ctx, bbox } = this.plot;
-    const curves = this.#limited();
+    const limited = this.#limited();
     this.limitLines = [];
     ctx.save();
     ctx.beginPath();
     ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
     ctx.clip();
-    for (const curve of curves) {
+    for (const { curve, lower, upper } of limited) {
       const color = curveColor(curve.index, this.panel.theme);
       for (const [limit, end] of [
-        [curve.lower, bbox.top + bbox.height],
-        [curve.upper, bbox.top],
+        [lower, bbox.top + bbox.height],
+        [upper, bbox.top],
       ]) {
         if (limit === undefined) continue;
         const y = this.plot.valToPos(limit, 'y', true);
-        if (curves.length <= 2) {
+        if (limited.length <= 2) {
           ctx.globalAlpha = 0.07;
           ctx.fillStyle = color;
           ctx.fillRect(
