@@ -8,9 +8,11 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "engine/islands/sub_model.hpp"
 #include "engine/step/data.hpp"
+#include "engine/step/snapshot.hpp"
 #include "gdd/cost.hpp"
 
 namespace softgauss::gdd {
@@ -29,10 +31,30 @@ struct GoalMark {
   Vector3 p_WTarget = Vector3::Zero();  ///< the place it seeks [m]
 };
 
+/// How far a robot is from a goal, in the goal's own unit.
+struct GoalFigure {
+  double value = 0.0;       ///< ≥ 0
+  const char* unit = "m";   ///< of the value
+  double met = kMetLength;  ///< the goal is met where the value is at most this
+  const char* what = "";    ///< tells the figures of one goal apart, e.g. "orientation"
+  bool yields = false;      ///< other goals outweigh it by design: not met is no failure
+  int frame = -1;  ///< index into Model::frames of the link to be moved; −1: no single one
+  int dof = -1;    ///< the dof that is farthest off; −1: the goal is of no joints
+
+  static constexpr double kMetLength = 0.01;  ///< [m]
+  static constexpr double kMetAngle = 0.02;   ///< [rad]
+  static constexpr double kMetSpeed = 0.01;   ///< [m/s]
+  static constexpr double kMetShare = 0.05;   ///< of a force or an acceleration that is asked for
+};
+
+/// What a figure is read from, besides the context: the contact forces of the step.
+using ContactForces = std::vector<Snapshot::ContactForce>;
+
 class Goal {
  public:
   double startTime = -kInfinity;  ///< the goal acts from here on [s]
   double endTime = kInfinity;     ///< and before this [s]
+  bool onlyRegularises = false;   ///< holds what other goals leave free: no aim of its own
 
   virtual ~Goal() = default;
   bool actsAt(double time) const { return startTime <= time && time < endTime; }
@@ -48,6 +70,12 @@ class Goal {
   virtual std::unique_ptr<Goal> within(const Model& whole, const SubModel& island) const;
   /// Nothing for a goal that is no place.
   virtual std::optional<GoalMark> mark(const GoalContext&) const { return std::nullopt; }
+  /// Appends how far the robot is from the goal; nothing where it has no aim that one could reach,
+  /// or none now. By default the distance of its mark.
+  virtual void figures(const GoalContext& context, const ContactForces& contacts,
+                       std::vector<GoalFigure>& out) const;
+  /// Whether it may have a figure later where it has none now, as what is of forces.
+  virtual bool findsFiguresLater() const { return false; }
   /// Distance from the goal [m]; nothing for a goal that is no place.
   std::optional<double> error(const GoalContext& context) const {
     const std::optional<GoalMark> m = mark(context);

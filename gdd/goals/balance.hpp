@@ -39,6 +39,8 @@ class CenterOfMass final : public Goal {
   std::string name() const override { return "center_of_mass"; }
   void addCost(const GoalContext& context, GoalCost& cost) const override;
   std::unique_ptr<Goal> within(const Model& whole, const SubModel& island) const override;
+  void figures(const GoalContext& context, const ContactForces& contacts,
+               std::vector<GoalFigure>& out) const override;
 };
 
 class MomentumGoal final : public Goal {
@@ -55,6 +57,8 @@ class MomentumGoal final : public Goal {
   std::string name() const override { return "momentum"; }
   void addCost(const GoalContext& context, GoalCost& cost) const override;
   std::unique_ptr<Goal> within(const Model& whole, const SubModel& island) const override;
+  void figures(const GoalContext& context, const ContactForces& contacts,
+               std::vector<GoalFigure>& out) const override;
 };
 
 class CapturePoint final : public Goal {
@@ -72,6 +76,9 @@ class CapturePoint final : public Goal {
   std::string name() const override { return "capture_point"; }
   void addCost(const GoalContext& context, GoalCost& cost) const override;
   std::unique_ptr<Goal> within(const Model& whole, const SubModel& island) const override;
+  void figures(const GoalContext& context, const ContactForces& contacts,
+               std::vector<GoalFigure>& out) const override;
+  bool findsFiguresLater() const override { return true; }
 };
 
 }  // namespace softgauss::gdd

@@ -33,6 +33,9 @@ class CenterOfPressure final : public Goal {
   std::string name() const override { return "center_of_pressure"; }
   void addCost(const GoalContext& context, GoalCost& cost) const override;
   std::unique_ptr<Goal> within(const Model& whole, const SubModel& island) const override;
+  void figures(const GoalContext& context, const ContactForces& contacts,
+               std::vector<GoalFigure>& out) const override;
+  bool findsFiguresLater() const override { return true; }
   /// p, of the rows' present forces: after a step, those that acted in it [m]. Nothing where the
   /// contacts do not push up.
   std::optional<Vector3> measured(const Data& data) const;

@@ -31,6 +31,8 @@ class ContactForce final : public Goal {
   std::string name() const override { return "contact_force " + link; }
   void addCost(const GoalContext& context, GoalCost& cost) const override;
   std::unique_ptr<Goal> within(const Model& whole, const SubModel& island) const override;
+  void figures(const GoalContext& context, const ContactForces& contacts,
+               std::vector<GoalFigure>& out) const override;
   /// Of the rows' present forces: after a step, those that acted in it [N].
   Vector3 measured(const Data& data) const;
 };

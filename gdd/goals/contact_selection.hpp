@@ -16,9 +16,10 @@ struct ContactSelection {
   std::vector<char> on, by;  ///< one a geometry; none is in both
 
   /// 1 where the contact's force on its body B is meant, −1 where that on body A is, else 0.
-  double sign(const Contact& c) const {
-    if (on[c.geometryB] && by[c.geometryA]) return 1.0;
-    return on[c.geometryA] && by[c.geometryB] ? -1.0 : 0.0;
+  double sign(const Contact& c) const { return sign(c.geometryA, c.geometryB); }
+  double sign(int geometryA, int geometryB) const {
+    if (on[geometryB] && by[geometryA]) return 1.0;
+    return on[geometryA] && by[geometryB] ? -1.0 : 0.0;
   }
 
   /// Calls f(contacts, i, contact, sign) for every contact meant: contacts of either cone, place in

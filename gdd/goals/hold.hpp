@@ -29,6 +29,8 @@ class Hold final : public Goal {
   std::unique_ptr<Goal> within(const Model&, const SubModel& island) const override {
     return ofLinkWithin(*this, island);
   }
+  void figures(const GoalContext& context, const ContactForces& contacts,
+               std::vector<GoalFigure>& out) const override;
 };
 
 }  // namespace softgauss::gdd

@@ -34,6 +34,8 @@ class JointAcceleration final : public Goal {
   std::string name() const override { return "acceleration"; }
   void addCost(const GoalContext& context, GoalCost& cost) const override;
   std::unique_ptr<Goal> within(const Model& whole, const SubModel& island) const override;
+  void figures(const GoalContext& context, const ContactForces& contacts,
+               std::vector<GoalFigure>& out) const override;
 };
 
 class JointPosture final : public Goal {
@@ -46,6 +48,8 @@ class JointPosture final : public Goal {
   std::string name() const override { return "joint_posture"; }
   void addCost(const GoalContext& context, GoalCost& cost) const override;
   std::unique_ptr<Goal> within(const Model& whole, const SubModel& island) const override;
+  void figures(const GoalContext& context, const ContactForces& contacts,
+               std::vector<GoalFigure>& out) const override;
 };
 
 }  // namespace softgauss::gdd

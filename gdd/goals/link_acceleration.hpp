@@ -34,6 +34,8 @@ class LinkAcceleration final : public Goal {
   std::unique_ptr<Goal> within(const Model&, const SubModel& island) const override {
     return ofLinkWithin(*this, island);
   }
+  void figures(const GoalContext& context, const ContactForces& contacts,
+               std::vector<GoalFigure>& out) const override;
 };
 
 }  // namespace softgauss::gdd

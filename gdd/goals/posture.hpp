@@ -34,6 +34,8 @@ class Posture final : public Goal {
     island.gatherPosition(whole, q, goal->q);
     return goal;
   }
+  void figures(const GoalContext& context, const ContactForces& contacts,
+               std::vector<GoalFigure>& out) const override;
 };
 
 }  // namespace softgauss::gdd

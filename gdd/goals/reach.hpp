@@ -68,6 +68,8 @@ class Reach final : public Goal {
   std::unique_ptr<Goal> within(const Model&, const SubModel& island) const override {
     return ofLinkWithin(*this, island);
   }
+  void figures(const GoalContext& context, const ContactForces& contacts,
+               std::vector<GoalFigure>& out) const override;
   std::optional<GoalMark> mark(const GoalContext& context) const override;
   Vector3 position(const GoalContext& context) const;
 
