@@ -1,24 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/log.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <stdexcept>
+#include <cmath>
+#include <map>
+#include <span>
 
 #include "engine/core/check.hpp"
-#include "io/detail/csv.hpp"
-#include "io/detail/text.hpp"
+#include "engine/dynamics/energy.hpp"
+#include "io/detail/row_file.hpp"
 
 namespace softgauss::io {
 namespace {
 
-constexpr std::size_t kBufferSize = std::size_t{1} << 18;
-
 constexpr const char* kPoseParts[] = {".x", ".y", ".z", ".qw", ".qx", ".qy", ".qz"};
 constexpr const char* kVelocityParts[] = {".vx", ".vy", ".vz", ".wx", ".wy", ".wz"};
+
+constexpr const char* kPlaceParts[] = {".x", ".y", ".z"};
+constexpr const char* kWholeColumns[] = {"com", "cop", "momentum", "angular_momentum"};
 
 constexpr const char* kStepColumns[] = {"contacts",     "constraints",       "iterations",
                                         "dual_updates", "physics_violation", "gdd_violation",
@@ -34,18 +33,24 @@ std::string columnName(const Model& model, int body) {
   return taken ? name + "(floating)" : name;
 }
 
-void appendValues(std::string& out, const VectorX& values) {
-  for (const double x : values) {
-    out += ',';
-    detail::appendNumber(out, x);
-  }
+/// Names of their own for columns: a second one of a name is "name#2".
+std::string unique(const std::string& name, std::map<std::string, int>& known) {
+  const int count = ++known[name];
+  return count == 1 ? name : unique(name + "#" + std::to_string(count), known);
 }
 
 }  // namespace
 
-std::vector<std::string> logColumns(const Model& model) {
+void measureWhole(const Model& model, const Kinematics& kinematics, StepRecord& record) {
+  const Momentum momentum = computeMomentum(model, kinematics);
+  record.centerOfMass = centerOfMass(model, kinematics);
+  record.momentum = momentum.linear;
+  record.angularMomentum = momentum.angular - record.centerOfMass.cross(momentum.linear);
+}
+
+std::vector<std::string> logColumns(const Model& model, const std::vector<std::string>& goals) {
   std::vector<std::string> columns = {"time_s"};
-  const auto addGroup = [&](const std::string& prefix, auto&& floatingParts) {
+  const auto addGroup = [&](const std::string& prefix, std::span<const char* const> floatingParts) {
     for (int b = 1; b < model.bodyCount(); ++b) {
       const std::string name = prefix + columnName(model, b);
       if (model.bodies[static_cast<std::size_t>(b)].joint != JointKind::floating)
@@ -57,70 +62,87 @@ std::vector<std::string> logColumns(const Model& model) {
   addGroup("q:", kPoseParts);
   addGroup("v:", kVelocityParts);
   addGroup("a:", kVelocityParts);
-  addGroup("u:", std::vector<const char*>{});
+  addGroup("u:", {});
   columns.insert(columns.end(), std::begin(kStepColumns), std::end(kStepColumns));
+  std::map<std::string, int> known;
+  for (const std::string& goal : goals) columns.push_back(unique("error:" + goal, known));
+  const auto addPlace = [&](const std::string& name) {
+    for (const char* part : kPlaceParts) columns.push_back(name + part);
+  };
+  for (const char* name : kWholeColumns) addPlace(name);
+  const ContactLinks links(model);
+  for (const std::string& link : links.names()) addPlace(unique("f:" + link, known));
   return columns;
 }
 
-LogWriter::LogWriter(const std::filesystem::path& file, const Model& model)
-    : path_(file.string()), file_(std::fopen(path_.c_str(), "wb")), nq_(model.nq), nv_(model.nv) {
-  if (!file_)
-    throw ModelError({path_, 0}, "log", fmt::format("cannot be written: {}", std::strerror(errno)));
+LogWriter::LogWriter(const std::filesystem::path& file, const Model& model,
+                     const std::vector<std::string>& goals, long every)
+    : rows_(std::make_unique<detail::RowFile>(file, "log", logColumns(model, goals))),
+      nq_(model.nq),
+      nv_(model.nv),
+      goals_(static_cast<Eigen::Index>(goals.size())),
+      forces_(3 * ContactLinks(model).size()),
+      every_(every) {
   for (const Body& body : model.bodies)
     if (body.dofs == 1) controls_.push_back(body.v);
-  buffer_.reserve(2 * kBufferSize);
-  for (const std::string& column : logColumns(model)) {
-    if (!buffer_.empty()) buffer_ += ',';
-    buffer_ += detail::quotedCsv(column);
-  }
-  buffer_ += '\n';
 }
 
-LogWriter::~LogWriter() {
-  if (file_) send();
-}
+LogWriter::~LogWriter() = default;
+LogWriter::LogWriter(LogWriter&&) noexcept = default;
+
+void LogWriter::flush() { rows_->flush(); }
+void LogWriter::close() { rows_->close(); }
 
 void LogWriter::write(const StepRecord& r) {
-  SOFTGAUSS_ASSERT(r.q.size() == nq_ && r.v.size() == nv_ && r.a.size() == nv_ &&
-                   r.u.size() == nv_);
-  detail::appendNumber(buffer_, r.time);
-  appendValues(buffer_, r.q);
-  appendValues(buffer_, r.v);
-  appendValues(buffer_, r.a);
-  for (const int dof : controls_) {
-    buffer_ += ',';
-    detail::appendNumber(buffer_, r.u[dof]);
+  SOFTGAUSS_ASSERT(r.q.size() == nq_ && r.v.size() == nv_);
+  if (seen_++ % every_ != 0 && !r.isEnd) return;
+  rows_->add(r.time);
+  rows_->add(r.q);
+  rows_->add(r.v);
+  writeStep(r);
+  const bool known = r.goalErrors.size() == goals_;
+  for (Eigen::Index i = 0; i < goals_; ++i)
+    if (known && std::isfinite(r.goalErrors[i]))
+      rows_->add(r.goalErrors[i]);
+    else
+      rows_->addEmpty(1);
+  rows_->add(r.centerOfMass);
+  if (r.centerOfPressure && !r.isEnd)
+    rows_->add(*r.centerOfPressure);
+  else
+    rows_->addEmpty(3);
+  rows_->add(r.momentum);
+  rows_->add(r.angularMomentum);
+  if (r.linkForces.size() == forces_ && !r.isEnd)
+    rows_->add(r.linkForces);
+  else
+    rows_->addEmpty(forces_);
+  rows_->endRow();
+}
+
+/// What the step from the record's state has given; nothing at the end.
+void LogWriter::writeStep(const StepRecord& r) {
+  const auto scalars = static_cast<Eigen::Index>(controls_.size());
+  SOFTGAUSS_ASSERT(r.isEnd || (r.a.size() == nv_ && r.u.size() == nv_));
+  if (r.isEnd) {
+    rows_->addEmpty(nv_ + scalars);
+  } else {
+    rows_->add(r.a);
+    for (const int dof : controls_) rows_->add(r.u[dof]);
   }
-  for (const int count : {r.contacts, r.constraints, r.iterations, r.dualUpdates})
-    fmt::format_to(std::back_inserter(buffer_), ",{}", count);
-  for (const double x : {r.physicsViolation, r.gddViolation, r.stationarity, r.forwardUs, r.gddUs,
-                         r.stepUs, r.energy, r.maxPenetration}) {
-    buffer_ += ',';
-    detail::appendNumber(buffer_, x);
+  rows_->add(r.contacts);
+  rows_->add(r.constraints);
+  if (r.isEnd) {
+    rows_->addEmpty(8);
+  } else {
+    rows_->add(r.iterations);
+    rows_->add(r.dualUpdates);
+    for (const double x :
+         {r.physicsViolation, r.gddViolation, r.stationarity, r.forwardUs, r.gddUs, r.stepUs})
+      rows_->add(x);
   }
-  buffer_ += '\n';
-  if (buffer_.size() >= kBufferSize && !send()) failed();
-}
-
-void LogWriter::flush() {
-  if (!send() || std::fflush(file_.get()) != 0) failed();
-}
-
-void LogWriter::close() {
-  if (!file_) return;
-  const bool sent = send();
-  if (std::fclose(file_.release()) != 0 || !sent) failed();
-}
-
-bool LogWriter::send() noexcept {
-  const bool sent = std::fwrite(buffer_.data(), 1, buffer_.size(), file_.get()) == buffer_.size();
-  buffer_.clear();
-  return sent;
-}
-
-void LogWriter::failed() const {
-  throw std::runtime_error(
-      fmt::format("{}: log: cannot be written: {}", path_, std::strerror(errno)));
+  rows_->add(r.energy);
+  rows_->add(r.maxPenetration);
 }
 
 }  // namespace softgauss::io

@@ -7,19 +7,30 @@
 /// q:<joint>.x .y .z .qw .qx .qy .qz and v:, a:<joint>.vx .vy .vz .wx .wy .wz, without u:, or
 /// q:<joint>(floating).x … where a planar joint of that name has the others; then
 /// contacts, constraints, iterations, dual_updates, physics_violation, gdd_violation, stationarity,
-/// forward_us, gdd_us, step_us, energy_J, max_penetration_m.
+/// forward_us, gdd_us, step_us, energy_J, max_penetration_m; then error:<goal> [unit] of every
+/// goal; com.x .y .z, cop.x .y .z [m], momentum.x .y .z [kg m/s], angular_momentum.x .y .z [kg
+/// m²/s] about the centre of mass; and f:<link>.x .y .z of every link that moves and can touch: the
+/// sum of the contact forces on it [N]. All in world axes.
+///
+/// A field is empty where there is no value: in the last row, the state at the end, all that a step
+/// gives; the centre of pressure where the world carries nothing; a goal that asks for nothing.
 /// Numbers are the shortest that read back bit for bit (at most 17 significant digits). A joint
 /// whose name holds a comma, a quote or a line break is quoted as RFC 4180 has it.
 
-#include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "engine/model/model.hpp"
+#include "engine/dynamics/kinematics.hpp"
+#include "io/contact_links.hpp"
 
 namespace softgauss::io {
+
+namespace detail {
+class RowFile;
+}
 
 /// One row: the state at `time` and what was computed from it.
 struct StepRecord {
@@ -42,19 +53,32 @@ struct StepRecord {
   double energy = 0.0;            ///< kinetic and potential [J]
   double kineticEnergy = 0.0;     ///< the kinetic part [J]; not logged
   double maxPenetration = 0.0;    ///< [m], ≥ 0
+  VectorX goalErrors;             ///< one a goal of the log, in its unit; NaN where it has none
+  Vector3 centerOfMass = Vector3::Zero();     ///< of all that moves [m]
+  std::optional<Vector3> centerOfPressure;    ///< where the world carries something [m]
+  Vector3 momentum = Vector3::Zero();         ///< of all that moves [kg m/s]
+  Vector3 angularMomentum = Vector3::Zero();  ///< about the centre of mass [kg m²/s]
+  VectorX linkForces;  ///< ContactLinks::forces() [N]; empty: not known, zero where nothing touches
+  bool isEnd = false;  ///< the state at the end, from which no step was taken
 };
 
-/// Names of the columns, unquoted, in order.
-std::vector<std::string> logColumns(const Model& model);
+/// What a record tells of the whole at `kinematics`: centre of mass and momentum.
+void measureWhole(const Model& model, const Kinematics& kinematics, StepRecord& record);
+
+/// Names of the columns, unquoted, in order. `goals` are those of the goals' errors, units
+/// included.
+std::vector<std::string> logColumns(const Model& model, const std::vector<std::string>& goals = {});
 
 /// Writes a log. Rows are buffered; what was written is on disk after flush(), close() or the end
 /// of the writer's life.
 class LogWriter {
  public:
-  /// Throws ModelError if the file cannot be made.
-  LogWriter(const std::filesystem::path& file, const Model& model);
+  /// Every `every`-th record is written, and the last. Throws ModelError if the file cannot be
+  /// made.
+  LogWriter(const std::filesystem::path& file, const Model& model,
+            const std::vector<std::string>& goals = {}, long every = 1);
   ~LogWriter();
-  LogWriter(LogWriter&&) noexcept = default;
+  LogWriter(LogWriter&&) noexcept;
   LogWriter& operator=(LogWriter&&) = delete;
 
   /// These throw std::runtime_error if the disk is full or gone.
@@ -63,17 +87,12 @@ class LogWriter {
   void close();
 
  private:
-  struct Closer {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-  };
-  [[noreturn]] void failed() const;
-  bool send() noexcept;
+  void writeStep(const StepRecord& record);
 
-  std::string path_;
-  std::unique_ptr<std::FILE, Closer> file_;
-  std::string buffer_;
+  std::unique_ptr<detail::RowFile> rows_;
   std::vector<int> controls_;  ///< dofs of scalar joints
-  Eigen::Index nq_, nv_;
+  Eigen::Index nq_, nv_, goals_, forces_;
+  long every_, seen_ = 0;
 };
 
 }  // namespace softgauss::io

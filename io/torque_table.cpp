@@ -87,17 +87,27 @@ TorqueTable TorqueTable::read(const std::filesystem::path& file, const Model& mo
   TorqueTable table;
   table.nv_ = model.nv;
   for (const Column& column : columns) table.dofs_.push_back(column.dof);
+  int end = 0;  // the line of the row that has no control
   while ((fields = reader.next())) {
     const int line = reader.line();
     if (fields->size() != header.size())
       place.fail(
           line, "row",
           fmt::format("has {} fields, expected {} as the header", fields->size(), header.size()));
+    if (end > 0) place.fail(end, "row", "has no control, expected only of the last row");
     const double time = place.number(line, "time_s", (*fields)[timeField]);
     if (!table.times_.empty() && time <= table.times_.back())
       place.fail(line, "column 'time_s'",
                  fmt::format("{} follows {}, expected rising times", time, table.times_.back()));
     table.times_.push_back(time);
+    // The last row of a log is a state that no control was found for.
+    const bool isEnd = std::all_of(columns.begin(), columns.end(),
+                                   [&](const Column& c) { return (*fields)[c.field].empty(); });
+    if (isEnd) {
+      end = line;
+      table.controls_.resize(table.controls_.size() + columns.size(), 0.0);
+      continue;
+    }
     for (const Column& column : columns) {
       const double u = place.number(line, column.name, (*fields)[column.field]);
       if (u != 0.0 && !model.dofs[static_cast<std::size_t>(column.dof)].actuated)

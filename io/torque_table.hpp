@@ -5,7 +5,8 @@
 ///
 /// A log (io/log.hpp) is such a file. Other columns are left alone; a joint without a column has
 /// control 0. Held between rows (zero-order hold): at time t the last row with time_s ≤ t is in
-/// force, no control before the first row, the last row for ever.
+/// force, no control before the first row, the last row for ever. A last row whose controls are all
+/// empty, as a log ends, is in force as no control.
 
 #include <filesystem>
 #include <vector>

@@ -7,60 +7,18 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <random>
 #include <set>
 
-#include "engine/model/model_builder.hpp"
+#include "io/contact_log.hpp"
 #include "io/detail/csv.hpp"
 #include "io/detail/text.hpp"
-#include "io/torque_table.hpp"
+#include "sample_log.hpp"
 #include "temp_folder.hpp"
 
 namespace softgauss::io {
 namespace {
-
-/// A floating base with one hinge whose name needs quotes, and one that is not actuated.
-Model sampleModel() {
-  ModelBuilder builder("log");
-  for (const char* name : {"base", "arm", "hand"}) {
-    LinkSpec link;
-    link.name = name;
-    link.mass = 1.0;
-    link.I_Lcm = Matrix3::Identity();
-    builder.link(link);
-  }
-  JointSpec joint;
-  joint.name = "left, \"elbow\"";
-  joint.type = JointType::revolute;
-  joint.parent = "base";
-  joint.child = "arm";
-  builder.joint(joint);
-  joint.name = "wrist";
-  joint.type = JointType::prismatic;
-  joint.parent = "arm";
-  joint.child = "hand";
-  joint.effort = 0.0;
-  builder.joint(joint);
-  return builder.build();
-}
-
-StepRecord randomRecord(const Model& m, std::mt19937_64& random) {
-  const auto number = [&] {
-    for (;;) {
-      const double x = std::bit_cast<double>(random());
-      if (std::isfinite(x)) return x;
-    }
-  };
-  StepRecord r;
-  r.q = VectorX::NullaryExpr(m.nq, number);
-  r.v = VectorX::NullaryExpr(m.nv, number);
-  r.a = VectorX::NullaryExpr(m.nv, number);
-  r.u = VectorX::NullaryExpr(m.nv, number);
-  r.contacts = static_cast<int>(random() % 100);
-  r.energy = number();
-  r.maxPenetration = number();
-  return r;
-}
 
 TEST(Log, ColumnsAreThoseOfTheInterface) {
   const std::vector<std::string> expected = {"time_s",
@@ -102,8 +60,27 @@ TEST(Log, ColumnsAreThoseOfTheInterface) {
                                              "gdd_us",
                                              "step_us",
                                              "energy_J",
-                                             "max_penetration_m"};
-  EXPECT_EQ(logColumns(sampleModel()), expected);
+                                             "max_penetration_m",
+                                             "error:reach hand [m]",
+                                             "error:posture [rad]",
+                                             "error:reach hand [m]#2",
+                                             "com.x",
+                                             "com.y",
+                                             "com.z",
+                                             "cop.x",
+                                             "cop.y",
+                                             "cop.z",
+                                             "momentum.x",
+                                             "momentum.y",
+                                             "momentum.z",
+                                             "angular_momentum.x",
+                                             "angular_momentum.y",
+                                             "angular_momentum.z",
+                                             "f:arm.x",
+                                             "f:arm.y",
+                                             "f:arm.z"};
+  EXPECT_EQ(logColumns(touchingLogModel(), {"reach hand [m]", "posture [rad]", "reach hand [m]"}),
+            expected);
 }
 
 /// A floating link "a" that carries another on a joint "a".
@@ -140,7 +117,7 @@ TEST(Log, ColumnsHaveNamesOfTheirOwn) {
 }
 
 TEST(Log, ReadsBackBitForBit) {
-  const Model m = sampleModel();
+  const Model m = logModel();
   const TempFolder folder;
   const auto file = folder.path() / "log.csv";
   std::mt19937_64 random(7);
@@ -164,18 +141,102 @@ TEST(Log, ReadsBackBitForBit) {
     expected.insert(expected.end(), r.v.begin(), r.v.end());
     expected.insert(expected.end(), r.a.begin(), r.a.end());
     expected.insert(expected.end(), r.u.begin() + 6, r.u.end());
-    ASSERT_EQ(fields->size(), expected.size() + 12);
+    ASSERT_EQ(fields->size(), expected.size() + 24);
     for (std::size_t i = 0; i < expected.size(); ++i)
       ASSERT_EQ(std::bit_cast<std::uint64_t>(detail::parseNumber((*fields)[i]).value()),
                 std::bit_cast<std::uint64_t>(expected[i]));
     EXPECT_EQ(detail::parseNumber((*fields)[expected.size()]), r.contacts);
-    EXPECT_EQ(detail::parseNumber(fields->back()), r.maxPenetration);
+    EXPECT_EQ(detail::parseNumber((*fields)[expected.size() + 11]), r.maxPenetration);
+    EXPECT_EQ(detail::parseNumber(fields->back()), r.angularMomentum.z());
   }
   EXPECT_EQ(reader.next(), nullptr);
 }
 
+// A row of what touches: forces by link, action and reaction, and what has no value is empty.
+TEST(Log, TellsForcesGoalsAndTheWhole) {
+  const Model m = touchingLogModel();
+  const TempFolder folder;
+  const auto file = folder.path() / "log.csv";
+  std::mt19937_64 random(7);
+  StepRecord r = randomRecord(m, random);
+  const Vector3 push(1.0, 2.0, 3.0);
+  std::vector<Snapshot::ContactForce> contacts(3);
+  contacts[0] = {1, 0, Vector3::Zero(), Vector3::UnitZ(), push};         // world on arm
+  contacts[1] = {2, 1, Vector3::Zero(), Vector3::UnitZ(), 0.5 * push};   // arm on world
+  contacts[2] = {0, 2, Vector3::Zero(), Vector3::UnitZ(), 10.0 * push};  // the arm on itself
+  const ContactLinks links(m);
+  ASSERT_EQ(links.names(), std::vector<std::string>{"arm"});
+  links.forces(contacts, r.linkForces);
+  EXPECT_EQ(r.linkForces, 0.5 * push);
+  r.goalErrors = Eigen::Vector2d(0.25, NAN);
+  r.momentum = push;
+  LogWriter writer(file, m, {"a [m]", "b [N]"});
+  writer.write(r);
+  r.isEnd = true;
+  writer.write(r);
+  writer.close();
+
+  const std::string text = detail::readFile(file.string()).value();
+  detail::CsvReader reader(text);
+  const std::vector<std::string> header = *reader.next();
+  const auto fieldsOf = [&](const std::vector<std::string>& row) {
+    std::map<std::string, std::string> fields;
+    for (std::size_t i = 0; i < header.size(); ++i) fields[header[i]] = row.at(i);
+    return fields;
+  };
+  auto row = fieldsOf(*reader.next());
+  EXPECT_EQ(row["f:arm.y"], "1");
+  EXPECT_EQ(row["error:a [m]"], "0.25");
+  EXPECT_EQ(row["error:b [N]"], "") << "it has none now";
+  EXPECT_EQ(row["cop.x"], "") << "the world carries nothing";
+  EXPECT_EQ(row["momentum.z"], "3");
+  EXPECT_NE(row["u:wrist"], "");
+  row = fieldsOf(*reader.next());
+  for (const char* column :
+       {"a:base.vx", "u:wrist", "iterations", "physics_violation", "step_us", "f:arm.x", "cop.z"})
+    EXPECT_EQ(row[column], "") << column << ": no step was taken from the state at the end";
+  for (const char* column : {"time_s", "q:wrist", "contacts", "energy_J", "error:a [m]", "com.x"})
+    EXPECT_NE(row[column], "") << column;
+}
+
+TEST(Log, EveryNthRowAndTheLastAreWritten) {
+  const Model m = logModel();
+  const TempFolder folder;
+  const auto file = folder.path() / "log.csv";
+  std::mt19937_64 random(7);
+  LogWriter writer(file, m, {}, 10);
+  for (int i = 0; i <= 25; ++i) {
+    StepRecord r = randomRecord(m, random);
+    r.time = i;
+    r.isEnd = i == 25;
+    writer.write(r);
+  }
+  writer.close();
+  const std::string text = detail::readFile(file.string()).value();
+  detail::CsvReader reader(text);
+  reader.next();
+  std::vector<std::string> times;
+  while (const std::vector<std::string>* fields = reader.next()) times.push_back(fields->front());
+  EXPECT_EQ(times, (std::vector<std::string>{"0", "10", "20", "25"}));
+}
+
+TEST(ContactLog, HasARowForEachContact) {
+  const Model m = touchingLogModel();
+  const TempFolder folder;
+  const auto file = folder.path() / "contacts.csv";
+  ContactLog log(file, m);
+  log.write(0.5, {{1, 0, {1, 2, 3}, Vector3::UnitZ(), {3, 4, 12}}});
+  log.write(1.0, {});
+  log.close();
+  EXPECT_EQ(detail::readFile(file.string()).value(),
+            "time_s,link_a,link_b,shape_a,shape_b,x_m,y_m,z_m,nx,ny,nz,fx_N,fy_N,fz_N,normal_N,"
+            "friction_N\n0.5,world,arm," +
+                m.geometries[1].name + "," + m.geometries[0].name + ",1,2,3,0,0,1,3,4,12,12,5\n");
+  EXPECT_THROW(ContactLog("no/such/folder/c.csv", m), ModelError);
+}
+
 TEST(Log, IsOnDiskAfterFlushAndAtTheEndOfTheWriter) {
-  const Model m = sampleModel();
+  const Model m = logModel();
   const TempFolder folder;
   const auto file = folder.path() / "log.csv";
   const auto lines = [&] {
@@ -194,83 +255,7 @@ TEST(Log, IsOnDiskAfterFlushAndAtTheEndOfTheWriter) {
 }
 
 TEST(Log, ThatCannotBeWrittenIsRefused) {
-  EXPECT_THROW(LogWriter("no/such/folder/log.csv", sampleModel()), ModelError);
-}
-
-TEST(TorqueTable, ReadsALogAndHoldsEachRow) {
-  const Model m = sampleModel();
-  const TempFolder folder;
-  const auto file = folder.path() / "log.csv";
-  std::mt19937_64 random(3);
-  std::vector<double> torques;
-  double time = 0.0;
-  {
-    LogWriter writer(file, m);
-    for (int i = 0; i < 200; ++i, time += 0.002) {
-      StepRecord r = randomRecord(m, random);
-      r.time = time;
-      r.u[7] = 0.0;
-      torques.push_back(r.u[6]);
-      writer.write(r);
-    }
-  }
-  const TorqueTable table = TorqueTable::read(file, m);
-  ASSERT_EQ(table.rows(), torques.size());
-  VectorX u;
-  for (std::size_t i = 0; i < torques.size(); ++i) {
-    const double t = 0.002 * static_cast<double>(i);  // other rounding than the sum above
-    table.controlAt(t, u);
-    ASSERT_EQ(u.size(), m.nv);
-    EXPECT_EQ(u[6], torques[i]);
-    table.controlAt(t + 0.0019, u);
-    EXPECT_EQ(u[6], torques[i]);
-  }
-  table.controlAt(-1.0, u);
-  EXPECT_TRUE(u.isZero(0.0));
-  table.controlAt(1e6, u);
-  EXPECT_EQ(u[6], torques.back());
-}
-
-TEST(TorqueTable, MayBeginWithAByteOrderMark) {
-  const TempFolder folder;
-  const TorqueTable table = TorqueTable::read(
-      folder.write("u.csv", "\xEF\xBB\xBFtime_s,\"u:left, \"\"elbow\"\"\"\n0,3\n"), sampleModel());
-  VectorX u;
-  table.controlAt(0.0, u);
-  EXPECT_EQ(u[6], 3.0);
-}
-
-std::string torqueErrorOf(const std::string& text) {
-  const TempFolder folder;
-  const std::string file = folder.write("u.csv", text).string();
-  try {
-    TorqueTable::read(file, sampleModel());
-  } catch (const ModelError& error) {
-    return std::string(error.what()).substr(file.size() - 5);
-  }
-  return "no error";
-}
-
-TEST(TorqueTable, ErrorsNameFileLineAndColumn) {
-  EXPECT_EQ(torqueErrorOf(""), "u.csv:1: header: is missing, expected time_s and u:<joint>");
-  EXPECT_EQ(torqueErrorOf("u:wrist\n"), "u.csv:1: header: has no column time_s");
-  EXPECT_EQ(torqueErrorOf("time_s,q:wrist\n"), "u.csv:1: header: has no column u:<joint>");
-  EXPECT_EQ(torqueErrorOf("time_s,u:wirst\n"),
-            "u.csv:1: column 'u:wirst': model 'log' has no joint 'wirst' with a control, did you "
-            "mean 'wrist'?");
-  EXPECT_EQ(torqueErrorOf("time_s,u:wrist\n"), "u.csv:1: file: has no row below the header");
-  EXPECT_EQ(torqueErrorOf("time_s,u:wrist\n\n0,1,2\n"),
-            "u.csv:3: row: has 3 fields, expected 2 as the header");
-  EXPECT_EQ(torqueErrorOf("time_s,u:wrist\n0,1e\n"),
-            "u.csv:2: column 'u:wrist': '1e' is not a finite number");
-  EXPECT_EQ(torqueErrorOf("time_s,u:wrist\n0,nan\n"),
-            "u.csv:2: column 'u:wrist': 'nan' is not a finite number");
-  EXPECT_EQ(torqueErrorOf("time_s,u:wrist\n0,0\n0,0\n"),
-            "u.csv:3: column 'time_s': 0 follows 0, expected rising times");
-  EXPECT_EQ(torqueErrorOf("time_s,u:wrist\n0,2\n"),
-            "u.csv:2: column 'u:wrist': is 2, but the joint is not actuated, expected 0");
-  EXPECT_EQ(torqueErrorOf("time_s,u:wrist,u:wrist\n0,0,0\n"),
-            "u.csv:1: column 'u:wrist': is there twice");
+  EXPECT_THROW(LogWriter("no/such/folder/log.csv", logModel()), ModelError);
 }
 
 }  // namespace

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// A table of comma-separated values that is written row by row while a run goes on.
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/core/types.hpp"
+
+namespace softgauss::io::detail {
+
+/// Rows are buffered; what was written is on disk after flush(), close() or the end of its life.
+class RowFile {
+ public:
+  /// `what` names the table in messages. Throws ModelError if the file cannot be made.
+  RowFile(const std::filesystem::path& file, std::string what,
+          const std::vector<std::string>& columns);
+  ~RowFile();
+  RowFile(RowFile&&) noexcept = default;
+  RowFile& operator=(RowFile&&) = delete;
+
+  /// The next fields of the row. A number is the shortest text that reads back bit for bit.
+  void add(double x);
+  void add(int x);
+  void add(const std::string& text);
+  void add(const VectorX& values) {
+    for (const double x : values) add(x);
+  }
+  void add(const Vector3& values) {
+    for (const double x : values) add(x);
+  }
+  /// Fields without a value.
+  void addEmpty(Eigen::Index count) {
+    for (Eigen::Index i = 0; i < count; ++i) next();
+  }
+
+  /// These throw std::runtime_error if the disk is full or gone.
+  void endRow();
+  void flush();
+  void close();
+
+ private:
+  struct Closer {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+  };
+  void next() {
+    if (!rowIsEmpty_) buffer_ += ',';
+    rowIsEmpty_ = false;
+  }
+  [[noreturn]] void failed() const;
+  bool send() noexcept;
+
+  std::string path_, what_;
+  std::unique_ptr<std::FILE, Closer> file_;
+  std::string buffer_;
+  bool rowIsEmpty_ = true;
+};
+
+}  // namespace softgauss::io::detail
