@@ -12,6 +12,7 @@
 #include "engine/islands/units.hpp"
 #include "io/detail/text.hpp"
 #include "io/detail/text_table.hpp"
+#include "io/warning_list.hpp"
 
 namespace softgauss::io {
 namespace {
@@ -231,6 +232,12 @@ std::string mostRows(const Model& model, const ExplainContext& context, Effect e
   }
 }
 
+/// A cost of a step; what a trial cannot tell from none is noise.
+std::string costText(double us) {
+  constexpr double kNoise = 0.1;
+  return us < kNoise ? fmt::format("< {} µs", kNoise) : fmt::format("{:.2f} µs", us);
+}
+
 std::string effectsText(const Model& model, const ExplainContext& context) {
   detail::TextTable on, off;
   if (!context.costs.empty()) on.row({"", "rows", "at most", "memory", "a step", ""});
@@ -243,10 +250,25 @@ std::string effectsText(const Model& model, const ExplainContext& context) {
     const EffectCost cost = found == context.costs.end() ? EffectCost{} : found->second;
     on.row({note.name, std::to_string(cost.rows),
             mostRows(model, context, *effectFromName(note.name)), fmt::format("{} B", cost.bytes),
-            found == context.costs.end() ? "-" : fmt::format("{:.2f} µs", cost.us), note.reason});
+            found == context.costs.end() ? "-" : costText(cost.us), note.reason});
   }
   return "effects that are simulated, and what calls them\n" + on.text() +
          "effects that are off, and why\n" + off.text();
+}
+
+/// What --reach, --hold and --q0, and goals in files, can name.
+std::string aimsText(const Model& model) {
+  std::vector<std::string> links, joints;
+  for (const Frame& frame : model.frames)
+    if (frame.body != 0) links.push_back(frame.name);
+  for (int b = 1; b < model.bodyCount(); ++b)
+    if (model.bodies[idx(b)].dofs == 1) joints.push_back(model.jointNames[idx(b)]);
+  return fmt::format(
+      "to aim at\n  links, for --reach, --hold and goals\n    {}\n  joints, for --q0, --torques "
+      "and "
+      "goals\n    {}\n",
+      links.empty() ? "none" : listed(links, links.size()),
+      joints.empty() ? "none" : listed(joints, joints.size()));
 }
 
 }  // namespace
@@ -265,9 +287,10 @@ std::string explain(const Model& model, const ExplainContext& context) {
   section(softnessText(model, context));
   section(wrenchesText(context));
   section(effectsText(model, context));
-  if (!model.warnings.empty()) {
+  section(aimsText(model));
+  if (const std::vector<std::string> told = grouped(model.warnings); !told.empty()) {
     std::string warnings = "warnings\n";
-    for (const std::string& warning : model.warnings) warnings += "  " + warning + "\n";
+    for (const std::string& warning : told) warnings += "  " + warning + "\n";
     section(warnings);
   }
   return out;

@@ -22,37 +22,19 @@ constexpr double kFastestSpring = 1.0;     // h √(k w)
 constexpr double kHardestDamping = 100.0;  // h d w
 constexpr double kFastestTie = 1.0;        // h √(ΣL g |r|/I)
 constexpr double kLeastDamping = 0.1;      // d w [1/s]
-constexpr int kMostTold = 8;               // of one kind
-
-/// Warnings of one kind: the first ones, and how many more there are.
-class Kind {
- public:
-  explicit Kind(std::vector<std::string>& all) : all_(all) {}
-  ~Kind() {
-    if (count_ > kMostTold) all_.push_back(fmt::format("… and {} more", count_ - kMostTold));
-  }
-  Kind(const Kind&) = delete;
-  Kind& operator=(const Kind&) = delete;
-  void add(std::string text) {
-    if (++count_ <= kMostTold) all_.push_back(std::move(text));
-  }
-
- private:
-  std::vector<std::string>& all_;
-  int count_ = 0;
-};
+constexpr double kUsualStep = 0.002;       // [s]
+constexpr double kLongStep = 50.0;         // times that: what is softened is no news
 
 void joints(const Model& model, const InverseWeights& weights, std::vector<std::string>& out) {
   const double h = model.options.timestep;
   const EffectSet& effects = model.options.effects;
-  Kind springs(out), dampings(out), drives(out);
   for (int i = 0; i < model.nv; ++i) {
     const Dof& dof = model.dofs[idx(i)];
     const double w = weights.dof[idx(i)];
     const std::string& joint = model.jointNames[idx(dof.body)];
     if (const double swing = h * std::sqrt(std::max(0.0, dof.stiffness * w));
         swing > kFastestSpring && effects.has(Effect::spring))
-      springs.add(fmt::format(
+      out.push_back(fmt::format(
           "joint '{}': its spring of {:g} on an inertia of {:.3g} swings by {:.3g} rad in a step "
           "of "
           "{:g} s, expected at most {:g}; try a step below {:.2g} s, armature above {:.2g}, or a "
@@ -61,7 +43,7 @@ void joints(const Model& model, const InverseWeights& weights, std::vector<std::
           dof.stiffness * h * h));
     if (const double stop = h * dof.damping * w;
         stop > kHardestDamping && effects.has(Effect::damping))
-      dampings.add(fmt::format(
+      out.push_back(fmt::format(
           "joint '{}': its damping of {:g} on an inertia of {:.3g} is {:.3g} times what stops it "
           "in "
           "a step of {:g} s, expected at most {:g}; the joint hardly moves; try armature, or less "
@@ -70,7 +52,7 @@ void joints(const Model& model, const InverseWeights& weights, std::vector<std::
     const double effort = std::max(-dof.effortLower, dof.effortUpper);
     if (const double way = h * h * effort * w;
         dof.actuated && std::isfinite(effort) && way > kFarthestDrive)
-      drives.add(fmt::format(
+      out.push_back(fmt::format(
           "joint '{}': its effort of {:g} on an inertia of {:.3g} moves it by {:.3g} rad or m in "
           "the "
           "first step of {:g} s, expected at most {:.3g}; try armature above {:.2g}, or the effort "
@@ -82,32 +64,33 @@ void joints(const Model& model, const InverseWeights& weights, std::vector<std::
 
 /// What a step does not follow of a reference (T.115): what it counts as instead or, where it is
 /// taken as it is, that it grows.
-void reference(const Impedance& p, const std::string& what, const Options& options, Kind& out) {
+void reference(const Impedance& p, const std::string& what, const Options& options,
+               std::vector<std::string>& out) {
   const double h = options.timestep;
   const double tc = std::max(p.timeConstant, 2.0 * h);
   const ReferenceSpring given =
       p.direct ? *p.direct : ReferenceSpring{1.0 / std::pow(tc * p.dampingRatio, 2), 2.0 / tc};
   const double K = given.stiffness, B = given.damping;
   if (!p.direct && p.timeConstant < 2.0 * h)
-    out.add(
+    out.push_back(
         fmt::format("{}: its time constant of {:g} s counts as {:g} s, two steps; try a step "
                     "of {:.2g} s",
                     what, p.timeConstant, 2.0 * h, 0.5 * p.timeConstant));
   if (!options.ownSoftness) {
     if (h * h * K + 2.0 * h * B > 4.0)
-      out.add(
+      out.push_back(
           fmt::format("{}: its reference of {:g}/s² and {:g}/s grows in steps of {:g} s; try a "
                       "step below {:.2g} s, or lower numbers",
                       what, K, B, h, K > 0.0 ? (std::sqrt(B * B + 4.0 * K) - B) / K : 2.0 / B));
   } else if (!p.direct) {
     if (tc * p.dampingRatio < 2.0 * h)
-      out.add(fmt::format(
+      out.push_back(fmt::format(
           "{}: its damping ratio of {:g} counts as {:g} with a time constant of {:g} s, for it "
           "would swing by more than half a radian in a step of {:g} s; try a step of {:.2g} s",
           what, p.dampingRatio, 2.0 * h / tc, tc, h, 0.5 * p.timeConstant * p.dampingRatio));
   } else if (const ReferenceSpring s = followed(given, h);
              s.stiffness < K * (1.0 - 1e-9) || s.damping < B * (1.0 - 1e-9)) {
-    out.add(fmt::format(
+    out.push_back(fmt::format(
         "{}: its reference of {:g}/s² and {:g}/s counts as {:g}/s² and {:g}/s in steps of {:g} s; "
         "try a step of {:.2g} s, or lower numbers",
         what, K, B, s.stiffness, s.damping, h,
@@ -117,34 +100,33 @@ void reference(const Impedance& p, const std::string& what, const Options& optio
 
 void references(const Model& model, std::vector<std::string>& out) {
   const Options& options = model.options;
-  Kind kind(out);
   std::vector<Material> seen;
   for (const Geometry& g : model.geometries) {
     if (g.material.spring || std::find(seen.begin(), seen.end(), g.material) != seen.end())
       continue;
     seen.push_back(g.material);
-    reference(g.material.impedance, fmt::format("surface of '{}'", g.name), options, kind);
+    reference(g.material.impedance, fmt::format("surface of '{}'", g.name), options, out);
   }
   for (const JointRange& range : model.ranges)
     reference(range.impedance,
-              fmt::format("range of joint '{}'", model.jointNames[idx(range.body)]), options, kind);
+              fmt::format("range of joint '{}'", model.jointNames[idx(range.body)]), options, out);
   for (const ContactPair& pair : model.contactPairs)
     if (!pair.material.spring)
       reference(pair.material.impedance,
                 fmt::format("contact of '{}' and '{}'", model.geometries[idx(pair.geometryA)].name,
                             model.geometries[idx(pair.geometryB)].name),
-                options, kind);
+                options, out);
   const auto between = [&](const char* what, int a, int b) {
     return fmt::format("{} of '{}' and '{}'", what, model.bodyNames[idx(a)],
                        model.bodyNames[idx(b)]);
   };
   for (const Connection& c : model.connections)
-    reference(c.impedance, between("connection", c.bodyA, c.bodyB), options, kind);
+    reference(c.impedance, between("connection", c.bodyA, c.bodyB), options, out);
   for (const Weld& w : model.welds)
-    reference(w.impedance, between("weld", w.bodyA, w.bodyB), options, kind);
+    reference(w.impedance, between("weld", w.bodyA, w.bodyB), options, out);
   for (const JointCoupling& c : model.couplings)
     reference(c.impedance, fmt::format("coupling of joint '{}'", model.jointNames[idx(c.follower)]),
-              options, kind);
+              options, out);
 }
 
 /// A free body that hangs on ties swings about its centre, as a bead on a string does: the string's
@@ -174,10 +156,9 @@ void tiedSwings(const Model& model, const InverseWeights& weights, const Contact
     add(c.bodyA, c.bodyB, c.p_AP), add(c.bodyB, c.bodyA, c.p_BP);
   for (const Weld& w : model.welds)
     add(w.bodyA, w.bodyB, w.X_AF.p), add(w.bodyB, w.bodyA, w.X_BF.p);
-  Kind kind(out);
   for (int b = 1; b < model.bodyCount(); ++b)
     if (const double swing = h * std::sqrt(squares[idx(b)]); swing > kFastestTie)
-      kind.add(fmt::format(
+      out.push_back(fmt::format(
           "link '{}' is light for what hangs on its connections and welds: it swings by {:.3g} rad "
           "in a step of {:g} s, expected at most {:g}; try a step below {:.2g} s, or joints, which "
           "have no such swing",
@@ -188,7 +169,6 @@ void tiedSwings(const Model& model, const InverseWeights& weights, const Contact
 void freeLinks(const Model& model, const InverseWeights& weights, std::vector<std::string>& out) {
   const Options& options = model.options;
   if (options.integrator != Integrator::implicit || !options.effects.has(Effect::coriolis)) return;
-  Kind kind(out);
   for (const Tree& tree : model.trees) {
     int joints = 0, free = -1;
     for (int b = tree.rootBody; b < tree.bodyEnd; ++b) {
@@ -201,7 +181,7 @@ void freeLinks(const Model& model, const InverseWeights& weights, std::vector<st
     }
     const bool floats = model.floats(model.bodies[idx(tree.rootBody)].tree);
     if (free < 0 || joints + floats < 2) continue;
-    kind.add(fmt::format(
+    out.push_back(fmt::format(
         "joint '{}' is hardly damped, and links that swing freely gain energy by the integrator "
         "implicit, by as much as they have within seconds; try semi-implicit-euler, or a damping",
         model.jointNames[idx(free)]));
@@ -218,7 +198,6 @@ void overlaps(const Model& model, const ContactSet& touching, std::vector<std::s
   std::vector<std::pair<double, std::pair<int, int>>> order;
   for (const auto& [pair, depth] : deepest) order.emplace_back(-depth, pair);
   std::sort(order.begin(), order.end());
-  Kind kind(out);
   for (const auto& [depth, pair] : order) {
     const Material m = pairMaterial(model, pair.first, pair.second);
     const double least = 2.0 * model.options.timestep;
@@ -227,7 +206,7 @@ void overlaps(const Model& model, const ContactSet& touching, std::vector<std::s
     std::string speed;
     if (!m.spring && !m.impedance.direct)
       speed = fmt::format(" and leave each other with up to {:.2g} m/s", -depth / time);
-    kind.add(
+    out.push_back(
         fmt::format("'{}' and '{}' overlap by {:.3g} mm at the start{}; try another start, or "
                     "larger distances",
                     model.geometries[idx(pair.first)].name, model.geometries[idx(pair.second)].name,
@@ -240,9 +219,17 @@ void overlaps(const Model& model, const ContactSet& touching, std::vector<std::s
 std::vector<std::string> stepWarnings(const Model& model, const ContactSet& touching) {
   std::vector<std::string> out;
   const InverseWeights weights(model);
-  joints(model, weights, out);
-  references(model, out);
-  tiedSwings(model, weights, touching, out);
+  const double times = model.options.timestep / kUsualStep;
+  if (times >= kLongStep) {
+    out.push_back(fmt::format(
+        "a step of {:g} s is {:.3g} times the usual {:g} s: contacts, ranges, springs and whatever "
+        "else is faster than it are softened or run away; try --timestep {:g}",
+        model.options.timestep, times, kUsualStep, kUsualStep));
+  } else {
+    joints(model, weights, out);
+    references(model, out);
+    tiedSwings(model, weights, touching, out);
+  }
   freeLinks(model, weights, out);
   overlaps(model, touching, out);
   return out;

@@ -13,6 +13,7 @@
 ///                it is taken as it is, and grows where h² K + 2 h B > 4
 ///   time constant below 2 h              (T.11): it counts as 2 h
 ///   light body   h ω > 1                 between its ties it swings by more than a radian a step
+///   step         from 50 times the usual 2 ms on, that alone in place of all of these
 ///   `implicit`   d w_i < 0.1/s            a joint among others that gain energy by it
 
 #include <string>

@@ -33,6 +33,14 @@ TEST(StepWarnings, AreSilentWhereTheStepCarriesAll) {
   EXPECT_TRUE(warningsOf([](JointSpec& j) { j.stiffness = 100.0, j.damping = 10.0; }).empty());
 }
 
+// At 250 times the usual step every number of the scene is too fast for it: that is one warning.
+TEST(StepWarnings, AFarTooLongStepIsOneWarning) {
+  Model model = humanoid().build();
+  model.options.timestep = 0.5;
+  expectOne(io::stepWarnings(model, {}), "a step of 0.5 s is 250 times the usual 0.002 s",
+            "try --timestep 0.002");
+}
+
 // The inertia is 0.25 kg m² and a little; at 2 ms it carries springs up to 62,500 N m/rad.
 TEST(StepWarnings, NameTheSpringThatIsFasterThanTheStep) {
   expectOne(warningsOf([](JointSpec& j) { j.stiffness = 1e6; }), "joint 'hinge': its spring",
