@@ -29,6 +29,32 @@ ordered_json countsOf(const Series& series) {
           {"max", std::llround(series.max())}};
 }
 
+/// Places have the unit in their keys; other goals beside them.
+ordered_json toJson(const GoalOutcome& goal) {
+  ordered_json json = {{"name", goal.name}, {"unit", goal.unit}};
+  const std::string suffix = goal.unit == "m" ? "_m" : "";
+  json["initial_error" + suffix] = goal.initialError;
+  json["final_error" + suffix] = goal.finalError;
+  json["best_error" + suffix] = goal.bestError;
+  json["best_time_s"] = goal.bestTime;
+  json["judged_at_s"] = goal.judgedAt;
+  json["reached_within"] = goal.met;
+  json["reached"] = goal.isMet();
+  json["reason"] = goal.reason;
+  return json;
+}
+
+ordered_json toJson(const RunOrigin& origin) {
+  ordered_json files = ordered_json::array();
+  for (const RunOrigin::File& file : origin.files)
+    files.push_back({{"path", file.path}, {"sha256", file.sha256}});
+  return {{"command_line", origin.commandLine},
+          {"commit", origin.commit},
+          {"compiler", origin.compiler},
+          {"processor", origin.processor},
+          {"files", files}};
+}
+
 }  // namespace
 
 double Series::percentile(double share) const {
@@ -69,7 +95,9 @@ Summary::Summary(const Model& model)
     if (!dof.actuated) continue;
     ++actuated_;
     const double effort = std::max(-dof.effortLower, dof.effortUpper);
-    if (std::isfinite(effort) && effort > 0.0) bounded_.push_back({i, effort});
+    if (!std::isfinite(effort) || effort <= 0.0) continue;
+    bounded_.push_back({i, effort});
+    ratios_.push_back({model.jointNames[static_cast<std::size_t>(dof.body)]});
   }
 }
 
@@ -90,8 +118,25 @@ void Summary::addStep(const StepRecord& r) {
   realised_.values.push_back(r.realised);
   gddViolation_.values.push_back(r.gddViolation);
   stationarity_.values.push_back(r.stationarity);
-  for (const Bounded& control : bounded_)
-    maxControlRatio_ = std::max(maxControlRatio_, std::abs(r.u[control.dof]) / control.effort);
+  for (std::size_t i = 0; i < bounded_.size(); ++i)
+    ratios_[i].ratio =
+        std::max(ratios_[i].ratio, std::abs(r.u[bounded_[i].dof]) / bounded_[i].effort);
+}
+
+void Summary::addControlRatio(const std::string& name, double ratio) {
+  for (std::size_t i = bounded_.size(); i < ratios_.size(); ++i) {
+    if (ratios_[i].name != name) continue;
+    ratios_[i].ratio = std::max(ratios_[i].ratio, ratio);
+    return;
+  }
+  ratios_.push_back({name, ratio});
+}
+
+std::vector<ControlRatio> Summary::controlRatios() const {
+  std::vector<ControlRatio> ratios = ratios_;
+  std::stable_sort(ratios.begin(), ratios.end(),
+                   [](const ControlRatio& a, const ControlRatio& b) { return a.ratio > b.ratio; });
+  return ratios;
 }
 
 void Summary::finish(const StepRecord& finalState) {
@@ -105,13 +150,15 @@ double Summary::realTimeFactor() const {
 }
 
 std::string Summary::json() const {
-  ordered_json goalList = ordered_json::array();
-  for (const GoalOutcome& goal : goals)
-    goalList.push_back({{"name", goal.name},
-                        {"initial_error_m", goal.initialError},
-                        {"final_error_m", goal.finalError}});
+  ordered_json goalList = ordered_json::array(), said = ordered_json::array();
+  for (const GoalOutcome& goal : goals) goalList.push_back(toJson(goal));
+  for (const auto& [word, sentence] : verdict) said.push_back(word + ": " + sentence);
+  const std::vector<ControlRatio> ratios = controlRatios();
+  ordered_json ratioList = ordered_json::object();
+  for (const ControlRatio& r : ratios) ratioList[r.name] = r.ratio;
   ordered_json summary = {
       {"version", version},
+      {"origin", toJson(origin)},
       {"model",
        {{"name", modelName_},
         {"links", links_},
@@ -131,6 +178,8 @@ std::string Summary::json() const {
         {"gdd_solver", gddSolver},
         {"control_cost", controlCost}}},
       {"outcome", outcome},
+      {"verdict", said},
+      {"bases", bases},
       {"steps", steps_},
       {"simulated_s", simulatedSeconds()},
       {"wall_s", wallSeconds},
@@ -164,7 +213,8 @@ std::string Summary::json() const {
       {"goals", goalList},
       {"energy_J", {{"initial", initialEnergy_}, {"final", finalEnergy_}}},
       {"max_penetration_m", maxPenetration_},
-      {"max_control_ratio", maxControlRatio_},
+      {"max_control_ratio", ratios.empty() ? 0.0 : ratios.front().ratio},
+      {"control_ratios", ratioList},
       {"warnings", warnings}};
   if (integration.evaluations > 0)
     summary["integration"] = {{"evaluations", integration.evaluations},

@@ -6,8 +6,8 @@
 /// Percentiles are by nearest rank: p95 is the smallest value that at least 95 % of the steps do
 /// not exceed. Numbers that are not finite are null in JSON.
 
-#include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,18 +17,24 @@
 
 namespace softgauss::io {
 
-/// A goal's distance from being met, at the start and at the end of the run.
+/// How far a goal was from being met, in its own unit, from where it began to act to its own end or
+/// that of the run.
 struct GoalOutcome {
-  std::string name;           ///< e.g. "reach right_hand"
-  double initialError = 0.0;  ///< [m]
-  double finalError = 0.0;    ///< [m]
+  std::string name;                     ///< e.g. "reach right_hand", "momentum (angular)"
+  std::string unit = "m";               ///< of the errors
+  double initialError = 0.0;            ///< where it began to act
+  double finalError = 0.0;              ///< at its own end, or that of the run
+  double bestError = 0.0;               ///< the least of all steps
+  double bestTime = 0.0;                ///< [s]
+  double judgedAt = 0.0;                ///< where its own end, or that of the run, was [s]
+  double met = 0.01;                    ///< it is met where the error is at most this
+  std::optional<double> metSince = {};  ///< met from here to its end, or last met until then [s]
+  bool yields = false;                  ///< others may outweigh it by design, as a posture's
+  bool began = true;                    ///< it has acted, and had a figure
+  std::string reason = {};              ///< why it was not met; empty where it was
 
-  /// Share of the way that was covered; negative when it moved away. A goal that was there at the
-  /// start, to a millimetre, has 1 cm to lose.
-  double nearer() const {
-    constexpr double kThere = 1e-3, kToLose = 1e-2;
-    return 1.0 - finalError / (initialError < kThere ? kToLose : initialError);
-  }
+  bool isMet() const { return began && finalError <= met; }
+  bool wasMet() const { return began && bestError <= met; }
 };
 
 /// How the solves of goals ended, over the steps.
@@ -88,6 +94,25 @@ struct ErrorOutcome {
   double orientation = 0.0;  ///< of links [rad]
 };
 
+/// What a run was made from, for who wants to make it again.
+struct RunOrigin {
+  struct File {
+    std::string path;
+    std::string sha256;  ///< hexadecimal; empty where it could not be read again
+  };
+  std::string commandLine;
+  std::string commit;     ///< of the sources, with "+" where they had changes; empty: not known
+  std::string compiler;   ///< with its version
+  std::string processor;  ///< as it calls itself
+  std::vector<File> files;
+};
+
+/// A joint or an actuator, and the largest share of its bound that was used.
+struct ControlRatio {
+  std::string name;
+  double ratio = 0.0;
+};
+
 /// Values of one quantity over the steps.
 struct Series {
   std::vector<double> values;
@@ -106,13 +131,16 @@ class Summary {
   void addStep(const StepRecord& record);
   void finish(const StepRecord& finalState);
   /// A command of an actuator as a share of its bound.
-  void addControlRatio(double ratio) { maxControlRatio_ = std::max(maxControlRatio_, ratio); }
+  void addControlRatio(const std::string& name, double ratio);
+  /// Of all that have a bound, the largest first.
+  std::vector<ControlRatio> controlRatios() const;
 
   std::string json() const;
   /// Throws ModelError if the file cannot be written.
   void write(const std::filesystem::path& file) const;
-  /// Compact, aligned, with units, ending in a line that says how the run went.
-  std::string table() const;
+  /// For people, with units: what ran, warnings, and the verdict, which ends it. `details` adds
+  /// what the solver did and what it took.
+  std::string table(bool details = false) const;
   /// The same in a few pairs of a name and a value, the verdict first.
   std::vector<std::pair<std::string, std::string>> facts() const;
 
@@ -121,7 +149,12 @@ class Summary {
   std::string integrator;  ///< preset to the model's
   std::string gddSolver = "active-set";
   std::string controlCost = "about_gravity";  ///< or "total"
-  std::string outcome = "completed";
+  std::string outcome = "completed";          ///< or "fell", "interrupted", "non-finite"
+  /// What a person wants to know, in order: a word and a sentence each, e.g. "reached", "reach arm:
+  /// 0.4 mm left". The first says how the run ended.
+  std::vector<std::pair<std::string, std::string>> verdict;
+  std::vector<std::string> bases;  ///< how each robot meets the world
+  RunOrigin origin;
   double wallSeconds = 0.0;
   double massKg = 0.0;  ///< of all links; preset to that of the moving bodies
   std::vector<std::string> effects;
@@ -141,6 +174,7 @@ class Summary {
     int dof;
     double effort;
   };
+  std::string detailsTable() const;
 
   std::string modelName_;
   int links_ = 0, dofs_ = 0, actuated_ = 0;
@@ -153,7 +187,8 @@ class Summary {
   std::size_t steps_ = 0;
   double startTime_ = 0.0, endTime_ = 0.0;
   double initialEnergy_ = 0.0, finalEnergy_ = 0.0;
-  double maxPenetration_ = 0.0, maxControlRatio_ = 0.0;
+  double maxPenetration_ = 0.0;
+  std::vector<ControlRatio> ratios_;  ///< of bounded_, then of actuators
   Series forwardUs_, gddUs_, stepUs_, constraints_, iterations_, dualUpdates_;
   Series physicsViolation_, gddViolation_, stationarity_, realised_;
 };

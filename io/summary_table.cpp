@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "io/figure_text.hpp"
 #include "io/summary.hpp"
 
 namespace softgauss::io {
@@ -27,35 +28,23 @@ void addRow(std::string& out, const char* what, const char* unit, const Series& 
                  cell(series.mean()));
 }
 
-std::string millimetres(double metres) { return fmt::format("{:.3g} mm", 1e3 * metres); }
-
-double percentNearer(const GoalOutcome& goal) { return 100.0 * goal.nearer(); }
-
-std::string verdict(const std::string& outcome, const std::vector<GoalOutcome>& goals) {
-  if (goals.empty()) return outcome;
-  const auto worst =
-      std::min_element(goals.begin(), goals.end(), [](const GoalOutcome& a, const GoalOutcome& b) {
-        return percentNearer(a) < percentNearer(b);
-      });
-  const double percent = percentNearer(*worst);
-  const std::string name = goals.size() == 1 ? worst->name : "worst goal, " + worst->name;
-  if (percent >= 0.0)
-    return fmt::format("{}: {}: {:.0f} % of the way, {} left", outcome, name, percent,
-                       millimetres(worst->finalError));
-  return fmt::format("{}: {}: moved away, {} from {}", outcome, name,
-                     millimetres(worst->finalError), millimetres(worst->initialError));
+/// As many columns as the longest word takes, so that sentences stand below each other.
+std::string verdictText(const std::vector<std::pair<std::string, std::string>>& verdict,
+                        const std::string& outcome) {
+  if (verdict.empty()) return outcome + "\n";
+  std::size_t width = 0;
+  for (const auto& [word, sentence] : verdict) width = std::max(width, word.size());
+  std::string out;
+  for (const auto& [word, sentence] : verdict)
+    out += fmt::format("{:<{}}  {}\n", word + ":", width + 1, sentence);
+  return out;
 }
 
 }  // namespace
 
-std::string Summary::table() const {
+std::string Summary::detailsTable() const {
   std::string out;
   const auto add = [&](const std::string& line) { out += line + "\n"; };
-  add(fmt::format("{}: {} links, {} dof, {} actuated, {:.4g} kg", modelName_, links_, dofs_,
-                  actuated_, massKg));
-  add(fmt::format("  {:.4g} s simulated in {:.3g} s, {:.3g} x real time; {} steps of {:.4g} ms, {}",
-                  simulatedSeconds(), wallSeconds, realTimeFactor(), steps_, 1e3 * timestep_,
-                  integrator));
   add(fmt::format("  effects: {}", fmt::join(effects, " ")));
   add("");
   add(fmt::format("  {:<26}{:>10}{:>10}{:>10}{:>10}", "", "p50", "p95", "max", "mean"));
@@ -84,44 +73,56 @@ std::string Summary::table() const {
   else if (integration.parts > static_cast<long>(steps_) || integration.repeats > 1)
     add(fmt::format("  integration: {} parts of {} steps, {} solves repeated", integration.parts,
                     steps_, integration.repeats));
+  add("");
+  return out;
+}
+
+std::string Summary::table(bool details) const {
+  std::string out;
+  const auto add = [&](const std::string& line) { out += line + "\n"; };
+  add(fmt::format("{}: {} links, {} dof, {} actuated, {:.4g} kg", modelName_, links_, dofs_,
+                  actuated_, massKg));
+  add(fmt::format("  {:.4g} s simulated in {:.3g} s, {:.3g} x real time; {} steps of {:.4g} ms, {}",
+                  simulatedSeconds(), wallSeconds, realTimeFactor(), steps_, 1e3 * timestep_,
+                  integrator));
+  if (details) out += detailsTable();
   if (islands.on)
     add(fmt::format("  islands: up to {}, {:.3g} % of them asleep over the run, {} woken",
                     islands.most, 100.0 * islands.asleepShare(), islands.wakeups));
-  add("");
+  const std::vector<ControlRatio> ratios = controlRatios();
   add(fmt::format("  energy {:.4g} J to {:.4g} J; deepest penetration {}; largest control {}",
-                  initialEnergy_, finalEnergy_, millimetres(maxPenetration_),
-                  bounded_.empty() ? std::string("without a box")
-                                   : fmt::format("{:.0f} % of its box", 100.0 * maxControlRatio_)));
+                  initialEnergy_, finalEnergy_, lengthText(maxPenetration_),
+                  ratios.empty() ? std::string("without a box")
+                                 : fmt::format("{:.0f} % of its box, {}",
+                                               100.0 * ratios.front().ratio, ratios.front().name)));
   if (error.estimated)
     add(fmt::format("  error of these settings: {:.2g} m, {:.2g} rad, estimated; {}",
                     error.position, error.orientation,
                     error.ofSteps ? "what the steps err by, added up" : "root mean square"));
-  for (const GoalOutcome& goal : goals)
-    add(fmt::format("  {:<26}{:>12} -> {:>10} {:>8.0f} %", goal.name,
-                    millimetres(goal.initialError), millimetres(goal.finalError),
-                    percentNearer(goal)));
   for (const std::string& warning : warnings) add("  warning: " + warning);
   add("");
-  add(verdict(outcome, goals));
-  return out;
+  return out + verdictText(verdict, outcome);
 }
 
 std::vector<std::pair<std::string, std::string>> Summary::facts() const {
-  std::vector<std::pair<std::string, std::string>> facts = {
-      {"verdict", verdict(outcome, goals)},
-      {"robot",
-       fmt::format("{} links, {} dof, {} actuated, {:.4g} kg", links_, dofs_, actuated_, massKg)},
-      {"run", fmt::format("{:.4g} s in {:.3g} s, {:.3g} x real time", simulatedSeconds(),
-                          wallSeconds, realTimeFactor())},
-      {"steps", fmt::format("{} of {:.4g} ms, {}", steps_, 1e3 * timestep_, integrator)},
-      {"effects", fmt::format("{}", fmt::join(effects, " "))},
-      {"step", fmt::format("{:.3g} µs, 95 % below {:.3g} µs", stepUs_.percentile(0.5),
-                           stepUs_.percentile(0.95))},
-      {"physics violation", fmt::format("95 % below {:.2g}", physicsViolation_.percentile(0.95))},
-      {"deepest penetration", millimetres(maxPenetration_)}};
-  for (const GoalOutcome& goal : goals)
-    facts.emplace_back(goal.name, fmt::format("{} to {}", millimetres(goal.initialError),
-                                              millimetres(goal.finalError)));
+  std::vector<std::pair<std::string, std::string>> facts = verdict;
+  if (facts.empty()) facts.emplace_back("", outcome);
+  // The page shows the first one by itself.
+  facts[0].second = facts[0].first + (facts[0].first.empty() ? "" : ": ") + facts[0].second;
+  facts[0].first = "verdict";
+  facts.insert(
+      facts.end(),
+      {{"robot",
+        fmt::format("{} links, {} dof, {} actuated, {:.4g} kg", links_, dofs_, actuated_, massKg)},
+       {"run", fmt::format("{:.4g} s in {:.3g} s, {:.3g} x real time", simulatedSeconds(),
+                           wallSeconds, realTimeFactor())},
+       {"steps", fmt::format("{} of {:.4g} ms, {}", steps_, 1e3 * timestep_, integrator)},
+       {"effects", fmt::format("{}", fmt::join(effects, " "))},
+       {"step", fmt::format("{:.3g} µs, 95 % below {:.3g} µs", stepUs_.percentile(0.5),
+                            stepUs_.percentile(0.95))},
+       {"physics violation", fmt::format("95 % below {:.2g}", physicsViolation_.percentile(0.95))},
+       {"deepest penetration", lengthText(maxPenetration_)}});
+  for (const std::string& base : bases) facts.emplace_back("base", base);
   return facts;
 }
 

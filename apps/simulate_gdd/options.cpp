@@ -35,6 +35,7 @@ void checkOutputs(const SimulateOptions& options, const std::vector<std::filesys
   for (const std::filesystem::path& file : read) files.emplace_back(file.string(), file);
   const std::size_t inputs = files.size();
   for (const auto& [option, file] : {std::pair{"--log", &options.log},
+                                     {"--contacts", &options.contacts},
                                      {"--summary", &options.summary},
                                      {"--view", &options.view},
                                      {"--plot", &options.plot}})
@@ -82,8 +83,9 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
       ->required();
   const char* const scene = "Scene";
   app.add_option("--base", base,
-                 "fixed or floating; default: floating, or fixed when the root link is 'world'")
-      ->check(CLI::IsMember({"fixed", "floating"}))
+                 "fixed or floating; auto guesses by what the robot would stand on; default:\n"
+                 "floating, or fixed when the root link is 'world'")
+      ->check(CLI::IsMember({"fixed", "floating", "auto"}))
       ->group(scene);
   app.add_option(
          "--base-height", options.baseHeight,
@@ -224,6 +226,12 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
   app.add_flag("--explain", options.explain, "tell what was loaded and simulate nothing")
       ->group(output);
   app.add_option("--log", options.log, "write every step to a .csv file")->group(output);
+  app.add_option("--log-every", options.logEvery, "write every N-th step to the log, default 1")
+      ->check(CLI::Range(1L, 1000000000L))
+      ->group(output);
+  app.add_option("--contacts", options.contacts,
+                 "write every contact of every step to a .csv file, a row each")
+      ->group(output);
   app.add_flag("--report-error", options.reportError,
                "estimate the error that the settings leave, by two half steps beside each step")
       ->group(output);
@@ -232,6 +240,9 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
       ->group(output);
   app.add_option("--plot", options.plot,
                  "draw the run's curves with gnuplot: an .svg file, or a folder for one file each")
+      ->group(output);
+  app.add_flag("--details", options.details,
+               "tell at the end also what the solver did and what it took")
       ->group(output);
   app.add_flag("--quiet", options.quiet, "print errors only")->group(output);
 
@@ -247,6 +258,7 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
   options.base = base == "fixed"      ? BaseKind::fixed
                  : base == "floating" ? BaseKind::floating
                                       : BaseKind::automatic;
+  options.guessBase = base == "auto";
   options.groundIsDefault = ground.empty();
   if (!ground.empty() && ground != "none") options.ground = parseNumber(ground, "--ground");
   for (const auto& [option, value] : {std::pair{"--duration", options.duration},

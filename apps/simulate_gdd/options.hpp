@@ -60,7 +60,10 @@ struct SimulateOptions {
   Sleep sleep;                     ///< and what rests costs nothing
   bool explain = false;
   bool quiet = false;
-  std::filesystem::path log, summary, view, plot;
+  bool details = false;    ///< what the solver did, in the table at the end
+  bool guessBase = false;  ///< --base auto
+  long logEvery = 1;       ///< steps from one row of the log to the next
+  std::filesystem::path log, contacts, summary, view, plot;
   std::string commandLine;  ///< as it was typed
   std::vector<std::filesystem::path> packagePaths;
 

@@ -8,14 +8,17 @@
 #include <optional>
 #include <utility>
 
+#include "apps/shared/run_origin.hpp"
 #include "apps/shared/wall_clock.hpp"
 #include "apps/simulate_gdd/error_estimate.hpp"
 #include "apps/simulate_gdd/island_run.hpp"
 #include "apps/simulate_gdd/outside_input.hpp"
 #include "apps/simulate_gdd/progress.hpp"
 #include "apps/simulate_gdd/replay.hpp"
+#include "apps/simulate_gdd/run_tally.hpp"
 #include "apps/simulate_gdd/verdict.hpp"
 #include "engine/engine.hpp"
+#include "io/contact_log.hpp"
 #include "io/explain.hpp"
 #include "io/log.hpp"
 #include "io/summary.hpp"
@@ -64,11 +67,10 @@ class Runner {
         controller_(model_),
         outside_(options, scene),
         kinematics_(model_),
+        contactLinks_(model_),
         summary_(model_) {
     setUp(options, scene, controller_);
-    if (!options.log.empty()) log_.emplace(options.log, model_);
-    summary_.version = SOFTGAUSS_VERSION;
-    summary_.massKg = scene.contents.mass;
+    tellOrigin(scene);
     const std::vector<io::EffectNote> notes = io::effectNotes(model_, scene.wrenches);
     summary_.effects = io::effectsOn(notes);
     for (const io::EffectNote& note : notes)
@@ -78,17 +80,23 @@ class Runner {
     if (options.reportError)
       errorEstimate_.emplace(model_, state_, outside_, !controller_.goals.empty());
     computeStages(model_, input_, state_, data_, &contacts_);
-    for (const auto& goal : controller_.goals)
-      if (const std::optional<double> error = goal->error({model_, state_, data_}))
-        summary_.goals.push_back({goal->name(), *error, *error});
-    replay_.emplace(options, scene, controller_.goals, gdd::GoalContext{model_, state_, data_});
+    const gdd::GoalContext start{model_, state_, data_};
+    const bool passive =
+        controller_.goals.empty() && options.torques.empty() && scene.wrenches.empty();
+    verdict_.emplace(controller_, start, passive, scene.baseOrigin);
+    replay_.emplace(options, scene, controller_.goals, start);
+    // Last, for nothing else can be refused any more.
+    if (!options.log.empty())
+      log_.emplace(options.log, model_, verdict_->goals().columns(), options.logEvery);
+    if (!options.contacts.empty()) contactLog_.emplace(options.contacts, model_);
   }
 
   ExitCode run() {
     const auto steps =
         static_cast<long>(std::ceil(options_.duration / model_.options.timestep - 1e-9));
     RunProgress progress(options_.duration, options_.quiet);
-    Verdict verdict(model_, controller_.box);
+    progress_ = &progress;
+    tellBases();
     ExitCode code = kDone;
     // From here on an interrupt ends the run in order; a second one ends it at once.
     struct sigaction action = {};
@@ -105,7 +113,6 @@ class Runner {
           code = kCannotContinue;
         } else {
           record();
-          verdict.observe(record_.u, controller_.commands, state_);
           progress.show(state_.time, secondsSince(start));
         }
         return code == kDone;
@@ -115,6 +122,7 @@ class Runner {
         outside_.inParts(model_, state_, takeStep);
       else
         takeStep();
+      if (code == kDone) state_.time = static_cast<double>(i + 1) * model_.options.timestep;
     }
     progress.clear();
     summary_.wallSeconds = secondsSince(start);
@@ -127,7 +135,7 @@ class Runner {
       reason = fmt::format("interrupted at t = {:.6g} s", state_.time);
       summary_.outcome = "interrupted";
     }
-    finish(verdict, reason);
+    finish(reason);
     if (!outputError_.empty()) throw OutputError(outputError_);
     return code;
   }
@@ -179,84 +187,48 @@ class Runner {
     record_.forwardUs = record_.stepUs - record_.gddUs;
     record_.physicsViolation =
         islands_ ? islands_->physicsViolation() : physicsViolation(model_, data_, scratch_);
-    const Energy energy = computeEnergy(model_, kinematics_, record_.q, record_.v);
-    record_.energy = energy.total();
-    record_.kineticEnergy = energy.kinetic;
     record_.maxPenetration = stats.maxPenetration;
-    writeLog(record_);
+    measure(record_, kinematics_);
+    if (islands_)
+      touching_ = islands_->contacts();
+    else
+      contactForces(data_, touching_);
+    record_.centerOfPressure = centerOfPressure(model_, touching_);
+    if (log_) contactLinks_.forces(touching_, record_.linkForces);
     summary_.addStep(record_);
-    if (gdd) count(controller_.report);
-    count(stats);
-    for (Eigen::Index k = 0; k < controller_.commands.size(); ++k) {
-      const gdd::Actuator& actuator =
-          controller_.box.transmission->actuators()[static_cast<std::size_t>(k)];
-      const double bound = std::max(-actuator.lower, actuator.upper);
-      if (std::isfinite(bound) && bound > 0.0)
-        summary_.addControlRatio(std::abs(controller_.commands[k]) / bound);
-    }
+    if (gdd) tally(controller_.report, summary_.gdd);
+    tally(stats, data_.plan.drifts, summary_);
+    tallyCommands(controller_, summary_);
     // What is seen is the step's start, where the record is of.
     std::swap(data_.kinematics, kinematics_);
-    if (islands_)
-      replay_->addStep(record_, data_, islands_->contacts());
-    else
-      replay_->addStep(record_, data_);
+    for (const std::string& message :
+         verdict_->observe({record_, data_, touching_, state_, model_.options.timestep}))
+      tellNow(message);
+    record_.goalErrors = verdict_->goals().errors();
+    replay_->addStep(record_, data_, touching_);
     std::swap(data_.kinematics, kinematics_);
+    writeLog(record_);
   }
 
-  void count(const StepStats& stats) {
-    io::Fallbacks& f = summary_.fallbacks;
-    f.shortSolves += stats.shortSolves;
-    f.roundedSolves += stats.roundedSolves;
-    f.refusedGuesses += stats.refusedGuesses;
-    f.keptSlips += stats.keptSlips;
-    f.abandonedTrees += stats.abandonedTrees;
-    f.heldSwings += stats.swings;
-    f.jumps += stats.jumps;
-    f.unseen += stats.unseen;
-    io::IntegrationCounts& i = summary_.integration;
-    i.evaluations += stats.evaluations;
-    i.substeps += stats.substeps;
-    i.parts += data_.plan.drifts ? stats.parts : 0;
-    i.repeats += stats.repeats;
-    i.rejections += stats.rejections;
-    i.glances += stats.glances;
-  }
-
-  void count(const gdd::GddReport& report) {
-    io::GddOutcomes& outcomes = summary_.gdd;
-    outcomes.restarts += report.restarts;
-    switch (report.status) {
-      case gdd::GddStatus::converged:
-        ++outcomes.certified;
-        break;
-      case gdd::GddStatus::kink:
-        ++outcomes.kinks;
-        break;
-      case gdd::GddStatus::iterationLimit:
-        ++outcomes.iterationLimit;
-        break;
-      case gdd::GddStatus::bend:
-        ++outcomes.bend;
-        break;
-      case gdd::GddStatus::undecided:
-        ++outcomes.undecided;
-        break;
-      case gdd::GddStatus::badBox:
-      case gdd::GddStatus::notFinite:
-        break;
-    }
+  void measure(io::StepRecord& record, const Kinematics& kinematics) const {
+    const Energy energy = computeEnergy(model_, kinematics, record.q, record.v);
+    record.energy = energy.total();
+    record.kineticEnergy = energy.kinetic;
+    io::measureWhole(model_, kinematics, record);
   }
 
   /// A log that cannot be written does not keep the rest of the run from being reported.
   void writeLog(const io::StepRecord& row) {
-    guardLog([&] { log_->write(row); });
+    if (log_) guardLog([&] { log_->write(row); });
+    if (contactLog_ && !row.isEnd) guardLog([&] { contactLog_->write(row.time, touching_); });
   }
-  void closeLog() {
-    guardLog([&] { log_->close(); });
+  void closeLogs() {
+    if (log_) guardLog([&] { log_->close(); });
+    if (contactLog_) guardLog([&] { contactLog_->close(); });
   }
   template <class F>
   void guardLog(F&& f) {
-    if (!log_ || !outputError_.empty()) return;
+    if (!outputError_.empty()) return;
     try {
       f();
     } catch (const std::exception& error) {
@@ -264,38 +236,62 @@ class Runner {
     }
   }
 
+  /// A line on stderr while the run goes on, not below a progress bar.
+  void tellNow(const std::string& message) {
+    if (options_.quiet) return;
+    progress_->clear();
+    fmt::print(stderr, "simulate_gdd: t = {:.4g} s: {}\n", record_.time, message);
+  }
+
+  /// How the robots meet the world, before the first step.
+  void tellBases() {
+    if (options_.quiet) return;
+    for (const std::string& line : summary_.bases) fmt::print("{}\n", line);
+    for (const std::string& warning : baseWarnings_)
+      fmt::print(stderr, "simulate_gdd: warning: {}\n", warning);
+    std::fflush(stdout);
+  }
+
+  /// What the run is made from.
+  void tellOrigin(const Scene& scene) {
+    summary_.version = SOFTGAUSS_VERSION;
+    summary_.massKg = scene.contents.mass;
+    std::vector<std::filesystem::path> files = {options_.model, options_.goals, options_.torques};
+    files.insert(files.end(), scene.contents.files.begin(), scene.contents.files.end());
+    summary_.origin = runOrigin(options_.commandLine, std::move(files));
+    summary_.bases = scene.bases.lines;
+    baseWarnings_ = scene.bases.warnings;
+  }
+
   /// The final state, in the log's last row and the summary.
-  void finish(const Verdict& verdict, const std::string& reason) {
+  void finish(const std::string& reason) {
+    const VectorX acceleration = data_.forward.a;
     computeStages(model_, input_, state_, data_, &contacts_);
+    data_.forward.a = acceleration;
     io::StepRecord last;
+    last.isEnd = true;
     last.time = state_.time;
     last.q = state_.q;
     last.v = state_.v;
     last.a = last.u = VectorX::Zero(model_.nv);
     last.contacts = data_.stats.contacts;
     last.constraints = data_.stats.rows;
-    const Energy energy = computeEnergy(model_, data_.kinematics, state_.q, state_.v);
-    last.energy = energy.total();
-    last.kineticEnergy = energy.kinetic;
     last.maxPenetration = data_.stats.maxPenetration;
+    measure(last, data_.kinematics);
+    verdict_->finish({last, data_, touching_, state_, model_.options.timestep});
+    last.goalErrors = verdict_->goals().errors();
     writeLog(last);
-    closeLog();
-    std::size_t place = 0;
-    for (const auto& goal : controller_.goals)
-      if (const std::optional<double> error = goal->error({model_, state_, data_}))
-        summary_.goals[place++].finalError = *error;
-    for (std::string& unreached : verdict.unreached(summary_.goals))
-      summary_.warnings.push_back(std::move(unreached));
+    closeLogs();
+    summary_.finish(last);
     tellSolver();
-    tellMinima();
     tellUnseen();
     if (islands_) summary_.islands = islands_->outcomes();
     if (errorEstimate_) summary_.error = errorEstimate_->outcome();
-    summary_.finish(last);
+    verdict_->tell(reason, baseWarnings_, summary_);
     if (!options_.summary.empty()) summary_.write(options_.summary);
     const std::string error = replay_->finish(last, data_, summary_, reason);
     if (outputError_.empty()) outputError_ = error;
-    if (!options_.quiet) fmt::print("{}{}", replay_->written(), summary_.table());
+    if (!options_.quiet) fmt::print("{}{}", replay_->written(), summary_.table(options_.details));
   }
 
   /// Which solver followed the goals. Steps in which cones touch are solver 1's.
@@ -310,16 +306,6 @@ class Runner {
           fmt::format("active-set does not know elliptic cones: {} steps with such contacts were "
                       "solved by augmented-lagrangian",
                       stepsWithCones_));
-  }
-
-  /// Controls without a certificate are the best that was found, and may be poor.
-  void tellMinima() {
-    const io::GddOutcomes& g = summary_.gdd;
-    if (g.uncertified() == 0) return;
-    summary_.warnings.push_back(fmt::format(
-        "{} of {} steps took the best control that was found, without a certificate that it is a "
-        "minimum: {} at the iteration limit, {} at a bend of an elliptic cone, {} undecided",
-        g.uncertified(), g.all(), g.iterationLimit, g.bend, g.undecided));
   }
 
   /// A step that is not divided sees nothing of what begins and ends within it.
@@ -345,6 +331,12 @@ class Runner {
   State before_;  ///< the step, for that
   Input held_;    ///< over the step, for that
   std::optional<io::LogWriter> log_;
+  std::optional<io::ContactLog> contactLog_;
+  io::ContactLinks contactLinks_;
+  std::vector<Snapshot::ContactForce> touching_;  ///< contacts of the last step
+  std::vector<std::string> baseWarnings_;
+  std::optional<Verdict> verdict_;
+  RunProgress* progress_ = nullptr;
   std::optional<Replay> replay_;
   std::string outputError_;
   io::Summary summary_;

@@ -14,6 +14,7 @@
 #include "io/goals.hpp"
 #include "io/scene.hpp"
 #include "io/step_warnings.hpp"
+#include "io/warning_list.hpp"
 
 namespace softgauss::app {
 namespace {
@@ -62,12 +63,27 @@ io::UrdfOptions urdfOptions(const SimulateOptions& options) {
   return urdf;
 }
 
+/// Whether --base auto bolts the robot down: it would stand on its root alone.
+bool standsOnItsRoot(const SimulateOptions& options, const Model& model) {
+  State state(model);
+  setJointPositions(options, model, {}, state);
+  Kinematics k(model);
+  computeKinematics(model, state, k);
+  return !model.trees.empty() && model.floats(0) && looksBolted(model, k, 0);
+}
+
 /// A robot alone, as the command line says.
 void loadRobot(const SimulateOptions& options, Scene& scene) {
   ModelBuilder builder = io::readUrdf(options.model, urdfOptions(options), &scene.contents);
   setOptions(options, builder);
   setErrorControl(options, {}, options.hasGoals(), builder);
+  if (options.base != BaseKind::automatic) scene.baseOrigin = BaseOrigin::option;
+  if (options.guessBase) scene.baseOrigin = BaseOrigin::guess;
   scene.model = builder.build();
+  if (options.guessBase && standsOnItsRoot(options, scene.model)) {
+    builder.base = BaseKind::fixed;
+    scene.model = builder.build();
+  }
 
   // Whether there is ground by default is known only once the base is.
   std::optional<double> ground = options.ground;
@@ -99,6 +115,7 @@ void loadSceneFile(const SimulateOptions& options, Scene& scene) {
   scene.model = file.builder.build();
   for (std::string& warning : warnings) scene.model.warnings.push_back(std::move(warning));
   scene.contents = file.contents;
+  scene.baseOrigin = BaseOrigin::scene;
   scene.hasGoals = file.hasGoals;
   if (file.gddSolver) scene.gddSolver = *file.gddSolver;
   scene.fileSaysFcl = file.throughFcl;
@@ -123,6 +140,7 @@ void addStepWarnings(Scene& scene) {
   scene.contacts->detect(scene.model, k, touching);
   for (std::string& warning : io::stepWarnings(scene.model, touching))
     scene.model.warnings.push_back(std::move(warning));
+  scene.model.warnings = io::grouped(scene.model.warnings);
 }
 
 }  // namespace
@@ -153,6 +171,7 @@ std::unique_ptr<Scene> loadScene(const SimulateOptions& options) {
     scene->throughFcl = std::make_unique<collision::FclContacts>(scene->model, &meshes);
   if (std::optional<std::string> told = collision::baseWarning(scene->contacts->filter()))
     scene->model.warnings.push_back(std::move(*told));
+  scene->bases = baseNotes(scene->model, scene->initial, *scene->contacts, scene->baseOrigin);
   addStepWarnings(*scene);
   return scene;
 }
@@ -184,6 +203,7 @@ void setUp(const SimulateOptions& options, const Scene& scene,
   if (options.hasOwnGoals()) {
     auto posture = std::make_unique<gdd::Posture>(scene.initial.q);
     posture->weight = options.posture.value_or(kWeakPosture);
+    posture->onlyRegularises = !options.posture;
     goals.push_back(std::move(posture));
     goals.push_back(std::make_unique<gdd::VirtualDamping>());
   }

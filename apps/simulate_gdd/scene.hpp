@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "apps/simulate_gdd/base_notes.hpp"
 #include "apps/simulate_gdd/options.hpp"
 #include "collision/fcl_contacts.hpp"
 #include "collision/scene_contacts.hpp"
@@ -32,6 +33,8 @@ struct Scene {
   std::vector<io::TimedWrench> wrenches;
   io::WrenchSchedule schedule;  ///< of those
   std::vector<io::SceneActuator> actuators;
+  BaseOrigin baseOrigin = BaseOrigin::convention;
+  BaseNotes bases;
   bool hasGoals = false;  ///< the scene file holds goals
   bool fileSaysFcl = false;
   gdd::GddSolver gddSolver = gdd::GddSolver::activeSet;

@@ -3,85 +3,272 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+
+#include "apps/simulate_gdd/names.hpp"
+#include "apps/simulate_gdd/reach_limit.hpp"
+#include "gdd/goals/reach.hpp"
+#include "io/figure_text.hpp"
 
 namespace softgauss::app {
 namespace {
 
-constexpr double kReachedShare = 0.8;
-constexpr double kMemory = 0.5;    // [s] over which saturation is remembered
-constexpr double kMoving = 0.05;   // [m/s or rad/s] faster is still on its way
-constexpr double kAtLimit = 0.01;  // [rad or m] nearer is at the end of the range
-constexpr std::size_t kMostNames = 6;
+using io::figureText;
+using io::lengthText;
 
-/// "a, b, c and 3 more"
-std::string list(const std::vector<std::string>& names) {
-  std::string text;
-  for (std::size_t i = 0; i < names.size() && i < kMostNames; ++i)
-    text += (i > 0 ? ", " : "") + names[i];
-  if (names.size() > kMostNames) text += fmt::format(" and {} more", names.size() - kMostNames);
-  return text;
+constexpr double kMoving = 0.05;      // [m/s or rad/s] faster is still on its way
+constexpr double kToldForce = 0.1;    // [N] of a contact that keeps a link off
+constexpr double kToldHeight = 1e-3;  // [m]
+constexpr double kDegrees = 180.0 / M_PI;
+
+std::vector<char> boltedTrees(const gdd::GoalContext& start) {
+  std::vector<char> bolted;
+  for (int t = 0; t < static_cast<int>(start.model.trees.size()); ++t)
+    bolted.push_back(start.model.floats(t) && looksBolted(start.model, start.data.kinematics, t));
+  return bolted;
 }
 
 }  // namespace
 
-Verdict::Verdict(const Model& model, const gdd::ControlBox& box)
-    : model_(model), box_(box), saturated_(VectorX::Zero(model.nv)) {
-  if (box.transmission)
-    full_ = VectorX::Zero(static_cast<Eigen::Index>(box.transmission->actuators().size()));
+Verdict::Verdict(const gdd::GoalDirectedController& controller, const gdd::GoalContext& start,
+                 bool passive, BaseOrigin baseOrigin)
+    : model_(start.model),
+      controller_(controller),
+      baseOrigin_(baseOrigin),
+      bolted_(boltedTrees(start)),
+      goals_(controller.goals, start),
+      joints_(start.model, controller.box),
+      standing_(start.model, start.data.kinematics),
+      oddities_(start.model, passive) {}
+
+std::vector<std::string> Verdict::observe(const SeenStep& step) {
+  const io::StepRecord& r = step.record;
+  at_.q = r.q;
+  at_.v = r.v;
+  at_.time = r.time;
+  for (GoalRecord::Track* track : goals_.observe({model_, at_, step.data}, step.contacts))
+    if (!track->outcome.isMet()) track->outcome.reason = reasonOf(*track, step);
+  joints_.observe(r.u, controller_.commands, step.after, step.length);
+  standing_.observe(step.data.kinematics, step.contacts, r.time, step.length);
+  return oddities_.observe(at_, r.time, r.energy, r.kineticEnergy);
 }
 
-void Verdict::observe(const VectorX& tau, const VectorX& commands, const State& state) {
-  const double forget = std::exp(-model_.options.timestep / kMemory);
-  for (Eigen::Index k = 0; k < commands.size(); ++k) {
-    const gdd::Actuator& actuator = box_.transmission->actuators()[static_cast<std::size_t>(k)];
-    const bool full = commands[k] <= actuator.lower || commands[k] >= actuator.upper;
-    full_[k] = forget * full_[k] + (1.0 - forget) * (full ? 1.0 : 0.0);
+void Verdict::finish(const SeenStep& end) {
+  const io::StepRecord& r = end.record;
+  at_.q = r.q;
+  at_.v = r.v;
+  at_.time = r.time;
+  stood_ = standing_.outcomes(end.data.kinematics, r.time);
+  oddities_.observe(at_, r.time, r.energy, r.kineticEnergy);
+  goals_.observe({model_, at_, end.data}, end.contacts);
+  for (GoalRecord::Track& track : goals_.tracks()) {
+    io::GoalOutcome& o = track.outcome;
+    if (!o.began)
+      o.reason = track.goal->startTime > r.time
+                     ? fmt::format("it begins at {:.4g} s, after the end", track.goal->startTime)
+                     : "nothing touched that it is about";
+    else if (!o.isMet() && o.reason.empty())
+      o.reason = reasonOf(track, end);
   }
-  for (int i = 0; i < model_.nv; ++i) {
-    const Dof& dof = model_.dofs[i];
-    const bool full = dof.actuated && (tau[i] <= dof.effortLower || tau[i] >= dof.effortUpper);
-    saturated_[i] = forget * saturated_[i] + (1.0 - forget) * (full ? 1.0 : 0.0);
-  }
-  speed_ = state.v;
-  q_ = state.q;
 }
 
-std::string Verdict::heldBack() const {
-  std::vector<std::string> weak, ended;
-  bool anyActuated = false;
-  for (int i = 0; i < model_.nv; ++i) {
-    anyActuated |= model_.dofs[i].actuated;
-    if (saturated_[i] > 0.2) weak.push_back(model_.jointNames[model_.dofs[i].body]);
+bool Verdict::fell() const {
+  return std::any_of(stood_.begin(), stood_.end(), [](const StandingOutcome& o) { return o.fell; });
+}
+
+/// The dofs that could bring the robot nearer: those between base and link, the joint that is
+/// farthest off, or all.
+std::vector<char> Verdict::dofsOf(const GoalRecord::Track& track) const {
+  std::vector<char> counts(static_cast<std::size_t>(model_.nv), 0);
+  const gdd::GoalFigure& figure = track.last;
+  if (figure.frame >= 0) {
+    for (int b = model_.frames[figure.frame].body; b > 0; b = model_.bodies[b].parent)
+      if (model_.bodies[b].dofs == 1) counts[model_.bodies[b].v] = 1;
+  } else if (figure.dof >= 0) {
+    counts[figure.dof] = 1;
+  } else {
+    for (int i = 0; i < model_.nv; ++i)
+      counts[i] = model_.bodies[model_.dofs[i].body].joint != JointKind::floating;
   }
-  for (Eigen::Index k = 0; k < full_.size(); ++k)
-    if (full_[k] > 0.2)
-      weak.push_back(box_.transmission->actuators()[static_cast<std::size_t>(k)].name);
-  if (!anyActuated) return "no joint is actuated";
-  for (const JointRange& range : model_.ranges) {
-    const double q = q_[model_.bodies[range.body].q];
-    if (q < range.lower + kAtLimit || q > range.upper - kAtLimit)
-      ended.push_back(model_.jointNames[range.body]);
-  }
+  return counts;
+}
+
+std::string Verdict::reachReason(const GoalRecord::Track& track, const SeenStep& step) const {
+  const auto* reach = dynamic_cast<const gdd::Reach*>(track.goal);
+  if (!reach || *track.last.what) return {};
+  const int body = model_.frames[reach->frame].body;
+  if (body == 0) return fmt::format("{} is fixed to the world", reach->link);
+  const ReachLimit limit =
+      reachLimit(model_, step.record.q, reach->frame, reach->p_FP, reach->p_WTarget);
+  const int tree = model_.bodies[body].tree;
+  const char* where = model_.floats(tree) ? " from where its base is" : "";
+  if (limit.freely > track.outcome.met)
+    return fmt::format("out of reach of the chain by {}{}", lengthText(limit.freely), where);
+  if (limit.withinRanges > track.outcome.met)
+    return fmt::format("the ranges of its joints keep it {} away{}", lengthText(limit.withinRanges),
+                       where);
+  return {};
+}
+
+/// What the chain of the goal's link presses against, the hardest.
+std::string Verdict::contactReason(const GoalRecord::Track& track, const SeenStep& step) const {
+  if (track.last.frame < 0) return {};
+  std::vector<char> inChain(model_.bodies.size(), 0);
+  for (int b = model_.frames[track.last.frame].body; b > 0; b = model_.bodies[b].parent)
+    inChain[b] = model_.bodies[b].dofs == 1;
+  double most = kToldForce;
   std::string text;
-  const auto add = [&](const std::string& reason) { text += (text.empty() ? "" : "; ") + reason; };
-  if (!weak.empty()) add("at their torque limit: " + list(weak));
-  if (!ended.empty()) add("at the end of their range: " + list(ended));
-  if (speed_.cwiseAbs().maxCoeff() > kMoving)
-    add("the robot was still moving when the time was up");
-  if (text.empty()) text = "out of reach, or other goals and the cost of torques outweigh it";
+  for (const Snapshot::ContactForce& c : step.contacts) {
+    const Geometry &a = model_.geometries[c.geometryA], &b = model_.geometries[c.geometryB];
+    if (inChain[a.body] == inChain[b.body] || !(c.normalForce() > most)) continue;
+    most = c.normalForce();
+    const Geometry &own = inChain[a.body] ? a : b, &other = inChain[a.body] ? b : a;
+    text = fmt::format("{} presses against {} with {:.3g} N", own.link,
+                       other.link == "world" ? other.name : other.link, most);
+  }
   return text;
 }
 
-std::vector<std::string> Verdict::unreached(const std::vector<io::GoalOutcome>& goals) const {
-  std::vector<std::string> sentences;
-  if (q_.size() == 0) return sentences;
-  for (const io::GoalOutcome& goal : goals) {
-    if (goal.nearer() >= kReachedShare) continue;
-    sentences.push_back(fmt::format("goal '{}' not reached ({:.3g} m left of {:.3g} m): {}",
-                                    goal.name, goal.finalError, goal.initialError, heldBack()));
+std::string Verdict::reasonOf(const GoalRecord::Track& track, const SeenStep& step) const {
+  const std::vector<char> counts = dofsOf(track);
+  std::vector<std::string> parts;
+  for (const StandingOutcome& o : standing_.outcomes(step.data.kinematics, step.record.time))
+    if (o.fell) parts.push_back(fmt::format("the robot of {} fell", o.base));
+  if (const int dof = track.last.dof; dof >= 0)
+    parts.push_back("farthest is " + model_.jointNames[model_.dofs[dof].body]);
+  parts.push_back(reachReason(track, step));
+  if (joints_.hasSeen()) {
+    const auto actuated = [&](int i) { return counts[i] && model_.dofs[i].actuated; };
+    bool any = false;
+    for (int i = 0; i < model_.nv; ++i) any = any || actuated(i);
+    if (!any && controller_.box.transmission == nullptr)
+      parts.emplace_back(track.last.dof >= 0 ? "which is not actuated"
+                                             : "no joint of it is actuated");
+    if (const auto weak = joints_.saturatedNow(counts); !weak.empty())
+      parts.push_back("torque limits of " + listed(weak));
+    if (const auto ended = joints_.atRangeEnd(counts); !ended.empty())
+      parts.push_back("ranges of " + listed(ended));
+    parts.push_back(contactReason(track, step));
+    if (joints_.speed(counts) > kMoving)
+      parts.emplace_back(track.outcome.bestTime >= track.outcome.judgedAt
+                             ? "still on its way when the time was up"
+                             : "still moving when the time was up");
   }
-  return sentences;
+  const auto said = std::count_if(parts.begin(), parts.end(),
+                                  [](const std::string& part) { return !part.empty(); });
+  if (said == (track.last.dof >= 0 ? 1 : 0))
+    parts.emplace_back("other goals or the price of force outweigh it");
+  return joined(parts);
+}
+
+void Verdict::tellStanding(io::Summary& summary) const {
+  for (const StandingOutcome& o : stood_) {
+    const double degrees = kDegrees * o.tilt;
+    const std::string tilt = degrees < 0.1    ? ""
+                             : degrees < 9.95 ? fmt::format("tilted by {:.1f}°", degrees)
+                                              : fmt::format("tilted by {:.0f}°", degrees);
+    const std::string ground = o.onGround.empty() ? ""
+                                                  : fmt::format("on the ground since {:.3g} s: {}",
+                                                                *o.since, listed(o.onGround));
+    if (o.inAir) {
+      summary.verdict.emplace_back(
+          "in the air", fmt::format("base {} touches nothing at the end and {} at {:.3g} m/s",
+                                    o.base, o.speed > 0.0 ? "falls" : "rises", std::abs(o.speed)));
+    } else if (o.fell) {
+      const std::string down =
+          o.cameDown > kToldHeight ? "came down by " + lengthText(o.cameDown) : "";
+      summary.verdict.emplace_back(
+          "fell", fmt::format("base {}: {}", o.base, joined({down, tilt, ground})));
+    } else {
+      const std::string height =
+          std::abs(o.cameDown) < kToldHeight
+              ? "as high as at the start"
+              : fmt::format("{} {} than at the start", lengthText(std::abs(o.cameDown)),
+                            o.cameDown > 0.0 ? "lower" : "higher");
+      summary.verdict.emplace_back(
+          "stood", fmt::format("base {}: {}", o.base, joined({height, tilt, ground})));
+    }
+  }
+}
+
+void Verdict::tellGoals(io::Summary& summary) const {
+  const auto add = [&](const char* word, std::string text) {
+    summary.verdict.emplace_back(word, std::move(text));
+  };
+  std::vector<std::pair<const char*, std::string>> later;
+  for (const io::GoalOutcome& g : summary.goals) {
+    const auto amount = [&](double x) { return figureText(x, g.unit); };
+    const std::string best =
+        g.began && g.bestTime < g.judgedAt
+            ? fmt::format(", at best {} at {:.3g} s", amount(g.bestError), g.bestTime)
+            : "";
+    if (!g.began)
+      later.emplace_back("not reached", fmt::format("{}: {}", g.name, g.reason));
+    else if (g.isMet())
+      add("reached",
+          g.initialError <= g.met
+              ? fmt::format("{}: off by {} at {:.3g} s", g.name, amount(g.finalError), g.judgedAt)
+              : fmt::format("{}: {} left of {} at {:.3g} s, there since {:.3g} s", g.name,
+                            amount(g.finalError), amount(g.initialError), g.judgedAt,
+                            g.metSince.value_or(g.judgedAt)));
+    else if (g.yields)
+      later.emplace_back("off", fmt::format("{}: by {} at {:.3g} s: {}", g.name,
+                                            amount(g.finalError), g.judgedAt, g.reason));
+    else
+      later.emplace_back(
+          g.wasMet() ? "not kept" : "not reached",
+          fmt::format("{}: {} left of {} at {:.3g} s{}: {}", g.name, amount(g.finalError),
+                      amount(g.initialError), g.judgedAt, best, g.reason));
+  }
+  for (auto& [word, text] : later) add(word, std::move(text));
+}
+
+void Verdict::tellControls(io::Summary& summary) const {
+  const auto add = [&](const char* word, const std::vector<std::string>& parts) {
+    if (!parts.empty()) summary.verdict.emplace_back(word, listed(parts));
+  };
+  std::vector<std::string> full, slid, chattered;
+  for (const WatchedControl& c : joints_.saturated())
+    full.push_back(fmt::format("{} in {:.2g} % of the steps", c.name, 100.0 * c.amount));
+  for (const StandingOutcome& o : stood_)
+    for (const StandingOutcome::Slide& s : o.slides)
+      if (!o.fell) slid.push_back(fmt::format("{} {}", s.link, lengthText(s.way)));
+  for (const WatchedControl& c : joints_.chattering())
+    chattered.push_back(fmt::format("{} by {:.2g}{}{} from step to step", c.name, c.amount,
+                                    c.unit.empty() ? "" : " ", c.unit));
+  add("saturated", full);
+  add("slid", slid);
+  add("chattered", chattered);
+  const io::GddOutcomes& g = summary.gdd;
+  if (g.uncertified() > 0)
+    summary.verdict.emplace_back(
+        "not certified",
+        fmt::format("{} of {} steps took the best control that was found, without a certificate "
+                    "that it is a minimum: {} at the iteration limit, {} at a bend of an elliptic "
+                    "cone, {} undecided",
+                    g.uncertified(), g.all(), g.iterationLimit, g.bend, g.undecided));
+}
+
+void Verdict::tell(const std::string& ending, const std::vector<std::string>& baseWarnings,
+                   io::Summary& summary) {
+  for (const GoalRecord::Track& track : goals_.tracks()) summary.goals.push_back(track.outcome);
+  if (!ending.empty()) summary.verdict.emplace_back(summary.outcome, ending);
+  tellStanding(summary);
+  if (summary.verdict.empty())
+    summary.verdict.emplace_back(summary.outcome,
+                                 fmt::format("{:.4g} s", summary.simulatedSeconds()));
+  if (fell() && ending.empty()) summary.outcome = "fell";
+  for (const std::string& warning : baseWarnings) summary.verdict.emplace_back("base", warning);
+  if (baseWarnings.empty())
+    for (int t = 0; t < static_cast<int>(model_.trees.size()); ++t)
+      for (const StandingOutcome& o : stood_)
+        if (o.fell && bolted_[t] && o.base == model_.bodyNames[model_.trees[t].rootBody])
+          summary.verdict.emplace_back("base", boltAdvice(o.base, baseOrigin_));
+  tellGoals(summary);
+  tellControls(summary);
+  for (std::string& sentence : oddities_.sentences())
+    summary.verdict.emplace_back("implausible", std::move(sentence));
 }
 
 }  // namespace softgauss::app

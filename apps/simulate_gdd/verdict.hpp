@@ -1,36 +1,69 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// Why a goal was not reached: what held the robot back towards the end of the run.
+/// What a run came to, for a person: did the robot stand or fall, which goals were reached, which
+/// were not and why, what was saturated, slid, chattered or was not certified.
 
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "engine/model/state.hpp"
-#include "gdd/problem.hpp"
-#include "io/summary.hpp"
+#include "apps/simulate_gdd/base_notes.hpp"
+#include "apps/simulate_gdd/goal_record.hpp"
+#include "apps/simulate_gdd/joint_watch.hpp"
+#include "apps/simulate_gdd/oddities.hpp"
+#include "apps/simulate_gdd/standing.hpp"
+#include "gdd/goal_directed_step.hpp"
 
 namespace softgauss::app {
 
+/// A step that was taken, or the state at the end.
+struct SeenStep {
+  const io::StepRecord& record;  ///< of its start, control and energies included
+  const Data& data;              ///< kinematics of the start, accelerations of the step
+  const std::vector<Snapshot::ContactForce>& contacts;  ///< with the forces of the step
+  const State& after;
+  double length;  ///< [s]
+};
+
 class Verdict {
  public:
-  Verdict(const Model& model, const gdd::ControlBox& box);
+  /// `start`: the initial state, whose stages are computed. `passive`: nothing drives the scene.
+  Verdict(const gdd::GoalDirectedController& controller, const gdd::GoalContext& start,
+          bool passive, BaseOrigin baseOrigin);
 
-  /// Forces on joints and commands of the box's actuators as applied, and the state after the step.
-  void observe(const VectorX& tau, const VectorX& commands, const State& state);
+  /// Returns what is to be told at once.
+  std::vector<std::string> observe(const SeenStep& step);
+  /// The state at the end, with the contacts of the last step.
+  void finish(const SeenStep& end);
 
-  /// A sentence for each goal that closed less than 80 % of its initial distance.
-  std::vector<std::string> unreached(const std::vector<io::GoalOutcome>& goals) const;
+  /// Errors of the goals at the last step seen, and their names with units.
+  const GoalRecord& goals() const { return goals_; }
+  /// Whether some robot lies where it stood.
+  bool fell() const;
+  /// After finish(): goals and verdict. `ending` says why a run ended early, or is empty.
+  void tell(const std::string& ending, const std::vector<std::string>& baseWarnings,
+            io::Summary& summary);
 
  private:
-  std::string heldBack() const;
+  std::string reasonOf(const GoalRecord::Track& track, const SeenStep& step) const;
+  std::vector<char> dofsOf(const GoalRecord::Track& track) const;
+  std::string reachReason(const GoalRecord::Track& track, const SeenStep& step) const;
+  std::string contactReason(const GoalRecord::Track& track, const SeenStep& step) const;
+  void tellStanding(io::Summary& summary) const;
+  void tellGoals(io::Summary& summary) const;
+  void tellControls(io::Summary& summary) const;
 
   const Model& model_;
-  const gdd::ControlBox& box_;
-  VectorX saturated_;  ///< (nv) share of recent steps at the effort limit, exponentially weighted
-  VectorX full_;       ///< the same of actuators and the bounds of their commands
-  VectorX speed_;      ///< (nv) last velocity
-  VectorX q_;          ///< (nq) last configuration
+  const gdd::GoalDirectedController& controller_;
+  BaseOrigin baseOrigin_;
+  std::vector<char> bolted_;  ///< (trees) looks as if it were to be bolted down
+  GoalRecord goals_;
+  JointWatch joints_;
+  Standing standing_;
+  Oddities oddities_;
+  State at_;                            ///< q, v and time of the step seen
+  std::vector<StandingOutcome> stood_;  ///< at the end
 };
 
 }  // namespace softgauss::app

@@ -115,13 +115,12 @@ struct Leftover {
 
   explicit Leftover(std::vector<std::string> arguments) {
     const io::TempFolder folder;
-    const std::string file = folder.path() / "log.csv";
-    arguments.insert(arguments.end(), {"--log", file});
+    const std::string file = folder.path() / "log.csv", summary = folder.path() / "summary.json";
+    arguments.insert(arguments.end(), {"--log", file, "--summary", summary});
     const Outcome outcome = simulate(arguments);
     EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
-    const std::string arrow = " -> ";
-    for (std::size_t at = 0; (at = outcome.out.find(arrow, at)) != std::string::npos;)
-      ways.push_back(std::stod(outcome.out.substr(at += arrow.size())));
+    for (const auto& goal : nlohmann::json::parse(readFile(summary))["goals"])
+      if (goal["unit"] == "m") ways.push_back(1e3 * double{goal["final_error_m"]});
     const Csv log(readFile(file));
     for (const std::string& column : log.columns)
       if (column.starts_with("v:"))

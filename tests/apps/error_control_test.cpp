@@ -108,7 +108,7 @@ TEST(ErrorControl, IsCounted) {
                          Law{"implicit", true, 0, 3}}) {
     const io::TempFolder folder;
     const std::string summary = folder.path() / "summary.json";
-    std::vector<std::string> arguments{"--integrator", law.integrator};
+    std::vector<std::string> arguments{"--integrator", law.integrator, "--details"};
     if (law.doubled) arguments.emplace_back("--step-doubling");
     const Outcome outcome = run(ball(folder), arguments, summary);
     ASSERT_EQ(outcome.exitCode, 0) << outcome.err;

@@ -61,10 +61,18 @@ TEST(Log, HeaderIsThatOfTheInterface) {
     for (int i = 2; i < model.bodyCount(); ++i) expected.push_back(kind + model.jointNames[i]);
   }
   for (int i = 2; i < model.bodyCount(); ++i) expected.push_back("u:" + model.jointNames[i]);
-  for (const char* name : {"contacts", "constraints", "iterations", "dual_updates",
-                           "physics_violation", "gdd_violation", "stationarity", "forward_us",
-                           "gdd_us", "step_us", "energy_J", "max_penetration_m"})
+  for (const char* name :
+       {"contacts", "constraints", "iterations", "dual_updates", "physics_violation",
+        "gdd_violation", "stationarity", "forward_us", "gdd_us", "step_us", "energy_J",
+        "max_penetration_m", "error:reach right_hand [m]"})
     expected.push_back(name);
+  const auto addPlace = [&](const std::string& name) {
+    for (const char* c : {".x", ".y", ".z"}) expected.push_back(name + c);
+  };
+  for (const char* name : {"com", "cop", "momentum", "angular_momentum"}) addPlace(name);
+  std::set<std::string> links;
+  for (const Geometry& geometry : model.geometries)
+    if (links.insert(geometry.link).second) addPlace("f:" + geometry.link);
   EXPECT_EQ(run.csv().columns, expected);
 }
 
@@ -154,6 +162,10 @@ TEST(SummaryFile, HasTheKeysOfTheInterfaceAndNoOthers) {
   const Json j = run.json();
   using Keys = std::set<std::string>;
   EXPECT_EQ(keysOf(j), (Keys{"version",
+                             "origin",
+                             "verdict",
+                             "bases",
+                             "control_ratios",
                              "model",
                              "options",
                              "outcome",
@@ -190,7 +202,9 @@ TEST(SummaryFile, HasTheKeysOfTheInterfaceAndNoOthers) {
     EXPECT_EQ(keysOf(j[series]), (Keys{"p50", "p95", "max"})) << series;
   EXPECT_EQ(keysOf(j["energy_J"]), (Keys{"initial", "final"}));
   ASSERT_EQ(j["goals"].size(), 1u) << "damping is no place to be";
-  EXPECT_EQ(keysOf(j["goals"][0]), (Keys{"name", "initial_error_m", "final_error_m"}));
+  EXPECT_EQ(keysOf(j["goals"][0]),
+            (Keys{"name", "unit", "initial_error_m", "final_error_m", "best_error_m", "best_time_s",
+                  "judged_at_s", "reached_within", "reached", "reason"}));
 }
 
 TEST(SummaryFile, TellsTheRun) {

@@ -92,6 +92,7 @@ Csv::Csv(const std::string& text) {
     std::vector<std::string> fields;
     std::istringstream parts(line);
     for (std::string field; std::getline(parts, field, ',');) fields.push_back(field);
+    if (line.ends_with(',')) fields.emplace_back();
     if (columns.empty())
       columns = fields;
     else

@@ -36,6 +36,9 @@ TEST(Run, HelpAndVersionAreDone) {
                              "--effects",
                              "--explain",
                              "--log",
+                             "--log-every",
+                             "--contacts",
+                             "--details",
                              "--summary",
                              "--meshes",
                              "--collision",
@@ -67,7 +70,7 @@ TEST(Run, OptionsOfTheSceneAreObeyed) {
   ASSERT_EQ(csv.rows.size(), 11u);
   std::string base;
   for (const std::string& column : csv.columns)
-    if (column.size() > 4 && column.compare(column.size() - 2, 2, ".z") == 0)
+    if (column.starts_with("q:") && column.compare(column.size() - 2, 2, ".z") == 0)
       base = column.substr(2, column.size() - 4);
   EXPECT_EQ(csv.number(0, "q:" + base + ".z"), 5.0);
   EXPECT_EQ(csv.number(0, "q:right_elbow"), 0.25);
@@ -159,7 +162,9 @@ TEST(RunLong, HumanoidReachesAsTheReadmeSays) {
   ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
   const auto json = nlohmann::json::parse(readFile(summary));
   for (const auto& goal : json["goals"])
-    EXPECT_LT(goal["final_error_m"].get<double>(), 0.2 * goal["initial_error_m"].get<double>());
+    if (goal["name"].get<std::string>().starts_with("reach")) {
+      EXPECT_LT(goal["final_error_m"].get<double>(), 0.2 * goal["initial_error_m"].get<double>());
+    }
   EXPECT_LE(json["physics_violation"]["p95"].get<double>(), 1e-8);
   EXPECT_LE(json["max_control_ratio"].get<double>(), 1.0);
 }

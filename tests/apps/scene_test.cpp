@@ -280,8 +280,8 @@ TEST(SceneRun, IslandsAreSolvedApartAndSleep) {
 
 TEST(SceneRun, EffectsAreAListOrAllButSome) {
   const auto effects = [](const std::string& text) {
-    const Outcome outcome = simulate(
-        {dataFile("robots/arm.urdf"), "--passive", "--duration", "0.01", "--effects", text});
+    const Outcome outcome = simulate({dataFile("robots/arm.urdf"), "--passive", "--details",
+                                      "--duration", "0.01", "--effects", text});
     const std::size_t at = outcome.out.find("effects:");
     return outcome.exitCode == 0 ? outcome.out.substr(at, outcome.out.find('\n', at) - at)
                                  : outcome.err;

@@ -7,6 +7,7 @@
 #include <regex>
 
 #include "io/explain.hpp"
+#include "io/figure_text.hpp"
 #include "sample_goals.hpp"
 
 namespace softgauss::io {
@@ -36,7 +37,7 @@ Summary sampleSummary(const Model& m) {
   summary.version = "1.2.3";
   summary.wallSeconds = 0.05;
   summary.effects = {"gravity"};
-  summary.goals = {{"reach arm", 0.5, 0.05}};
+  summary.goals = {{.name = "reach arm", .initialError = 0.5, .finalError = 0.05}};
   return summary;
 }
 
@@ -62,9 +63,12 @@ TEST(Summary, HasTheKeysOfTheInterfaceInOrder) {
   const ordered_json json = ordered_json::parse(sampleSummary(sampleModel()).json());
   using Keys = std::vector<std::string>;
   EXPECT_EQ(keysOf(json), (Keys{"version",
+                                "origin",
                                 "model",
                                 "options",
                                 "outcome",
+                                "verdict",
+                                "bases",
                                 "steps",
                                 "simulated_s",
                                 "wall_s",
@@ -84,6 +88,7 @@ TEST(Summary, HasTheKeysOfTheInterfaceInOrder) {
                                 "energy_J",
                                 "max_penetration_m",
                                 "max_control_ratio",
+                                "control_ratios",
                                 "warnings"}));
   EXPECT_EQ(keysOf(json["model"]), (Keys{"name", "links", "dof", "actuated", "mass_kg"}));
   EXPECT_EQ(keysOf(json["options"]), (Keys{"timestep_s", "integrator", "step_doubling", "tolerance",
@@ -95,7 +100,11 @@ TEST(Summary, HasTheKeysOfTheInterfaceInOrder) {
   for (const char* key : {"constraints", "iterations", "dual_updates", "physics_violation",
                           "gdd_violation", "stationarity"})
     EXPECT_EQ(keysOf(json[key]), (Keys{"p50", "p95", "max"})) << key;
-  EXPECT_EQ(keysOf(json["goals"][0]), (Keys{"name", "initial_error_m", "final_error_m"}));
+  EXPECT_EQ(keysOf(json["goals"][0]),
+            (Keys{"name", "unit", "initial_error_m", "final_error_m", "best_error_m", "best_time_s",
+                  "judged_at_s", "reached_within", "reached", "reason"}));
+  EXPECT_EQ(keysOf(json["origin"]),
+            (Keys{"command_line", "commit", "compiler", "processor", "files"}));
   EXPECT_EQ(keysOf(json["energy_J"]), (Keys{"initial", "final"}));
 }
 
@@ -144,24 +153,55 @@ TEST(Summary, IsWrittenOrRefused) {
   EXPECT_THROW(summary.write(folder.path() / "none" / "s.json"), ModelError);
 }
 
-// A goal that was reached at the start is not lost by a share of next to nothing.
-TEST(GoalOutcome, AGoalThatWasThereHasACentimetreToLose) {
-  EXPECT_EQ((GoalOutcome{"", 0.5, 0.05}.nearer()), 0.9);
-  EXPECT_EQ((GoalOutcome{"", 0.1, 0.2}.nearer()), -1.0);
-  EXPECT_EQ((GoalOutcome{"", 5e-13, 0.001}.nearer()), 0.9);
-  EXPECT_EQ((GoalOutcome{"", 0.0, 0.0}.nearer()), 1.0);
-  EXPECT_EQ((GoalOutcome{"", 0.0, 0.03}.nearer()), -2.0);
+// Places have the unit in the keys, as other programs read them; other goals do not.
+TEST(Summary, GoalsHaveTheirOwnUnits) {
+  Summary summary(sampleModel());
+  summary.goals.push_back(
+      {.name = "contact_force hand", .unit = "N", .finalError = 3.0, .met = 2.0});
+  const ordered_json goal = ordered_json::parse(summary.json())["goals"][0];
+  EXPECT_EQ(goal["unit"], "N");
+  EXPECT_EQ(goal["final_error"], 3.0);
+  EXPECT_EQ(goal["reached"], false);
+  EXPECT_FALSE(goal.contains("final_error_m"));
 }
 
-TEST(SummaryTable, EndsInAVerdict) {
+// Which joint is behind the largest ratio, and all others.
+TEST(Summary, RatiosNameTheirJoints) {
   Summary summary = sampleSummary(sampleModel());
-  EXPECT_TRUE(summary.table().ends_with("completed: reach arm: 90 % of the way, 50 mm left\n"))
-      << summary.table();
-  summary.goals.push_back({"reach base", 0.1, 0.2});
-  EXPECT_TRUE(summary.table().ends_with(
-      "completed: worst goal, reach base: moved away, 200 mm from 100 mm\n"));
-  summary.goals.clear();
+  summary.addControlRatio("winch", 0.3);
+  summary.addControlRatio("winch", 0.9);
+  summary.addControlRatio("winch", 0.1);
+  const ordered_json json = ordered_json::parse(summary.json());
+  EXPECT_EQ(json["max_control_ratio"], 0.9);
+  EXPECT_EQ(json["control_ratios"].dump(), R"({"winch":0.9,"shoulder":0.8})");
+}
+
+TEST(SummaryTable, EndsInTheVerdict) {
+  Summary summary = sampleSummary(sampleModel());
   EXPECT_TRUE(summary.table().ends_with("\ncompleted\n"));
+  summary.verdict = {{"fell", "base b"}, {"not reached", "reach arm: 50 mm left"}};
+  EXPECT_TRUE(
+      summary.table().ends_with("\nfell:         base b\nnot reached:  reach arm: 50 mm left\n"))
+      << summary.table();
+  EXPECT_EQ(summary.facts()[0].second, "fell: base b");
+}
+
+// What the solver did is for who asks.
+TEST(SummaryTable, TellsTheSolverInDetailsAlone) {
+  const Summary summary = sampleSummary(sampleModel());
+  EXPECT_EQ(summary.table().find("constraint rows"), std::string::npos);
+  EXPECT_NE(summary.table(true).find("constraint rows"), std::string::npos);
+  EXPECT_NE(summary.table().find("80 % of its box, shoulder"), std::string::npos);
+}
+
+TEST(FigureText, LengthsFromAMetreOnAreInMetres) {
+  EXPECT_EQ(lengthText(0.0004), "0.4 mm");
+  EXPECT_EQ(lengthText(0.4125), "412 mm");
+  EXPECT_EQ(lengthText(0.9996), "1 m");
+  EXPECT_EQ(lengthText(19.62), "19.6 m");
+  EXPECT_EQ(lengthText(-2.0), "-2 m");
+  EXPECT_EQ(figureText(0.02, "rad"), "0.02 rad");
+  EXPECT_EQ(figureText(0.02, "m"), "20 mm");
 }
 
 bool contains(const std::string& text, const std::string& part) {
@@ -185,6 +225,19 @@ TEST(Explain, TellsWhatWasLoadedAndWhatIsOff) {
         "1 pair never tested: overlap at the start", "base - arm by 3 mm", "0 pairs may touch",
         "joint_limit    1 joint range, 'shoulder'", "ignored: 1 <gazebo>"})
     EXPECT_TRUE(contains(text, part)) << part << "\n" << text;
+}
+
+// Names to write behind --reach and --q0; and costs that a trial cannot tell from none.
+TEST(Explain, ListsWhatToAimAtAndLeavesOutNoise) {
+  ExplainContext context;
+  context.costs["gravity"] = {.us = -0.03};
+  context.costs["coriolis"] = {.us = 1.234};
+  const std::string text = explain(sampleModel(), context);
+  for (const char* part :
+       {"links, for --reach, --hold and goals\n    base, arm\n",
+        "joints, for --q0, --torques and goals\n    shoulder\n", "< 0.1 µs", "1.23 µs"})
+    EXPECT_TRUE(contains(text, part)) << part << "\n" << text;
+  EXPECT_FALSE(contains(text, "-0.03"));
 }
 
 TEST(Explain, TellsHowManyRowsThereMayBe) {

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// How robots meet the world, and where it can hardly be meant so.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/dynamics/kinematics.hpp"
+#include "engine/step/contact_source.hpp"
+
+namespace softgauss::app {
+
+/// Where the base of a URDF came from.
+enum class BaseOrigin {
+  convention,  ///< floating, or fixed where the root is called world
+  option,      ///< --base fixed or floating
+  guess,       ///< --base auto
+  scene        ///< a scene file says it of each robot
+};
+
+/// Whether a floating tree looks as if it were to be bolted down: nothing but shapes of its root is
+/// within 5 mm of its lowest point, as of an arm or a hand and not of feet or wheels; or it has no
+/// shapes to stand on.
+bool looksBolted(const Model& model, const Kinematics& start, int tree);
+
+struct BaseNotes {
+  std::vector<std::string> lines;     ///< one a robot, or one for many
+  std::vector<std::string> warnings;  ///< where a base can hardly be meant to float
+};
+
+/// `contacts` is asked what touches where the robots are lowered by 5 mm: their support. A robot is
+/// a floating tree of more than one body, or the fixed one of a URDF.
+BaseNotes baseNotes(const Model& model, const State& start, ContactSource& contacts,
+                    BaseOrigin origin);
+
+/// What to try where a floating base fell that looks bolted down.
+std::string boltAdvice(const std::string& base, BaseOrigin origin);
+
+}  // namespace softgauss::app

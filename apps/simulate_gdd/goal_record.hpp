@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// How far the robot is from its goals over a run, each judged at its own end.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "gdd/goal.hpp"
+#include "io/summary.hpp"
+
+namespace softgauss::app {
+
+/// Figures of goals, by the figure. What only regularises has none.
+class GoalRecord {
+ public:
+  /// One figure of a goal, and what has become of it.
+  struct Track {
+    const gdd::Goal* goal;
+    io::GoalOutcome outcome;
+    gdd::GoalFigure last;  ///< while the goal acted
+    bool acts = false;     ///< in the last step seen
+  };
+
+  /// The goals have to live as long. `start`: the initial state, whose stages are computed.
+  GoalRecord(const std::vector<std::unique_ptr<gdd::Goal>>& goals, const gdd::GoalContext& start);
+
+  /// A step's start, with the contact forces of the step. Returns the tracks whose goal has ended
+  /// since the last one, with their outcome complete but for the reason.
+  std::vector<Track*> observe(const gdd::GoalContext& context, const gdd::ContactForces& contacts);
+
+  std::vector<Track>& tracks() { return tracks_; }
+  /// As columns are called: "reach hand [m]".
+  std::vector<std::string> columns() const;
+  /// The present errors, one a track; NaN where a goal has none.
+  const VectorX& errors() const { return errors_; }
+
+ private:
+  void see(Track& track, const gdd::GoalFigure& figure, double time, bool acts);
+
+  std::vector<Track> tracks_;
+  std::vector<gdd::GoalFigure> figures_;  ///< scratch
+  VectorX errors_;
+};
+
+}  // namespace softgauss::app

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/simulate_gdd/joint_watch.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace softgauss::app {
+namespace {
+
+constexpr double kMemory = 0.5;         // [s]
+constexpr double kOftenNow = 0.2;       // share of the recent steps
+constexpr double kOften = 0.05;         // share of all steps
+constexpr double kAtEnd = 0.01;         // [rad or m] nearer is at the end of the range
+constexpr double kChatterShare = 0.05;  // of the bound
+constexpr double kLeastChatter = 0.01;  // [N m or N]
+
+std::vector<WatchedControl> worstFirst(std::vector<WatchedControl> list) {
+  std::stable_sort(list.begin(), list.end(),
+                   [](const auto& a, const auto& b) { return a.amount > b.amount; });
+  return list;
+}
+
+}  // namespace
+
+JointWatch::JointWatch(const Model& model, const gdd::ControlBox& box) : model_(model) {
+  for (int i = 0; i < model.nv; ++i) {
+    const Dof& dof = model.dofs[i];
+    if (!dof.actuated) continue;
+    Control control{model.jointNames[dof.body],
+                    model.bodies[dof.body].joint == JointKind::prismatic ? "N" : "N m",
+                    {i},
+                    dof.effortLower,
+                    dof.effortUpper};
+    controls_.push_back(std::move(control));
+  }
+  if (!box.transmission) return;
+  for (const gdd::Actuator& actuator : box.transmission->actuators()) {
+    Control control{actuator.name, "", {}, actuator.lower, actuator.upper};
+    for (const gdd::Actuator::Pull& pull : actuator.pulls) control.dofs.push_back(pull.dof);
+    controls_.push_back(std::move(control));
+    ++actuators_;
+  }
+  // Of a joint that actuators pull, the effort is no bound.
+  for (std::size_t i = 0; i + actuators_ < controls_.size(); ++i)
+    controls_[i].actuated = !box.transmission->pulls(controls_[i].dofs[0]);
+}
+
+void JointWatch::see(Control& control, double u, double forget) {
+  const bool full = control.actuated && (u <= control.lower || u >= control.upper);
+  control.recent = forget * control.recent + (1.0 - forget) * (full ? 1.0 : 0.0);
+  control.full += full ? 1 : 0;
+  const double jump = steps_ > 0 ? u - control.last : 0.0;
+  const bool turns = jump * control.jump < 0.0;
+  control.jumps = forget * control.jumps +
+                  (1.0 - forget) * (turns ? std::min(std::abs(jump), std::abs(control.jump)) : 0.0);
+  control.jump = jump;
+  control.last = u;
+  control.largest = std::max(control.largest, std::abs(u));
+}
+
+void JointWatch::observe(const VectorX& tau, const VectorX& commands, const State& state,
+                         double h) {
+  const double forget = std::exp(-h / kMemory);
+  const std::size_t joints = controls_.size() - actuators_;
+  for (std::size_t i = 0; i < joints; ++i) see(controls_[i], tau[controls_[i].dofs[0]], forget);
+  for (std::size_t k = 0; k < actuators_ && static_cast<Eigen::Index>(k) < commands.size(); ++k)
+    see(controls_[joints + k], commands[static_cast<Eigen::Index>(k)], forget);
+  v_ = state.v;
+  q_ = state.q;
+  ++steps_;
+}
+
+bool JointWatch::concerns(const Control& control, const std::vector<char>& counts) const {
+  return control.actuated && std::any_of(control.dofs.begin(), control.dofs.end(),
+                                         [&](int dof) { return counts[dof] != 0; });
+}
+
+std::vector<std::string> JointWatch::saturatedNow(const std::vector<char>& counts) const {
+  std::vector<std::string> names;
+  for (const Control& control : controls_)
+    if (concerns(control, counts) && control.recent > kOftenNow) names.push_back(control.name);
+  return names;
+}
+
+std::vector<std::string> JointWatch::atRangeEnd(const std::vector<char>& counts) const {
+  std::vector<std::string> names;
+  for (const JointRange& range : model_.ranges) {
+    const Body& body = model_.bodies[range.body];
+    const double q = q_[body.q];
+    if (counts[body.v] && (q < range.lower + kAtEnd || q > range.upper - kAtEnd))
+      names.push_back(model_.jointNames[range.body]);
+  }
+  return names;
+}
+
+double JointWatch::speed(const std::vector<char>& counts) const {
+  double most = 0.0;
+  for (int i = 0; i < model_.nv; ++i)
+    if (counts[i]) most = std::max(most, std::abs(v_[i]));
+  return most;
+}
+
+std::vector<WatchedControl> JointWatch::saturated() const {
+  std::vector<WatchedControl> list;
+  for (const Control& control : controls_) {
+    const double share = steps_ > 0 ? static_cast<double>(control.full) / steps_ : 0.0;
+    if (share > kOften) list.push_back({control.name, share});
+  }
+  return worstFirst(std::move(list));
+}
+
+std::vector<WatchedControl> JointWatch::chattering() const {
+  std::vector<WatchedControl> list;
+  for (const Control& control : controls_) {
+    const double bound = std::max(-control.lower, control.upper);
+    const double scale = std::isfinite(bound) && bound > 0.0 ? bound : control.largest;
+    if (control.actuated && control.jumps > std::max(kChatterShare * scale, kLeastChatter))
+      list.push_back({control.name, control.jumps, control.unit});
+  }
+  return worstFirst(std::move(list));
+}
+
+}  // namespace softgauss::app

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/simulate_gdd/run_tally.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace softgauss::app {
+
+void tally(const StepStats& stats, bool countsParts, io::Summary& summary) {
+  io::Fallbacks& f = summary.fallbacks;
+  f.shortSolves += stats.shortSolves;
+  f.roundedSolves += stats.roundedSolves;
+  f.refusedGuesses += stats.refusedGuesses;
+  f.keptSlips += stats.keptSlips;
+  f.abandonedTrees += stats.abandonedTrees;
+  f.heldSwings += stats.swings;
+  f.jumps += stats.jumps;
+  f.unseen += stats.unseen;
+  io::IntegrationCounts& i = summary.integration;
+  i.evaluations += stats.evaluations;
+  i.substeps += stats.substeps;
+  i.parts += countsParts ? stats.parts : 0;
+  i.repeats += stats.repeats;
+  i.rejections += stats.rejections;
+  i.glances += stats.glances;
+}
+
+void tally(const gdd::GddReport& report, io::GddOutcomes& outcomes) {
+  outcomes.restarts += report.restarts;
+  switch (report.status) {
+    case gdd::GddStatus::converged:
+      ++outcomes.certified;
+      break;
+    case gdd::GddStatus::kink:
+      ++outcomes.kinks;
+      break;
+    case gdd::GddStatus::iterationLimit:
+      ++outcomes.iterationLimit;
+      break;
+    case gdd::GddStatus::bend:
+      ++outcomes.bend;
+      break;
+    case gdd::GddStatus::undecided:
+      ++outcomes.undecided;
+      break;
+    case gdd::GddStatus::badBox:
+    case gdd::GddStatus::notFinite:
+      break;
+  }
+}
+
+void tallyCommands(const gdd::GoalDirectedController& controller, io::Summary& summary) {
+  for (Eigen::Index k = 0; k < controller.commands.size(); ++k) {
+    const gdd::Actuator& actuator =
+        controller.box.transmission->actuators()[static_cast<std::size_t>(k)];
+    const double bound = std::max(-actuator.lower, actuator.upper);
+    if (std::isfinite(bound) && bound > 0.0)
+      summary.addControlRatio(actuator.name, std::abs(controller.commands[k]) / bound);
+  }
+}
+
+}  // namespace softgauss::app

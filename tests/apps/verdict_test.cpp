@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What a person reads at the end of a run: did it stand, what was reached, what was not and why.
+
+#include <nlohmann/json.hpp>
+#include <regex>
+
+#include "tests/apps/process.hpp"
+
+namespace softgauss::test {
+namespace {
+
+using Json = nlohmann::json;
+
+/// A run with its summary.
+struct Told {
+  explicit Told(std::vector<std::string> arguments) {
+    const std::string summary = folder.path() / "summary.json";
+    arguments.insert(arguments.end(), {"--summary", summary});
+    outcome = simulate(arguments);
+    EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+    if (outcome.exitCode == 0) json = Json::parse(readFile(summary));
+  }
+  /// The verdict's first line of that word, or nothing.
+  std::string line(const std::string& word) const {
+    for (const Json& said : json["verdict"])
+      if (const std::string text = said; text.starts_with(word + ": ")) return text;
+    return {};
+  }
+  bool says(const std::string& word, const std::string& part) const {
+    return line(word).find(part) != std::string::npos;
+  }
+  Json goal(const std::string& name) const {
+    for (const Json& goal : json["goals"])
+      if (goal["name"] == name) return goal;
+    return {};
+  }
+
+  io::TempFolder folder;
+  Outcome outcome;
+  Json json;
+};
+
+/// One arm of two strong joints, 0.3 m and 0.3 m, and a weak one beside it that holds a weight up.
+const char* const kTwoArms = R"(<robot name="two_arms"><link name="world"/>
+  <link name="upper"><inertial><origin xyz="0.15 0 0"/><mass value="1"/>
+    <inertia ixx="0.001" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial></link>
+  <link name="fore"><inertial><origin xyz="0.15 0 0"/><mass value="1"/>
+    <inertia ixx="0.001" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial></link>
+  <link name="hand"/>
+  <link name="weight"><inertial><origin xyz="0.3 0 0"/><mass value="5"/>
+    <inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial></link>
+  <joint name="shoulder" type="revolute"><parent link="world"/><child link="upper"/>
+    <axis xyz="0 1 0"/><limit lower="-3" upper="3" effort="100" velocity="10"/>
+    <dynamics damping="0.5"/></joint>
+  <joint name="elbow" type="revolute"><parent link="upper"/><child link="fore"/>
+    <origin xyz="0.3 0 0"/><axis xyz="0 1 0"/>
+    <limit lower="-2.5" upper="2.5" effort="50" velocity="10"/><dynamics damping="0.5"/></joint>
+  <joint name="wrist" type="fixed"><parent link="fore"/><child link="hand"/>
+    <origin xyz="0.3 0 0"/></joint>
+  <joint name="weak" type="revolute"><parent link="world"/><child link="weight"/>
+    <origin xyz="0 1 0"/><axis xyz="0 1 0"/>
+    <limit lower="-3" upper="3" effort="2" velocity="10"/><dynamics damping="0.5"/></joint>
+</robot>)";
+
+/// A plate with a heavy arm that stretches out over its edge.
+std::string plateWithArm(const std::string& root) {
+  return R"(<robot name="plate"><link name=")" + root + R"("><inertial><mass value="1"/>
+    <inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial>
+    <collision><geometry><box size="0.2 0.2 0.02"/></geometry></collision></link>
+  <link name="arm"><inertial><origin xyz="0.4 0 0"/><mass value="4"/>
+    <inertia ixx="0.01" iyy="0.1" izz="0.1" ixy="0" ixz="0" iyz="0"/></inertial>
+    <collision><origin xyz="0.4 0 0"/><geometry><box size="0.8 0.05 0.05"/></geometry></collision>
+  </link>
+  <joint name="hinge" type="revolute"><parent link=")" +
+         root + R"("/><child link="arm"/><origin xyz="0 0 0.3"/><axis xyz="0 1 0"/>
+    <limit lower="-1" upper="1" effort="100" velocity="5"/><dynamics damping="5"/></joint></robot>)";
+}
+
+TEST(Verdict, AHumanoidThatLiesOnTheGroundFell) {
+  const Told run({dataFile("robots/humanoid.urdf"), "--passive", "--duration", "2"});
+  EXPECT_EQ(run.json["outcome"], "fell");
+  EXPECT_TRUE(run.says("fell", "base pelvis: came down by")) << run.json["verdict"];
+  EXPECT_TRUE(std::regex_search(run.line("fell"), std::regex("on the ground since [0-9.]+ s: ")));
+  EXPECT_EQ(run.outcome.out.find("completed"), std::string::npos) << run.outcome.out;
+}
+
+TEST(Verdict, AHumanoidThatHoldsItsPostureStood) {
+  const Told run({dataFile("robots/humanoid.urdf"), "--posture", "--duration", "1"});
+  EXPECT_EQ(run.json["outcome"], "completed");
+  EXPECT_TRUE(run.says("stood", "base pelvis: ")) << run.json["verdict"];
+  EXPECT_TRUE(run.says("reached", "posture")) << run.json["verdict"];
+  EXPECT_EQ(run.goal("posture")["unit"], "rad");
+}
+
+TEST(Verdict, WithoutGroundItIsInTheAir) {
+  const Told run(
+      {dataFile("robots/humanoid.urdf"), "--passive", "--ground", "none", "--duration", "2"});
+  EXPECT_TRUE(run.says("in the air", "falls at 19.6 m/s")) << run.json["verdict"];
+}
+
+// 1.68 m from the shoulder, for an arm of 0.96 m: 0.72 m are left
+// (data/goals/arm_out_of_reach.yaml).
+TEST(Verdict, APlaceOutOfReachIsToldByHowMuch) {
+  const Told run({dataFile("robots/arm.urdf"), "--goals", dataFile("goals/arm_out_of_reach.yaml"),
+                  "--duration", "6"});
+  EXPECT_TRUE(run.says("not reached", "out of reach of the chain by 72")) << run.json["verdict"];
+  EXPECT_EQ(run.goal("reach hand")["reached"], false);
+}
+
+TEST(Verdict, APlaceThatRangesForbidIsToldApart) {
+  const io::TempFolder folder;
+  const std::string robot = folder.write("arms.urdf", kTwoArms);
+  // 0.1 m from the shoulder: the elbow would have to bend by 2.8 rad, of 2.5. It comes as near as
+  // √(0.18 (1 + cos 2.5)) = 0.189 m.
+  const Told run({robot, "--reach", "hand=-0.1,0,0", "--duration", "4"});
+  EXPECT_TRUE(run.says("not reached", "the ranges of its joints keep it 89.2 mm away"))
+      << run.json["verdict"];
+}
+
+// A joint at its limit on another arm is no reason; one between base and link is.
+TEST(Verdict, BlamesTheJointsBetweenBaseAndLink) {
+  const io::TempFolder folder;
+  const std::string robot = folder.write("arms.urdf", kTwoArms);
+  const std::string goals = folder.write("goals.yaml", R"(goals:
+  - reach: {link: hand, target: [0, 0, 2]}
+  - joint_posture: {joints: {weak: 0.0}}
+)");
+  const Told run({robot, "--goals", goals, "--duration", "3"});
+  EXPECT_TRUE(run.says("saturated", "weak")) << run.json["verdict"];
+  const std::string hand = run.goal("reach hand")["reason"];
+  EXPECT_EQ(hand.find("torque limits"), std::string::npos) << hand;
+  EXPECT_NE(hand.find("out of reach of the chain by 1.4 m"), std::string::npos) << hand;
+  const std::string weak = run.goal("joint_posture")["reason"];
+  EXPECT_NE(weak.find("torque limits of weak"), std::string::npos) << weak;
+}
+
+// The first place is judged when its goal ends, wherever the hand is later.
+TEST(Verdict, EveryGoalIsJudgedAtItsOwnEnd) {
+  const io::TempFolder folder;
+  const std::string goals = folder.write("goals.yaml", R"(goals:
+  - reach: {link: hand, target: [0.5, 0.3, 0.5], end: 2.0}
+  - reach: {link: hand, target: [0.5, -0.2, 0.6], start: 2.0}
+  - reach: {link: hand, target: [0, 0, 0], start: 9.0}
+  - damping: {}
+)");
+  const Told run({dataFile("robots/arm.urdf"), "--goals", goals, "--duration", "4"});
+  ASSERT_EQ(run.json["goals"].size(), 3u);
+  const Json &first = run.json["goals"][0], &second = run.json["goals"][1];
+  EXPECT_EQ(first["reached"], true) << first;
+  EXPECT_NEAR(first["judged_at_s"].get<double>(), 1.998, 1e-9);
+  EXPECT_LT(first["final_error_m"].get<double>(), 0.01);
+  EXPECT_NEAR(second["judged_at_s"].get<double>(), 4.0, 1e-9);
+  EXPECT_EQ(second["reached"], true) << second;
+  EXPECT_NE(run.json["goals"][2]["reason"].get<std::string>().find("begins at 9 s"),
+            std::string::npos);
+}
+
+TEST(Verdict, GoalsThatAreNoPlacesHaveTheirOwnFigures) {
+  const io::TempFolder folder;
+  const std::string goals = folder.write("goals.yaml", R"(goals:
+  - reach: {link: hand, target: [0.5, 0, 0.052], rpy: [3.14159, 0, 0]}
+  - contact_force: {link: hand, force: [0, 0, 20], axes: z, weight: 10, start: 1.0}
+  - damping: {weight: 1}
+)");
+  const Told run(
+      {dataFile("robots/arm.urdf"), "--ground", "0", "--goals", goals, "--duration", "3"});
+  const Json force = run.goal("contact_force hand"), turn = run.goal("reach hand (orientation)");
+  EXPECT_EQ(force["unit"], "N");
+  EXPECT_LT(force["final_error"].get<double>(), 1.0) << force;
+  EXPECT_EQ(turn["unit"], "rad");
+  EXPECT_LT(turn["final_error"].get<double>(), 0.05) << turn;
+}
+
+TEST(Base, TheConventionIsALineOfEveryRun) {
+  const auto out = [](std::vector<std::string> arguments) {
+    arguments.insert(arguments.end(), {"--passive", "--duration", "0.01"});
+    return simulate(arguments).out;
+  };
+  const std::string humanoid = dataFile("robots/humanoid.urdf");
+  EXPECT_TRUE(out({humanoid}).starts_with("base pelvis floats; --base fixed bolts it down\n"));
+  EXPECT_TRUE(out({humanoid, "--base", "fixed"})
+                  .starts_with("base pelvis is bolted down; --base floating lets it go\n"));
+}
+
+TEST(Base, AGuessIsToldWithItsReason) {
+  const io::TempFolder folder;
+  const std::string plate = folder.write("plate.urdf", plateWithArm("plate"));
+  const Told arm({plate, "--base", "auto", "--passive", "--duration", "0.01"});
+  EXPECT_EQ(arm.json["bases"][0],
+            "base plate is bolted down, a guess, for nothing but its root would touch the ground; "
+            "--base floating lets it go");
+  EXPECT_EQ(arm.json["model"]["dof"], 1);
+  const Told humanoid(
+      {dataFile("robots/humanoid.urdf"), "--base", "auto", "--passive", "--duration", "0.01"});
+  EXPECT_EQ(humanoid.json["model"]["dof"], 27);
+  EXPECT_NE(humanoid.json["bases"][0].get<std::string>().find("a guess, for it stands on"),
+            std::string::npos);
+}
+
+// Of 5 kg, 4 are 0.4 m out: the centre of mass is 0.32 m from the middle of a plate of ±0.1 m.
+TEST(Base, ACentreOfMassOutsideTheSupportIsToldBeforeTheStartAndAtTheEnd) {
+  const io::TempFolder folder;
+  const std::string plate = folder.write("plate.urdf", plateWithArm("plate"));
+  const Told run({plate, "--passive", "--duration", "2"});
+  EXPECT_NE(run.outcome.err.find("centre of mass is 220 mm outside its support"), std::string::npos)
+      << run.outcome.err;
+  EXPECT_TRUE(run.says("base", "--base fixed bolts it down")) << run.json["verdict"];
+  EXPECT_EQ(run.json["outcome"], "fell");
+  const Told bolted({plate, "--base", "fixed", "--passive", "--duration", "0.1"});
+  EXPECT_EQ(bolted.outcome.err, "");
+}
+
+TEST(Table, SolverIsForDetails) {
+  const std::vector<std::string> arguments = {dataFile("robots/arm.urdf"), "--reach",
+                                              "hand=0.5,0.3,0.5", "--duration", "0.02"};
+  EXPECT_EQ(simulate(arguments).out.find("constraint rows"), std::string::npos);
+  std::vector<std::string> detailed = arguments;
+  detailed.push_back("--details");
+  EXPECT_NE(simulate(detailed).out.find("constraint rows"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace softgauss::test
