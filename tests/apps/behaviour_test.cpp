@@ -119,7 +119,8 @@ struct Leftover {
     arguments.insert(arguments.end(), {"--log", file, "--summary", summary});
     const Outcome outcome = simulate(arguments);
     EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
-    for (const auto& goal : nlohmann::json::parse(readFile(summary))["goals"])
+    const auto json = nlohmann::json::parse(readFile(summary));
+    for (const auto& goal : json["goals"])
       if (goal["unit"] == "m") ways.push_back(1e3 * double{goal["final_error_m"]});
     const Csv log(readFile(file));
     for (const std::string& column : log.columns)
