@@ -16,6 +16,14 @@ constexpr double kDependentColumn = 1e-10;
   throw ModelError(actuator.where, "actuator '" + actuator.name + "'", problem);
 }
 
+/// The power of two that is at most the largest coefficient.
+double sizeOf(const Actuator& actuator) {
+  double largest = 0.0;
+  for (const Actuator::Pull& pull : actuator.pulls)
+    largest = std::max(largest, std::abs(pull.coefficient));
+  return std::exp2(std::ilogb(largest));
+}
+
 std::string quoted(const std::vector<std::string>& names) {
   std::string text;
   for (std::size_t i = 0; i < names.size(); ++i) text += (i ? ", '" : "'") + names[i] + "'";
@@ -84,13 +92,17 @@ void Transmission::check() const {
 void Transmission::setBlock(const std::vector<int>& dofs, const std::vector<int>& members) {
   const auto k = static_cast<Eigen::Index>(dofs.size());
   const auto m = static_cast<Eigen::Index>(members.size());
+  // Columns scaled to the size of 1, so that no square over- or underflows: dependence asks for
+  // directions only. By powers of two, which changes no digit of what comes of them.
   MatrixX B = MatrixX::Zero(k, m);
+  VectorX scale(m);
   MatrixX basis(k, 0);  // orthonormal, of the columns so far
   for (Eigen::Index c = 0; c < m; ++c) {
     const Actuator& actuator = actuators_[static_cast<std::size_t>(members[c])];
+    scale[c] = sizeOf(actuator);
     for (const Actuator::Pull& pull : actuator.pulls) {
       const auto row = std::lower_bound(dofs.begin(), dofs.end(), pull.dof) - dofs.begin();
-      B(row, c) = pull.coefficient;
+      B(row, c) = pull.coefficient / scale[c];
     }
     const VectorX column = B.col(c).normalized();
     VectorX fresh = column;
@@ -117,11 +129,11 @@ void Transmission::setBlock(const std::vector<int>& dofs, const std::vector<int>
     const int y = dofs[static_cast<std::size_t>(j)];
     for (Eigen::Index i = 0; i < k; ++i) {
       const int dof = dofs[static_cast<std::size_t>(i)];
-      T_(dof, y) = j < m ? B(i, j) : Q(i, j);
-      C_(y, dof) = j < m ? inverse(j, i) : Q(i, j);
+      T_(dof, y) = j < m ? B(i, j) * scale[j] : Q(i, j);
+      C_(y, dof) = j < m ? inverse(j, i) / scale[j] : Q(i, j);
     }
     kind_[static_cast<std::size_t>(y)] = j < m ? Kind::command : Kind::root;
-    plain_[static_cast<std::size_t>(y)] = k == 1 && B(0, 0) == 1.0;
+    plain_[static_cast<std::size_t>(y)] = k == 1 && T_(y, y) == 1.0;
     size_[y] = T_.col(y).cwiseAbs().maxCoeff();
     if (j < m) coordinate_[static_cast<std::size_t>(members[static_cast<std::size_t>(j)])] = y;
   }
