@@ -47,6 +47,18 @@ LinkPair linkPair(const Model& model, const Geometry& a, const Geometry& b) {
   return links;
 }
 
+/// For each geometry the first one behind it that is of another body.
+std::vector<int> endsOfRuns(const Model& model) {
+  std::vector<int> ends(model.geometries.size());
+  for (std::size_t i = ends.size(); i-- > 0;) {
+    const bool isLast = i + 1 == ends.size();
+    ends[i] = isLast || model.geometries[i].body != model.geometries[i + 1].body
+                  ? static_cast<int>(i + 1)
+                  : ends[i + 1];
+  }
+  return ends;
+}
+
 bool adjacentThroughParents(const std::vector<int>& parents, int a, int b) {
   return parents[static_cast<std::size_t>(a)] == b || parents[static_cast<std::size_t>(b)] == a;
 }
@@ -93,12 +105,16 @@ PairFilter makePairFilter(const Model& model, const InitialDistance& initialDist
   // First pass: what no configuration can change, and the overlaps in the initial one.
   std::vector<GeometryPair> candidates;
   const int count = static_cast<int>(model.geometries.size());
+  const std::vector<int> runEnds = endsOfRuns(model);
   for (int i = 0; i < count; ++i) {
     for (int j = i + 1; j < count; ++j) {
       const Geometry& a = model.geometries[static_cast<std::size_t>(i)];
       const Geometry& b = model.geometries[static_cast<std::size_t>(j)];
       if (a.body == b.body) {
-        ++filter.rigidPairs;
+        // All of one body in a row at once: scenery may be a hundred thousand shapes.
+        const int end = runEnds[static_cast<std::size_t>(j)];
+        filter.rigidPairs += end - j;
+        j = end - 1;
         continue;
       }
       const bool oneRobot = ofOneRobot(model, a, b);

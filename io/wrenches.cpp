@@ -2,6 +2,8 @@
 #include "io/wrenches.hpp"
 
 #include <algorithm>
+#include <string_view>
+#include <unordered_map>
 
 #include "engine/core/check.hpp"
 
@@ -9,11 +11,15 @@ namespace softgauss::io {
 
 WrenchSchedule::WrenchSchedule(const Model& model, const std::vector<TimedWrench>& wrenches)
     : wrenches_(wrenches) {
+  std::unordered_map<std::string_view, const Frame*> frames;
+  if (!wrenches_.empty())
+    for (const Frame& frame : model.frames) frames.emplace(frame.name, &frame);
   for (const TimedWrench& wrench : wrenches_) {
-    const int index = model.findFrame(wrench.link);
+    const auto found = frames.find(wrench.link);
     const std::string element = "wrench on '" + wrench.link + "'";
-    if (index < 0) throw ModelError(wrench.where, element, "found no link of that name");
-    const Frame& frame = model.frames[static_cast<std::size_t>(index)];
+    if (found == frames.end())
+      throw ModelError(wrench.where, element, "found no link of that name");
+    const Frame& frame = *found->second;
     if (frame.body == 0)
       throw ModelError(wrench.where, element,
                        "found a link fixed to the world, expected one that moves");

@@ -2,6 +2,8 @@
 #include "engine/model/model_builder.hpp"
 
 #include <algorithm>
+#include <string_view>
+#include <unordered_map>
 #include <utility>
 
 #include "engine/core/index.hpp"
@@ -83,6 +85,14 @@ class Assembler {
     const bool floats =
         base == BaseKind::floating || (base == BaseKind::automatic && !isWorld(spec));
     if (isWorld(spec)) {
+      const bool carriesWhatFloats =
+          std::any_of(joints_.begin(), joints_.end(), [&](const JointSpec& joint) {
+            return joint.type == JointType::floating && joint.parent == spec.name;
+          });
+      if (base == BaseKind::floating && !carriesWhatFloats)
+        throw ModelError(spec.where, "link 'world'",
+                         "is the root and stands for the world, which cannot float as the base is "
+                         "asked to; expected a fixed base, or another name for the link");
       place(link, {0, Transform{}});
     } else if (!floats) {
       place(link, {0, X_WRoot, standsForWorld ? -1 : bases_++});
@@ -301,15 +311,16 @@ Model ModelBuilder::build() const {
   model.options.effects = options.effects & kBuiltEffects;
   model.warnings = warnings_;
   Assembler assembler(model, links_, joints_);
+  std::unordered_map<std::string_view, const Root*> roots;
+  for (const Root& root : roots_) roots.emplace(root.link, &root);
   for (const detail::TreeEdge& edge : order.visits) {
     if (edge.joint < 0) {
-      const std::string& link = links_[static_cast<std::size_t>(edge.child)].name;
-      const auto root =
-          std::find_if(roots_.begin(), roots_.end(), [&](const Root& r) { return r.link == link; });
-      if (root == roots_.end())
+      const auto found = roots.find(links_[static_cast<std::size_t>(edge.child)].name);
+      if (found == roots.end())
         assembler.addRoot(edge.child, base, X_WRoot, false);
       else
-        assembler.addRoot(edge.child, root->base, root->X_WRoot, root->isWorld);
+        assembler.addRoot(edge.child, found->second->base, found->second->X_WRoot,
+                          found->second->isWorld);
     } else
       assembler.addJoint(edge, zeroEffortIsUnlimited);
   }

@@ -24,14 +24,15 @@ ModelBuilder& ModelBuilder::add(const ModelBuilder& other, const std::string& pr
   };
   std::set<std::string> links;
   for (const LinkSpec& link : other.links_) links.insert(link.name);
-  const std::vector<std::string> otherRoots = other.rootLinks();
+  const std::vector<std::string> rootList = other.rootLinks();
+  const std::set<std::string> otherRoots(rootList.begin(), rootList.end());
   // "world" means the world where the other has no link of that name.
   const auto linkName = [&](const std::string& link) {
     return links.count(link) ? own(link) : link;
   };
 
   for (LinkSpec link : other.links_) {
-    if (std::find(otherRoots.begin(), otherRoots.end(), link.name) != otherRoots.end()) {
+    if (otherRoots.count(link.name)) {
       const auto root = std::find_if(other.roots_.begin(), other.roots_.end(),
                                      [&](const Root& r) { return r.link == link.name; });
       const BaseKind kind = root == other.roots_.end() ? other.base : root->base;

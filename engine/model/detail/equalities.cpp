@@ -3,21 +3,33 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
+#include <unordered_map>
 
 #include "engine/model/detail/spec_checks.hpp"
 
 namespace softgauss::detail {
 namespace {
 
-/// The frame of a link, or of the world.
-Frame frameOf(const Model& model, const std::string& link, const SourceLocation& where,
-              const std::string& element) {
-  const int frame = model.findFrame(link);
-  if (frame >= 0) return model.frames[static_cast<std::size_t>(frame)];
-  if (link != "world")
-    throw ModelError(where, element, "is on link '" + link + "', which does not exist");
-  return {link, 0, Transform{}};
-}
+/// Frames by name, the first of each.
+class Frames {
+ public:
+  explicit Frames(const Model& model) {
+    for (const Frame& frame : model.frames) frames_.emplace(frame.name, &frame);
+  }
+
+  /// The frame of a link, or of the world.
+  Frame at(const std::string& link, const SourceLocation& where, const std::string& element) const {
+    const auto found = frames_.find(link);
+    if (found != frames_.end()) return *found->second;
+    if (link != "world")
+      throw ModelError(where, element, "is on link '" + link + "', which does not exist");
+    return {link, 0, Transform{}};
+  }
+
+ private:
+  std::unordered_map<std::string_view, const Frame*> frames_;
+};
 
 void checkPair(const Frame& a, const Frame& b, const SourceLocation& where,
                const std::string& element) {
@@ -76,10 +88,12 @@ void addCoupling(Model& model, const JointCoupling& coupling, const SourceLocati
 }  // namespace
 
 void addConnections(Model& model, const std::vector<ConnectSpec>& specs) {
+  if (specs.empty()) return;
+  const Frames frames(model);
   for (const ConnectSpec& spec : specs) {
     const std::string element = "connection '" + spec.linkA + "' - '" + spec.linkB + "'";
-    const Frame a = frameOf(model, spec.linkA, spec.where, element);
-    const Frame b = frameOf(model, spec.linkB, spec.where, element);
+    const Frame a = frames.at(spec.linkA, spec.where, element);
+    const Frame b = frames.at(spec.linkB, spec.where, element);
     checkPair(a, b, spec.where, element);
     checkPose({Matrix3::Identity(), spec.p_LAP}, spec.where, element);
     checkPose({Matrix3::Identity(), spec.p_LBP}, spec.where, element);
@@ -90,10 +104,12 @@ void addConnections(Model& model, const std::vector<ConnectSpec>& specs) {
 }
 
 void addWelds(Model& model, const std::vector<WeldSpec>& specs) {
+  if (specs.empty()) return;
+  const Frames frames(model);
   for (const WeldSpec& spec : specs) {
     const std::string element = "weld '" + spec.linkA + "' - '" + spec.linkB + "'";
-    const Frame a = frameOf(model, spec.linkA, spec.where, element);
-    const Frame b = frameOf(model, spec.linkB, spec.where, element);
+    const Frame a = frames.at(spec.linkA, spec.where, element);
+    const Frame b = frames.at(spec.linkB, spec.where, element);
     checkPair(a, b, spec.where, element);
     checkPose(spec.X_LAF, spec.where, element);
     checkPose(spec.X_LBF, spec.where, element);
