@@ -130,11 +130,11 @@ void SceneContacts::Scene::setPairs(const std::vector<GeometryPair>& pairs, int 
   std::vector<bool> paired(model.geometries.size(), false);
   for (const Row& row : rows)
     paired[static_cast<std::size_t>(row.a)] = paired[static_cast<std::size_t>(row.b)] = true;
-  std::vector<double> radii;
+  std::vector<double> radii, marginShares = set.marginShares();
   for (std::size_t i = 0; i < model.geometries.size(); ++i) {
     if (!paired[i]) continue;
     movable.push_back(static_cast<int>(i));
-    radii.push_back(set.radius[i] + set.marginShare(static_cast<int>(i)) + 0.5 * slack);
+    radii.push_back(set.radius[i] + marginShares[i] + 0.5 * slack);
   }
   movableCentre.resize(movable.size());
   broadphase = std::make_unique<detail::Broadphase>(radii);

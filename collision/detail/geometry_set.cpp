@@ -67,12 +67,15 @@ GeometrySet::GeometrySet(const Model& m, PreparedMeshes& meshes) : model(m) {
   }
 }
 
-double GeometrySet::marginShare(int g) const {
-  double margin = std::max(geometry(g).material.margin, 0.0);
+std::vector<double> GeometrySet::marginShares() const {
+  std::vector<double> shares;
+  for (const Geometry& g : model.geometries) shares.push_back(std::max(g.material.margin, 0.0));
   for (const ContactPair& pair : model.contactPairs)
-    if (pair.geometryA == g || pair.geometryB == g)
-      margin = std::max(margin, 0.5 * pair.material.margin);
-  return margin;
+    for (const int g : {pair.geometryA, pair.geometryB}) {
+      double& share = shares[static_cast<std::size_t>(g)];
+      share = std::max(share, 0.5 * pair.material.margin);
+    }
+  return shares;
 }
 
 bool GeometrySet::comesNear(int a, const Vector3& p_W, int b, const Transform& X_WB,

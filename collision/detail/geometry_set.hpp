@@ -52,9 +52,9 @@ struct GeometrySet {
 
   const Geometry& geometry(int g) const { return model.geometries[static_cast<std::size_t>(g)]; }
   bool isPlane(int g) const { return geometry(g).shape.kind == ShapeKind::plane; }
-  /// At least half of every margin that a pair of this geometry may have: those of materials add
-  /// up.
-  double marginShare(int g) const;
+  /// Of each geometry at least half of every margin that a pair of it may have: those of materials
+  /// add up.
+  std::vector<double> marginShares() const;
   /// Whether b is no surface, or moves, or has a triangle within `reach` [m] of the bounding sphere
   /// of a, whose centre is p_W.
   bool comesNear(int a, const Vector3& p_W, int b, const Transform& X_WB, double reach) const;

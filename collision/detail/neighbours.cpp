@@ -19,6 +19,7 @@ Neighbours::Neighbours(const Model& model, const Units& units, PreparedMeshes& m
       fat_(idx(units.size())),
       near_(idx(units.size())),
       awake_(idx(units.size()), 0) {
+  const std::vector<double> marginShares = set_.marginShares();
   for (int g = 0; g < static_cast<int>(model.geometries.size()); ++g) {
     const Geometry& geometry = model.geometries[idx(g)];
     const int tree = model.bodies[idx(geometry.body)].tree;
@@ -26,7 +27,7 @@ Neighbours::Neighbours(const Model& model, const Units& units, PreparedMeshes& m
     parts_[idx(units.ofTree[idx(tree)])].push_back(
         {g, tree, geometry.body - model.trees[idx(tree)].rootBody,
          geometry.X_BG * set_.centreInG[idx(g)],
-         set_.isPlane(g) ? kInfinity : set_.radius[idx(g)] + set_.marginShare(g)});
+         set_.isPlane(g) ? kInfinity : set_.radius[idx(g)] + marginShares[idx(g)]});
   }
 }
 

@@ -32,6 +32,21 @@ std::vector<Actuator> three(double last) {
           {.name = "down", .pulls = {{1, 2.0}, {2, last}}}};
 }
 
+// Dependence is one of directions: what a coefficient's square does to a double is not asked.
+TEST(Transmission, RankDoesNotDependOnTheSizeOfColumns) {
+  for (const double size : {1e-300, 1e-155, 1e-12, 1.0, 1e12, 1e155, 1e300}) {
+    const Transmission apart(2, {{.name = "a", .pulls = {{0, size}, {1, size}}},
+                                 {.name = "b", .pulls = {{0, 1.0}, {1, -1.0}}}});
+    EXPECT_SMALL((apart.T() * apart.C() - MatrixX::Identity(2, 2)).cwiseAbs().maxCoeff(), 1e-15)
+        << size;
+    const std::string dependent = refusal([&] {
+      Transmission(2, {{.name = "a", .pulls = {{0, size}, {1, size}}},
+                       {.name = "b", .pulls = {{0, 1.0}, {1, 1.0}}}});
+    });
+    EXPECT_NE(dependent.find("combination of 'a'"), std::string::npos) << size << dependent;
+  }
+}
+
 TEST(Transmission, CoordinatesAreCommandsAndTheirOrthogonalComplement) {
   Random random(3);
   for (int trial = 0; trial < 50; ++trial) {
