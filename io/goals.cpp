@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "io/detail/goal_kinds.hpp"
+#include "io/detail/input_file.hpp"
 #include "io/detail/scene_parts.hpp"
 #include "io/detail/text.hpp"
 #include "io/detail/yaml.hpp"
@@ -23,9 +24,6 @@ using detail::GoalScene;
 using detail::Range;
 using detail::YamlMap;
 using detail::YamlValue;
-
-/// Products of a few numbers of this size, squared, are still finite.
-constexpr double kLargest = 1e12;
 
 /// When the goal acts: from `start` until `end`.
 void readTimes(const YamlMap& keys, gdd::Goal& goal) {
@@ -70,7 +68,7 @@ GoalPointer readGoal(const std::string& file, const YamlValue& item, std::size_t
     throw ModelError({file, only.line}, named,
                      fmt::format("found {}, expected a map {{…}} with keys of {}",
                                  only.value.described(), detail::listed(kind->keys)));
-  const YamlMap keys(file, named + ": ", "", only.value, kLargest);
+  const YamlMap keys(file, named + ": ", "", only.value);
   std::vector<std::string> known = kind->keys;
   known.insert(known.end(), {"start", "end"});
   keys.expectOnly(known);
@@ -89,13 +87,12 @@ void GoalFile::giveTo(gdd::GoalDirectedController& controller) && {
 GoalFile readGoalFile(const std::filesystem::path& file, const Model& model, const State& initial) {
   SOFTGAUSS_ASSERT(initial.q.size() == model.nq);
   const std::string path = file.string();
-  const std::optional<std::string> text = detail::readFile(path);
-  if (!text) throw ModelError({path, 0}, "file", "cannot be read, expected a YAML file of goals");
-  const YamlValue root = detail::parseYaml(path, *text, "goals: [...]");
+  const std::string text = detail::readInput(path, "a YAML file of goals");
+  const YamlValue root = detail::parseYaml(detail::inputName(path), text, "goals: [...]");
   if (root.kind != YamlValue::Kind::map)
-    throw ModelError({path, root.line}, "file",
+    throw ModelError({detail::inputName(path), root.line}, "file",
                      fmt::format("found {}, expected goals: [...]", root.described()));
-  const YamlMap top(path, "", "", root);
+  const YamlMap top(detail::inputName(path), "", "", root);
   // A scene file may hold goals too.
   const bool isScene = top.find("robots") || top.find("objects");
   top.expectOnly(isScene ? detail::kSceneKeys : std::vector<std::string>{"goals", "control_cost"});
@@ -106,7 +103,7 @@ GoalFile readGoalFile(const std::filesystem::path& file, const Model& model, con
 
   GoalFile result;
   for (const YamlValue& item : list.value.items)
-    result.goals.push_back(readGoal(path, item, result.goals.size() + 1, {model, initial}));
+    result.goals.push_back(readGoal(top.file(), item, result.goals.size() + 1, {model, initial}));
   detail::joinLines(result.goals);
   if (const YamlMap::Entry* cost = top.find("control_cost"))
     result.controlCost = top.choice(*cost, {"about_gravity", "total"}) == "total"

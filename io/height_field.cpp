@@ -4,10 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "engine/core/check.hpp"
 #include "engine/core/index.hpp"
 #include "io/detail/csv.hpp"
+#include "io/detail/input_file.hpp"
 #include "io/detail/png.hpp"
 #include "io/detail/text.hpp"
 
@@ -30,10 +32,17 @@ Heights fromCsv(const std::string& file, const std::string& text) {
                        detail::counted(fields->size(), "value"), heights.columns));
     for (const std::string& field : *fields) {
       const std::optional<double> value = detail::parseNumber(field);
-      if (!value) fail(fmt::format("found '{}', expected a number", detail::validUtf8(field)));
+      if (!value || std::abs(*value) > detail::kLargestNumber)
+        fail(
+            fmt::format("found {}, expected a number{}", detail::quotedText(field),
+                        value ? fmt::format(" of size {:g} at most", detail::kLargestNumber) : ""));
       heights.values.push_back(*value);
     }
+    if (heights.values.size() > kMostValues)
+      fail(fmt::format("found more than {} values, expected fewer", kMostValues));
   }
+  if (reader.quoteIsOpen())
+    throw ModelError({file, reader.line()}, "heights", "a quote is not closed");
   return heights;
 }
 
@@ -48,16 +57,15 @@ Heights readHeights(const std::filesystem::path& file) {
   const auto fail = [&](const std::string& problem) {
     throw ModelError({file.string(), 0}, "heights", problem);
   };
-  const std::optional<std::string> bytes = detail::readFile(file.string());
-  if (!bytes) fail("cannot be read, expected a .png or .csv file");
   std::string extension = file.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(), [](char c) {
     return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
   });
   if (extension != ".png" && extension != ".csv")
     fail(fmt::format("unknown format '{}', expected .png or .csv", extension));
+  const std::string bytes = detail::readInput(file.string(), "a .png or .csv file");
   Heights heights =
-      extension == ".png" ? fromPng(file.string(), *bytes) : fromCsv(file.string(), *bytes);
+      extension == ".png" ? fromPng(file.string(), bytes) : fromCsv(file.string(), bytes);
   if (heights.rows < 2 || heights.columns < 2)
     fail(fmt::format("found {} by {} values, expected at least 2 by 2", heights.rows,
                      heights.columns));

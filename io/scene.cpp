@@ -8,8 +8,8 @@
 
 #include "engine/core/check.hpp"
 #include "engine/core/rotation.hpp"
-#include "engine/model/followers.hpp"
 #include "engine/model/mass_properties.hpp"
+#include "io/detail/input_file.hpp"
 #include "io/detail/scene_actuators.hpp"
 #include "io/detail/scene_constraints.hpp"
 #include "io/detail/scene_options.hpp"
@@ -42,6 +42,8 @@ class SceneReader {
     if (const auto* entry = top_.find("name")) name = top_.name(*entry);
     scene_.builder = ModelBuilder(name);
     top_.read("timestep", scene_.builder.options.timestep, Range::positive);
+    if (const auto* entry = top_.find("timestep"))
+      scene_.timestepWhere = {top_.file(), entry->line};
     top_.read("gravity", scene_.builder.options.gravity);
     materials_["default"];
     if (const auto* entry = top_.find("materials"))
@@ -68,13 +70,14 @@ class SceneReader {
     forEach("objects", "object", [&](const YamlMap& map) { readObject(map); });
     std::set<std::string> actuatorNames;
     forEach("actuators", "actuator", [&](const YamlMap& map) {
-      scene_.actuators.push_back(detail::readActuator(map, scene_.builder, actuatorNames));
+      scene_.actuators.push_back(detail::readActuator(map, joints_, scene_.builder, actuatorNames));
     });
     detail::expectIndependent(scene_.actuators);
     if (const auto* entry = top_.find("constraints")) {
       std::size_t number = 0;
+      const detail::SceneNames names{linkNames(), joints_};
       for (const YamlValue& item : top_.list(*entry))
-        detail::readConstraint(top_.file(), item, ++number, scene_.builder);
+        detail::readConstraint(top_.file(), item, ++number, names, scene_.builder);
     }
     readPairsAndWrenches(forEach);
     if (scene_.contents.links == 0)
@@ -82,8 +85,10 @@ class SceneReader {
                        "holds nothing, expected a list of robots or of objects");
     for (const std::filesystem::path& file : meshes_.files()) scene_.contents.files.push_back(file);
     scene_.hasGoals = top_.find("goals") != nullptr;
-    if (const auto* entry = top_.find("collision"))
+    if (const auto* entry = top_.find("collision")) {
       scene_.throughFcl = top_.choice(*entry, {"own", "fcl"}) == "fcl";
+      scene_.collisionWhere = {top_.file(), entry->line};
+    }
     return std::move(scene_);
   }
 
@@ -109,14 +114,21 @@ class SceneReader {
   /// What names links and shapes of everything above it.
   template <class ForEach>
   void readPairsAndWrenches(const ForEach& forEach) {
-    std::vector<std::string> links;
-    for (const auto& [link, surface] : surfaces_) links.push_back(link);
+    const std::set<std::string> links = linkNames();
     forEach("wrenches", "wrench",
             [&](const YamlMap& map) { scene_.wrenches.push_back(detail::readWrench(map, links)); });
     if (!scene_.noGround) surfaces_.try_emplace("ground", scene_.groundMaterial);
+    const std::set<std::string> all = linkNames();
     forEach("pairs", "pair", [&](const YamlMap& map) {
-      detail::readPair(map, materials_, surfaces_, scene_.builder);
+      detail::readPair(map, materials_, surfaces_, all, scene_.builder);
     });
+  }
+
+  /// Of links and objects, and of the ground once it has a surface.
+  std::set<std::string> linkNames() const {
+    std::set<std::string> names;
+    for (const auto& [link, surface] : surfaces_) names.insert(names.end(), link);
+    return names;
   }
 
   /// A name that nothing else in the scene has, or none where there is but one thing of its kind.
@@ -215,11 +227,21 @@ class SceneReader {
       const YamlMap joints = map.map(*entry);
       expectNames(joints, contents.scalarJoints, "joint of one degree of freedom");
       for (const YamlMap::Entry& joint : joints.entries())
-        values.emplace_back(prefix + joint.key, joints.number(joint));
+        values.push_back({prefix + joint.key,
+                          joints.number(joint),
+                          {map.file(), joint.line},
+                          joints.element(joint)});
     };
     readJoints("joints", scene_.positions);
     readJoints("joint_velocities", scene_.velocities);
+    for (const std::string& joint : contents.scalarJoints) joints_.insert(prefix + joint);
     const std::string root = robot.rootLinks().front();
+    if (root == "world" && name.empty() && options.base == BaseKind::floating &&
+        contents.floatingLink.empty())
+      map.fail(
+          *map.find("base"),
+          "found floating, but the root link is 'world', which stands for the world and cannot "
+          "float; expected fixed, or a name for the robot, or another one for its root link");
     if (root == "world" && name.empty() &&
         !(robot.X_WRoot.p.isZero(0.0) && robot.X_WRoot.R.isIdentity(0.0)))
       map.fail(*map.find("urdf"),
@@ -238,10 +260,11 @@ class SceneReader {
 
   static void expectNames(const YamlMap& map, const std::vector<std::string>& names,
                           const char* noun) {
+    const std::set<std::string> known(names.begin(), names.end());
     for (const YamlMap::Entry& entry : map.entries())
-      if (std::find(names.begin(), names.end(), entry.key) == names.end())
+      if (known.count(entry.key) == 0)
         map.fail(entry, fmt::format("found no {} of that name in the URDF{}", noun,
-                                    detail::suggestion(entry.key, names)));
+                                    detail::offered(entry.key, names)));
   }
 
   void readObject(const YamlMap& map) {
@@ -320,40 +343,15 @@ class SceneReader {
   std::map<std::string, Material> surfaces_;  ///< of links, objects and the ground
   MeshCache meshes_;
   std::set<std::string> names_;
+  std::set<std::string> joints_;  ///< of one degree of freedom
 };
 
 }  // namespace
 
-std::set<int> SceneFile::placedJoints(const Model& model) const {
-  std::set<int> bodies;
-  for (const auto& [joint, value] : positions) bodies.insert(model.findJoint(joint));
-  return bodies;
-}
-
-State SceneFile::initialState(const Model& model) const {
-  State state(model);
-  const auto dofOf = [&](const std::string& joint) {
-    return model.bodies[static_cast<std::size_t>(model.findJoint(joint))];
-  };
-  for (const auto& [joint, value] : positions) state.q[dofOf(joint).q] = value;
-  placeFollowers(model, placedJoints(model), state.q);
-  for (const auto& [joint, value] : velocities) state.v[dofOf(joint).v] = value;
-  for (const Start& start : starts) {
-    const Frame& frame = model.frames[static_cast<std::size_t>(model.findFrame(start.link))];
-    const Body& body = model.bodies[static_cast<std::size_t>(frame.body)];
-    const Quaternion q(state.q[body.q + 3], state.q[body.q + 4], state.q[body.q + 5],
-                       state.q[body.q + 6]);
-    state.v.segment<3>(body.v) = start.velocity;
-    state.v.segment<3>(body.v + 3) = q.conjugate() * start.angularVelocity;
-  }
-  return state;
-}
-
 SceneFile readScene(const std::filesystem::path& file, const UrdfOptions& options) {
-  const std::string path = file.string();
-  const std::optional<std::string> text = detail::readFile(path);
-  if (!text) throw ModelError({path, 0}, "file", "cannot be read, expected a scene");
-  const YamlValue root = detail::parseYaml(path, *text, "robots: [...] or objects: [...]");
+  const std::string text = detail::readInput(file.string(), "a scene");
+  const std::string path = detail::inputName(file.string());
+  const YamlValue root = detail::parseYaml(path, text, "robots: [...] or objects: [...]");
   if (root.kind != YamlValue::Kind::map)
     throw ModelError({path, root.line}, "file",
                      fmt::format("found {}, expected keys such as robots: [...] and objects: [...]",

@@ -55,13 +55,22 @@ struct SceneFile {
     bool onGround = false;  ///< raised or lowered until its lowest point touches the ground
   };
   std::vector<Start> starts;
+  struct JointValue {
+    std::string joint;
+    double value = 0.0;
+    SourceLocation where;
+    std::string element;  ///< that says so, "robot 1: key 'joints.elbow'"
+  };
   /// Of scalar joints [rad or m]; what follows another and is not here is where its leader has it.
-  std::vector<std::pair<std::string, double>> positions;
-  std::vector<std::pair<std::string, double>> velocities;  ///< of scalar joints [rad/s or m/s]
+  std::vector<JointValue> positions;
+  std::vector<JointValue> velocities;  ///< of scalar joints [rad/s or m/s]
 
   IntegrationKeys integration;
   std::vector<TimedWrench> wrenches;
   std::vector<SceneActuator> actuators;  ///< controlBox() makes them a box of controls
+
+  // Lines of what only the whole program can judge; 0 where the file does not say it.
+  SourceLocation timestepWhere, collisionWhere;
 
   bool throughFcl = false;                  ///< contacts are to come through FCL
   bool hasGoals = false;                    ///< has a list that readGoals() reads
@@ -70,7 +79,7 @@ struct SceneFile {
   /// The bodies of the joints in `positions`.
   std::set<int> placedJoints(const Model& model) const;
   /// The state in which it starts, but for the heights of what stands on the ground. `model` was
-  /// built by `builder`.
+  /// built by `builder`. Throws ModelError where a position lies outside its joint's range.
   State initialState(const Model& model) const;
 };
 

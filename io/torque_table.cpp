@@ -4,10 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <string>
 
 #include "io/detail/csv.hpp"
+#include "io/detail/input_file.hpp"
 #include "io/detail/text.hpp"
 
 namespace softgauss::io {
@@ -32,9 +34,10 @@ class Place {
   }
   double number(int line, const std::string& column, const std::string& field) const {
     const std::optional<double> x = detail::parseNumber(field);
-    if (!x)
-      fail(line, fmt::format("column '{}'", column),
-           fmt::format("'{}' is not a finite number", field));
+    if (!x || std::abs(*x) > detail::kLargestNumber)
+      fail(line, "column " + detail::quotedText(column),
+           fmt::format("{} is not a finite number{}", detail::quotedText(field),
+                       x ? fmt::format(" of size {:g} at most", detail::kLargestNumber) : ""));
     return *x;
   }
 
@@ -49,14 +52,15 @@ std::vector<Column> findControls(const std::vector<std::string>& header, const M
     if (model.bodies[static_cast<std::size_t>(b)].dofs == 1)
       joints.push_back(model.jointNames[static_cast<std::size_t>(b)]);
 
+  const std::set<std::string> known(joints.begin(), joints.end());
   std::vector<Column> columns;
   for (std::size_t i = 0; i < header.size(); ++i) {
     if (!header[i].starts_with("u:")) continue;
     const std::string joint = header[i].substr(2);
-    if (std::find(joints.begin(), joints.end(), joint) == joints.end())
-      place.fail(line, fmt::format("column '{}'", header[i]),
-                 fmt::format("model '{}' has no joint '{}' with a control{}", model.name, joint,
-                             detail::suggestion(joint, joints)));
+    if (!known.count(joint))
+      place.fail(line, "column " + detail::quotedText(header[i]),
+                 fmt::format("model '{}' has no joint {} with a control{}", model.name,
+                             detail::quotedText(joint), detail::offered(joint, joints)));
     const int body = model.findJoint(joint);
     columns.push_back({i, model.bodies[static_cast<std::size_t>(body)].v, header[i]});
   }
@@ -67,18 +71,21 @@ std::vector<Column> findControls(const std::vector<std::string>& header, const M
 }  // namespace
 
 TorqueTable TorqueTable::read(const std::filesystem::path& file, const Model& model) {
-  const std::optional<std::string> text = detail::readFile(file.string());
-  const Place place(file.string());
-  if (!text) place.fail(0, "file", "cannot be read, expected CSV with time_s and u:<joint>");
+  const std::string text = detail::readInput(file.string(), "CSV with time_s and u:<joint>");
+  const Place place(detail::inputName(file.string()));
+  if (const std::size_t bad = detail::invalidUtf8(text); bad != std::string::npos)
+    place.fail(1 + static_cast<int>(std::count(
+                       text.begin(), text.begin() + static_cast<std::ptrdiff_t>(bad), '\n')),
+               "file", "holds a byte that is no UTF-8, expected text in UTF-8");
 
-  detail::CsvReader reader(*text);
+  detail::CsvReader reader(text);
   const std::vector<std::string>* fields = reader.next();
   if (!fields) place.fail(1, "header", "is missing, expected time_s and u:<joint>");
   const std::vector<std::string> header = *fields;
   std::set<std::string> names;
   for (const std::string& name : header)
     if (!names.insert(name).second)
-      place.fail(reader.line(), fmt::format("column '{}'", name), "is there twice");
+      place.fail(reader.line(), "column " + detail::quotedText(name), "is there twice");
   const auto timeColumn = std::find(header.begin(), header.end(), "time_s");
   if (timeColumn == header.end()) place.fail(reader.line(), "header", "has no column time_s");
   const auto timeField = static_cast<std::size_t>(timeColumn - header.begin());
@@ -111,7 +118,7 @@ TorqueTable TorqueTable::read(const std::filesystem::path& file, const Model& mo
     for (const Column& column : columns) {
       const double u = place.number(line, column.name, (*fields)[column.field]);
       if (u != 0.0 && !model.dofs[static_cast<std::size_t>(column.dof)].actuated)
-        place.fail(line, fmt::format("column '{}'", column.name),
+        place.fail(line, "column " + detail::quotedText(column.name),
                    fmt::format("is {}, but the joint is not actuated, expected 0", u));
       table.controls_.push_back(u);
     }

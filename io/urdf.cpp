@@ -5,6 +5,8 @@
 
 #include <utility>
 
+#include "io/detail/input_file.hpp"
+#include "io/detail/other_formats.hpp"
 #include "io/detail/resources.hpp"
 #include "io/detail/text.hpp"
 #include "io/detail/unit_mistakes.hpp"
@@ -113,9 +115,10 @@ class ShapeReader {
 
 ModelBuilder readUrdf(const std::filesystem::path& file, const UrdfOptions& options,
                       UrdfContents* contents) {
-  const std::optional<std::string> text = detail::readFile(file.string());
-  if (!text) throw ModelError({file.string(), 0}, "file", "cannot be read, expected a URDF file");
-  const detail::XmlFile xml(file.string(), *text);
+  const std::string text = detail::readInput(file.string(), "a URDF file");
+  const std::string name = detail::inputName(file.string());
+  detail::refuseOtherFormats(name, text);
+  const detail::XmlFile xml(name, text);
   UrdfDescription urdf = detail::describeUrdf(xml.robot());
 
   ModelBuilder builder(urdf.name);

@@ -7,43 +7,23 @@
 #include "gdd/goals/balance.hpp"
 #include "io/detail/goal_kinds.hpp"
 #include "io/detail/text.hpp"
+#include "io/names.hpp"
 
 namespace softgauss::io::detail {
 
 std::string movingLink(const YamlMap& keys, const YamlMap::Entry& entry, const Model& model) {
   const std::string link = keys.name(entry);
-  std::vector<std::string> links;
-  for (const Frame& frame : model.frames)
-    if (frame.body != 0) links.push_back(frame.name);
-  const int frame = model.findFrame(link);
-  if (frame < 0)
-    keys.fail(entry, fmt::format("found {}, expected a link of model '{}'{}", quotedText(link),
-                                 model.name, suggestion(link, links)));
-  if (model.frames[static_cast<std::size_t>(frame)].body == 0)
-    keys.fail(entry,
-              fmt::format("found {}, which is fixed to the world, expected a link that moves",
-                          quotedText(link)));
+  if (const std::string problem = linkProblem(model, link); !problem.empty())
+    keys.fail(entry, problem);
   return link;
 }
 
 std::vector<std::pair<int, double>> readJoints(const YamlMap& joints, const Model& model) {
-  std::vector<std::string> names;
-  for (int b = 1; b < model.bodyCount(); ++b)
-    if (model.bodies[static_cast<std::size_t>(b)].dofs == 1)
-      names.push_back(model.jointNames[static_cast<std::size_t>(b)]);
-
   std::vector<std::pair<int, double>> values;
   for (const YamlMap::Entry& entry : joints.entries()) {
-    const int body = model.findJoint(entry.key);
-    if (body < 0)
-      joints.fail(entry, fmt::format("found an unknown joint, expected one of model '{}'{}",
-                                     model.name, suggestion(entry.key, names)));
-    const int dofs = model.bodies[static_cast<std::size_t>(body)].dofs;
-    if (dofs != 1)
-      joints.fail(entry, fmt::format("found a joint of {} degrees of freedom, expected a revolute, "
-                                     "continuous or prismatic one",
-                                     dofs));
-    values.emplace_back(body, joints.number(entry));
+    if (const std::string problem = jointProblem(model, entry.key); !problem.empty())
+      joints.fail(entry, problem);
+    values.emplace_back(model.findJoint(entry.key), joints.number(entry));
   }
   return values;
 }

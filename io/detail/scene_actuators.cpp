@@ -11,24 +11,22 @@ namespace softgauss::io::detail {
 namespace {
 
 /// `joints: {name: coefficient, …}`
-void readJoints(const YamlMap& map, ModelBuilder& builder, SceneActuator& actuator) {
+void readJoints(const YamlMap& map, const std::set<std::string>& known, ModelBuilder& builder,
+                SceneActuator& actuator) {
   const YamlMap joints =
       map.map(map.required("joints", "a map {joint: coefficient} of what it drives"));
   if (joints.entries().empty())
     map.fail(*map.find("joints"), "found no joint, expected {joint: coefficient, …}");
   for (const YamlMap::Entry& entry : joints.entries()) {
+    if (known.count(entry.key) == 0)
+      joints.fail(entry, "found no joint of one degree of freedom of that name in the scene" +
+                             offered(entry.key, {known.begin(), known.end()}));
     JointSpec* joint = builder.findJoint(entry.key);
-    const bool scalar =
-        joint && (joint->type == JointType::revolute || joint->type == JointType::continuous ||
-                  joint->type == JointType::prismatic);
-    if (!scalar)
-      joints.fail(entry, "found no joint of one degree of freedom of that name in the scene");
     if (joint->mimic)
       joints.fail(entry, fmt::format("found a joint that mimics '{}', expected one with a force of "
                                      "its own",
                                      joint->mimic->leader));
-    const double coefficient = joints.number(entry);
-    if (coefficient == 0.0) joints.fail(entry, "found 0, expected a number other than 0");
+    const double coefficient = joints.number(entry, Range::notZero);
     actuator.joints.emplace_back(entry.key, coefficient);
     joint->effort.reset();
   }
@@ -36,17 +34,9 @@ void readJoints(const YamlMap& map, ModelBuilder& builder, SceneActuator& actuat
 
 /// `bounds: [lower, upper]`
 void readBounds(const YamlMap& map, const YamlMap::Entry& entry, SceneActuator& actuator) {
-  const std::vector<YamlValue>& items = map.list(entry);
-  const auto number = [&](std::size_t i) {
-    const std::optional<double> x =
-        items.size() == 2 ? items[i].finiteNumber() : std::optional<double>();
-    if (!x)
-      map.fail(entry, fmt::format("found {}, expected two finite numbers [lower, upper]",
-                                  entry.value.described()));
-    return *x;
-  };
-  actuator.lower = number(0);
-  actuator.upper = number(1);
+  const std::vector<double> bounds = map.numbers(entry, 2, 2, "two finite numbers [lower, upper]");
+  actuator.lower = bounds[0];
+  actuator.upper = bounds[1];
   if (!(actuator.lower <= actuator.upper))
     map.fail(entry, fmt::format("found the lower bound {:g} above the upper one {:g}",
                                 actuator.lower, actuator.upper));
@@ -54,8 +44,8 @@ void readBounds(const YamlMap& map, const YamlMap::Entry& entry, SceneActuator& 
 
 }  // namespace
 
-SceneActuator readActuator(const YamlMap& map, ModelBuilder& builder,
-                           std::set<std::string>& names) {
+SceneActuator readActuator(const YamlMap& map, const std::set<std::string>& joints,
+                           ModelBuilder& builder, std::set<std::string>& names) {
   map.expectOnly({"name", "joints", "effort", "bounds"});
   SceneActuator actuator;
   actuator.where = {map.file(), map.line()};
@@ -64,7 +54,7 @@ SceneActuator readActuator(const YamlMap& map, ModelBuilder& builder,
   if (!names.insert(actuator.name).second)
     map.fail(name, fmt::format("found {} a second time, expected a name of its own",
                                quotedText(actuator.name)));
-  readJoints(map, builder, actuator);
+  readJoints(map, joints, builder, actuator);
   const YamlMap::Entry* effort = map.find("effort");
   if (const auto* bounds = map.find("bounds")) {
     if (effort)

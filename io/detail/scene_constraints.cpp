@@ -16,16 +16,27 @@ std::vector<std::string> with(std::vector<std::string> keys, const std::vector<s
   return keys;
 }
 
-std::string linkName(const YamlMap& map, const std::string& key) {
-  return map.name(map.required(key, "the name of a link, or world"));
+std::string linkName(const YamlMap& map, const std::string& key, const SceneNames& names) {
+  const YamlMap::Entry& entry = map.required(key, "the name of a link, or world");
+  if (map.name(entry) == "world") return "world";
+  return map.known(entry, names.links, "a link of the scene, or world");
 }
 
-void readConnect(const YamlMap& map, ModelBuilder& builder) {
+/// A joint of one degree of freedom, or one of those that a planar joint is made of.
+std::string jointName(const YamlMap& map, const YamlMap::Entry& entry, const SceneNames& names,
+                      ModelBuilder& builder) {
+  const std::string name = map.name(entry);
+  if (names.joints.count(name) > 0 || builder.findJoint(name.substr(0, name.rfind('.'))))
+    return name;
+  return map.known(entry, names.joints, "a joint of one degree of freedom of the scene");
+}
+
+void readConnect(const YamlMap& map, const SceneNames& names, ModelBuilder& builder) {
   map.expectOnly(with({"link_a", "link_b", "point_a", "point_b"}, kSoftnessKeys));
   ConnectSpec spec;
   spec.where = {map.file(), map.line()};
-  spec.linkA = linkName(map, "link_a");
-  spec.linkB = linkName(map, "link_b");
+  spec.linkA = linkName(map, "link_a", names);
+  spec.linkB = linkName(map, "link_b", names);
   map.read("point_a", spec.p_LAP);
   map.read("point_b", spec.p_LBP);
   readSoftness(map, spec.impedance);
@@ -40,12 +51,12 @@ Transform poseUnder(const YamlMap& map, const std::string& key) {
   return readPose(pose);
 }
 
-void readWeld(const YamlMap& map, ModelBuilder& builder) {
+void readWeld(const YamlMap& map, const SceneNames& names, ModelBuilder& builder) {
   map.expectOnly(with({"link_a", "link_b", "pose_a", "pose_b", "torque_scale"}, kSoftnessKeys));
   WeldSpec spec;
   spec.where = {map.file(), map.line()};
-  spec.linkA = linkName(map, "link_a");
-  spec.linkB = linkName(map, "link_b");
+  spec.linkA = linkName(map, "link_a", names);
+  spec.linkB = linkName(map, "link_b", names);
   spec.X_LAF = poseUnder(map, "pose_a");
   spec.X_LBF = poseUnder(map, "pose_b");
   map.read("torque_scale", spec.torqueScale, Range::positive);
@@ -53,29 +64,21 @@ void readWeld(const YamlMap& map, ModelBuilder& builder) {
   builder.weld(std::move(spec));
 }
 
-void readCouple(const YamlMap& map, ModelBuilder& builder) {
+void readCouple(const YamlMap& map, const SceneNames& names, ModelBuilder& builder) {
   map.expectOnly(with({"follower", "leader", "multiplier", "offset", "polynomial"}, kSoftnessKeys));
   CouplingSpec spec;
   spec.where = {map.file(), map.line()};
-  spec.follower = map.name(map.required("follower", "the name of a joint"));
-  if (const auto* entry = map.find("leader")) spec.leader = map.name(*entry);
+  spec.follower = jointName(map, map.required("follower", "the name of a joint"), names, builder);
+  if (const auto* entry = map.find("leader")) spec.leader = jointName(map, *entry, names, builder);
   if (const auto* entry = map.find("polynomial")) {
     for (const char* key : {"multiplier", "offset"})
       if (const auto* other = map.find(key))
         map.fail(*other,
                  fmt::format("found beside polynomial in line {}, which says it all", entry->line));
-    const std::vector<YamlValue>& items = map.list(*entry);
-    if (items.empty() || items.size() > spec.polynomial.size())
-      map.fail(*entry, fmt::format("found {}, expected one to five numbers [c0, c1, …]",
-                                   entry->value.described()));
     spec.polynomial.fill(0.0);
-    for (std::size_t i = 0; i < items.size(); ++i) {
-      const std::optional<double> c = items[i].finiteNumber();
-      if (!c)
-        map.fail(*entry, fmt::format("found {} as number {}, expected finite numbers",
-                                     items[i].described(), i + 1));
-      spec.polynomial[i] = *c;
-    }
+    const std::vector<double> c =
+        map.numbers(*entry, 1, spec.polynomial.size(), "one to five finite numbers [c0, c1, …]");
+    std::copy(c.begin(), c.end(), spec.polynomial.begin());
   } else {
     map.read("offset", spec.polynomial[0], Range::any);
     map.read("multiplier", spec.polynomial[1], Range::any);
@@ -86,7 +89,7 @@ void readCouple(const YamlMap& map, ModelBuilder& builder) {
 
 struct ConstraintKind {
   const char* name;
-  void (*read)(const YamlMap& map, ModelBuilder& builder);
+  void (*read)(const YamlMap& map, const SceneNames& names, ModelBuilder& builder);
 };
 
 constexpr ConstraintKind kConstraintKinds[] = {
@@ -95,27 +98,27 @@ constexpr ConstraintKind kConstraintKinds[] = {
 }  // namespace
 
 void readConstraint(const std::string& file, const YamlValue& item, std::size_t number,
-                    ModelBuilder& builder) {
+                    const SceneNames& names, ModelBuilder& builder) {
   const std::string label = fmt::format("constraint {}", number);
-  std::vector<std::string> names;
-  for (const ConstraintKind& kind : kConstraintKinds) names.push_back(kind.name);
+  std::vector<std::string> known;
+  for (const ConstraintKind& kind : kConstraintKinds) known.push_back(kind.name);
   if (item.kind != YamlValue::Kind::map || item.pairs.size() != 1)
     throw ModelError({file, item.line}, label,
                      fmt::format("found {}, expected kind: {{…}}, the kind one of {}",
-                                 item.described(), listed(names)));
+                                 item.described(), listed(known)));
   const YamlMap kinds(file, label + ": ", "", item);
-  kinds.expectOnly(names);
+  kinds.expectOnly(known);
   const YamlMap::Entry& only = kinds.entries().front();
   for (const ConstraintKind& kind : kConstraintKinds)
-    if (only.key == kind.name) kind.read(kinds.map(only), builder);
+    if (only.key == kind.name) kind.read(kinds.map(only), names, builder);
 }
 
 void readPair(const YamlMap& map, const Materials& materials,
-              const std::map<std::string, Material>& surfaces, ModelBuilder& builder) {
-  std::vector<std::string> names;
-  for (const auto& [name, surface] : surfaces) names.push_back(name);
+              const std::map<std::string, Material>& surfaces, const std::set<std::string>& links,
+              ModelBuilder& builder) {
   const auto named = [&](const std::string& key) {
-    return map.choice(map.required(key, "the name of a link, of an object, or ground"), names);
+    const char* const expected = "the name of a link, of an object, or ground";
+    return map.known(map.required(key, expected), links, expected);
   };
   PairSpec spec;
   spec.where = {map.file(), map.line()};
@@ -135,11 +138,11 @@ void readPair(const YamlMap& map, const Materials& materials,
   builder.pair(std::move(spec));
 }
 
-TimedWrench readWrench(const YamlMap& map, const std::vector<std::string>& links) {
+TimedWrench readWrench(const YamlMap& map, const std::set<std::string>& links) {
   map.expectOnly({"link", "force", "moment", "point", "start", "end"});
   TimedWrench wrench;
   wrench.where = {map.file(), map.line()};
-  wrench.link = map.choice(map.required("link", "the name of a link"), links);
+  wrench.link = map.known(map.required("link", "the name of a link"), links, "a link of the scene");
   if (!map.find("moment")) map.required("force", "a force [N] or a moment [N m]");
   map.read("force", wrench.force_W);
   map.read("moment", wrench.moment_W);

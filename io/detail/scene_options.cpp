@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "io/names.hpp"
+
 namespace softgauss::io::detail {
 namespace {
 
@@ -30,11 +32,8 @@ IntegrationKeys readIntegration(const YamlMap& map, Options& options) {
   const auto* integrator = map.find("integrator");
   const auto* tolerance = map.find("integration_tolerance");
   const auto* doubling = map.find("step_doubling");
-  if (integrator) {
-    std::vector<std::string> names;
-    for (const IntegratorName& i : kIntegratorNames) names.emplace_back(i.name);
-    options.integrator = *integratorFromName(map.choice(*integrator, names));
-  }
+  if (integrator)
+    options.integrator = *integratorCalled(map.choice(*integrator, integratorNames()));
   map.read("integration_tolerance", options.integrationTolerance, Range::positive);
   if (doubling) options.stepDoubling = map.boolean(*doubling);
   if (!integrator && tolerance && !options.stepDoubling)
@@ -71,8 +70,8 @@ IntegrationKeys readOptions(const YamlMap& map, Options& options,
   if (const auto* entry = map.find("exact_diagonal")) options.exactDiagonal = map.boolean(*entry);
   map.read("tolerance", options.tolerance, Range::notNegative);
   if (const auto* entry = map.find("max_iterations")) {
-    const double count = map.number(*entry, Range::positive);
-    if (count != std::floor(count) || count > kMostIterations)
+    const double count = entry->value.finiteNumber().value_or(0.0);
+    if (!(count >= 1.0) || count != std::floor(count) || count > kMostIterations)
       map.fail(*entry, fmt::format("found {}, expected a whole number from 1 to {:g}",
                                    entry->value.described(), kMostIterations));
     options.maxIterations = static_cast<int>(count);

@@ -11,6 +11,7 @@
 #include "engine/core/rotation.hpp"
 #include "engine/model/closed_surface.hpp"
 #include "engine/model/mass_properties.hpp"
+#include "io/detail/input_file.hpp"
 #include "io/detail/text.hpp"
 #include "io/height_field.hpp"
 
@@ -129,9 +130,11 @@ Materials readMaterials(const YamlMap& map) {
 
 Material materialOf(const YamlMap& map, const Materials& materials) {
   const YamlMap::Entry* entry = map.find("material");
+  const auto known = materials.find(entry ? entry->value.text : "default");
+  if (known != materials.end()) return known->second;
   std::vector<std::string> names;
   for (const auto& [name, material] : materials) names.push_back(name);
-  return materials.at(entry ? map.choice(*entry, names) : "default");
+  return materials.at(map.choice(*entry, names));  // tells the names
 }
 
 Transform readPose(const YamlMap& map) {
@@ -144,17 +147,12 @@ Transform readPose(const YamlMap& map) {
              fmt::format("found beside rpy in line {}, expected one of them", rpy->line));
   if (rpy) X.R = rpyRotation(map.vector3(*rpy));
   if (quaternion) {
-    const std::vector<YamlValue>& items = map.list(*quaternion);
-    Eigen::Vector4d q = Eigen::Vector4d::Zero();
-    bool good = items.size() == 4;
-    for (std::size_t i = 0; good && i < 4; ++i) {
-      const std::optional<double> x = items[i].finiteNumber();
-      good = x.has_value();
-      if (good) q[static_cast<Eigen::Index>(i)] = *x;
-    }
-    if (!good || std::abs(q.norm() - 1.0) > 1e-3)
-      map.fail(*quaternion, fmt::format("found {}, expected four numbers [w, x, y, z] of length 1",
-                                        quaternion->value.described()));
+    const char* const expected = "four numbers [w, x, y, z] of length 1";
+    const std::vector<double> items = map.numbers(*quaternion, 4, 4, expected);
+    const Eigen::Vector4d q(items[0], items[1], items[2], items[3]);
+    if (std::abs(q.norm() - 1.0) > 1e-3)
+      map.fail(*quaternion,
+               fmt::format("found {}, expected {}", quaternion->value.described(), expected));
     X.R = Quaternion(q[0], q[1], q[2], q[3]).normalized().toRotationMatrix();
   }
   return X;
@@ -167,15 +165,8 @@ Shape readLandscape(const YamlMap& map) {
   map.expectOnly({"file", "size", "height", "base"});
   const YamlMap::Entry& file = map.required("file", "the name of a .png or .csv file");
   const YamlMap::Entry& size = map.required("size", "two lengths [x, y] [m]");
-  std::array<double, 2> lengths{};
-  const std::vector<YamlValue>& items = map.list(size);
-  for (std::size_t i = 0; i < 2; ++i) {
-    const std::optional<double> length = items.size() == 2 ? items[i].finiteNumber() : std::nullopt;
-    if (!length || !(*length > 0.0))
-      map.fail(size, fmt::format("found {}, expected two lengths above 0, [x, y] [m]",
-                                 size.value.described()));
-    lengths[i] = *length;
-  }
+  const std::vector<double> lengths =
+      map.numbers(size, 2, 2, "two lengths above 0, [x, y] [m]", Range::positive);
   const double height =
       map.number(map.required("height", "the height of white, or of 1 in a .csv [m]"), Range::any);
   double base = 0.5 * std::min(lengths[0], lengths[1]);
@@ -214,7 +205,11 @@ Shape readShape(const YamlMap& map, MeshCache& meshes) {
     size.expectOnly({"size"});
     const YamlMap::Entry& entry = size.required("size", "three lengths [x, y, z] [m]");
     const Vector3 full = size.vector3(entry);
-    if (!(full.minCoeff() > 0.0)) size.fail(entry, "found a length of 0 or less, expected more");
+    if (!(full.minCoeff() >= kSmallestNumber))
+      size.fail(entry,
+                full.minCoeff() > 0.0
+                    ? fmt::format("found a length below {:g}, expected more", kSmallestNumber)
+                    : "found a length of 0 or less, expected more");
     return Shape::box(0.5 * full);
   }
   if (only->key == "mesh") {
@@ -260,9 +255,10 @@ std::filesystem::path existingFile(const YamlMap& map, const YamlMap::Entry& ent
                                    const std::string& text) {
   std::filesystem::path path = text;
   if (path.is_relative()) path = std::filesystem::path(map.file()).parent_path() / path;
-  if (!std::filesystem::is_regular_file(path))
-    map.fail(entry, fmt::format("found no file {}, expected one, relative to the scene's folder",
-                                quotedText(path.string())));
+  if (std::string problem = inputProblem(path.string()); !problem.empty())
+    map.fail(entry,
+             fmt::format("found no file {}: {}; expected one, relative to the scene's folder",
+                         quotedText(path.string()), problem));
   return path;
 }
 

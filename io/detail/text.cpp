@@ -10,8 +10,9 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <numeric>
+
+#include "io/printable.hpp"
 
 namespace softgauss::io::detail {
 namespace {
@@ -22,6 +23,30 @@ std::string_view trimmed(std::string_view text) {
   const std::size_t begin = text.find_first_not_of(kBlanks);
   if (begin == std::string_view::npos) return {};
   return text.substr(begin, text.find_last_not_of(kBlanks) - begin + 1);
+}
+
+/// Bytes of the character of UTF-8 that begins at `i`; 0 where none does. Forms that are too long,
+/// surrogates and what lies beyond Unicode are none.
+std::size_t characterAt(std::string_view text, std::size_t i) {
+  const auto byte = [&](std::size_t k) {
+    return k < text.size() ? static_cast<unsigned char>(text[k]) : 0u;
+  };
+  const unsigned first = byte(i), second = byte(i + 1);
+  if (first < 0x80) return 1;
+  const std::size_t length = first >= 0xF0 ? 4 : first >= 0xE0 ? 3 : 2;
+  if (first < 0xC2 || first > 0xF4) return 0;
+  if ((first == 0xE0 && second < 0xA0) || (first == 0xED && second > 0x9F) ||
+      (first == 0xF0 && second < 0x90) || (first == 0xF4 && second > 0x8F))
+    return 0;
+  for (std::size_t k = 1; k < length; ++k)
+    if ((byte(i + k) & 0xC0u) != 0x80) return 0;
+  return length;
+}
+
+/// The text up to the end of a character, at most `most` bytes, and a mark that more follows.
+std::string cut(std::string_view text, std::size_t most) {
+  while (most > 0 && (static_cast<unsigned char>(text[most]) & 0xC0u) == 0x80) --most;
+  return std::string(text.substr(0, most)) + "…";
 }
 
 /// Levenshtein distance.
@@ -80,9 +105,12 @@ void appendNumber(std::string& out, double x) {
 std::string shortNumber(double x) { return fmt::format("{:.6g}", x); }
 
 std::string suggestion(std::string_view name, const std::vector<std::string>& names) {
+  constexpr std::size_t kLongest = 100;  // nobody has mistyped more
+  if (name.size() > kLongest) return {};
   const std::string* nearest = nullptr;
   std::size_t best = std::max<std::size_t>(2, name.size() / 3) + 1;
   for (const std::string& candidate : names) {
+    if (candidate.size() >= name.size() + best || name.size() >= candidate.size() + best) continue;
     const std::size_t distance = editDistance(name, candidate);
     if (distance >= best) continue;
     best = distance;
@@ -99,15 +127,76 @@ std::string listed(const std::vector<std::string>& names, std::size_t most) {
   return text;
 }
 
+std::string offered(std::string_view name, const std::vector<std::string>& names) {
+  if (names.empty()) return "; there is none";
+  const std::string near = suggestion(name, names);
+  return fmt::format("{} there are: {}", near.empty() ? ";" : near, listed(names, 20));
+}
+
 std::string counted(std::size_t n, std::string_view noun) {
   return fmt::format("{} {}{}", n, noun, n == 1 ? "" : noun.ends_with("ch") ? "es" : "s");
 }
 
-std::string validUtf8(const std::string& text) {
-  using nlohmann::json;
-  return json::parse(json(text).dump(-1, ' ', false, json::error_handler_t::replace))
-      .get<std::string>();
+std::string quotedText(const std::string& text) {
+  constexpr std::size_t kMost = 60;
+  // A few bytes more than are shown: an end within a character is no fault of the text.
+  std::string shown = validUtf8(text.size() > kMost ? cut(text, kMost) : text);
+  std::replace_if(
+      shown.begin(), shown.end(),
+      [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }, '?');
+  return "'" + shown + "'";
 }
+
+std::size_t invalidUtf8(std::string_view text) {
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t length = characterAt(text, i);
+    if (length == 0) return i;
+    i += length;
+  }
+  return std::string::npos;
+}
+
+std::string validUtf8(const std::string& text) {
+  std::string valid;
+  valid.reserve(text.size());
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t length = characterAt(text, i);
+    if (length > 0)
+      valid.append(text, i, length);
+    else
+      valid += "\uFFFD";
+    i += std::max<std::size_t>(length, 1);
+  }
+  return valid;
+}
+
+}  // namespace softgauss::io::detail
+
+namespace softgauss::io {
+
+std::string printable(const std::string& text) {
+  constexpr std::size_t kLongestWord = 200, kShownOfIt = 80, kLongest = 6000;
+  const std::string valid = detail::validUtf8(text);
+  std::string shown;
+  for (std::size_t begin = 0; begin < valid.size();) {
+    std::size_t end = valid.find_first_of(" \n", begin);
+    end = end == std::string::npos ? valid.size() : end;
+    const std::string_view word = std::string_view(valid).substr(begin, end - begin);
+    shown += word.size() > kLongestWord && word.front() != '/' ? detail::cut(word, kShownOfIt)
+                                                               : std::string(word);
+    if (end < valid.size()) shown += valid[end];
+    begin = end + 1;
+  }
+  if (shown.size() > kLongest) shown = detail::cut(shown, kLongest);
+  std::replace_if(
+      shown.begin(), shown.end(),
+      [](char c) { return (static_cast<unsigned char>(c) < 0x20 && c != '\n') || c == 0x7f; }, '?');
+  return shown;
+}
+
+}  // namespace softgauss::io
+
+namespace softgauss::io::detail {
 
 std::optional<std::string> readFile(const std::string& path) {
   struct stat info = {};

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <sstream>
 
 #include "engine/core/check.hpp"
@@ -15,109 +16,162 @@
 namespace softgauss::io::detail {
 namespace {
 
-/// More is an alias that multiplies aliases, not a scene.
-constexpr int kMostValues = 1000000;
+/// More would take gigabytes; an alias may multiply aliases.
+constexpr std::size_t kMostValues = 3'000'000;
+constexpr int kDeepest = 100;
 
-/// Notes where the document begins that a parser reads.
-class DocumentStart final : public YAML::EventHandler {
+/// Builds the value of a document from what a parser meets, aliases replaced. One pass, without
+/// yaml-cpp's own tree: that takes ten times the memory, whatever the limits.
+class ValueBuilder final : public YAML::EventHandler {
  public:
-  int line = 0;
+  explicit ValueBuilder(const std::string& file) : file_(file) {}
 
-  void OnDocumentStart(const YAML::Mark& mark) override { line = mark.line + 1; }
+  YamlValue root;
+  int start = 0;  ///< line in which the last document begins
+
+  void OnDocumentStart(const YAML::Mark& mark) override { start = mark.line + 1; }
   void OnDocumentEnd() override {}
-  void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
-  void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
-  void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t,
-                const std::string&) override {}
-  void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
-                       YAML::EmitterStyle::value) override {}
-  void OnSequenceEnd() override {}
-  void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
-                  YAML::EmitterStyle::value) override {}
-  void OnMapEnd() override {}
-};
-
-/// Copies yaml-cpp's nodes into values.
-class Copier {
- public:
-  explicit Copier(const std::string& file) : file_(file) {}
-
-  /// `depth`: of lists and maps around the node. An alias of what it stands in has no end.
-  YamlValue copy(const YAML::Node& node, int depth = 0) {
-    constexpr int kDeepest = 100;
-    YamlValue value;
-    value.line = node.Mark().line + 1;
-    if (depth > kDeepest)
-      throw ModelError({file_, value.line}, "YAML",
-                       fmt::format("found lists and maps more than {} deep, or an alias inside of "
-                                   "what it stands for; expected fewer",
-                                   kDeepest));
-    if (++values_ > kMostValues)
-      throw ModelError(
-          {file_, value.line}, "YAML",
-          fmt::format("holds more than {} values once its aliases are replaced", kMostValues));
-    switch (node.Type()) {
-      case YAML::NodeType::Scalar:
-        value.kind = YamlValue::Kind::text;
-        value.isPlain = node.Tag() == "?";
-        value.text = node.Scalar();
-        break;
-      case YAML::NodeType::Sequence:
-        value.kind = YamlValue::Kind::list;
-        for (const YAML::Node& item : node) value.items.push_back(copy(item, depth + 1));
-        break;
-      case YAML::NodeType::Map:
-        value.kind = YamlValue::Kind::map;
-        for (const auto& pair : node)
-          value.pairs.push_back({copy(pair.first, depth + 1), copy(pair.second, depth + 1)});
-        break;
-      default:
-        break;
-    }
-    return value;
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+    add(YamlValue{YamlValue::Kind::nothing, mark.line + 1, false, {}, {}, {}}, anchor);
+  }
+  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                const std::string& text) override {
+    add(YamlValue{YamlValue::Kind::text, mark.line + 1, tag == "?", text, {}, {}}, anchor);
+  }
+  void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor,
+                       YAML::EmitterStyle::value) override {
+    open(YamlValue::Kind::list, mark.line + 1, anchor);
+  }
+  void OnMapStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor,
+                  YAML::EmitterStyle::value) override {
+    open(YamlValue::Kind::map, mark.line + 1, anchor);
+  }
+  void OnSequenceEnd() override { close(); }
+  void OnMapEnd() override { close(); }
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+    const auto found = anchored_.find(anchor);
+    if (found == anchored_.end()) failDepth(mark.line + 1);  // what it stands in is still open
+    expectRoom(found->second.size, found->second.depth, mark.line + 1);
+    add(found->second.value, 0);
   }
 
  private:
+  struct Anchored {
+    YamlValue value;
+    std::size_t size = 0;
+    int depth = 0;
+  };
+  struct Open {
+    YamlValue value;
+    YAML::anchor_t anchor = 0;
+    std::optional<YamlValue> key;  ///< of a map, while its value is awaited
+  };
+
+  [[noreturn]] void failDepth(int line) const {
+    throw ModelError({file_, line}, "YAML",
+                     fmt::format("found lists and maps more than {} deep, or an alias inside of "
+                                 "what it stands for; expected fewer",
+                                 kDeepest));
+  }
+
+  /// For a value that holds so many, so deep.
+  void expectRoom(std::size_t size, int depth, int line) {
+    if (static_cast<int>(open_.size()) + depth > kDeepest) failDepth(line);
+    values_ += size;
+    if (values_ > kMostValues)
+      throw ModelError(
+          {file_, line}, "YAML",
+          fmt::format("holds more than {} values once its aliases are replaced", kMostValues));
+  }
+
+  static void measure(const YamlValue& value, int depth, Anchored& out) {
+    ++out.size;
+    out.depth = std::max(out.depth, depth);
+    for (const YamlValue& item : value.items) measure(item, depth + 1, out);
+    for (const YamlValue::Pair& pair : value.pairs) {
+      measure(pair.key, depth + 1, out);
+      measure(pair.value, depth + 1, out);
+    }
+  }
+
+  void open(YamlValue::Kind kind, int line, YAML::anchor_t anchor) {
+    expectRoom(0, 1, line);
+    open_.push_back({YamlValue{kind, line, false, {}, {}, {}}, anchor, std::nullopt});
+  }
+
+  void close() {
+    Open closed = std::move(open_.back());
+    open_.pop_back();
+    add(std::move(closed.value), closed.anchor);
+  }
+
+  void add(YamlValue value, YAML::anchor_t anchor) {
+    const int line = value.line;
+    expectRoom(1, 0, line);
+    if (anchor != 0) {
+      Anchored& known = anchored_[anchor];
+      known = {};
+      measure(value, 0, known);
+      expectRoom(known.size, 0, line);
+      known.value = value;
+    }
+    if (open_.empty()) {
+      root = std::move(value);
+    } else if (Open& around = open_.back(); around.value.kind == YamlValue::Kind::list) {
+      around.value.items.push_back(std::move(value));
+    } else if (!around.key) {
+      around.key = std::move(value);
+    } else {
+      around.value.pairs.push_back({std::move(*around.key), std::move(value)});
+      around.key.reset();
+    }
+  }
+
   const std::string& file_;
-  int values_ = 0;
+  std::vector<Open> open_;
+  std::map<YAML::anchor_t, Anchored> anchored_;
+  std::size_t values_ = 0;
 };
+
+/// yaml-cpp takes some control characters for the end of the file.
+void expectText(const std::string& file, const std::string& text) {
+  const auto control = std::find_if(text.begin(), text.end(), [](char c) {
+    return static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\r' && c != '\t';
+  });
+  const auto lineOf = [&](std::string::const_iterator at) {
+    return 1 + static_cast<int>(std::count(text.begin(), at, '\n'));
+  };
+  if (control != text.end())
+    throw ModelError({file, lineOf(control)}, "YAML",
+                     "found a control character, expected text in UTF-8");
+  if (const std::size_t bad = invalidUtf8(text); bad != std::string::npos)
+    throw ModelError({file, lineOf(text.begin() + static_cast<std::ptrdiff_t>(bad))}, "YAML",
+                     fmt::format("found the byte 0x{:02x}, which is no UTF-8, expected text in "
+                                 "UTF-8",
+                                 static_cast<unsigned char>(text[bad])));
+}
 
 }  // namespace
 
 YamlValue parseYaml(const std::string& file, const std::string& text, const std::string& expected) {
-  // yaml-cpp takes some control characters for the end of the file.
-  const auto control = std::find_if(text.begin(), text.end(), [](char c) {
-    return static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\r' && c != '\t';
-  });
-  if (control != text.end())
-    throw ModelError({file, 1 + static_cast<int>(std::count(text.begin(), control, '\n'))}, "YAML",
-                     "found a control character, expected text in UTF-8");
+  expectText(file, text);
   try {
-    const YAML::Node document = YAML::Load(text);
-    // Not YAML::LoadAll: what it cannot read it may meet again and again, for ever.
     std::istringstream stream(text);
     YAML::Parser parser(stream);
-    DocumentStart start;
-    const bool hasMore = parser.HandleNextDocument(start) && parser.HandleNextDocument(start);
-    if (hasMore)
-      throw ModelError({file, start.line}, "YAML",
+    ValueBuilder first(file);
+    parser.HandleNextDocument(first);
+    // Not all documents: what cannot be read a parser may meet again and again, for ever.
+    if (ValueBuilder second(file); parser.HandleNextDocument(second))
+      throw ModelError({file, second.start}, "YAML",
                        "found more behind the end of the document, expected the end of the file");
-    if (document.IsNull()) throw ModelError({file, 1}, "file", "is empty, expected " + expected);
-    return Copier(file).copy(document);
+    if (first.root.kind == YamlValue::Kind::nothing)
+      throw ModelError({file, 1}, "file", "is empty, expected " + expected);
+    return std::move(first.root);
   } catch (const YAML::Exception& error) {
     throw ModelError(
         {file, error.mark.line + 1}, "YAML",
         fmt::format("cannot be read: {} (column {})", error.msg, error.mark.column + 1));
   }
-}
-
-std::string quotedText(std::string text) {
-  constexpr std::size_t kMost = 60;
-  if (text.size() > kMost) text = text.substr(0, kMost) + "…";
-  std::replace_if(
-      text.begin(), text.end(),
-      [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }, '?');
-  return "'" + text + "'";
 }
 
 std::string YamlValue::described() const {
@@ -141,13 +195,12 @@ std::optional<double> YamlValue::finiteNumber() const {
 
 // ---- Maps ---------------------------------------------------------------------------------------
 
-YamlMap::YamlMap(std::string file, std::string label, std::string prefix, const YamlValue& map,
-                 double largest)
+YamlMap::YamlMap(std::string file, std::string label, std::string prefix, const YamlValue& map)
     : file_(std::move(file)),
       label_(std::move(label)),
       prefix_(std::move(prefix)),
-      line_(map.line),
-      largest_(largest) {
+      line_(map.line) {
+  entries_.reserve(map.pairs.size());
   for (const YamlValue::Pair& pair : map.pairs) {
     const int line = pair.key.line;
     if (pair.key.kind != YamlValue::Kind::text)
@@ -155,8 +208,9 @@ YamlMap::YamlMap(std::string file, std::string label, std::string prefix, const 
                        fmt::format("found {}, expected a name", pair.key.described()));
     const std::string& key = pair.key.text;
     if (const Entry* first = find(key))
-      fail({key, {}, line},
+      fail(key, line,
            fmt::format("found a second time, first in line {}; expected once", first->line));
+    index_.emplace(key, entries_.size());
     entries_.push_back({key, pair.value, line});
   }
 }
@@ -169,28 +223,57 @@ void YamlMap::expectOnly(const std::vector<std::string>& known) const {
 }
 
 const YamlMap::Entry* YamlMap::find(const std::string& key) const {
-  const auto it = std::find_if(entries_.begin(), entries_.end(),
-                               [&](const Entry& entry) { return entry.key == key; });
-  return it == entries_.end() ? nullptr : &*it;
+  const auto it = index_.find(key);
+  return it == index_.end() ? nullptr : &entries_[it->second];
 }
 
 const YamlMap::Entry& YamlMap::required(const std::string& key, const std::string& expected) const {
   const Entry* entry = find(key);
-  if (!entry) fail({key, {}, line_}, "found no such key, expected " + expected);
+  if (!entry) fail(key, line_, "found no such key, expected " + expected);
   return *entry;
 }
 
-double YamlMap::number(const Entry& entry, Range range) const {
-  const std::optional<double> x = entry.value.finiteNumber();
-  const bool inside =
-      x && (range == Range::any || *x > 0.0 || (range == Range::notNegative && *x == 0.0));
-  if (inside && std::abs(*x) <= largest_) return *x;
+double YamlMap::checked(const Entry& entry, const YamlValue& value, const std::string& which,
+                        Range range) const {
+  const std::optional<double> x = value.finiteNumber();
+  const bool fromZero = range == Range::any || range == Range::notNegative;
+  const bool inside = x && (range == Range::any || (range == Range::notZero && *x != 0.0) ||
+                            *x > 0.0 || (range == Range::notNegative && *x == 0.0));
+  const double size = inside ? std::abs(*x) : 0.0;
+  if (inside && size <= kLargestNumber && (fromZero || size >= kSmallestNumber)) return *x;
   const char* const bound = range == Range::notNegative ? " >= 0"
                             : range == Range::positive  ? " > 0"
+                            : range == Range::notZero   ? " other than 0"
                                                         : "";
-  const std::string size = inside ? fmt::format(" of size {:g} at most", largest_) : "";
-  fail(entry,
-       fmt::format("found {}, expected a finite number{}{}", entry.value.described(), bound, size));
+  std::string limits;
+  if (inside && fromZero) limits = fmt::format(" of size {:g} at most", kLargestNumber);
+  if (inside && !fromZero)
+    limits = fmt::format(" of a size from {:g} to {:g}", kSmallestNumber, kLargestNumber);
+  // A number of a list may be in a line of its own; nothing has that of what follows it.
+  fail(entry.key, value.kind == YamlValue::Kind::text ? value.line : entry.line,
+       fmt::format("found {}{}, expected {}{}{}", value.described(), which,
+                   which.empty() ? "a finite number" : "numbers", bound, limits));
+}
+
+double YamlMap::number(const Entry& entry, Range range) const {
+  return checked(entry, entry.value, "", range);
+}
+
+std::vector<double> YamlMap::numbers(const Entry& entry, std::size_t fewest, std::size_t most,
+                                     const std::string& expected, Range range) const {
+  const std::vector<YamlValue>& items = entry.value.items;
+  if (entry.value.kind != YamlValue::Kind::list || items.size() < fewest || items.size() > most)
+    fail(entry, fmt::format("found {}, expected {}", entry.value.described(), expected));
+  std::vector<double> numbers;
+  for (const YamlValue& item : items) {
+    const std::string which = fmt::format(" as number {}", numbers.size() + 1);
+    const std::optional<double> x = item.finiteNumber();
+    if (!x || (range == Range::positive && !(*x > 0.0)))
+      fail(entry.key, item.line,
+           fmt::format("found {}{}, expected {}", item.described(), which, expected));
+    numbers.push_back(checked(entry, item, which, range));
+  }
+  return numbers;
 }
 
 bool YamlMap::boolean(const Entry& entry) const {
@@ -210,24 +293,10 @@ int YamlMap::integer(const Entry& entry, const std::vector<int>& allowed) const 
 }
 
 Vector3 YamlMap::vector3(const Entry& entry) const {
-  const YamlValue& value = entry.value;
-  if (value.kind != YamlValue::Kind::list || value.items.size() != 3)
-    fail(entry, fmt::format("found {}, expected three numbers [x, y, z]", value.described()));
-  Vector3 p;
-  for (int i = 0; i < 3; ++i) {
-    const YamlValue& item = value.items[static_cast<std::size_t>(i)];
-    const std::optional<double> x = item.finiteNumber();
-    if (!x)
-      fail({entry.key, {}, item.line},
-           fmt::format("found {} as number {}, expected three finite numbers [x, y, z]",
-                       item.described(), i + 1));
-    if (std::abs(*x) > largest_)
-      fail({entry.key, {}, item.line},
-           fmt::format("found {} as number {}, expected numbers of size {:g} at most",
-                       item.described(), i + 1, largest_));
-    p[i] = *x;
-  }
-  return p;
+  if (entry.value.kind != YamlValue::Kind::list || entry.value.items.size() != 3)
+    fail(entry, fmt::format("found {}, expected three numbers [x, y, z]", entry.value.described()));
+  const std::vector<double> p = numbers(entry, 3, 3, "three finite numbers [x, y, z]");
+  return {p[0], p[1], p[2]};
 }
 
 std::string YamlMap::name(const Entry& entry) const {
@@ -244,10 +313,19 @@ std::string YamlMap::choice(const Entry& entry, const std::vector<std::string>& 
                           listed(names, 40), suggestion(entry.value.text, names)));
 }
 
+std::string YamlMap::known(const Entry& entry, const std::set<std::string>& names,
+                           const std::string& expected) const {
+  const std::string found = name(entry);
+  if (names.count(found) == 0)
+    fail(entry, fmt::format("found {}, expected {}{}", entry.value.described(), expected,
+                            offered(found, {names.begin(), names.end()})));
+  return found;
+}
+
 YamlMap YamlMap::map(const Entry& entry) const {
   if (entry.value.kind != YamlValue::Kind::map)
     fail(entry, fmt::format("found {}, expected a map {{…}}", entry.value.described()));
-  return {file_, label_, prefix_ + entry.key + ".", entry.value, largest_};
+  return {file_, label_, prefix_ + entry.key + ".", entry.value};
 }
 
 const std::vector<YamlValue>& YamlMap::list(const Entry& entry) const {
@@ -264,8 +342,16 @@ void YamlMap::read(const std::string& key, Vector3& x) const {
   if (const Entry* entry = find(key)) x = vector3(*entry);
 }
 
+std::string YamlMap::element(const Entry& entry) const {
+  return label_ + "key " + quotedText(prefix_ + entry.key);
+}
+
 void YamlMap::fail(const Entry& entry, const std::string& problem) const {
-  throw ModelError({file_, entry.line}, label_ + "key " + quotedText(prefix_ + entry.key), problem);
+  fail(entry.key, entry.line, problem);
+}
+
+void YamlMap::fail(const std::string& key, int line, const std::string& problem) const {
+  throw ModelError({file_, line}, label_ + "key " + quotedText(prefix_ + key), problem);
 }
 
 }  // namespace softgauss::io::detail

@@ -3,14 +3,16 @@
 
 /// YAML read strictly: a tree of values with lines, and maps whose every key is accounted for.
 
-#include <memory>
 #include <optional>
+#include <set>
 #include <string>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
 #include "engine/core/check.hpp"
 #include "engine/core/types.hpp"
+#include "io/detail/text.hpp"
 
 namespace softgauss::io::detail {
 
@@ -38,25 +40,23 @@ struct YamlValue::Pair {
 /// The only document of a file. Throws ModelError; `expected` says what an empty file should hold.
 YamlValue parseYaml(const std::string& file, const std::string& text, const std::string& expected);
 
-/// Text as messages show it: short, and without characters that move a terminal's cursor.
-std::string quotedText(std::string text);
+/// Numbers of every range lie within ±kLargestNumber; what is not to be zero has at least the size
+/// kSmallestNumber.
+enum class Range { any, notNegative, positive, notZero };
 
-enum class Range { any, notNegative, positive };
-
-/// A map of the file, and what messages need to name it. Its keys are distinct names. Everything
-/// throws ModelError `file:line: <label>key 'key': found …, expected …`.
+/// A map of the file, and what messages need to name it. Its keys are distinct names. It refers to
+/// the value that it is made of. Everything throws ModelError
+/// `file:line: <label>key 'key': found …, expected …`.
 class YamlMap {
  public:
   struct Entry {
     std::string key;
-    YamlValue value;
+    const YamlValue& value;
     int line = 0;
   };
 
   /// `label` is how messages begin, "goal 2 'reach': "; `prefix` what they put before keys.
-  /// Numbers beyond ±`largest` are refused.
-  YamlMap(std::string file, std::string label, std::string prefix, const YamlValue& map,
-          double largest = kInfinity);
+  YamlMap(std::string file, std::string label, std::string prefix, const YamlValue& map);
 
   const std::string& file() const { return file_; }
   int line() const { return line_; }  ///< in which it begins
@@ -70,9 +70,15 @@ class YamlMap {
   bool boolean(const Entry& entry) const;
   int integer(const Entry& entry, const std::vector<int>& allowed) const;
   Vector3 vector3(const Entry& entry) const;
+  /// A list of at least `fewest` and at most `most` numbers; `expected` says so in words.
+  std::vector<double> numbers(const Entry& entry, std::size_t fewest, std::size_t most,
+                              const std::string& expected, Range range = Range::any) const;
   std::string name(const Entry& entry) const;
   /// One of the names.
   std::string choice(const Entry& entry, const std::vector<std::string>& names) const;
+  /// One of the names of a scene, which may be many; `expected` says what they are.
+  std::string known(const Entry& entry, const std::set<std::string>& names,
+                    const std::string& expected) const;
   /// The map that is the value of the entry; messages call its keys `key.…`.
   YamlMap map(const Entry& entry) const;
   /// The list that is the value of the entry.
@@ -82,13 +88,20 @@ class YamlMap {
   void read(const std::string& key, double& x, Range range) const;
   void read(const std::string& key, Vector3& x) const;
 
+  /// What messages call the entry: "robot 1: key 'joints.elbow'".
+  std::string element(const Entry& entry) const;
   [[noreturn]] void fail(const Entry& entry, const std::string& problem) const;
+  /// Where something is that has no value here: a key that is missing, say.
+  [[noreturn]] void fail(const std::string& key, int line, const std::string& problem) const;
 
  private:
+  double checked(const Entry& entry, const YamlValue& value, const std::string& which,
+                 Range range) const;
+
   std::string file_, label_, prefix_;
   int line_ = 0;
-  double largest_ = kInfinity;
   std::vector<Entry> entries_;
+  std::unordered_map<std::string, std::size_t> index_;  ///< of entries, by key
 };
 
 }  // namespace softgauss::io::detail

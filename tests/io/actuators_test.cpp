@@ -87,7 +87,7 @@ TEST(SceneActuators, RefusalsNameFileLineAndActuator) {
       {"  - {name: l, joints: {}}\n", "found no joint"},
       {"  - {name: l, joints: {pam: 1}}\n", "key 'joints.pam': found no joint"},
       {"  - {name: l, joints: {copy: 1}}\n", "mimics 'pan'"},
-      {"  - {name: l, joints: {pan: 0}}\n", "key 'joints.pan': found 0"},
+      {"  - {name: l, joints: {pan: 0}}\n", "key 'joints.pan': found '0'"},
       {"  - {name: l, joints: {pan: 1}, effort: -2}\n", "key 'effort'"},
       {"  - {name: l, joints: {pan: 1}, bounds: [1]}\n", "expected two finite numbers"},
       {"  - {name: l, joints: {pan: 1}, bounds: [2, 1]}\n", "lower bound 2 above the upper one 1"},

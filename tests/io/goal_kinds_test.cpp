@@ -136,7 +136,7 @@ TEST(JointGoalsInFiles, BadOnesAreRefused) {
             "'joint_posture': key 'joints': found an empty map, expected at least one joint");
   EXPECT_EQ(errorOfItem("acceleration: {joints: {sholder: 1}}"),
             "'acceleration': key 'joints.sholder': found an unknown joint, expected one of model "
-            "'sample', did you mean 'shoulder'?");
+            "'sample', did you mean 'shoulder'? there are: shoulder");
   EXPECT_EQ(errorOfItem("acceleration: {joints: {shoulder: 1}, weight: -1}"),
             "'acceleration': key 'weight': found '-1', expected a finite number >= 0");
   EXPECT_EQ(errorOfItem("acceleration: {joints: {shoulder: 1}, stiffness: 1}"),
@@ -255,7 +255,7 @@ TEST(BalanceGoalsInFiles, BadOnesAreRefused) {
         << axes;
   EXPECT_EQ(errorOfItem("center_of_mass: {link: amr}"),
             "'center_of_mass': key 'link': found 'amr', expected a link of model 'sample', did "
-            "you mean 'arm'?");
+            "you mean 'arm'? there are: base, arm");
   EXPECT_EQ(errorOfItem("momentum: {rate: -1}"),
             "'momentum': key 'rate': found '-1', expected a finite number >= 0");
   EXPECT_EQ(errorOfItem("capture_point: {}"),
@@ -322,7 +322,7 @@ TEST(ContactGoalsInFiles, BadOnesAreRefused) {
             "'contact_force': key 'force': found no such key, expected three numbers [x, y, z]");
   EXPECT_EQ(errorOfItem("contact_force: {link: amr, force: [1, 2, 3]}"),
             "'contact_force': key 'link': found 'amr', expected a link of model 'sample', did you "
-            "mean 'arm'?");
+            "mean 'arm'? there are: base, arm");
   EXPECT_EQ(errorOfItem(force + ", by: bass}"),
             "'contact_force': key 'by': found 'bass', expected world or a link of model 'sample' "
             "with collision geometry, did you mean 'base'?");

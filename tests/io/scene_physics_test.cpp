@@ -204,7 +204,7 @@ TEST(SceneFile, RefusalsOfPairsOptionsAndWrenches) {
   const std::pair<std::string, std::string> cases[] = {
       {ball + "pairs: {a: ball}", "key 'pairs': found a map"},
       {ball + "pairs: [{a: ball, friction: 1}]", ":2: pair 1: key 'b': found no such key"},
-      {ball + "pairs: [{a: ball, b: bal}]", "key 'b': found 'bal', expected one of ball"},
+      {ball + "pairs: [{a: ball, b: bal}]", "key 'b': found 'bal', expected the name of a link"},
       {ball + "pairs: [{a: ball, b: ball, friction: 1}]", "key 'b': found 'ball' as in a"},
       {ball + "pairs: [{a: ball, b: ground}]", "found nothing else, expected a material or"},
       {ball + "pairs: [{a: ball, b: ground, friction: nan}]", "key 'friction': found 'nan'"},
@@ -222,7 +222,7 @@ TEST(SceneFile, RefusalsOfPairsOptionsAndWrenches) {
        "key 'options.cone': found 'round', expected one of pyramidal, elliptic"},
       {ball + "options: {gdd_solver: both}",
        "key 'options.gdd_solver': found 'both', expected one of active-set, augmented-lagrangian"},
-      {"objects: [{name: b, sphere: {radius: 1e-200}}]", "is too small to have a volume"},
+      {"objects: [{name: b, sphere: {radius: 1e-200}}]", "key 'sphere.radius': found '1e-200'"},
       {"a: &a [*a]", "an alias inside of what it stands for"},
       {ball + "options: {no_slip: 1}", "key 'options.no_slip': found"},
       {ball + "options: {friction: 1}", "key 'options.friction': found an unknown key"},

@@ -47,7 +47,7 @@ const BadInput kBadInputs[] = {
     {"OpenComment", "<link name=\"arm\">", "<!-- <link name=\"arm\">",
      "bad.urdf:13: XML: a comment is not closed"},
     {"AnotherFormat", "<robot name=\"sample\">", "<sdf/><robot name=\"sample\">",
-     "bad.urdf:2: <sdf>: is the outermost element, expected <robot>"},
+     "bad.urdf:2: file: is SDF, the format of Gazebo, which is not read; expected a URDF"},
     {"TwoRobots", "</robot>", "</robot>\n<robot/>", "bad.urdf:26: <robot>: follows </robot>"},
     // Names and structure
     {"RobotWithoutName", " name=\"sample\"", "", "bad.urdf:2: robot: has no attribute 'name'"},
@@ -172,7 +172,8 @@ TEST(UrdfFile, ThatIsNotThereIsNamed) {
           loadUrdf("no/such/robot.urdf");
         } catch (const ModelError& error) {
           EXPECT_STREQ(error.what(),
-                       "no/such/robot.urdf: file: cannot be read, expected a URDF file");
+                       "no/such/robot.urdf: file: cannot be read: No such file or directory, "
+                       "expected a URDF file");
           throw;
         }
       },

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The state in which a scene starts.
+
+#include <fmt/format.h>
+
+#include <map>
+
+#include "engine/core/check.hpp"
+#include "engine/model/followers.hpp"
+#include "io/scene.hpp"
+
+namespace softgauss::io {
+
+std::set<int> SceneFile::placedJoints(const Model& model) const {
+  std::set<int> bodies;
+  for (const JointValue& position : positions) bodies.insert(model.findJoint(position.joint));
+  return bodies;
+}
+
+State SceneFile::initialState(const Model& model) const {
+  State state(model);
+  std::map<int, const JointRange*> ranges;
+  for (const JointRange& range : model.ranges) ranges[range.body] = &range;
+  for (const auto& [joint, value, where, element] : positions) {
+    const int body = model.findJoint(joint);
+    const auto range = ranges.find(body);
+    if (range != ranges.end() && (value < range->second->lower || value > range->second->upper))
+      throw ModelError(where, element,
+                       fmt::format("found {:g}, expected a position within the joint's range, {:g} "
+                                   "to {:g}",
+                                   value, range->second->lower, range->second->upper));
+    state.q[model.bodies[static_cast<std::size_t>(body)].q] = value;
+  }
+  placeFollowers(model, placedJoints(model), state.q);
+  for (const JointValue& velocity : velocities)
+    state.v[model.bodies[static_cast<std::size_t>(model.findJoint(velocity.joint))].v] =
+        velocity.value;
+  for (const Start& start : starts) {
+    const Frame& frame = model.frames[static_cast<std::size_t>(model.findFrame(start.link))];
+    const Body& body = model.bodies[static_cast<std::size_t>(frame.body)];
+    const Quaternion q(state.q[body.q + 3], state.q[body.q + 4], state.q[body.q + 5],
+                       state.q[body.q + 6]);
+    state.v.segment<3>(body.v) = start.velocity;
+    state.v.segment<3>(body.v + 3) = q.conjugate() * start.angularVelocity;
+  }
+  return state;
+}
+
+}  // namespace softgauss::io
