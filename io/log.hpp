@@ -73,8 +73,8 @@ std::vector<std::string> logColumns(const Model& model, const std::vector<std::s
 /// of the writer's life.
 class LogWriter {
  public:
-  /// Every `every`-th record is written, and the last. Throws ModelError if the file cannot be
-  /// made.
+  /// Every `every`-th record is written, and the last. "-" is standard output. Throws ModelError if
+  /// the file cannot be made.
   LogWriter(const std::filesystem::path& file, const Model& model,
             const std::vector<std::string>& goals = {}, long every = 1);
   ~LogWriter();

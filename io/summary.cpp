@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <numeric>
 
 #include "engine/core/check.hpp"
+#include "io/detail/output_file.hpp"
 
 namespace softgauss::io {
 namespace {
@@ -237,11 +237,9 @@ std::string Summary::json() const {
 }
 
 void Summary::write(const std::filesystem::path& file) const {
-  const std::string text = json();
-  std::FILE* out = std::fopen(file.string().c_str(), "wb");
-  const bool written = out && std::fwrite(text.data(), 1, text.size(), out) == text.size();
-  const bool closed = out && std::fclose(out) == 0;
-  if (!written || !closed) throw ModelError({file.string(), 0}, "summary", "cannot be written");
+  detail::OutputFile out(file, "summary");
+  out.write(json());
+  out.commit();
 }
 
 }  // namespace softgauss::io

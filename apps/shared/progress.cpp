@@ -2,29 +2,12 @@
 #include "apps/shared/progress.hpp"
 
 #include <fmt/format.h>
-#include <signal.h>
 #include <unistd.h>
 
 #include <cstdio>
 #include <utility>
 
 namespace softgauss::app {
-namespace {
-
-volatile sig_atomic_t interruptRequested = 0;
-
-}  // namespace
-
-void catchInterrupts() {
-  struct sigaction action = {};
-  action.sa_handler = [](int) { interruptRequested = 1; };
-  action.sa_flags = SA_RESETHAND;
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
-}
-
-bool interrupted() { return interruptRequested != 0; }
-
 Progress::Progress(std::string what) : what_(std::move(what)), visible_(isatty(fileno(stderr))) {}
 
 void Progress::clear() {

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// What a person at a terminal sees and may do while the benchmark runs.
+/// What a person at a terminal sees and may do while a benchmark runs.
 
 #include <string>
 
-namespace softgauss::app {
+#include "apps/shared/interrupt.hpp"
 
-/// From here on a first SIGINT or SIGTERM asks the run to end in order; a second one ends it.
-void catchInterrupts();
-bool interrupted();
+namespace softgauss::app {
 
 /// One line on stderr, on a terminal only.
 class Progress {

@@ -10,6 +10,8 @@
 namespace softgauss::app {
 namespace {
 
+constexpr double kLargest = 1e12;  // as in files
+
 std::vector<std::string> split(const std::string& text, char separator) {
   std::vector<std::string> parts(1);
   for (const char c : text) {
@@ -43,15 +45,25 @@ double parseNumber(const std::string& given, const std::string& context) {
   const auto [rest, error] = std::from_chars(text.data(), end, value);
   if (error != std::errc() || rest != end || !std::isfinite(value))
     throw UsageError(fmt::format("{}: '{}' is not a number", context, text));
+  if (std::abs(value) > kLargest)
+    throw UsageError(fmt::format("{}: found {}, expected a number of size {:g} at most", context,
+                                 text, kLargest));
   return value;
 }
 
 double parseWeight(const std::string& text, const std::string& context) {
-  constexpr double kLargest = 1e12;
   const double weight = parseNumber(text, context);
   if (!(weight >= 0.0 && weight <= kLargest))
     throw UsageError(fmt::format("{}: found the weight {}, expected 0 to 1e12", context, weight));
   return weight;
+}
+
+std::uintmax_t bytesOf(double megabytes, const std::string& context) {
+  constexpr double kMost = 1e6;
+  if (!(megabytes > 0.0 && megabytes <= kMost))
+    throw UsageError(fmt::format("{} {:g}: expected megabytes, above 0 and at most {:g}", context,
+                                 megabytes, kMost));
+  return static_cast<std::uintmax_t>(megabytes * (1 << 20));
 }
 
 ReachArgument parseReach(const std::string& text) {

@@ -4,6 +4,7 @@
 /// Values of the command line, from their text. `context`: how messages begin. All throw
 /// UsageError.
 
+#include <cstdint>
 #include <string>
 
 #include "apps/simulate_gdd/options.hpp"
@@ -15,6 +16,7 @@ std::string trimmed(const std::string& text);
 double parseNumber(const std::string& given, const std::string& context);
 /// A weight as a file of goals has them.
 double parseWeight(const std::string& text, const std::string& context);
+std::uintmax_t bytesOf(double megabytes, const std::string& context);
 /// What follows --reach.
 ReachArgument parseReach(const std::string& text);
 /// What follows --effects.

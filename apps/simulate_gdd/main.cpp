@@ -5,38 +5,53 @@
 
 #include <exception>
 
+#include "apps/shared/standard_streams.hpp"
 #include "apps/simulate_gdd/accuracy.hpp"
 #include "apps/simulate_gdd/run.hpp"
 
-int main(int argc, char** argv) {
-  using namespace softgauss;
+namespace softgauss::app {
+namespace {
+
+int runProgram(int argc, char** argv) {
   try {
-    const auto options = app::parseCommandLine(argc, argv);
-    if (!options) return app::kDone;
-    const auto scene = app::loadScene(*options);
+    const auto options = parseCommandLine(argc, argv);
+    if (!options) return kDone;
+    const auto scene = loadScene(*options);
+    std::FILE* const report = options->writesToStandardOutput() ? stderr : stdout;
     if (options->explain) {
-      fmt::print("{}", app::explainScene(*scene));
-      return app::kDone;
+      print(report, explainScene(*scene));
+      return kDone;
     }
     if (options->accuracy) {
-      const std::string choice = app::chooseAccuracy(*options, *scene);
-      if (!options->quiet) fmt::print("{}\n", choice);
+      const std::string choice = chooseAccuracy(*options, *scene);
+      if (!options->quiet) print(report, choice + "\n");
     }
-    return app::run(*options, *scene);
-  } catch (const app::UsageError& error) {
-    fmt::print(stderr, "simulate_gdd: {}\nsimulate_gdd --help lists the options\n", error.what());
-    return app::kBadInput;
-  } catch (const app::OutputError& error) {
-    fmt::print(stderr, "simulate_gdd: {}\n", error.what());
-    return app::kBadInput;
-  } catch (const app::AccuracyError& error) {
-    fmt::print(stderr, "simulate_gdd: {}\n", error.what());
-    return app::kBadInput;
+    return run(*options, *scene);
+  } catch (const UsageError& error) {
+    tell(fmt::format("simulate_gdd: {}\nsimulate_gdd --help lists the options", error.what()));
+    return kBadInput;
+  } catch (const OutputError& error) {
+    tell(fmt::format("simulate_gdd: {}", error.what()));
+    return kBadInput;
+  } catch (const AccuracyError& error) {
+    tell(fmt::format("simulate_gdd: {}", error.what()));
+    return kBadInput;
   } catch (const ModelError& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return app::kBadInput;
+    tell(error.what());
+    return kBadInput;
   } catch (const std::exception& error) {
-    fmt::print(stderr, "simulate_gdd: internal error: {}\n", error.what());
-    return app::kInternalError;
+    tell(fmt::format("simulate_gdd: internal error: {}", error.what()));
+    return kInternalError;
   }
+}
+
+}  // namespace
+}  // namespace softgauss::app
+
+int main(int argc, char** argv) {
+  using namespace softgauss;
+  app::prepareStreams();
+  const int code = app::runProgram(argc, argv);
+  const int output = app::finishStandardOutput("simulate_gdd");
+  return code != app::kDone ? code : output;
 }

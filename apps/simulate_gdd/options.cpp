@@ -7,64 +7,33 @@
 #include <cmath>
 
 #include "apps/simulate_gdd/argument_values.hpp"
+#include "io/inputs.hpp"
+#include "io/names.hpp"
 
 namespace softgauss::app {
 namespace {
 
-constexpr double kLongestStep = 1.0;  // [s]
-constexpr double kMostStepsOfARun = 1e9;
 constexpr double kFarthest = 1e6;  // [m] farther out, doubles no longer resolve a contact
 
-/// What integrators are also called.
-constexpr std::pair<const char*, const char*> kShortNames[] = {{"euler", "semi-implicit-euler"},
-                                                               {"midpoint", "implicit-midpoint"},
-                                                               {"rk4", "runge-kutta-4"},
-                                                               {"dopri5", "dormand-prince"}};
-
-std::string fullName(const std::string& integrator) {
-  for (const auto& [name, full] : kShortNames)
-    if (integrator == name) return full;
-  return integrator;
+/// Refuses options without their value: `--log ""`, and `--log=`, which would take the next
+/// argument.
+void expectValues(CLI::App& app, int argc, char** argv) {
+  for (int i = 1; i < argc; ++i) {
+    const std::string argument = argv[i];
+    if (argument == "--") break;
+    if (argument.starts_with("--") && argument.find('=') + 1 == argument.size())
+      throw UsageError(argument + ": found nothing, expected a value");
+  }
+  const CLI::Validator hasText(
+      [](const std::string& value) {
+        return trimmed(value).empty() ? "found nothing, expected a value" : "";
+      },
+      "");
+  for (CLI::Option* option : app.get_options())
+    if (option->get_items_expected_max() > 0) option->check(hasText);
 }
 
 }  // namespace
-
-void checkOutputs(const SimulateOptions& options, const std::vector<std::filesystem::path>& read) {
-  std::vector<std::pair<std::string, std::filesystem::path>> files = {
-      {"MODEL", options.model}, {"--goals", options.goals}, {"--torques", options.torques}};
-  for (const std::filesystem::path& file : read) files.emplace_back(file.string(), file);
-  const std::size_t inputs = files.size();
-  for (const auto& [option, file] : {std::pair{"--log", &options.log},
-                                     {"--contacts", &options.contacts},
-                                     {"--summary", &options.summary},
-                                     {"--view", &options.view},
-                                     {"--plot", &options.plot}})
-    files.emplace_back(option, *file);
-  const auto same = [](const std::filesystem::path& a, const std::filesystem::path& b) {
-    std::error_code error;
-    return !a.empty() && !b.empty() &&
-           (std::filesystem::weakly_canonical(a, error) ==
-                std::filesystem::weakly_canonical(b, error) ||
-            std::filesystem::equivalent(a, b, error));
-  };
-  for (std::size_t out = inputs; out < files.size(); ++out)
-    for (std::size_t other = 0; other < out; ++other)
-      if (same(files[out].second, files[other].second))
-        throw UsageError(
-            fmt::format("{} would overwrite {}", files[out].first, files[other].first));
-}
-
-void checkSteps(const SimulateOptions& options, double timestep) {
-  if (timestep > kLongestStep)
-    throw UsageError(fmt::format("--timestep {}: expected at most {} s", timestep, kLongestStep));
-  if (options.duration / timestep > kMostStepsOfARun)
-    throw UsageError(fmt::format("--duration {} is more than {:g} steps of {} s", options.duration,
-                                 kMostStepsOfARun, timestep));
-}
-
-bool SimulateOptions::isScene() const {
-  return model.extension() == ".yaml" || model.extension() == ".yml";
-}
 
 std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
   SimulateOptions options;
@@ -79,7 +48,9 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
     options.commandLine +=
         i == 0 ? std::filesystem::path(argv[0]).filename().string() : fmt::format(" {}", argv[i]);
 
-  app.add_option("MODEL", options.model, "a .urdf file, or a .yaml scene (docs/scenes.md)")
+  app.add_option("MODEL", options.model,
+                 "a .urdf file, or a .yaml scene (docs/scenes.md); - reads either from standard "
+                 "input")
       ->required();
   const char* const scene = "Scene";
   app.add_option("--base", base,
@@ -120,6 +91,14 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
                  "where package://NAME/… is looked for first; repeatable")
       ->allow_extra_args(false)
       ->group(scene);
+  app.add_option("--most-dofs", options.mostDofs,
+                 "the largest model that is loaded [degrees of freedom], default 2000")
+      ->group(scene);
+  double largestFile = 0.0;
+  CLI::Option* const asksForFiles =
+      app.add_option("--largest-file", largestFile,
+                     "the largest URDF, scene, goals or table that is read [MB], default 64")
+          ->group(scene);
 
   const char* const goals = "Goals";
   app.add_option(
@@ -149,19 +128,15 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
       ->group(simulation);
   app.add_option("--timestep", options.timestep, "step [s], default 0.002 or as the scene says")
       ->group(simulation);
-  std::vector<std::string> integrators;
   std::string integratorHelp;
-  for (const IntegratorName& i : kIntegratorNames) {
-    integratorHelp += std::string(integrators.empty() ? "" : ";\n") + std::string(i.name) +
+  for (const IntegratorName& i : kIntegratorNames)
+    integratorHelp += std::string(integratorHelp.empty() ? "" : ";\n") + std::string(i.name) +
                       (i.integrator == Integrator::semiImplicitEuler ? " (default without goals): "
                        : i.integrator == Integrator::leapfrog        ? " (default with goals): "
                                                                      : ": ") +
                       std::string(i.description);
-    integrators.emplace_back(i.name);
-  }
-  for (const auto& [name, full] : kShortNames) integrators.emplace_back(name);
   app.add_option("--integrator", integrator, integratorHelp)
-      ->check(CLI::IsMember(integrators))
+      ->check(CLI::IsMember(io::integratorNames()))
       ->group(simulation);
   app.add_option("--integration-tolerance", options.integrationTolerance,
                  "largest error that a step of dormand-prince, or of --step-doubling, leaves\n"
@@ -225,7 +200,9 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
   const char* const output = "Output";
   app.add_flag("--explain", options.explain, "tell what was loaded and simulate nothing")
       ->group(output);
-  app.add_option("--log", options.log, "write every step to a .csv file")->group(output);
+  app.add_option("--log", options.log,
+                 "write every step to a .csv file; here and below - is standard output")
+      ->group(output);
   app.add_option("--log-every", options.logEvery, "write every N-th step to the log, default 1")
       ->check(CLI::Range(1L, 1000000000L))
       ->group(output);
@@ -246,6 +223,7 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
       ->group(output);
   app.add_flag("--quiet", options.quiet, "print errors only")->group(output);
 
+  expectValues(app, argc, argv);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& success) {  // --help, --version
@@ -255,6 +233,9 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
     throw UsageError(error.what());
   }
 
+  if (asksForFiles->count() > 0) io::inputLimits().text = bytesOf(largestFile, "--largest-file");
+  if (options.mostDofs < 1)
+    throw UsageError(fmt::format("--most-dofs {}: expected 1 or more", options.mostDofs));
   options.base = base == "fixed"      ? BaseKind::fixed
                  : base == "floating" ? BaseKind::floating
                                       : BaseKind::automatic;
@@ -272,7 +253,7 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
     if (!(*tolerance > 0.0 && std::isfinite(*tolerance)))
       throw UsageError(fmt::format(
           "--integration-tolerance {:g}: expected metres or radians of error above 0", *tolerance));
-  if (options.timestep) checkSteps(options, *options.timestep);
+  if (options.timestep) checkSteps(options, *options.timestep, {});
   const auto mustBeNear = [](double metres, const std::string& option) {
     if (!(std::abs(metres) <= kFarthest))
       throw UsageError(
@@ -283,7 +264,7 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
     if (base == "fixed")
       throw UsageError("--base-height is for a floating base, and --base is fixed");
   }
-  if (!integrator.empty()) options.integrator = integratorFromName(fullName(integrator));
+  if (!integrator.empty()) options.integrator = io::integratorCalled(integrator);
   if (!cone.empty()) options.cone = cone == "elliptic" ? Cone::elliptic : Cone::pyramidal;
   if (!solver.empty())
     options.gddSolver =
@@ -317,6 +298,11 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
     options.q0.emplace_back(trimmed(text.substr(0, equals)),
                             parseNumber(text.substr(equals + 1), "--q0"));
   }
+  int fromStandardInput = 0;
+  for (const auto* file : {&options.model, &options.goals, &options.torques})
+    fromStandardInput += *file == io::kStandardInput ? 1 : 0;
+  if (fromStandardInput > 1)
+    throw UsageError("standard input (-) can be only one of MODEL, --goals and --torques");
   checkOutputs(options, {});
   if (options.isScene())
     for (const auto& [option, given] : {std::pair{"--base", !base.empty() && base != "automatic"},

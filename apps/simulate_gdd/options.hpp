@@ -43,6 +43,7 @@ struct SimulateOptions {
   std::vector<std::pair<std::string, double>> q0;
   std::optional<EffectSet> effects;  ///< absent: the scene's own, or all
   bool zeroEffortIsUnlimited = false;
+  int mostDofs = 2000;                ///< more take minutes to load and gigabytes to hold
   std::optional<io::MeshUse> meshes;  ///< absent: automatic, or hull as MuJoCo has it
   bool noSlip = false, levelSlip = false;
   bool exactDiagonal = false;
@@ -67,8 +68,10 @@ struct SimulateOptions {
   std::string commandLine;  ///< as it was typed
   std::vector<std::filesystem::path> packagePaths;
 
-  /// MODEL is a scene file, not a URDF.
+  /// MODEL is a scene file, not a URDF. Standard input is looked at. Throws ModelError.
   bool isScene() const;
+  /// Some output is standard output, which then holds nothing else.
+  bool writesToStandardOutput() const;
 };
 
 /// A command line that cannot be run: exit code 2.
@@ -83,12 +86,14 @@ class OutputError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// An output may not overwrite an input or another output. `read`: files that the model named.
-/// Throws UsageError.
+/// An output may not overwrite an input or another output, and must be possible to make; all of
+/// them are looked at before any is. `read`: files that the model named. Throws UsageError and
+/// ModelError.
 void checkOutputs(const SimulateOptions& options, const std::vector<std::filesystem::path>& read);
 
-/// Throws UsageError when the step is too long, or the run has too many of them.
-void checkSteps(const SimulateOptions& options, double timestep);
+/// Throws when the step is too long, or the run has too many of them: ModelError where a file says
+/// so in the line `where`, UsageError without one.
+void checkSteps(const SimulateOptions& options, double timestep, const SourceLocation& where);
 
 /// Parses argv. Returns nothing when the program is done already (--help, --version), which it
 /// has printed. Throws UsageError.

@@ -8,6 +8,8 @@
 #include <cstdio>
 #include <string>
 
+#include "apps/shared/standard_streams.hpp"
+
 namespace softgauss::app {
 
 RunProgress::RunProgress(double duration, bool quiet)
@@ -23,22 +25,22 @@ void RunProgress::show(double simulated, double elapsed) {
   for (int i = 0; i < kWidth; ++i) bar += i < filled ? "█" : "░";
   const double speed = elapsed > 0.0 ? simulated / elapsed : 0.0;
   const double left = speed > 0.0 ? (duration_ - simulated) / speed : 0.0;
-  fmt::print(stderr, "\r{} {:6.2f} / {:.4g} s   {:5.1f} × real time   {:.0f} s left \033[K", bar,
-             simulated, duration_, speed, left);
+  print(stderr, fmt::format("\r{} {:6.2f} / {:.4g} s   {:5.1f} × real time   {:.0f} s left \033[K",
+                            bar, simulated, duration_, speed, left));
   std::fflush(stderr);
 }
 
 void RunProgress::showTrial(int trial, const std::string& setting, double share, double elapsed) {
   if (!visible_ || elapsed - lastShown_ < 0.1) return;
   lastShown_ = elapsed;
-  fmt::print(stderr, "\rtrial {}: {}: {:.0f} %   {:.0f} s \033[K", trial, setting, 100.0 * share,
-             elapsed);
+  print(stderr, fmt::format("\rtrial {}: {}: {:.0f} %   {:.0f} s \033[K", trial, setting,
+                            100.0 * share, elapsed));
   std::fflush(stderr);
 }
 
 void RunProgress::clear() {
   if (!visible_ || lastShown_ < 0.0) return;
-  fmt::print(stderr, "\r\033[K");
+  print(stderr, "\r\033[K");
   std::fflush(stderr);
 }
 

@@ -45,21 +45,21 @@ Replay::Replay(const SimulateOptions& options, const Scene& scene,
   if (page_) recording_->hulls = collidingHulls(scene);
 }
 
-std::string Replay::finish(const io::StepRecord& last, const Data& data, const io::Summary& summary,
-                           const std::string& message) {
+std::vector<std::string> Replay::finish(const io::StepRecord& last, const Data& data,
+                                        const io::Summary& summary, const std::string& message) {
   if (!recording_) return {};
   recording_->finish(last, data);
   recording_->outcome = {summary.outcome, message};
   recording_->facts = summary.facts();
   recording_->warnings = summary.warnings;
-  std::string failures;
+  std::vector<std::string> failures;
   // Each is tried, whatever became of the other.
   const auto attempt = [&](const std::filesystem::path& target, auto&& write) {
     const auto start = std::chrono::steady_clock::now();
     try {
       write();
     } catch (const std::exception& error) {
-      failures += (failures.empty() ? "" : "\n") + std::string(error.what());
+      failures.emplace_back(error.what());
       return;
     }
     const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;

@@ -27,9 +27,9 @@ class Replay {
     if (recording_) recording_->addStep(record, data, contacts);
   }
   /// The final state, whose stages are in `data`; `message` says why the run ended early. Returns
-  /// what could not be written, or nothing.
-  std::string finish(const io::StepRecord& last, const Data& data, const io::Summary& summary,
-                     const std::string& message);
+  /// what could not be written.
+  std::vector<std::string> finish(const io::StepRecord& last, const Data& data,
+                                  const io::Summary& summary, const std::string& message);
   /// What finish() has written and how long that took, a line each.
   const std::string& written() const { return written_; }
 

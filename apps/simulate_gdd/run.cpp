@@ -2,13 +2,14 @@
 #include "apps/simulate_gdd/run.hpp"
 
 #include <fmt/format.h>
-#include <signal.h>
 
 #include <cmath>
 #include <optional>
 #include <utility>
 
+#include "apps/shared/interrupt.hpp"
 #include "apps/shared/run_origin.hpp"
+#include "apps/shared/standard_streams.hpp"
 #include "apps/shared/wall_clock.hpp"
 #include "apps/simulate_gdd/error_estimate.hpp"
 #include "apps/simulate_gdd/island_run.hpp"
@@ -25,8 +26,6 @@
 
 namespace softgauss::app {
 namespace {
-
-volatile sig_atomic_t interruptRequested = 0;
 
 /// Largest |g(q, v, a) − (u, 0)|: recomputed by inverse dynamics, not taken from the solver.
 double physicsViolation(const Model& model, Data& data, VectorX& scratch) {
@@ -98,22 +97,18 @@ class Runner {
     progress_ = &progress;
     tellBases();
     ExitCode code = kDone;
-    // From here on an interrupt ends the run in order; a second one ends it at once.
-    struct sigaction action = {};
-    action.sa_handler = [](int) { interruptRequested = 1; };
-    action.sa_flags = SA_RESETHAND;
-    sigaction(SIGINT, &action, nullptr);
-    sigaction(SIGTERM, &action, nullptr);
+    catchInterrupts();
     const Clock::time_point start = Clock::now();
     for (long i = 0; i < steps && code == kDone; ++i) {
       const auto takeStep = [&] {
-        if (interruptRequested) {
+        if (interrupted()) {
           code = kInterrupted;
         } else if (!step()) {
           code = kCannotContinue;
         } else {
           record();
           progress.show(state_.time, secondsSince(start));
+          if (!outputErrors_.empty()) code = kBadInput;
         }
         return code == kDone;
       };
@@ -129,15 +124,20 @@ class Runner {
     std::string reason;
     if (code == kCannotContinue) {
       reason = failureMessage(model_, state_, data_);
-      fmt::print(stderr, "simulate_gdd: {}\n", reason);
+      tell("simulate_gdd: " + reason);
       summary_.outcome = "non-finite";
     } else if (code == kInterrupted) {
       reason = fmt::format("interrupted at t = {:.6g} s", state_.time);
       summary_.outcome = "interrupted";
+    } else if (!outputErrors_.empty()) {
+      reason = fmt::format("stopped at t = {:.6g} s, as the log could not be written", state_.time);
+      summary_.outcome = "stopped";
     }
     finish(reason);
-    if (!outputError_.empty()) throw OutputError(outputError_);
-    return code;
+    if (outputErrors_.empty()) return code;
+    std::string errors = code == kBadInput ? reason : "";
+    for (const std::string& error : outputErrors_) errors += (errors.empty() ? "" : "\n") + error;
+    throw OutputError(errors);
   }
 
  private:
@@ -217,22 +217,25 @@ class Runner {
     io::measureWhole(model_, kinematics, record);
   }
 
-  /// A log that cannot be written does not keep the rest of the run from being reported.
   void writeLog(const io::StepRecord& row) {
-    if (log_) guardLog([&] { log_->write(row); });
-    if (contactLog_ && !row.isEnd) guardLog([&] { contactLog_->write(row.time, touching_); });
+    if (!outputErrors_.empty()) return;
+    if (log_) attempt([&] { log_->write(row); });
+    if (contactLog_ && !row.isEnd) attempt([&] { contactLog_->write(row.time, touching_); });
   }
+
   void closeLogs() {
-    if (log_) guardLog([&] { log_->close(); });
-    if (contactLog_) guardLog([&] { contactLog_->close(); });
+    if (!outputErrors_.empty()) return;
+    if (log_) attempt([&] { log_->close(); });
+    if (contactLog_) attempt([&] { contactLog_->close(); });
   }
+
+  /// Each output is tried, whatever became of the others.
   template <class F>
-  void guardLog(F&& f) {
-    if (!outputError_.empty()) return;
+  void attempt(F&& write) {
     try {
-      f();
+      write();
     } catch (const std::exception& error) {
-      outputError_ = error.what();
+      outputErrors_.emplace_back(error.what());
     }
   }
 
@@ -243,13 +246,16 @@ class Runner {
     fmt::print(stderr, "simulate_gdd: t = {:.4g} s: {}\n", record_.time, message);
   }
 
+  /// Where what the run tells goes.
+  std::FILE* told() const { return options_.writesToStandardOutput() ? stderr : stdout; }
+
   /// How the robots meet the world, before the first step.
   void tellBases() {
     if (options_.quiet) return;
-    for (const std::string& line : summary_.bases) fmt::print("{}\n", line);
+    for (const std::string& line : summary_.bases) print(told(), line + "\n");
     for (const std::string& warning : baseWarnings_)
       fmt::print(stderr, "simulate_gdd: warning: {}\n", warning);
-    std::fflush(stdout);
+    std::fflush(told());
   }
 
   /// What the run is made from.
@@ -288,10 +294,11 @@ class Runner {
     if (islands_) summary_.islands = islands_->outcomes();
     if (errorEstimate_) summary_.error = errorEstimate_->outcome();
     verdict_->tell(reason, baseWarnings_, summary_);
-    if (!options_.summary.empty()) summary_.write(options_.summary);
-    const std::string error = replay_->finish(last, data_, summary_, reason);
-    if (outputError_.empty()) outputError_ = error;
-    if (!options_.quiet) fmt::print("{}{}", replay_->written(), summary_.table(options_.details));
+    if (!options_.summary.empty()) attempt([&] { summary_.write(options_.summary); });
+    for (std::string& error : replay_->finish(last, data_, summary_, reason))
+      outputErrors_.push_back(std::move(error));
+    if (!options_.quiet)
+      print(told(), replay_->written() + summary_.table(options_.details));
   }
 
   /// Which solver followed the goals. Steps in which cones touch are solver 1's.
@@ -338,7 +345,7 @@ class Runner {
   std::optional<Verdict> verdict_;
   RunProgress* progress_ = nullptr;
   std::optional<Replay> replay_;
-  std::string outputError_;
+  std::vector<std::string> outputErrors_;
   io::Summary summary_;
   long stepsWithCones_ = 0;
   io::StepRecord record_;

@@ -12,6 +12,7 @@
 #include "engine/model/followers.hpp"
 #include "io/explain.hpp"
 #include "io/goals.hpp"
+#include "io/names.hpp"
 #include "io/scene.hpp"
 #include "io/step_warnings.hpp"
 #include "io/warning_list.hpp"
@@ -19,28 +20,44 @@
 namespace softgauss::app {
 namespace {
 
-/// More would take minutes to load and gigabytes to hold.
-constexpr int kMostDofs = 2000;
-
 /// `placed` are the bodies of joints whose position is given already.
 void setJointPositions(const SimulateOptions& options, const Model& model, std::set<int> placed,
                        State& state) {
   std::set<std::string> seen;
   for (const auto& [name, value] : options.q0) {
+    const auto fail = [&](const std::string& problem) {
+      throw UsageError(fmt::format("--q0 {}: {}", name, problem));
+    };
+    if (const std::string problem = io::jointProblem(model, name); !problem.empty()) fail(problem);
     const int body = model.findJoint(name);
-    if (body < 0 || model.bodies[body].dofs != 1)
-      throw ModelError({}, "--q0 " + name,
-                       "the model has no joint of one degree of freedom of that name");
-    if (!seen.insert(name).second) throw ModelError({}, "--q0 " + name, "is given twice");
+    if (!seen.insert(name).second) fail("is given twice");
     for (const JointRange& range : model.ranges)
       if (range.body == body && (value < range.lower || value > range.upper))
-        throw ModelError({}, "--q0 " + name,
-                         fmt::format("{} lies outside the joint's range {} .. {}", value,
-                                     range.lower, range.upper));
+        fail(fmt::format("{} lies outside the joint's range {} .. {}", value, range.lower,
+                         range.upper));
     state.q[model.bodies[body].q] = value;
     placed.insert(body);
   }
   placeFollowers(model, placed, state.q);
+}
+
+/// Links that goals on the command line name.
+void checkLinks(const SimulateOptions& options, const Model& model) {
+  const auto check = [&](const std::string& option, const std::string& link) {
+    if (const std::string problem = io::linkProblem(model, link); !problem.empty())
+      throw UsageError(option + ": " + problem);
+  };
+  for (const ReachArgument& reach : options.reach) check("--reach", reach.link);
+  for (const std::string& link : options.hold) check("--hold", link);
+}
+
+/// Before anything is done that takes the square of the model's size.
+void checkSize(const SimulateOptions& options, const Model& model) {
+  if (model.nv > options.mostDofs)
+    throw ModelError({options.model.string(), 0}, "model '" + model.name + "'",
+                     fmt::format("has {} degrees of freedom, expected at most {} (--most-dofs "
+                                 "allows more)",
+                                 model.nv, options.mostDofs));
 }
 
 void setOptions(const SimulateOptions& options, ModelBuilder& builder) {
@@ -77,6 +94,7 @@ void loadRobot(const SimulateOptions& options, Scene& scene) {
   ModelBuilder builder = io::readUrdf(options.model, urdfOptions(options), &scene.contents);
   setOptions(options, builder);
   setErrorControl(options, {}, options.hasGoals(), builder);
+  checkSteps(options, builder.options.timestep, {});
   if (options.base != BaseKind::automatic) scene.baseOrigin = BaseOrigin::option;
   if (options.guessBase) scene.baseOrigin = BaseOrigin::guess;
   scene.model = builder.build();
@@ -84,6 +102,7 @@ void loadRobot(const SimulateOptions& options, Scene& scene) {
     builder.base = BaseKind::fixed;
     scene.model = builder.build();
   }
+  checkSize(options, scene.model);
 
   // Whether there is ground by default is known only once the base is.
   std::optional<double> ground = options.ground;
@@ -113,11 +132,17 @@ void loadSceneFile(const SimulateOptions& options, Scene& scene) {
   if (!ground && !file.noGround && !file.starts.empty()) ground = 0.0;
   if (ground) addGround(file.builder, *ground, file.groundMaterial);
   scene.model = file.builder.build();
+  checkSize(options, scene.model);
+  checkSteps(options, scene.model.options.timestep,
+             options.timestep ? SourceLocation{} : file.timestepWhere);
   for (std::string& warning : warnings) scene.model.warnings.push_back(std::move(warning));
   scene.contents = file.contents;
   scene.baseOrigin = BaseOrigin::scene;
   scene.hasGoals = file.hasGoals;
   if (file.gddSolver) scene.gddSolver = *file.gddSolver;
+  if (file.throughFcl && !options.throughFcl && options.islands)
+    throw ModelError(file.collisionWhere, "key 'collision'",
+                     "found fcl, which looks at the whole scene, expected own beside --islands");
   scene.fileSaysFcl = file.throughFcl;
   scene.materials = file.materials;
   scene.wrenches = file.wrenches;
@@ -152,21 +177,14 @@ std::unique_ptr<Scene> loadScene(const SimulateOptions& options) {
   else
     loadRobot(options, *scene);
   if (options.gddSolver) scene->gddSolver = *options.gddSolver;
-  checkSteps(options, scene->model.options.timestep);
   checkOutputs(options, scene->contents.files);
-  if (scene->model.nv > kMostDofs)
-    throw ModelError(
-        {options.model.string(), 0}, "model '" + scene->model.name + "'",
-        fmt::format("has {} degrees of freedom, expected at most {}", scene->model.nv, kMostDofs));
+  checkLinks(options, scene->model);
   collision::PreparedMeshes meshes;
   // MuJoCo takes hulls.
   if (options.meshes || scene->model.options.ownSoftness)
     collision::chooseMeshes(scene->model, meshes);
   scene->contacts = std::make_unique<collision::SceneContacts>(
       scene->model, collision::SceneContacts::kBroadphasePairs, true, &meshes);
-  if (scene->fileSaysFcl && !options.throughFcl && options.islands)
-    throw ModelError({options.model.string(), 0}, "key 'collision'",
-                     "found fcl, which looks at the whole scene, expected own beside --islands");
   if (options.throughFcl.value_or(scene->fileSaysFcl))
     scene->throughFcl = std::make_unique<collision::FclContacts>(scene->model, &meshes);
   if (std::optional<std::string> told = collision::baseWarning(scene->contacts->filter()))

@@ -11,30 +11,45 @@
 
 namespace softgauss::io::detail {
 
+struct FileCloser {
+  void operator()(std::FILE* file) const { std::fclose(file); }
+};
+using OpenFile = std::unique_ptr<std::FILE, FileCloser>;
+
+/// Opens what is written from its beginning on and in its place: "-" is standard output, which a
+/// file may be too; links are followed. Null where it cannot be opened, errno says why.
+OpenFile openInPlace(const std::filesystem::path& file);
+
+/// Writes to files and remembers the first error.
 class OutputFile {
  public:
-  /// Opens `file`.part, or the file itself where that is a device or a pipe. `what` names the
-  /// output in messages. Throws ModelError if it cannot be opened.
+  /// `what` names the output in messages. Throws ModelError where the file could not be written;
+  /// whatever is there stays as it is.
   OutputFile(const std::filesystem::path& file, const std::string& what);
   /// What was not committed leaves no trace; an earlier file of that name is as it was.
   ~OutputFile();
-  OutputFile(OutputFile&&) noexcept = default;
+  OutputFile(OutputFile&& other) noexcept;
   OutputFile& operator=(OutputFile&&) = delete;
 
+  /// Opens a file beside `file`, where a link leads; a device, a pipe and standard output are
+  /// written to in place.
   void write(std::string_view text);
-  /// Throws std::runtime_error if the disk is full or gone.
+  /// Throws std::runtime_error if the disk is full or gone, with the reason.
   void commit();
 
  private:
-  struct Closer {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-  };
+  void open();
+  void note(bool done);
   [[noreturn]] void fail() const;
 
-  std::filesystem::path target_, written_;
+  std::filesystem::path target_;
+  std::filesystem::path part_;  ///< that is being written; empty: none
   std::string what_;
-  std::unique_ptr<std::FILE, Closer> file_;
-  bool good_ = true;
+  OpenFile file_;
+  int error_ = 0;  ///< errno of the first that failed
 };
+
+/// Throws ModelError where `file` cannot be made or written, and leaves everything as it is.
+void expectWritable(const std::filesystem::path& file, const std::string& what);
 
 }  // namespace softgauss::io::detail

@@ -20,12 +20,15 @@ constexpr std::size_t kBufferSize = std::size_t{1} << 18;
 
 RowFile::RowFile(const std::filesystem::path& file, std::string what,
                  const std::vector<std::string>& columns)
-    : path_(file.string()), what_(std::move(what)), file_(std::fopen(path_.c_str(), "wb")) {
-  if (!file_)
+    : path_(file.string()), what_(std::move(what)), file_(openInPlace(file)) {
+  const auto refuse = [&] {
     throw ModelError({path_, 0}, what_, fmt::format("cannot be written: {}", std::strerror(errno)));
+  };
+  if (!file_) refuse();
   buffer_.reserve(2 * kBufferSize);
   for (const std::string& column : columns) add(column);
   endRow();
+  if (!send() || std::fflush(file_.get()) != 0) refuse();
 }
 
 RowFile::~RowFile() {

@@ -5,11 +5,11 @@
 
 #include <cstdio>
 #include <filesystem>
-#include <memory>
 #include <string>
 #include <vector>
 
 #include "engine/core/types.hpp"
+#include "io/detail/output_file.hpp"
 
 namespace softgauss::io::detail {
 
@@ -44,9 +44,6 @@ class RowFile {
   void close();
 
  private:
-  struct Closer {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-  };
   void next() {
     if (!rowIsEmpty_) buffer_ += ',';
     rowIsEmpty_ = false;
@@ -55,7 +52,7 @@ class RowFile {
   bool send() noexcept;
 
   std::string path_, what_;
-  std::unique_ptr<std::FILE, Closer> file_;
+  OpenFile file_;
   std::string buffer_;
   bool rowIsEmpty_ = true;
 };

@@ -9,6 +9,7 @@
 
 #include "engine/core/check.hpp"
 #include "io/detail/text.hpp"
+#include "io/output.hpp"
 #include "io/replay/gnuplot.hpp"
 
 namespace softgauss::io {
@@ -247,20 +248,27 @@ std::string plotScript(const Recording& recording, const std::vector<CurveGroup>
 }
 
 Plot::Plot(const std::filesystem::path& target) : target_(target) {
-  const bool isFolder = std::filesystem::is_directory(target) || !target.has_extension();
+  std::error_code error;
+  const bool isThere = std::filesystem::exists(target, error);
+  // A device, a pipe and standard output take the drawing whatever they are called.
+  const bool isSpecial =
+      isStandardOutput(target) || (isThere && !std::filesystem::is_directory(target, error) &&
+                                   !std::filesystem::is_regular_file(target, error));
+  const bool isFolder = !isSpecial && (isThere ? std::filesystem::is_directory(target, error)
+                                               : !target.has_extension());
   const auto fail = [&](const std::string& problem) {
     throw ModelError({target.string(), 0}, "plot", problem);
   };
-  if (!isFolder && target.extension() != ".svg")
+  if (!isFolder && !isSpecial && target.extension() != ".svg")
     fail(fmt::format("extension '{}', expected .svg or a folder", target.extension().string()));
   if (!hasGnuplot()) fail(kNoGnuplot);
   if (!isFolder) {
     file_.emplace(target, "plot");
     return;
   }
-  std::error_code error;
   std::filesystem::create_directories(target, error);
   if (error) fail("cannot be made: " + error.message());
+  detail::expectWritable(target / "plot.svg", "plot");
 }
 
 void Plot::write(const Recording& recording) {

@@ -26,6 +26,11 @@ void waitForFile(const std::string& path) {
   for (int i = 0; i < 1000 && !std::filesystem::exists(path); ++i) pause(0.01);
 }
 
+/// A program, in a folder or where the tests run, to its end.
+Outcome runAt(const std::string& program, const std::vector<std::string>& arguments,
+              const std::string& inFolder, double interruptAfter = -1.0,
+              const std::string& interruptFile = {});
+
 }  // namespace
 
 Outcome simulate(const std::vector<std::string>& arguments, double interruptAfter,
@@ -35,8 +40,25 @@ Outcome simulate(const std::vector<std::string>& arguments, double interruptAfte
 
 Outcome runProgram(const std::string& name, const std::vector<std::string>& arguments,
                    double interruptAfter, const std::string& interruptFile) {
+  return runAt(std::string(SOFTGAUSS_APP_DIR) + "/" + name, arguments, {}, interruptAfter,
+               interruptFile);
+}
+
+Outcome runProgramIn(const std::string& folder, const std::string& name,
+                     const std::vector<std::string>& arguments) {
+  return runAt(std::string(SOFTGAUSS_APP_DIR) + "/" + name, arguments, folder);
+}
+
+Outcome runShell(const std::string& folder, const std::string& commands) {
+  return runAt("/bin/sh", {"-c", "PATH=" SOFTGAUSS_APP_DIR ":$PATH\n" + commands}, folder);
+}
+
+namespace {
+
+Outcome runAt(const std::string& program, const std::vector<std::string>& arguments,
+              const std::string& inFolder, double interruptAfter,
+              const std::string& interruptFile) {
   const io::TempFolder folder;
-  const std::string program = std::string(SOFTGAUSS_APP_DIR) + "/" + name;
   const std::string out = folder.path() / "out", err = folder.path() / "err";
   std::vector<std::string> texts{program};
   texts.insert(texts.end(), arguments.begin(), arguments.end());
@@ -50,6 +72,7 @@ Outcome runProgram(const std::string& name, const std::vector<std::string>& argu
   posix_spawn_file_actions_addopen(&files, 0, "/dev/null", O_RDONLY, 0);
   posix_spawn_file_actions_addopen(&files, 1, out.c_str(), kFlags, 0600);
   posix_spawn_file_actions_addopen(&files, 2, err.c_str(), kFlags, 0600);
+  if (!inFolder.empty()) posix_spawn_file_actions_addchdir_np(&files, inFolder.c_str());
   pid_t pid = 0;
   const int failed = posix_spawn(&pid, program.c_str(), &files, nullptr, argv.data(), environ);
   posix_spawn_file_actions_destroy(&files);
@@ -70,6 +93,8 @@ Outcome runProgram(const std::string& name, const std::vector<std::string>& argu
   outcome.err = readFile(err);
   return outcome;
 }
+
+}  // namespace
 
 std::string readFile(const std::string& path) {
   std::ifstream in(path, std::ios::binary);

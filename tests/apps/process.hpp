@@ -25,6 +25,13 @@ Outcome runProgram(const std::string& name, const std::vector<std::string>& argu
 Outcome simulate(const std::vector<std::string>& arguments, double interruptAfter = -1.0,
                  const std::string& interruptFile = {});
 
+/// The same of a program that is started in a folder.
+Outcome runProgramIn(const std::string& folder, const std::string& name,
+                     const std::vector<std::string>& arguments);
+
+/// Commands of a shell, started in a folder, which finds the programs of apps/.
+Outcome runShell(const std::string& folder, const std::string& commands);
+
 std::string readFile(const std::string& path);
 
 /// A file of data/ or of its subfolders.

@@ -115,7 +115,7 @@ TEST(Run, BlowUpEndsWithCodeThreeAndItsOutputs) {
   const io::TempFolder folder;
   const std::string log = folder.path() / "log.csv", summary = folder.path() / "summary.json";
   const std::string torques =
-      folder.write("torques.csv", "time_s,u:shoulder_yaw,u:elbow_pitch\n0,0,0\n0.1,1e300,-1e300\n");
+      folder.write("torques.csv", "time_s,u:shoulder_yaw,u:elbow_pitch\n0,0,0\n0.1,1e12,-1e12\n");
   const Outcome outcome = simulate({dataFile("robots/arm.urdf"), "--torques", torques, "--duration",
                                     "1", "--log", log, "--summary", summary, "--quiet"});
   EXPECT_EQ(outcome.exitCode, 3) << outcome.err;
