@@ -5,7 +5,9 @@
 
 #include <CLI/CLI.hpp>
 #include <cmath>
+#include <sstream>
 
+#include "apps/shared/standard_streams.hpp"
 #include "apps/simulate_gdd/argument_values.hpp"
 #include "io/inputs.hpp"
 #include "io/names.hpp"
@@ -227,7 +229,9 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& success) {  // --help, --version
-    app.exit(success);
+    std::ostringstream text;
+    app.exit(success, text, text);
+    print(stdout, text.str());
     return std::nullopt;
   } catch (const CLI::ParseError& error) {
     throw UsageError(error.what());
