@@ -4,7 +4,7 @@
 #include <Eigen/Cholesky>
 
 #include "engine/core/rotation.hpp"
-#include "engine/dynamics/inertia.hpp"
+#include "engine/dynamics/regular_mass.hpp"
 
 namespace softgauss {
 namespace {
@@ -79,10 +79,14 @@ InverseWeights::InverseWeights(const Model& model)
   computeKinematics(model, state, k);
   computeMassMatrix(model, k, inertia);
   TreeFactor factor;
-  if (!factor.compute(inertia.M))
-    throw ModelError({}, "joint '" + model.jointNames[model.dofs[factor.failedRow()].body] + "'",
-                     "the mass matrix is singular where all joints are at zero; this joint moves "
-                     "nothing that resists it, or its numbers overflow");
+  if (singularDof(inertia.M, factor) >= 0) {
+    if (const std::optional<SingularMass> why = findSingularMass(model, model.q0))
+      throw ModelError({}, why->element, why->problem);
+    state = State(model);
+    computeKinematics(model, state, k);
+    computeMassMatrix(model, k, inertia);
+    factor.compute(inertia.M);
+  }
 
   // From the roots to the leaves: a force on a body moves its joint, and by what the joint passes
   // on, its parent. Linear in the number of bodies, where J M⁻¹ Jᵀ is cubic.

@@ -3,7 +3,8 @@
 
 /// Constant inverse inertias that scale the regulariser of every row (T.12).
 ///
-/// Computed once with all joints at zero, as MuJoCo does it, armature included: for a body the mean
+/// Computed once with all joints at zero, as MuJoCo does it, or, where the mass matrix is singular
+/// there, in Model::q0; armature included: for a body the mean
 /// of the diagonal of J M⁻¹ Jᵀ over the three translations, and over the three rotations, of its
 /// centre of mass; for a dof the diagonal of M⁻¹ (for a floating joint the mean of three).
 
@@ -19,7 +20,7 @@ struct InverseWeights {
   std::vector<double> dof;          ///< (nv)
 
   InverseWeights() = default;
-  /// Throws ModelError when the mass matrix is singular there.
+  /// Throws ModelError when the mass matrix is singular in both.
   explicit InverseWeights(const Model& model);
 };
 

@@ -16,6 +16,10 @@ struct SurfaceDefects {
   int turnedEdges = 0;      ///< whose triangles face opposite sides
   int insideOutShells = 0;  ///< closed, facing inwards, and within no other
 
+  int openEdge[2] = {-1, -1};  ///< vertices of the first of the open edges
+  int turnedTriangle = -1;  ///< the first of those with most turned edges: it faces the wrong way
+  int insideOutTriangle = -1;  ///< one of the first such shell
+
   bool any() const { return openEdges + turnedEdges + insideOutShells > 0; }
 };
 

@@ -11,6 +11,7 @@
 #include "engine/model/detail/contact_pairs.hpp"
 #include "engine/model/detail/equalities.hpp"
 #include "engine/model/detail/kinematic_tree.hpp"
+#include "engine/model/detail/leader_inertia.hpp"
 #include "engine/model/detail/spec_checks.hpp"
 #include "engine/model/followers.hpp"
 
@@ -74,7 +75,7 @@ class Assembler {
     model_.bodies.push_back(world);
     model_.bodyNames.emplace_back("world");
     model_.jointNames.emplace_back();
-    where_.push_back(nullptr);
+    merged_.emplace_back();
   }
 
   /// A root link: the world itself, a part of it that has a name (standsForWorld), welded to the
@@ -179,7 +180,13 @@ class Assembler {
       }
       model_.trees.push_back(tree);
     }
-    detail::checkMovingInertias(model_, where_);
+    detail::giveLeadersInertia(model_);
+    detail::checkMovingInertias(model_, merged_);
+    if (!negative_.empty())
+      model_.warnings.push_back(
+          "inertia with a negative principal moment, used as written, as the bodies that these "
+          "links are part of are sound:" +
+          negative_);
     if (!powerless_.empty()) {
       std::string text = "effort 0: not actuated (--zero-effort unlimited changes this):";
       for (const std::string& name : powerless_) text += " " + name;
@@ -208,7 +215,7 @@ class Assembler {
     model_.bodies.push_back(body);
     model_.bodyNames.push_back(link < 0 ? jointName : links_[idx(link)].name);
     model_.jointNames.push_back(jointName);
-    where_.push_back(link < 0 ? nullptr : &links_[idx(link)].where);
+    merged_.push_back({link < 0 ? nullptr : &links_[idx(link)], nullptr});
     const Body& up = model_.bodies[idx(parent)];
     for (int k = 0; k < body.dofs; ++k) {
       Dof dof;
@@ -243,6 +250,10 @@ class Assembler {
     const LinkSpec& spec = links_[idx(link)];
     model_.frames.push_back({spec.name, where.body, where.X_BL});
     Body& body = model_.bodies[idx(where.body)];
+    if (detail::hasNegativeMoment(spec)) {
+      negative_ += " " + spec.name;
+      if (!merged_[idx(where.body)].negative) merged_[idx(where.body)].negative = &spec;
+    }
     if (where.body == 0 || (spec.mass == 0.0 && spec.I_Lcm.isZero(0.0))) return;
 
     // Parallel axes about the combined centre of mass.
@@ -266,7 +277,8 @@ class Assembler {
   const std::vector<LinkSpec>& links_;
   const std::vector<JointSpec>& joints_;
   std::vector<Placement> placement_;
-  std::vector<const SourceLocation*> where_;  ///< of each body's link, or null
+  std::vector<detail::MergedBody> merged_;  ///< of each body
+  std::string negative_;                    ///< names of links with a negative principal moment
   std::vector<std::string> powerless_;
   int robots_ = 0;  ///< so far
   int robot_ = -1;  ///< of the present root

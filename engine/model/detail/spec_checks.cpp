@@ -4,6 +4,8 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
+#include "engine/core/index.hpp"
+
 namespace softgauss::detail {
 namespace {
 
@@ -35,9 +37,11 @@ void checkLink(const LinkSpec& link) {
   if (!link.com.allFinite()) fail("centre of mass is not finite");
   if (!link.I_Lcm.allFinite()) fail("inertia is not finite");
   if (!link.I_Lcm.isApprox(link.I_Lcm.transpose(), 1e-9)) fail("inertia is not symmetric");
+}
+
+bool hasNegativeMoment(const LinkSpec& link) {
   const Vector3 moments = principalMoments(link.I_Lcm);
-  if (moments.minCoeff() < -kZeroMoment * moments.cwiseAbs().maxCoeff())
-    fail("inertia has a negative principal moment " + momentsText(moments) + ", expected none");
+  return moments.minCoeff() < -kZeroMoment * moments.cwiseAbs().maxCoeff();
 }
 
 void checkImpedance(const Impedance& p, const SourceLocation& where, const std::string& element) {
@@ -183,28 +187,36 @@ void checkOptions(const Options& options) {
   if (options.maxIterations < 1) fail("maximum iterations is less than 1");
 }
 
-void checkMovingInertias(const Model& model, const std::vector<const SourceLocation*>& where) {
-  const auto fail = [&](int body, const std::string& text) {
-    const SourceLocation* at = where[static_cast<std::size_t>(body)];
-    throw ModelError(at ? *at : SourceLocation{},
-                     "link '" + model.bodyNames[static_cast<std::size_t>(body)] + "'", text);
-  };
+void checkMovingInertias(const Model& model, const std::vector<MergedBody>& merged) {
+  std::vector<bool> carriesMass(model.bodies.size());
+  for (int b = model.bodyCount() - 1; b > 0; --b) {
+    if (model.bodies[idx(b)].mass > 0.0) carriesMass[idx(b)] = true;
+    if (carriesMass[idx(b)]) carriesMass[idx(model.bodies[idx(b)].parent)] = true;
+  }
   for (int b = 1; b < model.bodyCount(); ++b) {
-    const Body& body = model.bodies[static_cast<std::size_t>(b)];
-    double carried = 0.0;
-    for (int i = b; i < body.subtreeEnd; ++i)
-      carried += model.bodies[static_cast<std::size_t>(i)].mass;
-    if (carried == 0.0)
-      fail(b, "moves on joint '" + model.jointNames[static_cast<std::size_t>(b)] +
-                  "' but neither it nor anything that hangs from it has mass; "
-                  "the mass matrix would be singular");
+    const Body& body = model.bodies[idx(b)];
+    const MergedBody& from = merged[idx(b)];
+    const auto fail = [&](const std::string& text) {
+      throw ModelError(from.link ? from.link->where : SourceLocation{},
+                       "link '" + model.bodyNames[idx(b)] + "'", text);
+    };
+    const double armature = body.dofs == 1 ? model.dofs[idx(body.v)].armature : 0.0;
+    if (!carriesMass[idx(b)] && armature == 0.0)
+      fail("moves on joint '" + model.jointNames[idx(b)] +
+           "' but neither it nor anything that hangs from it has mass; the mass matrix would be "
+           "singular; expected an <inertial> in one of them");
     if (body.massless) continue;
     const Vector3 moments = principalMoments(body.I_Bcm.matrix());
     if (!std::isfinite(body.mass) || !body.com.allFinite() || !moments.allFinite())
-      fail(b, "moves, and its mass or inertia with all links fixed to it overflows");
-    if (!(moments.minCoeff() > kZeroMoment * moments.cwiseAbs().maxCoeff()))
-      fail(b, "moves, and its inertia with all links fixed to it has principal moments " +
-                  momentsText(moments) + ", expected all positive");
+      fail("moves, and its mass or inertia with all links fixed to it overflows");
+    if (moments.minCoeff() > kZeroMoment * moments.cwiseAbs().maxCoeff()) continue;
+    if (from.negative)
+      throw ModelError(from.negative->where, "link '" + from.negative->name + "'",
+                       "inertia has a negative principal moment " +
+                           momentsText(principalMoments(from.negative->I_Lcm)) +
+                           ", and so has the body that it is part of; expected none");
+    fail("moves, and its inertia with all links fixed to it has principal moments " +
+         momentsText(moments) + ", expected all positive");
   }
 }
 

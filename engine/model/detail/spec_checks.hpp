@@ -10,6 +10,8 @@
 namespace softgauss::detail {
 
 void checkLink(const LinkSpec& link);
+/// Beyond rounding. A body that it is part of may be sound all the same.
+bool hasNegativeMoment(const LinkSpec& link);
 void checkImpedance(const Impedance& impedance, const SourceLocation& where,
                     const std::string& element);
 void checkJoint(const JointSpec& joint);
@@ -18,8 +20,14 @@ void checkMaterial(const Material& material, const Options& options, const Sourc
 void checkGeometry(const GeometrySpec& geometry, const Options& options);
 void checkOptions(const Options& options);
 
+/// What a body was merged from.
+struct MergedBody {
+  const LinkSpec* link = nullptr;  ///< the one that its joint carries; null for a part of a joint
+  const LinkSpec* negative = nullptr;  ///< the first with a negative principal moment, if one has
+};
+
 /// After merging: a moving body with mass has a positive definite inertia, and every joint moves
-/// some mass. `where[i]` is the place of body i's link, or null.
-void checkMovingInertias(const Model& model, const std::vector<const SourceLocation*>& where);
+/// some mass or has an armature. `merged` has every body.
+void checkMovingInertias(const Model& model, const std::vector<MergedBody>& merged);
 
 }  // namespace softgauss::detail

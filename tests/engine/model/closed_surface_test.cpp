@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/model/closed_surface.hpp"
 
+#include <algorithm>
+
 #include "engine/model/mass_properties.hpp"
 #include "tests/support/matchers.hpp"
 
@@ -52,6 +54,25 @@ TEST(ClosedSurface, MayHoldTrianglesWithoutArea) {
   EXPECT_FALSE(surfaceDefects(mesh).any());
 }
 
+/// Whether the vertices are two of the triangle's.
+bool isEdgeOf(const std::array<int, 3>& triangle, const int (&edge)[2]) {
+  return edge[0] != edge[1] && std::count(triangle.begin(), triangle.end(), edge[0]) == 1 &&
+         std::count(triangle.begin(), triangle.end(), edge[1]) == 1;
+}
+
+// The edge of a hole is one of the triangle that is missing; the triangle to turn is the turned
+// one.
+TEST(ClosedSurface, DefectsAreFoundWhereTheyAre) {
+  for (std::size_t i = 0; i < 12; ++i) {
+    Mesh open = box(), turned = box();
+    const std::array<int, 3> missing = open.triangles[i];
+    open.triangles.erase(open.triangles.begin() + static_cast<std::ptrdiff_t>(i));
+    std::swap(turned.triangles[i][1], turned.triangles[i][2]);
+    EXPECT_TRUE(isEdgeOf(missing, surfaceDefects(open).openEdge)) << i;
+    EXPECT_EQ(surfaceDefects(turned).turnedTriangle, static_cast<int>(i));
+  }
+}
+
 // Each defect makes the mass depend on where the origin is, but for a shell that is inside out,
 // which takes away from another.
 TEST(ClosedSurface, DefectsAreCounted) {
@@ -64,6 +85,7 @@ TEST(ClosedSurface, DefectsAreCounted) {
   EXPECT_EQ(surfaceDefects(turned).turnedEdges, 3);
   EXPECT_EQ(surfaceDefects(turned).openEdges, 0);
   EXPECT_EQ(surfaceDefects(inside).insideOutShells, 1);
+  EXPECT_GE(surfaceDefects(inside).insideOutTriangle, 12) << "of the second box";
   for (const Mesh* mesh : {&open, &turned}) {
     Mesh moved = *mesh;
     for (Vector3& vertex : moved.vertices) vertex.array() += 10.0;
