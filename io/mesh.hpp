@@ -10,6 +10,7 @@
 /// it, and robots are drawn to look right there). STL and OBJ have no unit: the URDF's scale says.
 
 #include <array>
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -19,18 +20,27 @@
 
 namespace softgauss::io {
 
+/// The largest file that is read where nobody says otherwise [bytes].
+inline constexpr std::uintmax_t kLargestMesh = 64u << 20;
+
 /// Reads a mesh and multiplies its coordinates by `scale`; a mirroring scale turns the triangles
-/// so that they still face outwards. Throws ModelError naming the file when it cannot be read,
-/// holds no triangle, or a coordinate is not finite.
-Mesh readMesh(const std::filesystem::path& file, const Vector3& scale = Vector3::Ones());
+/// so that they still face outwards. Throws ModelError naming the file when it cannot be read, is
+/// larger than `largest` bytes, holds no triangle or a polygon of more than 10,000 corners, when a
+/// coordinate is not finite, or a node of a DAE contains itself. OBJ and DAE are read in a child
+/// process, which may take 10 s of processor time and 1 GB.
+Mesh readMesh(const std::filesystem::path& file, const Vector3& scale = Vector3::Ones(),
+              std::uintmax_t largest = kLargestMesh);
 
 /// Meshes by file and scale, so that each file is read once.
 class MeshCache {
  public:
+  explicit MeshCache(std::uintmax_t largest = kLargestMesh) : largest_(largest) {}
+
   std::shared_ptr<const Mesh> get(const std::filesystem::path& file, const Vector3& scale);
   std::vector<std::filesystem::path> files() const;  ///< that were read
 
  private:
+  std::uintmax_t largest_;
   std::map<std::filesystem::path, std::shared_ptr<const Mesh>> files_;  ///< unscaled
   std::map<std::pair<std::filesystem::path, std::array<double, 3>>, std::shared_ptr<const Mesh>>
       scaled_;

@@ -10,6 +10,7 @@
 #include "engine/core/rotation.hpp"
 #include "engine/model/mass_properties.hpp"
 #include "io/detail/input_file.hpp"
+#include "io/detail/mesh_defects.hpp"
 #include "io/detail/scene_actuators.hpp"
 #include "io/detail/scene_constraints.hpp"
 #include "io/detail/scene_options.hpp"
@@ -34,7 +35,8 @@ std::vector<std::string> operator+(std::vector<std::string> a, const std::vector
 /// Reads one scene, part by part.
 class SceneReader {
  public:
-  SceneReader(const YamlMap& top, const UrdfOptions& options) : top_(top), urdfOptions_(options) {}
+  SceneReader(const YamlMap& top, const UrdfOptions& options)
+      : top_(top), urdfOptions_(options), meshes_(options.largestMesh) {}
 
   SceneFile read() {
     top_.expectOnly(detail::kSceneKeys);
@@ -84,6 +86,9 @@ class SceneReader {
       throw ModelError({top_.file(), top_.line()}, "scene",
                        "holds nothing, expected a list of robots or of objects");
     for (const std::filesystem::path& file : meshes_.files()) scene_.contents.files.push_back(file);
+    std::vector<std::string> warnings;
+    unsoundHulls_.appendTo(warnings);
+    for (std::string& warning : warnings) scene_.builder.warning(std::move(warning));
     scene_.hasGoals = top_.find("goals") != nullptr;
     if (const auto* entry = top_.find("collision")) {
       scene_.throughFcl = top_.choice(*entry, {"own", "fcl"}) == "fcl";
@@ -253,6 +258,9 @@ class SceneReader {
               rootFloats || !contents.floatingLink.empty());
     scene_.contents.files.insert(scene_.contents.files.end(), contents.files.begin(),
                                  contents.files.end());
+    for (const auto& [link, place] : contents.places)
+      scene_.contents.places.emplace(prefix + link, place);
+    scene_.contents.meshPlaces.insert(contents.meshPlaces.begin(), contents.meshPlaces.end());
     scene_.contents.links += contents.links;
     scene_.contents.joints += contents.joints;
     scene_.contents.mass += contents.mass;
@@ -294,6 +302,7 @@ class SceneReader {
       map.fail(*entry, "is for a mesh, and this is none");
     const bool isMesh = shape.kind == ShapeKind::mesh;
     if (isMesh && use == MeshUse::triangles) shape = Shape::surface(shape.mesh);
+    if (isMesh && use == MeshUse::hull) unsoundHulls_.look(*shape.mesh, "object '" + name + "'");
 
     LinkSpec link;
     link.name = name;
@@ -330,6 +339,10 @@ class SceneReader {
       object.visual(visual);
     }
     surfaces_[name] = geometry.material;
+    scene_.contents.places.emplace(name, link.where);
+    if (isMesh)
+      scene_.contents.meshPlaces.emplace(
+          shape.mesh->file, std::pair(link.where, "object " + detail::quotedText(name)));
     scene_.contents.links += 1;
     scene_.contents.mass += link.mass;
     scene_.builder.add(object.link(link).geometry(geometry), "");
@@ -342,6 +355,7 @@ class SceneReader {
   detail::Materials materials_;
   std::map<std::string, Material> surfaces_;  ///< of links, objects and the ground
   MeshCache meshes_;
+  detail::UnsoundHulls unsoundHulls_;
   std::set<std::string> names_;
   std::set<std::string> joints_;  ///< of one degree of freedom
 };

@@ -7,6 +7,8 @@
 
 #include "io/detail/input_file.hpp"
 #include "io/detail/other_formats.hpp"
+#include "engine/dynamics/coupled_mass.hpp"
+#include "io/detail/mesh_defects.hpp"
 #include "io/detail/resources.hpp"
 #include "io/detail/text.hpp"
 #include "io/detail/unit_mistakes.hpp"
@@ -24,7 +26,7 @@ using detail::UrdfShape;
 class ShapeReader {
  public:
   ShapeReader(const std::filesystem::path& urdf, const UrdfOptions& options)
-      : finder_(urdf, options.packagePaths), options_(options) {}
+      : finder_(urdf, options.packagePaths), meshes_(options.largestMesh), options_(options) {}
 
   /// Throws where the mesh is missing or cannot be read.
   GeometrySpec collision(const UrdfShape& shape, const std::string& link, std::size_t index) {
@@ -40,6 +42,8 @@ class ShapeReader {
     spec.shape = options_.meshes == MeshUse::triangles ? Shape::surface(mesh(shape))
                                                        : Shape::hull(mesh(shape));
     spec.eitherMesh = options_.meshes == MeshUse::automatic;
+    if (options_.meshes == MeshUse::hull)
+      unsoundHulls_.look(*spec.shape.mesh, "link '" + link + "'");
     return spec;
   }
 
@@ -74,6 +78,9 @@ class ShapeReader {
                                   detail::counted(missing_.size(), "visual mesh file"),
                                   detail::listed(missing_, 3)));
     for (const std::string& text : notShown_) builder.warning("not shown: " + text);
+    std::vector<std::string> warnings;
+    unsoundHulls_.appendTo(warnings);
+    for (std::string& warning : warnings) builder.warning(std::move(warning));
   }
 
  private:
@@ -109,6 +116,7 @@ class ShapeReader {
   MeshCache meshes_;
   const UrdfOptions& options_;
   std::vector<std::string> missing_, notShown_;
+  detail::UnsoundHulls unsoundHulls_;
 };
 
 }  // namespace
@@ -135,6 +143,7 @@ ModelBuilder readUrdf(const std::filesystem::path& file, const UrdfOptions& opti
   ShapeReader shapes(file, options);
   for (detail::UrdfLink& link : urdf.links) {
     for (std::size_t i = 0; i < link.collisions.size(); ++i) {
+      if (link.collisions[i].isPoint) continue;
       GeometrySpec collision = shapes.collision(link.collisions[i], link.spec.name, i);
       link.collisions[i].shape.mesh = collision.shape.mesh;
       builder.geometry(std::move(collision));
@@ -158,9 +167,16 @@ ModelBuilder readUrdf(const std::filesystem::path& file, const UrdfOptions& opti
     contents->files.push_back(file);
     contents->linkNames.clear();
     contents->scalarJoints.clear();
+    contents->places.clear();
+    contents->meshPlaces.clear();
     for (const detail::UrdfLink& link : urdf.links) {
       contents->mass += link.spec.mass;
       contents->linkNames.push_back(link.spec.name);
+      contents->places.emplace(link.spec.name, link.spec.where);
+      for (const UrdfShape& shape : link.collisions)
+        if (shape.shape.mesh)
+          contents->meshPlaces.emplace(shape.shape.mesh->file,
+                                       std::pair(shape.element.where(), shape.element.label()));
     }
     contents->floatingLink.clear();
     for (const JointSpec& joint : urdf.joints) {
@@ -174,7 +190,9 @@ ModelBuilder readUrdf(const std::filesystem::path& file, const UrdfOptions& opti
 }
 
 Model loadUrdf(const std::filesystem::path& file, const UrdfOptions& options) {
-  return readUrdf(file, options).build();
+  Model model = readUrdf(file, options).build();
+  steadyCoupledJoints(model, model.q0);
+  return model;
 }
 
 }  // namespace softgauss::io

@@ -16,9 +16,11 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/model/model_builder.hpp"
+#include "io/mesh.hpp"
 
 namespace softgauss::io {
 
@@ -36,7 +38,8 @@ struct UrdfOptions {
   /// Read the meshes of visuals too. If not, a visual's Mesh has its file and no vertices.
   bool visualMeshes = false;
   BaseKind base = BaseKind::automatic;
-  MeshUse meshes = MeshUse::automatic;  ///< of collision shapes
+  MeshUse meshes = MeshUse::automatic;        ///< of collision shapes
+  std::uintmax_t largestMesh = kLargestMesh;  ///< a file that is larger is not read [bytes]
   bool zeroEffortIsUnlimited = false;
   Material material;                              ///< of collision shapes
   std::map<std::string, Material> linkMaterials;  ///< of those of some links instead
@@ -49,15 +52,18 @@ struct UrdfContents {
   double mass = 0.0;                         ///< [kg] of all links, those fixed to the world too
   std::vector<std::filesystem::path> files;  ///< that were read: the URDF and its meshes
   std::vector<std::string> linkNames;
-  std::string floatingLink;               ///< of a joint of type floating, if there is one
-  std::vector<std::string> scalarJoints;  ///< names of the joints of one degree of freedom
+  std::string floatingLink;                      ///< of a joint of type floating, if there is one
+  std::vector<std::string> scalarJoints;         ///< names of the joints of one degree of freedom
+  std::map<std::string, SourceLocation> places;  ///< where links, by name, are written
+  /// Where collision meshes, by file, are first named, and in which element.
+  std::map<std::string, std::pair<SourceLocation, std::string>> meshPlaces;
 };
 
 /// Throws ModelError. Options may still be set on the builder; its build() checks the rest.
 ModelBuilder readUrdf(const std::filesystem::path& file, const UrdfOptions& options = {},
                       UrdfContents* contents = nullptr);
 
-/// readUrdf(...).build().
+/// readUrdf(...).build(), and steadyCoupledJoints() at its q0.
 Model loadUrdf(const std::filesystem::path& file, const UrdfOptions& options = {});
 
 }  // namespace softgauss::io

@@ -101,6 +101,11 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
       app.add_option("--largest-file", largestFile,
                      "the largest URDF, scene, goals or table that is read [MB], default 64")
           ->group(scene);
+  app.add_option("--largest-mesh", options.largestMesh,
+                 "MB; a mesh file that is larger is refused, or as a visual not shown")
+      ->check(CLI::Range(1e-3, 1e5))
+      ->capture_default_str()
+      ->group(scene);
 
   const char* const goals = "Goals";
   app.add_option(

@@ -67,6 +67,7 @@ struct SimulateOptions {
   std::filesystem::path log, contacts, summary, view, plot;
   std::string commandLine;  ///< as it was typed
   std::vector<std::filesystem::path> packagePaths;
+  double largestMesh = 64.0;  ///< [MB]
 
   /// MODEL is a scene file, not a URDF. Standard input is looked at. Throws ModelError.
   bool isScene() const;

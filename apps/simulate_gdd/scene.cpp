@@ -9,6 +9,8 @@
 #include "apps/simulate_gdd/error_control.hpp"
 #include "apps/simulate_gdd/trial.hpp"
 #include "collision/choose_meshes.hpp"
+#include "engine/dynamics/coupled_mass.hpp"
+#include "engine/dynamics/regular_mass.hpp"
 #include "engine/model/followers.hpp"
 #include "io/explain.hpp"
 #include "io/goals.hpp"
@@ -74,6 +76,7 @@ io::UrdfOptions urdfOptions(const SimulateOptions& options) {
   io::UrdfOptions urdf;
   urdf.packagePaths = options.packagePaths;
   urdf.visualMeshes = !options.view.empty();
+  urdf.largestMesh = static_cast<std::uintmax_t>(options.largestMesh * (1 << 20));
   urdf.base = options.base;
   urdf.zeroEffortIsUnlimited = options.zeroEffortIsUnlimited;
   urdf.meshes = options.meshes.value_or(io::MeshUse::automatic);
@@ -157,6 +160,21 @@ void loadSceneFile(const SimulateOptions& options, Scene& scene) {
   standOnGround(scene.model, *ground, &standing, scene.initial);
 }
 
+/// Refuses a start in which the mass matrix is singular, with the place of the link in its file.
+void expectRegularStart(Scene& scene) {
+  steadyCoupledJoints(scene.model, scene.initial.q);
+  const auto refuseIfSingular = [&](const VectorX& q) {
+    const std::optional<SingularMass> why = findSingularMass(scene.model, q);
+    if (!why) return;
+    const auto place = scene.contents.places.find(why->link);
+    throw ModelError(place == scene.contents.places.end() ? SourceLocation{} : place->second,
+                     why->element, why->problem);
+  };
+  refuseIfSingular(scene.initial.q);
+  // The weights of rows are of joints at zero, or else of q0 (inverse_weight.hpp).
+  if (findSingularMass(scene.model, scene.model.q0)) scene.model.q0 = scene.initial.q;
+}
+
 /// What the step cannot carry from this start.
 void addStepWarnings(Scene& scene) {
   Kinematics k(scene.model);
@@ -166,6 +184,20 @@ void addStepWarnings(Scene& scene) {
   for (std::string& warning : io::stepWarnings(scene.model, touching))
     scene.model.warnings.push_back(std::move(warning));
   scene.model.warnings = io::grouped(scene.model.warnings);
+}
+
+/// Where contacts come from. Throws ModelError where a mesh cannot collide.
+void prepareContacts(const SimulateOptions& options, Scene& scene) {
+  collision::PreparedMeshes meshes;
+  // MuJoCo takes hulls.
+  if (options.meshes || scene.model.options.ownSoftness)
+    collision::chooseMeshes(scene.model, meshes);
+  scene.contacts = std::make_unique<collision::SceneContacts>(
+      scene.model, collision::SceneContacts::kBroadphasePairs, true, &meshes);
+  if (options.throughFcl.value_or(scene.fileSaysFcl))
+    scene.throughFcl = std::make_unique<collision::FclContacts>(scene.model, &meshes);
+  if (std::optional<std::string> told = collision::baseWarning(scene.contacts->filter()))
+    scene.model.warnings.push_back(std::move(*told));
 }
 
 }  // namespace
@@ -179,16 +211,16 @@ std::unique_ptr<Scene> loadScene(const SimulateOptions& options) {
   if (options.gddSolver) scene->gddSolver = *options.gddSolver;
   checkOutputs(options, scene->contents.files);
   checkLinks(options, scene->model);
-  collision::PreparedMeshes meshes;
-  // MuJoCo takes hulls.
-  if (options.meshes || scene->model.options.ownSoftness)
-    collision::chooseMeshes(scene->model, meshes);
-  scene->contacts = std::make_unique<collision::SceneContacts>(
-      scene->model, collision::SceneContacts::kBroadphasePairs, true, &meshes);
-  if (options.throughFcl.value_or(scene->fileSaysFcl))
-    scene->throughFcl = std::make_unique<collision::FclContacts>(scene->model, &meshes);
-  if (std::optional<std::string> told = collision::baseWarning(scene->contacts->filter()))
-    scene->model.warnings.push_back(std::move(*told));
+  expectRegularStart(*scene);
+  try {
+    prepareContacts(options, *scene);
+  } catch (const ModelError& error) {
+    // Of a mesh that has no surface, say: collision knows its file alone.
+    for (const auto& [file, place] : scene->contents.meshPlaces)
+      if (std::string(error.what()).starts_with(file))
+        throw ModelError(place.first, place.second, error.what());
+    throw;
+  }
   scene->bases = baseNotes(scene->model, scene->initial, *scene->contacts, scene->baseOrigin);
   addStepWarnings(*scene);
   return scene;

@@ -9,9 +9,9 @@
 
 #include "engine/core/check.hpp"
 #include "engine/core/rotation.hpp"
-#include "engine/model/closed_surface.hpp"
 #include "engine/model/mass_properties.hpp"
 #include "io/detail/input_file.hpp"
+#include "io/detail/mesh_defects.hpp"
 #include "io/detail/text.hpp"
 #include "io/height_field.hpp"
 
@@ -232,23 +232,15 @@ MeshUse readMeshUse(const YamlMap& map, MeshUse otherwise) {
 }
 
 void expectVolume(const YamlMap& map, const YamlMap::Entry& entry, const Shape& shape) {
-  const SurfaceDefects defects = surfaceDefects(*shape.mesh);
-  std::vector<std::string> found;
-  const auto add = [&](int count, const char* noun, const char* what) {
-    if (count > 0)
-      found.push_back(fmt::format("{} {}", counted(static_cast<std::size_t>(count), noun), what));
-  };
-  add(defects.openEdges, "edge", "at holes");
-  add(defects.turnedEdges, "edge", "between triangles that face opposite sides");
-  add(defects.insideOutShells, "shell", "of triangles that face inwards");
+  std::vector<std::string> found = describeDefects(*shape.mesh, surfaceDefects(*shape.mesh));
   if (found.empty() && !(solidOf(shape, 1.0).mass > 0.0))
     found.push_back("triangles that enclose nothing");
   if (!found.empty())
-    map.fail(entry, fmt::format("found a mesh with {}: its volume, and so its mass, is undefined; "
+    map.fail(entry, fmt::format("found {} with {}: its volume, and so its mass, is undefined; "
                                 "expected a closed mesh whose triangles face outwards; try a mesh "
                                 "tool that fills holes and orients faces, or a robot, whose URDF "
                                 "gives the inertia",
-                                listed(found)));
+                                quotedText(shape.mesh->file), listed(found)));
 }
 
 std::filesystem::path existingFile(const YamlMap& map, const YamlMap::Entry& entry,

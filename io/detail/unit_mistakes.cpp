@@ -6,7 +6,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <unordered_map>
 
 #include "io/detail/text.hpp"
 
@@ -30,8 +30,25 @@ struct InertiaUnit {
 constexpr InertiaUnit kInertiaUnits[] = {
     {"kg cm²", 1e-4}, {"kg mm²", 1e-6}, {"g cm²", 1e-7}, {"g mm²", 1e-9}};
 
-/// The farthest that a shape is from a point of its link [m]; 0 for a mesh that was not read.
-double farthest(const UrdfShape& shape, const Vector3& p_LP) {
+using Box = Eigen::AlignedBox3d;
+
+/// The boxes about meshes, each worked out once however many shapes have it.
+class MeshBoxes {
+ public:
+  const Box& of(const Mesh& mesh) {
+    const auto [at, isNew] = boxes_.try_emplace(&mesh);
+    if (isNew)
+      for (const Vector3& vertex : mesh.vertices) at->second.extend(vertex);
+    return at->second;
+  }
+
+ private:
+  std::unordered_map<const Mesh*, Box> boxes_;
+};
+
+/// The farthest that a shape is from a point of its link [m], a mesh as the box about it; 0 for a
+/// mesh that was not read.
+double farthest(const UrdfShape& shape, const Vector3& p_LP, MeshBoxes& boxes) {
   const Shape& s = shape.shape;
   const double centre = (shape.X_LG.p - p_LP).norm();
   switch (s.kind) {
@@ -50,17 +67,19 @@ double farthest(const UrdfShape& shape, const Vector3& p_LP) {
       break;
   }
   double most = 0.0;
-  if (s.mesh)
-    for (const Vector3& vertex : s.mesh->vertices)
-      most = std::max(most, (shape.X_LG * vertex - p_LP).norm());
+  if (s.mesh && !s.mesh->vertices.empty())
+    for (int corner = 0; corner < 8; ++corner)
+      most = std::max(
+          most, (shape.X_LG * boxes.of(*s.mesh).corner(static_cast<Box::CornerType>(corner)) - p_LP)
+                    .norm());
   return most;
 }
 
-double radiusAbout(const UrdfLink& link, const Vector3& p_LP) {
+double radiusAbout(const UrdfLink& link, const Vector3& p_LP, MeshBoxes& boxes) {
   double most = 0.0;
   for (const std::vector<UrdfShape>* shapes : {&link.collisions, &link.visuals})
     for (const UrdfShape& shape : *shapes)
-      if (!shape.defect) most = std::max(most, farthest(shape, p_LP));
+      if (!shape.defect) most = std::max(most, farthest(shape, p_LP, boxes));
   return most;
 }
 
@@ -83,21 +102,6 @@ std::string inertiaMeant(double moment, double most) {
   return fmt::format(" ({} kg m² if it is in {})", shortNumber(moment * unit.factor), unit.name);
 }
 
-std::vector<std::string> inertias(const UrdfDescription& urdf) {
-  std::vector<std::string> found;
-  for (const UrdfLink& link : urdf.links) {
-    const double radius = radiusAbout(link, link.spec.com);
-    if (radius == 0.0 || link.spec.mass <= 0.0) continue;
-    const double moment = largestMoment(link.spec), most = link.spec.mass * radius * radius;
-    if (moment > kImpossible * most)
-      found.push_back(fmt::format("link '{}' has {} kg m², {} kg within {} m have at most {}{}",
-                                  link.spec.name, shortNumber(moment), shortNumber(link.spec.mass),
-                                  shortNumber(radius), shortNumber(most),
-                                  inertiaMeant(moment, most)));
-  }
-  return found;
-}
-
 std::vector<std::string> ranges(const UrdfDescription& urdf) {
   std::vector<std::string> found;
   for (const JointSpec& joint : urdf.joints) {
@@ -115,7 +119,7 @@ std::vector<std::string> ranges(const UrdfDescription& urdf) {
 void addPoses(const XmlElement& element, std::vector<std::string>& found) {
   for (const XmlElement& child : element.children()) {
     if (child.tag() == "origin") {
-      const std::string rpy = child.text("rpy").value_or("");
+      const std::string rpy = child.firstText("rpy");
       const std::string meant = radiansMeant(parseNumbers(rpy).value_or(std::vector<double>{}));
       if (!meant.empty())
         found.push_back(
@@ -126,38 +130,75 @@ void addPoses(const XmlElement& element, std::vector<std::string>& found) {
   }
 }
 
-/// The largest of what says how large the robot is, but for its meshes [m]: where its joints are,
-/// its other shapes, and how its masses are spread.
-double robotSize(const UrdfDescription& urdf) {
-  std::map<std::string, const JointSpec*> jointAbove;
+/// Where the links are at q = 0, in their root.
+std::unordered_map<std::string, Transform> linkPoses(const UrdfDescription& urdf) {
+  std::unordered_map<std::string, const JointSpec*> jointAbove;
   for (const JointSpec& joint : urdf.joints) jointAbove[joint.child] = &joint;
-  Eigen::AlignedBox3d origins;
+  std::unordered_map<std::string, Transform> poses;
+  for (const UrdfLink& link : urdf.links) {
+    // Up to what is known, and down again. A cycle, which is refused later, ends after all joints.
+    std::vector<const JointSpec*> path;
+    std::string at = link.spec.name;
+    for (auto joint = jointAbove.find(at);
+         !poses.count(at) && joint != jointAbove.end() && path.size() < urdf.joints.size();
+         joint = jointAbove.find(at)) {
+      path.push_back(joint->second);
+      at = joint->second->parent;
+    }
+    Transform X = poses[at];
+    for (auto joint = path.rbegin(); joint != path.rend(); ++joint)
+      X = poses[(*joint)->child] = X * (*joint)->X_PC;
+  }
+  return poses;
+}
+
+/// How far the links' origins, centres of mass and shapes but for meshes spread [m].
+double extentOf(const UrdfDescription& urdf, MeshBoxes& boxes) {
+  const std::unordered_map<std::string, Transform> poses = linkPoses(urdf);
+  Box origins;
   double size = 0.0;
   for (const UrdfLink& link : urdf.links) {
-    Transform X;
-    for (auto it = jointAbove.find(link.spec.name); it != jointAbove.end();
-         it = jointAbove.find(it->second->parent))
-      X = it->second->X_PC * X;
-    origins.extend(X.p);
+    origins.extend(poses.at(link.spec.name).p);
     size = std::max(size, 2.0 * link.spec.com.norm());
-    if (link.spec.mass > 0.0)
-      size = std::max(size, 2.0 * std::sqrt(largestMoment(link.spec) / link.spec.mass));
     for (const UrdfShape& shape : link.collisions)
-      if (!shape.shape.isMesh()) size = std::max(size, 2.0 * farthest(shape, shape.X_LG.p));
+      if (!shape.shape.isMesh()) size = std::max(size, 2.0 * farthest(shape, shape.X_LG.p, boxes));
   }
   return std::max(size, origins.diagonal().norm());
 }
 
-std::vector<std::string> meshes(const UrdfDescription& urdf) {
+/// That, or how far its masses are spread [m].
+double robotSize(const UrdfDescription& urdf, double extent) {
+  double size = extent;
+  for (const UrdfLink& link : urdf.links)
+    if (link.spec.mass > 0.0)
+      size = std::max(size, 2.0 * std::sqrt(largestMoment(link.spec) / link.spec.mass));
+  return size;
+}
+
+/// Of a link without shapes that have been read, the robot's extent bounds the size.
+std::vector<std::string> inertias(const UrdfDescription& urdf, double extent, MeshBoxes& boxes) {
   std::vector<std::string> found;
-  const double robot = robotSize(urdf);
+  for (const UrdfLink& link : urdf.links) {
+    double radius = radiusAbout(link, link.spec.com, boxes);
+    if (radius == 0.0) radius = extent;
+    if (radius == 0.0 || link.spec.mass <= 0.0) continue;
+    const double moment = largestMoment(link.spec), most = link.spec.mass * radius * radius;
+    if (moment > kImpossible * most)
+      found.push_back(fmt::format("link '{}' has {} kg m², {} kg within {} m have at most {}{}",
+                                  link.spec.name, shortNumber(moment), shortNumber(link.spec.mass),
+                                  shortNumber(radius), shortNumber(most),
+                                  inertiaMeant(moment, most)));
+  }
+  return found;
+}
+
+std::vector<std::string> meshes(const UrdfDescription& urdf, double robot, MeshBoxes& boxes) {
+  std::vector<std::string> found;
   for (const UrdfLink& link : urdf.links)
     for (const std::vector<UrdfShape>* shapes : {&link.collisions, &link.visuals})
       for (const UrdfShape& shape : *shapes) {
-        if (!shape.shape.mesh) continue;
-        Eigen::AlignedBox3d box;
-        for (const Vector3& vertex : shape.shape.mesh->vertices) box.extend(vertex);
-        const double size = box.isEmpty() ? 0.0 : box.diagonal().norm();
+        if (!shape.shape.mesh || shape.shape.mesh->vertices.empty()) continue;
+        const double size = boxes.of(*shape.shape.mesh).diagonal().norm();
         const Vector3 scale = kMillimetre * shape.scale;
         if (robot > 0.0 && size > kFarLarger * robot)
           found.push_back(
@@ -186,10 +227,14 @@ std::vector<std::string> unitMistakes(const XmlElement& robot, const UrdfDescrip
   addPoses(robot, poses);
   add(poses, "rpy of more than a turn, used as written: ");
   add(ranges(urdf), "ranges of several turns, used as written: ");
-  add(inertias(urdf), "inertia that no body of that mass and size can have, used as written: ");
-  add(meshes(urdf),
+  MeshBoxes boxes;
+  const double extent = extentOf(urdf, boxes);
+  add(inertias(urdf, extent, boxes),
+      "inertia that no body of that mass and size can have, used as written: ");
+  const double robotIs = robotSize(urdf, extent);
+  add(meshes(urdf, robotIs, boxes),
       fmt::format("meshes far larger than the robot, which is some {} m large, used as written: ",
-                  shortNumber(robotSize(urdf)))
+                  shortNumber(robotIs))
           .c_str());
   return warnings;
 }

@@ -5,10 +5,11 @@
 /// with the value that was probably meant. Nothing is changed.
 ///
 ///   rpy, range   more than a turn of a pose, tens of radians of a range: degrees
-///   inertia      I > 20 m R², where all of the link's shapes are within R of its centre of mass:
-///   no
-///                body of that mass and size has more than m R², and shapes of collision may be
-///                somewhat smaller than the link; one of kg cm², kg mm², g cm² or g mm²
+///   inertia      I > 20 m R², where all of the link's shapes are within R of its centre of mass,
+///   or
+///                R is the extent of the robot where it has none: no body of that mass and size has
+///                more than m R², and shapes of collision may be somewhat smaller than the link;
+///                one of kg cm², kg mm², g cm² or g mm²
 ///   mesh         tens of times larger than the robot: millimetres
 
 #include <string>

@@ -9,11 +9,11 @@
 
 #include <cmath>
 #include <exception>
-#include <map>
 #include <mutex>
 #include <optional>
 #include <set>
 #include <string_view>
+#include <unordered_map>
 
 #include "io/detail/text.hpp"
 #include "io/detail/urdf_schema.hpp"
@@ -56,34 +56,29 @@ bool isName(std::string_view attribute) {
          attribute == "filename" || attribute == "version";
 }
 
-void removeUnread(tinyxml2::XMLElement& element) {
-  for (tinyxml2::XMLNode *child = element.FirstChild(), *next = nullptr; child; child = next) {
-    next = child->NextSibling();
-    tinyxml2::XMLElement* e = child->ToElement();
-    const std::string_view tag = e ? e->Name() : "";
-    if (!e || !isReadElement(element.Name(), tag) || tag == "visual" || tag == "material")
-      element.DeleteChild(child);
-    else
-      removeUnread(*e);
+/// urdfdom takes a single space between numbers and nothing else, neither a tab nor a last blank.
+std::string bySingleSpaces(const tinyxml2::XMLAttribute& attribute) {
+  const std::string value = attribute.Value();
+  const std::optional<std::vector<double>> numbers = parseNumbers(value);
+  if (!numbers || numbers->empty() || isName(attribute.Name())) return value;
+  std::string single;
+  for (const std::string_view word : words(value)) {
+    if (!single.empty()) single += ' ';
+    single += word;
   }
+  return single;
 }
 
-/// urdfdom takes a single space between numbers and nothing else, neither a tab nor a last blank.
-void separateBySingleSpaces(tinyxml2::XMLElement& element) {
-  for (const tinyxml2::XMLAttribute* a = element.FirstAttribute(); a; a = a->Next()) {
-    std::string value = a->Value();
-    const std::optional<std::vector<double>> numbers = parseNumbers(value);
-    if (!numbers || numbers->empty() || isName(a->Name())) continue;
-    std::string single;
-    for (const std::string_view word : words(value)) {
-      if (!single.empty()) single += ' ';
-      single += word;
-    }
-    element.SetAttribute(a->Name(), single.c_str());
+/// Copies what is read of an element, but for what is only looked at.
+void copyRead(const tinyxml2::XMLElement& from, tinyxml2::XMLElement& to) {
+  for (const tinyxml2::XMLAttribute* a = from.FirstAttribute(); a; a = a->Next())
+    if (isReadAttribute(from.Name(), a->Name()))
+      to.SetAttribute(a->Name(), bySingleSpaces(*a).c_str());
+  for (const tinyxml2::XMLElement* e = from.FirstChildElement(); e; e = e->NextSiblingElement()) {
+    const std::string_view tag = e->Name();
+    if (isReadElement(from.Name(), tag) && tag != "visual" && tag != "material")
+      copyRead(*e, *to.InsertNewChildElement(e->Name()));
   }
-  for (tinyxml2::XMLElement* child = element.FirstChildElement(); child;
-       child = child->NextSiblingElement())
-    separateBySingleSpaces(*child);
 }
 
 /// Roll, pitch and yaw [rad] of R. Roll is that which is left beside yaw: at a pitch of ±π/2, where
@@ -128,6 +123,32 @@ void addWhatUrdfdomDemands(tinyxml2::XMLElement& robot) {
       setDefault(*dynamics, "damping");
   }
 }
+
+/// What urdfdom sees.
+std::string copyFor10(const XmlFile& file) {
+  tinyxml2::XMLDocument copy;
+  tinyxml2::XMLElement& robot = *copy.NewElement("robot");
+  copy.InsertEndChild(&robot);
+  copyRead(file.root(), robot);
+  robot.DeleteAttribute("version");
+  writeAsVersion10(robot);
+  addWhatUrdfdomDemands(robot);
+  tinyxml2::XMLPrinter printer(nullptr, true);
+  copy.Accept(&printer);
+  return printer.CStr();
+}
+
+/// Links of urdfdom own those below them, and would be freed by as many nested calls as a chain is
+/// long.
+struct Unchained {
+  urdf::ModelInterface& model;
+  ~Unchained() {
+    for (auto& [name, link] : model.links_) {
+      link->child_links.clear();
+      link->child_joints.clear();
+    }
+  }
+};
 
 /// Compares one element with urdfdom's; throws at its place in the file.
 class Comparison {
@@ -253,7 +274,7 @@ void compare(const JointSpec& ours, const urdf::Joint* theirs) {
 
 /// All links hang from one root, by one joint each.
 bool isTree(const UrdfDescription& urdf) {
-  std::multimap<std::string_view, std::string_view> children;
+  std::unordered_multimap<std::string_view, std::string_view> children;
   std::set<std::string_view> roots;
   for (const UrdfLink& link : urdf.links) roots.insert(link.spec.name);
   for (const JointSpec& joint : urdf.joints) {
@@ -276,13 +297,7 @@ bool isTree(const UrdfDescription& urdf) {
 std::string compareWithUrdfdom(const XmlFile& file, const UrdfDescription& urdf) {
   // urdfdom never frees links that are their own ancestors, so it is shown trees only.
   if (!isTree(urdf)) return "its links form no tree";
-  const std::string text = file.edited([](tinyxml2::XMLElement& robot) {
-    removeUnread(robot);
-    robot.DeleteAttribute("version");
-    writeAsVersion10(robot);
-    separateBySingleSpaces(robot);
-    addWhatUrdfdomDemands(robot);
-  });
+  const std::string text = copyFor10(file);
   Listener listener;
   urdf::ModelInterfaceSharedPtr model;
   try {
@@ -291,6 +306,7 @@ std::string compareWithUrdfdom(const XmlFile& file, const UrdfDescription& urdf)
     return error.what();
   }
   if (!model) return listener.errors.empty() ? "no reason given" : listener.errors;
+  const Unchained unchained{*model};
 
   const Comparison is(file.robot().where(), "robot");
   is.expect(model->name_ == urdf.name, "name");

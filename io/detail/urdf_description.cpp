@@ -9,6 +9,7 @@
 #include "io/detail/text.hpp"
 #include "io/detail/urdf_joints.hpp"
 #include "io/detail/urdf_schema.hpp"
+#include "io/detail/yaml.hpp"
 
 namespace softgauss::io::detail {
 namespace {
@@ -43,17 +44,17 @@ void readSolid(const XmlElement& solid, UrdfShape& shape) {
   if (tag == "box") {
     const Vector3 size = solid.requiredVector3("size");
     positive(size.minCoeff(), "the smallest size", solid, shape);
+    shape.isPoint = size.isZero(0.0);
     shape.shape = Shape::box(0.5 * size);
   } else if (tag == "sphere") {
     shape.shape = Shape::sphere(positive(solid.requiredNumber("radius"), "radius", solid, shape));
-  } else if (tag == "cylinder") {
+    shape.isPoint = shape.shape.radius == 0.0;
+  } else if (tag == "cylinder" || (tag == "capsule" && solid.urdfMinorVersion() >= 1)) {
     const double radius = positive(solid.requiredNumber("radius"), "radius", solid, shape);
     const double length = positive(solid.requiredNumber("length"), "length", solid, shape);
-    shape.shape = Shape::cylinder(radius, 0.5 * length);
-  } else if (tag == "capsule" && solid.urdfMinorVersion() >= 1) {
-    const double radius = positive(solid.requiredNumber("radius"), "radius", solid, shape);
-    const double length = positive(solid.requiredNumber("length"), "length", solid, shape);
-    shape.shape = Shape::capsule(radius, 0.5 * length);
+    shape.isPoint = radius == 0.0 && length == 0.0;
+    shape.shape = tag == "cylinder" ? Shape::cylinder(radius, 0.5 * length)
+                                    : Shape::capsule(radius, 0.5 * length);
   } else if (tag == "mesh") {
     shape.shape = Shape::hull(nullptr);
     shape.meshUri = solid.requiredText("filename");
@@ -76,7 +77,9 @@ UrdfShape readShape(const XmlElement& element) {
   shape.element = element;
   shape.X_LG = element.origin();
   const XmlElement geometry = element.requiredChild("geometry");
-  const std::vector<XmlElement> solids = geometry.children();
+  std::vector<XmlElement> solids = geometry.children();
+  // What has a prefix is another tool's.
+  std::erase_if(solids, [](const XmlElement& e) { return e.tag().find(':') != std::string::npos; });
   if (solids.size() != 1)
     geometry.fail(fmt::format("holds {}, expected one box, sphere, cylinder or mesh",
                               counted(solids.size(), "shape")));
@@ -89,12 +92,12 @@ std::optional<Eigen::Vector4d> readColour(const XmlElement& material,
                                           std::vector<std::string>& warnings) {
   const std::vector<XmlElement> colours = material.children("color");
   if (colours.empty()) return std::nullopt;
-  const std::optional<std::string> text = colours.front().text("rgba");
-  const std::optional<std::vector<double>> rgba = parseNumbers(text.value_or(""));
+  const std::string text = colours.front().firstText("rgba");
+  const std::optional<std::vector<double>> rgba = parseNumbers(text);
   if (rgba && rgba->size() == 4)
     return Eigen::Vector4d((*rgba)[0], (*rgba)[1], (*rgba)[2], (*rgba)[3]);
-  warnings.push_back(fmt::format("line {}: {}: rgba is '{}', expected four numbers; not used",
-                                 material.where().line, material.label(), text.value_or("")));
+  warnings.push_back(fmt::format("line {}: {}: rgba is {}, expected four numbers; not used",
+                                 material.where().line, material.label(), quotedText(text)));
   return std::nullopt;
 }
 
@@ -102,7 +105,7 @@ void readMaterial(const XmlElement& visual, UrdfShape& shape, UrdfDescription& u
   const std::vector<XmlElement> materials = visual.children("material");
   if (materials.empty()) return;
   const XmlElement& material = materials.front();
-  shape.material = material.text("name").value_or("");
+  shape.material = material.firstText("name");
   shape.rgba = readColour(material, urdf.warnings);
   // A material defined inside a visual may be used by name elsewhere.
   if (shape.rgba && !shape.material.empty()) urdf.colours.emplace(shape.material, *shape.rgba);
@@ -123,7 +126,7 @@ UrdfShape readVisual(const XmlElement& element, UrdfDescription& urdf) {
 UrdfLink readLink(const XmlElement& unnamed, UrdfDescription& urdf) {
   UrdfLink link;
   link.spec.name = unnamed.named("link").requiredText("name");
-  const XmlElement element = unnamed.named(fmt::format("link '{}'", link.spec.name));
+  const XmlElement element = unnamed.named("link " + quotedText(link.spec.name));
   link.spec.where = element.where();
   if (const XmlElement inertial = element.child("inertial")) {
     link.hasInertial = true;
@@ -131,7 +134,7 @@ UrdfLink readLink(const XmlElement& unnamed, UrdfDescription& urdf) {
   }
   for (const XmlElement& collision : element.children("collision")) {
     UrdfShape shape = readShape(collision);
-    if (shape.defect) throw *shape.defect;
+    if (shape.defect && !shape.isPoint) throw *shape.defect;
     link.collisions.push_back(std::move(shape));
   }
   for (const XmlElement& visual : element.children("visual"))
@@ -158,10 +161,10 @@ void checkRoots(const XmlElement& robot, const UrdfDescription& urdf) {
   for (const UrdfLink& link : urdf.links) {
     if (children.count(link.spec.name)) continue;
     if (root && root->name != link.spec.name)
-      throw ModelError(link.spec.where, fmt::format("link '{}'", link.spec.name),
-                       fmt::format("is a second root beside '{}' (line {}), expected it to be the "
+      throw ModelError(link.spec.where, "link " + quotedText(link.spec.name),
+                       fmt::format("is a second root beside {} (line {}), expected it to be the "
                                    "child of a joint",
-                                   root->name, root->where.line));
+                                   quotedText(root->name), root->where.line));
     if (!root) root = &link.spec;
   }
 }
@@ -174,7 +177,7 @@ UrdfDescription describeUrdf(const XmlElement& robot) {
   robot.urdfMinorVersion();  // refuses one that is not known
   for (const XmlElement& material : robot.children("material"))
     if (const auto rgba = readColour(material, urdf.warnings))
-      urdf.colours[material.text("name").value_or("")] = *rgba;
+      urdf.colours[material.firstText("name")] = *rgba;
   for (const XmlElement& link : robot.children("link")) urdf.links.push_back(readLink(link, urdf));
 
   std::vector<std::string> linkNames;
@@ -182,9 +185,16 @@ UrdfDescription describeUrdf(const XmlElement& robot) {
   urdf.joints = readJoints(robot, linkNames, urdf.warnings);
   checkRoots(robot, urdf);
 
-  std::vector<std::string> odd;
-  for (const UrdfLink& link : urdf.links)
+  std::vector<std::string> odd, points;
+  for (const UrdfLink& link : urdf.links) {
     if (breaksTriangleInequality(link.spec)) odd.push_back(link.spec.name);
+    for (const UrdfShape& shape : link.collisions)
+      if (shape.isPoint)
+        points.push_back(fmt::format("line {}: {}", shape.element.where().line, link.spec.name));
+  }
+  if (!points.empty())
+    urdf.warnings.push_back("shapes of no size, which touch nothing and are left out: " +
+                            listed(points));
   if (!odd.empty())
     urdf.warnings.push_back(
         "inertia that no body can have (one principal moment exceeds the sum of the other two), "
@@ -192,6 +202,7 @@ UrdfDescription describeUrdf(const XmlElement& robot) {
         listed(odd));
   const std::vector<std::string> ignored = ignoredParts(robot);
   if (!ignored.empty()) urdf.warnings.push_back("ignored: " + listed(ignored, 40));
+  for (std::string& warning : urdf.warnings) warning = validUtf8(warning);
   return urdf;
 }
 

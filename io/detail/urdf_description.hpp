@@ -22,6 +22,7 @@ struct UrdfShape {
   std::string material;                 ///< name, of a visual
   std::optional<Eigen::Vector4d> rgba;  ///< written in place, of a visual
   XmlElement element;
+  bool isPoint = false;              ///< all its sizes are zero
   std::optional<ModelError> defect;  ///< why it is no solid: unknown geometry, a size of zero
 };
 

@@ -4,9 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <unordered_set>
 #include <utility>
 
 #include "io/detail/text.hpp"
+#include "io/detail/yaml.hpp"
 
 namespace softgauss::io::detail {
 namespace {
@@ -24,14 +26,14 @@ JointType readType(const XmlElement& joint) {
     if (text == name) return type;
     names.emplace_back(name);
   }
-  joint.fail(fmt::format("unknown type '{}', expected one of {}{}", text, listed(names),
+  joint.fail(fmt::format("unknown type {}, expected one of {}{}", quotedText(text), listed(names),
                          suggestion(text, names)));
 }
 
 /// Joints of a kind worth one warning each kind.
 struct Notes {
   std::vector<std::string> noRange, halfRange, unusedRange, unusedDynamics, fixedMimics,
-      negativeVelocity;
+      negativeVelocity, zeroVelocity, noEffort, unmovedMimics;
 
   void appendTo(std::vector<std::string>& warnings) const {
     const auto add = [&](const std::vector<std::string>& joints, const char* text) {
@@ -43,6 +45,11 @@ struct Notes {
     add(unusedDynamics, "damping and friction of a floating joint are ignored: ");
     add(fixedMimics, "mimic of a fixed joint is ignored: ");
     add(negativeVelocity, "a negative velocity limit is taken as none: ");
+    add(zeroVelocity, "a velocity limit of 0 is taken as none: ");
+    add(noEffort, "no effort in <limit>, so the controls of these joints have no bound: ");
+    add(unmovedMimics,
+        "mimic with multiplier 0, so these joints are held at their offset, whatever their leader "
+        "does: ");
   }
 };
 
@@ -55,10 +62,11 @@ void readLimit(const XmlElement& limit, JointSpec& joint, Notes& notes) {
   const bool takesRange = joint.type == JointType::revolute || joint.type == JointType::prismatic;
   std::optional<double> lower, upper;
   if (limit) {
-    lower = limit.number("lower");
-    upper = limit.number("upper");
-    joint.effort = limit.number("effort");
-    joint.velocity = limit.number("velocity");
+    lower = limit.number("lower", XmlElement::Size::any);
+    upper = limit.number("upper", XmlElement::Size::any);
+    joint.effort = limit.number("effort", XmlElement::Size::any);
+    joint.velocity = limit.number("velocity", XmlElement::Size::any);
+    if (joint.velocity == 0.0 && isScalar(joint.type)) notes.zeroVelocity.push_back(joint.name);
     if (joint.velocity.value_or(0.0) < 0.0) {
       notes.negativeVelocity.push_back(
           fmt::format("{} ({})", joint.name, shortNumber(*joint.velocity)));
@@ -104,21 +112,32 @@ void readMimic(const XmlElement& mimic, JointSpec& joint, Notes& notes) {
   if (!isScalar(joint.type))
     mimic.fail("is on a planar or floating joint, expected revolute, continuous or prismatic");
   if (spec.leader == joint.name) mimic.fail("a joint cannot mimic itself");
+  if (spec.multiplier == 0.0) notes.unmovedMimics.push_back(joint.name);
   joint.mimic = spec;
 }
 
-std::string readLinkName(const XmlElement& end, const std::vector<std::string>& links) {
+using Names = std::unordered_set<std::string>;
+
+/// ", did you mean 'x'?" among some of many names.
+std::string suggestionOf(const std::string& name, const Names& names) {
+  constexpr std::size_t kMostCompared = 10000;
+  if (names.size() > kMostCompared) return {};
+  std::vector<std::string> sorted(names.begin(), names.end());
+  std::sort(sorted.begin(), sorted.end());
+  return suggestion(name, sorted);
+}
+
+std::string readLinkName(const XmlElement& end, const Names& links) {
   const std::string name = end.requiredText("link");
-  if (std::find(links.begin(), links.end(), name) == links.end())
-    end.fail(fmt::format("link '{}' does not exist{}", name, suggestion(name, links)));
+  if (!links.count(name))
+    end.fail(fmt::format("link {} does not exist{}", quotedText(name), suggestionOf(name, links)));
   return name;
 }
 
-JointSpec readJoint(const XmlElement& unnamed, const std::vector<std::string>& links,
-                    Notes& notes) {
+JointSpec readJoint(const XmlElement& unnamed, const Names& links, Notes& notes) {
   JointSpec joint;
   joint.name = unnamed.named("joint").requiredText("name");
-  const XmlElement element = unnamed.named(fmt::format("joint '{}'", joint.name));
+  const XmlElement element = unnamed.named("joint " + quotedText(joint.name));
   joint.where = element.where();
   joint.type = readType(element);
   joint.parent = readLinkName(element.requiredChild("parent"), links);
@@ -130,28 +149,31 @@ JointSpec readJoint(const XmlElement& unnamed, const std::vector<std::string>& l
       if (joint.axis.norm() == 0.0) axis.fail("xyz is zero, expected a direction");
     }
   }
-  readLimit(element.child("limit"), joint, notes);
+  const XmlElement limit = element.child("limit");
+  readLimit(limit, joint, notes);
   readDynamics(element.child("dynamics"), joint, notes);
   readMimic(element.child("mimic"), joint, notes);
+  if (limit && !joint.effort && isScalar(joint.type) && !joint.mimic)
+    notes.noEffort.push_back(joint.name);
   return joint;
 }
 
 /// Followers and leaders are scalar joints of this file.
 void checkMimics(const XmlElement& robot, const std::vector<JointSpec>& joints) {
-  std::vector<std::string> leaders;
+  Names leaders;
   for (const JointSpec& joint : joints)
-    if (isScalar(joint.type)) leaders.push_back(joint.name);
+    if (isScalar(joint.type)) leaders.insert(joint.name);
   const std::vector<XmlElement> elements = robot.children("joint");
   for (std::size_t i = 0; i < joints.size(); ++i) {
     if (!joints[i].mimic) continue;
     const std::string& leader = joints[i].mimic->leader;
-    if (std::find(leaders.begin(), leaders.end(), leader) != leaders.end()) continue;
+    if (leaders.count(leader)) continue;
     elements[i]
-        .named(fmt::format("joint '{}'", joints[i].name))
+        .named("joint " + quotedText(joints[i].name))
         .child("mimic")
-        .fail(fmt::format("joint '{}' is not a revolute, continuous or prismatic joint of this "
+        .fail(fmt::format("joint {} is not a revolute, continuous or prismatic joint of this "
                           "robot{}",
-                          leader, suggestion(leader, leaders)));
+                          quotedText(leader), suggestionOf(leader, leaders)));
   }
 }
 
@@ -161,8 +183,9 @@ std::vector<JointSpec> readJoints(const XmlElement& robot, const std::vector<std
                                   std::vector<std::string>& warnings) {
   Notes notes;
   std::vector<JointSpec> joints;
+  const Names names(links.begin(), links.end());
   for (const XmlElement& joint : robot.children("joint"))
-    joints.push_back(readJoint(joint, links, notes));
+    joints.push_back(readJoint(joint, names, notes));
   checkMimics(robot, joints);
   notes.appendTo(warnings);
   return joints;

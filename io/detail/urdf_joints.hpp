@@ -7,7 +7,7 @@
 ///  - <limit> without lower and upper, or no <limit> at all: no range, and a warning;
 ///    one of the two alone: the other is 0, as the URDF specification has it.
 ///  - no effort: no box on the control. Effort 0 is kept as 0; ModelBuilder decides what it means.
-///  - a negative velocity limit is none, with a warning.
+///  - a velocity limit that is negative or 0 is none, with a warning.
 ///  - fixed and floating joints have no axis: what is written there is not read.
 
 #include <string>

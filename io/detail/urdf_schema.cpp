@@ -101,6 +101,11 @@ bool isReadElement(std::string_view parent, std::string_view child) {
   return known && contains(known->children, child);
 }
 
+bool isReadAttribute(std::string_view tag, std::string_view attribute) {
+  const KnownElement* known = findElement(tag);
+  return known && contains(known->attributes, attribute);
+}
+
 std::vector<std::string> ignoredParts(const XmlElement& robot) {
   std::map<std::string, int> counts;
   collect(robot, false, counts);

@@ -9,6 +9,7 @@
 
 #include "engine/core/rotation.hpp"
 #include "io/detail/text.hpp"
+#include "io/detail/yaml.hpp"
 
 namespace softgauss::io::detail {
 namespace {
@@ -33,6 +34,9 @@ std::string problemOf(const tinyxml2::XMLDocument& document) {
   }
 }
 
+/// Products of a few numbers of this size, squared, are still finite.
+constexpr double kLargest = 1e12;
+
 /// A hint where the value seems to come from a template that was not expanded.
 std::string hintFor(const std::string& value) {
   return value.find("${") == std::string::npos ? "" : " (a xacro expression: run xacro first)";
@@ -40,12 +44,45 @@ std::string hintFor(const std::string& value) {
 
 }  // namespace
 
+int lineOfManyAttributes(std::string_view xml) {
+  int line = 1, quotes = 0;
+  char open = 0;  // the quote, or the < of the tag, that is open
+  const auto skipTo = [&](std::size_t i, std::string_view end) {
+    const std::size_t at = std::min(xml.find(end, i), xml.size());
+    line += static_cast<int>(std::count(xml.begin() + static_cast<std::ptrdiff_t>(i),
+                                        xml.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
+    return at;
+  };
+  for (std::size_t i = 0; i < xml.size(); ++i) {
+    const char c = xml[i];
+    if (c == '\n') ++line;
+    if (open == '"' || open == '\'') {
+      if (c == open) open = '<';
+    } else if (open == '<') {
+      if (c == '"' || c == '\'') {
+        open = c;
+        if (++quotes > kMostAttributes) return line;
+      } else if (c == '>') {
+        open = 0;
+      }
+    } else if (c == '<') {
+      if (xml.substr(i, 4) == "<!--")
+        i = skipTo(i, "-->");
+      else if (xml.substr(i, 9) == "<![CDATA[")
+        i = skipTo(i, "]]>");
+      else
+        open = c, quotes = 0;
+    }
+  }
+  return 0;
+}
+
 std::string XmlElement::tag() const { return element_->Name(); }
 
 SourceLocation XmlElement::where() const { return {*file_, element_->GetLineNum()}; }
 
 void XmlElement::fail(const std::string& problem) const {
-  throw ModelError(where(), label_, problem);
+  throw ModelError(where(), validUtf8(label_), validUtf8(problem));
 }
 
 XmlElement XmlElement::child(const char* tag) const {
@@ -90,20 +127,31 @@ std::optional<std::string> XmlElement::text(const char* attribute) const {
   return element_->Attribute(attribute);
 }
 
+std::string XmlElement::firstText(const char* attribute) const {
+  const char* const value = element_->Attribute(attribute);
+  return value ? value : "";
+}
+
 std::string XmlElement::requiredText(const char* attribute) const {
   const std::optional<std::string> value = text(attribute);
   if (!value) fail(fmt::format("has no attribute '{}'", attribute));
   if (value->empty()) fail(fmt::format("attribute '{}' is empty", attribute));
+  if (validUtf8(*value) != *value)
+    fail(
+        fmt::format("{} is {}, which is no UTF-8; expected a file in UTF-8 (iconv -f latin1 -t "
+                    "utf8 makes one of most others)",
+                    attribute, quotedText(*value)));
   return *value;
 }
 
-std::optional<double> XmlElement::number(const char* attribute) const {
+std::optional<double> XmlElement::number(const char* attribute, Size size) const {
   const std::optional<std::string> value = text(attribute);
   if (!value) return std::nullopt;
   const std::optional<double> x = parseNumber(*value);
   if (!x)
-    fail(fmt::format("{} is '{}', expected one finite number{}", attribute, *value,
+    fail(fmt::format("{} is {}, expected one finite number{}", attribute, quotedText(*value),
                      hintFor(*value)));
+  if (size == Size::bounded) expectBounded(attribute, *x);
   return x;
 }
 
@@ -118,8 +166,9 @@ std::optional<Vector3> XmlElement::vector3(const char* attribute) const {
   if (!value) return std::nullopt;
   const std::optional<std::vector<double>> x = parseNumbers(*value);
   if (!x || x->size() != 3)
-    fail(fmt::format("{} is '{}', expected three finite numbers{}", attribute, *value,
+    fail(fmt::format("{} is {}, expected three finite numbers{}", attribute, quotedText(*value),
                      hintFor(*value)));
+  for (const double number : *x) expectBounded(attribute, number);
   return Vector3((*x)[0], (*x)[1], (*x)[2]);
 }
 
@@ -127,6 +176,12 @@ Vector3 XmlElement::requiredVector3(const char* attribute) const {
   const std::optional<Vector3> x = vector3(attribute);
   if (!x) fail(fmt::format("has no attribute '{}', expected three numbers", attribute));
   return *x;
+}
+
+void XmlElement::expectBounded(const char* attribute, double x) const {
+  if (std::abs(x) > kLargest)
+    fail(fmt::format("{} holds {}, expected numbers of size {:g} at most", attribute,
+                     shortNumber(x), kLargest));
 }
 
 Transform XmlElement::origin() const {
@@ -156,7 +211,7 @@ Matrix3 XmlElement::quaternion(const std::string& text) const {
         "<robot>");
   const std::optional<std::vector<double>> x = parseNumbers(text);
   if (!x || x->size() != 4)
-    fail(fmt::format("quat_xyzw is '{}', expected four finite numbers x y z w{}", text,
+    fail(fmt::format("quat_xyzw is {}, expected four finite numbers x y z w{}", quotedText(text),
                      hintFor(text)));
   const Quaternion q((*x)[3], (*x)[0], (*x)[1], (*x)[2]);
   if (std::abs(q.norm() - 1.0) > kUnit)
@@ -170,16 +225,21 @@ int XmlElement::urdfMinorVersion() const {
   const std::string version = robot.text("version").value_or("1.0");
   for (const int minor : {0, 1, 2})
     if (version == fmt::format("1.{}", minor)) return minor;
-  robot.fail(fmt::format("version is '{}', expected 1.0, 1.1 or 1.2", version));
+  robot.fail(fmt::format("version is {}, expected 1.0, 1.1 or 1.2", quotedText(version)));
 }
 
 XmlFile::XmlFile(const std::string& path, const std::string& text)
     : path_(path), document_(std::make_unique<tinyxml2::XMLDocument>()) {
+  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
+    throw ModelError({path_, 1}, "XML", "is UTF-16, expected UTF-8 (iconv -f utf16 -t utf8)");
   if (const std::size_t zero = text.find('\0'); zero != std::string::npos) {
     const auto line =
         1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(zero), '\n');
     throw ModelError({path_, static_cast<int>(line)}, "XML", "holds a zero byte, expected text");
   }
+  if (const int line = lineOfManyAttributes(text); line > 0)
+    throw ModelError({path_, line}, "XML",
+                     fmt::format("an element has more than {} attributes", kMostAttributes));
   if (document_->Parse(text.c_str(), text.size()) != tinyxml2::XML_SUCCESS)
     throw ModelError({path_, std::max(1, document_->ErrorLineNum())}, "XML", problemOf(*document_));
 
@@ -197,13 +257,6 @@ XmlFile::~XmlFile() = default;
 
 XmlElement XmlFile::robot() const { return {&path_, document_->RootElement(), "robot"}; }
 
-std::string XmlFile::edited(const std::function<void(tinyxml2::XMLElement& robot)>& edit) const {
-  tinyxml2::XMLDocument copy;
-  document_->DeepCopy(&copy);
-  edit(*copy.RootElement());
-  tinyxml2::XMLPrinter printer;
-  copy.RootElement()->Accept(&printer);
-  return printer.CStr();
-}
+const tinyxml2::XMLElement& XmlFile::root() const { return *document_->RootElement(); }
 
 }  // namespace softgauss::io::detail

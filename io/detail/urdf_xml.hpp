@@ -3,10 +3,10 @@
 
 /// Strict access to the raw XML of a URDF: every attribute is read whole or refused, with its line.
 
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/core/check.hpp"
@@ -18,6 +18,11 @@ class XMLElement;
 }  // namespace tinyxml2
 
 namespace softgauss::io::detail {
+
+/// The line of the first element with more attributes than any has, 0 where there is none: tinyxml2
+/// compares each with all before it.
+int lineOfManyAttributes(std::string_view xml);
+inline constexpr int kMostAttributes = 250;
 
 /// An element of the file with what messages need to name it. Cheap to copy; valid as long as its
 /// XmlFile. A null element stands for an absent optional one.
@@ -46,8 +51,12 @@ class XmlElement {
   std::vector<std::string> attributes() const;
 
   std::optional<std::string> text(const char* attribute) const;
-  std::string requiredText(const char* attribute) const;  ///< not empty
-  std::optional<double> number(const char* attribute) const;
+  /// What is no physics: "" where it is not there, the first where it is there twice.
+  std::string firstText(const char* attribute) const;
+  std::string requiredText(const char* attribute) const;  ///< not empty, and UTF-8
+  /// Numbers are of size 10¹² at most, but where larger ones stand for no limit.
+  enum class Size { bounded, any };
+  std::optional<double> number(const char* attribute, Size size = Size::bounded) const;
   double requiredNumber(const char* attribute) const;
   std::optional<Vector3> vector3(const char* attribute) const;
   Vector3 requiredVector3(const char* attribute) const;
@@ -65,6 +74,7 @@ class XmlElement {
 
  private:
   Matrix3 quaternion(const std::string& text) const;
+  void expectBounded(const char* attribute, double x) const;
 
   const std::string* file_ = nullptr;
   const tinyxml2::XMLElement* element_ = nullptr;
@@ -79,8 +89,7 @@ class XmlFile {
 
   XmlElement robot() const;
 
-  /// A copy of the XML for another parser, after `edit` has been applied to its <robot>.
-  std::string edited(const std::function<void(tinyxml2::XMLElement& robot)>& edit) const;
+  const tinyxml2::XMLElement& root() const;  ///< <robot>
 
  private:
   std::string path_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Objects that are meshes: a mass needs a surface that encloses a volume.
 
+#include "load_urdf.hpp"
 #include "scene_folder.hpp"
 
 namespace softgauss::test {
@@ -36,14 +37,15 @@ TEST(SceneMesh, ThatEnclosesNoVolumeIsRefusedWhereItHasMass) {
                     inside = "f 1 2 3\nf 1 4 2\nf 1 3 4\nf 2 4 3\n";
   for (const char* keys : {"density: 1000", "mass: 3", "color: [1, 0, 0]"}) {
     for (const auto& [faces, words] :
-         {std::pair{open, "3 edges at holes"},
-          {turned, "3 edges between triangles that face opposite sides"},
-          {inside, "1 shell of triangles that face inwards"},
+         {std::pair{open, "3 edges at holes (the first from (10 1 0) to (11 0 0))"},
+          {turned,
+           "3 edges between triangles that face opposite sides (most of them about triangle 4, "},
+          {inside, "1 shell of triangles that face inwards (one with triangle 1, "},
           {std::string("f 1 2 3\nf 1 3 2\n"), "triangles that enclose nothing"}}) {
       const std::string message = refusalOf(faces, keys);
-      EXPECT_NE(message.find("scene.yaml:2: object 1: key 'mesh': found a mesh with "),
-                std::string::npos)
+      EXPECT_NE(message.find("scene.yaml:2: object 1: key 'mesh': found "), std::string::npos)
           << message;
+      EXPECT_NE(message.find("w.obj' with "), std::string::npos) << message;
       EXPECT_NE(message.find(words), std::string::npos) << message;
     }
     EXPECT_EQ(refusalOf(kClosed, keys), "no error");
@@ -72,6 +74,21 @@ TEST(SceneMesh, CollidesAsTheSceneSays) {
     EXPECT_EQ(shapeOf(keys).shape.kind, ShapeKind::triangles);
     EXPECT_FALSE(shapeOf(keys).eitherMesh);
   }
+}
+
+// A hull of an unsound mesh is defined, and told.
+TEST(SceneMesh, HullOfAnUnsoundMeshIsTold) {
+  const std::string open = "f 1 3 2\nf 1 2 4\nf 1 4 3\n",
+                    turned = "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 4 3\n";
+  const auto isTold = [](const std::string& faces, const std::string& keys,
+                         const std::string& words) {
+    return io::hasWarning(ofMesh(faces, keys).builder.build(), words);
+  };
+  const std::string hull = "fixed: true, collide_as: hull";
+  EXPECT_TRUE(isTold(open, hull, "object 'w' (w.obj: 3 edges at holes (the first from (10 1 0)"));
+  EXPECT_TRUE(isTold(turned, hull, "about triangle 4"));
+  EXPECT_FALSE(isTold(kClosed, hull, "convex hulls of meshes"));
+  EXPECT_FALSE(isTold(open, "fixed: true, collide_as: triangles", "convex hulls of meshes"));
 }
 
 TEST(SceneMesh, RefusesMeshUseOfOtherShapes) {
@@ -105,6 +122,12 @@ TEST(SceneMesh, ARobotCollidesAsTheSceneSays) {
   EXPECT_EQ(kindOf("", io::MeshUse::triangles).shape.kind, ShapeKind::triangles);
   EXPECT_EQ(kindOf(", collide_as: hull", io::MeshUse::triangles).shape.kind, ShapeKind::mesh);
   EXPECT_EQ(kindOf(", collide_as: triangles", io::MeshUse::hull).shape.kind, ShapeKind::triangles);
+
+  folder.write("w.obj", "v 10 0 0\nv 11 0 0\nv 10 1 0\nv 10 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\n");
+  io::UrdfOptions asHulls;
+  asHulls.meshes = io::MeshUse::hull;
+  EXPECT_TRUE(io::hasWarning(io::loadUrdf(folder.path() / "r.urdf", asHulls),
+                             "link 'world' (w.obj: 3 edges at holes"));
 }
 
 }  // namespace

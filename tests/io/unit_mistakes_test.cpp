@@ -66,6 +66,20 @@ TEST(UnitMistakes, InertiaThatNoBodyOfThatMassAndSizeHas) {
         << withMoment(moment).warnings.front();
 }
 
+// Without shapes the extent of the robot, here 0.9 m, bounds a link: 0.81 kg m² and 20 times that.
+TEST(UnitMistakes, InertiaOfALinkWithoutShapes) {
+  const auto withoutShape = [](const std::string& moment) {
+    return load(
+        "<robot name='r'><link name='base'/><link name='arm'><inertial><mass value='1'/>"
+        "<inertia ixx='" +
+        moment + "' ixy='0' ixz='0' iyy='" + moment + "' iyz='0' izz='" + moment +
+        "'/></inertial></link><joint name='j' type='fixed'><origin xyz='0 0 0.9'/>"
+        "<parent link='base'/><child link='arm'/></joint></robot>");
+  };
+  EXPECT_FALSE(hasWarning(withoutShape("16"), "no body of that mass and size"));
+  EXPECT_TRUE(hasWarning(withoutShape("17"), "link 'arm' has 17 kg m², 1 kg within 0.9 m"));
+}
+
 /// The sample with a cube of `size` as a mesh in place of its box.
 Model withCube(const std::string& size) {
   const TempFolder folder;

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/detail/mesh_import.hpp"
+
+#include <assimp/config.h>
+#include <assimp/material.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <assimp/IOStream.hpp>
+#include <assimp/IOSystem.hpp>
+#include <assimp/Importer.hpp>
+#include <cstring>
+#include <optional>
+#include <string_view>
+#include <unordered_map>
+#include <utility>
+
+#include "engine/core/check.hpp"
+#include "io/detail/child_process.hpp"
+
+namespace softgauss::io::detail {
+namespace {
+
+struct CornerHash {
+  std::size_t operator()(const std::array<double, 3>& x) const {
+    std::size_t h = 0;
+    for (const double value : x) h = h * 1000003u ^ std::hash<double>{}(value);
+    return h;
+  }
+};
+
+/// Gathers the triangles of a scene in one mesh, in the coordinates of the file.
+class Collector {
+ public:
+  Collector(const aiScene& scene, Mesh& mesh) : scene_(scene), mesh_(mesh) {}
+
+  void add(const aiNode& node, const aiMatrix4x4& X_FileParent) {
+    const aiMatrix4x4 X_FileNode = X_FileParent * node.mTransformation;
+    for (unsigned i = 0; i < node.mNumMeshes; ++i)
+      add(*scene_.mMeshes[node.mMeshes[i]], X_FileNode);
+    for (unsigned i = 0; i < node.mNumChildren; ++i) add(*node.mChildren[i], X_FileNode);
+  }
+
+ private:
+  void add(const aiMesh& part, const aiMatrix4x4& X_FileNode) {
+    const std::size_t first = mesh_.triangles.size();
+    for (unsigned f = 0; f < part.mNumFaces; ++f) {
+      const aiFace& face = part.mFaces[f];
+      if (face.mNumIndices != 3) continue;
+      std::array<int, 3> triangle;
+      for (unsigned k = 0; k < 3; ++k)
+        triangle[k] = vertex(X_FileNode * part.mVertices[face.mIndices[k]]);
+      mesh_.triangles.push_back(triangle);
+    }
+    const std::optional<Eigen::Vector4d> rgba = colour(*scene_.mMaterials[part.mMaterialIndex]);
+    if (rgba && mesh_.triangles.size() > first)
+      mesh_.parts.push_back(
+          {static_cast<int>(first), static_cast<int>(mesh_.triangles.size() - first), *rgba});
+  }
+
+  /// The diffuse colour that the file gives; nothing where assimp made the material up.
+  static std::optional<Eigen::Vector4d> colour(const aiMaterial& material) {
+    aiString name;
+    if (material.Get(AI_MATKEY_NAME, name) == AI_SUCCESS &&
+        std::string_view(name.C_Str()) == AI_DEFAULT_MATERIAL_NAME)
+      return std::nullopt;
+    aiColor4D diffuse;
+    if (material.Get(AI_MATKEY_COLOR_DIFFUSE, diffuse) != AI_SUCCESS) return std::nullopt;
+    float opacity = 1.0f;
+    material.Get(AI_MATKEY_OPACITY, opacity);
+    return Eigen::Vector4d(diffuse.r, diffuse.g, diffuse.b, opacity);
+  }
+
+  int vertex(const aiVector3D& corner) {
+    // Adding zero makes one of the two zeros.
+    const std::array<double, 3> x = {static_cast<double>(corner.x) + 0.0,
+                                     static_cast<double>(corner.y) + 0.0,
+                                     static_cast<double>(corner.z) + 0.0};
+    const auto [it, isNew] = index_.try_emplace(x, static_cast<int>(mesh_.vertices.size()));
+    if (isNew) mesh_.vertices.emplace_back(x[0], x[1], x[2]);
+    return it->second;
+  }
+
+  const aiScene& scene_;
+  Mesh& mesh_;
+  std::unordered_map<std::array<double, 3>, int, CornerHash> index_;
+};
+
+/// Bytes as a file that is open for reading.
+class BytesStream : public Assimp::IOStream {
+ public:
+  explicit BytesStream(std::string bytes) : own_(std::move(bytes)), bytes_(own_) {}
+  explicit BytesStream(std::string_view bytes) : bytes_(bytes) {}
+  BytesStream(const BytesStream&) = delete;
+  BytesStream& operator=(const BytesStream&) = delete;
+
+  std::size_t Read(void* buffer, std::size_t size, std::size_t count) override {
+    if (size == 0) return 0;
+    const std::size_t whole = std::min(count, (bytes_.size() - at_) / size);
+    std::memcpy(buffer, bytes_.data() + at_, whole * size);
+    at_ += whole * size;
+    return whole;
+  }
+  std::size_t Write(const void*, std::size_t, std::size_t) override { return 0; }
+  aiReturn Seek(std::size_t offset, aiOrigin origin) override {
+    const std::size_t from = origin == aiOrigin_SET   ? 0
+                             : origin == aiOrigin_CUR ? at_
+                                                      : bytes_.size();
+    if (offset > bytes_.size() - from) return aiReturn_FAILURE;
+    at_ = from + offset;
+    return aiReturn_SUCCESS;
+  }
+  std::size_t Tell() const override { return at_; }
+  std::size_t FileSize() const override { return bytes_.size(); }
+  void Flush() override {}
+
+ private:
+  std::string own_;
+  std::string_view bytes_;
+  std::size_t at_ = 0;
+};
+
+/// The files that assimp sees: the mesh, which is in memory, and regular files of bounded size.
+class Files : public Assimp::IOSystem {
+ public:
+  Files(const MeshFile& mesh, std::uintmax_t largest) : mesh_(mesh), largest_(largest) {}
+
+  bool Exists(const char* name) const override {
+    std::error_code ignored;
+    return name == mesh_.path.string() || std::filesystem::is_regular_file(name, ignored);
+  }
+  char getOsSeparator() const override { return '/'; }
+  Assimp::IOStream* Open(const char* name, const char*) override {
+    if (name == mesh_.path.string()) return new BytesStream(std::string_view(mesh_.text));
+    try {
+      return new BytesStream(readMeshBytes(name, largest_));
+    } catch (const ModelError&) {
+      return nullptr;  // assimp goes on without what it cannot open
+    }
+  }
+  void Close(Assimp::IOStream* stream) override { delete stream; }
+
+ private:
+  const MeshFile& mesh_;
+  std::uintmax_t largest_;
+};
+
+/// Why the file cannot be read, or nothing.
+std::string import(const MeshFile& file, std::uintmax_t largest, Mesh& mesh) {
+  Assimp::Importer importer;
+  importer.SetIOHandler(new Files(file, largest));  // which it deletes
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
+  importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE,
+                              aiPrimitiveType_POINT | aiPrimitiveType_LINE);
+  const aiScene* scene =
+      importer.ReadFile(file.path.string(), aiProcess_Triangulate | aiProcess_SortByPType);
+  if (!scene || !scene->mRootNode)
+    return fmt::format("cannot be read: {}", importer.GetErrorString());
+  Collector(*scene, mesh).add(*scene->mRootNode, aiMatrix4x4());
+  return {};
+}
+
+// ---- A mesh as bytes, from a child of this process to it
+
+template <class T>
+void put(std::string& bytes, const std::vector<T>& items) {
+  const std::uint64_t count = items.size();
+  bytes.append(reinterpret_cast<const char*>(&count), sizeof count);
+  bytes.append(reinterpret_cast<const char*>(items.data()), items.size() * sizeof(T));
+}
+
+template <class T>
+void take(std::string_view& bytes, std::vector<T>& items) {
+  std::uint64_t count = 0;
+  std::memcpy(&count, bytes.data(), sizeof count);
+  items.resize(count);
+  bytes.remove_prefix(sizeof count);
+  std::memcpy(static_cast<void*>(items.data()), bytes.data(), count * sizeof(T));
+  bytes.remove_prefix(count * sizeof(T));
+}
+
+constexpr char kMesh = 'm', kProblem = 'p';
+
+std::string bytesOf(const MeshFile& file, std::uintmax_t largest) {
+  Mesh mesh;
+  const std::string problem = import(file, largest, mesh);
+  if (!problem.empty()) return kProblem + problem;
+  std::string bytes(1, kMesh);
+  put(bytes, mesh.vertices);
+  put(bytes, mesh.triangles);
+  put(bytes, mesh.parts);
+  return bytes;
+}
+
+}  // namespace
+
+Mesh importMesh(const MeshFile& file, std::uintmax_t largest) {
+  Mesh mesh;
+  if (file.format == ".stl") {
+    if (const std::string problem = import(file, largest, mesh); !problem.empty())
+      failMesh(file.path, problem);
+    return mesh;
+  }
+  const ChildResult child = runInChild([&] { return bytesOf(file, largest); }, {});
+  if (!child.failure.empty())
+    failMesh(file.path,
+             fmt::format("cannot be read: the importer {}; try .stl, or a mesh tool that "
+                         "writes the file anew",
+                         child.failure));
+  std::string_view bytes(child.bytes);
+  const char kind = bytes[0];
+  bytes.remove_prefix(1);
+  if (kind == kProblem) failMesh(file.path, std::string(bytes));
+  take(bytes, mesh.vertices);
+  take(bytes, mesh.triangles);
+  take(bytes, mesh.parts);
+  return mesh;
+}
+
+}  // namespace softgauss::io::detail

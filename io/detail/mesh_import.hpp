@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Triangles of a mesh file, by assimp.
+///
+/// An STL is read in place: its size bounds time and memory. How long assimp takes for an OBJ or a
+/// DAE no check can tell, so it reads them in a child process that has limits.
+
+#include "engine/model/shape.hpp"
+#include "io/detail/mesh_file.hpp"
+
+namespace softgauss::io::detail {
+
+/// In the coordinates of the file. Material files beside it are read if they are no larger than
+/// `largest` bytes. Throws ModelError.
+Mesh importMesh(const MeshFile& file, std::uintmax_t largest);
+
+}  // namespace softgauss::io::detail
