@@ -5,10 +5,10 @@
 
 #include <utility>
 
-#include "io/detail/input_file.hpp"
-#include "io/detail/other_formats.hpp"
 #include "engine/dynamics/coupled_mass.hpp"
+#include "io/detail/input_file.hpp"
 #include "io/detail/mesh_defects.hpp"
+#include "io/detail/other_formats.hpp"
 #include "io/detail/resources.hpp"
 #include "io/detail/text.hpp"
 #include "io/detail/unit_mistakes.hpp"

@@ -74,8 +74,7 @@ bool SimulateOptions::isScene() const {
 
 bool SimulateOptions::writesToStandardOutput() const {
   return io::isStandardOutput(log) || io::isStandardOutput(contacts) ||
-         io::isStandardOutput(summary) || io::isStandardOutput(view) ||
-         io::isStandardOutput(plot);
+         io::isStandardOutput(summary) || io::isStandardOutput(view) || io::isStandardOutput(plot);
 }
 
 }  // namespace softgauss::app

@@ -297,8 +297,7 @@ class Runner {
     if (!options_.summary.empty()) attempt([&] { summary_.write(options_.summary); });
     for (std::string& error : replay_->finish(last, data_, summary_, reason))
       outputErrors_.push_back(std::move(error));
-    if (!options_.quiet)
-      print(told(), replay_->written() + summary_.table(options_.details));
+    if (!options_.quiet) print(told(), replay_->written() + summary_.table(options_.details));
   }
 
   /// Which solver followed the goals. Steps in which cones touch are solver 1's.
