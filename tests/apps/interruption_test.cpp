@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// What becomes of outputs when a run is ended from outside, or when there is no room for them.
 
+#include <csignal>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -30,6 +31,8 @@ std::string signalled(const std::string& before, const std::string& signals) {
 const std::set<std::string> kOutputs = {"log.csv", "page.html", "s.json"};
 
 TEST(Interruption, ByEachSignalThatAsksForItEndsInOrder) {
+  // Who started the tests may have had these ignored, and a shell cannot give them back.
+  for (const int signal : {SIGHUP, SIGTERM, SIGINT}) std::signal(signal, SIG_DFL);
   for (const char* signal : {"HUP", "TERM", "INT"}) {
     const io::TempFolder folder;
     // A shell has what runs behind it ignore SIGINT; the trap gives it back.

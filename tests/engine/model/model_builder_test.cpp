@@ -177,8 +177,8 @@ TEST(Base, FollowsItsKind) {
   EXPECT_EQ(built("body", BaseKind::floating).nv, 6);
   EXPECT_EQ(built("body", BaseKind::fixed).nv, 0);
   EXPECT_EQ(built("world", BaseKind::automatic).nv, 0);
-  // A root called world is the world, never doubled.
-  EXPECT_EQ(built("world", BaseKind::floating).nv, 0);
+  // A root called world is the world, which cannot float.
+  EXPECT_THROW(built("world", BaseKind::floating), ModelError);
   EXPECT_EQ(built("body", BaseKind::automatic).q0.head(3), Vector3(1, 2, 3));
   EXPECT_EQ(built("body", BaseKind::fixed).frames[0].X_BF.p, Vector3(1, 2, 3));
   EXPECT_EQ(built("world", BaseKind::automatic).frames[0].X_BF.p, Vector3::Zero());
