@@ -30,7 +30,7 @@ std::string signalled(const std::string& before, const std::string& signals) {
 
 const std::set<std::string> kOutputs = {"log.csv", "page.html", "s.json"};
 
-TEST(Interruption, ByEachSignalThatAsksForItEndsInOrder) {
+TEST(InterruptionLong, ByEachSignalThatAsksForItEndsInOrder) {
   // Who started the tests may have had these ignored, and a shell cannot give them back.
   for (const int signal : {SIGHUP, SIGTERM, SIGINT}) std::signal(signal, SIG_DFL);
   for (const char* signal : {"HUP", "TERM", "INT"}) {
@@ -49,7 +49,7 @@ TEST(Interruption, ByEachSignalThatAsksForItEndsInOrder) {
 }
 
 // nohup has SIGHUP ignored.
-TEST(Interruption, BySighupIsIgnoredWhereItWas) {
+TEST(InterruptionLong, BySighupIsIgnoredWhereItWas) {
   const io::TempFolder folder;
   const Outcome outcome =
       runShell(folder.path(), signalled("trap '' HUP\n", "kill -HUP $!; sleep 0.3; kill -TERM $!"));
@@ -57,7 +57,7 @@ TEST(Interruption, BySighupIsIgnoredWhereItWas) {
   EXPECT_EQ(namesIn(folder.path()), kOutputs);
 }
 
-TEST(Interruption, ByOtherSignalsLeavesNothingHalfWritten) {
+TEST(InterruptionLong, ByOtherSignalsLeavesNothingHalfWritten) {
   for (const char* signals : {"kill -QUIT $!", "kill -USR1 $!", "kill -ALRM $!", "kill -ABRT $!"}) {
     const io::TempFolder folder;
     const Outcome outcome = runShell(folder.path(), signalled("ulimit -c 0\n", signals));
