@@ -239,6 +239,13 @@ ContactBlocks::FrameVector ContactBlocks::biasChange(const Assembly& then, int i
   return change;
 }
 
+double ContactBlocks::slipSpeed(const Touch& touch, const FrameVector& velocity) {
+  double squares = 0.0;
+  for (int k = 0; k < touch.frictionDim; ++k)
+    squares += std::pow(touch.friction[k] * velocity[k + 1], 2.0);
+  return std::sqrt(squares);
+}
+
 Softness ContactBlocks::soften(const Assembly& in, const Touch& touch,
                                const FrameVector& velocity) {
   const Softness& soft = touch.softness;
@@ -247,10 +254,7 @@ Softness ContactBlocks::soften(const Assembly& in, const Touch& touch,
   };
   if (!touch.carries || !in.sticks() || touch.frictionDim == 0) return held(soft);
   if (!(soft.damping * soft.damping >= 4.0 * soft.stiffness)) return held(soft);  // it bounces
-  double squares = 0.0;
-  for (int k = 0; k < touch.frictionDim; ++k)
-    squares += std::pow(touch.friction[k] * velocity[k + 1], 2.0);
-  SlipSpeeds speeds{std::sqrt(squares), std::abs(velocity[0])};
+  SlipSpeeds speeds{slipSpeed(touch, velocity), std::abs(velocity[0])};
   speeds.weight = creepUnderWeight(in.model.options, touch);
   speeds.creep = speeds.weight - soft.stiffness * touch.distance / soft.damping;
   made_.back().slip = speeds.slip();

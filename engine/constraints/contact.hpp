@@ -109,6 +109,8 @@ class ContactBlocks {
   }
   /// The block of contact i, whose rows begin at `row`.
   BlockMotion addBlock(const Assembly& in, int i, const Touch& touch, int row);
+  /// |(μ_k ẏ_k)|, of all directions of friction in the units of the normal [m/s].
+  static double slipSpeed(const Touch& touch, const FrameVector& velocity);
   /// How soft the last block is: as it is, or harder where it sticks (T.97).
   Softness soften(const Assembly& in, const Touch& touch, const FrameVector& velocity);
   /// a_ref of the next row (T.122), of what it asks for where J̇ v is none.

@@ -26,10 +26,7 @@ void EllipticContact::assemble(const Assembly& in) {
                         touch->mu() / std::sqrt(options.impedanceRatio), touch->friction});
       double push = soft.referenceAcceleration(moves.velocity[0], touch->distance);
       if (options.levelsSlip()) {
-        double squares = 0.0;
-        for (int k = 0; k < touch->frictionDim; ++k)
-          squares += std::pow(touch->friction[k] * moves.velocity[k + 1], 2.0);
-        const double friction = soft.damping * std::sqrt(squares);
+        const double friction = soft.damping * slipSpeed(*touch, moves.velocity);
         push -= made_.back().slip * SlipPush::share(touch->mu()) *
                 SlipPush(push, soft.damping, options.timestep).ofCone(friction, cones_.back().mu);
       }

@@ -33,17 +33,16 @@ void PyramidalContact::assemble(const Assembly& in) {
     toEdges(moves.bias.data(), touch->frictionDim, touch->friction, bias);
     const int edges = std::max(1, 2 * touch->frictionDim);
     const Softness soft = soften(in, *touch, moves.velocity);
-    double asks[10], level[10];
+    double asks[10];
     for (int edge = 0; edge < edges; ++edge)
-      asks[edge] = level[edge] = soft.referenceAcceleration(velocity[edge], touch->distance);
+      asks[edge] = soft.referenceAcceleration(velocity[edge], touch->distance);
     if (touch->frictionDim > 0 && options.levelsSlip()) {
       const double push = soft.referenceAcceleration(moves.velocity[0], touch->distance);
-      SlipPush(push, soft.damping, options.timestep).level(level, edges);
+      SlipPush(push, soft.damping, options.timestep)
+          .level(asks, edges, made_.back().slip * SlipPush::share(touch->mu()));
     }
-    const double counts = made_.back().slip * SlipPush::share(touch->mu());
     for (int edge = 0; edge < edges; ++edge) {
-      const double asked = asks[edge] - counts * (asks[edge] - level[edge]);
-      reference.push_back(nextReference(in, soft, asked, bias[edge]));
+      reference.push_back(nextReference(in, soft, asks[edge], bias[edge]));
       pushSoftness(soft);
     }
   }

@@ -39,8 +39,8 @@ class SlipPush {
     most_ = std::max(0.0, push) * (hb < kStops ? kStops / hb : 1.0);
   }
 
-  /// p_e − λ in place of the references p_e of n ≤ 10 edges.
-  void level(double* p, int n) const {
+  /// p_e − λ in place of the references p_e of n ≤ 10 edges; λ counts `share` times.
+  void level(double* p, int n, double share) const {
     const double target = n * std::max(0.0, push_);
     double sorted[10], total = 0.0;
     for (int e = 0; e < n; ++e) total += std::max(0.0, sorted[e] = p[e]);
@@ -52,7 +52,8 @@ class SlipPush {
       lambda = (sum - target) / (e + 1);
       if (e + 1 == n || sorted[e + 1] <= lambda) break;
     }
-    for (int e = 0; e < n; ++e) p[e] = std::min(p[e] - lambda, bound(2.0, lambda));
+    for (int e = 0; e < n; ++e)
+      p[e] -= share * (p[e] - std::min(p[e] - lambda, bound(2.0, lambda)));
   }
 
   /// λ of an elliptic cone: `friction` is T [m/s²], `ratio` μ̂.
