@@ -193,8 +193,10 @@ class Runner {
       touching_ = islands_->contacts();
     else
       contactForces(data_, touching_);
-    record_.centerOfPressure = centerOfPressure(model_, touching_);
-    if (log_) contactLinks_.forces(touching_, record_.linkForces);
+    if (log_) {
+      record_.centerOfPressure = centerOfPressure(model_, touching_);
+      contactLinks_.forces(touching_, record_.linkForces);
+    }
     summary_.addStep(record_);
     if (gdd) tally(controller_.report, summary_.gdd);
     tally(stats, data_.plan.drifts, summary_);
@@ -214,7 +216,7 @@ class Runner {
     const Energy energy = computeEnergy(model_, kinematics, record.q, record.v);
     record.energy = energy.total();
     record.kineticEnergy = energy.kinetic;
-    io::measureWhole(model_, kinematics, record);
+    if (log_) io::measureWhole(model_, kinematics, record);
   }
 
   void writeLog(const io::StepRecord& row) {
