@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// What --accuracy of simulate_gdd refuses, and says.
 
-#include <fstream>
-
 #include "tests/apps/process.hpp"
 
 namespace softgauss::test {
@@ -42,11 +40,10 @@ TEST(Accuracy, DoesNotPromiseWhatCannotBeKept) {
 // What overflows is said to do so, and when; it does not take too long.
 TEST(Accuracy, TellsOverflow) {
   const io::TempFolder folder;
-  const std::string scene = folder.path() / "fall.yaml";
-  std::ofstream(scene) << "gravity: [0, 0, -1e308]\nground: none\nobjects:\n"
-                          "  - {name: ball, sphere: {radius: 0.1}, mass: 1, position: [0, 0, 1],\n"
-                          "     velocity: [0, 0, -1.7e308]}\n";
-  const Outcome outcome = simulate({scene, "--passive", "--duration", "1", "--accuracy", "1e-3"});
+  const std::string torques =
+      folder.write("torques.csv", "time_s,u:shoulder_yaw,u:elbow_pitch\n0,1e12,-1e12\n");
+  const Outcome outcome = simulate(
+      {dataFile("robots/arm.urdf"), "--torques", torques, "--duration", "1", "--accuracy", "1e-3"});
   EXPECT_EQ(outcome.exitCode, 2);
   EXPECT_NE(outcome.err.find("become non-finite, the first at t = "), std::string::npos)
       << outcome.err;
