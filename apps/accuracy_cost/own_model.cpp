@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "apps/accuracy_cost/contestant.hpp"
-#include "apps/shared/ground.hpp"
 #include "io/scene.hpp"
+#include "io/simulation/ground.hpp"
 
 namespace softgauss::app {
 namespace {

@@ -31,6 +31,7 @@ class GoalRecord {
   std::vector<Track*> observe(const gdd::GoalContext& context, const gdd::ContactForces& contacts);
 
   std::vector<Track>& tracks() { return tracks_; }
+  const std::vector<Track>& tracks() const { return tracks_; }
   /// As columns are called: "reach hand [m]".
   std::vector<std::string> columns() const;
   /// The present errors, one a track; NaN where a goal has none.

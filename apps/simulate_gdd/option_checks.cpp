@@ -67,11 +67,6 @@ void checkSteps(const SimulateOptions& options, double timestep, const SourceLoc
                      kMostStepsOfARun, timestep));
 }
 
-bool SimulateOptions::isScene() const {
-  if (model == io::kStandardInput) return !io::standardInputIsXml();
-  return model.extension() == ".yaml" || model.extension() == ".yml";
-}
-
 bool SimulateOptions::writesToStandardOutput() const {
   return io::isStandardOutput(log) || io::isStandardOutput(contacts) ||
          io::isStandardOutput(summary) || io::isStandardOutput(view) || io::isStandardOutput(plot);

@@ -4,14 +4,14 @@
 /// The command line of simulate_gdd.
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "engine/islands/islands.hpp"
-#include "engine/model/model_builder.hpp"
-#include "gdd/goal_directed_step.hpp"
-#include "io/urdf.hpp"
+#include "io/simulation/options.hpp"
+#include "io/simulation/scene.hpp"
 
 namespace softgauss::app {
 
@@ -23,14 +23,10 @@ struct ReachArgument {
   std::optional<double> weight;  ///< absent: the goal's own [kg]
 };
 
-struct SimulateOptions {
+/// What is loaded how, and what is done with it.
+struct SimulateOptions : SimulationOptions {
   std::filesystem::path model;
-  BaseKind base = BaseKind::automatic;
-  std::optional<double> baseHeight;
-  std::optional<double> ground;  ///< height of the ground plane [m]
-  bool groundIsDefault = true;   ///< 0 for a floating base, none for a fixed one
   double duration = 2.0;
-  std::optional<double> timestep;  ///< absent: the model's own [s]
   std::vector<ReachArgument> reach;
   std::vector<std::string> hold;  ///< links
   std::optional<double> posture;  ///< weight of a posture about the start [-]
@@ -40,37 +36,21 @@ struct SimulateOptions {
   bool hasGoals() const { return hasOwnGoals() || !goals.empty(); }  ///< or of --goals
   bool passive = false;
   std::filesystem::path goals, torques;
-  std::vector<std::pair<std::string, double>> q0;
-  std::optional<EffectSet> effects;  ///< absent: the scene's own, or all
-  bool zeroEffortIsUnlimited = false;
-  int mostDofs = 2000;                ///< more take minutes to load and gigabytes to hold
-  std::optional<io::MeshUse> meshes;  ///< absent: automatic, or hull as MuJoCo has it
-  bool noSlip = false, levelSlip = false;
-  bool exactDiagonal = false;
-  std::optional<Cone> cone;                     ///< absent: the scene's own, or pyramidal
-  std::optional<gdd::GddSolver> gddSolver;      ///< absent: the scene's own, or the active set
-  std::optional<gdd::ControlCost> controlCost;  ///< absent: the files' own, or about gravity
-  std::optional<Integrator> integrator;
-  std::optional<double> integrationTolerance;
-  bool stepDoubling = false;
   bool reportError = false;
-  std::optional<bool> throughFcl;  ///< --collision; absent: as the scene says, or own
   std::optional<double> accuracy;  ///< that a setting is to be chosen for [m]
-  std::optional<bool> likeMujoco;  ///< --compatibility
   bool islands = false;            ///< what does not touch is solved apart
   Sleep sleep;                     ///< and what rests costs nothing
   bool explain = false;
   bool quiet = false;
-  bool details = false;    ///< what the solver did, in the table at the end
-  bool guessBase = false;  ///< --base auto
-  long logEvery = 1;       ///< steps from one row of the log to the next
+  bool details = false;  ///< what the solver did, in the table at the end
+  long logEvery = 1;     ///< steps from one row of the log to the next
   std::filesystem::path log, contacts, summary, view, plot;
   std::string commandLine;  ///< as it was typed
-  std::vector<std::filesystem::path> packagePaths;
-  double largestMesh = 64.0;  ///< [MB]
+  /// Called with the goals once they are made: a sweep moves their places.
+  std::function<void(gdd::GoalDirectedController&)> changeGoals;
 
   /// MODEL is a scene file, not a URDF. Standard input is looked at. Throws ModelError.
-  bool isScene() const;
+  bool isScene() const { return isSceneFile(model); }
   /// Some output is standard output, which then holds nothing else.
   bool writesToStandardOutput() const;
 };

@@ -33,27 +33,6 @@ double physicsViolation(const Model& model, Data& data, VectorX& scratch) {
   return model.nv == 0 ? 0.0 : (scratch - data.forces.tau).cwiseAbs().maxCoeff();
 }
 
-/// What went wrong, where, and what to try.
-std::string failureMessage(const Model& model, const State& state, const Data& data) {
-  std::string where = "the state";
-  if (data.stats.badDof >= 0)
-    where = fmt::format("joint '{}'", model.jointNames[model.dofs[data.stats.badDof].body]);
-  std::string deepest;
-  double depth = 0.0;
-  for (const Contact& c : data.contacts.contacts) {
-    if (!(-c.distance > depth)) continue;
-    depth = -c.distance;
-    deepest =
-        fmt::format("; deepest contact: {} on {}, {:.3g} m", model.geometries[c.geometryA].name,
-                    model.geometries[c.geometryB].name, depth);
-  }
-  return fmt::format(
-      "the simulation became non-finite at t = {:.6g} s at {}{}. Try a smaller --timestep, more "
-      "joint "
-      "damping, or goals that ask for less",
-      state.time, where, deepest);
-}
-
 /// The loop and all that it writes.
 class Runner {
  public:
@@ -123,7 +102,8 @@ class Runner {
     summary_.wallSeconds = secondsSince(start);
     std::string reason;
     if (code == kCannotContinue) {
-      reason = failureMessage(model_, state_, data_);
+      reason = failureText(model_, state_, data_) +
+               ". Try a smaller --timestep, more joint damping, or goals that ask for less";
       tell("simulate_gdd: " + reason);
       summary_.outcome = "non-finite";
     } else if (code == kInterrupted) {

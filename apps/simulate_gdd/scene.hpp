@@ -1,46 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// From the command line to a model, its contacts, its initial state and its goals.
+/// From the command line to a scene and its goals.
 
 #include <memory>
 #include <string>
-#include <utility>
-#include <vector>
 
-#include "apps/simulate_gdd/base_notes.hpp"
 #include "apps/simulate_gdd/options.hpp"
-#include "collision/fcl_contacts.hpp"
-#include "collision/scene_contacts.hpp"
-#include "gdd/gdd.hpp"
-#include "io/actuators.hpp"
-#include "io/urdf.hpp"
-#include "io/wrenches.hpp"
+#include "io/simulation/scene.hpp"
 
 namespace softgauss::app {
 
-struct Scene {
-  Model model;
-  io::UrdfContents contents;
-  std::unique_ptr<collision::SceneContacts> contacts;
-  std::unique_ptr<collision::FclContacts> throughFcl;  ///< in their place, where it was asked for
-  ContactSource& source() {
-    return throughFcl ? static_cast<ContactSource&>(*throughFcl) : *contacts;
-  }
-  State initial;
-  /// Surfaces by name.
-  std::vector<std::pair<std::string, Material>> materials = {{"default", Material{}}};
-  std::vector<io::TimedWrench> wrenches;
-  io::WrenchSchedule schedule;  ///< of those
-  std::vector<io::SceneActuator> actuators;
-  BaseOrigin baseOrigin = BaseOrigin::convention;
-  BaseNotes bases;
-  bool hasGoals = false;  ///< the scene file holds goals
-  bool fileSaysFcl = false;
-  gdd::GddSolver gddSolver = gdd::GddSolver::activeSet;
-};
+/// What loading is to know of the command line.
+SimulationOptions loadOptions(const SimulateOptions& options);
 
-/// Throws ModelError.
+/// Throws ModelError and UsageError.
 std::unique_ptr<Scene> loadScene(const SimulateOptions& options);
 
 /// What the scene and the options ask of the control: its solver, what the actuators can do, and

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "apps/simulate_gdd/base_notes.hpp"
 #include "collision/lowest_point.hpp"
+#include "io/simulation/base_notes.hpp"
 
 namespace softgauss::app {
 namespace {

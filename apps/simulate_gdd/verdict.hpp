@@ -8,12 +8,12 @@
 #include <utility>
 #include <vector>
 
-#include "apps/simulate_gdd/base_notes.hpp"
 #include "apps/simulate_gdd/goal_record.hpp"
 #include "apps/simulate_gdd/joint_watch.hpp"
 #include "apps/simulate_gdd/oddities.hpp"
 #include "apps/simulate_gdd/standing.hpp"
 #include "gdd/goal_directed_step.hpp"
+#include "io/simulation/base_notes.hpp"
 
 namespace softgauss::app {
 

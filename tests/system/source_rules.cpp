@@ -40,6 +40,7 @@ const std::map<std::string, Names> kMayInclude = {
     {"gdd", {"engine"}},
     {"collision", {"engine"}},
     {"io", {"engine", "gdd"}},
+    {"io/simulation", {"engine", "gdd", "collision", "io"}},
     {"apps", {"engine", "gdd", "collision", "io"}},
     {"tests", {"engine", "gdd", "collision", "io", "apps"}},
 };
@@ -63,6 +64,7 @@ bool startsWith(const std::string& text, const std::string& prefix) {
 // The layer of a path: `engine/model` of engine/model/detail/tree.cpp, `io` of io/urdf.cpp.
 std::string layerOf(const std::string& path) {
   const std::string top = path.substr(0, path.find('/'));
+  if (startsWith(path, "io/simulation/")) return "io/simulation";
   if (top != "engine") return top;
   const std::size_t end = path.find('/', top.size() + 1);
   return path.substr(0, end == std::string::npos ? top.size() : end);
@@ -84,7 +86,7 @@ bool mayUse(const SourceFile& file, const std::string& layer, const std::string&
   if (layer == "apps" || layer == "tests") return true;
   if (header == "iostream") return false;
   if (std::regex_match(header, kStandardOrEigen)) return true;
-  const auto library = kLibraries.find(layer);
+  const auto library = kLibraries.find(layer.substr(0, layer == "io/simulation" ? 2 : layer.npos));
   return library != kLibraries.end() && file.path.ends_with(".cpp") &&
          std::regex_match(header, library->second);
 }

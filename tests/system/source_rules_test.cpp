@@ -72,6 +72,10 @@ TEST(SourceRules, LayersIncludeDownwards) {
   EXPECT_EQ(ours("engine/step/step.cpp", "gdd/goal.hpp"), 1u);
   EXPECT_EQ(ours("collision/manifold.cpp", "io/urdf.hpp"), 1u);
   EXPECT_EQ(ours("io/urdf.cpp", "collision/manifold.hpp"), 1u);
+  EXPECT_EQ(ours("io/urdf.cpp", "io/simulation/scene.hpp"), 1u);
+  EXPECT_EQ(ours("io/simulation/scene.cpp", "collision/manifold.hpp"), 0u);
+  EXPECT_EQ(ours("io/simulation/scene.cpp", "io/urdf.hpp"), 0u);
+  EXPECT_EQ(ours("io/simulation/scene.cpp", "apps/shared/ground.hpp"), 1u);
   EXPECT_EQ(ours("io/urdf.cpp", "urdf.hpp"), 1u);
   EXPECT_EQ(ours("tests/io/urdf_test.cpp", "sample_urdf.hpp"), 0u);
 }

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/shared/ground.hpp"
+#include "io/simulation/ground.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "collision/lowest_point.hpp"
 
-namespace softgauss::app {
+namespace softgauss {
 
 bool hasFloatingBase(const Model& model) {
   for (const Body& body : model.bodies)
@@ -38,4 +38,4 @@ void standOnGround(const Model& model, double ground, const std::vector<std::str
   }
 }
 
-}  // namespace softgauss::app
+}  // namespace softgauss

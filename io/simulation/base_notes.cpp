@@ -1,21 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/simulate_gdd/base_notes.hpp"
+#include "io/simulation/base_notes.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "apps/simulate_gdd/names.hpp"
 #include "collision/lowest_point.hpp"
+#include "io/detail/text.hpp"
 #include "io/figure_text.hpp"
 
-namespace softgauss::app {
+namespace softgauss {
 namespace {
 
 constexpr double kStandsWithin = 5e-3;  // [m] of the lowest point
 constexpr double kToldOutside = 5e-3;   // [m]
 constexpr std::size_t kMostLines = 4;
+constexpr std::size_t kMostNames = 6;
 
 using Points = std::vector<Eigen::Vector2d>;
 
@@ -102,16 +103,16 @@ std::vector<std::string> floatingLines(const Model& model, const Kinematics& k, 
     if (!isRobot(model, t)) continue;
     const std::string& base = model.bodyNames[model.trees[t].rootBody];
     names.push_back(base);
-    const std::string why =
-        origin == BaseOrigin::guess
-            ? fmt::format(", a guess, for it stands on {}", listed(standsOn(model, k, t)))
-            : "";
+    const std::string why = origin == BaseOrigin::guess
+                                ? fmt::format(", a guess, for it stands on {}",
+                                              io::detail::listed(standsOn(model, k, t), kMostNames))
+                                : "";
     lines.push_back(
         fmt::format("base {} floats{}; {} bolts it down", base, why, boltsDown(origin)));
   }
   if (lines.size() > kMostLines)
-    lines = {fmt::format("{} bases float: {}; {} bolts one down", names.size(), listed(names),
-                         boltsDown(origin))};
+    lines = {fmt::format("{} bases float: {}; {} bolts one down", names.size(),
+                         io::detail::listed(names, kMostNames), boltsDown(origin))};
   return lines;
 }
 
@@ -193,4 +194,4 @@ std::string boltAdvice(const std::string& base, BaseOrigin origin) {
                      boltsDown(origin));
 }
 
-}  // namespace softgauss::app
+}  // namespace softgauss

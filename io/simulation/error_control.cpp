@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/simulate_gdd/error_control.hpp"
+#include "io/simulation/error_control.hpp"
 
 #include <fmt/format.h>
 
-namespace softgauss::app {
+namespace softgauss {
 
-std::vector<std::string> setErrorControl(const SimulateOptions& options,
+std::vector<std::string> setErrorControl(const SimulationOptions& options,
                                          const io::IntegrationKeys& scene, bool hasGoals,
-                                         ModelBuilder& builder) {
+                                         Options& o) {
   std::vector<std::string> warnings;
-  Options& o = builder.options;
   const bool named = options.integrator || scene.integrator;
   const bool doubled = o.stepDoubling || options.stepDoubling;
   if (options.integrator)
@@ -26,8 +25,8 @@ std::vector<std::string> setErrorControl(const SimulateOptions& options,
     warnings.push_back(fmt::format("{} of the scene changes nothing: {} {}", key, name, reason));
   };
   if (options.stepDoubling && !o.solvesOnce())
-    throw UsageError(
-        fmt::format("--step-doubling changes nothing beside {}; it is for semi-implicit-euler and "
+    throw OptionError(
+        fmt::format("step-doubling changes nothing beside {}; it is for semi-implicit-euler and "
                     "implicit",
                     name));
   o.stepDoubling = doubled && o.solvesOnce();
@@ -38,12 +37,12 @@ std::vector<std::string> setErrorControl(const SimulateOptions& options,
     return warnings;
   }
   if (options.integrationTolerance)
-    throw UsageError(
-        fmt::format("--integration-tolerance changes nothing beside {}, which has no error "
-                    "control; it is for dormand-prince and for --step-doubling",
+    throw OptionError(
+        fmt::format("integration-tolerance changes nothing beside {}, which has no error "
+                    "control; it is for dormand-prince and for step doubling",
                     name));
   if (scene.tolerance) ignored("integration_tolerance", "has no error control");
   return warnings;
 }
 
-}  // namespace softgauss::app
+}  // namespace softgauss

@@ -9,7 +9,7 @@
 #include "engine/model/model_builder.hpp"
 #include "engine/model/state.hpp"
 
-namespace softgauss::app {
+namespace softgauss {
 
 bool hasFloatingBase(const Model& model);
 
@@ -21,4 +21,4 @@ void addGround(ModelBuilder& builder, double height, const Material& material);
 void standOnGround(const Model& model, double ground, const std::vector<std::string>* links,
                    State& state);
 
-}  // namespace softgauss::app
+}  // namespace softgauss

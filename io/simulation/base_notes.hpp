@@ -10,7 +10,7 @@
 #include "engine/dynamics/kinematics.hpp"
 #include "engine/step/contact_source.hpp"
 
-namespace softgauss::app {
+namespace softgauss {
 
 /// Where the base of a URDF came from.
 enum class BaseOrigin {
@@ -38,4 +38,4 @@ BaseNotes baseNotes(const Model& model, const State& start, ContactSource& conta
 /// What to try where a floating base fell that looks bolted down.
 std::string boltAdvice(const std::string& base, BaseOrigin origin);
 
-}  // namespace softgauss::app
+}  // namespace softgauss

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Joint positions by name, and the control of a scene.
+
+#include <fmt/format.h>
+
+#include <set>
+
+#include "engine/model/followers.hpp"
+#include "io/goals.hpp"
+#include "io/names.hpp"
+#include "io/simulation/scene.hpp"
+
+namespace softgauss {
+
+void setJointPositions(const Model& model, const std::vector<std::pair<std::string, double>>& q0,
+                       std::set<int> placed, State& state) {
+  std::set<std::string> seen;
+  for (const auto& [name, value] : q0) {
+    const auto fail = [&](const std::string& problem) {
+      throw OptionError(fmt::format("q0 {}: {}", name, problem));
+    };
+    if (const std::string problem = io::jointProblem(model, name); !problem.empty()) fail(problem);
+    const int body = model.findJoint(name);
+    if (!seen.insert(name).second) fail("is given twice");
+    for (const JointRange& range : model.ranges)
+      if (range.body == body && (value < range.lower || value > range.upper))
+        fail(fmt::format("{} lies outside the joint's range {} .. {}", value, range.lower,
+                         range.upper));
+    state.q[model.bodies[body].q] = value;
+    placed.insert(body);
+  }
+  placeFollowers(model, placed, state.q);
+}
+
+void addGoals(const std::filesystem::path& file, const Scene& scene,
+              gdd::GoalDirectedController& controller) {
+  io::GoalFile asked = io::readGoalFile(file, scene.model, scene.initial);
+  if (asked.controlCost) controller.controlCost = *asked.controlCost;
+  for (std::unique_ptr<gdd::Goal>& goal : asked.goals) controller.goals.push_back(std::move(goal));
+}
+
+void setUpControl(const Scene& scene, const SimulationOptions& options,
+                  gdd::GoalDirectedController& controller) {
+  controller.solver = scene.gddSolver;
+  controller.box = io::controlBox(scene.model, scene.actuators);
+  controller.goals.clear();
+  if (scene.hasGoals && !options.withoutGoals) addGoals(scene.file, scene, controller);
+  if (options.controlCost) controller.controlCost = *options.controlCost;
+}
+
+/// It takes less than a millimetre of a reach.
+constexpr double kWeakPosture = 0.01;
+
+std::vector<std::unique_ptr<gdd::Goal>> regularisers(const VectorX& q,
+                                                     std::optional<double> postureWeight) {
+  auto posture = std::make_unique<gdd::Posture>(q);
+  posture->weight = postureWeight.value_or(kWeakPosture);
+  posture->onlyRegularises = !postureWeight;
+  std::vector<std::unique_ptr<gdd::Goal>> goals;
+  goals.push_back(std::move(posture));
+  goals.push_back(std::make_unique<gdd::VirtualDamping>());
+  return goals;
+}
+
+}  // namespace softgauss

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// What a caller says about a URDF or scene that is loaded, over what the file says. The options of
+/// simulate_gdd of the same names have the same meaning.
+
+#include <filesystem>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/model/model_builder.hpp"
+#include "gdd/goal_directed_step.hpp"
+#include "io/urdf.hpp"
+
+namespace softgauss {
+
+struct SimulationOptions {
+  BaseKind base = BaseKind::automatic;  ///< of a URDF
+  bool guessBase = false;               ///< of a URDF: fixed where it would stand on its root alone
+  std::optional<double> baseHeight;     ///< [m]; absent: the lowest point touches the ground
+  std::optional<double> ground;         ///< height of the ground plane of a URDF [m]
+  bool groundIsDefault = true;          ///< 0 for a floating base, none for a fixed one
+  std::optional<double> timestep;       ///< absent: the file's own, or 0.002 [s]
+  std::vector<std::pair<std::string, double>> q0;  ///< joints and where they start [rad or m]
+  std::optional<EffectSet> effects;                ///< absent: the file's own, or all
+  bool zeroEffortIsUnlimited = false;
+  int mostDofs = 2000;                ///< more take minutes to load and gigabytes to hold
+  std::optional<io::MeshUse> meshes;  ///< absent: automatic, or hull as MuJoCo has it
+  bool noSlip = false, levelSlip = false;
+  bool exactDiagonal = false;
+  std::optional<Cone> cone;                     ///< absent: the file's own, or pyramidal
+  std::optional<gdd::GddSolver> gddSolver;      ///< absent: the file's own, or the active set
+  std::optional<gdd::ControlCost> controlCost;  ///< absent: the files' own, or about gravity
+  /// Absent: the file's own; else the leapfrog where goals are followed and semi-implicit Euler
+  /// where none are.
+  std::optional<Integrator> integrator;
+  std::optional<double> integrationTolerance;
+  bool stepDoubling = false;
+  std::optional<bool> throughFcl;  ///< absent: as the file says, or own
+  std::optional<bool> likeMujoco;  ///< --compatibility
+  std::vector<std::filesystem::path> packagePaths;
+  double largestMesh = 64.0;  ///< [MB]
+  bool visualMeshes = false;  ///< read the meshes of visuals too
+  bool moreGoals = false;     ///< there will be goals besides those of the file
+  bool withoutGoals = false;  ///< the goals of the file are left out
+};
+
+/// An option that does not fit what is loaded. what() reads `<option> …`, the option in the words
+/// of simulate_gdd without the dashes: "q0 elbow: is given twice".
+class OptionError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+}  // namespace softgauss

@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/simulation/scene.hpp"
+
+#include <fmt/format.h>
+
+#include <set>
+
+#include "collision/choose_meshes.hpp"
+#include "engine/dynamics/coupled_mass.hpp"
+#include "engine/dynamics/regular_mass.hpp"
+#include "io/inputs.hpp"
+#include "io/simulation/error_control.hpp"
+#include "io/simulation/ground.hpp"
+#include "io/step_warnings.hpp"
+#include "io/warning_list.hpp"
+
+namespace softgauss {
+namespace {
+
+/// Before anything is done that takes the square of the model's size.
+void checkSize(const SimulationOptions& options, const Scene& scene) {
+  if (scene.model.nv > options.mostDofs)
+    throw ModelError({scene.file.string(), 0}, "model '" + scene.model.name + "'",
+                     fmt::format("has {} degrees of freedom, expected at most {} (--most-dofs "
+                                 "allows more)",
+                                 scene.model.nv, options.mostDofs));
+}
+
+void setOptions(const SimulationOptions& options, Options& o) {
+  if (options.timestep) o.timestep = *options.timestep;
+  if (options.exactDiagonal) o.exactDiagonal = true;
+  if (options.noSlip) o.noSlip = true;
+  if (options.levelSlip) o.levelSlip = true;
+  if (options.cone) o.cone = *options.cone;
+  if (options.effects) o.effects = *options.effects;
+  if (options.likeMujoco) o.useMujocoModel(*options.likeMujoco);
+}
+
+/// The integrator; returns warnings.
+std::vector<std::string> chooseIntegrator(const SimulationOptions& options,
+                                          const io::IntegrationKeys& file, bool hasGoals,
+                                          Options& o, Scene& scene) {
+  scene.leapfrogForGoals = !options.integrator && !file.integrator &&
+                           !options.integrationTolerance && !options.stepDoubling &&
+                           !o.stepDoubling && o.ownSoftness;
+  return setErrorControl(options, file, hasGoals, o);
+}
+
+io::UrdfOptions urdfOptions(const SimulationOptions& options) {
+  io::UrdfOptions urdf;
+  urdf.packagePaths = options.packagePaths;
+  urdf.visualMeshes = options.visualMeshes;
+  urdf.largestMesh = static_cast<std::uintmax_t>(options.largestMesh * (1 << 20));
+  urdf.base = options.base;
+  urdf.zeroEffortIsUnlimited = options.zeroEffortIsUnlimited;
+  urdf.meshes = options.meshes.value_or(io::MeshUse::automatic);
+  return urdf;
+}
+
+/// Whether --base auto bolts the robot down: it would stand on its root alone.
+bool standsOnItsRoot(const SimulationOptions& options, const Model& model) {
+  State state(model);
+  setJointPositions(model, options.q0, {}, state);
+  Kinematics k(model);
+  computeKinematics(model, state, k);
+  return !model.trees.empty() && model.floats(0) && looksBolted(model, k, 0);
+}
+
+/// A robot alone, as the options say.
+void loadRobot(const SimulationOptions& options, Scene& scene) {
+  ModelBuilder builder = io::readUrdf(scene.file, urdfOptions(options), &scene.contents);
+  setOptions(options, builder.options);
+  chooseIntegrator(options, {}, options.moreGoals, builder.options, scene);
+  if (options.base != BaseKind::automatic) scene.baseOrigin = BaseOrigin::option;
+  if (options.guessBase) scene.baseOrigin = BaseOrigin::guess;
+  scene.model = builder.build();
+  if (options.guessBase && standsOnItsRoot(options, scene.model)) {
+    builder.base = BaseKind::fixed;
+    scene.model = builder.build();
+  }
+  checkSize(options, scene);
+
+  // Whether there is ground by default is known only once the base is.
+  scene.ground = options.ground;
+  if (options.groundIsDefault && hasFloatingBase(scene.model)) scene.ground = 0.0;
+  if (scene.ground) {
+    addGround(builder, *scene.ground, {});
+    scene.model = builder.build();
+  }
+  scene.initial = State(scene.model);
+  setJointPositions(scene.model, options.q0, {}, scene.initial);
+  if (options.baseHeight) {
+    for (const Tree& tree : scene.model.trees)
+      if (scene.model.bodies[tree.rootBody].joint == JointKind::floating)
+        scene.initial.q[scene.model.bodies[tree.rootBody].q + 2] = *options.baseHeight;
+  } else if (scene.ground) {
+    standOnGround(scene.model, *scene.ground, nullptr, scene.initial);
+  }
+}
+
+void loadSceneFile(const SimulationOptions& options, Scene& scene) {
+  io::SceneFile file = io::readScene(scene.file, urdfOptions(options));
+  setOptions(options, file.builder.options);
+  std::vector<std::string> warnings = chooseIntegrator(
+      options, file.integration, options.moreGoals || (file.hasGoals && !options.withoutGoals),
+      file.builder.options, scene);
+  scene.ground = file.ground;
+  if (!scene.ground && !file.noGround && !file.starts.empty()) scene.ground = 0.0;
+  if (scene.ground) addGround(file.builder, *scene.ground, file.groundMaterial);
+  scene.model = file.builder.build();
+  checkSize(options, scene);
+  for (std::string& warning : warnings) scene.model.warnings.push_back(std::move(warning));
+  scene.contents = file.contents;
+  scene.baseOrigin = BaseOrigin::scene;
+  scene.hasGoals = file.hasGoals;
+  if (file.gddSolver) scene.gddSolver = *file.gddSolver;
+  scene.fileSaysFcl = file.throughFcl;
+  if (!options.timestep) scene.timestepWhere = file.timestepWhere;
+  scene.collisionWhere = file.collisionWhere;
+  scene.materials = file.materials;
+  scene.wrenches = file.wrenches;
+  scene.actuators = file.actuators;
+  scene.schedule = io::WrenchSchedule(scene.model, file.wrenches);
+  scene.initial = file.initialState(scene.model);
+  setJointPositions(scene.model, options.q0, file.placedJoints(scene.model), scene.initial);
+  if (!scene.ground) return;
+  std::vector<std::string> standing;
+  for (const io::SceneFile::Start& start : file.starts)
+    if (start.onGround) standing.push_back(start.link);
+  standOnGround(scene.model, *scene.ground, &standing, scene.initial);
+}
+
+/// Refuses a start in which the mass matrix is singular, with the place of the link in its file.
+void expectRegularStart(Scene& scene) {
+  steadyCoupledJoints(scene.model, scene.initial.q);
+  const auto refuseIfSingular = [&](const VectorX& q) {
+    const std::optional<SingularMass> why = findSingularMass(scene.model, q);
+    if (!why) return;
+    const auto place = scene.contents.places.find(why->link);
+    throw ModelError(place == scene.contents.places.end() ? SourceLocation{} : place->second,
+                     why->element, why->problem);
+  };
+  refuseIfSingular(scene.initial.q);
+  // The weights of rows are of joints at zero, or else of q0 (inverse_weight.hpp).
+  if (findSingularMass(scene.model, scene.model.q0)) scene.model.q0 = scene.initial.q;
+}
+
+/// What the step cannot carry from this start.
+void addStepWarnings(Scene& scene) {
+  Kinematics k(scene.model);
+  computeKinematics(scene.model, scene.initial, k);
+  ContactSet touching;
+  scene.contacts->detect(scene.model, k, touching);
+  for (std::string& warning : io::stepWarnings(scene.model, touching))
+    scene.model.warnings.push_back(std::move(warning));
+  scene.model.warnings = io::grouped(scene.model.warnings);
+}
+
+/// Where contacts come from. Throws ModelError where a mesh cannot collide.
+void prepareContacts(const SimulationOptions& options, Scene& scene) {
+  collision::PreparedMeshes meshes;
+  // MuJoCo takes hulls.
+  if (options.meshes || scene.model.options.ownSoftness)
+    collision::chooseMeshes(scene.model, meshes);
+  scene.contacts = std::make_unique<collision::SceneContacts>(
+      scene.model, collision::SceneContacts::kBroadphasePairs, true, &meshes);
+  if (options.throughFcl.value_or(scene.fileSaysFcl))
+    scene.throughFcl = std::make_unique<collision::FclContacts>(scene.model, &meshes);
+  if (std::optional<std::string> told = collision::baseWarning(scene.contacts->filter()))
+    scene.model.warnings.push_back(std::move(*told));
+}
+
+}  // namespace
+
+bool isSceneFile(const std::filesystem::path& file) {
+  if (file == io::kStandardInput) return !io::standardInputIsXml();
+  return file.extension() == ".yaml" || file.extension() == ".yml";
+}
+
+std::unique_ptr<Scene> loadScene(const std::filesystem::path& file,
+                                 const SimulationOptions& options) {
+  auto scene = std::make_unique<Scene>();
+  scene->file = file;
+  if (isSceneFile(file))
+    loadSceneFile(options, *scene);
+  else
+    loadRobot(options, *scene);
+  if (options.gddSolver) scene->gddSolver = *options.gddSolver;
+  expectRegularStart(*scene);
+  try {
+    prepareContacts(options, *scene);
+  } catch (const ModelError& error) {
+    // Of a mesh that has no surface, say: collision knows its file alone.
+    for (const auto& [mesh, place] : scene->contents.meshPlaces)
+      if (std::string(error.what()).starts_with(mesh))
+        throw ModelError(place.first, place.second, error.what());
+    throw;
+  }
+  scene->bases = baseNotes(scene->model, scene->initial, *scene->contacts, scene->baseOrigin);
+  addStepWarnings(*scene);
+  return scene;
+}
+
+std::unique_ptr<Scene> copyOf(const Scene& scene) {
+  auto copy = std::make_unique<Scene>();
+  copy->file = scene.file;
+  copy->model = scene.model;
+  copy->contents = scene.contents;
+  copy->initial = scene.initial;
+  copy->ground = scene.ground;
+  copy->materials = scene.materials;
+  copy->wrenches = scene.wrenches;
+  copy->schedule = scene.schedule;
+  copy->actuators = scene.actuators;
+  copy->baseOrigin = scene.baseOrigin;
+  copy->bases = scene.bases;
+  copy->hasGoals = scene.hasGoals;
+  copy->fileSaysFcl = scene.fileSaysFcl;
+  copy->leapfrogForGoals = scene.leapfrogForGoals;
+  copy->gddSolver = scene.gddSolver;
+  copy->timestepWhere = scene.timestepWhere;
+  copy->collisionWhere = scene.collisionWhere;
+  copy->contacts = std::make_unique<collision::SceneContacts>(copy->model);
+  if (scene.throughFcl) copy->throughFcl = std::make_unique<collision::FclContacts>(copy->model);
+  return copy;
+}
+
+std::string failureText(const Model& model, const State& state, const Data& data) {
+  std::string where = "the state";
+  if (data.stats.badDof >= 0)
+    where = fmt::format("joint '{}'", model.jointNames[model.dofs[data.stats.badDof].body]);
+  std::string deepest;
+  double depth = 0.0;
+  for (const Contact& c : data.contacts.contacts) {
+    if (!(-c.distance > depth)) continue;
+    depth = -c.distance;
+    deepest =
+        fmt::format("; deepest contact: {} on {}, {:.3g} m", model.geometries[c.geometryA].name,
+                    model.geometries[c.geometryB].name, depth);
+  }
+  return fmt::format("the simulation became non-finite at t = {:.6g} s at {}{}", state.time, where,
+                     deepest);
+}
+
+}  // namespace softgauss

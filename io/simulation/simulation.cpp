@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/simulation/simulation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/engine.hpp"
+#include "engine/model/followers.hpp"
+#include "io/names.hpp"
+#include "io/simulation/ground.hpp"
+#include "io/simulation/simulation_parts.hpp"
+
+namespace softgauss {
+namespace {
+
+/// The body of a joint of one degree of freedom.
+const Body& scalarJoint(const Model& model, const std::string& joint) {
+  if (const std::string problem = io::jointProblem(model, joint); !problem.empty())
+    throw NameError(fmt::format("joint '{}': {}", joint, problem));
+  return model.bodies[model.findJoint(joint)];
+}
+
+}  // namespace
+
+SimulationParts::SimulationParts(std::unique_ptr<Scene> loaded, const SimulationOptions& loadedWith)
+    : scene(std::move(loaded)), options(loadedWith), kinematics(scene->model), links(scene->model) {
+  restart(true);
+}
+
+void SimulationParts::restart(bool otherModel) {
+  state = scene->initial;
+  input = {};
+  grid = {};
+  if (otherModel || !data) data = std::make_unique<Data>(scene->model);
+  controller = std::make_unique<gdd::GoalDirectedController>(scene->model);
+  hasRegularisers = false;
+  setUpControl(*scene, options, *controller);
+}
+
+Simulation Simulation::load(const std::filesystem::path& file, const SimulationOptions& options) {
+  return Simulation(loadScene(file, options), options);
+}
+
+Simulation::Simulation(std::unique_ptr<Scene> scene, const SimulationOptions& options)
+    : Simulation(std::make_unique<SimulationParts>(std::move(scene), options)) {}
+Simulation::Simulation(std::unique_ptr<SimulationParts> parts)
+    : goals(*parts), parts_(std::move(parts)) {}
+Simulation::~Simulation() = default;
+Simulation::Simulation(Simulation&&) noexcept = default;
+Simulation& Simulation::operator=(Simulation&&) noexcept = default;
+
+const Input& SimulationParts::inputOfStep() {
+  if (scene->schedule.empty()) return input;
+  applied = input;
+  computeKinematics(scene->model, state, kinematics);
+  scene->schedule.at(state.time, scene->model.options.timestep, kinematics, applied.wrenches);
+  applied.wrenches.insert(applied.wrenches.end(), input.wrenches.begin(), input.wrenches.end());
+  return applied;
+}
+
+SolveStatus Simulation::step() noexcept {
+  SimulationParts& p = *parts_;
+  const Model& model = p.scene->model;
+  const Input& input = p.inputOfStep();
+  const double start = p.state.time;
+  const SolveStatus status =
+      p.controller->goals.empty()
+          ? softgauss::step(model, input, p.state, *p.data, &p.scene->source())
+          : p.controller->step(model, input, p.state, *p.data, &p.scene->source());
+  if (!isRefused(status)) p.state.time = p.grid.after(start, model.options.timestep);
+  return status;
+}
+
+void Simulation::run(double seconds) {
+  const long steps = static_cast<long>(std::ceil(seconds / model().options.timestep - 1e-9));
+  for (long i = 0; i < steps; ++i)
+    if (isRefused(step())) throw StepError(failure());
+}
+
+ControlSolution Simulation::solve() {
+  SimulationParts& p = *parts_;
+  const Model& model = p.scene->model;
+  const bool controlled = !p.controller->goals.empty();
+  Input held = p.inputOfStep();
+  held.softFriction = controlled;
+  ControlSolution solution;
+  solution.status = computeStages(model, held, p.state, *p.data, &p.scene->source());
+  if (isRefused(solution.status)) return solution;
+  const VectorX* guess = p.state.warmstart.valid ? &p.state.warmstart.a : nullptr;
+  if (controlled) {
+    guess = p.controller->apply(model, p.state, *p.data);
+    if (!guess) {
+      solution.status = p.data->stats.status;
+      return solution;
+    }
+    solution.report = p.controller->report;
+  }
+  solution.status = forwardDynamics(model, guess, *p.data);
+  solution.tau = controlled ? p.controller->control : p.data->forces.tau;
+  solution.a = p.data->forward.a;
+  contactForces(*p.data, solution.contacts);
+  return solution;
+}
+
+void Simulation::reset() { parts_->state = parts_->scene->initial; }
+
+void Simulation::standOnGround() {
+  if (!scene().ground) throw NameError("standOnGround: the scene has no ground plane");
+  softgauss::standOnGround(model(), *scene().ground, nullptr, state());
+}
+
+double Simulation::time() const { return parts_->state.time; }
+
+double Simulation::position(const std::string& joint) const {
+  return parts_->state.q[scalarJoint(model(), joint).q];
+}
+
+double Simulation::velocity(const std::string& joint) const {
+  return parts_->state.v[scalarJoint(model(), joint).v];
+}
+
+void Simulation::setPosition(const std::string& joint, double q) {
+  const Body& body = scalarJoint(model(), joint);
+  parts_->state.q[body.q] = q;
+  placeFollowers(model(), {model().findJoint(joint)}, parts_->state.q);
+}
+
+void Simulation::setVelocity(const std::string& joint, double v) {
+  parts_->state.v[scalarJoint(model(), joint).v] = v;
+}
+
+Transform Simulation::pose(const std::string& link) const {
+  const int frame = model().findFrame(link);
+  if (frame < 0) throw NameError("pose: " + io::linkProblem(model(), link));
+  computeKinematics(model(), parts_->state, parts_->kinematics);
+  const Frame& f = model().frames[static_cast<std::size_t>(frame)];
+  return parts_->kinematics.X_WB[f.body] * f.X_BF;
+}
+
+double Simulation::torque(const std::string& joint) const {
+  return parts_->data->forces.tau[scalarJoint(model(), joint).v];
+}
+
+Vector3 Simulation::contactForceOn(const std::string& link) const {
+  const auto& names = parts_->links.names();
+  const auto place = std::find(names.begin(), names.end(), link);
+  if (place == names.end()) {
+    if (const std::string problem = io::linkProblem(model(), link); !problem.empty())
+      throw NameError("contactForceOn: " + problem);
+    throw NameError(fmt::format("contactForceOn: link '{}' has no shapes that could touch", link));
+  }
+  std::vector<Snapshot::ContactForce> touching;
+  contactForces(*parts_->data, touching);
+  VectorX forces;
+  parts_->links.forces(touching, forces);
+  return forces.segment<3>(3 * (place - names.begin()));
+}
+
+std::string Simulation::failure() const {
+  return failureText(model(), parts_->state, *parts_->data);
+}
+
+const Model& Simulation::model() const { return parts_->scene->model; }
+const Scene& Simulation::scene() const { return *parts_->scene; }
+State& Simulation::state() { return parts_->state; }
+const State& Simulation::state() const { return parts_->state; }
+const Data& Simulation::data() const { return *parts_->data; }
+Data& Simulation::data() { return *parts_->data; }
+ContactSource& Simulation::contacts() { return parts_->scene->source(); }
+gdd::GoalDirectedController& Simulation::controller() { return *parts_->controller; }
+SimulationParts& Simulation::parts() { return *parts_; }
+Input& Simulation::input() { return parts_->input; }
+
+}  // namespace softgauss

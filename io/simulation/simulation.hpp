@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// softgauss in one object: model, state, contacts, goals and controller, put together as
+/// simulate_gdd does it.
+///
+///   softgauss::Simulation sim = softgauss::Simulation::load("humanoid.urdf");
+///   sim.goals.reach("right_hand", {0.4, -0.2, 1.1});
+///   while (sim.time() < 2.0) sim.step();
+///   sim.contactForceOn("left_foot");   // [N], world
+///   sim.torque("right_knee");          // [N m]
+///
+/// The same file, options and goals give the same bits as simulate_gdd. One a thread. What takes a
+/// name throws NameError where the model has none like it.
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "io/simulation/scene.hpp"
+#include "io/simulation/simulation_goals.hpp"
+
+namespace softgauss {
+
+/// A step that was refused. what() tells the time, the joint and the deepest contact.
+class StepError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// What the controller answers to a state.
+struct ControlSolution {
+  SolveStatus status = SolveStatus::converged;
+  VectorX tau;                                   ///< control (nv) [N m or N]
+  VectorX a;                                     ///< acceleration that it causes (nv)
+  std::vector<Snapshot::ContactForce> contacts;  ///< with their forces [N]
+  gdd::GddReport report;                         ///< the certificate among it
+};
+
+class Simulation {
+ public:
+  /// A URDF, or a scene with its own goals. Throws ModelError and OptionError.
+  static Simulation load(const std::filesystem::path& file, const SimulationOptions& options = {});
+  explicit Simulation(std::unique_ptr<Scene> scene, const SimulationOptions& options = {});
+  ~Simulation();
+  Simulation(Simulation&&) noexcept;
+  Simulation& operator=(Simulation&&) noexcept;
+
+  SimulationGoals goals;
+
+  /// One step of model().options.timestep. Where isRefused(), the state is as it was.
+  SolveStatus step() noexcept;
+  /// Steps until `seconds` later. Throws StepError.
+  void run(double seconds);
+  /// What the controller does in the present state, which is left as it is: control, acceleration
+  /// and contact forces. Without goals the control is input().tau. After an iteration limit the
+  /// best control that was found, with its report.
+  ControlSolution solve();
+  /// Back to the state at which it started; goals stay.
+  void reset();
+  /// Every floating base is raised or lowered until its lowest point touches the ground plane.
+  /// Throws NameError where there is none.
+  void standOnGround();
+
+  double time() const;                                   ///< [s]
+  double position(const std::string& joint) const;       ///< of one degree of freedom [rad or m]
+  double velocity(const std::string& joint) const;       ///< [rad/s or m/s]
+  void setPosition(const std::string& joint, double q);  ///< joints that follow it go with it
+  void setVelocity(const std::string& joint, double v);
+  Transform pose(const std::string& link) const;  ///< of the link's frame in the world, now
+  /// Of the last step: what acts on the joint from its actuator and from input().tau [N m or N].
+  double torque(const std::string& joint) const;
+  /// Of the last step: the sum of the contact forces on a link [N], world axes.
+  Vector3 contactForceOn(const std::string& link) const;
+  /// Why the last step was refused.
+  std::string failure() const;
+
+  // The parts.
+  const Model& model() const;
+  const Scene& scene() const;
+  State& state();
+  const State& state() const;
+  const Data& data() const;  ///< stages of the last step, at its start
+  Data& data();
+  ContactSource& contacts();
+  gdd::GoalDirectedController& controller();
+  SimulationParts& parts();
+  Input& input();  ///< acts in every step besides the controller and the scene's own wrenches
+
+ private:
+  explicit Simulation(std::unique_ptr<SimulationParts> parts);
+
+  std::unique_ptr<SimulationParts> parts_;
+};
+
+}  // namespace softgauss

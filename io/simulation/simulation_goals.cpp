@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/simulation/simulation_goals.hpp"
+
+#include "io/goals.hpp"
+#include "io/names.hpp"
+#include "io/simulation/simulation_parts.hpp"
+
+namespace softgauss {
+
+void SimulationGoals::expectLink(const std::string& goal, const std::string& link) const {
+  if (const std::string problem = io::linkProblem(parts_->scene->model, link); !problem.empty())
+    throw NameError(goal + ": " + problem);
+}
+
+void SimulationGoals::follow() {
+  Scene& scene = *parts_->scene;
+  if (!scene.leapfrogForGoals || scene.model.options.integrator == Integrator::leapfrog) return;
+  scene.model.options.integrator = Integrator::leapfrog;
+  parts_->data = std::make_unique<Data>(scene.model);
+}
+
+gdd::Goal& SimulationGoals::add(std::unique_ptr<gdd::Goal> goal) {
+  follow();
+  auto& goals = parts_->controller->goals;
+  const std::size_t place = goals.size() - (parts_->hasRegularisers ? 2 : 0);
+  return **goals.insert(goals.begin() + static_cast<std::ptrdiff_t>(place), std::move(goal));
+}
+
+gdd::Goal& SimulationGoals::addOwn(std::unique_ptr<gdd::Goal> goal) {
+  gdd::Goal& added = add(std::move(goal));
+  if (!parts_->hasRegularisers)
+    for (auto& regulariser : regularisers(parts_->scene->initial.q, std::nullopt))
+      parts_->controller->goals.push_back(std::move(regulariser));
+  parts_->hasRegularisers = true;
+  return added;
+}
+
+gdd::Reach& SimulationGoals::reach(const std::string& link, const Vector3& p_WTarget,
+                                   const Vector3& p_LP, std::optional<double> weight) {
+  expectLink("reach", link);
+  for (const auto& goal : parts_->controller->goals)
+    if (auto* same = dynamic_cast<gdd::Reach*>(goal.get());
+        same && same->link == link && same->p_FP == p_LP) {
+      same->p_WTarget = p_WTarget;
+      if (weight) same->weight = *weight;
+      return *same;
+    }
+  auto goal = std::make_unique<gdd::Reach>(parts_->scene->model, link, p_WTarget, p_LP);
+  if (weight) goal->weight = *weight;
+  return static_cast<gdd::Reach&>(addOwn(std::move(goal)));
+}
+
+gdd::Hold& SimulationGoals::hold(const std::string& link) {
+  expectLink("hold", link);
+  return static_cast<gdd::Hold&>(addOwn(std::make_unique<gdd::Hold>(parts_->scene->model, link)));
+}
+
+gdd::Posture& SimulationGoals::posture(double weight) {
+  auto& goals = parts_->controller->goals;
+  if (!parts_->hasRegularisers) {
+    follow();
+    for (auto& regulariser : regularisers(parts_->scene->initial.q, weight))
+      goals.push_back(std::move(regulariser));
+    parts_->hasRegularisers = true;
+  }
+  auto& posture = static_cast<gdd::Posture&>(*goals[goals.size() - 2]);
+  posture.weight = weight;
+  posture.onlyRegularises = false;
+  return posture;
+}
+
+void SimulationGoals::read(const std::filesystem::path& file) {
+  io::GoalFile asked = io::readGoalFile(file, parts_->scene->model, parts_->scene->initial);
+  if (asked.controlCost && !parts_->options.controlCost)
+    parts_->controller->controlCost = *asked.controlCost;
+  for (auto& goal : asked.goals) add(std::move(goal));
+}
+
+void SimulationGoals::clear() {
+  parts_->controller->goals.clear();
+  parts_->hasRegularisers = false;
+}
+
+std::size_t SimulationGoals::size() const { return parts_->controller->goals.size(); }
+
+gdd::Goal& SimulationGoals::operator[](std::size_t i) { return *parts_->controller->goals.at(i); }
+
+}  // namespace softgauss

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// What Simulation and its goals share.
+
+#include "io/contact_links.hpp"
+#include "io/simulation/simulation.hpp"
+#include "io/simulation/time_grid.hpp"
+
+namespace softgauss {
+
+struct SimulationParts {
+  SimulationParts(std::unique_ptr<Scene> loaded, const SimulationOptions& loadedWith);
+
+  /// From scene->initial, with the goals of the scene alone; `otherModel`: scene->model has
+  /// changed.
+  void restart(bool otherModel);
+
+  /// For the step from the present state.
+  const Input& inputOfStep();
+
+  std::unique_ptr<Scene> scene;
+  SimulationOptions options;
+  State state;
+  std::unique_ptr<Data> data;
+  std::unique_ptr<gdd::GoalDirectedController> controller;
+  bool hasRegularisers = false;
+  Input input;
+  Input applied;  ///< with the wrenches of the scene
+  Kinematics kinematics;
+  io::ContactLinks links;
+  TimeGrid grid;
+};
+
+}  // namespace softgauss

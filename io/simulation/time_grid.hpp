@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Times of steps without the rounding of sums: k h from where the first one began.
+
+namespace softgauss {
+
+class TimeGrid {
+ public:
+  /// A step of `h` from `time` ends there [s].
+  double after(double time, double h) {
+    if (time != last_ || h != h_) origin_ = time, steps_ = 0, h_ = h;
+    return last_ = origin_ + static_cast<double>(++steps_) * h;
+  }
+
+ private:
+  double origin_ = 0.0, last_ = 0.0, h_ = 0.0;
+  long steps_ = 0;
+};
+
+}  // namespace softgauss

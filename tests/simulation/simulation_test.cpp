@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+/// A Simulation is what simulate_gdd runs: here against the engine put together by hand; the
+/// programs' own bits are compared in tests/apps.
+#include "io/simulation/simulation.hpp"
+
+#include <gtest/gtest.h>
+
+#include "engine/engine.hpp"
+#include "tests/simulation/data_file.hpp"
+
+namespace softgauss::test {
+namespace {
+
+template <class Action>
+std::string nameError(Action&& action) {
+  try {
+    action();
+  } catch (const NameError& error) {
+    return error.what();
+  }
+  ADD_FAILURE() << "no NameError";
+  return {};
+}
+
+TEST(Simulation, IsTheEngineUnderTheSameGoals) {
+  Simulation sim = Simulation::load(robot("arm"));
+  const Vector3 target(0.5, 0.2, 0.4);
+  sim.goals.reach("hand", target);
+  EXPECT_EQ(sim.model().options.integrator, Integrator::leapfrog);
+
+  Model model = sim.model();
+  collision::SceneContacts contacts(model);
+  Data data(model);
+  State state(model);
+  gdd::GoalDirectedController controller(model);
+  controller.goals.push_back(std::make_unique<gdd::Reach>(model, "hand", target));
+  for (auto& goal : regularisers(state.q, std::nullopt))
+    controller.goals.push_back(std::move(goal));
+  for (int k = 1; k <= 100; ++k) {
+    ASSERT_FALSE(isRefused(sim.step()));
+    ASSERT_FALSE(isRefused(controller.step(model, {}, state, data, &contacts)));
+    state.time = k * model.options.timestep;
+  }
+  EXPECT_EQ(hash(sim.state()), hash(state));
+}
+
+TEST(Simulation, WithoutGoalsItIsLeftToItself) {
+  Simulation sim = Simulation::load(robot("arm"));
+  EXPECT_EQ(sim.model().options.integrator, Integrator::semiImplicitEuler);
+  sim.run(0.1);
+  EXPECT_DOUBLE_EQ(sim.time(), 0.1);
+  EXPECT_EQ(sim.torque("elbow_pitch"), 0.0);
+}
+
+TEST(Simulation, MovesWithTheObject) {
+  Simulation first = Simulation::load(robot("arm"));
+  first.goals.reach("hand", {0.4, 0.1, 0.5});
+  first.run(0.02);
+  Simulation moved = std::move(first);
+  moved.goals.reach("hand", {0.4, 0.1, 0.5});
+  EXPECT_EQ(moved.goals.size(), 3u) << "the same point: no second goal";
+  moved.run(0.02);
+  EXPECT_DOUBLE_EQ(moved.time(), 0.04);
+}
+
+TEST(Simulation, ReachesWhatItIsAskedFor) {
+  Simulation sim = Simulation::load(robot("arm"));
+  const Vector3 target(0.45, 0.2, 0.5);
+  sim.goals.reach("hand", target);
+  sim.run(2.0);
+  EXPECT_LT((sim.pose("hand").p - target).norm(), 0.002);
+  const Vector3 other(0.4, -0.2, 0.4);
+  sim.goals.reach("hand", other);  // the same goal, elsewhere
+  sim.run(2.0);
+  EXPECT_LT((sim.pose("hand").p - other).norm(), 0.002);
+}
+
+TEST(Simulation, AStandingRobotIsCarriedByItsFeet) {
+  Simulation sim = Simulation::load(robot("humanoid"));
+  sim.goals.posture();
+  sim.run(1.0);
+  // At rest what the ground carries is the weight; the posture still swings by less than 2 %.
+  const double weight = sim.model().totalMass() * 9.81;
+  const Vector3 carried = sim.contactForceOn("left_foot") + sim.contactForceOn("right_foot");
+  EXPECT_NEAR(carried.z(), weight, 0.02 * weight);
+}
+
+TEST(Simulation, StandsOnTheGroundAgain) {
+  Simulation sim = Simulation::load(robot("humanoid"));
+  const VectorX start = sim.state().q;
+  sim.state().q[2] += 1.0;
+  sim.standOnGround();
+  EXPECT_NEAR(sim.state().q[2], start[2], 1e-12);
+  Simulation arm = Simulation::load(robot("arm"));
+  EXPECT_NE(nameError([&] { arm.standOnGround(); }).find("no ground"), std::string::npos);
+}
+
+TEST(Simulation, UnknownNamesAreToldWithTheNearest) {
+  Simulation sim = Simulation::load(robot("arm"));
+  const auto tells = [](const std::string& text, const std::string& part) {
+    EXPECT_NE(text.find(part), std::string::npos) << text;
+  };
+  tells(nameError([&] { sim.goals.reach("hnd", Vector3::Zero()); }), "did you mean 'hand'");
+  tells(nameError([&] { sim.goals.hold("forarm"); }), "did you mean 'forearm'");
+  tells(nameError([&] { sim.torque("elbow_pich"); }), "did you mean 'elbow_pitch'");
+  tells(nameError([&] { sim.contactForceOn("hnd"); }), "did you mean 'hand'");
+  tells(nameError([&] { sim.position("elbw_pitch"); }), "did you mean 'elbow_pitch'");
+  tells(nameError([&] { sim.setPosition("nose", 1.0); }), "nose");
+  tells(nameError([&] { sim.pose("hnd"); }), "did you mean 'hand'");
+  EXPECT_TRUE(sim.goals.empty());
+}
+
+TEST(Simulation, OptionsAreThoseOfTheCommandLine) {
+  SimulationOptions options;
+  options.base = BaseKind::fixed;
+  options.timestep = 0.001;
+  options.q0 = {{"elbow_pitch", 0.3}};
+  Simulation sim = Simulation::load(robot("arm"), options);
+  EXPECT_EQ(sim.position("elbow_pitch"), 0.3);
+  EXPECT_EQ(sim.model().options.timestep, 0.001);
+  options.q0 = {{"elbw_pitch", 0.3}};
+  try {
+    Simulation::load(robot("arm"), options);
+    ADD_FAILURE() << "an unknown joint was placed";
+  } catch (const OptionError& error) {
+    EXPECT_NE(std::string(error.what()).find("did you mean 'elbow_pitch'"), std::string::npos);
+  }
+}
+
+TEST(Simulation, SolvingLeavesTheStateAlone) {
+  Simulation sim = Simulation::load(robot("humanoid"));
+  sim.goals.reach("right_hand", {0.4, -0.2, 1.1});
+  sim.run(0.05);
+  const std::uint64_t before = hash(sim.state());
+  const ControlSolution answer = sim.solve();
+  EXPECT_FALSE(isRefused(answer.status));
+  EXPECT_EQ(hash(sim.state()), before);
+  // What it answers is a motion of the physics: inverse dynamics of a gives back the control. The
+  // bound is the solver's tolerance on forces of some 100 N m.
+  VectorX tau;
+  inverseDynamics(sim.model(), answer.a, sim.data(), tau);
+  EXPECT_LT((tau - answer.tau).cwiseAbs().maxCoeff(), 1e-6);
+  EXPECT_FALSE(answer.contacts.empty());
+}
+
+TEST(Simulation, ASceneBringsItsGoalsAndWrenches) {
+  Simulation sim = Simulation::load(sceneFile("hand_and_ball"));
+  EXPECT_EQ(sim.goals.size(), 1u);
+  const double height = sim.pose("ball").p.z();
+  sim.run(0.2);  // something else carries the ball until 0.6 s
+  EXPECT_NEAR(sim.pose("ball").p.z(), height, 0.01);
+}
+
+TEST(Simulation, ResetGivesTheSameRunAgain) {
+  Simulation sim = Simulation::load(robot("humanoid"));
+  sim.goals.posture();
+  sim.run(0.1);
+  const std::uint64_t first = hash(sim.state());
+  sim.reset();
+  EXPECT_EQ(sim.time(), 0.0);
+  sim.run(0.1);
+  EXPECT_EQ(hash(sim.state()), first);
+}
+
+TEST(Simulation, ARefusedStepTellsWhy) {
+  Simulation sim = Simulation::load(robot("arm"));
+  sim.input().tau = VectorX::Constant(sim.model().nv, kNaN);
+  EXPECT_THROW(sim.run(0.01), StepError);
+  EXPECT_EQ(sim.time(), 0.0);
+  EXPECT_NE(sim.failure().find("shoulder_yaw"), std::string::npos) << sim.failure();
+}
+
+}  // namespace
+}  // namespace softgauss::test
