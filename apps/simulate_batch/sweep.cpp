@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/simulate_batch/sweep.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "io/detail/input_file.hpp"
+#include "io/detail/text.hpp"
+#include "io/detail/yaml.hpp"
+#include "io/names.hpp"
+
+namespace softgauss::app {
+namespace {
+
+using io::detail::Range;
+using io::detail::YamlMap;
+using io::detail::YamlValue;
+
+const std::vector<std::string> kAxes = {"x", "y", "z"};
+
+/// A whole number from `least` on.
+long wholeNumber(const YamlMap& map, const YamlMap::Entry& entry, double least) {
+  const double x = map.number(entry);
+  if (x < least || x > kMostRuns || x != std::floor(x))
+    map.fail(entry, fmt::format("found {}, expected a whole number from {} to {:.0f}", x, least,
+                                kMostRuns));
+  return static_cast<long>(x);
+}
+
+/// {from: …, to: …, steps: …}
+std::vector<double> evenly(const YamlMap& map) {
+  map.expectOnly({"from", "to", "steps"});
+  const double from = map.number(map.required("from", "a number"));
+  const double to = map.number(map.required("to", "a number"));
+  const long steps = wholeNumber(map, map.required("steps", "how many values"), 2);
+  std::vector<double> values;
+  for (long i = 0; i < steps; ++i)
+    values.push_back(from + (to - from) * static_cast<double>(i) / static_cast<double>(steps - 1));
+  return values;
+}
+
+Draw readDraw(const YamlMap& map, const YamlMap::Entry& entry, Draw::Law law) {
+  const std::vector<double> ab =
+      map.numbers(entry, 2, 2, law == Draw::Law::normal ? "[mean, deviation]" : "[from, to]");
+  if (law == Draw::Law::normal ? ab[1] < 0.0 : ab[1] < ab[0])
+    map.fail(entry, law == Draw::Law::normal ? "expected a deviation of at least 0"
+                                             : "expected the smaller one first");
+  if (law == Draw::Law::logUniform && !(ab[0] > 0.0))
+    map.fail(entry, fmt::format("found {}, expected numbers above 0", ab[0]));
+  return {law, ab[0], ab[1]};
+}
+
+Sweep::Varied readVaried(const YamlMap& vary, const YamlMap::Entry& entry) {
+  Sweep::Varied varied;
+  varied.name = entry.key;
+  varied.where = {vary.file(), entry.line};
+  if (entry.value.kind == YamlValue::Kind::list) {
+    varied.values = vary.numbers(entry, 1, static_cast<std::size_t>(kMostRuns), "a list of values");
+    return varied;
+  }
+  const YamlMap map = vary.map(entry);
+  const std::pair<const char*, Draw::Law> laws[] = {{"uniform", Draw::Law::uniform},
+                                                    {"log_uniform", Draw::Law::logUniform},
+                                                    {"normal", Draw::Law::normal}};
+  for (const auto& [key, law] : laws)
+    if (const auto* drawn = map.find(key)) {
+      map.expectOnly({key});
+      varied.draw = readDraw(map, *drawn, law);
+      return varied;
+    }
+  if (map.find("from") || map.find("to") || map.find("steps")) {
+    varied.values = evenly(map);
+    return varied;
+  }
+  map.expectOnly({"from", "to", "steps", "uniform", "log_uniform", "normal"});
+  vary.fail(entry,
+            "found nothing, expected a list of values, {from, to, steps}, {uniform: [a, b]}, "
+            "{log_uniform: [a, b]} or {normal: [mean, deviation]}");
+}
+
+/// The keys that say what runs.
+class SweepReader {
+ public:
+  SweepReader(const YamlMap& top, Sweep& sweep) : top_(top), sweep_(sweep) {}
+
+  void read() {
+    top_.expectOnly({"model", "base", "goals", "reach", "posture", "passive", "duration",
+                     "timestep", "integrator", "cone", "seed", "runs", "vary", "list", "measure"});
+    readModel();
+    readGoals();
+    if (const auto* entry = top_.find("seed"))
+      sweep_.seed = static_cast<std::uint64_t>(wholeNumber(top_, *entry, 0));
+    if (const auto* entry = top_.find("runs")) sweep_.repeats = wholeNumber(top_, *entry, 1);
+    if (const auto* entry = top_.find("list")) readList(*entry);
+    if (const auto* entry = top_.find("vary")) readVary(*entry);
+    if (const auto* entry = top_.find("measure")) readMeasures(*entry);
+  }
+
+ private:
+  std::filesystem::path path(const YamlMap::Entry& entry) const {
+    const std::filesystem::path name = top_.name(entry);
+    return name.is_absolute() ? name : std::filesystem::path(top_.file()).parent_path() / name;
+  }
+
+  void readModel() {
+    SimulateOptions& o = sweep_.options;
+    o.model = path(top_.required("model", "a .urdf file or a .yaml scene"));
+    if (const auto* entry = top_.find("base")) {
+      if (o.isScene()) top_.fail(*entry, "is for a URDF; a scene file says it itself");
+      o.base = top_.choice(*entry, {"fixed", "floating"}) == "fixed" ? BaseKind::fixed
+                                                                     : BaseKind::floating;
+    }
+    top_.read("duration", o.duration, Range::positive);
+    if (const auto* entry = top_.find("timestep"))
+      o.timestep = top_.number(*entry, Range::positive);
+    if (const auto* entry = top_.find("integrator"))
+      o.integrator = io::integratorCalled(top_.choice(*entry, io::integratorNames()));
+    if (const auto* entry = top_.find("cone"))
+      o.cone = top_.choice(*entry, {"pyramidal", "elliptic"}) == "elliptic" ? Cone::elliptic
+                                                                            : Cone::pyramidal;
+  }
+
+  void readGoals() {
+    SimulateOptions& o = sweep_.options;
+    if (const auto* entry = top_.find("goals")) o.goals = path(*entry);
+    if (const auto* entry = top_.find("reach")) {
+      const YamlMap map = top_.map(*entry);
+      for (const YamlMap::Entry& reach : map.entries())
+        o.reach.push_back({reach.key, Vector3::Zero(), map.vector3(reach), std::nullopt});
+    }
+    if (const auto* entry = top_.find("posture"))
+      o.posture = top_.number(*entry, Range::notNegative);
+    if (const auto* entry = top_.find("passive")) {
+      o.passive = top_.boolean(*entry);
+      if (o.passive && o.hasGoals())
+        top_.fail(*entry, "found true beside goals, expected one of them");
+    }
+    if (!o.isScene() && !o.passive && !o.hasGoals())
+      top_.fail("goals", top_.line(),
+                "is missing, expected goals, reach, posture or passive: true beside a URDF");
+  }
+
+  void readList(const YamlMap::Entry& entry) {
+    for (const YamlValue& item : top_.list(entry)) {
+      if (item.kind != YamlValue::Kind::map)
+        throw ModelError({top_.file(), item.line}, "key 'list'",
+                         fmt::format("found {}, expected a map {{…}}", item.described()));
+      const YamlMap map(top_.file(), "", "list.", item);
+      std::vector<double> row;
+      for (const YamlMap::Entry& value : map.entries()) {
+        const std::size_t place = row.size();
+        if (sweep_.listed.empty())
+          sweep_.varied.push_back({value.key, {top_.file(), value.line}, {0.0}, {}});
+        else if (place >= sweep_.varied.size() || sweep_.varied[place].name != value.key)
+          map.fail(value, "expected the keys of the first item, in their order");
+        row.push_back(map.number(value));
+      }
+      if (row.size() != sweep_.varied.size() || row.empty())
+        throw ModelError({top_.file(), item.line}, "key 'list'",
+                         "expected the keys of the first item, in their order");
+      sweep_.listed.push_back(std::move(row));
+    }
+  }
+
+  void readVary(const YamlMap::Entry& entry) {
+    const YamlMap vary = top_.map(entry);
+    for (const YamlMap::Entry& one : vary.entries()) {
+      Sweep::Varied varied = readVaried(vary, one);
+      if (!sweep_.listed.empty() && !varied.values.empty())
+        vary.fail(one,
+                  "found values beside a list, expected what is drawn alone: uniform, "
+                  "log_uniform, normal");
+      for (const Sweep::Varied& other : sweep_.varied)
+        if (other.name == varied.name) vary.fail(one, "is in the list already");
+      sweep_.varied.push_back(std::move(varied));
+    }
+  }
+
+  void readMeasures(const YamlMap::Entry& entry) {
+    for (const YamlValue& item : top_.list(entry)) {
+      const std::size_t dot = item.text.rfind('.');
+      const std::string axis = dot == std::string::npos ? "" : item.text.substr(dot + 1);
+      const auto place = std::find(kAxes.begin(), kAxes.end(), axis);
+      if (place == kAxes.end())
+        throw ModelError(
+            {top_.file(), item.line}, "key 'measure'",
+            fmt::format("found {}, expected a link and an axis, as in ball.z", item.described()));
+      sweep_.measures.push_back({item.text,
+                                 item.text.substr(0, dot),
+                                 static_cast<int>(place - kAxes.begin()),
+                                 {top_.file(), item.line}});
+    }
+  }
+
+  const YamlMap& top_;
+  Sweep& sweep_;
+};
+
+}  // namespace
+
+std::string Sweep::repeatCommand(long run) const {
+  return fmt::format("simulate_batch {} --only {} --view run_{}.html", file.string(), run, run);
+}
+
+Sweep readSweep(const std::filesystem::path& file) {
+  const std::string expected = "a sweep: model, vary, …";
+  const std::string text = io::detail::readInput(file.string(), expected);
+  const YamlValue value = io::detail::parseYaml(file.string(), text, expected);
+  if (value.kind != YamlValue::Kind::map)
+    throw ModelError({file.string(), value.line}, "sweep",
+                     fmt::format("found {}, expected keys: model, vary, …", value.described()));
+  Sweep sweep;
+  sweep.file = file;
+  SweepReader(YamlMap(file.string(), "", "", value), sweep).read();
+  return sweep;
+}
+
+}  // namespace softgauss::app
