@@ -100,7 +100,7 @@ class Rollout {
   /// arrays.
   std::size_t bytesPerRun() const;
   /// What a thread holds: model, contacts, Data and controller [bytes], as measured when the first
-  /// was made.
+  /// was made; 0 where the C library does not count.
   std::size_t bytesPerThread() const;
 
  private:

@@ -49,7 +49,7 @@ const std::map<std::string, Names> kMayInclude = {
 const std::map<std::string, std::regex> kLibraries = {
     {"collision", std::regex("(fcl|ccd|libqhull_r)/.*")},
     {"io", std::regex("(urdf_\\w+|console_bridge|assimp|yaml-cpp|nlohmann|fmt|sys)/"
-                      ".*|(tinyxml2|zlib|spawn|unistd|fcntl)\\.h")},
+                      ".*|(tinyxml2|zlib|spawn|unistd|fcntl|malloc)\\.h")},
 };
 const std::regex kStandardOrEigen("[a-z_]+|Eigen/.*");
 
