@@ -6,6 +6,7 @@
 
 #include "engine/engine.hpp"
 #include "io/io.hpp"
+#include "io/simulation/simulation.hpp"
 
 int main(int argc, char** argv) {
   if (argc != 2) return 2;
@@ -18,5 +19,7 @@ int main(int argc, char** argv) {
   }
   std::printf("after %g s the fastest joint moves at %g\n", state.time,
               state.v.lpNorm<Eigen::Infinity>());
-  return 0;
+  softgauss::Simulation sim = softgauss::Simulation::load(argv[1]);
+  sim.run(0.1);
+  return sim.time() > 0.0 ? 0 : 4;
 }
