@@ -254,8 +254,9 @@ TEST(Rollout, ARunIsItsArraysAndItsState) {
   // 10⁵ humanoids fit into 1 GB.
   EXPECT_LT(rollout.bytesPerRun(), 10000u);
   EXPECT_GT(rollout.bytesPerRun(), sizeof(State));
-  if (rollout.bytesPerThread() > 0)  // a sanitizer's library does not count
+  if (rollout.bytesPerThread() > 0) {  // a sanitizer's library does not count
     EXPECT_GT(rollout.bytesPerThread(), 100000u);
+  }
 }
 
 TEST(Rollout, ArraysOfOtherSizesAreRefused) {
