@@ -29,7 +29,7 @@ struct SimulateOptions {
   std::optional<double> baseHeight;
   std::optional<double> ground;  ///< height of the ground plane [m]
   bool groundIsDefault = true;   ///< 0 for a floating base, none for a fixed one
-  double duration = 2.0;
+  double duration = 2.0;         ///< ∞: until it is interrupted, or as long as what is played [s]
   std::optional<double> timestep;  ///< absent: the model's own [s]
   std::vector<ReachArgument> reach;
   std::vector<std::string> hold;  ///< links
@@ -65,7 +65,11 @@ struct SimulateOptions {
   bool guessBase = false;  ///< --base auto
   long logEvery = 1;       ///< steps from one row of the log to the next
   std::filesystem::path log, contacts, summary, view, plot;
-  std::string commandLine;  ///< as it was typed
+  std::optional<unsigned short> live;  ///< port; 0: any that is free
+  std::string liveAddress = "127.0.0.1";
+  std::filesystem::path record, play;  ///< what is done to a live run, to a file and from one
+  bool acted() const { return live || !play.empty(); }  ///< somebody acts on the run
+  std::string commandLine;                              ///< as it was typed
   std::vector<std::filesystem::path> packagePaths;
   double largestMesh = 64.0;  ///< [MB]
 
