@@ -136,7 +136,7 @@ async function testHumanoid() {
   assert.equal(await run.stop(), 130);
   const summary = run.summary();
   assert.equal(summary.outcome, 'interrupted');
-  const errors = run.log().map((row) => row['goal drag 1 [m]'] ?? row['drag 1 [m]']);
+  const errors = run.log().map((row) => row['error:drag 1 [m]']);
   const grabbed = errors.findIndex(Number.isFinite);
   assert.ok(grabbed >= 0, 'the log has a goal');
   const within = errors.slice(grabbed).findIndex((error) => error < 0.03);

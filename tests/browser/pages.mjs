@@ -38,7 +38,10 @@ export class Browser {
     const { origin } = new URL(address);
     const page = await this.#newPage(origin, new RegExp(`^(${origin}|data:|blob:)`), options);
     await page.goto(address);
-    await page.waitForFunction(() => window.softgauss?.live.status);
+    await page.waitForFunction(() => window.softgauss?.live.status, null, {
+      timeout: 120000,
+      polling: 100,
+    });
     await page.evaluate(() => window.softgauss.ready);
     return page;
   }

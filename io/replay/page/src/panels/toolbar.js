@@ -2,7 +2,7 @@
 // What lies over the view: what is shown, from where, following what; and which marks.
 
 import { MARKS } from '../app/settings.js';
-import { element, icon, iconButton, number } from '../app/dom.js';
+import { byId, element, icon, iconButton, number } from '../app/dom.js';
 import { savePicture, Video } from '../app/save.js';
 import { CONTACT_COLOR } from '../view/contacts.js';
 import { COLORS } from '../view/marks.js';
@@ -93,8 +93,8 @@ export function toolbar(host, run, stage, settings, selection) {
     ),
     follow,
     marksMenu(host, run, stage, settings),
-    captureButtons(run, stage),
   );
+  byId('capture').append(...captureButtons(run, stage));
 }
 
 /** A picture of the view, and a video of it where the browser can make one. */
@@ -108,12 +108,10 @@ function captureButtons(run, stage) {
     record.title = video.running ? 'End the video and save it' : 'Begin a video of the view';
     record.setAttribute('aria-label', record.title);
   });
-  return element(
-    'div',
-    { class: 'segments', role: 'group', 'aria-label': 'Save' },
+  return [
     iconButton('picture', 'Save a picture of the view', () => savePicture(stage, name)),
-    Video.possible() ? record : null,
-  );
+    ...(Video.possible() ? [record] : []),
+  ];
 }
 
 /** A button that opens a legend of the marks, each with its switch. */
