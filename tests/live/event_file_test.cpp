@@ -108,7 +108,7 @@ TEST_F(LiveEventFile, WithoutEventsIsOne) {
 TEST_F(LiveEventFile, NamesLineAndKeyOfWhatIsWrong) {
   const std::string head = "timestep: 0.002\nsteps: 100\nevents:\n";
   const std::pair<std::string, std::vector<std::string>> cases[] = {
-      {"", {"found nothing"}},
+      {"", {"is empty"}},
       {"- 1\n", {"expected steps"}},
       {"steps: 1\nevents: []\n", {"timestep"}},
       {"timestep: 0.001\nsteps: 1\nevents: []\n", {":1:", "0.001", "0.002"}},

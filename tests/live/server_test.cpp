@@ -27,14 +27,17 @@ class LiveServer : public testing::Test {
     options.page = "<!doctype html>the page";
   }
   void start() { server = std::make_unique<Server>(options, names); }
-  std::string get(const std::string& target, const std::string& headers) const {
-    return exchange(server->port(), "GET " + target + " HTTP/1.1\r\n" + headers + "\r\n");
+  std::string get(const std::string& target, const std::string& headers,
+                  double seconds = 5.0) const {
+    return exchange(server->port(), "GET " + target + " HTTP/1.1\r\n" + headers + "\r\n", seconds);
   }
   std::string host() const { return "Host: localhost:" + std::to_string(server->port()) + "\r\n"; }
   std::string upgrade(const std::string& target, const std::string& headers) const {
-    return get(target, headers +
-                           "Connection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: "
-                           "13\r\nSec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n");
+    return get(target,
+               headers +
+                   "Connection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: "
+                   "13\r\nSec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n",
+               1.0);
   }
   /// Whether it still answers.
   bool lives() const { return get("/", host()).find("200 OK") != std::string::npos; }
