@@ -66,13 +66,37 @@ double Series::percentile(double share) const {
   return sorted[static_cast<std::size_t>(index)];
 }
 
+void Series::add(double value) {
+  const auto drop = [&](double x) {
+    ++dropped;
+    droppedSum += x;
+    droppedMax = std::max(droppedMax, x);
+  };
+  if (skip > 0) {
+    --skip;
+    return drop(value);
+  }
+  values.push_back(value);
+  skip = every - 1;
+  if (values.size() < kMost) return;
+  for (std::size_t i = 1; i < values.size(); i += 2) {
+    drop(values[i]);
+    values[i / 2] = values[i - 1];
+  }
+  values.resize(values.size() / 2);
+  every *= 2;
+  skip = every - 1;
+}
+
 double Series::max() const {
-  return values.empty() ? 0.0 : *std::max_element(values.begin(), values.end());
+  return values.empty() ? 0.0
+                        : std::max(droppedMax, *std::max_element(values.begin(), values.end()));
 }
 
 double Series::mean() const {
   if (values.empty()) return 0.0;
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+  return (std::accumulate(values.begin(), values.end(), 0.0) + droppedSum) /
+         (static_cast<double>(values.size()) + static_cast<double>(dropped));
 }
 
 Summary::Summary(const Model& model)
@@ -108,16 +132,16 @@ void Summary::addStep(const StepRecord& r) {
   }
   finish(r);
   ++steps_;
-  forwardUs_.values.push_back(r.forwardUs);
-  gddUs_.values.push_back(r.gddUs);
-  stepUs_.values.push_back(r.stepUs);
-  constraints_.values.push_back(r.constraints);
-  iterations_.values.push_back(r.iterations);
-  dualUpdates_.values.push_back(r.dualUpdates);
-  physicsViolation_.values.push_back(r.physicsViolation);
-  realised_.values.push_back(r.realised);
-  gddViolation_.values.push_back(r.gddViolation);
-  stationarity_.values.push_back(r.stationarity);
+  forwardUs_.add(r.forwardUs);
+  gddUs_.add(r.gddUs);
+  stepUs_.add(r.stepUs);
+  constraints_.add(r.constraints);
+  iterations_.add(r.iterations);
+  dualUpdates_.add(r.dualUpdates);
+  physicsViolation_.add(r.physicsViolation);
+  realised_.add(r.realised);
+  gddViolation_.add(r.gddViolation);
+  stationarity_.add(r.stationarity);
   for (std::size_t i = 0; i < bounded_.size(); ++i)
     ratios_[i].ratio =
         std::max(ratios_[i].ratio, std::abs(r.u[bounded_[i].dof]) / bounded_[i].effort);
@@ -181,6 +205,7 @@ std::string Summary::json() const {
       {"verdict", said},
       {"bases", bases},
       {"steps", steps_},
+      {"state_hash", stateHash},
       {"simulated_s", simulatedSeconds()},
       {"wall_s", wallSeconds},
       {"real_time_factor", realTimeFactor()},

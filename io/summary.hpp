@@ -113,9 +113,20 @@ struct ControlRatio {
   double ratio = 0.0;
 };
 
-/// Values of one quantity over the steps.
+/// Values of one quantity over the steps. A run without end does not fill the memory: beyond kMost
+/// values every second one is dropped, and from there on every second of the new ones, again and
+/// again; mean and maximum stay those of all.
 struct Series {
+  static constexpr std::size_t kMost = std::size_t{1} << 22;
+
   std::vector<double> values;
+  long every = 1;  ///< how many values one that is kept stands for
+  long skip = 0;   ///< how many of the next are dropped
+  // Of those that were dropped:
+  long dropped = 0;
+  double droppedSum = 0.0, droppedMax = -kInfinity;
+
+  void add(double value);
 
   double percentile(double share) const;  ///< nearest rank; 0 without values
   double max() const;
@@ -153,6 +164,7 @@ class Summary {
   /// What a person wants to know, in order: a word and a sentence each, e.g. "reached", "reach arm:
   /// 0.4 mm left". The first says how the run ended.
   std::vector<std::pair<std::string, std::string>> verdict;
+  std::string stateHash;           ///< of the state at the end, hexadecimal
   std::vector<std::string> bases;  ///< how each robot meets the world
   RunOrigin origin;
   double wallSeconds = 0.0;

@@ -6,6 +6,8 @@
 #include <cstring>
 #include <limits>
 
+#include "apps/live/drag.hpp"
+
 namespace softgauss::app {
 
 GoalRecord::GoalRecord(const std::vector<std::unique_ptr<gdd::Goal>>& goals,
@@ -28,6 +30,10 @@ GoalRecord::GoalRecord(const std::vector<std::unique_ptr<gdd::Goal>>& goals,
   }
   errors_ = VectorX::Constant(static_cast<Eigen::Index>(tracks_.size()),
                               std::numeric_limits<double>::quiet_NaN());
+}
+
+bool GoalRecord::Track::wasNotAsked() const {
+  return !outcome.began && dynamic_cast<const live::Drag*>(goal) != nullptr;
 }
 
 void GoalRecord::see(Track& track, const gdd::GoalFigure& figure, double time, bool acts) {

@@ -21,6 +21,9 @@ class GoalRecord {
     io::GoalOutcome outcome;
     gdd::GoalFigure last;  ///< while the goal acted
     bool acts = false;     ///< in the last step seen
+
+    /// It begins only if somebody asks, and nobody did.
+    bool wasNotAsked() const;
   };
 
   /// The goals have to live as long. `start`: the initial state, whose stages are computed.

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "apps/simulate_gdd/options.hpp"
 #include "io/inputs.hpp"
 #include "io/output.hpp"
@@ -17,7 +19,10 @@ constexpr double kMostStepsOfARun = 1e9;
 
 void checkOutputs(const SimulateOptions& options, const std::vector<std::filesystem::path>& read) {
   std::vector<std::pair<std::string, std::filesystem::path>> files = {
-      {"MODEL", options.model}, {"--goals", options.goals}, {"--torques", options.torques}};
+      {"MODEL", options.model},
+      {"--goals", options.goals},
+      {"--torques", options.torques},
+      {"--play", options.play}};
   for (const std::filesystem::path& file : read) files.emplace_back(file.string(), file);
   // Standard input is no output.
   std::erase_if(files, [](const auto& file) { return file.second == io::kStandardInput; });
@@ -26,7 +31,8 @@ void checkOutputs(const SimulateOptions& options, const std::vector<std::filesys
                                      {"--contacts", &options.contacts},
                                      {"--summary", &options.summary},
                                      {"--view", &options.view},
-                                     {"--plot", &options.plot}})
+                                     {"--plot", &options.plot},
+                                     {"--record", &options.record}})
     files.emplace_back(option, *file);
   const auto same = [](const std::filesystem::path& a, const std::filesystem::path& b) {
     std::error_code error;
@@ -61,7 +67,7 @@ void checkSteps(const SimulateOptions& options, double timestep, const SourceLoc
   if (timestep > kLongestStep)
     fail(fmt::format("{}{}{} expected at most {} s", ofFile ? "" : "--timestep ", timestep,
                      ofFile ? "," : ":", kLongestStep));
-  if (options.duration / timestep > kMostStepsOfARun)
+  if (std::isfinite(options.duration) && options.duration / timestep > kMostStepsOfARun)
     fail(fmt::format("{}--duration {} is more than {:g} steps of {} s",
                      ofFile ? fmt::format("{} s: ", timestep) : "", options.duration,
                      kMostStepsOfARun, timestep));

@@ -4,11 +4,13 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
 #include "apps/shared/standard_streams.hpp"
 #include "apps/simulate_gdd/argument_values.hpp"
+#include "apps/simulate_gdd/live_options.hpp"
 #include "io/inputs.hpp"
 #include "io/names.hpp"
 
@@ -204,6 +206,8 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
       ->check(CLI::IsMember({"apart", "sleep", "sleep-all"}))
       ->group(simulation);
 
+  addLiveOptions(app, options);
+
   const char* const output = "Output";
   app.add_flag("--explain", options.explain, "tell what was loaded and simulate nothing")
       ->group(output);
@@ -232,7 +236,9 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
 
   expectValues(app, argc, argv);
   try {
-    app.parse(argc, argv);
+    std::vector<std::string> arguments = argumentsOf(argc, argv);
+    std::reverse(arguments.begin(), arguments.end());  // as CLI11 takes them
+    app.parse(std::move(arguments));
   } catch (const CLI::Success& success) {  // --help, --version
     std::ostringstream text;
     app.exit(success, text, text);
@@ -308,10 +314,11 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
                             parseNumber(text.substr(equals + 1), "--q0"));
   }
   int fromStandardInput = 0;
-  for (const auto* file : {&options.model, &options.goals, &options.torques})
+  for (const auto* file : {&options.model, &options.goals, &options.torques, &options.play})
     fromStandardInput += *file == io::kStandardInput ? 1 : 0;
   if (fromStandardInput > 1)
-    throw UsageError("standard input (-) can be only one of MODEL, --goals and --torques");
+    throw UsageError("standard input (-) can be only one of MODEL, --goals, --torques and --play");
+  finishLiveOptions(app, options);
   checkOutputs(options, {});
   if (options.isScene())
     for (const auto& [option, given] : {std::pair{"--base", !base.empty() && base != "automatic"},

@@ -26,7 +26,7 @@ struct ReachArgument {
 /// What is loaded how, and what is done with it.
 struct SimulateOptions : SimulationOptions {
   std::filesystem::path model;
-  double duration = 2.0;
+  double duration = 2.0;  ///< ∞: until it is interrupted, or as long as what is played [s]
   std::vector<ReachArgument> reach;
   std::vector<std::string> hold;  ///< links
   std::optional<double> posture;  ///< weight of a posture about the start [-]
@@ -45,6 +45,10 @@ struct SimulateOptions : SimulationOptions {
   bool details = false;  ///< what the solver did, in the table at the end
   long logEvery = 1;     ///< steps from one row of the log to the next
   std::filesystem::path log, contacts, summary, view, plot;
+  std::optional<unsigned short> live;  ///< port; 0: any that is free
+  std::string liveAddress = "127.0.0.1";
+  std::filesystem::path record, play;  ///< what is done to a live run, to a file and from one
+  bool acted() const { return live || !play.empty(); }  ///< somebody acts on the run
   std::string commandLine;  ///< as it was typed
   /// Called with the goals once they are made: a sweep moves their places.
   std::function<void(gdd::GoalDirectedController&)> changeGoals;

@@ -4,12 +4,23 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <cmath>
 #include <map>
 
 namespace softgauss::app {
 namespace {
 
-/// A mesh collides as its convex hull, so that is what is shown.
+/// ", 2.7 MB" of a file, nothing of a folder.
+std::string sizeOf(const std::filesystem::path& target) {
+  std::error_code error;
+  const auto bytes = std::filesystem::file_size(target, error);
+  return error ? std::string() : fmt::format(", {:.2g} MB", 1e-6 * static_cast<double>(bytes));
+}
+
+constexpr double kUnknownDuration = 60.0;  // [s] for which memory is fetched of a run without end
+
+}  // namespace
+
 std::vector<std::shared_ptr<const Mesh>> collidingHulls(const Scene& scene) {
   std::vector<std::shared_ptr<const Mesh>> hulls(scene.model.geometries.size());
   std::map<const collision::ConvexHull*, std::shared_ptr<const Mesh>> made;
@@ -23,15 +34,6 @@ std::vector<std::shared_ptr<const Mesh>> collidingHulls(const Scene& scene) {
   return hulls;
 }
 
-/// ", 2.7 MB" of a file, nothing of a folder.
-std::string sizeOf(const std::filesystem::path& target) {
-  std::error_code error;
-  const auto bytes = std::filesystem::file_size(target, error);
-  return error ? std::string() : fmt::format(", {:.2g} MB", 1e-6 * static_cast<double>(bytes));
-}
-
-}  // namespace
-
 Replay::Replay(const SimulateOptions& options, const Scene& scene,
                const std::vector<std::unique_ptr<gdd::Goal>>& goals, const gdd::GoalContext& start)
     : view_(options.view), drawing_(options.plot) {
@@ -40,8 +42,8 @@ Replay::Replay(const SimulateOptions& options, const Scene& scene,
   if (!page_ && !plot_) return;
   recording_.emplace(scene.model, goals, start);
   recording_->command = options.commandLine;
-  recording_->reserve(static_cast<std::size_t>(options.duration / scene.model.options.timestep),
-                      options.duration);
+  const double duration = std::isfinite(options.duration) ? options.duration : kUnknownDuration;
+  recording_->reserve(static_cast<std::size_t>(duration / scene.model.options.timestep), duration);
   if (page_) recording_->hulls = collidingHulls(scene);
 }
 

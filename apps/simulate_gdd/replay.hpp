@@ -12,6 +12,10 @@
 
 namespace softgauss::app {
 
+/// A mesh collides as its convex hull, so that is what is shown: by geometry, null where the shape
+/// itself collides.
+std::vector<std::shared_ptr<const Mesh>> collidingHulls(const Scene& scene);
+
 class Replay {
  public:
   /// The stages of the initial state are in `start`. Throws ModelError when an output cannot be
@@ -25,6 +29,10 @@ class Replay {
   void addStep(const io::StepRecord& record, const Data& data,
                const std::vector<Snapshot::ContactForce>& contacts) {
     if (recording_) recording_->addStep(record, data, contacts);
+  }
+  /// The run goes on from `time` [s], which lies back.
+  void rewind(double time) {
+    if (recording_) recording_->rewind(time);
   }
   /// The final state, whose stages are in `data`; `message` says why the run ended early. Returns
   /// what could not be written.

@@ -11,6 +11,7 @@
 #include "apps/shared/run_origin.hpp"
 #include "apps/shared/standard_streams.hpp"
 #include "apps/shared/wall_clock.hpp"
+#include "apps/simulate_gdd/company.hpp"
 #include "apps/simulate_gdd/error_estimate.hpp"
 #include "apps/simulate_gdd/island_run.hpp"
 #include "apps/simulate_gdd/outside_input.hpp"
@@ -41,13 +42,17 @@ class Runner {
         model_(scene.model),
         contacts_(scene.source()),
         state_(scene.initial),
-        data_(model_),
+        stages_(std::in_place, model_),
+        data_(*stages_),
         controller_(model_),
         outside_(options, scene),
         kinematics_(model_),
         contactLinks_(model_),
         summary_(model_) {
     setUp(options, scene, controller_);
+    const bool passive =
+        controller_.goals.empty() && options.torques.empty() && scene.wrenches.empty();
+    company_.emplace(options, model_, state_, stages_, controller_);
     tellOrigin(scene);
     const std::vector<io::EffectNote> notes = io::effectNotes(model_, scene.wrenches);
     summary_.effects = io::effectsOn(notes);
@@ -59,10 +64,9 @@ class Runner {
       errorEstimate_.emplace(model_, state_, outside_, !controller_.goals.empty());
     computeStages(model_, input_, state_, data_, &contacts_);
     const gdd::GoalContext start{model_, state_, data_};
-    const bool passive =
-        controller_.goals.empty() && options.torques.empty() && scene.wrenches.empty();
     verdict_.emplace(controller_, start, passive, scene.baseOrigin);
     replay_.emplace(options, scene, controller_.goals, start);
+    company_->join(scene, start);
     // Last, for nothing else can be refused any more.
     if (!options.log.empty())
       log_.emplace(options.log, model_, verdict_->goals().columns(), options.logEvery);
@@ -70,15 +74,18 @@ class Runner {
   }
 
   ExitCode run() {
-    const auto steps =
-        static_cast<long>(std::ceil(options_.duration / model_.options.timestep - 1e-9));
-    RunProgress progress(options_.duration, options_.quiet);
+    RunProgress progress(options_.duration, options_.quiet || options_.acted());
     progress_ = &progress;
     tellBases();
+    print(told(), company_->announcement());
+    std::fflush(told());
     ExitCode code = kDone;
     catchInterrupts();
     const Clock::time_point start = Clock::now();
-    for (long i = 0; i < steps && code == kDone; ++i) {
+    while (code == kDone) {
+      const Company::Next next = company_->next([&](double time) { replay_->rewind(time); });
+      if (next == Company::Next::interrupted) code = kInterrupted;
+      if (next != Company::Next::step) break;
       const auto takeStep = [&] {
         if (interrupted()) {
           code = kInterrupted;
@@ -96,7 +103,7 @@ class Runner {
         outside_.inParts(model_, state_, takeStep);
       else
         takeStep();
-      if (code == kDone) state_.time = static_cast<double>(i + 1) * model_.options.timestep;
+      if (code == kDone) company_->countStep();
     }
     progress.clear();
     summary_.wallSeconds = secondsSince(start);
@@ -127,7 +134,9 @@ class Runner {
     record_.q = state_.q;
     record_.v = state_.v;
     computeKinematics(model_, state_, kinematics_);
+    company_->beginWrenches(input_);
     outside_.at(model_, state_, kinematics_, input_);
+    company_->addWrenches(kinematics_, input_);
     if (errorEstimate_) before_ = state_;
     const Clock::time_point start = Clock::now();
     const SolveStatus status = islands_ ? islands_->step(input_)
@@ -183,11 +192,11 @@ class Runner {
     tallyCommands(controller_, summary_);
     // What is seen is the step's start, where the record is of.
     std::swap(data_.kinematics, kinematics_);
-    for (const std::string& message :
-         verdict_->observe({record_, data_, touching_, state_, model_.options.timestep}))
-      tellNow(message);
+    const SeenStep seen{record_, data_, touching_, state_, model_.options.timestep};
+    for (const std::string& message : verdict_->observe(seen)) tellNow(message);
     record_.goalErrors = verdict_->goals().errors();
     replay_->addStep(record_, data_, touching_);
+    company_->after(seen, *verdict_);
     std::swap(data_.kinematics, kinematics_);
     writeLog(record_);
   }
@@ -223,6 +232,7 @@ class Runner {
 
   /// A line on stderr while the run goes on, not below a progress bar.
   void tellNow(const std::string& message) {
+    company_->tell(message);
     if (options_.quiet) return;
     progress_->clear();
     fmt::print(stderr, "simulate_gdd: t = {:.4g} s: {}\n", record_.time, message);
@@ -253,6 +263,8 @@ class Runner {
 
   /// The final state, in the log's last row and the summary.
   void finish(const std::string& reason) {
+    summary_.stateHash = fmt::format("{:016x}", hash(state_));
+    attempt([&] { company_->finish(); });
     const VectorX acceleration = data_.forward.a;
     computeStages(model_, input_, state_, data_, &contacts_);
     data_.forward.a = acceleration;
@@ -280,6 +292,8 @@ class Runner {
     for (std::string& error : replay_->finish(last, data_, summary_, reason))
       outputErrors_.push_back(std::move(error));
     if (!options_.quiet) print(told(), replay_->written() + summary_.table(options_.details));
+    if (!options_.quiet && company_->present())
+      print(told(), fmt::format("state hash: {}\n", summary_.stateHash));
   }
 
   /// Which solver followed the goals. Steps in which cones touch are solver 1's.
@@ -309,7 +323,8 @@ class Runner {
   Model& model_;  ///< only its step changes, in parts of steps
   ContactSource& contacts_;
   State state_;
-  Data data_;
+  std::optional<Data> stages_;  ///< made anew by who changes the model's options
+  Data& data_;                  ///< those
   gdd::GoalDirectedController controller_;
   const OutsideInput outside_;
   Input input_;
@@ -331,6 +346,7 @@ class Runner {
   long stepsWithCones_ = 0;
   io::StepRecord record_;
   VectorX scratch_;
+  std::optional<Company> company_;
 };
 
 }  // namespace

@@ -73,6 +73,17 @@ void Verdict::finish(const SeenStep& end) {
   }
 }
 
+std::vector<std::string> Verdict::lying(const Kinematics& k, double time) const {
+  std::vector<std::string> names;
+  for (const StandingOutcome& o : standing_.outcomes(k, time))
+    if (o.fell) names.push_back(o.base);
+  return names;
+}
+
+std::vector<std::string> Verdict::saturatedNow() const {
+  return joints_.saturatedNow(std::vector<char>(static_cast<std::size_t>(model_.nv), 1));
+}
+
 bool Verdict::fell() const {
   return std::any_of(stood_.begin(), stood_.end(), [](const StandingOutcome& o) { return o.fell; });
 }
@@ -252,7 +263,8 @@ void Verdict::tellControls(io::Summary& summary) const {
 
 void Verdict::tell(const std::string& ending, const std::vector<std::string>& baseWarnings,
                    io::Summary& summary) {
-  for (const GoalRecord::Track& track : goals_.tracks()) summary.goals.push_back(track.outcome);
+  for (const GoalRecord::Track& track : goals_.tracks())
+    if (!track.wasNotAsked()) summary.goals.push_back(track.outcome);
   if (!ending.empty()) summary.verdict.emplace_back(summary.outcome, ending);
   tellStanding(summary);
   if (summary.verdict.empty())

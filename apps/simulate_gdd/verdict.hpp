@@ -39,8 +39,12 @@ class Verdict {
 
   /// Errors of the goals at the last step seen, and their names with units.
   const GoalRecord& goals() const { return goals_; }
-  /// Whether some robot lies where it stood.
+  /// Whether some robot lies where it stood; after finish().
   bool fell() const;
+  /// Root links of robots that lie where they stood, at these kinematics.
+  std::vector<std::string> lying(const Kinematics& kinematics, double time) const;
+  /// Controls that are at their bounds.
+  std::vector<std::string> saturatedNow() const;
   /// After finish(): goals and verdict. `ending` says why a run ended early, or is empty.
   void tell(const std::string& ending, const std::vector<std::string>& baseWarnings,
             io::Summary& summary);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "io/replay/detail/fetch.hpp"
 
@@ -53,7 +54,7 @@ void FrameTrack::appendPoint(std::vector<float>& track, const Vector3& p_W) cons
 }
 
 void FrameTrack::add(const Snapshot& s, std::span<const std::optional<gdd::GoalMark>> marks) {
-  if (time.empty())
+  if (!std::exchange(placed_, true))
     for (int i = 0; i < 3; ++i)
       origin[i] =
           std::abs(s.centerOfMass[i]) > kFar ? 10.0 * std::round(s.centerOfMass[i] / 10.0) : 0.0;
@@ -88,6 +89,25 @@ void FrameTrack::add(const Snapshot& s, std::span<const std::optional<gdd::GoalM
   next_ = (std::floor(s.time / interval_ * (1.0 + 1e-12)) + 1.0) * interval_ - 1e-9;
   if (bytes() > mostBytes_) dropEverySecond();
 }
+
+void FrameTrack::rewind(double from) {
+  const auto first = std::lower_bound(time.begin(), time.end(), from);
+  const auto frames = static_cast<std::size_t>(first - time.begin());
+  const auto bodies = static_cast<std::size_t>(bodies_), goals = static_cast<std::size_t>(goals_);
+  time.resize(frames);
+  pose.resize(frames * 7 * bodies);
+  velocity.resize(frames * 6 * bodies);
+  for (std::vector<float>* track : {&centerOfMass, &centerOfPressure}) track->resize(frames * 3);
+  for (std::vector<float>* track : {&goalPoint, &goalTarget}) track->resize(frames * 3 * goals);
+  contactStart.resize(frames + 1);
+  const std::size_t contacts = contactStart.back();
+  for (std::vector<float>* track : {&contactPoint, &contactNormal, &contactForce})
+    track->resize(3 * contacts);
+  contactGeometry.resize(2 * contacts);
+  next_ = std::min(next_, from);
+}
+
+void FrameTrack::forget() { rewind(-std::numeric_limits<double>::infinity()); }
 
 std::size_t FrameTrack::bytes() const {
   return 4 * (pose.size() + velocity.size() + goalPoint.size() + goalTarget.size() +

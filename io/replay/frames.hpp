@@ -28,9 +28,14 @@ class FrameTrack {
   /// Appends a frame, whether due or not. `marks`: one a goal, nothing where it is no place now.
   void add(const Snapshot& snapshot, std::span<const std::optional<gdd::GoalMark>> marks);
 
+  /// Forgets frames from `time` [s] on: the run goes on from there.
+  void rewind(double time);
+  /// Forgets all frames. The origin stays, and the next frame is due at once.
+  void forget();
+
   int count() const { return static_cast<int>(time.size()); }
 
-  Vector3 origin = Vector3::Zero();                ///< [m] set by the first frame
+  Vector3 origin = Vector3::Zero();                ///< [m] set by the first frame of all
   std::vector<double> time;                        ///< (frames) [s]
   std::vector<float> pose;                         ///< (frames, bodies, 7) x y z qw qx qy qz
   std::vector<float> velocity;                     ///< (frames, bodies, 6) linear, angular
@@ -51,6 +56,7 @@ class FrameTrack {
   std::size_t mostBytes_;
   double interval_ = 1.0 / kFramesPerSecond;  ///< [s]
   double next_ = 0.0;                         ///< [s]
+  bool placed_ = false;                       ///< the origin is chosen
 };
 
 }  // namespace softgauss::io

@@ -218,7 +218,11 @@ std::string escapedHtml(const std::string& text) {
 
 }  // namespace
 
-std::string replayPayload(const Recording& recording, const std::string& generator) {
+namespace {
+
+/// `live`: JSON, or empty.
+std::string payloadOf(const Recording& recording, const std::string& generator,
+                      const std::string& live) {
   Payload payload;
   Json header;
   const FrameTrack& frames = recording.frames();
@@ -231,6 +235,7 @@ std::string replayPayload(const Recording& recording, const std::string& generat
   header["origin"] = toJson(frames.origin);
   header["warnings"] = recording.warnings;
   header["facts"] = recording.facts;
+  if (!live.empty()) header["live"] = Json::parse(live);
   writeScene(recording, header, payload);
   writeFrames(frames, header, payload);
   writeSeries(recording, header, payload);
@@ -242,10 +247,10 @@ std::string replayPayload(const Recording& recording, const std::string& generat
   return payload.pack(header.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
-ReplayPage::ReplayPage(const std::filesystem::path& file) : file_(file, "replay page") {}
-
-void ReplayPage::write(const Recording& recording, const std::string& generator) {
-  const std::string run = base64(deflated(replayPayload(recording, generator)));
+/// The template's text with the parts put in, piece by piece.
+template <class Write>
+void writePage(const Recording& recording, const std::string& payload, Write&& write) {
+  const std::string run = base64(deflated(payload));
   std::string_view rest = detail::pageTemplate();
   for (const auto& [place, text] :
        {std::pair<std::string_view, std::string>{
@@ -253,11 +258,36 @@ void ReplayPage::write(const Recording& recording, const std::string& generator)
         {"@@SOFTGAUSS_RUN@@", run}}) {
     const std::size_t at = rest.find(place);
     SOFTGAUSS_ASSERT(at != std::string_view::npos);
-    file_.write(rest.substr(0, at));
-    file_.write(text);
+    write(rest.substr(0, at));
+    write(text);
     rest.remove_prefix(at + place.size());
   }
-  file_.write(rest);
+  write(rest);
+}
+
+}  // namespace
+
+std::string replayPayload(const Recording& recording, const std::string& generator) {
+  return payloadOf(recording, generator, "");
+}
+
+std::string livePage(const Recording& recording, const std::string& generator,
+                     const std::string& live) {
+  // A page in a file may ask nothing of any network; this one talks to where it came from.
+  constexpr std::string_view kNothing = "default-src 'none'";
+  std::string page;
+  writePage(recording, payloadOf(recording, generator, live),
+            [&](std::string_view text) { page += text; });
+  const std::size_t at = page.find(kNothing);
+  SOFTGAUSS_ASSERT(at != std::string::npos);
+  return page.insert(at + kNothing.size(), "; connect-src 'self'");
+}
+
+ReplayPage::ReplayPage(const std::filesystem::path& file) : file_(file, "replay page") {}
+
+void ReplayPage::write(const Recording& recording, const std::string& generator) {
+  writePage(recording, replayPayload(recording, generator),
+            [&](std::string_view text) { file_.write(text); });
   file_.commit();
 }
 

@@ -17,6 +17,11 @@ namespace softgauss::io {
 /// The run as the page holds it, before compression. `generator`: e.g. "softgauss 0.1.0".
 std::string replayPayload(const Recording& recording, const std::string& generator);
 
+/// The page as a server gives it that shows a run as it goes: it begins with the recording's frames
+/// and may talk to that server. `live`: JSON, the header's member of that name (docs/live.md).
+std::string livePage(const Recording& recording, const std::string& generator,
+                     const std::string& live);
+
 class ReplayPage {
  public:
   /// Makes sure that the file can be written, before a run is begun whose page could not. A page

@@ -130,8 +130,7 @@ void Recording::readMarks(const StepRecord& r, const Data& data) {
   state_.q = r.q;
   state_.v = r.v;
   state_.time = r.time;
-  for (std::size_t i = 0; i < goals_.size(); ++i)
-    marks_[i] = goals_[i]->mark({model_, state_, data});
+  for (std::size_t i = 0; i < goals_.size(); ++i) marks_[i] = markOf(i, {model_, state_, data});
 }
 
 void Recording::addStep(const StepRecord& r, const Data& data) {

@@ -71,6 +71,11 @@ class Recording {
   /// The same with the contact forces from elsewhere.
   void addStep(const StepRecord& record, const Data& data,
                const std::vector<Snapshot::ContactForce>& contacts);
+  /// The run goes on from `time` [s], which lies back: what comes later is forgotten.
+  void rewind(double time) {
+    frames_.rewind(time);
+    series_.rewind(time);
+  }
   /// The state that the run ended with, whose stages are in `data`. The frame shows the contact
   /// forces of the last step, which led there; curves of what a solve gives end before it.
   void finish(const StepRecord& last, const Data& data);
@@ -79,6 +84,13 @@ class Recording {
   const FrameTrack& frames() const { return frames_; }
   const SeriesTable& series() const { return series_; }
   const std::vector<GoalLabel>& goalLabels() const { return labels_; }
+  /// The goals of those labels.
+  const std::vector<const gdd::Goal*>& places() const { return goals_; }
+  /// Of one of them; nothing while it does not act.
+  std::optional<gdd::GoalMark> markOf(std::size_t place, const gdd::GoalContext& context) const {
+    const gdd::Goal& goal = *goals_[place];
+    return goal.actsAt(context.state.time) ? goal.mark(context) : std::nullopt;
+  }
   /// The plots, without those that are zero throughout, and without curves that are, such as the
   /// force on a link that nothing touched; joints at rest beside others that move are kept.
   std::vector<CurveGroup> plots() const;

@@ -87,6 +87,23 @@ void SeriesTable::coarsen() {
   width_ *= width_ == 1 ? static_cast<int>(kMerged) : 2;
 }
 
+void SeriesTable::rewind(double time) {
+  const auto n = static_cast<std::size_t>(columns_);
+  const auto cut = [&](std::vector<double>& times, std::vector<double>& rows) {
+    const auto kept = static_cast<std::size_t>(std::lower_bound(times.begin(), times.end(), time) -
+                                               times.begin());
+    times.resize(kept);
+    rows.resize(kept * n);
+  };
+  cut(openTimes_, openRows_);
+  cut(times_, rows_);
+  // Entries of buckets come in pairs.
+  if (width_ > 1 && times_.size() % 2 == 1) {
+    times_.pop_back();
+    rows_.resize(times_.size() * n);
+  }
+}
+
 std::vector<double> SeriesTable::column(int c) const {
   std::vector<double> values(times_.size());
   for (std::size_t i = 0; i < values.size(); ++i)

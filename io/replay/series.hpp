@@ -25,6 +25,10 @@ class SeriesTable {
   /// Ends the bucket that is open. To be called after the last sample.
   void finish();
 
+  /// Forgets samples from `time` [s] on, a bucket at once where it began before: the run goes on
+  /// from there.
+  void rewind(double time);
+
   int size() const { return static_cast<int>(times_.size()); }  ///< entries
   int columns() const { return columns_; }
   const std::vector<double>& times() const { return times_; }

@@ -170,6 +170,7 @@ TEST(SummaryFile, HasTheKeysOfTheInterfaceAndNoOthers) {
                              "options",
                              "outcome",
                              "steps",
+                             "state_hash",
                              "simulated_s",
                              "wall_s",
                              "real_time_factor",

@@ -27,11 +27,34 @@ export class Browser {
   }
 
   /** The page of a run, loaded and paused; what it complains of is kept. */
-  async open(name, { width = 1280, height = 800, scheme = 'light', motion = 'reduce' } = {}) {
+  async open(name, options = {}) {
+    const page = await this.#newPage(name, /^(file|data|blob):/, options);
+    await this.#load(page, name);
+    return page;
+  }
+
+  /** The page of a live run, connected. */
+  async visit(address, options = {}) {
+    const { origin } = new URL(address);
+    const page = await this.#newPage(origin, new RegExp(`^(${origin}|data:|blob:)`), options);
+    await page.goto(address);
+    await page.waitForFunction(() => window.softgauss?.live.status, null, {
+      timeout: 120000,
+      polling: 100,
+    });
+    await page.evaluate(() => window.softgauss.ready);
+    return page;
+  }
+
+  /** `allowed`: what it may ask for. */
+  async #newPage(name, allowed, options) {
+    const { width = 1280, height = 800, scheme = 'light', motion = 'reduce', touch = false } = options;
     const context = await this.browser.newContext({
       viewport: { width, height },
       colorScheme: scheme,
       reducedMotion: motion,
+      hasTouch: touch,
+      acceptDownloads: true,
     });
     const page = await context.newPage();
     page.on('console', (message) => {
@@ -39,10 +62,8 @@ export class Browser {
     });
     page.on('pageerror', (error) => this.complaints.push(`${name}: ${error.stack}`));
     page.on('request', (request) => {
-      if (!/^(file|data|blob):/.test(request.url()))
-        this.complaints.push(`${name}: asked ${request.url()}`);
+      if (!allowed.test(request.url())) this.complaints.push(`${name}: asked ${request.url()}`);
     });
-    await this.#load(page, name);
     return page;
   }
 

@@ -70,6 +70,7 @@ TEST(Summary, HasTheKeysOfTheInterfaceInOrder) {
                                 "verdict",
                                 "bases",
                                 "steps",
+                                "state_hash",
                                 "simulated_s",
                                 "wall_s",
                                 "real_time_factor",

@@ -10,12 +10,20 @@ import { Selection } from './app/selection.js';
 import { MARKS, Settings } from './app/settings.js';
 import { readPayload } from './data/payload.js';
 import { Run } from './data/run.js';
+import { Handle } from './live/handle.js';
+import { Link } from './live/link.js';
+import { LiveClock } from './live/live_clock.js';
+import { livePanel } from './live/live_panel.js';
+import { LiveRun } from './live/live_run.js';
+import { liveTransport } from './live/live_transport.js';
+import { ContactTable } from './panels/contact_table.js';
 import { dialogs, toggleDialog } from './panels/dialogs.js';
 import { Inspector } from './panels/inspector.js';
 import { Plots } from './panels/plots.js';
 import { toolbar } from './panels/toolbar.js';
 import { transport } from './panels/transport.js';
 import { Tree } from './panels/tree.js';
+import { bookmarkCamera } from './view/bookmark.js';
 import { Stage } from './view/stage.js';
 
 function complain(id, text) {
@@ -47,12 +55,25 @@ function showHeader(run) {
     complain('banner', `${reason[0].toUpperCase()}${reason.slice(1)}.`);
 }
 
+/** What shows the curves of a recorded run, or the panel of a live one. */
+function makeSide(run, link, clock, settings, selection) {
+  if (!link) {
+    transport(byId('transport'), run, clock);
+    return new Plots(byId('plots'), run, clock, settings, selection);
+  }
+  liveTransport(byId('transport'), link, clock, settings);
+  livePanel(byId('plots'), link, run);
+  document.documentElement.dataset.live = '';
+  return null;
+}
+
 function start(run, begun) {
+  const link = run.live ? new Link(run) : null;
   const settings = new Settings(run);
   const theme = () => (document.documentElement.dataset.theme = settings.get('theme'));
   theme();
   settings.on('theme', theme);
-  const clock = new Clock(run);
+  const clock = link ? new LiveClock(run, link) : new Clock(run);
   const selection = new Selection(run);
   const layout = new Layout();
   showHeader(run);
@@ -63,10 +84,13 @@ function start(run, begun) {
 
   new Tree(byId('tree'), run, selection);
   const inspector = new Inspector(byId('inspector'), run, selection);
-  transport(byId('transport'), run, clock);
+  const contacts = run.mostContacts() > 0 ? new ContactTable(byId('contact-table'), run, stage) : null;
   if (stage) toolbar(byId('toolbar'), run, stage, settings, selection);
-  const plots = new Plots(byId('plots'), run, clock, settings, selection);
-  const inspect = () => inspector.update(clock.time, poses);
+  const plots = makeSide(run, link, clock, settings, selection);
+  const inspect = () => {
+    inspector.update(clock.time, poses);
+    contacts?.update(clock.time, poses);
+  };
   selection.on('change', inspect);
   clock.on('time', (time) => {
     if (stage) stage.moveTo(time);
@@ -86,7 +110,11 @@ function start(run, begun) {
   for (const id of ['info', 'help'])
     byId(`show-${id}`).addEventListener('click', () => toggleDialog(id));
 
-  if (stage) connectStage(stage, settings, selection);
+  if (stage) {
+    connectStage(stage, settings, selection);
+    bookmarkCamera(stage, run.header.origin);
+  }
+  const handle = stage && link ? new Handle(run, link, stage, selection, settings) : null;
   listenToKeys({ clock, settings, selection, layout, plots, stage, run });
 
   let firstFrame = null;
@@ -99,7 +127,7 @@ function start(run, begun) {
     if (firstFrame === null && (stage === null || stage.pictures > 0)) {
       firstFrame = performance.now();
       begun();
-      if (!window.matchMedia('(prefers-reduced-motion: reduce)').matches) clock.play();
+      if (!link && !window.matchMedia('(prefers-reduced-motion: reduce)').matches) clock.play();
     }
     requestAnimationFrame(tick);
   };
@@ -107,6 +135,8 @@ function start(run, begun) {
   return {
     run,
     clock,
+    link,
+    handle,
     settings,
     selection,
     layout,
@@ -155,7 +185,8 @@ const ready = new Promise((resolve) => (begun = resolve));
 readPayload(byId('softgauss-run').textContent.trim())
   .then((payload) => {
     byId('softgauss-run').textContent = '';
-    window.softgauss = makeApi({ ...start(new Run(payload), begun), ready });
+    const run = payload.header.live ? new LiveRun(payload) : new Run(payload);
+    window.softgauss = makeApi({ ...start(run, begun), ready });
   })
   .catch((error) => {
     complain('banner', error.message);

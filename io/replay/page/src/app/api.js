@@ -11,6 +11,7 @@ export function makeApi({
   layout,
   plots,
   stage,
+  link: connection,
   poses,
   ready,
   firstFrame,
@@ -33,8 +34,16 @@ export function makeApi({
       return selection.name;
     },
     get zoom() {
-      return [...plots.zoom];
+      return plots ? [...plots.zoom] : null;
     },
+    /** Of a live run, else null: whether it is connected and writes, and its last status. */
+    get live() {
+      if (!connection) return null;
+      const { connected, writes, status } = connection;
+      return { connected, writes, status, steps: run.steps, paused: run.paused };
+    },
+    /** Asks a live run for something, as docs/live.md has it; a promise. */
+    ask: (what) => connection.ask(what),
     /** From the start of navigation to the first picture [ms]. */
     get firstFrameMs() {
       return firstFrame();
@@ -57,8 +66,8 @@ export function makeApi({
       for (const [name, value] of Object.entries(rest)) settings.set(name, value);
       if (speed !== undefined) clock.setSpeed(speed);
       if (loop !== undefined) clock.setLoop(loop);
-      if (groups !== undefined) plots.showOnly(groups);
-      if (zoom !== undefined) plots.setZoom(zoom);
+      if (groups !== undefined) plots?.showOnly(groups);
+      if (zoom !== undefined) plots?.setZoom(zoom);
       if (links !== undefined) layout.open('links', links);
       if (showPlots !== undefined) layout.open('plots', showPlots);
       if (preset !== undefined) stage?.frameAll(preset);

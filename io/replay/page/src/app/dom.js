@@ -40,6 +40,9 @@ const ICONS = {
   chevron: 'M6 4l4 4-4 4',
   limits:
     'M1.5 4h2M5.5 4h2M9.5 4h2M13 4h1.5M1.5 12h2M5.5 12h2M9.5 12h2M13 12h1.5M2 9c3-4 5 3 8-1l4-1',
+  picture: 'M2 4.5h3l1-1.5h4l1 1.5h3v8.5H2zM8 6.5a2.2 2.2 0 1 0 0 4.4 2.2 2.2 0 0 0 0-4.4z',
+  video: 'M1.5 4h8.5v8H1.5zM10 7l4.5-2.5v7L10 9z',
+  save: 'M8 2v8M4.5 7L8 10.5 11.5 7M2.5 13.5h11',
   reset: 'M2 8h12M5 5L2 8l3 3M11 5l3 3-3 3',
 };
 const FILLED = new Set(['play', 'pause', 'first', 'last']);

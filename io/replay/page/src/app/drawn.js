@@ -8,7 +8,7 @@ import { Box3, Color, Matrix4, Vector3 } from 'three';
 
 /** {plots, shapes, arrows, metresPerNewton, com, cop, goals}; without a view only the plots. */
 export function drawn(stage, plots, origin) {
-  const curves = plots.drawn();
+  const curves = plots?.drawn() ?? [];
   if (!stage) return { plots: curves };
   stage.scene.updateMatrixWorld(true);
   const offset = new Vector3(...origin);

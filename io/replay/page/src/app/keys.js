@@ -36,7 +36,7 @@ export function listenToKeys({ clock, settings, selection, layout, plots, stage,
     c: () => settings.nextMode(),
     g: () => settings.set('forces', !settings.get('forces')),
     m: () => settings.set('limits', !settings.get('limits')),
-    z: () => plots.setZoom(plots.full),
+    z: () => plots?.setZoom(plots.full),
     k: () => layout.toggle('links'),
     p: () => layout.toggle('plots'),
     t: () => settings.toggleTheme(),
@@ -49,7 +49,7 @@ export function listenToKeys({ clock, settings, selection, layout, plots, stage,
     Escape: () => selection.select(null),
   };
   releaseAfterPointer();
-  for (let digit = 1; digit <= 9; ++digit) actions[digit] = () => plots.toggle(digit - 1);
+  for (let digit = 1; digit <= 9; ++digit) actions[digit] = () => plots?.toggle(digit - 1);
 
   document.addEventListener('keydown', (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey || event.defaultPrevented) return;

@@ -28,6 +28,8 @@ export class Settings extends Emitter {
       follow: null,
       forceScale: 1,
       limits: false,
+      action: 'drag',
+      pins: false,
       ...Object.fromEntries(MARKS.map(([key]) => [key, true])),
     };
     this.themeChosen = false;

@@ -35,6 +35,20 @@ const POINTER = [
   ['click a curve’s name', 'hides or shows it; a double-click shows it alone'],
 ];
 
+const LIVE_KEYS = [
+  ['space', 'pause or go on'],
+  ['→', 'one step of a paused run'],
+  ['←', 'one second back'],
+  ['home', 'to the start'],
+  ['[ ]', 'slower, faster'],
+];
+const LIVE_POINTER = [
+  ['drag a link', 'pulls the point that you hold'],
+  ['drag with shift', 'pushes the link; with ctrl it turns it'],
+  ['drag elsewhere', 'turns the camera; the right button moves it, the wheel zooms'],
+];
+const NOT_LIVE = ['space', '← →', 'home end', '[ ]', 'l', '1 … 9', 'm', 'z'];
+
 const table = (rows) =>
   element(
     'dl',
@@ -46,9 +60,9 @@ export function dialogs(run) {
   const { header } = run;
   byId('help-body').append(
     element('h3', {}, 'Keys'),
-    table(KEYS),
+    table(run.live ? [...LIVE_KEYS, ...KEYS.filter(([key]) => !NOT_LIVE.includes(key))] : KEYS),
     element('h3', {}, 'Pointer'),
-    table(POINTER),
+    table(run.live ? [...LIVE_POINTER, ...POINTER.slice(1, 3)] : POINTER),
   );
   byId('info-body').append(
     element(
@@ -56,7 +70,7 @@ export function dialogs(run) {
       { class: 'facts' },
       ...[
         ...header.facts,
-        ['frames', `${run.frames} over ${run.end.toFixed(3)} s`],
+        ...(run.live ? [] : [['frames', `${run.frames} over ${run.end.toFixed(3)} s`]]),
         ['time step', `${header.timestep} s`],
         ['written by', header.generator],
         ['command', header.command],

@@ -4,6 +4,8 @@
 // Click or drag seeks; the wheel, or a drag with shift, zooms in time; double-click resets.
 
 import { element, iconButton } from '../app/dom.js';
+import { save } from '../app/save.js';
+import { curvesText } from './curves_file.js';
 import { Plot } from './plot.js';
 
 const SHOWN_AT_FIRST = ['Joint positions', 'Controls', 'Contact normal forces', 'Goal errors'];
@@ -61,6 +63,9 @@ export class Plots {
           'div',
           { class: 'buttons' },
           this.limitsButton,
+          iconButton('save', 'Save the curves as a table (.csv)', () =>
+            save(`${run.header.model || 'run'}.csv`, new Blob([curvesText(run)], { type: 'text/csv' })),
+          ),
           iconButton('reset', 'All time (double-click a plot)', () => this.setZoom(this.full)),
         ),
       ),

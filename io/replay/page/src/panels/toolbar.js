@@ -2,7 +2,8 @@
 // What lies over the view: what is shown, from where, following what; and which marks.
 
 import { MARKS } from '../app/settings.js';
-import { element, icon, iconButton, number } from '../app/dom.js';
+import { byId, element, icon, iconButton, number } from '../app/dom.js';
+import { savePicture, Video } from '../app/save.js';
 import { CONTACT_COLOR } from '../view/contacts.js';
 import { COLORS } from '../view/marks.js';
 
@@ -93,6 +94,24 @@ export function toolbar(host, run, stage, settings, selection) {
     follow,
     marksMenu(host, run, stage, settings),
   );
+  byId('capture').append(...captureButtons(run, stage));
+}
+
+/** A picture of the view, and a video of it where the browser can make one. */
+function captureButtons(run, stage) {
+  const name = run.header.model || 'run';
+  const video = new Video(stage, name);
+  const record = iconButton('video', 'Begin a video of the view', () => {
+    if (video.running) video.stop();
+    else video.start();
+    record.setAttribute('aria-pressed', video.running);
+    record.title = video.running ? 'End the video and save it' : 'Begin a video of the view';
+    record.setAttribute('aria-label', record.title);
+  });
+  return [
+    iconButton('picture', 'Save a picture of the view', () => savePicture(stage, name)),
+    ...(Video.possible() ? [record] : []),
+  ];
 }
 
 /** A button that opens a legend of the marks, each with its switch. */
@@ -100,7 +119,7 @@ function marksMenu(host, run, stage, settings) {
   const has = {
     forces: run.mostContacts() > 0,
     contacts: run.mostContacts() > 0,
-    cop: run.cop.some(Number.isFinite),
+    cop: run.live !== undefined || run.cop.some(Number.isFinite),
     goals: run.header.goals.length > 0,
   };
   const rows = MARKS.filter(([key]) => has[key] ?? true).map(([key, name]) => {

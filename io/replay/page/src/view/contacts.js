@@ -17,6 +17,7 @@ import {
 import { Arrows, Dots } from './arrows.js';
 
 export const CONTACT_COLOR = '#f08c00';
+const MARKED_COLOR = '#d6336c';
 export const MARGIN_COLOR = '#9aa5b1';
 
 export class Contacts {
@@ -27,11 +28,13 @@ export class Contacts {
     this.forces = new Arrows(2 * most, CONTACT_COLOR, 0.0075 * size);
     this.pressed = new Dots(most, CONTACT_COLOR, 0.013 * size);
     this.margin = new Dots(most, MARGIN_COLOR, 0.009 * size);
+    this.mark = new Dots(1, MARKED_COLOR, 0.022 * size);
+    this.marked = null; // the contact of the frame that is marked
     this.points = new Group();
-    this.points.add(this.pressed.group, this.margin.group);
+    this.points.add(this.pressed.group, this.margin.group, this.mark.group);
     this.group = new Group();
     this.group.add(this.forces.group, this.points);
-    this.unit = (0.22 * size) / this.#typicalLargest();
+    this.unit = (0.22 * size) / (run.typicalForce ?? this.#typicalLargest());
     this.scale = 1;
   }
 
@@ -64,7 +67,7 @@ export class Contacts {
     const size = 7 * run.bodies.length;
     const then = run.pose.subarray(frame * size, (frame + 1) * size);
     const k = this.metresPerNewton;
-    for (const set of [this.forces, this.pressed, this.margin]) set.begin();
+    for (const set of [this.forces, this.pressed, this.margin, this.mark]) set.begin();
     for (let c = run.contactStart[frame]; c < run.contactStart[frame + 1]; ++c) {
       const bodyA = body[run.contactGeometry[2 * c]];
       const bodyB = body[run.contactGeometry[2 * c + 1]];
@@ -79,6 +82,7 @@ export class Contacts {
         );
       }
       const [x, y, z] = point;
+      if (c - run.contactStart[frame] === this.marked) this.mark.add(x, y, z);
       const isPressed = Math.hypot(...force) > 0;
       (isPressed ? this.pressed : this.margin).add(x, y, z);
       if (!isPressed) continue;
@@ -86,6 +90,6 @@ export class Contacts {
       if (bodyB !== 0) this.forces.add(x, y, z, ...force);
       if (bodyA !== 0) this.forces.add(x, y, z, -force[0], -force[1], -force[2]);
     }
-    for (const set of [this.forces, this.pressed, this.margin]) set.end();
+    for (const set of [this.forces, this.pressed, this.margin, this.mark]) set.end();
   }
 }

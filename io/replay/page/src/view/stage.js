@@ -130,7 +130,7 @@ export class Stage extends Emitter {
       down = null;
     });
     this.canvas.addEventListener('dblclick', (event) => {
-      const hit = this.#hit(event.clientX, event.clientY);
+      const hit = this.hitAt(event.clientX, event.clientY);
       if (hit) this.camera.lookAt(hit.point);
     });
     this.canvas.addEventListener('pointermove', (event) => {
@@ -142,14 +142,25 @@ export class Stage extends Emitter {
 
   /** The name of the link at a place of the window, or null. */
   pick(x, y) {
-    return this.#hit(x, y)?.item.link ?? null;
+    return this.hitAt(x, y)?.item.link ?? null;
   }
 
-  #hit(x, y) {
+  /** The nearest shape there, {item, point}, or null. */
+  hitAt(x, y) {
+    this.#aim(x, y);
+    return this.robot.hit(this.raycaster);
+  }
+
+  /** The point of a plane that is seen there, or null. */
+  pointOn(plane, x, y) {
+    this.#aim(x, y);
+    return this.raycaster.ray.intersectPlane(plane, new Vector3());
+  }
+
+  #aim(x, y) {
     const { left, top, width, height } = this.canvas.getBoundingClientRect();
     const place = new Vector2(((x - left) / width) * 2 - 1, 1 - ((y - top) / height) * 2);
     this.raycaster.setFromCamera(place, this.camera.camera);
-    return this.robot.hit(this.raycaster);
   }
 
   moveTo(time) {

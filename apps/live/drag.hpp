@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// A spatial goal that begins when somebody takes hold of a point, equation (11) of the paper by a
+/// virtual spring-damper, and ends when it is let go.
+
+#include "gdd/goals/reach.hpp"
+
+namespace softgauss::live {
+
+class Drag final : public gdd::Goal {
+ public:
+  Drag(const Model& model, int number);
+
+  /// From now on the point of the link seeks `p_WTarget`. The link exists.
+  void begin(const Model& model, const std::string& link, const Vector3& p_FP,
+             const Vector3& p_WTarget, double weight);
+  void end() { startTime = kInfinity; }
+  bool held() const { return startTime < kInfinity; }
+
+  std::string name() const override { return name_; }
+  bool steadyAt(double) const override { return false; }
+  void addCost(const gdd::GoalContext& context, gdd::GoalCost& cost) const override {
+    reach.addCost(context, cost);
+  }
+  std::optional<gdd::GoalMark> mark(const gdd::GoalContext& context) const override {
+    return reach.mark(context);
+  }
+  /// None while nobody holds it.
+  void figures(const gdd::GoalContext& context, const gdd::ContactForces& contacts,
+               std::vector<gdd::GoalFigure>& out) const override {
+    if (held()) reach.figures(context, contacts, out);
+  }
+  bool findsFiguresLater() const override { return true; }
+
+  gdd::Reach reach;  ///< what it asks for while it is held
+
+ private:
+  std::string name_;
+};
+
+}  // namespace softgauss::live

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// The numbers of a goal that may change while a run goes on, whatever its kind.
+
+#include "gdd/goal.hpp"
+
+namespace softgauss::live {
+
+/// Where a goal keeps them; null what its kind does not have.
+struct GoalSettings {
+  double* weight = nullptr;
+  double* stiffness = nullptr;  ///< [1/s²]
+  double* damping = nullptr;    ///< [1/s]
+  double* rate = nullptr;       ///< [1/s]
+};
+
+GoalSettings settingsOf(gdd::Goal& goal);
+
+}  // namespace softgauss::live

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/live/hands.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "apps/live/goal_settings.hpp"
+#include "engine/model/followers.hpp"
+#include "gdd/gdd.hpp"
+
+namespace softgauss::live {
+namespace {
+
+/// A goal that is off begins never.
+bool isOff(const gdd::Goal& goal) { return goal.startTime == kInfinity; }
+
+/// The value at a place of a goal, where it has one.
+std::optional<double> valueAt(const double* place) {
+  return place ? std::optional<double>(*place) : std::nullopt;
+}
+
+}  // namespace
+
+Hands::Hands(const RunParts& run, bool passive)
+    : run_(run), rewind_(run.state, run.model.options.timestep) {
+  if (!passive) {
+    for (int i = 1; i <= kDrags; ++i) {
+      auto drag = std::make_unique<Drag>(run_.model, i);
+      drags_.push_back(drag.get());
+      run_.controller.goals.push_back(std::move(drag));
+    }
+  }
+  for (const auto& goal : run_.controller.goals) starts_.push_back(goal->startTime);
+  names_ = std::make_unique<Names>(run_.model, run_.controller.goals);
+}
+
+std::string Hands::apply(const Event& event) {
+  Drag* const drag = held();
+  switch (event.kind) {
+    case EventKind::grab:
+      return grab(event);
+    case EventKind::move:
+      if (!drag) return "nothing is held that could be moved";
+      drag->reach.p_WTarget = event.vector("target");
+      return "";
+    case EventKind::release:
+      if (drag) drag->end();
+      holding_.clear();
+      return "";
+    case EventKind::pin:
+      if (!drag) return "nothing is held that could be pinned";
+      holding_.clear();
+      return "";
+    case EventKind::push:
+      return push(event);
+    case EventKind::letGo:
+      push_.reset();
+      return "";
+    case EventKind::pause:
+      paused_ = event.flag("on");
+      stepsLeft_ = 0;
+      return "";
+    case EventKind::advance:
+      if (!paused_) return "steps are taken one by one where the run is paused";
+      stepsLeft_ += static_cast<long>(event.number("count"));
+      return "";
+    case EventKind::reset:
+      goTo(rewind_.reset());
+      return "";
+    case EventKind::back:
+      goTo(rewind_.back(run_.state, event.number("seconds")));
+      return "";
+    case EventKind::gravity:
+      run_.model.options.gravity = event.vector("acceleration");
+      run_.data.emplace(run_.model);
+      return "";
+    case EventKind::factor:
+      factor_ = event.number("value");
+      return "";
+    case EventKind::goal:
+      return setGoal(event);
+    case EventKind::joint:
+      return setJoint(event);
+    case EventKind::effect:
+      setEffect(event);
+      return "";
+  }
+  return "";
+}
+
+Drag* Hands::held() const {
+  for (Drag* drag : drags_)
+    if (!holding_.empty() && drag->name() == holding_) return drag;
+  return nullptr;
+}
+
+/// What moves the link nearer has to outweigh a posture that holds it: the default of a reach,
+/// times the weight of the strongest posture in force.
+double Hands::dragWeight(const std::string& link) const {
+  double weight =
+      gdd::kReachWeightPerMass * gdd::massBehind(run_.model, run_.model.findFrame(link));
+  double strongest = 1.0;
+  for (const auto& goal : run_.controller.goals) {
+    const auto* posture = dynamic_cast<const gdd::Posture*>(goal.get());
+    if (posture && posture->actsAt(run_.state.time))
+      strongest = std::max(strongest, posture->weight);
+  }
+  return weight * strongest;
+}
+
+std::string Hands::grab(const Event& event) {
+  if (drags_.empty()) return "nothing drives this run: links can be pushed, not dragged";
+  if (Drag* before = held()) before->end();
+  holding_.clear();
+  const auto free =
+      std::find_if(drags_.begin(), drags_.end(), [](const Drag* drag) { return !drag->held(); });
+  if (free == drags_.end())
+    return fmt::format("{} points are pinned, expected fewer: switch one off", kDrags);
+  const std::string& link = event.text("link");
+  Drag& drag = **free;
+  drag.begin(run_.model, link, event.vector("point"), event.vector("target"),
+             event.maybeNumber("weight").value_or(dragWeight(link)));
+  drag.reach.stiffness = event.maybeNumber("stiffness").value_or(drag.reach.stiffness);
+  drag.reach.damping = event.maybeNumber("damping").value_or(drag.reach.damping);
+  holding_ = drag.name();
+  return "";
+}
+
+std::string Hands::push(const Event& event) {
+  const Frame& frame = run_.model.frames[run_.model.findFrame(event.text("link"))];
+  push_ = Push{frame.body, frame.X_BF * event.vector("point"),
+               event.maybeVector("force").value_or(Vector3::Zero()),
+               event.maybeVector("torque").value_or(Vector3::Zero())};
+  return "";
+}
+
+void Hands::addWrench(const Kinematics& kinematics, std::vector<ExternalWrench>& wrenches) const {
+  if (!push_) return;
+  const Vector3 r_W = kinematics.X_WB[push_->body].R * push_->p_BP;
+  wrenches.push_back({push_->body, {push_->torque + r_W.cross(push_->force), push_->force}});
+}
+
+std::string Hands::setGoal(const Event& event) {
+  const auto index = static_cast<std::size_t>(names_->goal(event.text("goal")));
+  gdd::Goal& goal = *run_.controller.goals[index];
+  const GoalSettings settings = settingsOf(goal);
+  const std::pair<const char*, double*> places[] = {{"weight", settings.weight},
+                                                    {"stiffness", settings.stiffness},
+                                                    {"damping", settings.damping},
+                                                    {"rate", settings.rate}};
+  for (const auto& [field, place] : places)
+    if (event.find(field) && !place)
+      return fmt::format("goal '{}' has no {}", event.text("goal"), field);
+  const std::optional<bool> on = event.maybeFlag("on");
+  auto* drag = dynamic_cast<Drag*>(&goal);
+  if (drag && on && *on && !drag->held()) return "a drag begins when a link is grabbed";
+  for (const auto& [field, place] : places)
+    if (const std::optional<double> value = event.maybeNumber(field)) *place = *value;
+  if (!on) return "";
+  if (drag && !*on) {
+    if (holding_ == drag->name()) holding_.clear();
+    drag->end();
+  } else if (!drag) {
+    goal.startTime = *on ? starts_[index] : kInfinity;
+  }
+  return "";
+}
+
+std::string Hands::setJoint(const Event& event) {
+  if (!paused()) return "joints are put somewhere where the run is paused";
+  const JointName& joint = names_->joint(event.text("joint"));
+  const Body& body = run_.model.bodies[joint.body];
+  State& state = run_.state;
+  state.q[body.q] = event.number("position");
+  state.v[body.v] = 0.0;
+  placeFollowers(run_.model, {joint.body}, state.q);
+  // What the last step has found is of another place.
+  state.warmstart = State(run_.model).warmstart;
+  state.aIsKnown = false;
+  jumped_ = true;
+  return "";
+}
+
+void Hands::setEffect(const Event& event) {
+  const Effect effect = *effectFromName(event.text("effect"));
+  if (event.flag("on"))
+    run_.model.options.effects.insert(effect);
+  else
+    run_.model.options.effects.remove(effect);
+  run_.data.emplace(run_.model);
+}
+
+void Hands::goTo(const Rewind::Place& place) {
+  run_.state = *place.state;
+  run_.instant = place.instant;
+  jumped_ = true;
+}
+
+std::vector<Hands::GoalView> Hands::goals() const {
+  std::vector<GoalView> views;
+  for (std::size_t i = 0; i < run_.controller.goals.size(); ++i) {
+    gdd::Goal& goal = *run_.controller.goals[i];
+    const GoalSettings s = settingsOf(goal);
+    GoalView view;
+    view.name = names_->goals[i];
+    view.on = !isOff(goal);
+    view.weight = valueAt(s.weight);
+    view.stiffness = valueAt(s.stiffness);
+    view.damping = valueAt(s.damping);
+    view.rate = valueAt(s.rate);
+    const auto* drag = dynamic_cast<const Drag*>(&goal);
+    view.canBegin = drag && !drag->held();
+    if (const auto* reach = drag ? &drag->reach : dynamic_cast<const gdd::Reach*>(&goal)) {
+      view.link = reach->link;
+      view.point = reach->p_FP;
+      view.target = reach->p_WTarget;
+    }
+    views.push_back(std::move(view));
+  }
+  return views;
+}
+
+}  // namespace softgauss::live

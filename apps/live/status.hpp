@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// How a live run goes, for its pages: a few times a second.
+
+#include <string>
+#include <vector>
+
+#include "apps/live/hands.hpp"
+#include "io/log.hpp"
+
+namespace softgauss::live {
+
+/// Times of the last steps: a window that slides.
+class StepTimes {
+ public:
+  explicit StepTimes(int window) : kept_(static_cast<std::size_t>(window)) {}
+
+  void add(double us) {
+    kept_[next_] = us;
+    next_ = (next_ + 1) % kept_.size();
+    if (count_ < kept_.size()) ++count_;
+  }
+  struct Spread {
+    double median = 0.0, p99 = 0.0, most = 0.0;  ///< [µs]
+  };
+  Spread spread();
+
+ private:
+  std::vector<double> kept_, sorted_;
+  std::size_t next_ = 0, count_ = 0;
+};
+
+struct Status {
+  double time = 0.0;  ///< of the state [s]
+  long steps = 0;     ///< taken
+  bool paused = false;
+  double factor = 1.0;          ///< that is asked for
+  double realTimeFactor = 0.0;  ///< that is reached
+  StepTimes::Spread stepUs;
+  io::StepRecord record;  ///< of the last step
+  bool certified = true;  ///< all solves for goals since the last status
+  Vector3 gravity = Vector3::Zero();
+  std::vector<std::string> effectsOff;
+  std::vector<std::string> told;       ///< the last few messages
+  std::vector<std::string> fallen;     ///< robots that lie where they stood
+  std::vector<std::string> saturated;  ///< controls at their bounds
+  std::vector<double> joints;          ///< positions, in the order of Names::joints
+  int pages = 0;
+};
+
+std::string statusMessage(const Status& status, const Hands& hands);
+
+/// What a page knows from the start: where the run is, joints with their ranges, effects, and the
+/// weight of all that moves [N], by which it scales arrows.
+std::string liveHeader(const Names& names, const std::string& token, bool passive, double weight);
+
+}  // namespace softgauss::live

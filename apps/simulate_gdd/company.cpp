@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/simulate_gdd/company.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "apps/simulate_gdd/live_run.hpp"
+#include "apps/simulate_gdd/play_run.hpp"
+
+namespace softgauss::app {
+
+Company::Company(const SimulateOptions& options, Model& model, State& state,
+                 std::optional<Data>& data, gdd::GoalDirectedController& controller)
+    : options_(options), model_(model), state_(state), controller_(controller) {
+  steps_ = std::isfinite(options.duration)
+               ? static_cast<long>(std::ceil(options.duration / model.options.timestep - 1e-9))
+               : std::numeric_limits<long>::max();
+  if (options.acted())
+    hands_.emplace(live::RunParts{model, state, instant_, data, controller},
+                   controller.goals.empty());
+}
+
+void Company::join(const Scene& scene, const gdd::GoalContext& start) {
+  if (!options_.play.empty()) {
+    auto play = std::make_unique<PlayRun>(options_.play, *hands_, model_.options.timestep);
+    if (!std::isfinite(options_.duration)) steps_ = play->steps();
+    companion_ = std::move(play);
+  }
+#ifdef SOFTGAUSS_WITH_LIVE
+  if (options_.live)
+    companion_ = std::make_unique<LiveRun>(options_, scene, *hands_, controller_, start);
+#else
+  (void)scene, (void)start, (void)controller_;
+#endif
+}
+
+std::string Company::announcement() const { return companion_ ? companion_->announcement() : ""; }
+
+void Company::countStep() {
+  ++taken_;
+  ++instant_;
+  state_.time = static_cast<double>(instant_) * model_.options.timestep;
+  if (!hands_) return;
+  hands_->takeStep();
+  hands_->afterStep();
+}
+
+}  // namespace softgauss::app

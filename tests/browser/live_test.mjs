@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+// A live run in Chromium: a hand is dragged by the mouse, and what came of it is read from the
+// process, not from the page.
+//
+//   node live_test.mjs FOLDER CHROMIUM SIMULATE_GDD DATA
+
+import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
+import { readFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { LiveProcess } from './live_process.mjs';
+import { Browser } from './pages.mjs';
+
+const [folder, chromium, simulator, data] = process.argv.slice(2);
+const browser = await Browser.launch(folder, chromium);
+
+const status = (page) => page.evaluate(() => window.softgauss.live.status);
+const until = (page, condition, argument) =>
+  page.waitForFunction(condition, argument, { timeout: 60000, polling: 50 });
+const distance = (a, b) => Math.hypot(...a.map((x, i) => x - b[i]));
+const stepsMore = async (page, count) => {
+  const { steps } = await status(page);
+  await until(page, (least) => window.softgauss.live.status.steps >= least, steps + count);
+};
+
+/** A press on the link, and a way to somewhere else; the button stays down. */
+async function press(page, link, dx, dy, modifier = null) {
+  const [x, y] = await page.evaluate((name) => window.softgauss.screenPosition(name), link);
+  if (modifier) await page.keyboard.down(modifier);
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  for (let i = 1; i <= 5; ++i) await page.mouse.move(x + (dx * i) / 5, y + (dy * i) / 5);
+  if (modifier) await page.keyboard.up(modifier);
+}
+
+async function testHumanoid() {
+  const args = [join(data, 'robots/humanoid.urdf'), '--timestep', '0.004'];
+  const run = await LiveProcess.start(simulator, folder, 'live_humanoid', args);
+  const page = await browser.visit(run.address);
+  assert.equal(await page.locator('#live-state').textContent(), 'Live. Drag a link.');
+  await stepsMore(page, 20);
+
+  // Dragged: a goal appears, and the point of the hand comes to it.
+  await press(page, 'right_hand', 60, -70);
+  await until(page, () => window.softgauss.live.status.holding === 'drag 1');
+  await stepsMore(page, 500); // two seconds
+  await browser.screenshot(page, 'live_drag');
+  const held = (await status(page)).goals.find(({ name }) => name === 'drag 1');
+  assert.equal(held.link, 'right_hand');
+  const drawn = await page.evaluate(() => window.softgauss.drawn().goals.filter(({ target }) => target));
+  assert.equal(drawn.length, 1);
+  assert.ok(distance(drawn[0].target, held.target) < 1e-3);
+  await page.mouse.up();
+  await until(page, () => window.softgauss.live.status.holding === '');
+
+  // Pushed with shift, turned with control: it is recorded, and it stands.
+  await press(page, 'torso', 40, 0, 'Shift');
+  await stepsMore(page, 30);
+  await page.mouse.up();
+  await press(page, 'torso', 15, 0, 'Control');
+  await stepsMore(page, 30);
+  await page.mouse.up();
+  await stepsMore(page, 400);
+
+  // Paused: time stands; a step, a slider, a second back.
+  await page.keyboard.press('Space');
+  await until(page, () => window.softgauss.live.status.paused);
+  const paused = await status(page);
+  await page.waitForTimeout(300);
+  assert.equal((await status(page)).steps, paused.steps);
+  await page.getByRole('button', { name: 'One step' }).click();
+  await until(page, (steps) => window.softgauss.live.status.steps === steps, paused.steps + 1);
+  const before = await page.evaluate(() => window.softgauss.linkPose('left_hand').quaternion);
+  await page.getByText('Joints', { exact: true }).click();
+  await page.getByLabel('left_elbow in rad').fill('0.9');
+  await until(
+    page,
+    (was) => Math.abs(window.softgauss.linkPose('left_hand').quaternion[0] - was) > 1e-3,
+    before[0],
+  );
+  await page.getByRole('button', { name: 'One second back' }).click();
+  await until(page, (time) => window.softgauss.time < time - 0.9, paused.time);
+  assert.ok(distance(await page.evaluate(() => window.softgauss.linkPose('left_hand').quaternion), before) < 0.2);
+  await page.keyboard.press('Space');
+  await until(page, () => !window.softgauss.live.status.paused);
+
+  // Goals are switched and weigh anew.
+  const posture = page.locator('[data-goal="posture"]');
+  await posture.getByLabel('stiffness').fill('60');
+  await posture.getByLabel('stiffness').blur();
+  await until(page, () => window.softgauss.live.status.goals.find(({ name }) => name === 'posture').stiffness === 60);
+
+  // What was refused says why.
+  await assert.rejects(
+    page.evaluate(() => window.softgauss.ask({ advance: { count: 1 } })),
+    /paused/,
+  );
+
+  // Files: goals that simulate_gdd reads, a picture.
+  for (const [button, name] of [
+    ['Save as goals.yaml', 'live_goals.yaml'],
+    ['Save a picture of the view', 'live_picture.png'],
+  ]) {
+    const [file] = await Promise.all([
+      page.waitForEvent('download'),
+      page.getByRole('button', { name: button }).click(),
+    ]);
+    await file.saveAs(join(folder, name));
+  }
+  const read = spawnSync(simulator, [args[0], '--goals', join(folder, 'live_goals.yaml'), '--duration', '0.01', '--quiet']);
+  assert.equal(read.status, 0, read.stderr.toString());
+  assert.equal(readFileSync(join(folder, 'live_picture.png')).subarray(1, 4).toString(), 'PNG');
+
+  // A second page watches, and takes over when the first has gone.
+  const other = await browser.visit(run.address, { scheme: 'dark', width: 390, height: 800, touch: true });
+  assert.match(await other.locator('#live-state').textContent(), /watches/);
+  await page.close();
+  await other.getByRole('button', { name: 'Take over' }).click();
+  await until(other, () => window.softgauss.live.writes);
+  // A finger drags as the mouse does.
+  const [x, y] = await other.evaluate(() => window.softgauss.screenPosition('left_hand'));
+  const touch = await other.context().newCDPSession(other);
+  const finger = (type, points) => touch.send('Input.dispatchTouchEvent', { type, touchPoints: points });
+  await finger('touchStart', [{ x, y }]);
+  for (let i = 1; i <= 4; ++i) await finger('touchMove', [{ x: x + 6 * i, y: y - 6 * i }]);
+  await until(other, () => window.softgauss.live.status.holding !== '');
+  await browser.screenshot(other, 'live_phone_dark');
+  await finger('touchEnd', []);
+  await until(other, () => window.softgauss.live.status.holding === '');
+  await stepsMore(other, 250);
+  const { fallen } = await status(other);
+  await other.close();
+  assert.deepEqual(fallen, []);
+
+  // What the process says of it.
+  assert.equal(await run.stop(), 130);
+  const summary = run.summary();
+  assert.equal(summary.outcome, 'interrupted');
+  const errors = run.log().map((row) => row['error:drag 1 [m]']);
+  const grabbed = errors.findIndex(Number.isFinite);
+  assert.ok(grabbed >= 0, 'the log has a goal');
+  const within = errors.slice(grabbed).findIndex((error) => error < 0.03);
+  const first = errors.slice(grabbed, grabbed + 500).filter(Number.isFinite);
+  assert.ok(first.some((error) => error > 0.03), 'it had a way to go');
+  assert.ok(within >= 0 && first.at(-1) < 0.03, `the hand came within ${1000 * first.at(-1)} mm`);
+  for (const kind of ['grab', 'move', 'release', 'push', 'let_go', 'pause', 'advance', 'joint', 'back', 'goal'])
+    assert.match(run.events(), new RegExp(`, ${kind}: \\{`), `${kind} is recorded`);
+
+  // The same again, without a page.
+  const again = join(folder, 'live_again.json');
+  const played = spawnSync(simulator, [...args, '--play', run.file('record'), '--summary', again, '--quiet']);
+  assert.equal(played.status, 0, played.stderr.toString());
+  assert.equal(JSON.parse(readFileSync(again, 'utf8')).state_hash, summary.state_hash);
+}
+
+async function testLooks() {
+  const args = [join(data, 'robots/arm.urdf')];
+  const run = await LiveProcess.start(simulator, folder, 'live_arm', args);
+  for (const [name, options] of [
+    ['live_desktop_light', {}],
+    ['live_desktop_dark', { scheme: 'dark' }],
+    ['live_phone_light', { width: 390, height: 800 }],
+  ]) {
+    const page = await browser.visit(run.address, options);
+    await stepsMore(page, 100);
+    await browser.screenshot(page, name);
+    const wide = await page.evaluate(() => document.documentElement.scrollWidth - window.innerWidth);
+    assert.ok(wide <= 0, `${name} is ${wide} pixels too wide`);
+    await page.close();
+  }
+  assert.equal(await run.stop(), 130);
+}
+
+try {
+  await testHumanoid();
+  await testLooks();
+} catch (error) {
+  LiveProcess.killAll();
+  await browser.close();
+  throw error;
+}
+await browser.close();
+assert.deepEqual(browser.complaints.filter((text) => !/Failed to load resource/.test(text)), []);
+console.log('live runs are dragged, pushed, paused and played again');

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whole live runs: a process that is talked to, what it does, and the same again from a file.
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "io/replay/page.hpp"
+#include "tests/apps/process.hpp"
+#include "tests/io/temp_folder.hpp"
+#include "tests/live/live_process.hpp"
+
+namespace softgauss::test {
+namespace {
+
+using nlohmann::json;
+
+const std::string kHumanoid = SOFTGAUSS_SOURCE_DIR "/data/robots/humanoid.urdf";
+const std::string kArm = SOFTGAUSS_SOURCE_DIR "/data/robots/arm.urdf";
+
+json summaryOf(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  return json::parse(stream);
+}
+
+/// Little-endian numbers of a frame.
+template <class T>
+T at(const std::string& frame, std::size_t offset) {
+  T value;
+  std::memcpy(&value, frame.data() + offset, sizeof value);
+  return value;
+}
+
+TEST(LiveRun, IsDraggedAndPlayedAgainToTheSameBits) {
+  const io::TempFolder folder;
+  const auto file = [&](const char* name) { return (folder.path() / name).string(); };
+  LiveProcess process({kHumanoid, "--record", file("drag.yaml"), "--summary", file("live.json"),
+                       "--log", file("live.csv"), "--view", file("live.html"), "--timestep",
+                       "0.004"});
+  Client page(process.port());
+  page.until([](const json& s) { return s["steps"] > 10; });
+  EXPECT_EQ(page.ask("\"grab\": {\"link\": \"right_hand\", \"point\": [0, 0, 0], \"target\": [0.2, "
+                     "-0.3, 1.0]}"),
+            "");
+  page.until([](const json& s) { return s["holding"] == "drag 1" && s["steps"] > 100; });
+  EXPECT_EQ(page.ask("\"move\": {\"target\": [0.25, -0.3, 1.0]}"), "");
+  EXPECT_EQ(
+      page.ask("\"push\": {\"link\": \"torso\", \"point\": [0, 0, 0], \"force\": [10, 0, 0]}"), "");
+  EXPECT_EQ(page.ask("\"let_go\": {}"), "");
+  EXPECT_EQ(page.ask("\"pin\": {}"), "");
+  EXPECT_EQ(page.ask("\"goal\": {\"goal\": \"damping\", \"rate\": 12}"), "");
+  EXPECT_EQ(page.ask("\"gravity\": {\"acceleration\": [0, 0, -9]}"), "");
+  EXPECT_EQ(page.ask("\"effect\": {\"effect\": \"coriolis\", \"on\": false}"), "");
+  EXPECT_EQ(page.ask("\"pause\": {\"on\": true}"), "");
+  EXPECT_EQ(page.ask("\"joint\": {\"joint\": \"left_elbow\", \"position\": 0.9}"), "");
+  EXPECT_EQ(page.ask("\"advance\": {\"count\": 7}"), "");
+  const json paused = page.until([](const json& s) { return s["paused"].get<bool>(); });
+  EXPECT_EQ(page.ask("\"back\": {\"seconds\": 0.1}"), "");
+  EXPECT_EQ(page.ask("\"pause\": {\"on\": false}"), "");
+  page.until([&](const json& s) { return s["steps"] > paused["steps"].get<long>() + 50; });
+  EXPECT_EQ(process.stop(), 130);
+
+  const json live = summaryOf(file("live.json"));
+  EXPECT_EQ(live["outcome"], "interrupted");
+  EXPECT_TRUE(std::filesystem::exists(file("live.html")));
+  EXPECT_NE(process.out().find("state hash: " + live["state_hash"].get<std::string>()),
+            std::string::npos);
+  const std::string goals = live["goals"].dump();
+  EXPECT_NE(goals.find("drag 1"), std::string::npos);
+  EXPECT_EQ(goals.find("drag 2"), std::string::npos) << "nobody asked for it";
+  const Csv log(readFile(file("live.csv")));
+  EXPECT_GE(log.find("error:drag 1 [m]"), 0);
+
+  const Outcome again = simulate({kHumanoid, "--play", file("drag.yaml"), "--summary",
+                                  file("again.json"), "--timestep", "0.004", "--quiet"});
+  EXPECT_EQ(again.exitCode, 0) << again.err;
+  const json played = summaryOf(file("again.json"));
+  EXPECT_EQ(played["state_hash"], live["state_hash"]);
+  EXPECT_EQ(played["steps"], live["steps"]);
+}
+
+TEST(LiveRun, IsLeftAloneByWhoOnlyWatchesOrIsRefused) {
+  // The same run with and without hostile pages: the same bits, as nothing of theirs was done.
+  const io::TempFolder folder;
+  const auto file = [&](const char* name) { return (folder.path() / name).string(); };
+  const Outcome alone = simulate(
+      {kArm, "--posture", "--duration", "0.6", "--summary", file("alone.json"), "--quiet"});
+  ASSERT_EQ(alone.exitCode, 0) << alone.err;
+  LiveProcess process({kArm, "--posture", "--duration", "0.6", "--summary", file("live.json")});
+  {
+    Client writer(process.port());
+    writer.next("writes");
+    EXPECT_NE(
+        writer.ask("\"grab\": {\"link\": \"nobody\", \"point\": [0,0,0], \"target\": [0,0,0]}"),
+        "");
+    EXPECT_NE(writer.ask("\"joint\": {\"joint\": \"elbow_pitch\", \"position\": 0.1}"), "");
+    EXPECT_NE(writer.ask("\"move\": {\"target\": [0, 0, 0]}"), "");
+    exchange(process.port(), std::string(1000, '\xff'), 0.05);
+  }
+  while (!std::filesystem::exists(file("live.json")))
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  EXPECT_EQ(process.stop(), 0);
+  EXPECT_EQ(summaryOf(file("live.json"))["state_hash"],
+            summaryOf(file("alone.json"))["state_hash"]);
+}
+
+TEST(LiveRun, ShowsFramesOfItsState) {
+  LiveProcess process({kArm, "--passive"});
+  Client page(process.port());
+  page.until([](const json& s) { return s["steps"] > 100; });
+  ASSERT_GT(page.frames(), 1);
+  const std::string& frame = page.frame();
+  EXPECT_EQ(frame.substr(0, 8), "SGFRAME1");
+  const auto bodies = at<std::uint32_t>(frame, 24), goals = at<std::uint32_t>(frame, 28),
+             contacts = at<std::uint32_t>(frame, 32);
+  EXPECT_GT(bodies, 1u);
+  EXPECT_EQ(frame.size(), 40 + 4 * (13 * bodies + 6 + 6 * goals + 11 * contacts));
+  EXPECT_GT(at<double>(frame, 8), 0.0);
+  EXPECT_EQ(page.ask("\"grab\": {\"link\": \"tool\", \"point\": [0,0,0], \"target\": [0,0,0]}")
+                    .find("pushed") == std::string::npos,
+            false)
+      << "nothing drives a passive arm";
+  EXPECT_EQ(process.stop(), 130);
+}
+
+TEST(LiveRun, RefusesOptionsThatDoNotGoTogether) {
+  const std::pair<std::vector<std::string>, std::string> cases[] = {
+      {{kArm, "--record", "x.yaml", "--passive"}, "--live"},
+      {{kArm, "--live-address", "0.0.0.0", "--passive"}, "--live"},
+      {{kArm, "--live", "70000", "--passive"}, "65535"},
+      {{kArm, "--live", "0", "--play", "x.yaml"}, "one of"},
+      {{kArm, "--live", "0", "--islands", "apart", "--passive"}, "--islands"},
+      {{kArm, "--live", "0", "--live-address", "moon", "--passive"}, "moon"},
+      {{kArm, "--play", "/nowhere.yaml"}, "nowhere.yaml"},
+  };
+  for (const auto& [arguments, why] : cases) {
+    const Outcome outcome = simulate(arguments);
+    EXPECT_EQ(outcome.exitCode, 2);
+    EXPECT_NE(outcome.err.find(why), std::string::npos) << why << " -> " << outcome.err;
+  }
+}
+
+}  // namespace
+}  // namespace softgauss::test
