@@ -69,10 +69,11 @@ std::optional<SingularMass> findSingularMass(const Model& model, const VectorX& 
   const int b = model.dofs[idx(dof)].body;
   const Body& body = model.bodies[idx(b)];
   const std::string& link = model.bodyNames[idx(b)];
-  if (body.joint == JointKind::floating && body.massless)
+  if (body.joint == JointKind::floating && body.mass == 0.0)  // whatever moments it has
     return SingularMass{"link '" + link + "'", link,
-                        "is a root that has no mass and floats: nothing resists its motion; try "
-                        "--base fixed (base: fixed in a scene), or give it an <inertial>"};
+                        "is a root that has no mass and floats: nothing resists its motion; "
+                        "--base fixed? (base: fixed in a scene), or give it an <inertial> with a "
+                        "mass"};
   if (const int large = overwhelming(model, k, inertia, dof); large >= 0)
     return tooLarge(model, large);
   const std::string element = body.joint == JointKind::floating

@@ -10,6 +10,7 @@
 #include "engine/model/capsule_recognition.hpp"
 #include "engine/model/detail/contact_pairs.hpp"
 #include "engine/model/detail/equalities.hpp"
+#include "engine/model/detail/follower_ranges.hpp"
 #include "engine/model/detail/kinematic_tree.hpp"
 #include "engine/model/detail/leader_inertia.hpp"
 #include "engine/model/detail/spec_checks.hpp"
@@ -360,6 +361,7 @@ Model ModelBuilder::build() const {
   detail::addCouplings(model, joints_, couplings_);
   assembler.finish();
   model.q0 = initialConfiguration(model);
+  detail::letRangesYield(model);
   return model;
 }
 

@@ -61,6 +61,21 @@ TEST(RegularMass, NamesARootWithoutMassThatFloats) {
   EXPECT_NE(why->problem.find("--base fixed"), std::string::npos) << why->problem;
 }
 
+// A slider's rail with moments of inertia but no mass: it and the cart slide in the same way.
+TEST(RegularMass, NamesAFloatingRootThatHasMomentsButNoMass) {
+  ModelBuilder builder("r");
+  LinkSpec rail = emptyLink("rail");
+  rail.I_Lcm = Matrix3::Identity();
+  builder.link(rail).link(boxLink("cart", 1.0, {0.1, 0.2, 0.3}));
+  builder.joint(jointSpec("slide", JointType::prismatic, "rail", "cart"));
+  const Model m = builder.build();
+  const auto why = findSingularMass(m, m.q0);
+  ASSERT_TRUE(why);
+  EXPECT_EQ(why->element, "link 'rail'");
+  EXPECT_NE(why->problem.find("has no mass and floats"), std::string::npos) << why->problem;
+  EXPECT_NE(why->problem.find("--base fixed"), std::string::npos) << why->problem;
+}
+
 // What overwhelms all else by its mass or its distance is named, not what it overwhelms.
 TEST(RegularMass, NamesTheLinkWithTheNumbersOfAnotherWorld) {
   for (const double distance : {1e9, 1e11}) {
