@@ -5,14 +5,27 @@
 
 namespace softgauss {
 
-void placeFollowers(const Model& model, const std::set<int>& kept, VectorX& q) {
-  // A chain of followers is settled after as many rounds as it is long.
-  for (std::size_t round = 0; round < model.couplings.size(); ++round)
-    for (const JointCoupling& c : model.couplings) {
-      if (kept.count(c.follower)) continue;
-      const double leader = c.leader == 0 ? 0.0 : q[model.bodies[idx(c.leader)].q];
-      q[model.bodies[idx(c.follower)].q] = c.leader == 0 ? c.polynomial[0] : c.value(leader);
+std::vector<const JointCoupling*> leadersFirst(const Model& model) {
+  std::vector<const JointCoupling*> by(model.bodies.size(), nullptr), order, chain;
+  for (const JointCoupling& c : model.couplings) by[idx(c.follower)] = &c;
+  for (const JointCoupling& c : model.couplings) {
+    for (const JointCoupling* up = &c; up; up = by[idx(up->leader)]) {
+      if (!by[idx(up->follower)]) break;
+      chain.push_back(up);
+      by[idx(up->follower)] = nullptr;
     }
+    order.insert(order.end(), chain.rbegin(), chain.rend());
+    chain.clear();
+  }
+  return order;
+}
+
+void placeFollowers(const Model& model, const std::set<int>& kept, VectorX& q) {
+  for (const JointCoupling* c : leadersFirst(model)) {
+    if (kept.count(c->follower)) continue;
+    q[model.bodies[idx(c->follower)].q] =
+        c->leader == 0 ? c->polynomial[0] : c->value(q[model.bodies[idx(c->leader)].q]);
+  }
 }
 
 }  // namespace softgauss

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "engine/core/index.hpp"
+#include "engine/model/followers.hpp"
 
 namespace softgauss::detail {
 namespace {
@@ -47,22 +48,6 @@ bool excludes(const JointRange& range, const Span& asked, double start) {
   };
   return (asked.lower > -kInfinity && isOutside(asked.lower)) ||
          (asked.upper < kInfinity && isOutside(asked.upper)) || isOutside(start);
-}
-
-/// Couplings, each after the one that its leader follows by.
-std::vector<const JointCoupling*> leadersFirst(const Model& model) {
-  std::vector<const JointCoupling*> by(model.bodies.size(), nullptr), order, chain;
-  for (const JointCoupling& c : model.couplings) by[idx(c.follower)] = &c;
-  for (const JointCoupling& c : model.couplings) {
-    for (const JointCoupling* up = &c; up; up = by[idx(up->leader)]) {
-      if (!by[idx(up->follower)]) break;
-      chain.push_back(up);
-      by[idx(up->follower)] = nullptr;
-    }
-    order.insert(order.end(), chain.rbegin(), chain.rend());
-    chain.clear();
-  }
-  return order;
 }
 
 std::string text(const Span& span) {
