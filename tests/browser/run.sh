@@ -6,13 +6,7 @@
 #
 # Runs, screenshots and playwright-core go to FOLDER. Exit code 77: skipped, for there is no Chromium.
 set -euo pipefail
-here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-simulator=$1 root=$2 folder=$3
-
-if ! said=$("$here/install.sh" "$folder"); then
-  printf '%s\n' "$said"
-  exit 77
-fi
+. "$(dirname "${BASH_SOURCE[0]}")/begin.sh"
 record() {  # NAME ARGUMENTS…
   "$simulator" "${@:2}" --view "$folder/$1.html" --log "$folder/$1.csv" --quiet
 }
@@ -28,4 +22,4 @@ record failed "$root/data/robots/arm.urdf" --torques "$folder/torques.csv" --int
 script=${4:-replay_test.mjs}
 arguments=("${@:5}")
 ((${#arguments[@]})) || arguments=("$root/data/robots")
-exec node "$here/$script" "$folder" "$(tail -n 1 <<<"$said")" "${arguments[@]}"
+exec node "$here/$script" "$folder" "$chromium" "${arguments[@]}"
