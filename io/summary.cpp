@@ -8,6 +8,7 @@
 
 #include "engine/core/check.hpp"
 #include "io/detail/output_file.hpp"
+#include "io/nearest_rank.hpp"
 
 namespace softgauss::io {
 namespace {
@@ -59,11 +60,11 @@ ordered_json toJson(const RunOrigin& origin) {
 
 double Series::percentile(double share) const {
   if (values.empty()) return 0.0;
-  const double rank = std::ceil(share * static_cast<double>(values.size()));
-  const auto index = static_cast<std::ptrdiff_t>(std::max(rank, 1.0)) - 1;
   std::vector<double> sorted = values;
-  std::nth_element(sorted.begin(), sorted.begin() + index, sorted.end());
-  return sorted[static_cast<std::size_t>(index)];
+  const auto place =
+      sorted.begin() + static_cast<std::ptrdiff_t>(nearestRank(share, sorted.size()));
+  std::nth_element(sorted.begin(), place, sorted.end());
+  return *place;
 }
 
 void Series::add(double value) {

@@ -5,12 +5,14 @@
 #include <cmath>
 #include <numeric>
 
+#include "io/nearest_rank.hpp"
+
 namespace softgauss::app {
 
 double percentile(std::vector<double> values, double share) {
   if (values.empty()) return 0.0;
-  const double rank = std::ceil(share * static_cast<double>(values.size())) - 1.0;
-  const auto place = values.begin() + std::max(0L, std::lround(rank));
+  const auto place =
+      values.begin() + static_cast<std::ptrdiff_t>(io::nearestRank(share, values.size()));
   std::nth_element(values.begin(), place, values.end());
   return *place;
 }

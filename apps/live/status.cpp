@@ -5,6 +5,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "io/nearest_rank.hpp"
+
 namespace softgauss::live {
 namespace {
 
@@ -30,11 +32,8 @@ StepTimes::Spread StepTimes::spread() {
   if (count_ == 0) return {};
   sorted_.assign(kept_.begin(), kept_.begin() + static_cast<std::ptrdiff_t>(count_));
   std::sort(sorted_.begin(), sorted_.end());
-  const auto rank = [&](double share) {
-    const auto n = static_cast<std::size_t>(std::ceil(share * static_cast<double>(count_)));
-    return sorted_[std::clamp<std::size_t>(n, 1, count_) - 1];
-  };
-  return {rank(0.5), rank(0.99), sorted_.back()};
+  return {sorted_[io::nearestRank(0.5, count_)], sorted_[io::nearestRank(0.99, count_)],
+          sorted_.back()};
 }
 
 std::string statusMessage(const Status& status, const Hands& hands) {

@@ -8,6 +8,15 @@
 #include <utility>
 
 namespace softgauss::app {
+
+std::string progressBar(double share) {
+  constexpr int kWidth = 32;
+  const int filled = static_cast<int>(share * kWidth);
+  std::string bar;
+  for (int i = 0; i < kWidth; ++i) bar += i < filled ? "█" : "░";
+  return bar;
+}
+
 Progress::Progress(std::string what) : what_(std::move(what)), visible_(isatty(fileno(stderr))) {}
 
 void Progress::clear() {

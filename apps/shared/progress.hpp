@@ -9,6 +9,9 @@
 
 namespace softgauss::app {
 
+/// "████░░░░" of a share from 0 to 1, 32 characters.
+std::string progressBar(double share);
+
 /// One line on stderr, on a terminal only.
 class Progress {
  public:

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "apps/shared/interrupt.hpp"
+#include "apps/shared/progress.hpp"
 #include "apps/shared/standard_streams.hpp"
 #include "apps/shared/wall_clock.hpp"
 #include "apps/simulate_batch/batch_summary.hpp"
@@ -38,10 +39,8 @@ class BatchProgress {
     const double elapsed = secondsSince(start_);
     if (!visible_ || elapsed - last_ < 0.1) return;
     last_ = elapsed;
-    constexpr int kWidth = 32;
-    const int filled = static_cast<int>(kWidth * done / std::max(all, 1L));
-    std::string bar;
-    for (int i = 0; i < kWidth; ++i) bar += i < filled ? "█" : "░";
+    const std::string bar =
+        progressBar(static_cast<double>(done) / static_cast<double>(std::max(all, 1L)));
     const double rate = static_cast<double>(done - before_) / elapsed;
     const std::string left =
         rate > 0.0 ? fmt::format("{:.0f} s left", static_cast<double>(all - done) / rate) : "";

@@ -2,10 +2,8 @@
 #include "apps/simulate_batch/batch_options.hpp"
 
 #include <CLI/CLI.hpp>
-#include <sstream>
 
-#include "apps/shared/standard_streams.hpp"
-#include "apps/simulate_gdd/options.hpp"
+#include "apps/simulate_gdd/command_line.hpp"
 
 namespace softgauss::app {
 
@@ -29,16 +27,7 @@ std::optional<BatchOptions> parseBatchCommandLine(int argc, char** argv) {
       ->check(CLI::Range(0L, 10000000L));
   app.add_option("--view", options.view, "a page that replays the run of --only (.html)");
   app.add_flag("--quiet", options.quiet, "print errors only");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::Success& success) {
-    std::ostringstream text;
-    app.exit(success, text, text);
-    print(stdout, text.str());
-    return std::nullopt;
-  } catch (const CLI::ParseError& error) {
-    throw UsageError(error.what());
-  }
+  if (!parses(app, argc, argv)) return std::nullopt;
   if (!options.view.empty() && !options.only)
     throw UsageError("--view is of one run, expected --only RUN beside it");
   if (options.out.empty()) options.out = options.sweep.stem();

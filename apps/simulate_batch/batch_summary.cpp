@@ -9,6 +9,7 @@
 
 #include "engine/core/check.hpp"
 #include "io/detail/text.hpp"
+#include "io/nearest_rank.hpp"
 #include "io/replay/gnuplot.hpp"
 
 namespace softgauss::app {
@@ -50,8 +51,7 @@ Counts count(const RunTable& table, std::size_t parameters) {
 }  // namespace
 
 double Column::percentile(double share) const {
-  const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(values.size())));
-  return values[std::clamp<std::size_t>(rank, 1, values.size()) - 1];
+  return values[io::nearestRank(share, values.size())];
 }
 
 double Column::mean() const {

@@ -11,6 +11,7 @@
 #include "apps/shared/file_hash.hpp"
 #include "apps/simulate_gdd/scene.hpp"
 #include "io/detail/text.hpp"
+#include "io/simulation/time_grid.hpp"
 
 namespace softgauss::app {
 namespace {
@@ -127,8 +128,7 @@ void SweepRunner::run(const std::vector<long>& list, const std::function<void(Ru
   hooks.after = [&](RolloutRun& run) {
     ownOf(run).figures->after(run.sim);
     // As many steps as simulate_gdd takes.
-    const double h = run.sim.model().options.timestep;
-    return static_cast<double>(run.step) < std::ceil(sweep_.options.duration / h - 1e-9);
+    return run.step < stepsIn(sweep_.options.duration, run.sim.model().options.timestep);
   };
   hooks.end = [&](RolloutRun& run) {
     Own& o = ownOf(run);

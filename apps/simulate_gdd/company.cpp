@@ -6,15 +6,15 @@
 
 #include "apps/simulate_gdd/live_run.hpp"
 #include "apps/simulate_gdd/play_run.hpp"
+#include "io/simulation/time_grid.hpp"
 
 namespace softgauss::app {
 
 Company::Company(const SimulateOptions& options, Model& model, State& state,
                  std::optional<Data>& data, gdd::GoalDirectedController& controller)
     : options_(options), model_(model), state_(state), controller_(controller) {
-  steps_ = std::isfinite(options.duration)
-               ? static_cast<long>(std::ceil(options.duration / model.options.timestep - 1e-9))
-               : std::numeric_limits<long>::max();
+  steps_ = std::isfinite(options.duration) ? stepsIn(options.duration, model.options.timestep)
+                                           : std::numeric_limits<long>::max();
   if (options.acted())
     hands_.emplace(live::RunParts{model, state, instant_, data, controller},
                    controller.goals.empty());

@@ -6,11 +6,12 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
+#include "gdd/goals/posture.hpp"
+
 namespace softgauss::app {
 namespace {
 
 constexpr int kDefaultPort = 8080;
-constexpr double kDefaultPosture = 1000.0;  // as of --posture without a weight
 
 bool isNumber(const std::string& text) {
   return !text.empty() &&
@@ -64,7 +65,7 @@ void finishLiveOptions(const CLI::App& app, SimulateOptions& options) {
   if (app.count("--duration") == 0) options.duration = kInfinity;
   // A robot that nobody has told anything holds its posture, and gives way to who drags it.
   if (!options.isScene() && !options.passive && options.torques.empty() && !options.hasGoals())
-    options.posture = kDefaultPosture;
+    options.posture = gdd::Posture::kDefaultWeight;
 }
 
 }  // namespace softgauss::app

@@ -6,10 +6,9 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
-#include "apps/shared/standard_streams.hpp"
 #include "apps/simulate_gdd/argument_values.hpp"
+#include "apps/simulate_gdd/command_line.hpp"
 #include "apps/simulate_gdd/live_options.hpp"
 #include "io/inputs.hpp"
 #include "io/names.hpp"
@@ -235,18 +234,9 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
   app.add_flag("--quiet", options.quiet, "print errors only")->group(output);
 
   expectValues(app, argc, argv);
-  try {
-    std::vector<std::string> arguments = argumentsOf(argc, argv);
-    std::reverse(arguments.begin(), arguments.end());  // as CLI11 takes them
-    app.parse(std::move(arguments));
-  } catch (const CLI::Success& success) {  // --help, --version
-    std::ostringstream text;
-    app.exit(success, text, text);
-    print(stdout, text.str());
-    return std::nullopt;
-  } catch (const CLI::ParseError& error) {
-    throw UsageError(error.what());
-  }
+  std::vector<std::string> arguments = argumentsOf(argc, argv);
+  std::reverse(arguments.begin(), arguments.end());  // as CLI11 takes them
+  if (!parses(app, std::move(arguments))) return std::nullopt;
 
   if (asksForFiles->count() > 0) io::inputLimits().text = bytesOf(largestFile, "--largest-file");
   if (options.mostDofs < 1)

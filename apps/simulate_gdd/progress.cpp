@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <string>
 
+#include "apps/shared/progress.hpp"
 #include "apps/shared/standard_streams.hpp"
 
 namespace softgauss::app {
@@ -18,11 +19,7 @@ RunProgress::RunProgress(double duration, bool quiet)
 void RunProgress::show(double simulated, double elapsed) {
   if (!visible_ || elapsed - lastShown_ < 0.1) return;
   lastShown_ = elapsed;
-  constexpr int kWidth = 32;
-  const double share = std::clamp(simulated / duration_, 0.0, 1.0);
-  const int filled = static_cast<int>(share * kWidth);
-  std::string bar;
-  for (int i = 0; i < kWidth; ++i) bar += i < filled ? "█" : "░";
+  const std::string bar = progressBar(std::clamp(simulated / duration_, 0.0, 1.0));
   const double speed = elapsed > 0.0 ? simulated / elapsed : 0.0;
   const double left = speed > 0.0 ? (duration_ - simulated) / speed : 0.0;
   print(stderr, fmt::format("\r{} {:6.2f} / {:.4g} s   {:5.1f} × real time   {:.0f} s left \033[K",

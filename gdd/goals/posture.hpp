@@ -16,10 +16,12 @@ namespace softgauss::gdd {
 
 class Posture final : public Goal {
  public:
-  VectorX q;                ///< q* (nq)
-  double weight = 1000.0;   ///< w [-]
-  double stiffness = 50.0;  ///< k_p [1/s²]
-  double damping = 15.0;    ///< k_d [1/s]
+  static constexpr double kDefaultWeight = 1000.0;
+
+  VectorX q;                       ///< q* (nq)
+  double weight = kDefaultWeight;  ///< w [-]
+  double stiffness = 50.0;         ///< k_p [1/s²]
+  double damping = 15.0;           ///< k_d [1/s]
 
   explicit Posture(VectorX reference) : q(std::move(reference)) {}
 

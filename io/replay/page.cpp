@@ -216,10 +216,6 @@ std::string escapedHtml(const std::string& text) {
   return out;
 }
 
-}  // namespace
-
-namespace {
-
 /// `live`: JSON, or empty.
 std::string payloadOf(const Recording& recording, const std::string& generator,
                       const std::string& live) {

@@ -40,7 +40,14 @@ void setFrom(std::span<const double> from, VectorX& to) {
   if (!from.empty()) std::copy(from.begin(), from.end(), to.data());
 }
 
-std::size_t allocated() { return mallinfo2().uordblks + mallinfo2().hblkhd; }
+std::size_t allocated() {
+#if defined(__GLIBC__)
+  const auto now = mallinfo2();
+  return now.uordblks + now.hblkhd;
+#else
+  return 0;
+#endif
+}
 
 }  // namespace
 

@@ -203,23 +203,7 @@ std::unique_ptr<Scene> loadScene(const std::filesystem::path& file,
 
 std::unique_ptr<Scene> copyOf(const Scene& scene) {
   auto copy = std::make_unique<Scene>();
-  copy->file = scene.file;
-  copy->model = scene.model;
-  copy->contents = scene.contents;
-  copy->initial = scene.initial;
-  copy->ground = scene.ground;
-  copy->materials = scene.materials;
-  copy->wrenches = scene.wrenches;
-  copy->schedule = scene.schedule;
-  copy->actuators = scene.actuators;
-  copy->baseOrigin = scene.baseOrigin;
-  copy->bases = scene.bases;
-  copy->hasGoals = scene.hasGoals;
-  copy->fileSaysFcl = scene.fileSaysFcl;
-  copy->leapfrogForGoals = scene.leapfrogForGoals;
-  copy->gddSolver = scene.gddSolver;
-  copy->timestepWhere = scene.timestepWhere;
-  copy->collisionWhere = scene.collisionWhere;
+  static_cast<SceneParts&>(*copy) = scene;
   copy->contacts = std::make_unique<collision::SceneContacts>(copy->model);
   if (scene.throughFcl) copy->throughFcl = std::make_unique<collision::FclContacts>(copy->model);
   return copy;

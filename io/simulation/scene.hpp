@@ -20,16 +20,11 @@
 
 namespace softgauss {
 
-/// All that a run starts from. Stays where it is: contacts refer to the model.
-struct Scene {
+/// What a scene is made of, but for its contacts.
+struct SceneParts {
   std::filesystem::path file;
   Model model;
   io::UrdfContents contents;
-  std::unique_ptr<collision::SceneContacts> contacts;
-  std::unique_ptr<collision::FclContacts> throughFcl;  ///< in their place, where it was asked for
-  ContactSource& source() {
-    return throughFcl ? static_cast<ContactSource&>(*throughFcl) : *contacts;
-  }
   State initial;
   std::optional<double> ground;  ///< height of the ground plane [m]
   /// Surfaces by name.
@@ -45,6 +40,15 @@ struct Scene {
   gdd::GddSolver gddSolver = gdd::GddSolver::activeSet;
   // Lines of what only the whole program can judge; 0 where the file does not say it.
   SourceLocation timestepWhere, collisionWhere;
+};
+
+/// All that a run starts from. Stays where it is: contacts refer to the model.
+struct Scene : SceneParts {
+  std::unique_ptr<collision::SceneContacts> contacts;
+  std::unique_ptr<collision::FclContacts> throughFcl;  ///< in their place, where it was asked for
+  ContactSource& source() {
+    return throughFcl ? static_cast<ContactSource&>(*throughFcl) : *contacts;
+  }
 };
 
 /// Whether a file is a scene, by its name; standard input ("-") is looked at. Throws ModelError.

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "engine/engine.hpp"
 #include "engine/model/followers.hpp"
@@ -74,7 +73,7 @@ SolveStatus Simulation::step() noexcept {
 }
 
 void Simulation::run(double seconds) {
-  const long steps = static_cast<long>(std::ceil(seconds / model().options.timestep - 1e-9));
+  const long steps = stepsIn(seconds, model().options.timestep);
   for (long i = 0; i < steps; ++i)
     if (isRefused(step())) throw StepError(failure());
 }

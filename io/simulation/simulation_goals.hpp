@@ -40,7 +40,7 @@ class SimulationGoals {
   /// The link stays where and as it is.
   gdd::Hold& hold(const std::string& link);
   /// All joints and floating bases seek the configuration at which the simulation started.
-  gdd::Posture& posture(double weight = 1000.0);
+  gdd::Posture& posture(double weight = gdd::Posture::kDefaultWeight);
   /// Those of a YAML file. Throws ModelError.
   void read(const std::filesystem::path& file);
   /// Any other goal; nothing comes with it.

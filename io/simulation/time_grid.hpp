@@ -3,7 +3,15 @@
 
 /// Times of steps without the rounding of sums: k h from where the first one began.
 
+#include <cmath>
+
 namespace softgauss {
+
+/// Steps of `h` [s] that it takes to be at least `seconds` on, rounding apart.
+inline long stepsIn(double seconds, double h) {
+  constexpr double kRounding = 1e-9;  // of a step
+  return static_cast<long>(std::ceil(seconds / h - kRounding));
+}
 
 class TimeGrid {
  public:
