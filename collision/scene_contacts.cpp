@@ -245,8 +245,8 @@ double SceneContacts::Scene::timeInSight(const Kinematics& kinematics, double lo
 
 double SceneContacts::Scene::distance(const GeometryPair& pair) {
   double deepest = kInfinity;
-  if (set.test(pair.a, X_WG[static_cast<std::size_t>(pair.a)], pair.b,
-               X_WG[static_cast<std::size_t>(pair.b)], 0.0, test))
+  const auto a = static_cast<std::size_t>(pair.a), b = static_cast<std::size_t>(pair.b);
+  if (set.test(pair.a, X_WG[a], pair.b, X_WG[b], 0.0, test))
     for (int i = 0; i < test.found.count; ++i) deepest = std::min(deepest, test.found[i].distance);
   return deepest;
 }
@@ -264,19 +264,17 @@ bool SceneContacts::Scene::stayApart(int a, int b) const {
 }
 
 void SceneContacts::Scene::report(const Row& row, ContactSet& contacts) {
+  const auto a = static_cast<std::size_t>(row.a), b = static_cast<std::size_t>(row.b);
   test.reach = row.surface < 0 ? nullptr : &reaches[static_cast<std::size_t>(row.surface)];
-  set.report(row.a, X_WG[static_cast<std::size_t>(row.a)], row.b,
-             X_WG[static_cast<std::size_t>(row.b)], row.margin, test, contacts);
+  const double margin = row.margin + touchingWithin(model.options, centre[b]);
+  set.report(row.a, X_WG[a], row.b, X_WG[b], margin, test, contacts);
 }
 
 bool SceneContacts::Scene::within(const Row& row, double extra) const {
-  const Vector3& b = centre[static_cast<std::size_t>(row.b)];
+  const auto a = static_cast<std::size_t>(row.a), b = static_cast<std::size_t>(row.b);
   const double reach = row.reach + extra;
-  if (row.plane) {
-    const Transform& X_WP = X_WG[static_cast<std::size_t>(row.a)];
-    return X_WP.R.col(2).dot(b - X_WP.p) < reach;
-  }
-  return (b - centre[static_cast<std::size_t>(row.a)]).squaredNorm() < reach * reach;
+  if (row.plane) return X_WG[a].R.col(2).dot(centre[b] - X_WG[a].p) < reach;
+  return (centre[b] - centre[a]).squaredNorm() < reach * reach;
 }
 
 bool SceneContacts::Scene::moved() const {

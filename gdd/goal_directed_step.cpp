@@ -65,7 +65,8 @@ const VectorX* GoalDirectedController::apply(const Model& model, const State& st
 SolveStatus GoalDirectedController::step(const Model& model, const Input& input, State& state,
                                          Data& data, ContactSource* contacts, bool posed) noexcept {
   held_ = input;
-  held_.softFriction = true;
+  // Where there is nothing to choose, nobody has to know what friction answers.
+  held_.softFriction = input.softFriction || box.open();
   outside_ = input.tau;
   solveTime = 0.0;
   return softgauss::step(model, held_, state, data, contacts, this, posed);

@@ -56,6 +56,7 @@ class GoalDirectedController final : public StepControl {
                    ContactSource* contacts, bool posed = false) noexcept;
 
   const VectorX* apply(const Model& model, const State& state, Data& data) noexcept override;
+  bool acts() const noexcept override { return box.open(); }
   void keep(WarmStart& warmstart) noexcept override { expansion.keepWarmStart(warmstart); }
   /// Of the last GDD solve, before the final forward step (nv).
   const VectorX& acceleration() const { return expansion.acceleration(); }

@@ -46,6 +46,8 @@ struct ControlBox {
       if (!(lower[i] <= upper[i] && lower[i] < kInfinity && upper[i] > -kInfinity)) return i;
     return -1;
   }
+  /// Whether the box leaves anything to choose.
+  bool open() const { return (lower.array() != 0.0).any() || (upper.array() != 0.0).any(); }
   /// Opens the box of every force that no actuator causes: root forces are then allowed, and
   /// applied.
   void allowRootForces(const Model& model) {

@@ -238,6 +238,15 @@ std::string costText(double us) {
   return us < kNoise ? fmt::format("< {} µs", kNoise) : fmt::format("{:.2f} µs", us);
 }
 
+std::string mechanismsText(const Options& options) {
+  detail::TextTable left, out;
+  for (const MechanismName& m : kMechanismNames)
+    (options.uses(m.mechanism) ? left : out).row({std::string(m.name), std::string(m.description)});
+  std::string text = "mechanisms of the step\n" + left.text();
+  if (!out.text().empty()) text += "mechanisms that are left out\n" + out.text();
+  return text;
+}
+
 std::string effectsText(const Model& model, const ExplainContext& context) {
   detail::TextTable on, off;
   if (!context.costs.empty()) on.row({"", "rows", "at most", "memory", "a step", ""});
@@ -287,6 +296,7 @@ std::string explain(const Model& model, const ExplainContext& context) {
   section(softnessText(model, context));
   section(wrenchesText(context));
   section(effectsText(model, context));
+  section(mechanismsText(model.options));
   section(aimsText(model));
   if (const std::vector<std::string> told = grouped(model.warnings); !told.empty()) {
     std::string warnings = "warnings\n";

@@ -168,7 +168,9 @@ void tiedSwings(const Model& model, const InverseWeights& weights, const Contact
 /// `implicit` makes energy where links swing freely in each other.
 void freeLinks(const Model& model, const InverseWeights& weights, std::vector<std::string>& out) {
   const Options& options = model.options;
-  if (options.integrator != Integrator::implicit || !options.effects.has(Effect::coriolis)) return;
+  const bool ofOneEnd = options.integrator == Integrator::implicit ||
+                        options.integrator == Integrator::semiImplicitEuler;
+  if (!ofOneEnd || options.stepDoubling || !options.effects.has(Effect::coriolis)) return;
   for (const Tree& tree : model.trees) {
     int joints = 0, free = -1;
     for (int b = tree.rootBody; b < tree.bodyEnd; ++b) {
@@ -183,8 +185,8 @@ void freeLinks(const Model& model, const InverseWeights& weights, std::vector<st
     if (free < 0 || joints + floats < 2) continue;
     out.push_back(fmt::format(
         "joint '{}' is hardly damped, and links that swing freely gain energy by the integrator "
-        "implicit, by as much as they have within seconds; try semi-implicit-euler, or a damping",
-        model.jointNames[idx(free)]));
+        "{}, by as much as they have within seconds; try leapfrog, or a damping",
+        model.jointNames[idx(free)], integratorName(options.integrator)));
   }
 }
 

@@ -115,6 +115,8 @@ Summary::Summary(const Model& model)
       levelSlip_(model.options.levelsSlip()),
       stepDoubling_(model.options.stepDoubling),
       tolerance_(model.options.tolerance) {
+  for (const MechanismName& m : kMechanismNames)
+    if (!model.options.mechanisms.has(m.mechanism)) without_.emplace_back(m.name);
   for (int i = 0; i < model.nv; ++i) {
     const Dof& dof = model.dofs[static_cast<std::size_t>(i)];
     if (!dof.actuated) continue;
@@ -200,6 +202,7 @@ std::string Summary::json() const {
         {"exact_diagonal", exactDiagonal_},
         {"no_slip", noSlip_},
         {"level_slip", levelSlip_},
+        {"without", without_},
         {"gdd_solver", gddSolver},
         {"control_cost", controlCost}}},
       {"outcome", outcome},

@@ -194,6 +194,7 @@ class Summary {
   std::string cone_;
   double impedanceRatio_ = 1.0;
   bool exactDiagonal_ = false, noSlip_ = false, levelSlip_ = false, stepDoubling_ = false;
+  std::vector<std::string> without_;  ///< mechanisms left out
   double tolerance_ = 0.0;
   std::vector<Bounded> bounded_;  ///< controls with a box
   std::size_t steps_ = 0;

@@ -57,7 +57,7 @@ std::unique_ptr<Contestant> makeContestant(const Problem& problem, const Method&
 std::vector<Method> methodsFor(const Problem& problem);
 
 /// With contact: other solver tolerances, starts and cones of three of these, which methodsFor()
-/// has for semi-implicit Euler alone. They are measured at kSolverSteps, and not drawn.
+/// has for the leapfrog alone. They are measured at kSolverSteps, and not drawn.
 std::vector<Method> solverVariants(const Problem& problem);
 inline constexpr int kSolverSteps = 16;  // in a period: 2 ms
 

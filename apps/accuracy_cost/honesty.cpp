@@ -20,9 +20,7 @@ constexpr double kShare = 0.95;  // of the cases in which the promise has to be 
 constexpr double kAccuracies[] = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6};
 
 Method methodOf(const Setting& setting) {
-  Method method{"softgauss",
-                setting.midpointCoriolis ? std::string(integratorName(setting.integrator))
-                                         : std::string(kMujocoEuler),
+  Method method{"softgauss", std::string(integratorName(setting.integrator)),
                 setting.text(kPeriod)};
   method.tolerance = setting.tolerance;
   method.integrationTolerance = setting.integrationTolerance;

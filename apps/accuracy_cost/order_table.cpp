@@ -33,8 +33,8 @@ bool isPlain(const Method& m) {
 }
 
 // Methods as they are, and with another solver, start or cone.
-bool isEuler(const Method& m) {
-  return m.engine == "softgauss" && m.integrator == "semi-implicit-euler" && !m.doubling;
+bool isLeapfrog(const Method& m) {
+  return m.engine == "softgauss" && m.integrator == "leapfrog" && !m.doubling;
 }
 bool isMidpoint(const Method& m) { return m.integrator == "implicit-midpoint"; }
 bool isDormandPrince(const Method& m) {
@@ -160,7 +160,7 @@ void writeOrderTables(const std::filesystem::path& folder, const std::vector<Pro
             orders("order within the windows", problems, true, results, orderOf) +
             orders("order of one step", problems, true, results, oneStepOrderOf));
   std::string solver;
-  for (const auto wanted : {isEuler, isMidpoint, isDormandPrince, isMujocoEuler})
+  for (const auto wanted : {isLeapfrog, isMidpoint, isDormandPrince, isMujocoEuler})
     solver += solverTable(problems, results, wanted);
   write(folder / "accuracy_solver.md", solver);
 }

@@ -30,7 +30,8 @@ class Ours final : public Contestant {
     state_.time = state.time;
     const State fresh(model_);
     state_.warmstart = fresh.warmstart;
-    state_.velocityOf = fresh.velocityOf;
+    state_.a = fresh.a;
+    state_.aIsKnown = fresh.aIsKnown;
   }
 
   bool advance(const VectorX& tau, int steps) override {
@@ -48,10 +49,10 @@ class Ours final : public Contestant {
     builder.options.timestep = h;
     builder.options.cone = method.cone;
     if (method.tolerance > 0.0) builder.options.tolerance = method.tolerance;
-    if (method.integrator == kMujocoEuler)
-      builder.options.implicitInSolve = builder.options.midpointCoriolis = false;
-    else
-      builder.options.integrator = integratorFromName(method.integrator).value();
+    const bool likeMujoco = method.integrator == kMujocoEuler;
+    if (likeMujoco) builder.options.implicitInSolve = false;
+    builder.options.integrator =
+        likeMujoco ? Integrator::semiImplicitEuler : integratorFromName(method.integrator).value();
     builder.options.stepDoubling = method.doubling;
     if (method.integrationTolerance > 0.0)
       builder.options.integrationTolerance = method.integrationTolerance;
@@ -85,9 +86,10 @@ void addVariants(const Method& plain, const std::string& name,
   methods.push_back(std::move(elliptic));
 }
 
-/// Ours without error control, semi-implicit Euler first.
+/// Ours without error control, the default first.
 std::vector<Method> fixedStepMethods() {
-  return {{"softgauss", "semi-implicit-euler", "semi-implicit Euler"},
+  return {{"softgauss", "leapfrog", "leapfrog"},
+          {"softgauss", "semi-implicit-euler", "semi-implicit Euler"},
           {"softgauss", kMujocoEuler, "semi-implicit Euler as MuJoCo's"},
           {"softgauss", "implicit", "implicit in velocity"},
           {"softgauss", "implicit-midpoint", "implicit midpoint"},
@@ -129,17 +131,17 @@ std::vector<Method> solverVariants(const Problem& problem) {
 
 std::vector<Method> fineMethods() {
   std::vector<Method> methods = fixedStepMethods();
-  const Method euler = methods.front();
+  const Method plain = methods.front();
   for (int half = -4; half >= -22; --half) {
     Method adaptive{"softgauss", "dormand-prince", ""};
     adaptive.integrationTolerance = std::pow(10.0, 0.5 * half);
     adaptive.label = fmt::format("Dormand-Prince to {:.1e}", adaptive.integrationTolerance);
     if (half >= -14) {
-      Method doubled = euler;
+      Method doubled = plain;
       doubled.doubling = true;
       doubled.integrationTolerance = adaptive.integrationTolerance;
       doubled.label =
-          fmt::format("Euler with step doubling to {:.1e}", doubled.integrationTolerance);
+          fmt::format("leapfrog with step doubling to {:.1e}", doubled.integrationTolerance);
       methods.push_back(std::move(doubled));
     }
     methods.push_back(std::move(adaptive));
@@ -149,7 +151,7 @@ std::vector<Method> fineMethods() {
 
 std::vector<Method> methodsFor(const Problem& problem) {
   std::vector<Method> methods = fixedStepMethods();
-  const Method euler = methods.front();
+  const Method plain = methods.front();
   Method adaptive{"softgauss", "dormand-prince", ""};
   for (const double tolerance : {1e-5, 1e-8, 1e-11}) {
     adaptive.integrationTolerance = tolerance;
@@ -157,13 +159,13 @@ std::vector<Method> methodsFor(const Problem& problem) {
     methods.push_back(adaptive);
   }
   for (const double tolerance : {1e-4, 1e-6}) {
-    Method doubled = euler;
+    Method doubled = plain;
     doubled.doubling = true;
     doubled.integrationTolerance = tolerance;
-    doubled.label = fmt::format("Euler with step doubling to {:.0e}", tolerance);
+    doubled.label = fmt::format("leapfrog with step doubling to {:.0e}", tolerance);
     methods.push_back(doubled);
   }
-  if (problem.contact) addVariants(euler, "Euler", {1e-6, 1e-3}, methods);
+  if (problem.contact) addVariants(plain, "leapfrog", {1e-6, 1e-3}, methods);
   for (Method& method : mujocoMethods(problem)) methods.push_back(std::move(method));
   return methods;
 }

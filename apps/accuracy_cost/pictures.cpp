@@ -24,7 +24,8 @@ struct Colour {
   const char* theirs = nullptr;
 };
 constexpr Colour kColours[] = {
-    {"semi-implicit Euler", "#0072b2"},
+    {"leapfrog", "#0072b2"},
+    {"semi-implicit Euler", "#c0b000"},
     {"semi-implicit Euler as MuJoCo's", "#d55e00", "MuJoCo Euler"},
     {"implicit in velocity", "#009e73", "MuJoCo implicit"},
     {"implicit midpoint", "#cc79a7"},
@@ -32,12 +33,12 @@ constexpr Colour kColours[] = {
     {"Dormand-Prince to 1e-05", "#56b4e9"},
     {"Dormand-Prince to 1e-08", "#7b3294"},
     {"Dormand-Prince to 1e-11", "#000000"},
-    {"Euler with step doubling to 1e-04", "#8c6d31"},
-    {"Euler with step doubling to 1e-06", "#999999"},
-    {"Euler with solver to 1e-06", "#a6d854"},
-    {"Euler with solver to 1e-03", "#4d7c0f"},
-    {"Euler without warm start", "#e7298a"},
-    {"Euler with elliptic cones", "#8b0000"},
+    {"leapfrog with step doubling to 1e-04", "#8c6d31"},
+    {"leapfrog with step doubling to 1e-06", "#999999"},
+    {"leapfrog with solver to 1e-06", "#a6d854"},
+    {"leapfrog with solver to 1e-03", "#4d7c0f"},
+    {"leapfrog without warm start", "#e7298a"},
+    {"leapfrog with elliptic cones", "#8b0000"},
 };
 
 /// The same in every picture.

@@ -57,12 +57,9 @@ UserChoice chooseAsUser(const Problem& problem, double accuracy,
     return choice;
   }
   const Options& o = scene.model.options;
-  const bool ofTheStart = o.integrator == Integrator::semiImplicitEuler && !o.midpointCoriolis;
   choice.found = true;
   choice.h = o.timestep;
-  choice.method = {"softgauss",
-                   ofTheStart ? kMujocoEuler : std::string(integratorName(o.integrator)),
-                   "of simulate_gdd"};
+  choice.method = {"softgauss", std::string(integratorName(o.integrator)), "of simulate_gdd"};
   choice.method.tolerance = o.tolerance;
   choice.method.doubling = o.stepDoubling;
   if (o.stepDoubling || o.integrator == Integrator::dormandPrince)

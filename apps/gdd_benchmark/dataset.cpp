@@ -60,7 +60,7 @@ void poseProblem(const gdd::Reach& reach, const gdd::GoalContext& context, gdd::
 namespace {
 
 /// Puts the scripted goals of an operator to a contestant, step after step, and records what it
-/// finds. A step that is solved again is recorded as it was solved last.
+/// finds. What is solved again is recorded as it was solved last.
 class Recording final : public StepControl {
  public:
   Recording(const Robot& robot, Contestant& recorder, double weight, std::uint64_t seed,
@@ -74,8 +74,7 @@ class Recording final : public StepControl {
   void begin() { begins_ = true; }
 
   const VectorX* apply(const Model& model, const State& state, Data& data) noexcept override {
-    const auto taken = static_cast<int>(dataset_.records.size());
-    if (begins_ && taken % kStepsPerGoal == 0)
+    if (begins_ && dataset_.records.size() >= kStepsPerGoal * dataset_.goals.size())
       dataset_.goals.push_back(scripted_.nextGoal(data.kinematics));
     poseProblem(dataset_.goals.back(), {model, state, data}, cost_);
     const gdd::GddReport report = recorder_.solve(model, cost_, box_, data, state.warmstart);
@@ -83,12 +82,14 @@ class Recording final : public StepControl {
       data.stats.status = SolveStatus::notFinite;
       return nullptr;
     }
-    if (!begins_) dataset_.records.pop_back();
     begins_ = false;
-    dataset_.records.push_back({state, box_.clamp(recorder_.force()), recorder_.acceleration(),
-                                report.status, data.stats.contacts,
-                                static_cast<int>(dataset_.goals.size()) - 1});
-    setAppliedForce(dataset_.records.back().control, data.forces);
+    auto& records = dataset_.records;
+    while (!records.empty() && records.back().state.time >= state.time) records.pop_back();
+    const Options& o = model.options;
+    records.push_back({state, o.timestep, o.wholeTimestep, box_.clamp(recorder_.force()),
+                       recorder_.acceleration(), report.status, data.stats.contacts,
+                       static_cast<int>(dataset_.goals.size()) - 1});
+    setAppliedForce(records.back().control, data.forces);
     return &recorder_.acceleration();
   }
   void keep(WarmStart& warmstart) noexcept override { recorder_.keepWarmStart(warmstart); }
@@ -114,14 +115,16 @@ Dataset recordRun(const Robot& robot, Contestant& recorder, int records, double 
   Recording recording(robot, recorder, dataset.weight, seed, dataset);
   State state = robot.initial;
   Data data(model);
-  for (int i = 0; i < records && !interrupted(); ++i) {
-    progress.show(i, records);
+  const auto wanted = static_cast<std::size_t>(records);
+  while (dataset.records.size() < wanted && !interrupted()) {
+    progress.show(static_cast<long>(dataset.records.size()), records);
     recording.begin();
     if (step(model, {}, state, data, robot.contacts.get(), &recording) == SolveStatus::notFinite)
       throw std::runtime_error(
           fmt::format("{}, goal weight {:g} kg: the recording became non-finite at t = {:.6g} s",
                       robot.name, dataset.weight, state.time));
   }
+  if (dataset.records.size() > wanted) dataset.records.resize(wanted);
   return dataset;
 }
 

@@ -3,8 +3,8 @@
 
 /// The dataset of the paper's section VI: records of a robot that a scripted operator drags about.
 ///
-/// A record is what one step starts from, with both warm starts, the goal, and the control that was
-/// found: enough to take the step again, bit for bit.
+/// A record is what one step, or a part of one, solves from, with both warm starts, the goal, and
+/// the control that was found: enough to solve it again, bit for bit.
 
 #include <memory>
 #include <string>
@@ -36,8 +36,9 @@ std::vector<std::string> robotNames();
 std::unique_ptr<Robot> loadRobot(const std::string& folder, const std::string& name);
 
 struct Record {
-  State state;           ///< at the start of the step
-  VectorX control;       ///< applied, within its box (nv) [N or N m]
+  State state;                                 ///< of the solve: q at mid-step
+  double timestep = 0.0, wholeTimestep = 0.0;  ///< of Options, those of the part
+  VectorX control;                             ///< applied, within its box (nv) [N or N m]
   VectorX acceleration;  ///< the solver's own, before the control was clamped (nv)
   gdd::GddStatus status = gdd::GddStatus::converged;
   int contacts = 0;
@@ -55,8 +56,9 @@ struct Dataset {
 /// reach and virtual damping (26) with α = 0.1, β = 10 1/s.
 void poseProblem(const gdd::Reach& reach, const gdd::GoalContext& context, gdd::GoalCost& cost);
 
-/// Simulates `records` steps under the operator's goals and records them; fewer on an interrupt.
-/// `weight` is the humanoid's w [kg]. Throws std::runtime_error when the state becomes non-finite.
+/// Simulates until there are `records` of them, under the operator's goals and records them; fewer
+/// on an interrupt. `weight` is the humanoid's w [kg]. Throws std::runtime_error when the state
+/// becomes non-finite.
 Dataset recordRun(const Robot& robot, Contestant& recorder, int records, double weight,
                   std::uint64_t seed, Progress& progress);
 

@@ -74,6 +74,8 @@ class Replayer {
     Times times;
     times.solve.resize(solvers_.size());
     times.finish.resize(solvers_.size());
+    model_.options.timestep = record.timestep;
+    model_.options.wholeTimestep = record.wholeTimestep;
     Clock::time_point clock = Clock::now();
     computeStages(model_, {}, record.state, data_, robot_.contacts.get());
     times.stages = lap(clock);
@@ -168,7 +170,7 @@ class Replayer {
   }
 
   const Robot& robot_;
-  const Model& model_;
+  Model model_;  ///< with the timestep of the record
   const Dataset& dataset_;
   Data data_;
   gdd::GoalCost cost_;

@@ -30,14 +30,15 @@ struct Method {
   Integrator integrator;
   double order;
   bool controlled = false;
-  bool midpointCoriolis = true;
 };
 
-constexpr Method kMethods[] = {
-    {Integrator::dormandPrince, 1.0, true},    {Integrator::rungeKutta4, 4.0},
-    {Integrator::semiImplicitEuler, 1.0},      {Integrator::semiImplicitEuler, 1.0, false, false},
-    {Integrator::implicitMidpoint, 2.0},       {Integrator::implicit, 1.0},
-    {Integrator::semiImplicitEuler, 1.0, true}};
+constexpr Method kMethods[] = {{Integrator::dormandPrince, 1.0, true},
+                               {Integrator::rungeKutta4, 4.0},
+                               {Integrator::leapfrog, 2.0},
+                               {Integrator::semiImplicitEuler, 1.0},
+                               {Integrator::implicitMidpoint, 2.0},
+                               {Integrator::implicit, 1.0},
+                               {Integrator::leapfrog, 1.0, true}};
 
 class Chooser {
  public:
@@ -110,13 +111,12 @@ class Chooser {
 
   bool findReference() {
     const double tight = std::clamp(1e-4 * accuracy_, 1e-12, 1e-7);
-    const Setting pairs[][2] = {
-        {{Integrator::dormandPrince, 2 * fewest_, false, tight},
-         {Integrator::dormandPrince, 5 * fewest_, false, 0.1 * tight}},
-        {{Integrator::dormandPrince, 8 * fewest_, false, 1e-10},
-         {Integrator::dormandPrince, 16 * fewest_, false, 1e-12}},
-        {{Integrator::rungeKutta4, 128}, {Integrator::rungeKutta4, 256}},
-        {{Integrator::semiImplicitEuler, 512}, {Integrator::semiImplicitEuler, 1024}}};
+    const Setting pairs[][2] = {{{Integrator::dormandPrince, 2 * fewest_, false, tight},
+                                 {Integrator::dormandPrince, 5 * fewest_, false, 0.1 * tight}},
+                                {{Integrator::dormandPrince, 8 * fewest_, false, 1e-10},
+                                 {Integrator::dormandPrince, 16 * fewest_, false, 1e-12}},
+                                {{Integrator::rungeKutta4, 128}, {Integrator::rungeKutta4, 256}},
+                                {{Integrator::leapfrog, 512}, {Integrator::leapfrog, 1024}}};
     for (const Setting(&pair)[2] : pairs) {
       const TrialRun first = run(pair[0], kMostSeconds);
       late_ = late_ || first.late;
@@ -162,7 +162,6 @@ class Chooser {
     int enough = kMostSteps + 1;
     for (int i = 0; i < kTrialsOfAMethod; ++i) {
       Setting setting{method.integrator, n};
-      setting.midpointCoriolis = method.midpointCoriolis;
       const Tried tried = attempt(setting);
       const bool pass = passes(tried.error);
       // More steps are dearer still, or there are none.
@@ -179,7 +178,7 @@ class Chooser {
   }
 
   void searchTolerance(const Method& method, int steps) {
-    const bool doubling = method.integrator == Integrator::semiImplicitEuler;
+    const bool doubling = method.integrator == Integrator::leapfrog;
     double tolerance = 10.0 * accuracy_, loosest = kInfinity, tightest = 0.0;
     for (int i = 0; i < kTrialsOfAMethod; ++i) {
       const Tried tried = attempt({method.integrator, steps, doubling, tolerance});
@@ -249,14 +248,11 @@ void Setting::setOptions(double period, Options& options) const {
   options.stepDoubling = doubling;
   if (integrationTolerance > 0.0) options.integrationTolerance = integrationTolerance;
   options.tolerance = tolerance;
-  options.midpointCoriolis = options.midpointCoriolis && midpointCoriolis;
-  options.implicitInSolve = options.implicitInSolve && midpointCoriolis;
 }
 
 std::string Setting::text(double period) const {
   return fmt::format(
-      "{}{}{}{}, {:.4g} ms, solver to {:.0e}", integratorName(integrator),
-      midpointCoriolis ? "" : " with Coriolis forces of the step's start",
+      "{}{}{}, {:.4g} ms, solver to {:.0e}", integratorName(integrator),
       doubling ? " with step doubling" : "",
       integrationTolerance > 0.0 ? fmt::format(" to {:.1e}", integrationTolerance) : std::string(),
       1e3 * period / steps, tolerance);

@@ -19,12 +19,11 @@
 namespace softgauss::app {
 
 struct Setting {
-  Integrator integrator = Integrator::semiImplicitEuler;
+  Integrator integrator = Integrator::leapfrog;
   int steps = 16;                     ///< a period of the trial
   bool doubling = false;              ///< Options::stepDoubling
   double integrationTolerance = 0.0;  ///< of error control; 0: none
   double tolerance = 1e-12;           ///< of the solver
-  bool midpointCoriolis = true;       ///< Options::midpointCoriolis, of semi-implicit Euler
 
   void setOptions(double period, Options& options) const;
   /// "dormand-prince to 1e-06, 16 ms, solver to 1e-12"

@@ -108,4 +108,18 @@ EffectSet parseEffects(const std::string& text) {
   return kept;
 }
 
+MechanismSet parseWithout(const std::string& text) {
+  MechanismSet kept = MechanismSet::all();
+  for (const std::string& name : split(text, ',')) {
+    const std::optional<Mechanism> mechanism = mechanismFromName(name);
+    if (!mechanism) {
+      std::string known;
+      for (const MechanismName& m : kMechanismNames) known += fmt::format(" {}", m.name);
+      throw UsageError(fmt::format("--without: no mechanism '{}'; there are:{}", name, known));
+    }
+    kept.remove(*mechanism);
+  }
+  return kept;
+}
+
 }  // namespace softgauss::app

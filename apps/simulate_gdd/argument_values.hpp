@@ -21,5 +21,7 @@ std::uintmax_t bytesOf(double megabytes, const std::string& context);
 ReachArgument parseReach(const std::string& text);
 /// What follows --effects.
 EffectSet parseEffects(const std::string& text);
+/// What follows --without: the mechanisms that are left.
+MechanismSet parseWithout(const std::string& text);
 
 }  // namespace softgauss::app

@@ -44,8 +44,8 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
       "Simulates a robot under goal directed dynamics: at every step the controls are found that\n"
       "bring it nearer its goals, with the contact forces that then act.");
   app.set_version_flag("--version", std::string("softgauss ") + SOFTGAUSS_VERSION);
-  std::string base = "automatic", ground, effects, zeroEffort = "passive", integrator, cone, solver,
-              controlCost, compatibility, islands, posture, meshes, collision;
+  std::string base = "automatic", ground, effects, without, zeroEffort = "passive", integrator,
+              cone, solver, controlCost, compatibility, islands, posture, meshes, collision;
   std::vector<std::string> reach, q0;
   for (int i = 0; i < argc; ++i)
     options.commandLine +=
@@ -178,6 +178,10 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
                "slip adds no push to contacts, and pyramids turn with it: what slides stays\n"
                "level and keeps its line")
       ->group(simulation);
+  app.add_option("--without", without,
+                 "mechanisms of the step that are left out, by name: to see what each is for\n"
+                 "(docs/stability.md has a table of them)")
+      ->group(simulation);
   app.add_option(
          "--gdd-solver", solver,
          "active-set (default): over the controls, ends on the physics with a certificate;\n"
@@ -290,6 +294,7 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
   options.sleep.controlled = islands == "sleep-all";
   options.zeroEffortIsUnlimited = zeroEffort == "unlimited";
   if (app.count("--effects") > 0) options.effects = parseEffects(effects);
+  if (app.count("--without") > 0) options.mechanisms = parseWithout(without);
   if (options.ground) mustBeNear(*options.ground, "--ground");
   for (const std::string& text : reach) {
     options.reach.push_back(parseReach(text));

@@ -25,7 +25,6 @@ void checkLinks(const SimulateOptions& options, const Model& model) {
 SimulationOptions loadOptions(const SimulateOptions& options) {
   SimulationOptions load = options;
   load.visualMeshes = !options.view.empty();
-  load.moreGoals = options.hasGoals();
   load.withoutGoals = options.passive || !options.torques.empty();
   return load;
 }

@@ -5,7 +5,6 @@
 
 #include <functional>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -43,13 +42,9 @@ struct Figure {
   /// From a state; `start` is what it was in the first state.
   std::function<double(Stage&, double start)> value;
   std::function<double(Stage&)> start = {};
-  std::optional<double> coarseBound = {};  ///< with the longer of kSteps, where it is another
-  std::string missed = {};                 ///< why our engine is known to miss it; else empty
-  std::string missedWhenCoarse = {};       ///< why with the longer of kSteps alone; else empty
+  std::string missed = {};            ///< why our engine is known to miss it; else empty
+  std::string missedWhenCoarse = {};  ///< why with the longer of kSteps alone; else empty
 
-  double boundAt(double timestep) const {
-    return timestep > kSteps[0] && coarseBound ? *coarseBound : bound;
-  }
   bool isMissedAt(double timestep) const {
     return !missed.empty() || (timestep > kSteps[0] && !missedWhenCoarse.empty());
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// stability_report: the hard cases of data/scenes/stability in softgauss and, where it was found,
-/// in MuJoCo; a table of what both do, and pictures.
+/// stability_report: the hard cases of data/scenes/stability in softgauss and, as recorded, in
+/// MuJoCo; a table of what both do, and pictures; and a table of what each mechanism is for.
 ///
 /// Both engines run the same scene from the same state, each with its own defaults. All figures are
 /// computed from q and v by the same functions. It ends with exit code 1 where our engine misses a
@@ -16,13 +16,9 @@
 #include <optional>
 #include <sstream>
 
-#include "apps/stability_report/cases.hpp"
+#include "apps/stability_report/ablation.hpp"
+#include "apps/stability_report/rival.hpp"
 #include "io/replay/gnuplot.hpp"
-#include "io/scene.hpp"
-#ifdef SOFTGAUSS_WITH_MUJOCO
-#include "apps/compare_mujoco/mjcf.hpp"
-#include "apps/compare_mujoco/mujoco.hpp"
-#endif
 
 namespace {
 
@@ -30,103 +26,11 @@ using namespace softgauss;
 using app::Figure;
 using app::HardCase;
 using app::kSteps;
-using app::Stage;
+using app::Outcome;
 
-constexpr double kFastest = 1e6;  // [m/s or rad/s] beyond, a run counts as diverged
 constexpr const char* kBegin = "<!-- table: stability_report -->";
+constexpr const char* kAblationBegin = "<!-- table: stability_report --ablate -->";
 constexpr const char* kEnd = "<!-- end of table -->";
-
-/// What one engine did.
-struct Outcome {
-  bool ran = false;                          ///< it could load the scene
-  std::optional<double> diverged;            ///< when [s]
-  std::vector<double> figures;               ///< in their units
-  std::vector<std::vector<double>> courses;  ///< of each figure, at every step
-};
-
-Model load(const std::filesystem::path& folder, const HardCase& hard, double timestep,
-           State& state) {
-  io::SceneFile file = io::readScene(folder / (hard.scene + ".yaml"));
-  file.builder.options.timestep = timestep;
-  Model model = file.builder.build();
-  state = file.initialState(model);
-  return model;
-}
-
-/// `advance` brings stage.state forward by one step; false: it cannot.
-template <class Advance>
-Outcome run(Stage& stage, const HardCase& hard, Advance&& advance) {
-  Outcome outcome;
-  outcome.ran = true;
-  std::vector<double> starts;
-  for (const Figure& f : hard.figures) starts.push_back(f.start ? f.start(stage) : 0.0);
-  outcome.figures.assign(hard.figures.size(), 0.0);
-  outcome.courses.resize(hard.figures.size());
-  const double h = stage.model.options.timestep;
-  const auto steps = static_cast<int>(std::round(hard.duration / h));
-  for (int i = 1; i <= steps; ++i) {
-    if (!advance() || !stage.state.q.allFinite() ||
-        !(stage.state.v.cwiseAbs().maxCoeff() < kFastest)) {
-      outcome.diverged = i * h;
-      return outcome;
-    }
-    for (std::size_t f = 0; f < hard.figures.size(); ++f) {
-      const Figure& figure = hard.figures[f];
-      const double value = figure.scale * figure.value(stage, starts[f]);
-      double& kept = outcome.figures[f];
-      if (figure.of == Figure::last || std::abs(value) > std::abs(kept)) kept = value;
-      outcome.courses[f].push_back(value);
-    }
-  }
-  return outcome;
-}
-
-Outcome runOurs(const std::filesystem::path& folder, const HardCase& hard, double timestep) {
-  State initial;
-  Stage stage(load(folder, hard, timestep, initial));
-  stage.state = initial;
-  collision::SceneContacts contacts(stage.model);
-  Data data(stage.model);
-  const Input input;
-  return run(stage, hard, [&] {
-    return step(stage.model, input, stage.state, data, &contacts) != SolveStatus::notFinite;
-  });
-}
-
-Outcome runMujoco([[maybe_unused]] const std::filesystem::path& folder,
-                  [[maybe_unused]] const HardCase& hard, [[maybe_unused]] double timestep) {
-#ifdef SOFTGAUSS_WITH_MUJOCO
-  State initial;
-  Stage stage(load(folder, hard, timestep, initial));
-  stage.state = initial;
-  std::optional<app::Mujoco> loaded;
-  try {
-    loaded.emplace(app::mjcfOf(stage.model, stage.contacts.filter()));
-  } catch (const ModelError& error) {
-    fmt::print(stderr, "{}: {}\n", hard.title, error.what());
-    return {};
-  }
-  app::Mujoco& mujoco = *loaded;
-  mujoco.set(initial, VectorX::Zero(stage.model.nv));
-  mujoco.setWarmStart(VectorX::Zero(stage.model.nv));
-  return run(stage, hard, [&] {
-    mujoco.step();
-    stage.state.q = mujoco.q();
-    stage.state.v = mujoco.v();
-    return mujoco.firstWarning().empty();
-  });
-#else
-  return {};
-#endif
-}
-
-std::string engineName() {
-#ifdef SOFTGAUSS_WITH_MUJOCO
-  return "MuJoCo " + app::Mujoco::version();
-#else
-  return "MuJoCo (not found)";
-#endif
-}
 
 std::string cell(const Outcome& outcome, std::size_t figure) {
   if (!outcome.ran) return "not loaded";
@@ -138,8 +42,8 @@ std::string cell(const Outcome& outcome, std::size_t figure) {
 /// Whether our engine did as is known of it; else it is said.
 bool asKnown(const HardCase& hard, std::size_t f, double timestep, const Outcome& ours) {
   const Figure& figure = hard.figures[f];
-  const double bound = figure.boundAt(timestep);
-  const bool held = !ours.diverged && std::abs(ours.figures[f]) <= bound;
+  const double bound = figure.bound;
+  const bool held = ours.holds(hard, f);
   if (held != figure.isMissedAt(timestep)) return true;
   fmt::print(stderr, "{}, {} at {:g} ms: {} of {:g} {}\n", hard.title, figure.name, 1e3 * timestep,
              held ? "holds its bound, and is listed as known to miss it" : "misses its bound",
@@ -148,16 +52,17 @@ bool asKnown(const HardCase& hard, std::size_t f, double timestep, const Outcome
 }
 
 /// Replaces what stands between the two marks of a page.
-void writeTable(const std::filesystem::path& page, const std::string& table) {
+void writeTable(const std::filesystem::path& page, const std::string& mark,
+                const std::string& table) {
   std::ifstream in(page);
   std::stringstream text;
   text << in.rdbuf();
   std::string all = text.str();
-  const std::size_t begin = all.find(kBegin), end = all.find(kEnd);
+  const std::size_t begin = all.find(mark), end = all.find(kEnd, begin);
   if (begin == std::string::npos || end == std::string::npos)
     throw ModelError({page.string(), 0}, "page",
-                     fmt::format("found no table, expected '{}' and '{}'", kBegin, kEnd));
-  all.replace(begin, end - begin, std::string(kBegin) + "\n\n" + table + "\n");
+                     fmt::format("found no table, expected '{}' and '{}'", mark, kEnd));
+  all.replace(begin, end - begin, mark + "\n\n" + table + "\n");
   if (!(std::ofstream(page) << all))
     throw ModelError({page.string(), 0}, "page", "cannot be written");
 }
@@ -177,8 +82,9 @@ void draw(const std::filesystem::path& file, const HardCase& hard, std::size_t f
     script += fmt::format("$run{} << EOD\n", i);
     const std::vector<double>& course = outcome.courses[figure];
     const std::size_t stride = std::max<std::size_t>(1, course.size() / 1000);
+    const double spacing = hard.duration / static_cast<double>(course.size());
     for (std::size_t k = 0; k < course.size(); k += stride)
-      script += fmt::format("{:.6g} {:.6g}\n", static_cast<double>(k + 1) * kSteps[0], course[k]);
+      script += fmt::format("{:.6g} {:.6g}\n", static_cast<double>(k + 1) * spacing, course[k]);
     script += "EOD\n";
     plot += fmt::format("{} $run{} with lines lw 2 lc rgb '{}' title \"{}\"", i == 0 ? "plot" : ",",
                         i, i == 0 ? "#0060ad" : "#dd5511", name);
@@ -198,52 +104,87 @@ constexpr Picture kPictures[] = {{"boxes_1000_on_1", 0, "set xrange [0:1]; set y
                                  {"rope", 0, "set yrange [0:60]; set key right center"}};
 
 struct Request {
-  std::filesystem::path scenes, page, pictures;
+  std::filesystem::path scenes, page, pictures, reference, exported, measured;
   std::vector<std::string> only;
-  bool ours = false;
+  bool ours = false, ablate = false;
+
+  bool takes(const HardCase& hard) const {
+    return only.empty() || std::find(only.begin(), only.end(), hard.scene) != only.end();
+  }
 };
+
+/// The two rows of a table's head.
+std::string head(const std::string& engine) {
+  std::string first = "| case | figure | bound |", second = "|---|---|---|";
+  for (const double timestep : kSteps) {
+    first += fmt::format(" ours, {:g} ms |", 1e3 * timestep);
+    second += "---|";
+    for (const char* integrator : app::kRivalIntegrators) {
+      if (engine.empty()) continue;
+      first += fmt::format(" {}, {}, {:g} ms |", engine, integrator, 1e3 * timestep);
+      second += "---|";
+    }
+  }
+  return first + "\n" + second + "\n";
+}
 
 /// Whether our engine did as is known of it in every case.
 bool report(const Request& request) {
-  const std::string other = request.ours ? "no other engine" : engineName();
-  std::string table = fmt::format(
-      "| case | figure | bound | ours, 2 ms | {0}, 2 ms | ours, 10 ms | {0}, 10 ms |\n"
-      "|---|---|---|---|---|---|---|\n",
-      other);
+  std::optional<app::Rival> rival;
+  if (!request.ours) rival.emplace(request.reference);
+  const std::string engine = rival ? "MuJoCo " + rival->version() : "";
+  std::string table = head(engine);
+  fmt::print("{}", table);
   bool good = true;
   for (const HardCase& hard : app::hardCases()) {
-    const auto& only = request.only;
-    if (!only.empty() && std::find(only.begin(), only.end(), hard.scene) == only.end()) continue;
-    std::vector<Outcome> outcomes;
+    if (!request.takes(hard)) continue;
+    std::vector<Outcome> ours, all;  // by step; and with MuJoCo's after each
     for (const double timestep : kSteps) {
-      outcomes.push_back(runOurs(request.scenes, hard, timestep));
-      outcomes.push_back(request.ours ? Outcome{} : runMujoco(request.scenes, hard, timestep));
+      ours.push_back(app::runOurs(request.scenes, hard, timestep));
+      all.push_back(ours.back());
+      for (const char* integrator : app::kRivalIntegrators)
+        if (rival) all.push_back(rival->outcome(hard, timestep, integrator));
     }
     for (std::size_t f = 0; f < hard.figures.size(); ++f) {
       const Figure& figure = hard.figures[f];
       std::string row = fmt::format("| {} | {} [{}] | {:g}", f == 0 ? hard.title : "", figure.name,
                                     figure.unit, figure.bound);
-      if (figure.coarseBound) row += fmt::format("; {:g} at 10 ms", *figure.coarseBound);
       row += !figure.missed.empty()             ? ", missed |"
              : !figure.missedWhenCoarse.empty() ? ", missed at 10 ms |"
                                                 : " |";
-      for (const Outcome& outcome : outcomes) row += " " + cell(outcome, f) + " |";
-
+      for (const Outcome& outcome : all) row += " " + cell(outcome, f) + " |";
       fmt::print("{}\n", row);
       table += row + "\n";
       for (std::size_t i = 0; i < std::size(kSteps); ++i)
-        good &= asKnown(hard, f, kSteps[i], outcomes[2 * i]);
+        good &= asKnown(hard, f, kSteps[i], ours[i]);
     }
     for (const Picture& picture : kPictures) {
       if (request.pictures.empty() || hard.scene != picture.scene) continue;
-      std::vector<std::pair<std::string, Outcome>> runs = {{"softgauss", outcomes[0]}};
-      if (outcomes[1].ran) runs.emplace_back(other, outcomes[1]);
+      std::vector<std::pair<std::string, Outcome>> runs = {{"softgauss", ours[0]}};
+      if (rival && all[1].ran && !all[1].courses.empty()) runs.emplace_back(engine, all[1]);
       draw(request.pictures / fmt::format("stability_{}.svg", hard.scene), hard, picture.figure,
            picture.limits, runs);
     }
   }
-  if (!request.page.empty()) writeTable(request.page, table);
+  if (!request.page.empty()) writeTable(request.page, kBegin, table);
   return good;
+}
+
+/// What is asked for; the exit code.
+int carryOut(const Request& request) {
+  if (!request.exported.empty()) {
+    app::exportCases(request.scenes, request.exported);
+  } else if (!request.measured.empty()) {
+    app::measureRival(request.scenes, request.measured, request.reference);
+  } else if (request.ablate) {
+    const std::string table = app::ablate(
+        request.scenes, [&](const HardCase& hard) { return request.takes(hard); },
+        [](const std::string& row) { fmt::print("{}\n", row), std::fflush(stdout); });
+    if (!request.page.empty()) writeTable(request.page, kAblationBegin, table);
+  } else {
+    return report(request) ? 0 : 1;
+  }
+  return 0;
 }
 
 }  // namespace
@@ -255,14 +196,23 @@ int main(int argc, char** argv) {
   app.add_option("--page", request.page, "write the table into this page, between its two marks");
   app.add_option("--pictures", request.pictures, "draw into this folder, with gnuplot");
   app.add_option("--only", request.only, "a scene that is run, by its file's name; default: all");
+  app.add_option("--reference", request.reference,
+                 "what MuJoCo does (default: mujoco.json in the folder of scenes)");
+  app.add_option("--export", request.exported,
+                 "write the cases into this folder, as MuJoCo's own descriptions");
+  app.add_option("--measure", request.measured,
+                 "write --reference from MuJoCo's runs of such a folder");
   app.add_flag("--ours", request.ours, "leave MuJoCo out");
+  app.add_flag("--ablate", request.ablate,
+               "leave out each mechanism of the step alone, and tell which bounds are missed then");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
+  if (request.reference.empty()) request.reference = request.scenes / "mujoco.json";
   try {
-    return report(request) ? 0 : 1;
+    return carryOut(request);
   } catch (const std::exception& error) {
     fmt::print(stderr, "{}\n", error.what());
     return 2;

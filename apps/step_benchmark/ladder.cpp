@@ -22,7 +22,10 @@ Base makeBase(const std::string& robots, const std::string& name) {
   const bool plain = name == "plainarm";
   base.builder = name == "boxes" ? freeBoxes(20, 0.1)
                                  : io::readUrdf(robots + "/" + (plain ? "arm" : name) + ".urdf");
-  if (plain) base.builder.options.implicitInSolve = base.builder.options.midpointCoriolis = false;
+  if (plain) {
+    base.builder.options.integrator = Integrator::semiImplicitEuler;
+    base.builder.options.implicitInSolve = false;
+  }
   const Model model = base.builder.build();
   for (int b = 1; b < model.bodyCount(); ++b) {
     const auto i = static_cast<std::size_t>(b);

@@ -70,10 +70,13 @@ Collider makeCollider(const Shape& shape, const ConvexHull* hull) {
 
 namespace {
 
-/// The best of a direction and the normals of the faces that it meets.
+/// The best of a direction and the normals of the faces that it meets. A sphere touches in one
+/// point, whatever the normal, and takes the best.
 Separation withFaces(const Collider& a, const Transform& X_WA, const Collider& b,
                      const Transform& X_WB, Separation best, double size) {
-  double preference = kFacePreference * size;
+  const bool isPoint =
+      a.convex.shape->kind == ShapeKind::sphere || b.convex.shape->kind == ShapeKind::sphere;
+  double preference = isPoint ? 0.0 : kFacePreference * size;
   const Vector3 faceA = supportFaceNormal(a.convex, X_WA, best.n_W);
   const Vector3 faceB = -supportFaceNormal(b.convex, X_WB, -best.n_W);
   for (const Vector3& face : {faceA, faceB}) {

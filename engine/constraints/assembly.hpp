@@ -6,7 +6,6 @@
 #include "engine/constraints/carried_load.hpp"
 #include "engine/constraints/contact_set.hpp"
 #include "engine/constraints/inverse_weight.hpp"
-#include "engine/constraints/nearby_poses.hpp"
 #include "engine/dynamics/kinematics.hpp"
 #include "engine/dynamics/tree_matrix.hpp"
 
@@ -14,17 +13,19 @@ namespace softgauss {
 
 struct Assembly {
   /// Whether friction hardens where it sticks.
-  bool sticks() const { return model.options.ownSoftness && !softFriction; }
-  /// Whether contacts and limits hold at the step's end (T.137): in the parts of a step, which are
-  /// short for what their damping is made for; but not where goals have to know what they answer.
-  bool holdsAtEnd() const { return sticks() && model.options.wholeTimestep > 0.0; }
-  bool drifts() const { return model.options.integrator == Integrator::leapfrog; }
-  /// How far v lies behind q [s]: half a step where q is that of mid-step, or v that of half a step
-  /// earlier (T.116).
+  bool sticks() const { return model.options.uses(Mechanism::sticking) && !softFriction; }
+  /// Whether rows may take a velocity sooner than their damping does: goals have to know what is
+  /// answered within the step.
+  bool mayShorten() const {
+    return model.options.uses(Mechanism::contactHorizon) && !softFriction &&
+           model.options.integrator == Integrator::leapfrog;
+  }
+  /// The parts of a step are short for what the damping of contacts and limits is made for.
+  bool isPart() const { return mayShorten() && model.options.wholeTimestep > 0.0; }
+  /// How far v lies behind q [s]: half a step where positions drift to mid-step first. A distance
+  /// that changes by J v there has changed by J v − lag J̇ v where the step began (T.116).
   double lag() const {
-    const Options& o = model.options;
-    const bool euler = o.midpointCoriolis && !o.looksWithin();
-    return drifts() || euler ? 0.5 * o.timestep : 0.0;
+    return model.options.integrator == Integrator::leapfrog ? 0.5 * model.options.timestep : 0.0;
   }
   /// The velocity with which joints turn through the step (nv).
   const VectorX& turns() const { return turning ? *turning : state.v; }
@@ -34,11 +35,10 @@ struct Assembly {
   const Kinematics& kinematics;
   const ContactSet& contacts;
   const InverseWeights& weights;
-  const TreeSparsity& tree;             ///< pattern of M: row i lists the dofs that move body(i)
-  bool softFriction = false;            ///< Input::softFriction
-  const VectorX* turning = nullptr;     ///< null: State::v
-  const CarriedLoad* load = nullptr;    ///< null: no row knows of a load
-  const NearbyPoses* nearby = nullptr;  ///< null: no v that lags, no tie, or no turn
+  const TreeSparsity& tree;           ///< pattern of M: row i lists the dofs that move body(i)
+  bool softFriction = false;          ///< Input::softFriction
+  const VectorX* turning = nullptr;   ///< null: State::v
+  const CarriedLoad* load = nullptr;  ///< null: no row knows of a load
 };
 
 }  // namespace softgauss

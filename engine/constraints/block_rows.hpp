@@ -5,7 +5,6 @@
 /// welds share.
 
 #include <cstddef>
-#include <utility>
 #include <vector>
 
 #include "engine/constraints/block_jacobian.hpp"
@@ -14,13 +13,11 @@
 namespace softgauss {
 
 /// A distance of three components and how it changes:
-///   a_ref = −b J v − k d r − ((1 − lag b) J̇ v − b ahead)                                 (T.116)
+///   a_ref = −b (J v − lag J̇ v) − k d r − J̇ v                                            (T.116)
 struct Offset {
-  Vector3 r;                        ///< [m]
-  Vector3 rate;                     ///< J v [m/s]
-  Vector3 bias;                     ///< J̇ v, or by how r has come and would go on [m/s²]
-  double lag = 0.0;                 ///< how far v lies behind [s]
-  Vector3 ahead = Vector3::Zero();  ///< J v less by how r has come, where no lag tells [m/s]
+  Vector3 r;     ///< [m]
+  Vector3 rate;  ///< where the step begins, J v − lag J̇ v [m/s]
+  Vector3 bias;  ///< J̇ v [m/s²]
 };
 
 class BlockRows : public ScalarRows<Quadratic> {
@@ -48,44 +45,23 @@ class BlockRows : public ScalarRows<Quadratic> {
     jacobian_.appendCouplings(segments, setEnd);
   }
 
-  /// Leaves out of the references what they have of the bodies' turning, in the blocks that concern
-  /// a body: a_ref = −b J v − k d r.
-  template <class Concerns>
-  void leaveOutTurning(const Concerns& concerns) {
-    for (std::size_t i = 0; i < bodies_.size(); ++i) {
-      if (!concerns(bodies_[i].first) && !concerns(bodies_[i].second)) continue;
-      for (std::size_t row = 3 * i; row < 3 * i + 3; ++row) reference[row] += turning_[row];
-    }
-  }
-
-  std::size_t bytes() const {
-    return ScalarRows::bytes() + jacobian_.bytes() + bytesOfAll(turning_, bodies_);
-  }
+  std::size_t bytes() const { return ScalarRows::bytes() + jacobian_.bytes(); }
 
  protected:
   void clearBlocks() {
     jacobian_.clear();
     clearRows();
-    turning_.clear();
-    bodies_.clear();
   }
-  /// The three rows of the last block added, which is between the bodies of `motion`.
-  void pushRows(const RelativeMotion& motion, const Offset& offset, const Softness& softness) {
+  /// The three rows of the last block added.
+  void pushRows(const Offset& offset, const Softness& softness) {
     for (int i = 0; i < 3; ++i) {
-      const double b = softness.damping;
-      turning_.push_back((1.0 - offset.lag * b) * offset.bias[i] - b * offset.ahead[i]);
       reference.push_back(softness.referenceAcceleration(offset.rate[i], offset.r[i]) -
-                          turning_.back());
+                          offset.bias[i]);
       pushSoftness(softness);
     }
-    bodies_.emplace_back(motion.bodyA, motion.bodyB);
   }
 
   BlockJacobian jacobian_;
-
- private:
-  std::vector<double> turning_;              ///< what each reference has of the bodies' turning
-  std::vector<std::pair<int, int>> bodies_;  ///< of each block
 };
 
 }  // namespace softgauss

@@ -26,10 +26,7 @@ class ConnectionRows : public BlockRows {
 struct PointOffset : Offset {
   PointOffset(const Assembly& in, int bodyA, const Vector3& p_AP, int bodyB, const Vector3& p_BP);
 
-  Vector3 p_WA, p_WB;  ///< the points, in the leapfrog the one place of the force [m]
-
- private:
-  void actInOnePlace(const Assembly& in, int bodyA, int bodyB);
+  Vector3 p_WA, p_WB;  ///< the points [m]
 };
 
 /// The Jacobian J_A − J_B of that offset.

@@ -23,13 +23,10 @@ bool isContact(int kind) {
 
 void Constraints::assemble(const Assembly& given) {
   Assembly in = given;
-  if (in.model.options.ownSoftness) {
+  if (in.model.options.uses(Mechanism::carriedLoad)) {
     load_.assemble(in.model, in.kinematics, in.contacts, in.weights);
     in.load = &load_;
   }
-  const bool ties = !in.model.connections.empty() || !in.model.welds.empty();
-  if (ties && !in.drifts() && in.lag() > 0.0 && nearby_.assemble(in.model, in.state, in.kinematics))
-    in.nearby = &nearby_;
   active_ = RowKinds::none();
   visitThese(*this, planned_, [&](auto& c, int kind) {
     // Without contacts there is nothing to look at, but old rows to drop.
@@ -95,16 +92,6 @@ void Constraints::setRay(const VectorX& d) {
   visit([&](auto& c) { c.multiply(d, c.dx); });
 }
 
-void Constraints::setTurningRay(const Assembly& now, const Assembly& then) {
-  visit([&](auto& c) { c.setTurningRay(now, then); });
-}
-
-void Constraints::subtractRay() {
-  visit([&](auto& c) {
-    for (std::size_t i = 0; i < c.dx.size(); ++i) c.reference[i] -= c.dx[i];
-  });
-}
-
 double Constraints::evaluate(bool& cellChanged) {
   double cost = 0.0;
   visit([&](auto& c) { cost += c.evaluate(cellChanged); });
@@ -121,27 +108,6 @@ void Constraints::advance(double alpha) {
 
 void Constraints::addForce(VectorX& tau) const {
   visit([&](const auto& c) { c.addTransposed(c.f, tau); });
-}
-
-void Constraints::dampAhead(const VectorX& a, double t) {
-  setRay(a);
-  visit([&](auto& c) {
-    for (std::size_t i = 0; i < c.dx.size(); ++i) c.reference[i] -= c.damping[i] * t * c.dx[i];
-  });
-}
-
-void Constraints::copyReferences(std::vector<double>& references) const {
-  references.clear();
-  visit([&](const auto& c) {
-    references.insert(references.end(), c.reference.begin(), c.reference.end());
-  });
-}
-
-void Constraints::setReferences(const std::vector<double>& references) {
-  auto next = references.begin();
-  visit([&](auto& c) {
-    for (double& r : c.reference) r = *next++;
-  });
 }
 
 void Constraints::setForceRate() {

@@ -36,7 +36,6 @@ concept SoftConstraint = requires(C c, const Assembly& in, const VectorX& a, Vec
   c.along(0.0, jet);                                       // derivatives along a ray
   c.advance(0.0);                                          // x += α dx
   c.setForceRate();                                        // df ← −∇²s dx
-  c.setTurningRay(in, in);                                 // dx ← J̇ v then − now
   c.addTransposed(y, tau);                                 // tau += Jᵀ y
   c.addCurvature(P);                                       // P += Jᵀ ∇²s J
   c.addRow(0, 1.0, tau);                                   // tau += scale · (row of J)ᵀ
@@ -120,25 +119,8 @@ class Constraints {
   double evaluate(bool& cellChanged);
   /// Adds the derivatives of s(x + α dx) in α.
   void along(double alpha, Jet& jet) const;
-  /// dx ← J̇ v with the velocities of `then` less that of `now`, at the same q; 0 of ties.
-  void setTurningRay(const Assembly& now, const Assembly& then);
-  /// a_ref ← a_ref − dx.
-  void subtractRay();
   void advance(double alpha);
   void addForce(VectorX& tau) const;
-  /// a_ref ← a_ref − b t J a: all rows damp the speed to which t [s] of a leads.
-  void dampAhead(const VectorX& a, double t);
-  /// Leaves out of the references what they have of the bodies' turning, J̇ v, in the rows that
-  /// concern a body: a_ref = −b J v − k d r.
-  template <class Concerns>
-  void leaveOutTurning(const Concerns& concerns) {
-    visit([&](auto& c) {
-      if constexpr (requires { c.leaveOutTurning(concerns); }) c.leaveOutTurning(concerns);
-    });
-  }
-  /// All references, one kind after the other.
-  void copyReferences(std::vector<double>& references) const;
-  void setReferences(const std::vector<double>& references);
   /// df ← −∇²s dx: the rates of the rows' forces along the ray, at the present residual.
   void setForceRate();
   /// Adds the rate of that force along the ray, −Jᵀ∇²s dx.
@@ -213,7 +195,6 @@ class Constraints {
   RowKinds active_ = RowKinds::none();
   std::array<std::int64_t, kRowKinds> calls_{};
   CarriedLoad load_;
-  NearbyPoses nearby_;
   const TreeSparsity* sparsity_ = nullptr;
   TreeSparsity coupled_;
   VectorX rowForces_;  ///< (nv) Jᵀf

@@ -7,6 +7,7 @@
 
 #include "engine/constraints/contact_motion.hpp"
 #include "engine/constraints/contact_softness.hpp"
+#include "engine/constraints/contact_turn.hpp"
 #include "engine/constraints/sticking_contact.hpp"
 #include "engine/core/rotation.hpp"
 
@@ -112,6 +113,16 @@ double stickingShare(const Options& options, const Touch& touch, double load,
          fallsOff(alongTangents.norm(), kHeld * touch.mu() * load);
 }
 
+/// The longest time over which a contact takes the velocity of its bodies [s] (T.140): a part of a
+/// step; else as long as its normal and levers hold, turning by Options::partAngle.
+double horizonOf(const Assembly& in, const Contact& contact) {
+  const Options& options = in.model.options;
+  if (!in.mayShorten()) return kInfinity;
+  if (in.isPart()) return options.timestep;
+  const double rate = turnRate(in.model, in.kinematics, contact);
+  return rate > 0.0 ? std::max(options.timestep, options.partAngle / rate) : kInfinity;
+}
+
 }  // namespace
 
 Material mixMaterials(const Material& a, const Material& b) {
@@ -160,7 +171,8 @@ std::optional<Touch> touchAt(const Assembly& in, int i) {
                                     reducedMass(model, c.bodyA, c.bodyB), model.options);
   Touch touch;
   touch.distance = c.distance - material.margin;
-  if (touch.distance >= 0.0) return std::nullopt;  // NaN makes rows, so that the solve reports it
+  // NaN makes rows, so that the solve reports it.
+  if (touch.distance >= touchingWithin(model.options, c.p_WC)) return std::nullopt;
   touch.frictionDim = frictionDim(material, model.options.effects);
   double weight = in.weights.translation[c.bodyA] + in.weights.translation[c.bodyB];
   double load = in.load ? in.load->mass(model, c.bodyA, c.bodyB) : 0.0;
@@ -172,7 +184,7 @@ std::optional<Touch> touchAt(const Assembly& in, int i) {
   touch.inverseMass = weight;
   touch.softness =
       contactSoftness(material, touch.frictionDim, touch.distance, weight, model.options);
-  if (model.options.ownSoftness && !material.spring &&
+  if (model.options.uses(Mechanism::stepBounds) && !material.spring &&
       (isSprung(model, c.bodyA) || isSprung(model, c.bodyB)))
     touch.softness = withLeastMass(touch.softness, model.options.rowTimestep());
   if (touch.frictionDim > 0) {
@@ -215,28 +227,18 @@ ContactBlocks::BlockMotion ContactBlocks::addBlock(const Assembly& in, int i, co
 
   BlockMotion moves;
   moves.velocity = inFrame(R_WC, touch.frictionDim, slips);
-  bias_.push_back(std::nullopt);
-  if (!model.options.ownSoftness) return moves;
+  if (!model.options.uses(Mechanism::contactTurning)) return moves;
   if (const std::optional<ContactBias> bias = contactBias(model, k, c)) {
     const Vector3 tangents = bias->rate.linear - c.n_W * c.n_W.dot(bias->rate.linear);
     const double load = presses(model.options, c.n_W, *bias);
     if (countsSoDeep(model.options, touch, load, *bias)) {
       made_.back().share = stickingShare(model.options, touch, load, moves.velocity, tangents);
-      bias_.back() = moves.bias = biasInFrame(made_.back(), bias->rate);
+      moves.bias = biasInFrame(made_.back(), bias->rate);
+      for (std::size_t axis = 0; axis < moves.bias.size(); ++axis)
+        moves.velocity[axis] -= in.lag() * moves.bias[axis];
     }
   }
   return moves;
-}
-
-ContactBlocks::FrameVector ContactBlocks::biasChange(const Assembly& then, int i) const {
-  if (!bias_[i]) return {};
-  const ContactRows& m = made_[i];
-  const std::optional<ContactBias> bias =
-      contactBias(then.model, then.kinematics, then.contacts.contacts[m.contact]);
-  if (!bias) return {};
-  FrameVector change = biasInFrame(m, bias->rate);
-  for (std::size_t k = 0; k < change.size(); ++k) change[k] -= (*bias_[i])[k];
-  return change;
 }
 
 double ContactBlocks::slipSpeed(const Touch& touch, const FrameVector& velocity) {
@@ -249,9 +251,8 @@ double ContactBlocks::slipSpeed(const Touch& touch, const FrameVector& velocity)
 Softness ContactBlocks::soften(const Assembly& in, const Touch& touch,
                                const FrameVector& velocity) {
   const Softness& soft = touch.softness;
-  const auto held = [&](const Softness& s) {
-    return in.holdsAtEnd() && !touch.spring ? atStepsEnd(s, 0.0, in.model.options) : s;
-  };
+  const double horizon = horizonOf(in, in.contacts.contacts[made_.back().contact]);
+  const auto held = [&](const Softness& s) { return touch.spring ? s : withinHorizon(s, horizon); };
   if (!touch.carries || !in.sticks() || touch.frictionDim == 0) return held(soft);
   if (!(soft.damping * soft.damping >= 4.0 * soft.stiffness)) return held(soft);  // it bounces
   SlipSpeeds speeds{slipSpeed(touch, velocity), std::abs(velocity[0])};

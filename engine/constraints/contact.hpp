@@ -31,6 +31,14 @@ Material mixMaterials(const Material& a, const Material& b);
 /// The surface of a pair of geometries: its own, or the mix of theirs; its spring in newtons.
 Material pairMaterial(const Model& model, int geometryA, int geometryB);
 
+/// The distance beyond the margin within which surfaces at p touch [m]: what lies on something
+/// touches it, whichever way its position was rounded. A tower would come to rest cube by cube
+/// else, each on what has already sunk in. MuJoCo's contacts have to overlap.
+inline double touchingWithin(const Options& options, const Vector3& p_W) {
+  constexpr double kRounding = 1e-12;
+  return options.ownSoftness ? kRounding * p_W.cwiseAbs().maxCoeff() : 0.0;
+}
+
 /// Two surfaces that touch.
 struct Touch {
   double distance = 0.0;             ///< r: that of the contact less the margin, < 0 [m]
@@ -91,9 +99,7 @@ class ContactBlocks {
   /// Place in made() of the contact that has this row.
   int contactOfRow(int row) const { return contactOfRow_[row]; }
 
-  std::size_t bytes() const {
-    return jacobian_.bytes() + bytesOfAll(made_, contactOfRow_, turning_, bias_);
-  }
+  std::size_t bytes() const { return jacobian_.bytes() + bytesOfAll(made_, contactOfRow_); }
 
  protected:
   /// How a contact moves, in its frame.
@@ -104,8 +110,6 @@ class ContactBlocks {
   void clearBlocks() {
     jacobian_.clear();
     made_.clear();
-    turning_.clear();
-    bias_.clear();
   }
   /// The block of contact i, whose rows begin at `row`.
   BlockMotion addBlock(const Assembly& in, int i, const Touch& touch, int row);
@@ -113,30 +117,12 @@ class ContactBlocks {
   static double slipSpeed(const Touch& touch, const FrameVector& velocity);
   /// How soft the last block is: as it is, or harder where it sticks (T.97).
   Softness soften(const Assembly& in, const Touch& touch, const FrameVector& velocity);
-  /// a_ref of the next row (T.122), of what it asks for where J̇ v is none.
-  double nextReference(const Assembly& in, const Softness& soft, double asked, double bias) {
-    turning_.push_back((1.0 - in.lag() * soft.damping) * bias);
-    return asked - turning_.back();
-  }
-  /// J̇ v of contact i with the velocities of `then`, less what it is; 0 where it is not known.
-  FrameVector biasChange(const Assembly& then, int i) const;
-  /// Leaves out of the references what they have of the bodies' turning, where a contact concerns
-  /// a body.
-  template <class Concerns>
-  void leaveOutTurning(const Concerns& concerns, std::vector<double>& reference) const {
-    for (std::size_t row = 0; row < reference.size(); ++row) {
-      const ContactRows& made = made_[contactOfRow_[row]];
-      if (concerns(made.bodyA) || concerns(made.bodyB)) reference[row] += turning_[row];
-    }
-  }
   /// Contact of each of `rows` rows.
   void indexRows(std::size_t rows);
 
   BlockJacobian jacobian_;  ///< block i: y of contact i
   std::vector<ContactRows> made_;
   std::vector<int> contactOfRow_;
-  std::vector<double> turning_;  ///< what each reference has of the bodies' turning
-  std::vector<std::optional<FrameVector>> bias_;  ///< J̇ v of contact i, where it is known
 };
 
 }  // namespace softgauss

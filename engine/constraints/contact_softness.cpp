@@ -42,7 +42,8 @@ std::optional<ReferenceSpring> bouncing(const Impedance& p, const Options& optio
   // (T.115) damps more, never less.
   if (!p.direct && p.dampingRatio > 0.5 * (1.0 + kRounding)) return std::nullopt;
   // k d = K d/d_max², b = B/d_max.
-  const Softness s = softnessAt(p, 0.0, 1.0, options.rowTimestep(), options.ownSoftness);
+  const Softness s =
+      softnessAt(p, 0.0, 1.0, options.rowTimestep(), options.uses(Mechanism::stepBounds));
   const double dMax = std::clamp(p.dMax, 1e-4, 0.9999);
   const double K = s.stiffness * dMax * dMax / impedanceAt(p, 0.0), B = s.damping * dMax;
   if (!(B * B <= K * (1.0 + kRounding))) return std::nullopt;
@@ -50,7 +51,7 @@ std::optional<ReferenceSpring> bouncing(const Impedance& p, const Options& optio
 }
 
 Material inForce(const Material& pair, double mass, const Options& options) {
-  if (pair.spring || !options.ownSoftness || !(mass > 0.0)) return pair;
+  if (pair.spring || !options.uses(Mechanism::stepBounds) || !(mass > 0.0)) return pair;
   const std::optional<ReferenceSpring> reference = bouncing(pair.impedance, options);
   if (!reference) return pair;
   const double K = reference->stiffness, B = reference->damping;
@@ -84,7 +85,7 @@ Softness contactSoftness(const Material& pair, int frictionDim, double distance,
   if (!edges) return s;
   double scale = 2.0 * mu * mu / options.impedanceRatio;
   // (T.96): a friction above 1 makes no contact softer than one of 1.
-  if (options.ownSoftness && mu > 1.0) scale *= 2.0 / (mu * mu * (1.0 + mu * mu));
+  if (options.uses(Mechanism::carriedLoad) && mu > 1.0) scale *= 2.0 / (mu * mu * (1.0 + mu * mu));
   s.R *= scale;
   s.perInertia *= scale;
   return s;

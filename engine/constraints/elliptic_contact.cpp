@@ -14,7 +14,6 @@ void EllipticContact::assemble(const Assembly& in) {
   cones_.clear();
   perInertia_.clear();
   reference.clear();
-  damping.clear();
   if (options.cone == Cone::elliptic) {
     for (int i = 0; i < in.contacts.size(); ++i) {
       const std::optional<Touch> touch = touchAt(in, i);
@@ -30,11 +29,9 @@ void EllipticContact::assemble(const Assembly& in) {
         push -= made_.back().slip * SlipPush::share(touch->mu()) *
                 SlipPush(push, soft.damping, options.timestep).ofCone(friction, cones_.back().mu);
       }
-      reference.push_back(nextReference(in, soft, push, moves.bias[0]));
+      reference.push_back(push - moves.bias[0]);
       for (int k = 1; k <= touch->frictionDim; ++k)
-        reference.push_back(
-            nextReference(in, soft, -soft.damping * moves.velocity[k], moves.bias[k]));
-      damping.resize(reference.size(), soft.damping);
+        reference.push_back(-soft.damping * moves.velocity[k] - moves.bias[k]);
     }
   }
   for (std::vector<double>* column : {&x, &dx, &f, &df}) column->resize(reference.size());
@@ -46,12 +43,6 @@ void EllipticContact::assemble(const Assembly& in) {
 void EllipticContact::multiply(const VectorX& a, std::vector<double>& y) const {
   for (std::size_t i = 0; i < made_.size(); ++i)
     jacobian_.multiply(static_cast<int>(i), a, y.data() + made_[i].row);
-}
-
-void EllipticContact::setTurningRay(const Assembly&, const Assembly& then) {
-  for (std::size_t i = 0; i < made_.size(); ++i)
-    std::copy_n(biasChange(then, static_cast<int>(i)).data(), cones_[i].dim,
-                dx.data() + made_[i].row);
 }
 
 double EllipticContact::evaluate(std::size_t i, const double* at, double* force, double* H,

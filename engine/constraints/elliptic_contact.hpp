@@ -19,7 +19,6 @@ class EllipticContact : public ContactBlocks {
   static constexpr Cone kCone = Cone::elliptic;
 
   std::vector<double> reference;  ///< a_ref
-  std::vector<double> damping;    ///< b of the reference
   std::vector<double> x;          ///< residual at the present acceleration
   std::vector<double> dx;         ///< J d
   std::vector<double> f;          ///< force −∇s(x)
@@ -46,12 +45,6 @@ class EllipticContact : public ContactBlocks {
   /// is, until letGo().
   void placeAtKnot(int row, int knot, bool stiffSide);
   void letGo() { placed_.assign(placed_.size(), false); }
-  void setTurningRay(const Assembly& now,
-                     const Assembly& then);  ///< as ScalarRows::setTurningRay()
-  template <class Concerns>
-  void leaveOutTurning(const Concerns& concerns) {
-    ContactBlocks::leaveOutTurning(concerns, reference);
-  }
   void holdOnRay(int) {}
 
   const EllipticCone& cone(int i) const { return cones_[i]; }
@@ -67,7 +60,7 @@ class EllipticContact : public ContactBlocks {
   FrameVector frameForce(int i) const;
   std::size_t bytes() const {
     return ContactBlocks::bytes() +
-           bytesOfAll(reference, damping, x, dx, f, df, cones_, perInertia_, zones_, placed_);
+           bytesOfAll(reference, x, dx, f, df, cones_, perInertia_, zones_, placed_);
   }
   /// Its rate along the search direction, after setForceRate().
   FrameVector frameForceRate(int i) const;

@@ -128,7 +128,7 @@ inline Softness takingItOnce(Softness s, double timestep) {
 inline Softness softnessAt(const Impedance& p, double distance, double inverseInertia,
                            const Options& options) {
   const double h = options.rowTimestep();
-  if (!options.ownSoftness) return softnessAt(p, distance, inverseInertia, h);
+  if (!options.uses(Mechanism::stepBounds)) return softnessAt(p, distance, inverseInertia, h);
   return takingItOnce(softnessAt(p, distance, inverseInertia, h, true), h);
 }
 
@@ -159,6 +159,15 @@ inline Softness atStepsEnd(const Softness& s, double t, const Options& options) 
   Softness atEnd = atStepsEnd(s.stiffness / s.R, s.damping / s.R, t, options);
   atEnd.perInertia = s.perInertia * (atEnd.R / s.R);
   return atEnd;
+}
+
+/// The row with the same spring K = k d/R and damper B = b/R that takes its velocity within
+/// `horizon` T [s], f = −K r − B (ẋ + T ẍ), where 1/b is longer: its mass is D = T B in place of
+/// B/b (T.140).
+inline Softness withinHorizon(const Softness& s, double horizon) {
+  if (!(s.damping * horizon < 1.0)) return s;
+  const double less = s.damping * horizon;  // D of the row over D of s
+  return {s.R / less, s.perInertia / less, s.stiffness / less, 1.0 / horizon};
 }
 
 }  // namespace softgauss

@@ -31,7 +31,6 @@ void CouplingRows::assemble(const Assembly& in) {
         const double q = in.state.q[leader.q];
         r = in.state.q[follower.q] - c.value(q);
         pair.leader = leader.v;
-        pair.body = c.leader;
         pair.slope = c.slope(q);
         pair.couples =
             !isAncestor(model, std::min(follower.v, leader.v), std::max(follower.v, leader.v));
@@ -40,21 +39,13 @@ void CouplingRows::assemble(const Assembly& in) {
         if (model.options.ownSoftness) pair.bend = c.curvature(q);
       }
       const Softness soft = tieSoftness(c.impedance, r, weight, model.options);
-      pair.turning =
-          (1.0 - in.lag() * soft.damping) * -pair.bend * std::pow(in.turns()[pair.leader], 2.0);
+      const double turning = -pair.bend * std::pow(in.turns()[pair.leader], 2.0);
       pairs_.push_back(pair);
-      reference.push_back(soft.referenceAcceleration(rate, r) - pair.turning);
+      reference.push_back(soft.referenceAcceleration(rate - in.lag() * turning, r) - turning);
       pushSoftness(soft);
     }
   }
   resizeRows(pairs_.size());
-}
-
-void CouplingRows::setTurningRay(const Assembly& now, const Assembly& then) {
-  for (std::size_t i = 0; i < pairs_.size(); ++i) {
-    const double before = now.state.v[pairs_[i].leader], after = then.state.v[pairs_[i].leader];
-    dx[i] = -pairs_[i].bend * (after * after - before * before);
-  }
 }
 
 void CouplingRows::multiply(const VectorX& a, std::vector<double>& y) const {

@@ -19,7 +19,6 @@ namespace softgauss {
 class CouplingRows : public ScalarRows<Quadratic> {
  public:
   void assemble(const Assembly& in);
-  void setTurningRay(const Assembly& now, const Assembly& then);
   void multiply(const VectorX& a, std::vector<double>& y) const;
   void addTransposed(const std::vector<double>& y, VectorX& tau) const;
   void addCurvature(TreeMatrix& P);
@@ -27,13 +26,6 @@ class CouplingRows : public ScalarRows<Quadratic> {
   void addRow(int i, double scale, VectorX& y) const;
   /// Pairs of dofs on different branches.
   void appendCouplings(std::vector<Segment>& segments, std::vector<int>& setEnd) const;
-
-  /// As BlockRows::leaveOutTurning().
-  template <class Concerns>
-  void leaveOutTurning(const Concerns& concerns) {
-    for (std::size_t i = 0; i < pairs_.size(); ++i)
-      if (concerns(pairs_[i].body)) reference[i] += pairs_[i].turning;
-  }
 
   std::size_t bytes() const { return ScalarRows::bytes() + bytesOf(pairs_); }
 
@@ -44,8 +36,6 @@ class CouplingRows : public ScalarRows<Quadratic> {
     double slope = 0.0;    ///< p′, 0 without a leader
     double bend = 0.0;     ///< p″, 0 where it has no part
     bool couples = false;  ///< neither dof moves the other's body
-    int body = 0;          ///< of the leader
-    double turning = 0.0;  ///< what the reference has of J̇ v
   };
   std::vector<Pair> pairs_;
 };

@@ -32,12 +32,13 @@ Softness limitSoftness(const Assembly& in, const JointRange& range, double r) {
   const Options& options = in.model.options;
   const double weight = in.weights.dof[in.model.bodies[range.body].v];
   const auto softness = [&](double A) { return softnessAt(range.impedance, r, A, options); };
-  if (!options.ownSoftness) return softness(weight);
-  const Softness soft =
-      isSprung(in.model, range.body)
-          ? withLeastMass(softness(weight), options.rowTimestep())
-          : softness(carrying(weight, kOfCarried * carriedInertia(in, range.body)));
-  return in.holdsAtEnd() ? atStepsEnd(soft, 0.0, options) : soft;
+  Softness soft = softness(weight);
+  if (isSprung(in.model, range.body)) {
+    if (options.uses(Mechanism::stepBounds)) soft = withLeastMass(soft, options.rowTimestep());
+  } else if (options.uses(Mechanism::carriedLoad)) {
+    soft = softness(carrying(weight, kOfCarried * carriedInertia(in, range.body)));
+  }
+  return in.isPart() ? atStepsEnd(soft, 0.0, options) : soft;
 }
 
 }  // namespace

@@ -42,18 +42,12 @@ void PyramidalContact::assemble(const Assembly& in) {
           .level(asks, edges, made_.back().slip * SlipPush::share(touch->mu()));
     }
     for (int edge = 0; edge < edges; ++edge) {
-      reference.push_back(nextReference(in, soft, asks[edge], bias[edge]));
+      reference.push_back(asks[edge] - bias[edge]);
       pushSoftness(soft);
     }
   }
   resizeRows(reference.size());
   indexRows(reference.size());
-}
-
-void PyramidalContact::setTurningRay(const Assembly&, const Assembly& then) {
-  for (std::size_t i = 0; i < made_.size(); ++i)
-    toEdges(biasChange(then, static_cast<int>(i)).data(), made_[i].frictionDim, made_[i].friction,
-            dx.data() + made_[i].row);
 }
 
 void PyramidalContact::multiply(const VectorX& a, std::vector<double>& y) const {

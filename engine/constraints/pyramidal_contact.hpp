@@ -26,11 +26,6 @@ class PyramidalContact : public ScalarRows<HalfQuadratic>, public ContactBlocks 
   void addCurvature(TreeMatrix& P);
   /// y ← y + scale · (row i of J)ᵀ.
   void addRow(int i, double scale, VectorX& y) const;
-  void setTurningRay(const Assembly& now, const Assembly& then);
-  template <class Concerns>
-  void leaveOutTurning(const Concerns& concerns) {
-    ContactBlocks::leaveOutTurning(concerns, reference);
-  }
 
   /// Force on body B at contact i, world [N]; body A feels the opposite.
   Vector3 force(int i) const { return linearInWorld(i, inFrame(i, f)); }

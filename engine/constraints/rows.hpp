@@ -52,7 +52,6 @@ class ScalarRows {
   std::vector<double> reference;   ///< a_ref
   std::vector<double> D;           ///< stiffness 1/R
   std::vector<double> perInertia;  ///< R per inverse inertia, Softness::perInertia
-  std::vector<double> damping;     ///< b of the reference
   std::vector<double> limit;       ///< of the force, where the penalty has one; else unused
   std::vector<double> x;           ///< residual at the present acceleration
   std::vector<double> dx;          ///< J d, rate of x along the search direction d
@@ -71,14 +70,12 @@ class ScalarRows {
   void pushSoftness(const Softness& softness) {
     D.push_back(1.0 / softness.R);
     perInertia.push_back(softness.perInertia);
-    damping.push_back(softness.damping);
   }
   /// Drops all rows; keeps the memory.
   void clearRows() {
     reference.clear();
     D.clear();
     perInertia.clear();
-    damping.clear();
     limit.clear();
   }
   /// Fits the arrays that the solver writes to `rows`.
@@ -189,7 +186,7 @@ class ScalarRows {
 
   /// Memory held [bytes].
   std::size_t bytes() const {
-    return bytesOfAll(reference, D, perInertia, damping, limit, x, dx, f, h, df, piece_);
+    return bytesOfAll(reference, D, perInertia, limit, x, dx, f, h, df, piece_);
   }
 
   void advance(double alpha) {
@@ -197,11 +194,6 @@ class ScalarRows {
   }
   void setForceRate() {
     for (std::size_t i = 0; i < x.size(); ++i) df[i] = -h[i] * dx[i];
-  }
-  /// dx ← J̇ v with the velocities of `then` less that of `now`, at the same q. Of rows whose J does
-  /// not turn, and of ties, whose distances tell it in another way (T.116).
-  void setTurningRay(const Assembly& /*now*/, const Assembly& /*then*/) {
-    std::fill(dx.begin(), dx.end(), 0.0);
   }
 
  private:

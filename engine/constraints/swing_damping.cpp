@@ -146,7 +146,7 @@ void SwingDamping::addRows(const Assembly& in, const Pull& pull, int other, doub
   Softness softness;
   softness.R = 1.0 / (dt * dt * pull.moment * share);
   softness.damping = levers * drag / dt;
-  pushRows(motion, turns, softness);
+  pushRows(turns, softness);
   D[D.size() - 3] = 0.0;  // about the lever
 }
 

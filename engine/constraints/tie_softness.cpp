@@ -10,7 +10,8 @@ namespace softgauss {
 Softness tieSoftness(const Impedance& p, double distance, double inverseInertia,
                      const Options& options) {
   const Softness s = softnessAt(p, distance, inverseInertia, options);
-  if (options.integrator != Integrator::leapfrog) return s;
+  if (options.integrator != Integrator::leapfrog || !options.uses(Mechanism::endOfStepTies))
+    return s;
   const std::optional<ReferenceSpring> reference = bouncing(p, options);
   const double rest = restOfStep(options);
   if (!reference) return atStepsEnd(s, rest, options);

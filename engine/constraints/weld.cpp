@@ -26,8 +26,8 @@ struct RotationOffset : Offset {
     rate = J_r * (k.V[weld.bodyA].angular - k.V[weld.bodyB].angular);
     const Vector3 wA = k.turning()[weld.bodyA].angular, w = wA - k.turning()[weld.bodyB].angular;
     bias = J_r * (A.angular - B.angular - wA.cross(w)) - 0.25 * w.squaredNorm() * r;
-    lag = in.lag();  // of what turns together the rest is nothing
-    if (in.drifts()) r -= 0.5 * lag * lag * bias;
+    rate -= in.lag() * bias;
+    r -= 0.5 * in.lag() * in.lag() * bias;
   }
 };
 
@@ -49,7 +49,7 @@ void WeldRows::assemble(const Assembly& in) {
       RelativeMotion motion = offsetMotion(weld.bodyA, point.p_WA, weld.bodyB, point.p_WB);
       const Softness linear = softness(tieWeight(in, weld.impedance, weld.bodyA, weld.bodyB));
       jacobian_.add(model, k, in.tree, motion);
-      pushRows(motion, point, linear);
+      pushRows(point, linear);
 
       // Bodies that slide only cannot be turned back.
       double weight = in.weights.rotation[weld.bodyA] + in.weights.rotation[weld.bodyB];
@@ -62,7 +62,7 @@ void WeldRows::assemble(const Assembly& in) {
       motion.angular = turn.J_r.transpose();
       const Softness angular = softness(weight);
       jacobian_.add(model, k, in.tree, motion);
-      pushRows(motion, turn, angular);
+      pushRows(turn, angular);
     }
   }
   resizeRows(reference.size());

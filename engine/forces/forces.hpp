@@ -34,7 +34,7 @@ struct SmoothForces {
         c(VectorX::Zero(model.nv)),
         tau(VectorX::Zero(model.nv)),
         net(VectorX::Zero(model.nv)),
-        work(model, plan.gravity || plan.coriolis, plan.midpoint || plan.drifts) {}
+        work(model, plan.gravity || plan.coriolis, plan.drifts) {}
 };
 
 void computeSmoothForces(const Model& model, const Plan& plan, const State& state,

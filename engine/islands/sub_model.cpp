@@ -192,8 +192,6 @@ void SubModel::scatter(const Model& whole, const VectorX& y, VectorX& x) const {
 
 void SubModel::gather(const Model& whole, const State& from, State& to) const {
   gatherPosition(whole, from.q, to.q);
-  for (std::size_t t = 0; t < trees.size(); ++t)
-    to.velocityOf[t] = from.velocityOf[static_cast<std::size_t>(trees[t])];
   gather(whole, from.v, to.v);
   const WarmStart& ofWhole = from.warmstart;
   to.warmstart.knots.clear();
@@ -215,7 +213,6 @@ void SubModel::scatter(const Model& whole, const State& from, State& to) const {
   for (std::size_t t = 0; t < trees.size(); ++t) {
     const Block q = coordinatesOf(whole, model, trees[t], t);
     to.q.segment(q.from, q.count) = from.q.segment(q.to, q.count);
-    to.velocityOf[static_cast<std::size_t>(trees[t])] = from.velocityOf[t];
   }
   scatter(whole, from.v, to.v);
   if (to.a.size() == whole.nv) {

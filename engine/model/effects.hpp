@@ -9,6 +9,8 @@
 #include <string>
 #include <string_view>
 
+#include "engine/core/enum_set.hpp"
+
 namespace softgauss {
 
 enum class Effect : std::uint8_t {
@@ -53,21 +55,7 @@ inline constexpr EffectName kEffectNames[] = {
     {Effect::rollingFriction, "rolling_friction", "moment about the tangents of a contact"},
 };
 
-/// A set of effects.
-class EffectSet {
- public:
-  static constexpr EffectSet all() { return EffectSet(~0u); }
-  static constexpr EffectSet none() { return EffectSet(0u); }
-  constexpr bool has(Effect e) const { return (bits_ >> static_cast<unsigned>(e)) & 1u; }
-  constexpr void insert(Effect e) { bits_ |= 1u << static_cast<unsigned>(e); }
-  constexpr void remove(Effect e) { bits_ &= ~(1u << static_cast<unsigned>(e)); }
-  constexpr EffectSet operator&(const EffectSet& o) const { return EffectSet(bits_ & o.bits_); }
-  constexpr bool operator==(const EffectSet&) const = default;
-
- private:
-  explicit constexpr EffectSet(std::uint32_t bits) : bits_(bits) {}
-  std::uint32_t bits_;
-};
+using EffectSet = EnumSet<Effect>;
 
 /// The effect of that name, or nothing.
 constexpr std::optional<Effect> effectFromName(std::string_view name) {

@@ -18,6 +18,7 @@
 #include "engine/model/effects.hpp"
 #include "engine/model/equality.hpp"
 #include "engine/model/material.hpp"
+#include "engine/model/mechanisms.hpp"
 #include "engine/model/shape.hpp"
 
 namespace softgauss {
@@ -53,8 +54,9 @@ struct Tree {
   int rootBody = 0;
   int bodyEnd = 0;  ///< bodies [rootBody, bodyEnd)
   int firstDof = 0;
-  int dofEnd = 0;     ///< dofs [firstDof, dofEnd)
-  double mass = 0.0;  ///< of all its bodies [kg]
+  int dofEnd = 0;         ///< dofs [firstDof, dofEnd)
+  double mass = 0.0;      ///< of all its bodies [kg]
+  bool actuated = false;  ///< has a dof with a control u
 };
 
 /// One entry of the velocity vector v.
@@ -97,8 +99,8 @@ enum class Cone : std::uint8_t {
 
 /// How a step moves the state on; one file each in step/integrators.
 enum class Integrator : std::uint8_t {
-  semiImplicitEuler,  ///< order 1, one solve, implicit damping (semi_implicit_euler.hpp)
   leapfrog,           ///< order 2, one solve, moves as was solved (leapfrog.hpp)
+  semiImplicitEuler,  ///< order 1, one solve, implicit damping (semi_implicit_euler.hpp)
   implicit,           ///< order 1, one solve, Coriolis derivative too (implicit_velocity.hpp)
   implicitMidpoint,   ///< order 2, keeps the energy balance (implicit_midpoint.hpp)
   rungeKutta4,        ///< order 4, four solves (runge_kutta.hpp)
@@ -112,10 +114,10 @@ struct IntegratorName {
 };
 
 inline constexpr IntegratorName kIntegratorNames[] = {
-    {Integrator::semiImplicitEuler, "semi-implicit-euler",
-     "order 1, one solve a step, implicit joint damping"},
     {Integrator::leapfrog, "leapfrog",
      "order 2, one solve a step, implicit joint damping, moves as goals have been solved"},
+    {Integrator::semiImplicitEuler, "semi-implicit-euler",
+     "order 1, one solve a step, implicit joint damping"},
     {Integrator::implicit, "implicit",
      "order 1, one solve a step, implicit in velocity, Coriolis forces included"},
     {Integrator::implicitMidpoint, "implicit-midpoint",
@@ -141,16 +143,15 @@ struct Options {
   double timestep = 0.002;                     ///< h [s]
   Vector3 gravity = Vector3(0.0, 0.0, -9.81);  ///< [m/s²], world
   EffectSet effects = EffectSet::all();        ///< which effects may be simulated
-  Integrator integrator = Integrator::semiImplicitEuler;
+  Integrator integrator = Integrator::leapfrog;
   /// Largest error of a step that error control leaves [m or rad].
   double integrationTolerance = 1e-6;
   /// Error control for integrators of one solve (integrators/step_doubling.hpp).
   bool stepDoubling = false;
   /// Joint damping and stiff springs are in the solve, as inertia (T.16), or follow it as MuJoCo's.
   bool implicitInSolve = true;
-  bool midpointCoriolis = true;  ///< see integrators/semi_implicit_euler.hpp
-  Cone cone = Cone::pyramidal;   ///< of contacts with friction
-  double impedanceRatio = 1.0;   ///< impratio: friction against normal impedance
+  Cone cone = Cone::pyramidal;  ///< of contacts with friction
+  double impedanceRatio = 1.0;  ///< impratio: friction against normal impedance
   /// Of the leapfrog: what turns further in a step is stepped in parts (T.136) [rad].
   double partAngle = 0.1;
   /// h of the step that this one is a part of, whose rows and stiff springs it keeps; 0: of none.
@@ -161,14 +162,17 @@ struct Options {
   /// Slip adds no push to a contact (T.135), and pyramids turn with it (T.139): what slides stays
   /// level and keeps its line. Beside `ownSoftness` alone.
   bool levelSlip = false;
+  /// Of `ownSoftness` and the leapfrog, which mechanisms may be used.
+  MechanismSet mechanisms = MechanismSet::all();
   bool exactDiagonal = false;  ///< see constraints/exact_diagonal.hpp
   bool noSlip = false;         ///< friction without creep (step/no_slip.hpp)
   int maxIterations = 400;     ///< Newton
   double tolerance = 1e-12;    ///< Newton: scaled gradient, see solver/newton.hpp
 
-  /// Softness and Euler's step as MuJoCo has them, `--compatibility mujoco`, or as softgauss does.
+  /// Softness as MuJoCo has it and, where nothing else is named, Euler's step, `--compatibility
+  /// mujoco`; or softness as softgauss has it.
   void useMujocoModel(bool mujoco = true) {
-    implicitInSolve = midpointCoriolis = ownSoftness = !mujoco;
+    implicitInSolve = ownSoftness = !mujoco;
     if (mujoco && integrator == Integrator::leapfrog) integrator = Integrator::semiImplicitEuler;
   }
   /// The integrator moves on with one solve, unless it is doubled.
@@ -177,6 +181,7 @@ struct Options {
            integrator == Integrator::implicit;
   }
   bool levelsSlip() const { return ownSoftness && levelSlip; }
+  bool uses(Mechanism m) const { return ownSoftness && mechanisms.has(m); }
   /// h by which rows bound their softness: what a whole step follows, a part of it does too [s].
   double rowTimestep() const { return wholeTimestep > 0.0 ? wholeTimestep : timestep; }
   /// The step evaluates the dynamics again within it.

@@ -179,6 +179,8 @@ class Assembler {
         model_.bodies[idx(i)].tree = static_cast<int>(model_.trees.size());
         tree.mass += model_.bodies[idx(i)].mass;
       }
+      for (int i = tree.firstDof; i < tree.dofEnd; ++i)
+        tree.actuated = tree.actuated || model_.dofs[idx(i)].actuated;
       model_.trees.push_back(tree);
     }
     detail::giveLeadersInertia(model_);

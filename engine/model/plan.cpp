@@ -40,7 +40,8 @@ EffectSet possibleContacts(const Model& model) {
 /// (T.127).
 bool maySwing(const Model& model) {
   const Options& o = model.options;
-  if (!o.ownSoftness || o.looksWithin() || o.integrator == Integrator::implicit) return false;
+  if (!o.uses(Mechanism::swingDamping) || o.looksWithin() || o.integrator == Integrator::implicit)
+    return false;
   const auto hasLever = [&](int body, const Vector3& p_BP) {
     const Body& b = model.bodies[body];
     if (b.tree < 0) return false;
@@ -78,7 +79,6 @@ Plan::Plan(const Model& model) : options_(model.options) {
                    return body.joint == JointKind::revolute || body.joint == JointKind::floating;
                  }));
   const bool euler = model.options.integrator == Integrator::semiImplicitEuler;
-  midpoint = coriolis && model.options.midpointCoriolis && euler;
   drifts = model.options.integrator == Integrator::leapfrog;
   inSolve = (model.options.implicitInSolve && euler) || drifts;
   if (run(Effect::damping, anyDof([](const Dof& d) { return d.damping > 0.0; }))) {
@@ -137,9 +137,9 @@ bool Plan::fits(const Model& model) const {
     if (now.effects.has(Effect::damping) && dof.damping != planned) return false;
   }
   return now.effects == then.effects && now.gravity == then.gravity &&
-         now.midpointCoriolis == then.midpointCoriolis &&
          now.implicitInSolve == then.implicitInSolve && now.integrator == then.integrator &&
-         now.cone == then.cone && now.exactDiagonal == then.exactDiagonal;
+         now.cone == then.cone && now.exactDiagonal == then.exactDiagonal &&
+         now.mechanisms == then.mechanisms;
 }
 
 }  // namespace softgauss

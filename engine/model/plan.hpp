@@ -74,7 +74,6 @@ struct Plan {
 
   bool gravity = false;         ///< a gravity that is not zero
   bool coriolis = false;        ///< a body that can turn
-  bool midpoint = false;        ///< Coriolis forces of mid-step, Options::midpointCoriolis
   bool drifts = false;          ///< the leapfrog: positions drift to mid-step before the solve
   bool inSolve = false;         ///< Options::implicitInSolve, of semi-implicit Euler and leapfrog
   bool externalWrench = false;  ///< wrenches of Input count

@@ -32,8 +32,7 @@ void mix(std::uint64_t& h, const double* data, Eigen::Index count) {
 }  // namespace
 
 State::State(const Model& model)
-    : q(model.q0), v(VectorX::Zero(model.nv)), velocityOf(model.trees.size(), VelocityOf::asGiven) {
-  a = VectorX::Zero(model.nv);
+    : q(model.q0), v(VectorX::Zero(model.nv)), a(VectorX::Zero(model.nv)) {
   warmstart.a = VectorX::Zero(model.nv);
   warmstart.gddA = VectorX::Zero(model.nv);
   warmstart.multipliers = VectorX::Zero(model.nv);
@@ -54,8 +53,6 @@ std::uint64_t hash(const State& state) {
     for (const int part :
          {k.kind, k.row.first, k.row.second, k.row.contact, k.row.direction, k.index})
       mixBits(h, static_cast<std::uint64_t>(part));
-  for (const VelocityOf instant : state.velocityOf)
-    if (instant != VelocityOf::halfAStepAgo) mixBits(h, static_cast<std::uint64_t>(instant));
   if (state.aIsKnown) mix(h, state.a.data(), state.a.size());
   return h;
 }

@@ -41,20 +41,11 @@ struct WarmStart {
   bool gddValid = false;
 };
 
-/// The instant that the velocity of a tree belongs to.
-enum class VelocityOf : std::uint8_t {
-  halfAStepAgo,        ///< as semi-implicit Euler has it
-  now,                 ///< State::time: left by a tree that is followed in its steps
-  asGiven,             ///< by who set it: to be taken as either
-  halfAStepAgoPushed,  ///< but for Coriolis forces, left by a tree that is followed while rows push
-};
-
 /// Everything that the next step depends on, and nothing else. Copyable.
 struct State {
-  VectorX q;                           ///< configuration (nq)
-  VectorX v;                           ///< generalised velocity (nv)
-  double time = 0.0;                   ///< [s]
-  std::vector<VelocityOf> velocityOf;  ///< (trees)
+  VectorX q;              ///< configuration (nq)
+  VectorX v;              ///< generalised velocity (nv)
+  double time = 0.0;      ///< [s]
   VectorX a;              ///< acceleration by which the last step ended (nv), of the leapfrog
   bool aIsKnown = false;  ///< a is set
   WarmStart warmstart;

@@ -13,8 +13,6 @@
 #include "engine/constraints/sticking_friction.hpp"
 #include "engine/forces/forces.hpp"
 #include "engine/solver/newton.hpp"
-#include "engine/step/integrators/followed_trees.hpp"
-#include "engine/step/integrators/mid_step.hpp"
 
 namespace softgauss {
 
@@ -26,7 +24,7 @@ struct ForwardSolution {
   TreeFactor factor;      ///< of P = M + Jᵀ∇²s J in the last cell, or of M
   TreeFactor massFactor;  ///< of M, or of M + h D where damping follows the solve
   NewtonReport report;
-  bool massFactored = false;  ///< by the last solve, with M alone
+  bool massFactored = false;  ///< massFactor is that of the present M, alone
   bool cellFactored = false;  ///< `factor` is of the cell of the solution
 
   VectorX direction, Md, scale, start;  ///< scratch
@@ -55,13 +53,12 @@ struct StepStats {
   double realised = 0.0;
   double maxPenetration = 0.0;  ///< deepest overlap of a contact [m], ≥ 0
   std::int64_t pairsSkipped = 0;
-  int followedTrees = 0;   ///< whose free motion was followed within the step (T.93)
-  int abandonedTrees = 0;  ///< that needed more sub-steps than allowed and took (T.16) instead
-  int kicks = 0;           ///< second solves, where rows push a followed tree
+  int followedTrees = 0;   ///< that moved freely, followed within the step (T.136)
+  int abandonedTrees = 0;  ///< that needed more sub-steps than allowed and took (T.138) instead
   int swings = 0;          ///< bodies that swing too fast, held in a second solve (T.128)
   int substeps = 0;        ///< of followed trees, over all of them; parts of a divided step
   int parts = 1;           ///< into which the leapfrog has divided the step (T.136)
-  int repeats = 0;         ///< solves that were repeated, with another prediction (T.16)
+  int repeats = 0;         ///< solves that were repeated, with another prediction (T.138)
   int evaluations = 0;     ///< of forward dynamics, where the step looks within itself
   int rejections = 0;      ///< parts of the step that were tried and shortened
   int jumps = 0;           ///< shortest parts that were taken in spite of their estimate
@@ -114,11 +111,9 @@ struct Data {
   ExactDiagonal exactDiagonal;
   StickingFriction sticking;  ///< with Options::noSlip: friction of the last solve, else empty
   ForwardSolution forward;
-  FollowedTrees followed;  ///< of the integrator; empty without Coriolis forces of mid-step
-  MidStep midStep;         ///< of the integrator; empty as above, or without rows
-  VectorX turning;         ///< (nv) velocity of turning, v′ of (T.16), of the leapfrog
-  VectorX acceleration;    ///< discrete, (v⁺ − v)/h (nv)
-  std::unique_ptr<StepParts> parts;                ///< of the leapfrog, else null
+  VectorX turning;                   ///< (nv) velocity of turning, v′ of (T.138), of the leapfrog
+  VectorX acceleration;              ///< discrete, (v⁺ − v)/h (nv)
+  std::unique_ptr<StepParts> parts;  ///< of the leapfrog, else null
   std::unique_ptr<IntegratorStages> stages;        ///< null where the step is one solve
   std::unique_ptr<VelocityDerivative> derivative;  ///< of the implicit integrators, else null
   StepStats stats;

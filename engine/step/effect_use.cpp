@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <tuple>
 
+#include "engine/step/step_parts.hpp"
+
 namespace softgauss {
 namespace {
 
@@ -29,9 +31,9 @@ std::array<EffectUse, kEffects> effectUse(const Model& model, const Data& data,
   at(Effect::coriolis).calls = forces.coriolis;
   // The pass over the tree serves both: its memory counts where either runs.
   at(Effect::gravity).bytes = plan.gravity ? bytesOf(work.F) : 0;
-  at(Effect::coriolis).bytes = plan.coriolis ? bytesOfAll(work.F, work.V, work.A) +
-                                                   data.followed.bytes() + data.midStep.bytes()
-                                             : 0;
+  at(Effect::coriolis).bytes = plan.coriolis ? bytesOfAll(work.F, work.V, work.A) : 0;
+  if (plan.coriolis && data.parts)
+    at(Effect::coriolis).bytes += data.parts->resolution.bytes() + data.parts->freeTrees.bytes();
   at(Effect::damping) = {forces.damping, 0, bytesOf(plan.damping)};
   at(Effect::spring) = {forces.spring, 0, bytesOf(plan.springs)};
   at(Effect::externalWrench).calls = forces.externalWrench;

@@ -62,7 +62,7 @@ bool solveMass(Data& data, const VectorX* diagonal, VectorX& x) {
 SolveStatus minimizeGauss(const Model& model, const VectorX* guess, Data& data) noexcept {
   ForwardSolution& s = data.forward;
   s.report = {};
-  s.massFactored = s.cellFactored = false;
+  s.cellFactored = false;
   data.stats.refusedGuesses += guess && !guess->allFinite();
   if (model.nv == 0) return SolveStatus::converged;
   const auto notFinite = [&] {
@@ -96,7 +96,7 @@ SolveStatus minimizeGauss(const Model& model, const VectorX* guess, Data& data) 
     if (s.report.residual <= model.options.tolerance) return finish();
   }
   // Without rows the minimiser is M⁻¹(τ − c).
-  if (!s.massFactor.compute(data.inertia.hat())) {
+  if (!s.massFactored && !s.massFactor.compute(data.inertia.hat())) {
     data.stats.badDof = s.massFactor.failedRow();
     return notPositive();
   }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/constraints/contact_turn.hpp"
 #include "engine/core/memory.hpp"
 #include "engine/step/forward.hpp"
 #include "engine/step/integrators/tree_turn.hpp"
@@ -14,35 +15,10 @@ const double Resolution::kFollowedTurn = 1e-4;
 
 namespace {
 
-/// Rate at which a surface turns against what it touches: that about the normal leaves both as they
-/// are, and a sphere has nothing to turn.
-double tiltRate(const Geometry& g, const Kinematics& k, const Vector3& n_W) {
-  if (g.body == 0 || g.shape.kind == ShapeKind::sphere) return 0.0;
-  const Vector3& omega = k.turning()[g.body].angular;
-  return (omega - n_W * n_W.dot(omega)).norm();
-}
-
-/// Rate at which the place where a cylinder's rim touches goes round it.
-double rimRate(const Geometry& g, const Kinematics& k, const Vector3& n_W) {
-  if (g.body == 0 || g.shape.kind != ShapeKind::cylinder) return 0.0;
-  const Vector3 axis = k.X_WB[g.body].R * g.X_BG.R.col(2);
-  const Vector3 omega = k.turning()[g.body].angular;
-  const double turns = std::abs(axis.dot(n_W.cross(omega.cross(n_W))));
-  const double slope2 = axis.cross(n_W).squaredNorm();
-  // Lying flat it has no such place.
-  constexpr double kFlat = 1e-12;
-  return slope2 > kFlat && turns > 0.0 ? turns / slope2 : 0.0;
-}
-
 double contactRate(const Model& model, const Data& data) {
-  constexpr double kOfRim = 0.2;
-  const Kinematics& k = data.kinematics;
   double rate = 0.0;
   for (const Contact& c : data.contacts.contacts)
-    for (const int i : {c.geometryA, c.geometryB}) {
-      const Geometry& g = model.geometries[i];
-      rate = std::max({rate, tiltRate(g, k, c.n_W), kOfRim * rimRate(g, k, c.n_W)});
-    }
+    rate = std::max(rate, turnRate(model, data.kinematics, c));
   return rate;
 }
 
@@ -102,7 +78,6 @@ void Resolution::findTurns(const Model& model, const State& state, Data& data) {
   computeBiasAt(model, data.kinematics, data.inertia, state.v, data.forces.work, change_);
   ++data.forces.calls.coriolis;
   change_ = data.forces.bias - change_;
-  data.forward.massFactored = false;
   if (!solveMass(data, nullptr, change_)) return;  // the solve will say so
   const VectorX& a = state.a;
   bool multiplied = false;
@@ -110,7 +85,7 @@ void Resolution::findTurns(const Model& model, const State& state, Data& data) {
     const Tree& tree = model.trees[t];
     const int first = tree.firstDof, dofs = tree.dofEnd - first;
     turn[t] = h * turnRate(model, tree, data, state.v, a, change_);
-    if (!followingOf(tree, tied_[t], data, state.v, a, h).byEnergy) continue;
+    if (!isPassive(tree, tied_[t], data, state.v, a, h)) continue;
     if (!multiplied) {
       data.inertia.M.multiply(change_, Mchange_);
       data.inertia.M.multiply(state.v, Mv_);
@@ -144,6 +119,7 @@ void Resolution::find(const Model& model, const State& state, bool controlled, D
       !mayTurnFar(model, data, state.v, state.a))
     return;
   const double h = model.options.timestep;
+  const MechanismSet& mechanisms = model.options.mechanisms;
   if (state.aIsKnown) findTurns(model, state, data);
   double rate = std::max(contactRate(model, data), tieRate(model, data));
   bool touchedKnown = false;
@@ -152,13 +128,15 @@ void Resolution::find(const Model& model, const State& state, bool controlled, D
     if (!touchedKnown) findTouched(model, data), touchedKnown = true;
     const int tree = static_cast<int>(t);
     const double ofTree = 4.0 * std::sqrt(2.0 * turn[t]) / h;
-    const bool mayFollow = !touched_[t] && !dampingStops(model.trees[t], data, h);
+    const bool mayFollow = mechanisms.has(Mechanism::freeTrees) && !touched_[t] &&
+                           !dampingStops(model.trees[t], data, h);
     const bool tooMany = !(h * ofTree <= kMostParts * model.options.partAngle);
     if (mayFollow && (tooMany || !driven(model, data, state, tree, controlled)))
       free[t] = 1, anyFree = true;
     else
       rate = std::max(rate, ofTree);
   }
+  if (!mechanisms.has(Mechanism::parts)) return;
   const double needed = std::ceil(h * rate / model.options.partAngle - 1e-9);
   parts = needed < kMostParts ? std::max(1, static_cast<int>(needed)) : kMostParts;
 }

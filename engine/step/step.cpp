@@ -83,8 +83,6 @@ Data::Data(const Model& model, Evaluation)
       forces(model, plan),
       constraints(plan.rows),
       exactDiagonal(model.options.exactDiagonal ? model.nv : 0),
-      followed(plan.midpoint ? FollowedTrees(model) : FollowedTrees()),
-      midStep(plan.midpoint && !plan.rows.empty() ? MidStep(model) : MidStep()),
       turning(VectorX::Zero(plan.drifts ? model.nv : 0)),
       acceleration(VectorX::Zero(model.nv)),
       derivative(isImplicit(model.options.integrator) ? std::make_unique<VelocityDerivative>(model)
@@ -105,11 +103,10 @@ void StepStats::add(const StepStats& other) {
   parts = std::max(parts, other.parts);
   for (int StepStats::*count :
        {&StepStats::contacts, &StepStats::rows, &StepStats::iterations, &StepStats::factorizations,
-        &StepStats::followedTrees, &StepStats::abandonedTrees, &StepStats::kicks,
-        &StepStats::swings, &StepStats::substeps, &StepStats::repeats, &StepStats::evaluations,
-        &StepStats::rejections, &StepStats::jumps, &StepStats::glances, &StepStats::shortSolves,
-        &StepStats::roundedSolves, &StepStats::refusedGuesses, &StepStats::keptSlips,
-        &StepStats::unseen})
+        &StepStats::followedTrees, &StepStats::abandonedTrees, &StepStats::swings,
+        &StepStats::substeps, &StepStats::repeats, &StepStats::evaluations, &StepStats::rejections,
+        &StepStats::jumps, &StepStats::glances, &StepStats::shortSolves, &StepStats::roundedSolves,
+        &StepStats::refusedGuesses, &StepStats::keptSlips, &StepStats::unseen})
     this->*count += other.*count;
   badDof = std::max(badDof, other.badDof);
   for (double StepTimes::*time : {&StepTimes::kinematics, &StepTimes::collision, &StepTimes::rows,
@@ -145,7 +142,7 @@ void assembleRows(const Model& model, const Input& input, const State& state, Da
                     data.weights,
                     data.inertia.sparsity,
                     input.softFriction};
-  if (data.plan.drifts && state.aIsKnown) assembly.turning = &data.turning;
+  if (data.plan.drifts && predictsTurning(model, state)) assembly.turning = &data.turning;
   data.constraints.assemble(assembly);
   // A mass matrix that cannot be factored is found, and reported, by the solve.
   if (model.options.exactDiagonal && !data.constraints.active().empty())
@@ -170,6 +167,7 @@ SolveStatus computeStages(const Model& model, const Input& input, const State& s
   if (!posed) computeKinematics(model, state, data.kinematics);
   computeMassMatrix(model, data.kinematics, data.inertia);
   if (data.plan.inSolve) addImplicitInertia(model, data);
+  data.forward.massFactored = false;
   computeForces(model, input, state, data, clock);
 
   if (looksForContacts(data, contacts)) {
@@ -244,7 +242,7 @@ Tried tryStep(const Model& model, const Given& given, const State& start, int mo
   const VectorX* aim = nullptr;
   for (bool again = false;; again = true) {
     if (resolves) {
-      data.parts->resolution.find(model, state, given.control != nullptr, data);
+      data.parts->resolution.find(model, state, given.control && given.control->acts(), data);
       if (data.parts->resolution.parts > most) return Tried::unresolved;
     }
     if (isRefused(solve(model, given, state, data, aim, clock))) return Tried::refused;

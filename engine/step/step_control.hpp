@@ -18,6 +18,9 @@ class StepControl {
   /// set.
   virtual const VectorX* apply(const Model& model, const State& state, Data& data) noexcept = 0;
 
+  /// Whether there is anything to choose: a control that is always zero leaves motion passive.
+  virtual bool acts() const noexcept { return true; }
+
   /// What apply() has found has been done: keeps where the next solve may start.
   virtual void keep(WarmStart& warmstart) noexcept = 0;
 };

@@ -12,6 +12,18 @@ namespace {
 
 constexpr double kMostIterations = 1e6;
 
+MechanismSet readWithout(const YamlMap& map, const YamlMap::Entry& entry) {
+  if (entry.value.kind != YamlValue::Kind::list)
+    map.fail(entry,
+             fmt::format("found {}, expected a list of mechanisms", entry.value.described()));
+  std::vector<std::string> names;
+  for (const MechanismName& mechanism : kMechanismNames) names.emplace_back(mechanism.name);
+  MechanismSet kept = MechanismSet::all();
+  for (const YamlValue& item : entry.value.items)
+    kept.remove(*mechanismFromName(map.choice({entry.key, item, item.line}, names)));
+  return kept;
+}
+
 EffectSet readEffects(const YamlMap& map, const YamlMap::Entry& entry) {
   if (entry.value.kind == YamlValue::Kind::text && entry.value.text == "auto")
     return EffectSet::all();
@@ -41,7 +53,7 @@ IntegrationKeys readIntegration(const YamlMap& map, Options& options) {
   const std::string_view name = integratorName(options.integrator);
   if (options.stepDoubling && !options.solvesOnce())
     map.fail(*doubling, fmt::format("found true beside integrator {}, where it changes nothing, "
-                                    "expected semi-implicit-euler or implicit",
+                                    "expected leapfrog, semi-implicit-euler or implicit",
                                     name));
   if (tolerance && !controlsError(options))
     map.fail(*tolerance, fmt::format("found {} beside integrator {}, which has no error control, "
@@ -56,7 +68,10 @@ IntegrationKeys readOptions(const YamlMap& map, Options& options,
                             std::optional<gdd::GddSolver>& solver) {
   map.expectOnly({"integrator", "integration_tolerance", "step_doubling", "cone", "no_slip",
                   "level_slip", "exact_diagonal", "tolerance", "max_iterations", "impedance_ratio",
-                  "effects", "compatibility", "gdd_solver"});
+                  "effects", "without", "compatibility", "gdd_solver"});
+  // First, for an integrator that is named counts.
+  if (const auto* entry = map.find("compatibility"))
+    options.useMujocoModel(map.choice(*entry, {"none", "mujoco"}) == "mujoco");
   const IntegrationKeys integration = readIntegration(map, options);
   if (const auto* entry = map.find("cone"))
     options.cone = map.choice(*entry, {"pyramidal", "elliptic"}) == "elliptic" ? Cone::elliptic
@@ -78,8 +93,7 @@ IntegrationKeys readOptions(const YamlMap& map, Options& options,
   }
   map.read("impedance_ratio", options.impedanceRatio, Range::positive);
   if (const auto* entry = map.find("effects")) options.effects = readEffects(map, *entry);
-  if (const auto* entry = map.find("compatibility"))
-    options.useMujocoModel(map.choice(*entry, {"none", "mujoco"}) == "mujoco");
+  if (const auto* entry = map.find("without")) options.mechanisms = readWithout(map, *entry);
   return integration;
 }
 

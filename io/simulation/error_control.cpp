@@ -6,19 +6,16 @@
 namespace softgauss {
 
 std::vector<std::string> setErrorControl(const SimulationOptions& options,
-                                         const io::IntegrationKeys& scene, bool hasGoals,
-                                         Options& o) {
+                                         const io::IntegrationKeys& scene, Options& o) {
   std::vector<std::string> warnings;
   const bool named = options.integrator || scene.integrator;
   const bool doubled = o.stepDoubling || options.stepDoubling;
   if (options.integrator)
     o.integrator = *options.integrator;
-  else if (!named && doubled)
-    o.integrator = Integrator::semiImplicitEuler;
-  else if (!named && options.integrationTolerance)
+  else if (!named && !doubled && (options.integrationTolerance || scene.tolerance))
     o.integrator = Integrator::dormandPrince;
-  else if (!named && hasGoals && o.ownSoftness)  // `--compatibility mujoco` has MuJoCo's step
-    o.integrator = Integrator::leapfrog;
+  else if (!named)
+    o.integrator = o.ownSoftness ? Integrator::leapfrog : Integrator::semiImplicitEuler;
 
   const std::string_view name = integratorName(o.integrator);
   const auto ignored = [&](const char* key, const char* reason) {
@@ -26,8 +23,8 @@ std::vector<std::string> setErrorControl(const SimulationOptions& options,
   };
   if (options.stepDoubling && !o.solvesOnce())
     throw OptionError(
-        fmt::format("step-doubling changes nothing beside {}; it is for semi-implicit-euler and "
-                    "implicit",
+        fmt::format("step-doubling changes nothing beside {}; it is for leapfrog, "
+                    "semi-implicit-euler and implicit",
                     name));
   o.stepDoubling = doubled && o.solvesOnce();
   if (doubled && !o.stepDoubling) ignored("step_doubling", "is not doubled");

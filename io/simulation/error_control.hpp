@@ -11,11 +11,9 @@ namespace softgauss {
 
 /// Sets the integrator, Options::stepDoubling and Options::integrationTolerance in `o`, which holds
 /// those of the file. Where nobody names an integrator, an integration tolerance asks for
-/// dormand-prince, and goals for the leapfrog, which moves as they have been solved. An integrator
-/// of the caller's takes the file's error control off where it has none of that kind. Returns
-/// warnings, which say so. Throws OptionError.
+/// dormand-prince. An integrator of the caller's takes the file's error control off where it has
+/// none of that kind. Returns warnings, which say so. Throws OptionError.
 std::vector<std::string> setErrorControl(const SimulationOptions& options,
-                                         const io::IntegrationKeys& file, bool hasGoals,
-                                         Options& o);
+                                         const io::IntegrationKeys& file, Options& o);
 
 }  // namespace softgauss

@@ -25,6 +25,7 @@ struct SimulationOptions {
   bool groundIsDefault = true;          ///< 0 for a floating base, none for a fixed one
   std::optional<double> timestep;       ///< absent: the file's own, or 0.002 [s]
   std::vector<std::pair<std::string, double>> q0;  ///< joints and where they start [rad or m]
+  std::optional<MechanismSet> mechanisms;          ///< absent: the file's own, or all
   std::optional<EffectSet> effects;                ///< absent: the file's own, or all
   bool zeroEffortIsUnlimited = false;
   int mostDofs = 2000;                ///< more take minutes to load and gigabytes to hold
@@ -44,7 +45,6 @@ struct SimulationOptions {
   std::vector<std::filesystem::path> packagePaths;
   double largestMesh = 64.0;  ///< [MB]
   bool visualMeshes = false;  ///< read the meshes of visuals too
-  bool moreGoals = false;     ///< there will be goals besides those of the file
   bool withoutGoals = false;  ///< the goals of the file are left out
 };
 

@@ -275,7 +275,7 @@ std::size_t Rollout::bytesPerRun() const {
   const State& s = scene_.initial;
   const WarmStart& w = s.warmstart;
   // A warm start has five vectors of nv once a step has been taken.
-  return sizeof(State) + bytesOfAll(s.q, s.v, s.velocityOf) + bytesOf(w.knots) +
+  return sizeof(State) + bytesOfAll(s.q, s.v, s.a) + bytesOf(w.knots) +
          6 * static_cast<std::size_t>(scene_.model.nv) * sizeof(double);
 }
 

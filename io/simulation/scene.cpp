@@ -31,19 +31,10 @@ void setOptions(const SimulationOptions& options, Options& o) {
   if (options.exactDiagonal) o.exactDiagonal = true;
   if (options.noSlip) o.noSlip = true;
   if (options.levelSlip) o.levelSlip = true;
+  if (options.mechanisms) o.mechanisms = *options.mechanisms;
   if (options.cone) o.cone = *options.cone;
   if (options.effects) o.effects = *options.effects;
   if (options.likeMujoco) o.useMujocoModel(*options.likeMujoco);
-}
-
-/// The integrator; returns warnings.
-std::vector<std::string> chooseIntegrator(const SimulationOptions& options,
-                                          const io::IntegrationKeys& file, bool hasGoals,
-                                          Options& o, Scene& scene) {
-  scene.leapfrogForGoals = !options.integrator && !file.integrator &&
-                           !options.integrationTolerance && !options.stepDoubling &&
-                           !o.stepDoubling && o.ownSoftness;
-  return setErrorControl(options, file, hasGoals, o);
 }
 
 io::UrdfOptions urdfOptions(const SimulationOptions& options) {
@@ -70,7 +61,7 @@ bool standsOnItsRoot(const SimulationOptions& options, const Model& model) {
 void loadRobot(const SimulationOptions& options, Scene& scene) {
   ModelBuilder builder = io::readUrdf(scene.file, urdfOptions(options), &scene.contents);
   setOptions(options, builder.options);
-  chooseIntegrator(options, {}, options.moreGoals, builder.options, scene);
+  setErrorControl(options, {}, builder.options);
   if (options.base != BaseKind::automatic) scene.baseOrigin = BaseOrigin::option;
   if (options.guessBase) scene.baseOrigin = BaseOrigin::guess;
   scene.model = builder.build();
@@ -101,9 +92,8 @@ void loadRobot(const SimulationOptions& options, Scene& scene) {
 void loadSceneFile(const SimulationOptions& options, Scene& scene) {
   io::SceneFile file = io::readScene(scene.file, urdfOptions(options));
   setOptions(options, file.builder.options);
-  std::vector<std::string> warnings = chooseIntegrator(
-      options, file.integration, options.moreGoals || (file.hasGoals && !options.withoutGoals),
-      file.builder.options, scene);
+  std::vector<std::string> warnings =
+      setErrorControl(options, file.integration, file.builder.options);
   scene.ground = file.ground;
   if (!scene.ground && !file.noGround && !file.starts.empty()) scene.ground = 0.0;
   if (scene.ground) addGround(file.builder, *scene.ground, file.groundMaterial);

@@ -36,7 +36,6 @@ struct SceneParts {
   BaseNotes bases;
   bool hasGoals = false;  ///< the scene file holds goals
   bool fileSaysFcl = false;
-  bool leapfrogForGoals = false;  ///< nobody has named an integrator, so goals want the leapfrog
   gdd::GddSolver gddSolver = gdd::GddSolver::activeSet;
   // Lines of what only the whole program can judge; 0 where the file does not say it.
   SourceLocation timestepWhere, collisionWhere;

@@ -12,15 +12,7 @@ void SimulationGoals::expectLink(const std::string& goal, const std::string& lin
     throw NameError(goal + ": " + problem);
 }
 
-void SimulationGoals::follow() {
-  Scene& scene = *parts_->scene;
-  if (!scene.leapfrogForGoals || scene.model.options.integrator == Integrator::leapfrog) return;
-  scene.model.options.integrator = Integrator::leapfrog;
-  parts_->data = std::make_unique<Data>(scene.model);
-}
-
 gdd::Goal& SimulationGoals::add(std::unique_ptr<gdd::Goal> goal) {
-  follow();
   auto& goals = parts_->controller->goals;
   const std::size_t place = goals.size() - (parts_->hasRegularisers ? 2 : 0);
   return **goals.insert(goals.begin() + static_cast<std::ptrdiff_t>(place), std::move(goal));
@@ -58,7 +50,6 @@ gdd::Hold& SimulationGoals::hold(const std::string& link) {
 gdd::Posture& SimulationGoals::posture(double weight) {
   auto& goals = parts_->controller->goals;
   if (!parts_->hasRegularisers) {
-    follow();
     for (auto& regulariser : regularisers(parts_->scene->initial.q, weight))
       goals.push_back(std::move(regulariser));
     parts_->hasRegularisers = true;

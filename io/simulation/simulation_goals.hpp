@@ -52,7 +52,6 @@ class SimulationGoals {
   gdd::Goal& operator[](std::size_t i);
 
  private:
-  void follow();
   gdd::Goal& addOwn(std::unique_ptr<gdd::Goal> goal);
   void expectLink(const std::string& goal, const std::string& link) const;
 

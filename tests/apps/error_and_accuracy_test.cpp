@@ -206,7 +206,9 @@ TEST(ReportError, SeesWhatPassesWithinAStep) {
         const Estimate e = estimate({shot.scene, "--duration", speed > 10.0 ? "0.05" : "0.25",
                                      "--timestep", h, "--integrator", std::string(name.name)},
                                     folder, shot.truth);
-        EXPECT_GT(e.exact, 1e-6) << name.name << speed << h;
+        // Steps that are divided until they err by 1e-6 may err by less.
+        const bool controlled = name.integrator == Integrator::dormandPrince;
+        EXPECT_GT(e.exact, controlled ? 1e-7 : 1e-6) << name.name << speed << h;
         EXPECT_GT(e.told / e.exact, 0.5) << name.name << " " << speed << " " << h;
       }
 }

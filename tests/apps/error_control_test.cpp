@@ -69,13 +69,13 @@ TEST(ErrorControl, FollowsFromWhatIsGiven) {
   const std::string tolerance = "  integration_tolerance: 1e-5\n",
                     doubled = "  step_doubling: true\n";
   for (const ControlCase& c : std::vector<ControlCase>{
-           {"", {}, "semi-implicit-euler"},
-           {"", {"--step-doubling"}, "semi-implicit-euler, doubled"},
+           {"", {}, "leapfrog"},
+           {"", {"--step-doubling"}, "leapfrog, doubled"},
            {"", {"--integration-tolerance", "1e-5"}, "dormand-prince"},
            {tolerance, {}, "dormand-prince"},
-           {tolerance, {"--step-doubling"}, "semi-implicit-euler, doubled"},
-           {tolerance + doubled, {}, "semi-implicit-euler, doubled"},
-           {doubled, {"--integration-tolerance", "1e-5"}, "semi-implicit-euler, doubled"},
+           {tolerance, {"--step-doubling"}, "leapfrog, doubled"},
+           {tolerance + doubled, {}, "leapfrog, doubled"},
+           {doubled, {"--integration-tolerance", "1e-5"}, "leapfrog, doubled"},
            {doubled, {"--integrator", "implicit"}, "implicit, doubled"},
            {doubled, {"--integrator", "runge-kutta-4"}, "runge-kutta-4, warned of step_doubling"},
            {tolerance,

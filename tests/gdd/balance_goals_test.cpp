@@ -186,6 +186,8 @@ TEST(BalanceGoals, WithoutAPendulumThereIsNoCapturePoint) {
 TEST(BalanceBehaviour, TheHumanoidShiftsItsWeight) {
   RobotScene r("humanoid");
   r.addPosture();
+  // A nanometre above the ground, so that nothing touches it in the first step.
+  r.state.q[2] += 1e-9;
   const int robot = gdd::drivenRobot(r.model);
   const auto centre = [&] {
     return PlainMomentum(r.model, kinematicsAt(r.model, r.state), robot).centre;

@@ -143,7 +143,7 @@ TEST(GddPhysics, WithoutActuatorsMotionIsPassive) {
     if (!byEffect) controller.box.lower = controller.box.upper = VectorX::Zero(passive.model.nv);
     controller.goals.push_back(std::make_unique<gdd::VirtualDamping>());
     for (int i = 0; i < 20; ++i) {
-      ASSERT_EQ(controller.step(passive.model, {}, state, data, passive.contacts.get()),
+      ASSERT_EQ(controller.step(passive.model, passive.input, state, data, passive.contacts.get()),
                 SolveStatus::converged);
       EXPECT_EQ(controller.control.cwiseAbs().maxCoeff(), 0.0);
       ASSERT_EQ(passive.step(), SolveStatus::converged);

@@ -50,11 +50,15 @@ class Witness final : public StepControl {
   }
 
   std::vector<double> off;
+  int leftOut = 0;  ///< parts that were not judged
 
  private:
   void judge(const VectorX& v) {
     // The augmented Lagrangian may end at its iteration limit, and says so.
-    if (controller_.report.status == gdd::GddStatus::iterationLimit) return;
+    if (controller_.report.status == gdd::GddStatus::iterationLimit) {
+      ++leftOut;
+      return;
+    }
     const VectorX moved = (v - from_) / length_;
     off.push_back((moved - planned_).cwiseAbs().maxCoeff() /
                   std::max(1.0, planned_.cwiseAbs().maxCoeff()));
@@ -91,6 +95,7 @@ Off offOver(const Realised& run, const Method& method) {
   input.softFriction = true;
   for (int i = 0; i < static_cast<int>(1.0 / method.timestep); ++i) {
     const std::size_t before = witness.off.size();
+    witness.leftOut = 0;
     EXPECT_NE(step(r.model, input, r.state, data, &r.contacts, &witness), SolveStatus::notFinite)
         << r.state.time;
     witness.end(r.state.v);
@@ -98,7 +103,8 @@ Off offOver(const Realised& run, const Method& method) {
     double worst = 0.0;
     for (std::size_t k = before; k < witness.off.size(); ++k)
       worst = std::max(worst, witness.off[k]);
-    if (witness.off.size() == before + static_cast<std::size_t>(data.stats.parts)) {
+    if (witness.leftOut == 0 &&
+        witness.off.size() == before + static_cast<std::size_t>(data.stats.parts)) {
       EXPECT_NEAR(worst, data.stats.realised, 1e-9 + 1e-9 * worst);
     }
   }

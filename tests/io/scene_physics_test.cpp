@@ -20,6 +20,7 @@ TEST(SceneFile, SpringsPullJointsToTheirReference) {
       "     {shoulder: {stiffness: 3, spring_reference: 0.2, friction: 0}}}\n");
   const io::SceneFile scene = folder.read();
   Model model = scene.builder.build();
+  model.options.integrator = Integrator::semiImplicitEuler;
   model.options.implicitInSolve = false;
   State state = scene.initialState(model);
   Data data(model);
@@ -104,7 +105,8 @@ TEST(SceneFile, OptionsAreThoseOfTheModel) {
   const io::SceneFile plainScene = SceneFolder(robot).read();
   const Options& plain = plainScene.builder.options;
   EXPECT_EQ(plain.effects, EffectSet::all());
-  EXPECT_TRUE(plain.midpointCoriolis);
+  EXPECT_EQ(plain.integrator, Integrator::leapfrog);
+  EXPECT_TRUE(plain.implicitInSolve);
   EXPECT_TRUE(plain.ownSoftness);
   EXPECT_EQ(plainScene.gddSolver, std::nullopt);
   const io::SceneFile scene =
@@ -119,7 +121,7 @@ TEST(SceneFile, OptionsAreThoseOfTheModel) {
   EXPECT_EQ(o.tolerance, 1e-9);
   EXPECT_EQ(o.maxIterations, 7);
   EXPECT_EQ(o.impedanceRatio, 4.0);
-  EXPECT_FALSE(o.midpointCoriolis);
+  EXPECT_FALSE(o.implicitInSolve);
   EXPECT_FALSE(o.ownSoftness);
   EXPECT_EQ(o.cone, Cone::elliptic);
   EXPECT_TRUE(o.noSlip);
@@ -179,7 +181,9 @@ TEST(SceneWrench, GivesItsImpulse) {
 
 // At a point of the link it has the moment r × f of that moment's pose.
 TEST(SceneWrench, ActsAtThePointOfItsLink) {
-  Simulation run(kBall + "wrenches: [{link: ball, force: [3, -2, 1], point: [0.1, 0.2, -0.3]}]\n");
+  Simulation run(kBall +
+                 "wrenches: [{link: ball, force: [3, -2, 1], point: [0.1, 0.2, -0.3]}]\n"
+                 "options: {integrator: semi-implicit-euler}\n");  // at the pose of its start
   run.state.v.tail<3>() = Vector3(1.0, -2.0, 0.5);
   for (int i = 0; i < 20; ++i) {
     const Quaternion q(run.state.q[3], run.state.q[4], run.state.q[5], run.state.q[6]);

@@ -30,6 +30,7 @@ inline double relativeImbalance(const Scene& s, const VectorX& residual) {
 /// The scene with M and forces of the bodies alone: damping and springs of now, not of the step's
 /// end.
 inline Scene inContinuousTime(Scene s) {
+  s.model.options.integrator = Integrator::semiImplicitEuler;
   s.model.options.implicitInSolve = false;
   s.stages();
   return s;

@@ -3,6 +3,7 @@
 # Runs record.mjs with MuJoCo from npm, in the version and with the checksum of package-lock.json.
 #
 #   record.sh MODULES REFERENCE [--check] [NAME…]
+#   record.sh MODULES FOLDER --stability    stability.mjs in FOLDER
 #
 # MODULES is a folder of the build tree, into which npm installs; nothing is fetched when it is
 # there already. Exit code 77: skipped, for MuJoCo cannot be had here.
@@ -24,4 +25,5 @@ if ! cmp -s "$here/package-lock.json" "$modules/installed-lock.json"; then
     skip "npm cannot install MuJoCo; $modules/npm.log says why"
   cp "$here/package-lock.json" "$modules/installed-lock.json"
 fi
+[[ ${1:-} == --stability ]] && exec node "$here/stability.mjs" "$modules/node_modules" "$reference"
 exec node "$here/record.mjs" "$modules/node_modules" "$reference" "$@"

@@ -86,7 +86,6 @@ TEST(Rollout, GivesTheSameBitsInAnyOrder) {
 
 TEST(Rollout, IsWhatASimulationDoes) {
   SimulationOptions options;
-  options.moreGoals = true;
   const auto scene = loadScene(robot("arm"), options);
   const Vector3 target(0.5, 0.2, 0.4);
   std::vector<double> q(static_cast<std::size_t>(scene->model.nq));

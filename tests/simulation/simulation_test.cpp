@@ -46,7 +46,7 @@ TEST(Simulation, IsTheEngineUnderTheSameGoals) {
 
 TEST(Simulation, WithoutGoalsItIsLeftToItself) {
   Simulation sim = Simulation::load(robot("arm"));
-  EXPECT_EQ(sim.model().options.integrator, Integrator::semiImplicitEuler);
+  EXPECT_EQ(sim.model().options.integrator, Integrator::leapfrog);
   sim.run(0.1);
   EXPECT_DOUBLE_EQ(sim.time(), 0.1);
   EXPECT_EQ(sim.torque("elbow_pitch"), 0.0);

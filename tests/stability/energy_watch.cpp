@@ -5,7 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/step/integrators/implicit_forces.hpp"
+#include "engine/constraints/tie_softness.hpp"
+#include "engine/step/integrators/tree_motion.hpp"
 
 namespace softgauss::test {
 namespace {
@@ -24,6 +25,7 @@ void forEachSoft(const Model& model, const State& state, const Data& data, F&& f
     }
   });
   const auto softness = [&](const Impedance& p) { return softnessAt(p, 0.0, 1.0, model.options); };
+  const auto tie = [&](const Impedance& p) { return tieSoftness(p, 0.0, 1.0, model.options); };
   for (int i = 0; i < rows.jointLimit.rowCount(); ++i)
     for (const JointRange& range : model.ranges)
       if (model.bodies[range.body].v == rows.jointLimit.dof(i))
@@ -31,22 +33,13 @@ void forEachSoft(const Model& model, const State& state, const Data& data, F&& f
   for (int i = 0; i < rows.dryFriction.rowCount(); ++i)
     f(rows.dryFriction, i, 1, softness(model.dofs[rows.dryFriction.dof(i)].frictionImpedance));
   for (int i = 0; i < rows.connection.rowCount(); i += 3)
-    f(rows.connection, i, 3, softness(model.connections[i / 3].impedance));
+    f(rows.connection, i, 3, tie(model.connections[i / 3].impedance));
   for (int i = 0; i < rows.weld.rowCount(); i += 3)  // its point, its rotation
-    f(rows.weld, i, 3, softness(model.welds[i / 6].impedance));
+    f(rows.weld, i, 3, tie(model.welds[i / 6].impedance));
 }
 
-/// References of the kinds that have rows.
-std::vector<std::vector<double>> references(const Constraints& rows) {
-  std::vector<std::vector<double>> all;
-  rows.visit([&](const auto& kind) { all.push_back(kind.reference); });
-  return all;
-}
-
-bool isPushed(const State& state) {
-  return std::find(state.velocityOf.begin(), state.velocityOf.end(),
-                   VelocityOf::halfAStepAgoPushed) != state.velocityOf.end();
-}
+/// (T.93) of what is not followed: of (T.136), 4 √(2 turn) ≤ partAngle in a part of a step.
+double leastTurn(const Options& options) { return 0.5 * std::pow(0.25 * options.partAngle, 2.0); }
 
 /// √(2 K) by its largest part, as sub-steps have it: max_i (|v_i| + h |a_i|) √M_ii.
 double speed(const Model& model, const State& state, const Data& data) {
@@ -58,41 +51,46 @@ double speed(const Model& model, const State& state, const Data& data) {
 
 EnergyWatch::EnergyWatch(const Model& model)
     : model_(model),
-      leapfrog_(model.options.solvesOnce() && !model.options.stepDoubling &&
-                model.options.integrator != Integrator::leapfrog),
+      leapfrog_(model.options.integrator == Integrator::leapfrog && !model.options.stepDoubling),
       kinematics_(model),
       data_(model),
-      contacts_(model) {}
+      contacts_(model),
+      back_(model),
+      ahead_(VectorX::Zero(model.nv)),
+      behind_(ahead_) {}
 
 double EnergyWatch::energy(const State& state) {
-  const double h = model_.options.timestep;
+  // The velocity of semi-implicit Euler is that of half a step earlier.
+  const bool lags = model_.options.integrator == Integrator::semiImplicitEuler;
   back_ = state;
-  double pushed = 0.0;
-  if (leapfrog_) {
-    VectorX v = state.v;
-    if (isPushed(state)) setRestForce(state);
-    for (std::size_t t = 0; t < state.velocityOf.size(); ++t) {
-      if (!wasFollowed(state.velocityOf[t])) continue;
-      auto part =
-          v.segment(model_.trees[t].firstDof, model_.trees[t].dofEnd - model_.trees[t].firstDof);
-      if (state.velocityOf[t] == VelocityOf::halfAStepAgoPushed)
-        pushed += 0.5 * h * part.dot(restForce_.segment(model_.trees[t].firstDof, part.size()));
-      part.setZero();
-    }
-    integratePosition(model_, v, -0.5 * h, back_.q);
-  }
+  if (lags && !model_.options.stepDoubling)
+    integratePosition(model_, state.v, -0.5 * model_.options.timestep, back_.q);
   computeKinematics(model_, back_, kinematics_);
-  return computeEnergy(model_, kinematics_, back_.q, back_.v).total() + pushed;
+  return computeEnergy(model_, kinematics_, back_.q, back_.v).total();
 }
 
-void EnergyWatch::setRestForce(const State& state) {
-  State still = state;
-  still.v.setZero();
-  computeStages(model_, {}, still, data_, nullptr);
-  restForce_ = data_.forces.net;
-  for (const Plan::Spring& s : data_.plan.springs)  // no part of a half step: taken at its end
-    if (isStiffSpring(model_, data_, s))
-      restForce_[s.dof] += s.stiffness * (state.q[s.q] - s.reference);
+void EnergyWatch::forceAt(const VectorX& q, const Input& input, VectorX& force) {
+  back_.q = q;
+  back_.v.setZero();
+  back_.aIsKnown = false;
+  computeStages(model_, input, back_, data_, nullptr);
+  force = data_.forces.net;
+  for (const Tree& tree : model_.trees)
+    if (model_.isFree(tree.rootBody)) force.segment<3>(tree.firstDof).setZero();
+}
+
+double EnergyWatch::bend(const State& state, const Input& input) {
+  constexpr double kAngle = 1e-4;
+  const double speed = state.v.cwiseAbs().maxCoeff();
+  if (!(speed > 0.0)) return 0.0;
+  const double time = kAngle / speed;
+  VectorX q = state.q;
+  integratePosition(model_, state.v, time, q);
+  forceAt(q, input, ahead_);
+  q = state.q;
+  integratePosition(model_, state.v, -time, q);
+  forceAt(q, input, behind_);
+  return std::abs(state.v.dot(ahead_ - behind_)) / (2.0 * time);
 }
 
 double EnergyWatch::turning(const State& state) {
@@ -105,41 +103,42 @@ double EnergyWatch::turning(const State& state) {
 double EnergyWatch::offset(const State& state, const Input& input) {
   if (!leapfrog_) return 0.0;
   const double h = model_.options.timestep;
+  const double bends = bend(state, input);
   computeStages(model_, input, state, data_, nullptr);
   VectorX force = data_.forces.net;
-  for (std::size_t t = 0; t < model_.trees.size(); ++t) {
-    const Tree& tree = model_.trees[t];
+  for (const Tree& tree : model_.trees)
     if (model_.isFree(tree.rootBody)) force.segment<3>(tree.firstDof).setZero();
-    if (!state.velocityOf.empty() && state.velocityOf[t] == VelocityOf::now)
-      force.segment(tree.firstDof, tree.dofEnd - tree.firstDof).setZero();
-  }
   VectorX a = force;
   data_.forward.massFactored = false;
   solveMass(data_, nullptr, a);
-  return 2.0 * FollowedTrees::kFollowedTurn * turning(state) + 0.125 * h * h * force.dot(a);
+  back_ = state;
+  computeKinematics(model_, back_, kinematics_);
+  return 2.0 * leastTurn(model_.options) * turning(state) + 0.125 * h * h * force.dot(a) +
+         h * h * bends / 24.0;
 }
 
 double EnergyWatch::stored(const State& state, const Input& input) {
   Input soft = input;
   soft.softFriction = true;  // (T.97) scales k d by the speed
-  computeStages(model_, soft, state, data_, &contacts_);
-  const auto all = [](int) { return true; };
-  data_.constraints.leaveOutTurning(all);
-  const std::vector<std::vector<double>> moving = references(data_.constraints);
   State still = state;
   still.v.setZero();
+  still.aIsKnown = false;
   computeStages(model_, soft, still, data_, &contacts_);
-  const std::vector<std::vector<double>> resting = references(data_.constraints);
   forwardDynamics(model_, nullptr, data_);
   std::vector<const void*> kinds;
-  data_.constraints.visit([&](const auto& kind) { kinds.push_back(&kind); });
+  std::vector<std::vector<double>> rates;  // J v
+  data_.constraints.visit([&](const auto& kind) {
+    kinds.push_back(&kind);
+    rates.emplace_back(kind.x.size());
+    kind.multiply(state.v, rates.back());
+  });
 
   double sum = 0.0;
   const auto add = [&](const auto& kind, int row, int rows, const Softness& s) {
     const auto k = std::find(kinds.begin(), kinds.end(), &kind) - kinds.begin();
     for (int i = row; i < row + rows; ++i) {
-      const double rate = std::abs(moving[k][i] - resting[k][i]) / s.damping;
-      const double depth = s.stiffness > 0.0 ? std::abs(resting[k][i]) / s.stiffness : 0.0;
+      const double rate = std::abs(rates[k][i]);
+      const double depth = s.stiffness > 0.0 ? std::abs(kind.reference[i]) / s.stiffness : 0.0;
       sum += std::abs(kind.f[i]) * (depth + rate * (1.0 / s.damping + model_.options.timestep));
     }
   };
@@ -164,7 +163,6 @@ double EnergyWatch::begun(const Data& data) {
 }
 
 void EnergyWatch::begin(const State& state, const Input& input) {
-  start_ = state;
   least_ = energy(state);
   limit_ = least_ + stored(state, input) + offset(state, input);
 }
@@ -172,16 +170,11 @@ void EnergyWatch::begin(const State& state, const Input& input) {
 double EnergyWatch::check(const State& state, const Input& input, const Data& data, double work,
                           double perStep) {
   constexpr int kEvery = 5;
-  if (steps_ == 0 && state.velocityOf != start_.velocityOf) {
-    State start = start_;
-    start.velocityOf = state.velocityOf;
-    begin(start, input);
-  }
   const double E = energy(state), now = E - work;
   limit_ += perStep + begun(data);
   if (leapfrog_) {
     const double K = turning(back_);
-    limit_ += std::pow(2.0 * FollowedTrees::kFollowedTurn, 1.5) / 12.0 * K +
+    limit_ += std::pow(2.0 * leastTurn(model_.options), 1.5) / 12.0 * K * data.stats.parts +
               TreeMotion::kTolerance * data.stats.substeps * speed(model_, state, data) *
                   std::sqrt(2.0 * K);
   }

@@ -23,16 +23,14 @@
 /// *What begins.* A contact that begins within a step is found at its end, at a depth r to which it
 /// has come for nothing; its rows push over it with the force f of that step.
 ///
-/// *The step, Δ and ε.* The leapfrog's v is that of half a step earlier, and so is its E: it is
-/// taken at q ⊖ ½ h v, where a constant force has no error, whatever h. What else accelerates is
-/// off by Δ = ⅛ h² Fᵀ M⁻¹F, F the smooth forces, to second order in ½ h; F of free bodies without
-/// their weight. A tree that turns by less than kFollowedTurn = ½ (h ω)² of its velocity in a step
-/// is not followed: 2 kFollowedTurn K in Δ, and ε = (h ω)³ K/12 of the third order, K without the
-/// way of free bodies. One that is followed has v at q, and keeps its energy to the tolerance of
-/// its sub-steps: each may put kTolerance of the tree's speed u = max_i (|v_i| + h |a_i|) √M_ii
-/// into a dof, and |(M v)_i| ≤ √(2 K M_ii), so that ε = kTolerance u √(2 K); where rows push it, v
-/// is without half a step of F_s, what weight and springs that a step follows do: E there is that
-/// of q and v, and ½ h v·F_s. Which of these a start is, is what the first step has made of it.
+/// *The step, Δ and ε.* The leapfrog keeps an energy that is off from E by
+/// h² (FᵀM⁻¹F/12 − vᵀ(∂²V)v/24) where M does not change, F = −∂V the forces of position: by no more
+/// than Δ = ⅛ h² FᵀM⁻¹F + h² |vᵀ(∂²V)v|/24, F without the weight of free bodies, which is constant.
+/// Where M turns, by less than kTurn = ½ (h ω)² of the velocity in a part of a step, 2 kTurn K
+/// more, and ε = (h ω)³ K/12 of the third order in each part, K without the way of free bodies. A
+/// tree that is followed by itself keeps its energy to the tolerance of its sub-steps: each may put
+/// kTolerance of the tree's speed u = max_i (|v_i| + h |a_i|) √M_ii into a dof, and
+/// |(M v)_i| ≤ √(2 K M_ii), so that ε = kTolerance u √(2 K).
 
 #include <cstdint>
 #include <vector>
@@ -62,7 +60,9 @@ class EnergyWatch {
   double offset(const State& state, const Input& input);  ///< Δ [J]
 
  private:
-  void setRestForce(const State& state);
+  /// −∂V at q, with τ (nv): forces of position, and what is applied.
+  void forceAt(const VectorX& q, const Input& input, VectorX& force);
+  double bend(const State& state, const Input& input);  ///< |vᵀ(∂²V)v| [W/s]
   double begun(const Data& data);
   double turning(const State& state);  ///< K where energy() was, but for the way of free bodies [J]
 
@@ -72,11 +72,10 @@ class EnergyWatch {
   Data data_;
   collision::SceneContacts contacts_;
   State back_;
-  VectorX restForce_;         ///< F_s (nv)
+  VectorX ahead_, behind_;    ///< forces of position at q ⊕ ε v and q ⊖ ε v (nv)
   double least_ = kInfinity;  ///< E − W so far
   double limit_ = kInfinity;  ///< of E − W: the least of the right side, but for Δ(t)
   int steps_ = 0;
-  State start_;
   std::vector<RowName> now_, before_;  ///< contacts
 };
 

@@ -40,9 +40,8 @@ void tumbles(double rate, double h, double seconds) {
     momentum = std::max(momentum, (L - L0).norm() / L0.norm());
   });
   t.expect("energy, relative", energy, 0.01, "");
-  // A body that is not followed keeps the velocity of half a step earlier, which shows up to
-  // ½ h ω of momentum that is not there; it is followed from ½ (h ω)² = kFollowedTurn on (T.93).
-  t.expect("momentum, relative", momentum, 0.5 * std::sqrt(2.0 * FollowedTrees::kFollowedTurn), "");
+  // What is not followed has turn < 1e-4, h ω < 0.014, and errs by some (h ω)²/8 a radian.
+  t.expect("momentum, relative", momentum, 1e-3, "");
 }
 
 TEST(FastRotation, TorqueFreeBodyKeepsEnergyAndMomentum) {

@@ -127,16 +127,11 @@ void spinsTogether(bool weld, double massA, double massB, double h, double turn,
   Trial t(name.str(), with(builder, h));
   const Vector3 axis = weld ? Vector3(0, 0, 1) : Vector3(0.6, 0.48, 0.64);
   const Vector3 omega = turn / h * axis, com(0.2 * massB / (massA + massB), 0, 0);
-  // A velocity that lags is that of the chord which has led here, not of the circle.
-  const bool lags = turn < 0.1;
-  const Matrix3 back = axisRotation(axis, -turn);
-  const auto velocity = [&](const Vector3& p) {
-    return lags ? Vector3((p - com - back * (p - com)) / h) : Vector3(omega.cross(p - com));
-  };
+  const auto velocity = [&](const Vector3& p) { return Vector3(omega.cross(p - com)); };
   t.state.q[7] = 0.2;
   t.state.v << velocity(Vector3::Zero()), omega, velocity(Vector3(0.2, 0, 0)), omega;
   const double E0 = t.energy().total();
-  t.mayGain = 2.0 * turn * turn * E0;  // of a circle's velocity against the chord's
+  t.mayGain = 2.0 * turn * turn * E0;  // of ties that are slack at the start
   // At either instant what the tie itself does in half a step, ⅛ h² FᵀM⁻¹F with F = m ω² r.
   t.mayRise = 0.5 * turn * turn * E0;
   t.run(seconds);

@@ -7,7 +7,7 @@
 /// may have been done in place of what was asked (StepStats::abandonedTrees and the like), and a
 /// passive scene must gain no energy, neither against its start nor against any step on the way
 /// (energy_watch.hpp):
-///   E(t) − E(0) − W(t) ≤ mayGain
+///   E(t) − E(0) − W(t) ≤ mayGain + what the integrator is off by, at 0 and t
 ///   E(t) − W(t) ≤ E(s) − W(s) + what rows store at s + what the integrator is off by + mayRise
 /// with E of computeEnergy(), to which what contacts store does not belong, and W what `input.tau`
 /// has done, h τᵀ ½ (v + v⁺) in each step.
@@ -91,7 +91,7 @@ class Trial {
   bool watch(SolveStatus status);
 
   std::string name_;
-  double startEnergy_ = 0.0;
+  double startEnergy_ = 0.0, startOffset_ = 0.0;
   bool begun_ = false, broken_ = false;
   VectorX before_;  ///< v at the start of the step
   ContactSet all_;  ///< of `unpruned`

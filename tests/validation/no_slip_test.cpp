@@ -55,13 +55,11 @@ TEST(NoSlip, BoundsTheCreepOfALoad) {
       }
 }
 
-// Beyond the friction cone it slides, and there the second solve finds nothing to improve. (T.123)
-// is for rows without it alone, and by it boxes that hop as they slide would part.
+// Beyond the friction cone it slides, and there the second solve finds nothing to improve.
 TEST(NoSlip, SlidesAsWithout) {
   const double theta = 0.6, mu = 0.3;
   for (const Cone cone : kCones) {
     Scene soft = boxOnSlope(theta, mu, cone, false), stiff = boxOnSlope(theta, mu, cone, true);
-    soft.model.options.midpointCoriolis = stiff.model.options.midpointCoriolis = false;
     int pressed = 0;
     for (int i = 0; i < 500; ++i) {
       soft.step();

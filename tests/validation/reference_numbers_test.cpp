@@ -17,6 +17,7 @@ Scene slidingSphere() {
   ModelBuilder builder = sphereOnPlane(0.1, 1.0, 1.0);
   builder.options.tolerance = 1e-15;
   builder.options.ownSoftness = false;  // without J̇ v of contacts
+  builder.options.integrator = Integrator::semiImplicitEuler;
   Scene s(builder.build(), std::make_shared<SampleContacts>());
   s.state.q << 0, 0, 0.0995, 1, 0, 0, 0;
   s.state.v << 0.1, 0, -0.05, 0, 0, 0;
@@ -59,6 +60,7 @@ Scene limitedPendulum() {
   Model model = pendulum(0.5, 1.0, 0.05, 0.01, 0.05).build();
   model.options.tolerance = 1e-15;
   model.options.implicitInSolve = false;  // MuJoCo's damping follows the solve
+  model.options.integrator = Integrator::semiImplicitEuler;
   model.dofs[0].dryFriction = 0.1;
   JointRange range;
   range.body = 1;

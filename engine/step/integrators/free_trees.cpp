@@ -12,13 +12,9 @@
 namespace softgauss {
 
 FreeTrees::FreeTrees(const Model& model)
-    : held_(VectorX::Zero(model.nv)), pushed_(held_), motion_(model) {
-  none_.inertia = held_;
-}
+    : held_(VectorX::Zero(model.nv)), pushed_(held_), motion_(model) {}
 
-std::size_t FreeTrees::bytes() const {
-  return bytesOfAll(none_.inertia, held_, pushed_) + motion_.bytes();
-}
+std::size_t FreeTrees::bytes() const { return bytesOfAll(held_, pushed_) + motion_.bytes(); }
 
 bool FreeTrees::follow(const Model& model, const Input& input, const Resolution& resolution,
                        const State& start, Data& data, State& end) {
@@ -40,11 +36,10 @@ bool FreeTrees::follow(const Model& model, const Input& input, const Resolution&
       held_.segment<3>(root.v + 3) = data.forces.tau.segment<3>(root.v + 3);
       ++coordinates;
     }
-    motion_.start(model, start, tree, true, none_);
+    motion_.start(model, start, tree);
     const double firstStep = h * std::min(1.0, 0.2 / std::sqrt(resolution.turn[t]));
-    // From rest it is what a part of the step brings; a is no measure near a singular place.
-    constexpr double kFromRest = 0.01;
-    const double speed = treeSpeed(tree, data, start.v, end.a, kFromRest * h);
+    const double speed =
+        motion_.speed(model, data.plan, tree, held_, inWorld, data.inertia.motionScale, h);
     const TreeMotion::Outcome outcome = motion_.run(model, data.plan, tree, held_, inWorld,
                                                     data.inertia.motionScale, speed, h, firstStep);
     data.stats.substeps += motion_.substeps();

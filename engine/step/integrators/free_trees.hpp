@@ -25,8 +25,7 @@ class FreeTrees {
   std::size_t bytes() const;
 
  private:
-  TreeMotion::AtEnd none_;  ///< nothing is left to the step's end
-  VectorX held_, pushed_;   ///< (nv) applied forces, and those of wrenches
+  VectorX held_, pushed_;  ///< (nv) applied forces, and those of wrenches
   TreeMotion motion_;
 };
 

@@ -9,8 +9,7 @@ namespace softgauss {
 bool isStiffSpring(const Model& model, const Data& data, const Plan::Spring& spring) {
   const Options& o = model.options;
   const double h = o.rowTimestep();
-  return (o.midpointCoriolis || o.implicitInSolve) &&
-         h * h * spring.stiffness * data.weights.dof[spring.dof] > 1.0;
+  return o.implicitInSolve && h * h * spring.stiffness * data.weights.dof[spring.dof] > 1.0;
 }
 
 bool anyStiffSpring(const Model& model, const Data& data) {

@@ -39,15 +39,19 @@ void driftBefore(const Model& model, Data& data, State& state) {
   integratePosition(model, v, 0.5 * model.options.timestep, state.q);
 }
 
+bool predictsTurning(const Model& model, const State& state) {
+  return state.aIsKnown && model.options.mechanisms.has(Mechanism::prediction);
+}
+
 void predictTurning(const Model& model, const State& state, Data& data) {
-  if (!state.aIsKnown) return;
+  if (!predictsTurning(model, state)) return;
   data.turning = state.v + 0.5 * model.options.timestep * state.a;
   setTurning(model, data.turning, data.kinematics);
 }
 
 bool forgetsPredicted(const Model& model, const Resolution& resolution, const Data& data,
                       State& state) {
-  if (!data.plan.coriolis) return false;
+  if (!data.plan.coriolis || !model.options.mechanisms.has(Mechanism::prediction)) return false;
   const double h = model.options.timestep;
   const VectorX& a = data.forward.a;
   bool any = false;

@@ -24,6 +24,8 @@ namespace softgauss {
 /// q ← q_m.
 void driftBefore(const Model& model, Data& data, State& state);
 
+/// Whether v′ is known: there was a step before.
+bool predictsTurning(const Model& model, const State& state);
 /// The velocity of turning v′ (T.138), and what depends on it, into data.kinematics.
 void predictTurning(const Model& model, const State& state, Data& data);
 

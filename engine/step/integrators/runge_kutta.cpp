@@ -17,7 +17,7 @@ namespace {
 void displacementRate(const Tableau& t, const Model& model, const VectorX& phi, const VectorX& v,
                       VectorX& rate) {
   rate = v;
-  if (!t.embedded && !model.options.midpointCoriolis) return;
+  if (!t.embedded && !model.options.ownSoftness) return;
   for (const Tree& tree : model.trees) {
     const Body& root = model.bodies[tree.rootBody];
     if (root.joint != JointKind::floating) continue;

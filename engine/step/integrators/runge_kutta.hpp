@@ -7,7 +7,7 @@
 ///
 /// a is forward dynamics (T.1) with all its rows, solved anew in every stage; φ is a displacement
 /// from where the step began, and dexp⁻¹ is the identity but for the rotation of floating joints
-/// (T.92) [Munthe-Kaas 1999]. It keeps the order in orientation. Without Options::midpointCoriolis,
+/// (T.92) [Munthe-Kaas 1999]. It keeps the order in orientation. Without Options::ownSoftness,
 /// as under `--compatibility mujoco`, the classical method takes φ̇ = v: MuJoCo's averaged rate, of
 /// order 2 in orientation. Joint damping is explicit: h d must stay well below M_ii. The applied
 /// force is held over the step.

@@ -93,7 +93,6 @@ bool stepDoubling(const Model& model, const Input& input, ContactSource* contact
   state.v = s.from.v;
   state.a = s.from.a;
   state.aIsKnown = s.from.aIsKnown;
-  state.velocityOf = s.from.velocityOf;
   state.time += h;
   return true;
 }

@@ -17,7 +17,7 @@ Quaternion quaternionAt(const VectorX& q, int i) { return {q[i], q[i + 1], q[i +
 
 }  // namespace
 
-const double TreeMotion::kTolerance = 5e-8;
+const double TreeMotion::kTolerance = 2e-8;
 const int TreeMotion::kMaxSubsteps = 4000;
 
 TreeMotion::TreeMotion(const Model& model)
@@ -115,22 +115,18 @@ void TreeMotion::derivative(const Model& model, const Plan& plan, const Tree& tr
       n.pA.setZero();
   }
   for (int i = tree.firstDof; i < tree.dofEnd; ++i) dv_[i] = (*held_)[i];
-  if (damped_ && plan.damped())
+  if (plan.damped())
     for (int i = tree.firstDof; i < tree.dofEnd; ++i) dv_[i] -= plan.damping[i] * w_[i];
-  const bool softOnly = atEnd_ && (resting_ || !damped_);
-  for (std::size_t i = 0; i < plan.springs.size(); ++i) {
-    const Plan::Spring& s = plan.springs[i];
-    if (s.dof < tree.firstDof || s.dof >= tree.dofEnd || (softOnly && atEnd_->stiff[i])) continue;
-    dv_[s.dof] -= s.stiffness * (q_[s.q] + u_[s.dof] - s.reference);
-  }
+  for (const Plan::Spring& s : plan.springs)
+    if (s.dof >= tree.firstDof && s.dof < tree.dofEnd)
+      dv_[s.dof] -= s.stiffness * (q_[s.q] + u_[s.dof] - s.reference);
   for (int b = tree.bodyEnd - 1; b >= first; --b) {
     const Body& body = model.bodies[b];
     if (body.joint == JointKind::floating) break;  // the root
     Node& n = nodes_[b - first];
     const Vector6 S = stacked(n.S);
     n.U.noalias() = n.IA * S;
-    n.inverse = 1.0 / (S.dot(n.U) + (armature ? model.dofs[body.v].armature : 0.0) +
-                       (damped_ ? 0.0 : atEnd_->inertia[body.v]));
+    n.inverse = 1.0 / (S.dot(n.U) + (armature ? model.dofs[body.v].armature : 0.0));
     n.u = dv_[body.v] - S.dot(n.pA);
     if (b == first) break;
     Node& parent = nodes_[body.parent - first];
@@ -188,28 +184,40 @@ void TreeMotion::acceleration(const Model& model, const Plan& plan, const Tree& 
   vdot.segment(tree.firstDof, n) = dv_.segment(tree.firstDof, n);
 }
 
-void TreeMotion::atRest(const Model& model, const Plan& plan, const Tree& tree, const VectorX& held,
-                        const Vector3& heldInWorld, VectorX& vdot) {
-  const int f = tree.firstDof, n = tree.dofEnd - tree.firstDof;
-  u_.segment(f, n).setZero();
-  w_.segment(f, n).setZero();
-  held_ = &held;
-  heldInWorld_ = heldInWorld;
-  resting_ = true;
-  derivative(model, plan, tree);
-  resting_ = false;
-  vdot.segment(f, n) = dv_.segment(f, n);
-}
-
-void TreeMotion::start(const Model& model, const State& state, const Tree& tree, bool damped,
-                       const AtEnd& atEnd) {
-  damped_ = damped;
-  atEnd_ = &atEnd;
+void TreeMotion::start(const Model& model, const State& state, const Tree& tree) {
   const int n = tree.dofEnd - tree.firstDof;
   const Body& root = model.bodies[tree.rootBody];
   const int coordinates = root.joint == JointKind::floating ? n + 1 : n;
   q_.segment(root.q, coordinates) = state.q.segment(root.q, coordinates);
   v_.segment(tree.firstDof, n) = state.v.segment(tree.firstDof, n);
+}
+
+double TreeMotion::speed(const Model& model, const Plan& plan, const Tree& tree,
+                         const VectorX& held, const Vector3& heldInWorld, const VectorX& scale,
+                         double duration) {
+  const int f = tree.firstDof, n = tree.dofEnd - tree.firstDof;
+  held_ = &held;
+  heldInWorld_ = heldInWorld;
+  u_.segment(f, n).setZero();
+  w_.segment(f, n).setZero();
+  derivative(model, plan, tree);
+  const double fromRest =
+      duration * dv_.segment(f, n).cwiseQuotient(scale.segment(f, n)).cwiseAbs().maxCoeff();
+  w_.segment(f, n) = v_.segment(f, n);
+  poses(model, tree, false);
+  double twiceKinetic = 0.0;
+  const bool armature = model.options.effects.has(Effect::armature);
+  for (int b = tree.rootBody; b < tree.bodyEnd; ++b) {
+    const Body& body = model.bodies[b];
+    const Node& node = nodes_[b - tree.rootBody];
+    if (!body.massless)
+      twiceKinetic += dot(node.V, Inertia::fromCentral(body.mass, node.R * body.com + node.r,
+                                                       rotated(node.R, body.I_Bcm)) *
+                                      node.V);
+    for (int i = body.v; armature && i < body.v + body.dofs; ++i)
+      twiceKinetic += model.dofs[i].armature * v_[i] * v_[i];
+  }
+  return std::sqrt(std::max(0.0, twiceKinetic)) + fromRest;
 }
 
 TreeMotion::Outcome TreeMotion::run(const Model& model, const Plan& plan, const Tree& tree,

@@ -28,20 +28,13 @@ class TreeMotion {
   /// Memory for the largest tree of the model.
   explicit TreeMotion(const Model& model);
 
-  /// What the step takes at its end: joint damping and stiff springs (T.95). They are no part of
-  /// the course of a motion that is not `damped`, but the inertia that they are in such a step is.
-  struct AtEnd {
-    std::vector<std::uint8_t> stiff;  ///< (springs of the plan) 1: it is
-    VectorX inertia;                  ///< (nv) h D + h² K
-  };
-  /// Where the motion begins; `atEnd` stays where it is.
-  void start(const Model& model, const State& state, const Tree& tree, bool damped,
-             const AtEnd& atEnd);
-  /// Adds `change` (the tree's dofs) to the velocity.
-  template <class Change>
-  void kick(const Tree& tree, const Change& change) {
-    v_.segment(tree.firstDof, tree.dofEnd - tree.firstDof) += change;
-  }
+  /// Where the motion begins.
+  void start(const Model& model, const State& state, const Tree& tree);
+  /// √(2 K) of the tree where it begins, by its links' motion, and what the forces give it from
+  /// rest in `duration` [s], max_i |v̇_i| √M_ii: by it the errors of sub-steps are judged. Near a
+  /// singular place joints that turn against each other have speeds that say nothing.
+  double speed(const Model& model, const Plan& plan, const Tree& tree, const VectorX& held,
+               const Vector3& heldInWorld, const VectorX& scale, double duration);
   /// Moves the tree on by `duration` [s]. `held`: Q (nv), the root's moment about its own axes;
   /// `heldInWorld`: a moment about world axes on a floating root besides [N m]. `scale`: 1/√M_ii
   /// (nv), which makes velocities and their errors comparable; `speed`: of the tree, in that
@@ -50,11 +43,6 @@ class TreeMotion {
   Outcome run(const Model& model, const Plan& plan, const Tree& tree, const VectorX& held,
               const Vector3& heldInWorld, const VectorX& scale, double speed, double duration,
               double firstStep);
-
-  /// v̇ of (T.91) where the motion is, were it at rest: no Coriolis forces, and no stiff springs.
-  /// `vdot` (nv).
-  void atRest(const Model& model, const Plan& plan, const Tree& tree, const VectorX& held,
-              const Vector3& heldInWorld, VectorX& vdot);
 
   const VectorX& q() const { return q_; }  ///< (nq), of the tree moved
   const VectorX& v() const { return v_; }  ///< (nv), of the tree moved
@@ -98,8 +86,6 @@ class TreeMotion {
   VectorX du_, dv_;                 ///< its result
   std::array<VectorX, 7> Ku_, Kv_;  ///< stages
   std::vector<Node> nodes_;
-  const AtEnd* atEnd_ = nullptr;
-  bool damped_ = true, resting_ = false;
   int substeps_ = 0;
 };
 

@@ -5,18 +5,6 @@
 #include <cmath>
 
 namespace softgauss {
-namespace {
-
-constexpr Following kPassive{1e-6, 0.05, true}, kHeld{1e-3, 0.25, false},
-    kDamped{0.25, 0.25, false};
-
-/// Whether forces of this kind act on the tree at all.
-bool act(const VectorX& forces, const Tree& tree) {
-  return (forces.segment(tree.firstDof, tree.dofEnd - tree.firstDof).array() != 0.0).any();
-}
-
-}  // namespace
-
 bool drives(const Tree& tree, const Data& data, const VectorX& v, const VectorX& a, double h) {
   double most = 0.0;
   for (int i = tree.firstDof; i < tree.dofEnd; ++i)
@@ -31,12 +19,10 @@ bool dampingStops(const Tree& tree, const Data& data, double h) {
   return false;
 }
 
-Following followingOf(const Tree& tree, bool tied, const Data& data, const VectorX& v,
-                      const VectorX& a, double h) {
-  const bool held = tied || isSingle(tree) || drives(tree, data, v, a, h);
-  const bool damped = data.plan.damped() && act(data.plan.damping, tree);
-  if (damped && (held || dampingStops(tree, data, h))) return kDamped;
-  return held ? kHeld : kPassive;
+bool isPassive(const Tree& tree, bool tied, const Data& data, const VectorX& v, const VectorX& a,
+               double h) {
+  const bool isSingle = tree.bodyEnd == tree.rootBody + 1;
+  return !tied && !isSingle && !drives(tree, data, v, a, h) && !dampingStops(tree, data, h);
 }
 
 double turnRate(const Model& model, const Tree& tree, const Data& data, const VectorX& v,
@@ -81,12 +67,8 @@ double treeSpeed(const Tree& tree, const Data& data, const VectorX& v, const Vec
   return speed;
 }
 
-double stepAngle(const Model& model, const Data& data, int body) {
-  return model.options.timestep * data.kinematics.V[body].angular.norm();
-}
-
 bool mayTurnFar(const Model& model, const Data& data, const VectorX& v, const VectorX& a) {
-  const double h = model.options.timestep, fast = 0.005 / h;
+  const double h = model.options.timestep, fast = 0.003 / h;
   for (const Motion& V : data.kinematics.V)
     if (V.angular.squaredNorm() > fast * fast) return true;
   for (const Tree& tree : model.trees) {

@@ -195,20 +195,20 @@ TEST(CarriedLoad, LeavesTiesThatBounceAsTheyAre) {
     for (Connection& c : scene.model.connections) c.impedance.dampingRatio = ratio;
     scene.stages();
     const std::vector<double> with = scene.data->constraints.connection.D;
-    scene.model.options.ownSoftness = false;
+    scene.model.options.mechanisms.remove(Mechanism::carriedLoad);
     scene.stages();
     const std::vector<double>& without = scene.data->constraints.connection.D;
     for (int i = 0; i < 6; ++i) EXPECT_EQ(with[i] > without[i], ratio > 0.5) << i << " " << ratio;
   }
 }
 
-// Options::ownSoftness makes rows of ties harder by their load, A = 1/L, and nothing else of them.
+// Loads make rows of ties harder, A = 1/L, and nothing else of them.
 TEST(CarriedLoad, HardensTies) {
   Scene scene(Tied::row({1.0, 99.0}, false));
   scene.stages();
   const std::vector<double> with = scene.data->constraints.connection.D,
                             references = scene.data->constraints.connection.reference;
-  scene.model.options.ownSoftness = false;
+  scene.model.options.mechanisms.remove(Mechanism::carriedLoad);
   scene.stages();
   const std::vector<double>& without = scene.data->constraints.connection.D;
   ASSERT_EQ(with.size(), 6u);

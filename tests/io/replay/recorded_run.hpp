@@ -51,7 +51,8 @@ class RecordedRun {
     r.q = before.q;
     r.v = before.v;
     scene_.step();
-    const Data& data = *scene_.data;
+    Data& data = *scene_.data;
+    computeKinematics(scene_.model, before, data.kinematics);  // of the record
     r.a = data.forward.a;
     r.u = VectorX::Zero(scene_.model.nv);
     r.contacts = data.stats.contacts;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/step/integrators/followed_trees.hpp"
+#include "engine/step/integrators/free_trees.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,6 +7,7 @@
 
 #include "collision/scene_contacts.hpp"
 #include "engine/core/rotation.hpp"
+#include "engine/step/step_parts.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/sample_models.hpp"
 #include "tests/support/scene.hpp"
@@ -77,7 +78,7 @@ Scene tumbling(double h, double rate) {
 }
 
 // From the same instant, whatever the step: what is followed does not depend on it.
-TEST(FollowedTrees, TumblingDoesNotDependOnTheStep) {
+TEST(FreeTrees, TumblingDoesNotDependOnTheStep) {
   const auto after = [](double h) {
     Scene s = tumbling(h, 200.0);
     s.state.v.tail<3>() = Vector3(120.0, 150.0, 80.0);  // as given
@@ -96,18 +97,17 @@ TEST(FollowedTrees, TumblingDoesNotDependOnTheStep) {
   }
 }
 
-// What is slow takes (T.16) alone, and its velocity stays that of half a step earlier.
-TEST(FollowedTrees, SlowTreesAreNotFollowed) {
-  Scene s = tumbling(0.002, 5.0);
+// What is slow takes (T.138) alone.
+TEST(FreeTrees, SlowTreesAreNotFollowed) {
+  Scene s = tumbling(0.002, 2.0);
   for (int i = 0; i < 500; ++i) {
     s.step();
     ASSERT_EQ(s.data->stats.followedTrees, 0);
-    ASSERT_EQ(s.state.velocityOf[0], VelocityOf::halfAStepAgo);
   }
 }
 
 // Only the tree that turns is followed; the other's bits are those it has alone.
-TEST(FollowedTrees, EachTreeDecidesForItself) {
+TEST(FreeTrees, EachTreeDecidesForItself) {
   const auto builder = [](bool both) {
     ModelBuilder b("pair");
     b.base = BaseKind::floating;
@@ -131,68 +131,36 @@ TEST(FollowedTrees, EachTreeDecidesForItself) {
 }
 
 // 10⁴ turns in a step are more than the sub-steps can follow: said, and the state is moved by
-// (T.16) or left, never silently wrong.
-TEST(FollowedTrees, WhatCannotBeFollowedIsCounted) {
+// (T.138) or left, never silently wrong.
+TEST(FreeTrees, WhatCannotBeFollowedIsCounted) {
   Scene s = tumbling(0.02, 5e6);
   s.step();
   EXPECT_EQ(s.data->stats.followedTrees, 0);
   EXPECT_EQ(s.data->stats.abandonedTrees, 1);
 }
 
-// MuJoCo's Euler is left as it is.
-TEST(FollowedTrees, WithoutCoriolisForcesOfMidStepNothingIsFollowed) {
+// Other integrators follow nothing.
+TEST(FreeTrees, AreOfTheLeapfrog) {
   Scene s = tumbling(0.002, 100.0);
-  s.model.options.midpointCoriolis = false;
+  s.model.options.integrator = Integrator::semiImplicitEuler;
   s.step();
   EXPECT_EQ(s.data->stats.followedTrees, 0);
-  EXPECT_EQ(s.data->followed.bytes(), 0u);
+  EXPECT_EQ(s.data->parts, nullptr);
 }
 
-/// A load of 1 kg that slides on a vertical rail and rests on the rail's end, `depth` beyond it. On
-/// hinges about two axes it carries a body, by its centre, that turns at `rate`: what that does is
-/// no force on the rail.
-Scene tumblingOnRail(double h, double depth, double rate) {
-  ModelBuilder builder("rail");
-  builder.link(emptyLink("world")).link(boxLink("slider", 1.0, {0.1, 0.1, 0.1}));
-  builder.link(emptyLink("fork")).link(boxLink("body", 1.0, {0.05, 0.1, 0.2}));
-  JointSpec rail = jointSpec("rail", JointType::prismatic, "world", "slider", {}, Vector3::UnitZ());
-  rail.lower = 0.0, rail.upper = 10.0;
-  builder.joint(rail);
-  builder.joint(jointSpec("first", JointType::continuous, "slider", "fork", {}, Vector3::UnitX()));
-  builder.joint(jointSpec("second", JointType::continuous, "fork", "body", {}, Vector3::UnitY()));
-  builder.options.timestep = h;
-  Scene s(builder.build());
-  s.state.q << -depth, 0.3, 0.4;
-  s.state.v << 0.0, rate, 0.8 * rate;
-  return s;
-}
-
-// The rows of a tree that is followed act as they do in (T.16): what does not turn goes the same
-// way beside what does. It rests as deep, is thrown as high, and flies as far.
-TEST(FollowedTrees, RowsActAsInStepsThatAreNotFollowed) {
-  for (const double h : {0.002, 0.01})
-    for (const double depth : {1e-4, 0.005, 0.2}) {
-      Scene still = tumblingOnRail(h, depth, 0.0), turning = tumblingOnRail(h, depth, 0.3 / h);
-      int pushed = 0, flying = 0, followed = 0;
-      for (int i = 0; i < std::lround(0.2 / h); ++i) {
-        still.step();
-        turning.step();
-        ASSERT_EQ(still.data->stats.followedTrees, 0);
-        followed += turning.data->stats.followedTrees;
-        (turning.data->stats.rows > 0 ? pushed : flying) += 1;
-        // Rounding, and the tolerance of the sub-steps against the body's speed.
-        ASSERT_SMALL(turning.state.q[0] - still.state.q[0], 1e-6) << h << ", " << depth;
-      }
-      EXPECT_GT(pushed, 3);
-      EXPECT_GT(followed, 0.9 * (pushed + flying));
-      EXPECT_EQ(flying > 0, depth > 0.1);
-    }
+/// Whether an infinite partAngle leaves the leapfrog's step as it is.
+TEST(FreeTrees, AnInfinitePartAngleFollowsNothing) {
+  Scene s = tumbling(0.002, 100.0);
+  s.model.options.partAngle = kInfinity;
+  s.step();
+  EXPECT_EQ(s.data->stats.followedTrees, 0);
+  EXPECT_EQ(s.data->stats.parts, 1);
 }
 
 // A cylinder that wobbles on its rim, as a coin does before it lies: 3.9 degrees, 6.3 rad/s, the
 // point of contact an eighth of a turn further in each step. In a pile it was found to go on for
 // ever. Steps of 1 ms have it lie after 0.1 s.
-TEST(FollowedTrees, AWobbleOnARimDiesOut) {
+TEST(FreeTrees, AWobbleOnARimDiesOut) {
   const double r = 0.0306372, mass = 4000.0 * r * r * r, half = 0.7 * r;
   LinkSpec link = emptyLink("body");
   link.mass = mass;
@@ -211,12 +179,12 @@ TEST(FollowedTrees, AWobbleOnARimDiesOut) {
   s.state.q << 0.29599, 0.40173, 0.0215873, 0.0066091, -0.4243283, 0.9048622, -0.0335609;
   s.state.v << 0.0244458, 0.0244458, 0.00020758, -0.770629, 5.809943, 2.267628;
   s.state.q.tail<4>().normalize();
-  int far = 0;  // where a tree would be followed, if no rows pushed it
+  int parts = 0;
   for (int i = 0; i < 50; ++i) {
     s.step();
-    far += s.data->followed.turn[0] > FollowedTrees::kFollowedTurn && s.data->stats.contacts > 0;
+    parts = std::max(parts, s.data->stats.parts);
   }
-  EXPECT_GT(far, 2);
+  EXPECT_GT(parts, 1);
   // It begins with 6.7e-4 J.
   computeKinematics(s.model, s.state, s.data->kinematics);
   EXPECT_SMALL(computeEnergy(s.model, s.data->kinematics, s.state.q, s.state.v).kinetic, 1e-9);
@@ -251,71 +219,63 @@ double energyOf(Scene& s) {
   return computeEnergy(s.model, s.data->kinematics, s.state.q, s.state.v).total();
 }
 
-// However far the body turns in a step, the tie gives it no energy, and keeps hold of it.
-TEST(FollowedTrees, ATieGivesNoEnergyHoweverFarTheBodyTurns) {
+// However far the body turns in a step, the tie gives it no energy, and keeps hold of it. Energy of
+// soft rows is off by what they are stretched by, (turn²)² of the motion at most.
+TEST(FreeTrees, ATieGivesNoEnergyHoweverFarTheBodyTurns) {
   for (const double h : {0.002, 0.01})
     for (const double turn : {0.1, 0.5, 1.5, 4.0}) {
       Scene s = turningOnATie(h, turn);
-      const double begun = energyOf(s), behind = turn > 0.1 ? 1e-6 : 2.0 * turn * turn;
-      int kicks = 0;
+      const double begun = energyOf(s);
+      int parts = 0;
       for (int i = 0; i < 500; ++i) {
         ASSERT_EQ(s.step(), SolveStatus::converged);
-        kicks += s.data->stats.kicks;
-        ASSERT_LE(energyOf(s), begun * (1.0 + behind)) << h << ", " << turn << ", step " << i;
+        parts = std::max(parts, s.data->stats.parts);
+        ASSERT_LE(energyOf(s), begun * (1.0 + 1e-6)) << h << ", " << turn << ", step " << i;
         // The tie holds back ω² r by its spring alone, 1/t_c², and by half a step more.
         const Vector3 corner(0.05, 0.1, 0.15);
         const double off = (s.data->kinematics.X_WB[1] * corner - corner).norm();
         const double pulled = std::pow(turn / h * 0.02, 2.0) * corner.norm();
         ASSERT_LE(off, 1.5 * pulled) << h << ", " << turn << ", step " << i;
       }
-      EXPECT_GT(kicks, 0);
+      EXPECT_GE(parts, std::ceil(0.9 * turn / 0.1)) << turn;
     }
 }
 
-// (T.116): slow or fast, the tie gives no energy, and takes as much as in the converged motion,
-// also where the body is followed and a kick does what the tie does. Energy of a v that is half a
-// step behind is off by turn²/4, and by some of that again for a start whose tie is slack.
-TEST(FollowedTrees, ATieOfWhatIsNotFollowedTakesWhatItShould) {
+// Slow or fast, the tie gives no energy, and takes as much as in short steps.
+TEST(FreeTrees, ATieTakesWhatItShould) {
+  constexpr int kShorter = 16;
   for (const double h : {0.002, 0.01})
     for (const double turn : {0.005, 0.02, 0.03, 0.04, 0.05, 0.06, 0.09}) {
-      Scene s = turningOnATie(h, turn), converged = turningOnATie(h, turn);
-      converged.model.options.integrator = Integrator::dormandPrince;
+      Scene s = turningOnATie(h, turn), converged = turningOnATie(h / kShorter, turn / kShorter);
       const double begun = energyOf(s);
-      int followed = 0;
       for (double t = 0.0; t < 1.0 - 0.5 * h; t += h) {
         ASSERT_EQ(s.step(), SolveStatus::converged);
-        ASSERT_EQ(converged.step(), SolveStatus::converged);
-        followed += s.data->stats.followedTrees;
+        converged.steps(kShorter);
         ASSERT_LE(energyOf(s), begun * (1.0 + 2.0 * turn * turn)) << h << ", " << turn << ", " << t;
       }
-      EXPECT_SMALL((energyOf(s) - energyOf(converged)) / begun, followed > 0 ? 0.05 : 0.01)
-          << h << ", " << turn;
-      EXPECT_EQ(followed > 0, turn > 0.05) << h << ", " << turn;
+      EXPECT_SMALL((energyOf(s) - energyOf(converged)) / begun, 0.01) << h << ", " << turn;
     }
 }
 
 // A ball has no Coriolis forces that would tell how far it turns; what its tie holds is turned all
 // the same.
-TEST(FollowedTrees, ATieOfABallGivesNoEnergy) {
+TEST(FreeTrees, ATieOfABallGivesNoEnergy) {
   for (const double h : {0.0005, 0.002, 0.01})
     for (const double turn : {0.04, 0.15, 0.4, 1.5, 3.0}) {
       Scene s = turningAbout(Vector3(0, 0, 0.2), sphereLink("ball", 1.0, 0.1),
                              Vector3(0.6, 0.48, 0.64), h, turn);
       const double begun = energyOf(s), behind = turn < 0.1 ? 2.0 * turn * turn : 1e-6;
-      int followed = 0;
       for (int i = 0; i < 500; ++i) {
         ASSERT_NE(s.step(), SolveStatus::notFinite);
         // At 6000 rad/s J̇ v is 7·10⁶ m/s², and its rounding is left of the solve.
         ASSERT_LE(s.data->stats.residual, 1e-8) << h << ", " << turn << ", step " << i;
-        followed += s.data->stats.followedTrees;
         ASSERT_LE(energyOf(s), begun * (1.0 + behind)) << h << ", " << turn << ", step " << i;
       }
-      EXPECT_EQ(followed > 0, turn > 0.1) << h << ", " << turn;
     }
 }
 
-// A step that is refused leaves the state as it was, the marks of its velocities too.
-TEST(FollowedTrees, ARefusedStepLeavesTheMarks) {
+// A step that is refused leaves the state as it was, its last acceleration too.
+TEST(FreeTrees, ARefusedStepLeavesTheAcceleration) {
   Scene s(freeBody(boxLink("body", 1.0, {0.05, 0.1, 0.15})).build());
   s.state.v.tail<3>() = Vector3(0.8, 1.2, 0.6);
   const std::uint64_t before = hash(s.state);
@@ -326,31 +286,12 @@ TEST(FollowedTrees, ARefusedStepLeavesTheMarks) {
   ASSERT_EQ(s.step(), SolveStatus::converged);
 }
 
-// What a step leaves in Data is (T.1) with all forces, also where it has solved again.
-TEST(FollowedTrees, AKickPutsTheSolutionBack) {
-  Scene s = turningOnATie(0.002, 0.5);
-  for (int i = 0; i < 20; ++i) {
-    Scene plain = turningOnATie(0.002, 0.5);
-    plain.state = s.state;
-    plain.stages();
-    ASSERT_EQ(plain.forward(), SolveStatus::converged);
-    s.step();
-    ASSERT_EQ(s.data->stats.kicks, 1);
-    const VectorX &a = s.data->forward.a, &expected = plain.data->forward.a;
-    EXPECT_SMALL((a - expected).norm() / expected.norm(), 1e-10);
-    EXPECT_EQ((s.data->forces.net - plain.data->forces.net).norm(), 0.0);
-    const std::vector<double>&f = s.data->constraints.connection.f,
-          &g = plain.data->constraints.connection.f;
-    for (std::size_t k = 0; k < g.size(); ++k) EXPECT_SMALL(f[k] - g[k], 1e-9 * expected.norm());
-  }
-}
-
 // Bodies that tumble fast enough to be followed, some of the time, hit each other in empty space.
 // What one gets the other loses, whoever is followed in that step: to rounding of a few steps'
 // work.
-TEST(FollowedTrees, CollisionsKeepLinearMomentum) {
+TEST(FreeTrees, CollisionsKeepLinearMomentum) {
   int hits = 0, followed = 0, changes = 0;
-  for (int seed = 0; seed < 20; ++seed) {
+  for (int seed = 0; seed < 80; ++seed) {
     Random random(seed);
     ModelBuilder builder("two");
     for (const double side : {-1.0, 1.0}) {
