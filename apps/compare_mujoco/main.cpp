@@ -5,7 +5,8 @@
 /// their accelerations are compared with both solvers fully converged, each
 /// with its own contact points and ours with MuJoCo's too, and their steps, forward and
 /// inverse dynamics are timed in turns, at the tolerances that each has by default. At last both
-/// run freely for a second from the same state.
+/// run freely for a second from the same state. Whole runs of either are timed besides, of ours by
+/// MuJoCo's model and by the default one.
 
 #include <fmt/format.h>
 
@@ -17,6 +18,7 @@
 
 #include "apps/compare_mujoco/mjcf.hpp"
 #include "apps/compare_mujoco/mujoco.hpp"
+#include "apps/compare_mujoco/step_duel.hpp"
 #include "apps/compare_mujoco/urdf_copy.hpp"
 #include "apps/compare_mujoco/urdf_reading.hpp"
 #include "apps/shared/wall_clock.hpp"
@@ -40,7 +42,7 @@ struct Arguments {
   std::vector<std::filesystem::path> packagePaths;
 };
 
-Model loadModel(const Arguments& arguments) {
+Model loadModel(const Arguments& arguments, bool likeMujoco = true) {
   io::UrdfOptions options;
   options.packagePaths = arguments.packagePaths;
   options.base = arguments.base == "fixed"      ? BaseKind::fixed
@@ -48,7 +50,7 @@ Model loadModel(const Arguments& arguments) {
                                                 : BaseKind::automatic;
   ModelBuilder builder = io::readUrdf(arguments.model, options);
   builder.options.timestep = arguments.timestep;
-  builder.options.useMujocoModel();
+  builder.options.useMujocoModel(likeMujoco);
   Model model = builder.build();
   const auto floats = [](const Body& body) { return body.joint == JointKind::floating; };
   if (std::none_of(model.bodies.begin(), model.bodies.end(), floats)) return model;
@@ -290,25 +292,28 @@ void printReading(const Json& reading) {
 }
 
 void print(const Json& result) {
-  fmt::print("{}, {} dof, {} steps, MuJoCo {}\n", result["model"].get<std::string>(),
+  fmt::print("{}, {} dof, {} steps, {}\n", result["model"].get<std::string>(),
              result["dof"].get<int>(), result["steps"].get<int>(),
-             result["mujoco_version"].get<std::string>());
-  fmt::print("  {:<24}{:>10}{:>10}{:>10}\n", "[µs]", "ours", "MuJoCo", "ratio");
+             result["mujoco_build"].get<std::string>());
+  fmt::print("  {:<28}{:>10}{:>10}{:>10}\n", "[µs]", "ours", "MuJoCo", "ratio");
   for (const auto& [name, key] : {std::pair{"step", "step_us"},
                                   {"forward dynamics", "forward_us"},
                                   {"inverse dynamics", "inverse_us"}}) {
     const Json& d = result[key];
-    fmt::print("  {:<24}{:>10.3g}{:>10.3g}{:>10.2f}\n", name, d["ours"].get<double>(),
+    fmt::print("  {:<28}{:>10.3g}{:>10.3g}{:>10.2f}\n", name, d["ours"].get<double>(),
                d["mujoco"].get<double>(), d["ratio"].get<double>());
   }
-  fmt::print("  {:<24}{:>10}{:>10}{:>10}\n", "relative difference", "p50", "p95", "max");
+  for (const auto& [mode, d] : result["run_step_us"].items())
+    fmt::print("  {:<28}{:>10.3g}{:>10.3g}{:>10.2f}\n", "step of a run, " + mode,
+               d["ours"].get<double>(), d["mujoco"].get<double>(), d["ratio"].get<double>());
+  fmt::print("  {:<28}{:>10}{:>10}{:>10}\n", "relative difference", "p50", "p95", "max");
   for (const auto& [name, key] :
        {std::pair{"acceleration", "acceleration_difference"},
         {"  with the same contacts", "acceleration_difference_same_contacts"},
         {"inverse dynamics", "inverse_difference"},
         {"  with the same contacts", "inverse_difference_same_contacts"}}) {
     const Json& d = result[key];
-    fmt::print("  {:<24}{:>10.2g}{:>10.2g}{:>10.2g}\n", name, d["p50"].get<double>(),
+    fmt::print("  {:<28}{:>10.2g}{:>10.2g}{:>10.2g}\n", name, d["p50"].get<double>(),
                d["p95"].get<double>(), d["max"].get<double>());
   }
   fmt::print("  MuJoCo's forces balance to {:.1e}\n",
@@ -321,11 +326,28 @@ void print(const Json& result) {
     fmt::print("  MuJoCo warns: {}\n", warning);
 }
 
+/// Whole runs by MuJoCo's model and by ours.
+Json timeModes(const Arguments& arguments) {
+  constexpr int kRounds = 7;
+  Json modes;
+  for (const bool likeMujoco : {true, false}) {
+    const Model model = loadModel(arguments, likeMujoco);
+    const app::StepTimes times =
+        app::timeSteps(model, initialState(model), arguments.duration, kRounds,
+                       [&](double time) { return controlAt(model, time); });
+    modes[likeMujoco ? "compatibility" : "default"] = {
+        {"ours", times.ours}, {"mujoco", times.mujoco}, {"ratio", times.ours / times.mujoco}};
+  }
+  return modes;
+}
+
 Json compare(const Arguments& arguments) {
   Comparison comparison(arguments);
   const app::UrdfCopy copy = app::copyUrdf(arguments.model, comparison.model());
   if (!arguments.copy.empty()) app::writeCopy(copy, arguments.copy);
   Json result = comparison.run(arguments.duration);
+  result["mujoco_build"] = app::mujocoBuild();
+  result["run_step_us"] = timeModes(arguments);
   result["urdf_reading"] = app::compareReading(comparison.model(), copy);
   return result;
 }

@@ -32,6 +32,10 @@ TEST(CompareMujoco, HumanoidMovesTheSameInBoth) {
   EXPECT_LT(json["state_difference_after_1s"], 1e-9);
   for (const char* key : {"step_us", "forward_us", "inverse_us"})
     for (const char* engine : {"ours", "mujoco", "ratio"}) EXPECT_GT(json[key][engine], 0.0);
+  for (const char* mode : {"compatibility", "default"})
+    for (const char* engine : {"ours", "mujoco", "ratio"})
+      EXPECT_GT(json["run_step_us"][mode][engine], 0.0);
+  EXPECT_TRUE(json["mujoco_build"].get<std::string>().starts_with("MuJoCo "));
   // MuJoCo finds principal axes to eight digits, and takes massless links for 10⁻¹² kg.
   const auto& reading = json["urdf_reading"];
   ASSERT_FALSE(reading.contains("refused")) << reading["refused"];
