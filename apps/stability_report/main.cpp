@@ -79,10 +79,12 @@ void draw(const std::filesystem::path& file, const HardCase& hard, std::size_t f
   std::string plot;
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const auto& [name, outcome] = runs[i];
-    script += fmt::format("$run{} << EOD\n", i);
     const std::vector<double>& course = outcome.courses[figure];
+    if (course.empty()) continue;
+    script += fmt::format("$run{} << EOD\n", i);
     const std::size_t stride = std::max<std::size_t>(1, course.size() / 1000);
-    const double spacing = hard.duration / static_cast<double>(course.size());
+    const double spacing =
+        outcome.diverged.value_or(hard.duration) / static_cast<double>(course.size());
     for (std::size_t k = 0; k < course.size(); k += stride)
       script += fmt::format("{:.6g} {:.6g}\n", static_cast<double>(k + 1) * spacing, course[k]);
     script += "EOD\n";

@@ -52,8 +52,8 @@ Outcome measured(const std::filesystem::path& scenes, const HardCase& hard, doub
 
 Json jsonOf(const Outcome& outcome) {
   if (!outcome.ran) return {{"loaded", false}};
-  if (outcome.diverged) return {{"diverged_s", *outcome.diverged}};
   Json json = {{"figures", outcome.figures}, {"courses", Json::array()}};
+  if (outcome.diverged) json = {{"diverged_s", *outcome.diverged}, {"courses", Json::array()}};
   for (const std::vector<double>& course : outcome.courses) {
     std::vector<double> kept;
     const std::size_t stride = std::max<std::size_t>(1, course.size() / kPoints);
@@ -74,9 +74,9 @@ Rival::Rival(const std::filesystem::path& file) {
       Outcome& outcome = outcomes_[name];
       outcome.ran = run.value("loaded", true);
       if (run.contains("diverged_s")) outcome.diverged = run["diverged_s"].get<double>();
-      if (!run.contains("figures")) continue;
-      outcome.figures = run["figures"].get<std::vector<double>>();
-      outcome.courses = run["courses"].get<std::vector<std::vector<double>>>();
+      if (run.contains("figures")) outcome.figures = run["figures"].get<std::vector<double>>();
+      if (run.contains("courses"))
+        outcome.courses = run["courses"].get<std::vector<std::vector<double>>>();
     }
   } catch (const Json::exception& error) {
     throw ModelError({file.string(), 0}, "record", error.what());
