@@ -25,6 +25,8 @@
 #include "collision/lowest_point.hpp"
 #include "collision/scene_contacts.hpp"
 #include "engine/engine.hpp"
+#include "io/nearest_rank.hpp"
+#include "io/simulation/time_grid.hpp"
 #include "io/urdf.hpp"
 
 namespace {
@@ -89,15 +91,8 @@ VectorX controlAt(const Model& model, double time) {
 double percentile(std::vector<double> values, double share) {
   if (values.empty()) return 0.0;
   std::sort(values.begin(), values.end());
-  const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(values.size())));
-  return values[std::max<std::size_t>(rank, 1) - 1];
+  return values[io::nearestRank(share, values.size())];
 }
-
-/// Exit code 3.
-class NotFinite : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
 
 /// Times of the two engines for the same work, taken in turns [µs].
 struct Duel {
@@ -137,7 +132,7 @@ class Comparison {
   const Model& model() const { return model_; }
 
   Json run(double duration) {
-    const auto steps = static_cast<int>(std::ceil(duration / model_.options.timestep - 1e-9));
+    const auto steps = static_cast<int>(stepsIn(duration, model_.options.timestep));
     State state = initial_;
     for (int i = 0; i < steps; ++i) {
       const VectorX tau = controlAt(model_, state.time);
@@ -229,7 +224,7 @@ class Comparison {
     theirWarmStart_ = mujoco_.acceleration();
     Duel::time(step_.ours, [&] {
       if (step(model_, input_, state, data_, &contacts_) == SolveStatus::notFinite)
-        throw NotFinite(fmt::format(
+        throw app::NotFinite(fmt::format(
             "our simulation became non-finite at t = {:.6g} s; try a smaller --timestep",
             state.time));
     });
@@ -382,7 +377,7 @@ int main(int argc, char** argv) {
   } catch (const ModelError& error) {
     fmt::print(stderr, "{}\n", error.what());
     return 2;
-  } catch (const NotFinite& error) {
+  } catch (const app::NotFinite& error) {
     fmt::print(stderr, "compare_mujoco: {}\n", error.what());
     return 3;
   } catch (const std::exception& error) {

@@ -5,21 +5,21 @@
 #include <fmt/format.h>
 #include <mujoco/mujoco.h>
 
-#include <cmath>
-#include <filesystem>
+#include <algorithm>
 #include <fstream>
 
 #include "apps/compare_mujoco/mjcf.hpp"
 #include "apps/compare_mujoco/mujoco.hpp"
 #include "apps/shared/cpu_time.hpp"
 #include "collision/scene_contacts.hpp"
+#include "io/simulation/time_grid.hpp"
 
 namespace softgauss::app {
 
 StepTimes timeSteps(const Model& model, const State& initial, double duration, int rounds,
                     const std::function<VectorX(double)>& control) {
   const double h = model.options.timestep;
-  const auto steps = static_cast<int>(std::ceil(duration / h - 1e-9));
+  const auto steps = static_cast<int>(stepsIn(duration, h));
   std::vector<VectorX> forces;
   for (int i = 0; i < steps; ++i) forces.push_back(control(i * h));
   collision::SceneContacts contacts(model);
@@ -32,7 +32,10 @@ StepTimes timeSteps(const Model& model, const State& initial, double duration, i
     const double start = cpuSeconds();
     for (const VectorX& tau : forces) {
       input.tau = tau;
-      step(model, input, state, data, &contacts);
+      if (isRefused(step(model, input, state, data, &contacts)))
+        throw NotFinite(fmt::format(
+            "our simulation became non-finite at t = {:.6g} s; try a smaller --timestep",
+            state.time));
     }
     return cpuSeconds() - start;
   };

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <mutex>
 
+#include "apps/shared/cpu_time.hpp"
 #include "apps/shared/file_hash.hpp"
 #include "apps/simulate_gdd/scene.hpp"
 #include "io/detail/text.hpp"
@@ -15,13 +16,6 @@
 
 namespace softgauss::app {
 namespace {
-
-/// Of this thread [s].
-double threadSeconds() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 /// What the rollout's own start is to leave out: setUp() gives all goals.
 SimulationOptions rolloutOptions(const SimulateOptions& options) {
@@ -117,7 +111,7 @@ void SweepRunner::run(const std::vector<long>& list, const std::function<void(Ru
   RolloutHooks hooks;
   hooks.stop = &stop;
   hooks.begin = [&](RolloutRun& run) {
-    ownOf(run).begin = threadSeconds();
+    ownOf(run).begin = cpuSeconds();
     setUp(sweep_.options, run.sim.scene(), run.sim.controller());
   };
   hooks.before = [&](RolloutRun& run) {
@@ -138,7 +132,7 @@ void SweepRunner::run(const std::vector<long>& list, const std::function<void(Ru
     }
     o.time = run.sim.time();
     o.figures.reset();
-    o.seconds = threadSeconds() - o.begin;
+    o.seconds = cpuSeconds() - o.begin;
   };
   hooks.finished = [&](long index, const RunOutcome& outcome) {
     if (outcome.status == RunOutcome::Status::interrupted) return;

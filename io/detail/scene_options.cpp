@@ -12,29 +12,31 @@ namespace {
 
 constexpr double kMostIterations = 1e6;
 
-MechanismSet readWithout(const YamlMap& map, const YamlMap::Entry& entry) {
+/// Calls f(name) for every item of a list, each one of `known`.
+template <class Named, std::size_t n, class F>
+void forNames(const YamlMap& map, const YamlMap::Entry& entry, const Named (&known)[n],
+              const char* expected, F&& f) {
   if (entry.value.kind != YamlValue::Kind::list)
-    map.fail(entry,
-             fmt::format("found {}, expected a list of mechanisms", entry.value.described()));
+    map.fail(entry, fmt::format("found {}, expected {}", entry.value.described(), expected));
   std::vector<std::string> names;
-  for (const MechanismName& mechanism : kMechanismNames) names.emplace_back(mechanism.name);
-  MechanismSet kept = MechanismSet::all();
+  for (const Named& named : known) names.emplace_back(named.name);
   for (const YamlValue& item : entry.value.items)
-    kept.remove(*mechanismFromName(map.choice({entry.key, item, item.line}, names)));
+    f(map.choice({entry.key, item, item.line}, names));
+}
+
+MechanismSet readWithout(const YamlMap& map, const YamlMap::Entry& entry) {
+  MechanismSet kept = MechanismSet::all();
+  forNames(map, entry, kMechanismNames, "a list of mechanisms",
+           [&](const std::string& name) { kept.remove(*mechanismFromName(name)); });
   return kept;
 }
 
 EffectSet readEffects(const YamlMap& map, const YamlMap::Entry& entry) {
   if (entry.value.kind == YamlValue::Kind::text && entry.value.text == "auto")
     return EffectSet::all();
-  if (entry.value.kind != YamlValue::Kind::list)
-    map.fail(entry,
-             fmt::format("found {}, expected auto or a list of effects", entry.value.described()));
-  std::vector<std::string> names;
-  for (const EffectName& effect : kEffectNames) names.emplace_back(effect.name);
   EffectSet effects = EffectSet::none();
-  for (const YamlValue& item : entry.value.items)
-    effects.insert(*effectFromName(map.choice({entry.key, item, item.line}, names)));
+  forNames(map, entry, kEffectNames, "auto or a list of effects",
+           [&](const std::string& name) { effects.insert(*effectFromName(name)); });
   return effects;
 }
 
