@@ -251,8 +251,10 @@ double ContactBlocks::slipSpeed(const Touch& touch, const FrameVector& velocity)
 Softness ContactBlocks::soften(const Assembly& in, const Touch& touch,
                                const FrameVector& velocity) {
   const Softness& soft = touch.softness;
-  const double horizon = horizonOf(in, in.contacts.contacts[made_.back().contact]);
-  const auto held = [&](const Softness& s) { return touch.spring ? s : withinHorizon(s, horizon); };
+  const auto held = [&](const Softness& s) {
+    if (touch.spring) return s;
+    return withinHorizon(s, horizonOf(in, in.contacts.contacts[made_.back().contact]));
+  };
   if (!touch.carries || !in.sticks() || touch.frictionDim == 0) return held(soft);
   if (!(soft.damping * soft.damping >= 4.0 * soft.stiffness)) return held(soft);  // it bounces
   SlipSpeeds speeds{slipSpeed(touch, velocity), std::abs(velocity[0])};

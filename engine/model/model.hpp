@@ -148,7 +148,7 @@ struct Options {
   double integrationTolerance = 1e-6;
   /// Error control for integrators of one solve (integrators/step_doubling.hpp).
   bool stepDoubling = false;
-  /// Joint damping and stiff springs are in the solve, as inertia (T.16), or follow it as MuJoCo's.
+  /// Joint damping and stiff springs are in the solve, as inertia (T.95), or follow it as MuJoCo's.
   bool implicitInSolve = true;
   Cone cone = Cone::pyramidal;  ///< of contacts with friction
   double impedanceRatio = 1.0;  ///< impratio: friction against normal impedance

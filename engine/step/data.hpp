@@ -47,7 +47,7 @@ struct StepStats {
   int rows = 0;
   int iterations = 0;
   int factorizations = 0;
-  double residual = 0.0;  ///< of the solve (the larger one of two, T.123), scaled
+  double residual = 0.0;  ///< of the solve, the largest of a step in parts, scaled
   /// Whether what moves is what was solved: the largest |(v⁺ − v)/h − a|, a of the solve, of the
   /// goal directed one where goals act, over max(|a|∞, 1).
   double realised = 0.0;
