@@ -8,6 +8,7 @@
 ///     for (const ExcludedPair& pair : contacts.filter().excluded) puts(describe(pair).c_str());
 
 #include "collision/choose_meshes.hpp"
+#include "collision/clearance.hpp"
 #include "collision/convex_hull.hpp"
 #include "collision/fcl_contacts.hpp"
 #include "collision/filter.hpp"

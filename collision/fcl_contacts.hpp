@@ -9,7 +9,8 @@
 /// that it meets, the one of least overlap, and on it the clipped faces (manifold.hpp). What
 /// touches a half-space or a surface of triangles has its points from there.
 ///
-/// FCL knows no margin: contacts begin where shapes overlap. Its queries allocate. An exception of
+/// FCL knows no margin: contacts begin where shapes touch, to touchingWithin(): it is asked about
+/// shapes that are nearer by that. Its queries allocate. An exception of
 /// FCL leaves the pair to our own test and is counted in pairsLeft(). Contacts come in the order of
 /// the filter's pairs and depend on the poses alone.
 

@@ -2,7 +2,6 @@
 #include "collision/scene_contacts.hpp"
 
 #include <algorithm>
-#include <cstdint>
 #include <utility>
 
 #include "collision/detail/broadphase.hpp"
@@ -391,8 +390,9 @@ double SceneContacts::timeInSight(const Model&, const Kinematics& kinematics, do
 std::int64_t SceneContacts::sweeps() const { return scene_->sweeps; }
 
 const ConvexHull* SceneContacts::hull(int geometry) const {
-  const bool isHull = scene_->set.geometry(geometry).shape.kind == ShapeKind::mesh;
-  return isHull ? scene_->set.hull[static_cast<std::size_t>(geometry)].get() : nullptr;
+  return scene_->set.collidingHull(geometry);
 }
+
+PreparedMeshes SceneContacts::meshes() const { return scene_->set.meshes(); }
 
 }  // namespace softgauss::collision

@@ -57,6 +57,8 @@ class SceneContacts final : public ContactSource {
   const PairFilter& filter() const { return filter_; }
   /// The hull that collides for a geometry that is a mesh; null for other shapes.
   const ConvexHull* hull(int geometry) const;
+  /// The hulls and surfaces of the scene, to be shared.
+  PreparedMeshes meshes() const;
 
  private:
   struct Scene;

@@ -40,6 +40,7 @@ void GoalCost::clear(const ForceMetric& R) {
   target_.clear();
   denseWeight_.clear();
   denseTarget_.clear();
+  sides_.clear();
   dofWeight_.setZero();
   dofOffset_.setZero();
   price_.set(R);
@@ -71,6 +72,34 @@ void GoalCost::addRows(const Eigen::Ref<const MatrixX>& J, double weight,
     denseWeight_.push_back(weight);
     denseTarget_.push_back(target[i]);
   }
+}
+
+void GoalCost::addOneSided(const VectorX& J, double weight, double least) {
+  SOFTGAUSS_ASSERT(J.size() == dofWeight_.size());
+  const std::size_t used = denseWeight_.size();
+  const auto room = static_cast<Eigen::Index>(used);
+  if (dense_.cols() <= room) dense_.conservativeResize(J.size(), 2 * room + 1);
+  dense_.col(room) = J;
+  denseWeight_.push_back(0.0);
+  denseTarget_.push_back(least);
+  sides_.push_back({used, weight});
+}
+
+bool GoalCost::chooseSides(const VectorX& a, bool first) {
+  constexpr double kRounding = 1e-10;  // either side will do
+  bool changed = false;
+  for (const OneSided& side : sides_) {
+    const auto J = dense_.col(static_cast<Eigen::Index>(side.row));
+    const double least = denseTarget_[side.row], is = J.dot(a);
+    const double rounding = kRounding * (1.0 + std::abs(least) + std::abs(is));
+    double& weight = denseWeight_[side.row];
+    const bool counts = weight > 0.0;
+    if (side.weight == 0.0 || (counts ? least - is >= -rounding : least - is <= rounding)) continue;
+    weight = counts ? 0.0 : side.weight;
+    changed = true;
+    if (first) break;
+  }
+  return changed;
 }
 
 void GoalCost::addDof(int dof, double weight, double target) {
@@ -256,7 +285,7 @@ void GoalCost::addReducedCurvature(const TreeFactor& massFactor, const RowMajorM
     }
   }
   for (std::size_t i = 0; i < denseWeight_.size(); ++i)
-    addRank(dense_.col(static_cast<Eigen::Index>(i)), denseWeight_[i]);
+    if (denseWeight_[i] != 0.0) addRank(dense_.col(static_cast<Eigen::Index>(i)), denseWeight_[i]);
   for (Eigen::Index i = 0; i < dofWeight_.size(); ++i) {
     if (dofWeight_[i] == 0.0) continue;
     addRankOne(&S(i, 0), dofWeight_[i], K);

@@ -5,6 +5,8 @@
 ///
 /// Goals write residuals; ℓ is their weighted sum (T.21):
 ///   ℓ(a) = Σ ½ w |J a − y|²  +  ½ aᵀD a + aᵀe  +  ½ m aᵀM a + aᵀM o
+/// Rows may be one-sided, ½ w max(0, y − J a)² (T.141): each counts or does not, as chooseSides()
+/// has it.
 /// J: rows of a Jacobian block or any other rows, y: wished value less the bias J̇ v; D, e: of
 /// single dofs, D diagonal; m, o: the terms of virtual damping,
 /// ½ α (a + βv)ᵀM(a + βv) = ½ α aᵀMa + α β aᵀM v + const.
@@ -59,6 +61,12 @@ class GoalCost {
   /// ½ weight |J a − target|² for any rows J (k × nv).
   void addRows(const Eigen::Ref<const MatrixX>& J, double weight,
                const Eigen::Ref<const VectorX>& target);
+  /// ½ weight max(0, least − J a)² for one row J (nv). It does not count before chooseSides().
+  void addOneSided(const VectorX& J, double weight, double least);
+  bool hasSides() const { return !sides_.empty(); }
+  /// From here on those one-sided rows count that are short of their least at a, and ℓ is (T.141)
+  /// there; with `first` no more than one row changes. Returns whether any has.
+  bool chooseSides(const VectorX& a, bool first = false);
   /// ½ weight (a_dof − target)², up to a constant.
   void addDof(int dof, double weight, double target);
   /// ½ weight (a − target)ᵀ M (a − target), up to a constant.
@@ -124,12 +132,18 @@ class GoalCost {
                            RowMajorMatrixX& rootS, MatrixX& K) const;
 
  private:
+  struct OneSided {
+    std::size_t row;  ///< of dense_
+    double weight;    ///< while it counts; else denseWeight_ is 0
+  };
+
   BlockJacobian rows_;
   std::vector<double> weight_;  ///< one a block
   std::vector<Vector3> target_;
   MatrixX dense_;  ///< (nv × room) one column a row of J; the first denseWeight_.size() are in use
   std::vector<double> denseWeight_;
   std::vector<double> denseTarget_;
+  std::vector<OneSided> sides_;
   VectorX dofWeight_;  ///< D
   VectorX dofOffset_;  ///< e
   ForcePrice price_;   ///< R + W

@@ -17,6 +17,7 @@
 #include "gdd/goals/functions.hpp"
 #include "gdd/goals/hold.hpp"
 #include "gdd/goals/joints.hpp"
+#include "gdd/goals/keep_clear.hpp"
 #include "gdd/goals/link_acceleration.hpp"
 #include "gdd/goals/look_at.hpp"
 #include "gdd/goals/posture.hpp"

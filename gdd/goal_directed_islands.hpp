@@ -42,6 +42,13 @@ class GoalDirectedIslands final : public IslandControls {
   /// is about read it anew, and wake.
   void changed(std::size_t goal);
 
+  /// What has been seen of the goals, for islands that go on later (core/bytes.hpp).
+  template <class Archive>
+  void archive(Archive& a) {
+    a.sized(acting_);
+    a(changed_);
+  }
+
   std::unique_ptr<IslandControl> within(const SubModel& island) override;
   void begin(double time, std::vector<int>& trees) noexcept override;
 

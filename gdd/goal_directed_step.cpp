@@ -39,7 +39,7 @@ const VectorX* GoalDirectedController::solve(Solver& used, const Model& model, c
   for (const auto& goal : goals)
     if (goal->actsAt(state.time)) goal->addCost({model, state, data}, cost_);
   data.stats.refusedGuesses += refuses(used, state.warmstart);
-  report = expansion.solve(used, model, cost_, box, data, state.warmstart);
+  report = solveOneSided(expansion, used, model, cost_, box, data, state.warmstart, between_);
   solveTime += std::chrono::duration<double>(Clock::now() - start).count();
   if (isRefused(report.status)) {
     data.stats.status = SolveStatus::notFinite;

@@ -16,6 +16,7 @@
 #include "gdd/expanded_solve.hpp"
 #include "gdd/goal.hpp"
 #include "gdd/holding_force.hpp"
+#include "gdd/one_sided_solve.hpp"
 
 namespace softgauss::gdd {
 
@@ -67,6 +68,7 @@ class GoalDirectedController final : public StepControl {
 
   GoalCost cost_;
   HoldingForce holding_;
+  WarmStart between_;    ///< from one solve to the next of a step
   VectorX coordinates_;  ///< y of the control (nv)
   Input held_;           ///< over the step, with soft friction; its τ is the control's at the end
   VectorX outside_;      ///< τ of the caller's input (nv), or empty

@@ -5,17 +5,20 @@
 
 namespace softgauss::io {
 
-ContactLog::ContactLog(const std::filesystem::path& file, const Model& model)
+ContactLog::ContactLog(const std::filesystem::path& file, const Model& model,
+                       const std::optional<TableEnd>& after)
     : model_(model),
       rows_(std::make_unique<detail::RowFile>(
           file, "contacts",
           std::vector<std::string>{"time_s", "link_a", "link_b", "shape_a", "shape_b", "x_m", "y_m",
                                    "z_m", "nx", "ny", "nz", "fx_N", "fy_N", "fz_N", "normal_N",
-                                   "friction_N"})) {}
+                                   "friction_N"},
+          after ? std::optional(after->bytes) : std::nullopt)) {}
 
 ContactLog::~ContactLog() = default;
 
 void ContactLog::close() { rows_->close(); }
+TableEnd ContactLog::end() { return {rows_->end(), 0}; }
 
 void ContactLog::write(double time, const std::vector<Snapshot::ContactForce>& contacts) {
   for (const Snapshot::ContactForce& c : contacts) {

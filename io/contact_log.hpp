@@ -14,6 +14,7 @@
 
 #include "engine/model/model.hpp"
 #include "engine/step/snapshot.hpp"
+#include "io/log.hpp"
 
 namespace softgauss::io {
 
@@ -23,13 +24,16 @@ class RowFile;
 
 class ContactLog {
  public:
-  /// Throws ModelError if the file cannot be made.
-  ContactLog(const std::filesystem::path& file, const Model& model);
+  /// `after`: as of a LogWriter. Throws ModelError if the file cannot be made, or is not what was
+  /// written then.
+  ContactLog(const std::filesystem::path& file, const Model& model,
+             const std::optional<TableEnd>& after = {});
   ~ContactLog();
 
   /// The contacts of the step from `time` [s]. Throws std::runtime_error as close() does.
   void write(double time, const std::vector<Snapshot::ContactForce>& contacts);
   void close();
+  TableEnd end();  ///< flushes
 
  private:
   const Model& model_;

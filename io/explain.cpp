@@ -169,6 +169,23 @@ std::string shapesText(const Model& model, const ExplainContext& context) {
   return out;
 }
 
+/// For each link how far it is from the others, the nearest first.
+std::string clearancesText(const ExplainContext& context) {
+  constexpr std::size_t kMost = 24;
+  constexpr double kTouching = 1e-9;  // [m], above rounding
+  std::map<std::string, std::vector<std::string>> links;
+  for (const LinkDistance& pair : context.clearances) {
+    const std::string distance =
+        pair.distance > kTouching ? fmt::format("{:.4g} mm", 1e3 * pair.distance) : "touches";
+    links[pair.first].push_back(pair.second + " " + distance);
+    links[pair.second].push_back(pair.first + " " + distance);
+  }
+  if (links.empty()) return {};
+  detail::TextTable table;
+  for (const auto& [link, others] : links) table.row({link, listed(others, kMost)});
+  return "clearance at the start, between links that no joint joins\n" + table.text();
+}
+
 std::string actuatorsText(const ExplainContext& context) {
   if (context.actuators.empty()) return {};
   detail::TextTable table;
@@ -293,6 +310,7 @@ std::string explain(const Model& model, const ExplainContext& context) {
   section(actuatorsText(context));
   section(framesText(model));
   section(shapesText(model, context));
+  section(clearancesText(context));
   section(softnessText(model, context));
   section(wrenchesText(context));
   section(effectsText(model, context));

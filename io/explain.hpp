@@ -42,6 +42,12 @@ struct FilteredPair {
   std::string detail = {};  ///< of this pair, e.g. "by 3 mm"
 };
 
+/// How far the shapes of two links are apart.
+struct LinkDistance {
+  std::string first, second;
+  double distance = 0.0;  ///< [m]; 0 where they overlap
+};
+
 /// What an effect took in a trial.
 struct EffectCost {
   int rows = 0;           ///< most in a step
@@ -53,6 +59,7 @@ struct EffectCost {
 struct ExplainContext {
   std::optional<UrdfContents> contents;    ///< of the file, before links were merged
   std::vector<FilteredPair> filtered;      ///< grouped by reason in the text
+  std::vector<LinkDistance> clearances;    ///< of pairs of links at the start, nearest first
   std::optional<int> testedPairs;          ///< pairs of shapes that may touch
   std::vector<std::pair<int, int>> pairs;  ///< those pairs, as indices into Model::geometries
   std::vector<std::pair<std::string, Material>> materials;  ///< the surfaces that have a name

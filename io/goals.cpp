@@ -84,7 +84,8 @@ void GoalFile::giveTo(gdd::GoalDirectedController& controller) && {
   if (controlCost) controller.controlCost = *controlCost;
 }
 
-GoalFile readGoalFile(const std::filesystem::path& file, const Model& model, const State& initial) {
+GoalFile readGoalFile(const std::filesystem::path& file, const Model& model, const State& initial,
+                      const DistancesMaker& distances) {
   SOFTGAUSS_ASSERT(initial.q.size() == model.nq);
   const std::string path = file.string();
   const std::string text = detail::readInput(path, "a YAML file of goals");
@@ -103,7 +104,8 @@ GoalFile readGoalFile(const std::filesystem::path& file, const Model& model, con
 
   GoalFile result;
   for (const YamlValue& item : list.value.items)
-    result.goals.push_back(readGoal(top.file(), item, result.goals.size() + 1, {model, initial}));
+    result.goals.push_back(
+        readGoal(top.file(), item, result.goals.size() + 1, {model, initial, distances}));
   detail::joinLines(result.goals);
   if (const YamlMap::Entry* cost = top.find("control_cost"))
     result.controlCost = top.choice(*cost, {"about_gravity", "total"}) == "total"
@@ -113,8 +115,9 @@ GoalFile readGoalFile(const std::filesystem::path& file, const Model& model, con
 }
 
 std::vector<std::unique_ptr<gdd::Goal>> readGoals(const std::filesystem::path& file,
-                                                  const Model& model, const State& initial) {
-  return readGoalFile(file, model, initial).goals;
+                                                  const Model& model, const State& initial,
+                                                  const DistancesMaker& distances) {
+  return readGoalFile(file, model, initial, distances).goals;
 }
 
 }  // namespace softgauss::io

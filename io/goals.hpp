@@ -8,10 +8,12 @@
 /// end in a ModelError `file:line: goal 2 'reach': key 'weight': found '-1', expected …`.
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
 
+#include "engine/model/shape_distances.hpp"
 #include "engine/model/state.hpp"
 #include "gdd/goal_directed_step.hpp"
 
@@ -25,13 +27,18 @@ struct GoalFile {
   void giveTo(gdd::GoalDirectedController& controller) &&;
 };
 
+/// Who tells how far shapes of a model are apart, for goals that ask for it (keep_clear).
+using DistancesMaker = std::function<std::shared_ptr<ShapeDistances>(const Model&)>;
+
 /// A file of goals, or a scene, of which the goals are taken. `initial` is the state from which the
 /// simulation starts: the reference of a posture and the start of a minimum-jerk reach.
-/// Throws ModelError.
-GoalFile readGoalFile(const std::filesystem::path& file, const Model& model, const State& initial);
+/// Without `distances` goals that ask for them are refused. Throws ModelError.
+GoalFile readGoalFile(const std::filesystem::path& file, const Model& model, const State& initial,
+                      const DistancesMaker& distances = nullptr);
 
 /// The goals alone.
 std::vector<std::unique_ptr<gdd::Goal>> readGoals(const std::filesystem::path& file,
-                                                  const Model& model, const State& initial);
+                                                  const Model& model, const State& initial,
+                                                  const DistancesMaker& distances = nullptr);
 
 }  // namespace softgauss::io

@@ -76,13 +76,16 @@ std::vector<std::string> logColumns(const Model& model, const std::vector<std::s
 }
 
 LogWriter::LogWriter(const std::filesystem::path& file, const Model& model,
-                     const std::vector<std::string>& goals, long every)
-    : rows_(std::make_unique<detail::RowFile>(file, "log", logColumns(model, goals))),
+                     const std::vector<std::string>& goals, long every,
+                     const std::optional<TableEnd>& after)
+    : rows_(std::make_unique<detail::RowFile>(file, "log", logColumns(model, goals),
+                                              after ? std::optional(after->bytes) : std::nullopt)),
       nq_(model.nq),
       nv_(model.nv),
       goals_(static_cast<Eigen::Index>(goals.size())),
       forces_(3 * ContactLinks(model).size()),
-      every_(every) {
+      every_(every),
+      seen_(after ? after->seen : 0) {
   for (const Body& body : model.bodies)
     if (body.dofs == 1) controls_.push_back(body.v);
 }
@@ -92,6 +95,7 @@ LogWriter::LogWriter(LogWriter&&) noexcept = default;
 
 void LogWriter::flush() { rows_->flush(); }
 void LogWriter::close() { rows_->close(); }
+TableEnd LogWriter::end() { return {rows_->end(), seen_}; }
 
 void LogWriter::write(const StepRecord& r) {
   SOFTGAUSS_ASSERT(r.q.size() == nq_ && r.v.size() == nv_);

@@ -17,6 +17,7 @@
 /// Numbers are the shortest that read back bit for bit (at most 17 significant digits). A joint
 /// whose name holds a comma, a quote or a line break is quoted as RFC 4180 has it.
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -69,14 +70,27 @@ void measureWhole(const Model& model, const Kinematics& kinematics, StepRecord& 
 /// included.
 std::vector<std::string> logColumns(const Model& model, const std::vector<std::string>& goals = {});
 
+/// How far a table was written when a run was saved: it goes on from there.
+struct TableEnd {
+  std::int64_t bytes = 0;  ///< −1: of no file
+  std::int64_t seen = 0;   ///< records, written or not
+
+  template <class Archive>
+  void archive(Archive& a) {
+    a(bytes, seen);
+  }
+};
+
 /// Writes a log. Rows are buffered; what was written is on disk after flush(), close() or the end
 /// of the writer's life.
 class LogWriter {
  public:
-  /// Every `every`-th record is written, and the last. "-" is standard output. Throws ModelError if
-  /// the file cannot be made.
+  /// Every `every`-th record is written, and the last. "-" is standard output. `after`: end() of
+  /// the earlier process whose rows these follow; later ones are cut off. Throws ModelError if the
+  /// file cannot be made, or is not what was written then.
   LogWriter(const std::filesystem::path& file, const Model& model,
-            const std::vector<std::string>& goals = {}, long every = 1);
+            const std::vector<std::string>& goals = {}, long every = 1,
+            const std::optional<TableEnd>& after = {});
   ~LogWriter();
   LogWriter(LogWriter&&) noexcept;
   LogWriter& operator=(LogWriter&&) = delete;
@@ -85,6 +99,7 @@ class LogWriter {
   void write(const StepRecord& record);
   void flush();
   void close();
+  TableEnd end();  ///< flushes
 
  private:
   void writeStep(const StepRecord& record);
@@ -92,7 +107,7 @@ class LogWriter {
   std::unique_ptr<detail::RowFile> rows_;
   std::vector<int> controls_;  ///< dofs of scalar joints
   Eigen::Index nq_, nv_, goals_, forces_;
-  long every_, seen_ = 0;
+  std::int64_t every_, seen_ = 0;
 };
 
 }  // namespace softgauss::io

@@ -4,7 +4,8 @@
 /// What a run came to: statistics over its steps, as JSON for programs and as a table for people.
 ///
 /// Percentiles are by nearest rank: p95 is the smallest value that at least 95 % of the steps do
-/// not exceed. Numbers that are not finite are null in JSON.
+/// not exceed; of more than 65,536 steps, of evenly spaced ones, half as many or more. Numbers that
+/// are not finite are null in JSON.
 
 #include <filesystem>
 #include <optional>
@@ -33,6 +34,10 @@ struct GoalOutcome {
   bool began = true;                    ///< it has acted, and had a figure
   std::string reason = {};              ///< why it was not met; empty where it was
 
+  template <class Archive>
+  void archive(Archive& a) {
+    a(initialError, finalError, bestError, bestTime, judgedAt, met, metSince, began, reason);
+  }
   bool isMet() const { return began && finalError <= met; }
   bool wasMet() const { return began && bestError <= met; }
 };
@@ -45,6 +50,10 @@ struct GddOutcomes {
   long bend = 0;            ///< at a kink of an elliptic cone, no certificate
   long undecided = 0;       ///< rounding or too many rows at knots kept it from a certificate
   long restarts = 0;        ///< solves that were begun again without their warm start
+  template <class Archive>
+  void archive(Archive& a) {
+    a(certified, kinks, iterationLimit, bend, undecided, restarts);
+  }
   long all() const { return certified + kinks + iterationLimit + bend + undecided; }
   long uncertified() const { return iterationLimit + bend + undecided; }
 };
@@ -59,6 +68,12 @@ struct Fallbacks {
   long heldSwings = 0;      ///< bodies that swing too fast between connections, held
   long jumps = 0;           ///< shortest parts of a step, taken in spite of their estimate
   long unseen = 0;          ///< parts in which shapes may have passed through each other unseen
+
+  template <class Archive>
+  void archive(Archive& a) {
+    a(shortSolves, roundedSolves, refusedGuesses, keptSlips, abandonedTrees, heldSwings, jumps,
+      unseen);
+  }
 };
 
 /// What integrators that look within a step did there (StepStats), over a run.
@@ -69,6 +84,11 @@ struct IntegrationCounts {
   long glances = 0;      ///< parts cut short lest shapes pass through each other unseen
   long parts = 0;        ///< into which the leapfrog has divided steps, summed (T.136)
   long repeats = 0;      ///< solves of the leapfrog that were repeated, with another prediction
+
+  template <class Archive>
+  void archive(Archive& a) {
+    a(evaluations, substeps, rejections, glances, parts, repeats);
+  }
 };
 
 /// Islands over the steps of a run; sums count every step.
@@ -81,6 +101,10 @@ struct IslandOutcomes {
   int most = 0;         ///< in a step
   int fewestAwake = 0;  ///< in a step
 
+  template <class Archive>
+  void archive(Archive& a) {
+    a(on, steps, islands, awake, wakeups, most, fewestAwake);
+  }
   double asleepShare() const {
     return islands > 0 ? 1.0 - static_cast<double>(awake) / static_cast<double>(islands) : 0.0;
   }
@@ -111,13 +135,18 @@ struct RunOrigin {
 struct ControlRatio {
   std::string name;
   double ratio = 0.0;
+
+  template <class Archive>
+  void archive(Archive& a) {
+    a(name, ratio);
+  }
 };
 
-/// Values of one quantity over the steps. A run without end does not fill the memory: beyond kMost
+/// Values of one quantity over the steps, in half a megabyte however long the run: beyond kMost
 /// values every second one is dropped, and from there on every second of the new ones, again and
 /// again; mean and maximum stay those of all.
 struct Series {
-  static constexpr std::size_t kMost = std::size_t{1} << 22;
+  static constexpr std::size_t kMost = std::size_t{1} << 16;
 
   std::vector<double> values;
   long every = 1;  ///< how many values one that is kept stands for
@@ -127,6 +156,12 @@ struct Series {
   double droppedSum = 0.0, droppedMax = -kInfinity;
 
   void add(double value);
+  template <class Archive>
+  void archive(Archive& a) {
+    a(values, every, skip, dropped, droppedSum, droppedMax);
+    if constexpr (Archive::kReads)
+      a.expect(values.size() < kMost && every >= 1 && skip >= 0 && skip < every && dropped >= 0);
+  }
 
   double percentile(double share) const;  ///< nearest rank; 0 without values
   double max() const;
@@ -143,6 +178,14 @@ class Summary {
   void finish(const StepRecord& finalState);
   /// A command of an actuator as a share of its bound.
   void addControlRatio(const std::string& name, double ratio);
+  /// What the steps have come to, for a run that goes on later.
+  template <class Archive>
+  void archive(Archive& a) {
+    a(gdd, fallbacks, integration, wallSeconds, steps_, startTime_, endTime_, initialEnergy_,
+      finalEnergy_, maxPenetration_, ratios_, forwardUs_, gddUs_, stepUs_, constraints_,
+      iterations_, dualUpdates_, physicsViolation_, gddViolation_, stationarity_, realised_);
+    if constexpr (Archive::kReads) a.expect(ratios_.size() >= bounded_.size());
+  }
   /// Of all that have a bound, the largest first.
   std::vector<ControlRatio> controlRatios() const;
 

@@ -56,6 +56,11 @@ class Company {
     if (companion_) companion_->finish(taken_);
   }
   bool present() const { return companion_ != nullptr; }
+  /// Of a run on which nobody acts.
+  template <class Archive>
+  void archive(Archive& a) {
+    a(taken_, instant_);
+  }
 
  private:
   const SimulateOptions& options_;

@@ -28,6 +28,7 @@
 #include "apps/simulate_gdd/outside_input.hpp"
 #include "collision/scene_contacts.hpp"
 #include "engine/engine.hpp"
+#include "engine/model/saved_state.hpp"
 #include "io/summary.hpp"
 
 namespace softgauss::app {
@@ -42,6 +43,11 @@ class ErrorEstimate {
   void observe(const State& before, const Input& input, const State& after, double length);
 
   io::ErrorOutcome outcome() const;
+  template <class Archive>
+  void archive(Archive& a) {
+    for (const auto& halves : halves_) a(*halves);
+    a(steps_);
+  }
 
  private:
   /// A run in half steps.
@@ -59,6 +65,11 @@ class ErrorEstimate {
     LinkPoses poses;
     double total = 0.0, turned = 0.0;  ///< sums, of squares without goals
     bool lost = false;                 ///< not finite
+
+    template <class Archive>
+    void archive(Archive& a) {
+      a(state, factor, total, turned, lost);
+    }
   };
   void observe(Halves& halves, const State& before, const Input& input, double length);
 

@@ -11,7 +11,8 @@
 namespace softgauss::app {
 
 GoalRecord::GoalRecord(const std::vector<std::unique_ptr<gdd::Goal>>& goals,
-                       const gdd::GoalContext& start) {
+                       const gdd::GoalContext& start)
+    : dofs_(start.model.nv) {
   for (const auto& goal : goals) {
     if (goal->onlyRegularises) continue;
     figures_.clear();

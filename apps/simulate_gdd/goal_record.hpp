@@ -22,6 +22,10 @@ class GoalRecord {
     gdd::GoalFigure last;  ///< while the goal acted
     bool acts = false;     ///< in the last step seen
 
+    template <class Archive>
+    void archive(Archive& a) {
+      a(outcome, last.value, last.met, last.dof, acts);
+    }
     /// It begins only if somebody asks, and nobody did.
     bool wasNotAsked() const;
   };
@@ -33,6 +37,12 @@ class GoalRecord {
   /// since the last one, with their outcome complete but for the reason.
   std::vector<Track*> observe(const gdd::GoalContext& context, const gdd::ContactForces& contacts);
 
+  template <class Archive>
+  void archive(Archive& a) {
+    a.sized(tracks_);
+    if constexpr (Archive::kReads)
+      for (const Track& track : tracks_) a.expect(track.last.dof >= -1 && track.last.dof < dofs_);
+  }
   std::vector<Track>& tracks() { return tracks_; }
   const std::vector<Track>& tracks() const { return tracks_; }
   /// As columns are called: "reach hand [m]".
@@ -43,6 +53,7 @@ class GoalRecord {
  private:
   void see(Track& track, const gdd::GoalFigure& figure, double time, bool acts);
 
+  int dofs_;
   std::vector<Track> tracks_;
   std::vector<gdd::GoalFigure> figures_;  ///< scratch
   VectorX errors_;

@@ -66,11 +66,33 @@ void IslandRun::collectContacts(std::vector<Contact>& contacts) {
       c.bodyB = model_.geometries[static_cast<std::size_t>(c.geometryB)].body;
       contacts.push_back(c);
     }
-    contactForces(island.data, some_);
-    for (Snapshot::ContactForce f : some_) {
-      f.geometryA = whole(f.geometryA), f.geometryB = whole(f.geometryB);
-      forces_.push_back(f);
-    }
+    forcesOf(island);
+    forces_.insert(forces_.end(), some_.begin(), some_.end());
+  }
+}
+
+/// Into some_, in the geometries of the model.
+void IslandRun::forcesOf(const Islands::Island& island) {
+  const auto kept = asleep_.find(island.units.front());
+  if (kept != asleep_.end() && !island.awake) {
+    some_ = kept->second;
+    return;
+  }
+  if (kept != asleep_.end()) asleep_.erase(kept);
+  contactForces(island.data, some_);
+  for (Snapshot::ContactForce& f : some_) {
+    f.geometryA = island.part.geometries[static_cast<std::size_t>(f.geometryA)];
+    f.geometryB = island.part.geometries[static_cast<std::size_t>(f.geometryB)];
+  }
+}
+
+/// The forces on what sleeps are those of its last solve, which no later process has.
+void IslandRun::keepAsleep() {
+  for (int unit = 0; unit < islands_.units().size(); ++unit) {
+    const Islands::Island& island = islands_.islandOf(unit);
+    if (island.awake || island.units.front() != unit) continue;
+    forcesOf(island);
+    asleep_[unit] = some_;
   }
 }
 

@@ -3,10 +3,12 @@
 
 /// --islands: the steps of a run, taken island by island.
 
+#include <map>
 #include <optional>
 
 #include "collision/unit_contacts.hpp"
 #include "engine/engine.hpp"
+#include "engine/step/saved_contacts.hpp"
 #include "gdd/gdd.hpp"
 #include "io/summary.hpp"
 
@@ -30,9 +32,23 @@ class IslandRun {
   /// Whether an island with elliptic cones was controlled in the last step.
   bool controlledCones() const;
   const io::IslandOutcomes& outcomes() const { return outcomes_; }
+  template <class Archive>
+  void archive(Archive& a) {
+    a(islands_);
+    if (controls_) {
+      a(*controls_);
+      a.sized(controller_.control, controller_.commands);
+    }
+    if constexpr (!Archive::kReads) keepAsleep();
+    a(outcomes_, asleep_);
+    if constexpr (Archive::kReads)
+      for (const auto& [unit, forces] : asleep_) a.expect(fits(model_, forces));
+  }
 
  private:
   void collectContacts(std::vector<Contact>& contacts);
+  void forcesOf(const Islands::Island& island);
+  void keepAsleep();
 
   const Model& model_;
   gdd::GoalDirectedController& controller_;
@@ -40,6 +56,8 @@ class IslandRun {
   std::optional<gdd::GoalDirectedIslands> controls_;  ///< with goals
   Islands islands_;
   std::vector<Snapshot::ContactForce> forces_, some_;
+  /// Of islands that sleep since an earlier process stepped them, by their first unit.
+  std::map<int, std::vector<Snapshot::ContactForce>> asleep_;
   io::IslandOutcomes outcomes_;
   VectorX scratch_;
 };

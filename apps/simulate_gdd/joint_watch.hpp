@@ -30,6 +30,13 @@ class JointWatch {
   /// and the state after it.
   void observe(const VectorX& tau, const VectorX& commands, const State& state, double h);
   bool hasSeen() const { return steps_ > 0; }
+  template <class Archive>
+  void archive(Archive& a) {
+    a.sized(controls_);
+    a(steps_, v_, q_);
+    if constexpr (Archive::kReads)
+      a.expect(steps_ == 0 || (steps_ > 0 && v_.size() == model_.nv && q_.size() == model_.nq));
+  }
 
   /// Those of the dofs for which `counts` (nv) is set that were at their bound in a fifth of the
   /// last half second.
@@ -53,6 +60,11 @@ class JointWatch {
     double recent = 0.0;  ///< share of recent steps at a bound, exponentially weighted
     long full = 0;        ///< steps at a bound
     double last = 0.0, jump = 0.0, jumps = 0.0, largest = 0.0;
+
+    template <class Archive>
+    void archive(Archive& a) {
+      a(recent, full, last, jump, jumps, largest);
+    }
   };
   void see(Control& control, double u, double forget);
   bool concerns(const Control& control, const std::vector<char>& counts) const;

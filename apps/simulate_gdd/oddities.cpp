@@ -71,6 +71,19 @@ std::vector<std::string> Oddities::observe(const State& state, double time, doub
   return now;
 }
 
+bool Oddities::fits() const {
+  const auto hasJoint = [&](int body) {
+    return body > 0 && body < model_.bodyCount() && model_.bodies[body].dofs == 1;
+  };
+  return std::all_of(fast_.begin(), fast_.end(),
+                     [&](const auto& seen) { return hasJoint(seen.first); }) &&
+         std::all_of(outside_.begin(), outside_.end(),
+                     [&](const auto& seen) {
+                       return hasJoint(seen.first) && rangeOf_[seen.first] != nullptr;
+                     }) &&
+         fastest_ >= 0 && fastest_ < model_.bodyCount();
+}
+
 int Oddities::fastestBody(const State& state) const {
   int fastest = 0;
   double most = 0.0;

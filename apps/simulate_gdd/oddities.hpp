@@ -30,11 +30,21 @@ class Oddities {
                                    double kineticEnergy);
   /// A sentence for each kind that was seen, with all joints and the worst.
   std::vector<std::string> sentences() const;
+  template <class Archive>
+  void archive(Archive& a) {
+    a(outside_, fast_, started_, startEnergy_, mostKinetic_, gainTime_, gain_, fastest_);
+    if constexpr (Archive::kReads) a.expect(fits());
+  }
 
  private:
   struct Seen {
     double time;   ///< first
     double worst;  ///< [rad, m or their rates]
+
+    template <class Archive>
+    void archive(Archive& a) {
+      a(time, worst);
+    }
   };
   /// Notes a joint; true where it is the first of its kind.
   static bool note(std::map<int, Seen>& kind, int body, double time, double amount);
@@ -43,6 +53,7 @@ class Oddities {
   std::string speedText(int body, const Seen& seen, const std::string& when) const;
   std::string energyText(const std::string& when) const;
   int fastestBody(const State& state) const;
+  bool fits() const;  ///< to the model
 
   const Model& model_;
   bool passive_;

@@ -22,7 +22,8 @@ void checkOutputs(const SimulateOptions& options, const std::vector<std::filesys
       {"MODEL", options.model},
       {"--goals", options.goals},
       {"--torques", options.torques},
-      {"--play", options.play}};
+      {"--play", options.play},
+      {"--resume", options.resume}};
   for (const std::filesystem::path& file : read) files.emplace_back(file.string(), file);
   // Standard input is no output.
   std::erase_if(files, [](const auto& file) { return file.second == io::kStandardInput; });
@@ -32,7 +33,8 @@ void checkOutputs(const SimulateOptions& options, const std::vector<std::filesys
                                      {"--summary", &options.summary},
                                      {"--view", &options.view},
                                      {"--plot", &options.plot},
-                                     {"--record", &options.record}})
+                                     {"--record", &options.record},
+                                     {"--checkpoint", &options.checkpoint}})
     files.emplace_back(option, *file);
   const auto same = [](const std::filesystem::path& a, const std::filesystem::path& b) {
     std::error_code error;
@@ -45,7 +47,8 @@ void checkOutputs(const SimulateOptions& options, const std::vector<std::filesys
   };
   for (std::size_t out = inputs; out < files.size(); ++out)
     for (std::size_t other = 0; other < out; ++other)
-      if (same(files[out].second, files[other].second))
+      if (same(files[out].second, files[other].second) &&
+          !(files[out].first == "--checkpoint" && files[other].first == "--resume"))
         throw UsageError(
             fmt::format("{} would overwrite {}", files[out].first, files[other].first));
   // All before any is overwritten; a folder of drawings is made when its time comes.

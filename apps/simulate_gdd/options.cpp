@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "apps/simulate_gdd/argument_values.hpp"
+#include "apps/simulate_gdd/checkpoint_options.hpp"
 #include "apps/simulate_gdd/command_line.hpp"
 #include "apps/simulate_gdd/live_options.hpp"
 #include "io/inputs.hpp"
@@ -210,6 +211,7 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
       ->group(simulation);
 
   addLiveOptions(app, options);
+  addCheckpointOptions(app, options);
 
   const char* const output = "Output";
   app.add_flag("--explain", options.explain, "tell what was loaded and simulate nothing")
@@ -314,6 +316,7 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
   if (fromStandardInput > 1)
     throw UsageError("standard input (-) can be only one of MODEL, --goals, --torques and --play");
   finishLiveOptions(app, options);
+  finishCheckpointOptions(app, options);
   checkOutputs(options, {});
   if (options.isScene())
     for (const auto& [option, given] : {std::pair{"--base", !base.empty() && base != "automatic"},

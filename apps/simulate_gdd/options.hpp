@@ -49,7 +49,11 @@ struct SimulateOptions : SimulationOptions {
   std::string liveAddress = "127.0.0.1";
   std::filesystem::path record, play;  ///< what is done to a live run, to a file and from one
   bool acted() const { return live || !play.empty(); }  ///< somebody acts on the run
-  std::string commandLine;                              ///< as it was typed
+  std::filesystem::path checkpoint, resume;             ///< written, and gone on from
+  double checkpointEvery = 1.0;                         ///< simulated time [s]
+  /// What was asked for, as it was typed, but for what makes no other run.
+  std::vector<std::pair<std::string, std::string>> settings;
+  std::string commandLine;  ///< as it was typed
   /// Called with the goals once they are made: a sweep moves their places.
   std::function<void(gdd::GoalDirectedController&)> changeGoals;
 

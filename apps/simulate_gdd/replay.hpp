@@ -34,6 +34,10 @@ class Replay {
   void rewind(double time) {
     if (recording_) recording_->rewind(time);
   }
+  template <class Archive>
+  void archive(Archive& a) {
+    if (recording_) a(*recording_);
+  }
   /// The final state, whose stages are in `data`; `message` says why the run ended early. Returns
   /// what could not be written.
   std::vector<std::string> finish(const io::StepRecord& last, const Data& data,

@@ -11,18 +11,19 @@
 #include "apps/shared/run_origin.hpp"
 #include "apps/shared/standard_streams.hpp"
 #include "apps/shared/wall_clock.hpp"
+#include "apps/simulate_gdd/checkpoint.hpp"
 #include "apps/simulate_gdd/company.hpp"
 #include "apps/simulate_gdd/error_estimate.hpp"
 #include "apps/simulate_gdd/island_run.hpp"
 #include "apps/simulate_gdd/outside_input.hpp"
 #include "apps/simulate_gdd/progress.hpp"
 #include "apps/simulate_gdd/replay.hpp"
+#include "apps/simulate_gdd/run_tables.hpp"
 #include "apps/simulate_gdd/run_tally.hpp"
 #include "apps/simulate_gdd/verdict.hpp"
 #include "engine/engine.hpp"
-#include "io/contact_log.hpp"
+#include "engine/model/saved_state.hpp"
 #include "io/explain.hpp"
-#include "io/log.hpp"
 #include "io/summary.hpp"
 
 namespace softgauss::app {
@@ -47,6 +48,7 @@ class Runner {
         controller_(model_),
         outside_(options, scene),
         kinematics_(model_),
+        tables_(options, outputErrors_),
         contactLinks_(model_),
         summary_(model_) {
     setUp(options, scene, controller_);
@@ -67,15 +69,27 @@ class Runner {
     verdict_.emplace(controller_, start, passive, scene.baseOrigin);
     replay_.emplace(options, scene, controller_.goals, start);
     company_->join(scene, start);
+    checkpoints_.emplace(options, model_, summary_.origin);
+    if (checkpoints_->restore(*this)) computeStages(model_, input_, state_, data_, &contacts_);
+    checkpoints_->beginAt(state_.time);
     // Last, for nothing else can be refused any more.
-    if (!options.log.empty())
-      log_.emplace(options.log, model_, verdict_->goals().columns(), options.logEvery);
-    if (!options.contacts.empty()) contactLog_.emplace(options.contacts, model_);
+    tables_.open(model_, verdict_->goals().columns());
+  }
+
+  /// All that the run has come to, between two steps.
+  template <class Archive>
+  void archive(Archive& a) {
+    a(state_);
+    if constexpr (Archive::kReads) expectStateOf(model_, state_);
+    if (islands_) a(*islands_);
+    a(tables_, *company_, *verdict_, *replay_, summary_, stepsWithCones_);
+    if (errorEstimate_) a(*errorEstimate_);
   }
 
   ExitCode run() {
     RunProgress progress(options_.duration, options_.quiet || options_.acted());
     progress_ = &progress;
+    const double wallBefore = summary_.wallSeconds;
     tellBases();
     print(told(), company_->announcement());
     std::fflush(told());
@@ -94,7 +108,7 @@ class Runner {
         } else {
           record();
           progress.show(state_.time, secondsSince(start));
-          if (!outputErrors_.empty()) code = kBadInput;
+          if (!outputErrors_.none()) code = kBadInput;
         }
         return code == kDone;
       };
@@ -103,10 +117,16 @@ class Runner {
         outside_.inParts(model_, state_, takeStep);
       else
         takeStep();
-      if (code == kDone) company_->countStep();
+      if (code != kDone) break;
+      company_->countStep();
+      isWhole_ = true;
+      summary_.wallSeconds = wallBefore + secondsSince(start);
+      if (checkpoints_->isDue(state_.time)) writeCheckpoint();
+      if (!outputErrors_.none()) code = kBadInput;
     }
     progress.clear();
-    summary_.wallSeconds = secondsSince(start);
+    summary_.wallSeconds = wallBefore + secondsSince(start);
+    if (isWhole_ && checkpoints_->asked() && outputErrors_.none()) writeCheckpoint();
     std::string reason;
     if (code == kCannotContinue) {
       reason = failureText(model_, state_, data_) +
@@ -116,20 +136,20 @@ class Runner {
     } else if (code == kInterrupted) {
       reason = fmt::format("interrupted at t = {:.6g} s", state_.time);
       summary_.outcome = "interrupted";
-    } else if (!outputErrors_.empty()) {
-      reason = fmt::format("stopped at t = {:.6g} s, as the log could not be written", state_.time);
+    } else if (!outputErrors_.none()) {
+      reason =
+          fmt::format("stopped at t = {:.6g} s, as an output could not be written", state_.time);
       summary_.outcome = "stopped";
     }
     finish(reason);
-    if (outputErrors_.empty()) return code;
-    std::string errors = code == kBadInput ? reason : "";
-    for (const std::string& error : outputErrors_) errors += (errors.empty() ? "" : "\n") + error;
-    throw OutputError(errors);
+    if (outputErrors_.none()) return code;
+    throw OutputError(outputErrors_.text(code == kBadInput ? reason : ""));
   }
 
  private:
   /// One step; false when it could not be taken, the state then being the last good one.
   bool step() {
+    isWhole_ = false;
     record_.time = state_.time;
     record_.q = state_.q;
     record_.v = state_.v;
@@ -182,7 +202,7 @@ class Runner {
       touching_ = islands_->contacts();
     else
       contactForces(data_, touching_);
-    if (log_) {
+    if (tables_.hasLog()) {
       record_.centerOfPressure = centerOfPressure(model_, touching_);
       contactLinks_.forces(touching_, record_.linkForces);
     }
@@ -198,36 +218,18 @@ class Runner {
     replay_->addStep(record_, data_, touching_);
     company_->after(seen, *verdict_);
     std::swap(data_.kinematics, kinematics_);
-    writeLog(record_);
+    tables_.write(record_, touching_);
+  }
+
+  void writeCheckpoint() {
+    outputErrors_.attempt([&] { checkpoints_->write(*this, state_.time); });
   }
 
   void measure(io::StepRecord& record, const Kinematics& kinematics) const {
     const Energy energy = computeEnergy(model_, kinematics, record.q, record.v);
     record.energy = energy.total();
     record.kineticEnergy = energy.kinetic;
-    if (log_) io::measureWhole(model_, kinematics, record);
-  }
-
-  void writeLog(const io::StepRecord& row) {
-    if (!outputErrors_.empty()) return;
-    if (log_) attempt([&] { log_->write(row); });
-    if (contactLog_ && !row.isEnd) attempt([&] { contactLog_->write(row.time, touching_); });
-  }
-
-  void closeLogs() {
-    if (!outputErrors_.empty()) return;
-    if (log_) attempt([&] { log_->close(); });
-    if (contactLog_) attempt([&] { contactLog_->close(); });
-  }
-
-  /// Each output is tried, whatever became of the others.
-  template <class F>
-  void attempt(F&& write) {
-    try {
-      write();
-    } catch (const std::exception& error) {
-      outputErrors_.emplace_back(error.what());
-    }
+    if (tables_.hasLog()) io::measureWhole(model_, kinematics, record);
   }
 
   /// A line on stderr while the run goes on, not below a progress bar.
@@ -247,6 +249,8 @@ class Runner {
     for (const std::string& line : summary_.bases) print(told(), line + "\n");
     for (const std::string& warning : baseWarnings_)
       fmt::print(stderr, "simulate_gdd: warning: {}\n", warning);
+    if (!checkpoints_->warning().empty())
+      fmt::print(stderr, "simulate_gdd: warning: {}\n", checkpoints_->warning());
     std::fflush(told());
   }
 
@@ -264,7 +268,7 @@ class Runner {
   /// The final state, in the log's last row and the summary.
   void finish(const std::string& reason) {
     summary_.stateHash = fmt::format("{:016x}", hash(state_));
-    attempt([&] { company_->finish(); });
+    outputErrors_.attempt([&] { company_->finish(); });
     const VectorX acceleration = data_.forward.a;
     computeStages(model_, input_, state_, data_, &contacts_);
     data_.forward.a = acceleration;
@@ -280,17 +284,17 @@ class Runner {
     measure(last, data_.kinematics);
     verdict_->finish({last, data_, touching_, state_, model_.options.timestep});
     last.goalErrors = verdict_->goals().errors();
-    writeLog(last);
-    closeLogs();
+    tables_.write(last, touching_);
+    tables_.close();
     summary_.finish(last);
     tellSolver();
     tellUnseen();
     if (islands_) summary_.islands = islands_->outcomes();
     if (errorEstimate_) summary_.error = errorEstimate_->outcome();
     verdict_->tell(reason, baseWarnings_, summary_);
-    if (!options_.summary.empty()) attempt([&] { summary_.write(options_.summary); });
+    if (!options_.summary.empty()) outputErrors_.attempt([&] { summary_.write(options_.summary); });
     for (std::string& error : replay_->finish(last, data_, summary_, reason))
-      outputErrors_.push_back(std::move(error));
+      outputErrors_.add(std::move(error));
     if (!options_.quiet) print(told(), replay_->written() + summary_.table(options_.details));
     if (!options_.quiet && company_->present())
       print(told(), fmt::format("state hash: {}\n", summary_.stateHash));
@@ -333,15 +337,16 @@ class Runner {
   std::optional<ErrorEstimate> errorEstimate_;
   State before_;  ///< the step, for that
   Input held_;    ///< over the step, for that
-  std::optional<io::LogWriter> log_;
-  std::optional<io::ContactLog> contactLog_;
+  OutputErrors outputErrors_;
+  RunTables tables_;
+  std::optional<Checkpoints> checkpoints_;
+  bool isWhole_ = true;  ///< the state is one between whole steps, as a checkpoint has it
   io::ContactLinks contactLinks_;
   std::vector<Snapshot::ContactForce> touching_;  ///< contacts of the last step
   std::vector<std::string> baseWarnings_;
   std::optional<Verdict> verdict_;
   RunProgress* progress_ = nullptr;
   std::optional<Replay> replay_;
-  std::vector<std::string> outputErrors_;
   io::Summary summary_;
   long stepsWithCones_ = 0;
   io::StepRecord record_;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "apps/simulate_gdd/trial.hpp"
+#include "collision/clearance.hpp"
 #include "io/explain.hpp"
 #include "io/names.hpp"
 
@@ -82,6 +83,11 @@ std::string explainScene(const Scene& scene) {
         {pair.linkA, pair.linkB, adjacent ? "joined by a joint" : "overlap at the start",
          adjacent ? std::string() : fmt::format("by {:.2g} mm", 1e3 * pair.depth)});
   }
+  Kinematics kinematics(scene.model);
+  computeKinematics(scene.model, scene.initial, kinematics);
+  collision::Clearance distances(scene.model, scene.contacts->meshes());
+  for (const auto& [a, b, distance] : collision::clearances(scene.model, kinematics, distances))
+    context.clearances.push_back({a, b, distance});
   return io::explain(scene.model, context);
 }
 

@@ -48,6 +48,10 @@ class Standing {
   void observe(const Kinematics& kinematics, const std::vector<Snapshot::ContactForce>& contacts,
                double time, double h);
   std::vector<StandingOutcome> outcomes(const Kinematics& end, double time) const;
+  template <class Archive>
+  void archive(Archive& a) {
+    a.sized(links_, robots_);
+  }
 
  private:
   struct Link {
@@ -59,6 +63,11 @@ class Standing {
     // Of the present step:
     double load = 0.0;
     Vector3 drift = Vector3::Zero();
+
+    template <class Archive>
+    void archive(Archive& a) {
+      a(stands, since, lastTouch, slid);
+    }
   };
   struct Robot {
     int tree = 0;
@@ -67,6 +76,11 @@ class Standing {
     Vector3 up_B = Vector3::UnitZ();
     bool stoodOnRoot = false;  ///< looksBolted()
     double firstTouch = -1.0;  ///< [s]
+
+    template <class Archive>
+    void archive(Archive& a) {
+      a(firstTouch);
+    }
   };
   double heightOf(const Robot& robot, const Kinematics& k) const;
 

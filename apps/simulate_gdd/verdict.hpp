@@ -34,6 +34,11 @@ class Verdict {
 
   /// Returns what is to be told at once.
   std::vector<std::string> observe(const SeenStep& step);
+  /// What was seen, for a run that goes on later.
+  template <class Archive>
+  void archive(Archive& a) {
+    a(goals_, joints_, standing_, oddities_);
+  }
   /// The state at the end, with the contacts of the last step.
   void finish(const SeenStep& end);
 

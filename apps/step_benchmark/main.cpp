@@ -20,6 +20,7 @@
 #include "apps/step_benchmark/crowds.hpp"
 #include "apps/step_benchmark/in_turn.hpp"
 #include "apps/step_benchmark/ladder.hpp"
+#include "apps/step_benchmark/landscape.hpp"
 #include "apps/step_benchmark/pictures.hpp"
 #include "apps/step_benchmark/scaling.hpp"
 #include "apps/step_benchmark/scenes.hpp"
@@ -185,6 +186,7 @@ int main(int argc, char** argv) {
     std::map<std::string, double> figures;
     for (const auto& timed : {ladderInTurn, scalingInTurn})
       for (const auto& [name, value] : timed(robots, filter)) figures[name] = value;
+    figures.merge(landscapeFigures(filter));
     for (const auto& [what, exponent] : exponents(figures))
       figures["scaling_" + what + ".exponent"] = exponent;
     for (const auto& [name, value] : figures) fmt::print("{} {:.4g}\n", name, value);

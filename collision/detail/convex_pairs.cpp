@@ -128,11 +128,11 @@ bool convexConvex(const Collider& a, const Transform& X_WA, const Collider& b,
 }
 
 void convexAlong(const Collider& a, const Transform& X_WA, const Collider& b, const Transform& X_WB,
-                 const Vector3& n_W, PairContacts& out) {
+                 const Vector3& n_W, double margin, PairContacts& out) {
   const double size = std::min(a.boxHalfExtents.maxCoeff(), b.boxHalfExtents.maxCoeff());
   const double distance = separationAlong(a.convex, X_WA, b.convex, X_WB, n_W);
   const Separation best = withFaces(a, X_WA, b, X_WB, {n_W, distance}, size);
-  if (best.distance < 0.0) addManifold(a, X_WA, b, X_WB, best, 0.0, out);
+  if (best.distance < margin) addManifold(a, X_WA, b, X_WB, best, margin, out);
 }
 
 }  // namespace softgauss::collision::detail

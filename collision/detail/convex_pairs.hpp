@@ -43,7 +43,7 @@ Vector3 deepestPoint(const SupportFace& faceA, const SupportFace& faceB, const V
 /// Adds the contacts of two shapes that overlap, along the unit vector n_W from A to B or the
 /// normal of one of the faces that it meets, whichever overlaps least.
 void convexAlong(const Collider& a, const Transform& X_WA, const Collider& b, const Transform& X_WB,
-                 const Vector3& n_W, PairContacts& out);
+                 const Vector3& n_W, double margin, PairContacts& out);
 
 /// Returns false when a pose is not finite, so that nothing is known about the pair.
 bool convexConvex(const Collider& a, const Transform& X_WA, const Collider& b,

@@ -68,13 +68,16 @@ fcl::Transform3d toFcl(const Transform& X) {
 
 }  // namespace
 
+/// What touches by rounding is a pair of the tree [m].
+constexpr double kSlack = 1e-9;
+
 struct FclContacts::Scene {
   Scene(const Model& model, PreparedMeshes& meshes);
   void pose(const Kinematics& kinematics);
   void findNear();
   void testPair(int pair, ContactSet& contacts);
-  /// FCL's answer for a convex pair; false where it gives up.
-  bool ask(const GeometryPair& pair, bool& touch, Vector3& n_W);
+  /// FCL's answer for a convex pair that is nearer by `within` [m]; false where it gives up.
+  bool ask(const GeometryPair& pair, double within, bool& touch, Vector3& n_W);
 
   const Model& model;
   SceneContacts own;
@@ -93,8 +96,10 @@ FclContacts::Scene::Scene(const Model& m, PreparedMeshes& meshes)
     : model(m), own(m, SceneContacts::kBroadphasePairs, true, &meshes), set(m, meshes) {
   X_WG.resize(model.geometries.size());
   for (std::size_t i = 0; i < model.geometries.size(); ++i) {
-    objects.push_back(
-        std::make_unique<fcl::CollisionObjectd>(geometryOf(model.geometries[i].shape, set, i)));
+    const Geometries geometry = geometryOf(model.geometries[i].shape, set, i);
+    objects.push_back(std::make_unique<fcl::CollisionObjectd>(geometry));
+    geometry->aabb_local.expand(Vector3(Vector3::Constant(kSlack)));
+    geometry->aabb_radius += kSlack;
     objects.back()->setUserData(reinterpret_cast<void*>(i));
     if (!set.isPlane(static_cast<int>(i))) manager.registerObject(objects.back().get());
   }
@@ -142,12 +147,17 @@ void FclContacts::Scene::findNear() {
   std::sort(near.begin(), near.end());
 }
 
-bool FclContacts::Scene::ask(const GeometryPair& pair, bool& touch, Vector3& n_W) {
+bool FclContacts::Scene::ask(const GeometryPair& pair, double within, bool& touch, Vector3& n_W) {
+  const Transform& X_WA = X_WG[idx(pair.a)];
+  const Vector3 apart = X_WG[idx(pair.b)].p - X_WA.p;
+  Transform nearer = X_WA;
+  nearer.p += within * (set.isPlane(pair.a) ? Vector3(X_WA.R.col(2)) : apart.stableNormalized());
   fcl::CollisionRequestd request(1, true);
   fcl::CollisionResultd result;
   try {
-    touch =
-        fcl::collide(objects[idx(pair.a)].get(), objects[idx(pair.b)].get(), request, result) > 0;
+    touch = fcl::collide(objects[idx(pair.a)]->collisionGeometry().get(), toFcl(nearer),
+                         objects[idx(pair.b)]->collisionGeometry().get(),
+                         objects[idx(pair.b)]->getTransform(), request, result) > 0;
   } catch (const std::exception&) {
     return false;
   }
@@ -158,9 +168,10 @@ bool FclContacts::Scene::ask(const GeometryPair& pair, bool& touch, Vector3& n_W
 void FclContacts::Scene::testPair(int p, ContactSet& contacts) {
   const GeometryPair& pair = own.filter().pairs[idx(p)];
   const Transform &X_WA = X_WG[idx(pair.a)], &X_WB = X_WG[idx(pair.b)];
+  const double within = touchingWithin(model.options, X_WB.p);
   bool touch = true;
   Vector3 n;
-  if (!set.surface[idx(pair.b)] && !ask(pair, touch, n)) {
+  if (!set.surface[idx(pair.b)] && !ask(pair, within, touch, n)) {
     ++left;
     touch = true;
     n.setZero();
@@ -170,8 +181,8 @@ void FclContacts::Scene::testPair(int p, ContactSet& contacts) {
     return;
   }
   const bool isOurs = set.isPlane(pair.a) || set.surface[idx(pair.b)] || n.isZero(0.0);
-  if (isOurs) return set.report(pair.a, X_WA, pair.b, X_WB, 0.0, test, contacts);
-  set.reportAlong(pair.a, X_WA, pair.b, X_WB, n.normalized(), test, contacts);
+  if (isOurs) return set.report(pair.a, X_WA, pair.b, X_WB, within, test, contacts);
+  set.reportAlong(pair.a, X_WA, pair.b, X_WB, n.normalized(), within, test, contacts);
 }
 
 FclContacts::FclContacts(const Model& model, PreparedMeshes* meshes) {

@@ -14,7 +14,7 @@ namespace softgauss::collision::detail {
 namespace {
 
 /// Nodes that wait on the way down, one for each level.
-constexpr int kWaiting = 128;
+constexpr int kWaiting = TriangleTree::kDepth;
 
 using Hierarchy = fcl::BVHModel<fcl::AABBd>;
 

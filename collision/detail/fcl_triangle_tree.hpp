@@ -33,16 +33,20 @@ class TriangleTree {
             std::vector<std::pair<int, int>>& found) const;
   std::size_t bytes() const { return nodes_.capacity() * sizeof(Node); }
 
+  struct Node {
+    Box box;
+    int first;  ///< of two children beside each other, or −(triangle + 1)
+  };
+  /// [0] holds all; no more than kDepth levels below it.
+  const std::vector<Node>& nodes() const { return nodes_; }
+  static constexpr int kDepth = 128;
+
  private:
   /// Calls visit(triangle) for those within the box, in the tree's order, until it returns false.
   template <class Visit>
   void walk(const Box& box, Visit&& visit) const;
 
-  struct Node {
-    Box box;
-    int first;  ///< of two children beside each other, or −(triangle + 1)
-  };
-  std::vector<Node> nodes_;  ///< [0] holds all
+  std::vector<Node> nodes_;
 };
 
 }  // namespace softgauss::collision::detail

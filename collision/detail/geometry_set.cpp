@@ -67,6 +67,16 @@ GeometrySet::GeometrySet(const Model& m, PreparedMeshes& meshes) : model(m) {
   }
 }
 
+PreparedMeshes GeometrySet::meshes() const {
+  PreparedMeshes meshes;
+  for (std::size_t i = 0; i < model.geometries.size(); ++i) {
+    const Mesh* mesh = model.geometries[i].shape.mesh.get();
+    if (hull[i]) meshes.hulls[mesh] = hull[i];
+    if (surface[i]) meshes.surfaces[mesh] = surface[i];
+  }
+  return meshes;
+}
+
 std::vector<double> GeometrySet::marginShares() const {
   std::vector<double> shares;
   for (const Geometry& g : model.geometries) shares.push_back(std::max(g.material.margin, 0.0));
@@ -155,11 +165,12 @@ void GeometrySet::report(int a, const Transform& X_WA, int b, const Transform& X
 }
 
 void GeometrySet::reportAlong(int a, const Transform& X_WA, int b, const Transform& X_WB,
-                              const Vector3& n_W, PairTest& pair, ContactSet& contacts) const {
+                              const Vector3& n_W, double margin, PairTest& pair,
+                              ContactSet& contacts) const {
   ++contacts.pairsTested;
   pair.found.clear();
   convexAlong(colliders[static_cast<std::size_t>(a)], X_WA, colliders[static_cast<std::size_t>(b)],
-              X_WB, n_W, pair.found);
+              X_WB, n_W, margin, pair.found);
   addFound(a, b, pair, contacts);
 }
 

@@ -52,6 +52,13 @@ struct GeometrySet {
 
   const Geometry& geometry(int g) const { return model.geometries[static_cast<std::size_t>(g)]; }
   bool isPlane(int g) const { return geometry(g).shape.kind == ShapeKind::plane; }
+  /// The hull that collides for a geometry that is a mesh; null for other shapes.
+  const ConvexHull* collidingHull(int g) const {
+    return geometry(g).shape.kind == ShapeKind::mesh ? hull[static_cast<std::size_t>(g)].get()
+                                                     : nullptr;
+  }
+  /// All hulls and surfaces.
+  PreparedMeshes meshes() const;
   /// Of each geometry at least half of every margin that a pair of it may have: those of materials
   /// add up.
   std::vector<double> marginShares() const;
@@ -67,9 +74,10 @@ struct GeometrySet {
   /// The same, into contacts; failures and tests are counted there.
   void report(int a, const Transform& X_WA, int b, const Transform& X_WB, double margin,
               PairTest& test, ContactSet& contacts) const;
-  /// Contacts of a convex pair that overlaps, along n_W from a to b or nearly, into contacts.
+  /// Contacts of a convex pair with distance < margin, along n_W from a to b or nearly, into
+  /// contacts.
   void reportAlong(int a, const Transform& X_WA, int b, const Transform& X_WB, const Vector3& n_W,
-                   PairTest& test, ContactSet& contacts) const;
+                   double margin, PairTest& test, ContactSet& contacts) const;
 
  private:
   void addFound(int a, int b, const PairTest& test, ContactSet& contacts) const;

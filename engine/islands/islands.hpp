@@ -38,6 +38,9 @@
 
 namespace softgauss {
 
+class ByteReader;
+class ByteWriter;
+
 struct Sleep {
   bool enabled = false;
   double speed = 5e-3;  ///< [m/s] of every link: its centre of mass, and its radius of gyration
@@ -73,6 +76,15 @@ class Islands {
   const State& state() const { return state_; }
   /// Wakes everything.
   void setState(const State& state);
+  /// The state with all that makes it go on to the same bits: groups, their ages, who sleeps and
+  /// since when who rests (core/bytes.hpp). What controls islands is not among it.
+  template <class Archive>
+  void archive(Archive& a) {
+    if constexpr (Archive::kReads)
+      restore(a);
+    else
+      save(a);
+  }
   /// Wakes the island of a body.
   void wake(int body);
   bool asleep(int body) const;
@@ -119,6 +131,8 @@ class Islands {
   const Units& units() const { return units_; }
 
  private:
+  void save(ByteWriter& a);
+  void restore(ByteReader& a);
   Island& find(const std::vector<int>& units);
   void activate(Island& island);
   void deactivate(Island& island);

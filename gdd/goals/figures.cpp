@@ -12,6 +12,7 @@
 #include "gdd/goals/contact_force.hpp"
 #include "gdd/goals/hold.hpp"
 #include "gdd/goals/joints.hpp"
+#include "gdd/goals/keep_clear.hpp"
 #include "gdd/goals/link_acceleration.hpp"
 #include "gdd/goals/posture.hpp"
 #include "gdd/goals/reach.hpp"
@@ -169,6 +170,14 @@ void LinkAcceleration::figures(const GoalContext& context, const ContactForces&,
   out.push_back(
       figure((linear - a).norm(), "m/s²", std::max(GoalFigure::kMetShare * linear.norm(), 0.05)));
   out.back().frame = frame;
+}
+
+void KeepClear::figures(const GoalContext& context, const ContactForces&,
+                        std::vector<GoalFigure>& out) const {
+  const std::optional<double> clear = clearance(context);
+  if (!clear) return;
+  out.push_back(figure(std::max(distance - *clear, 0.0), "m", kMetClearance, "short of distance"));
+  out.back().frame = context.model.findFrame(link);
 }
 
 void CenterOfMass::figures(const GoalContext& context, const ContactForces&,

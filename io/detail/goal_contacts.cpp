@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Goals of contact forces: contact_force, center_of_pressure.
+/// Goals of what touches, or shall not: contact_force, center_of_pressure, keep_clear.
 
 #include <fmt/format.h>
 
@@ -7,6 +7,7 @@
 
 #include "gdd/goals/center_of_pressure.hpp"
 #include "gdd/goals/contact_force.hpp"
+#include "gdd/goals/keep_clear.hpp"
 #include "io/detail/goal_kinds.hpp"
 #include "io/detail/text.hpp"
 
@@ -52,6 +53,32 @@ GoalPointer readContactForce(const YamlMap& keys, const GoalScene& scene) {
     goal->countOnly(model, other);
   }
   keys.read("weight", goal->weight, Range::notNegative);
+  return goal;
+}
+
+GoalPointer readKeepClear(const YamlMap& keys, const GoalScene& scene) {
+  const Model& model = scene.model;
+  const YamlMap::Entry& entry = keys.required("link", "the name of a link");
+  const std::string link = movingLink(keys, entry, model);
+  expectTouchable(keys, entry, quotedText(link), link, touchableLinks(model, true), model,
+                  "a link");
+  const YamlMap::Entry& other = keys.required("from", "world or the name of a link");
+  const std::string from = keys.name(other);
+  if (from != "world")
+    expectTouchable(keys, other, quotedText(from), from, touchableLinks(model, false), model,
+                    "world or a link");
+  if (gdd::KeepClear::pairsOf(model, link, from).empty())
+    keys.fail(other, fmt::format("found {}, expected what has shapes that move against those of "
+                                 "{}, and is not joined to it by a joint",
+                                 quotedText(from), quotedText(link)));
+  double distance = 0.0;
+  keys.required("distance", "a number of metres");
+  keys.read("distance", distance, Range::notNegative);
+  if (!scene.distances) keys.fail(entry, "found where nobody tells the distances of shapes");
+  auto goal = std::make_unique<gdd::KeepClear>(model, link, from, distance, scene.distances(model));
+  keys.read("weight", goal->weight, Range::notNegative);
+  keys.read("stiffness", goal->stiffness, Range::notNegative);
+  keys.read("damping", goal->damping, Range::notNegative);
   return goal;
 }
 

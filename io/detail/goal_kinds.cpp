@@ -16,6 +16,7 @@ const std::vector<GoalKind>& goalKinds() {
        {"link", "target", "axis", "point", "weight", "stiffness", "damping"},
        readLookAt},
       {"hold", {"link", "point", "weight", "rotation_weight", "rate"}, readHold},
+      {"keep_clear", {"link", "from", "distance", "weight", "stiffness", "damping"}, readKeepClear},
       {"posture", {"weight", "stiffness", "damping", "joints"}, readPosture},
       {"joint_posture", {"joints", "weight", "stiffness", "damping"}, readJointPosture},
       {"acceleration", {"joints", "weight"}, readAcceleration},

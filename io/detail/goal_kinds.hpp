@@ -14,6 +14,7 @@
 #include "engine/model/state.hpp"
 #include "gdd/goal.hpp"
 #include "io/detail/yaml.hpp"
+#include "io/goals.hpp"
 
 namespace softgauss::io::detail {
 
@@ -23,6 +24,7 @@ using GoalPointer = std::unique_ptr<gdd::Goal>;
 struct GoalScene {
   const Model& model;
   const State& initial;
+  const DistancesMaker& distances;
 };
 
 struct GoalKind {
@@ -61,6 +63,7 @@ GoalPointer readReach(const YamlMap& keys, const GoalScene& scene);
 GoalPointer readLinkAcceleration(const YamlMap& keys, const GoalScene& scene);
 GoalPointer readLookAt(const YamlMap& keys, const GoalScene& scene);
 GoalPointer readHold(const YamlMap& keys, const GoalScene& scene);
+GoalPointer readKeepClear(const YamlMap& keys, const GoalScene& scene);
 GoalPointer readPosture(const YamlMap& keys, const GoalScene& scene);
 GoalPointer readJointPosture(const YamlMap& keys, const GoalScene& scene);
 GoalPointer readAcceleration(const YamlMap& keys, const GoalScene& scene);

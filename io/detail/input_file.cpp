@@ -45,9 +45,10 @@ const char* otherKind(mode_t mode) {
 
 std::string notRegular(const char* kind) { return fmt::format("is {}, not a regular file", kind); }
 
-std::string tooLarge() {
-  return fmt::format("is larger than {:.6g} MB (--largest-file allows more)",
-                     static_cast<double>(inputLimits().text) / kMegabyte);
+std::string tooLarge(std::optional<std::uintmax_t> most) {
+  return fmt::format("is larger than {:.6g} MB{}",
+                     static_cast<double>(most.value_or(inputLimits().text)) / kMegabyte,
+                     most ? "" : " (--largest-file allows more)");
 }
 
 struct Descriptor {
@@ -59,7 +60,7 @@ struct Descriptor {
 
 /// All that can be read, as long as it is not too much: a regular file may grow, or belong to the
 /// kernel and have no size. What went wrong is the second.
-std::pair<std::string, std::string> readAll(int descriptor) {
+std::pair<std::string, std::string> readAll(int descriptor, std::optional<std::uintmax_t> most) {
   std::string text;
   char buffer[1 << 16];
   for (;;) {
@@ -68,7 +69,7 @@ std::pair<std::string, std::string> readAll(int descriptor) {
     if (n < 0) return {{}, fmt::format("cannot be read: {}", std::strerror(errno))};
     if (n == 0) return {std::move(text), {}};
     text.append(buffer, static_cast<std::size_t>(n));
-    if (text.size() > inputLimits().text) return {{}, tooLarge()};
+    if (text.size() > most.value_or(inputLimits().text)) return {{}, tooLarge(most)};
   }
 }
 
@@ -80,7 +81,7 @@ std::pair<std::string, std::string> readAll(int descriptor) {
 const std::string& standardInput(const std::string& expected) {
   static std::optional<std::string> text;
   if (!text) {
-    auto [all, problem] = readAll(STDIN_FILENO);
+    auto [all, problem] = readAll(STDIN_FILENO, {});
     if (!problem.empty()) refuse(kStandardInput, problem, expected);
     text = std::move(all);
   }
@@ -101,7 +102,8 @@ std::string inputProblem(const std::string& file) {
   return kind ? notRegular(kind) : std::string();
 }
 
-std::string readInput(const std::string& file, const std::string& expected) {
+std::string readInput(const std::string& file, const std::string& expected,
+                      std::optional<std::uintmax_t> most) {
   if (file == kStandardInput) return standardInput(expected);
   // Looked at before it is opened, as opening may wait or act, and after it, as it may be another.
   if (const std::string problem = inputProblem(file); !problem.empty())
@@ -111,9 +113,10 @@ std::string readInput(const std::string& file, const std::string& expected) {
   if (opened.number < 0 || fstat(opened.number, &info) != 0)
     refuse(file, fmt::format("cannot be read: {}", std::strerror(errno)), expected);
   if (const char* const kind = otherKind(info.st_mode)) refuse(file, notRegular(kind), expected);
-  if (info.st_size > 0 && static_cast<std::uintmax_t>(info.st_size) > inputLimits().text)
-    refuse(file, tooLarge(), expected);
-  auto [text, problem] = readAll(opened.number);
+  if (info.st_size > 0 &&
+      static_cast<std::uintmax_t>(info.st_size) > most.value_or(inputLimits().text))
+    refuse(file, tooLarge(most), expected);
+  auto [text, problem] = readAll(opened.number, most);
   if (!problem.empty()) refuse(file, problem, expected);
   return std::move(text);
 }

@@ -3,6 +3,8 @@
 
 /// Text that is read: from regular files, never from what has no end or waits for a writer.
 
+#include <cstdint>
+#include <optional>
 #include <string>
 
 namespace softgauss::io::detail {
@@ -16,7 +18,8 @@ std::string inputProblem(const std::string& file);
 
 /// All of a regular file, or of standard input, which is read once and remembered. Throws
 /// ModelError `file: file: is …, expected <expected>` where it is none, cannot be read, or is
-/// larger than inputLimits() allow.
-std::string readInput(const std::string& file, const std::string& expected);
+/// larger than inputLimits() allow, or than `most` bytes where that is given.
+std::string readInput(const std::string& file, const std::string& expected,
+                      std::optional<std::uintmax_t> most = {});
 
 }  // namespace softgauss::io::detail

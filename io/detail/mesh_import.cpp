@@ -17,8 +17,19 @@
 #include <unordered_map>
 #include <utility>
 
+#include "engine/core/bytes.hpp"
 #include "engine/core/check.hpp"
 #include "io/detail/child_process.hpp"
+
+namespace softgauss {
+
+template <class Archive>
+void archive(Archive& a, MeshPart& part) {
+  auto& [firstTriangle, triangles, rgba] = part;
+  a(firstTriangle, triangles, rgba);
+}
+
+}  // namespace softgauss
 
 namespace softgauss::io::detail {
 namespace {
@@ -164,34 +175,29 @@ std::string import(const MeshFile& file, std::uintmax_t largest, Mesh& mesh) {
 
 // ---- A mesh as bytes, from a child of this process to it
 
-template <class T>
-void put(std::string& bytes, const std::vector<T>& items) {
-  const std::uint64_t count = items.size();
-  bytes.append(reinterpret_cast<const char*>(&count), sizeof count);
-  bytes.append(reinterpret_cast<const char*>(items.data()), items.size() * sizeof(T));
-}
+// What comes of a file that has broken the importer may be anything, and is read as such.
 
-template <class T>
-void take(std::string_view& bytes, std::vector<T>& items) {
-  std::uint64_t count = 0;
-  std::memcpy(&count, bytes.data(), sizeof count);
-  items.resize(count);
-  bytes.remove_prefix(sizeof count);
-  std::memcpy(static_cast<void*>(items.data()), bytes.data(), count * sizeof(T));
-  bytes.remove_prefix(count * sizeof(T));
+bool fits(const Mesh& mesh) {
+  const auto within = [](int i, std::size_t size) {
+    return i >= 0 && static_cast<std::size_t>(i) < size;
+  };
+  for (const std::array<int, 3>& triangle : mesh.triangles)
+    for (const int vertex : triangle)
+      if (!within(vertex, mesh.vertices.size())) return false;
+  for (const MeshPart& part : mesh.parts)
+    if (!within(part.firstTriangle, mesh.triangles.size()) || part.triangles < 0 ||
+        static_cast<std::size_t>(part.triangles) >
+            mesh.triangles.size() - static_cast<std::size_t>(part.firstTriangle))
+      return false;
+  return true;
 }
-
-constexpr char kMesh = 'm', kProblem = 'p';
 
 std::string bytesOf(const MeshFile& file, std::uintmax_t largest) {
   Mesh mesh;
   const std::string problem = import(file, largest, mesh);
-  if (!problem.empty()) return kProblem + problem;
-  std::string bytes(1, kMesh);
-  put(bytes, mesh.vertices);
-  put(bytes, mesh.triangles);
-  put(bytes, mesh.parts);
-  return bytes;
+  ByteWriter bytes;
+  bytes(problem, mesh.vertices, mesh.triangles, mesh.parts);
+  return bytes.bytes();
 }
 
 }  // namespace
@@ -204,18 +210,20 @@ Mesh importMesh(const MeshFile& file, std::uintmax_t largest) {
     return mesh;
   }
   const ChildResult child = runInChild([&] { return bytesOf(file, largest); }, {});
-  if (!child.failure.empty())
+  std::string problem, failure = child.failure;
+  try {
+    ByteReader bytes(child.bytes);
+    if (failure.empty()) bytes(problem, mesh.vertices, mesh.triangles, mesh.parts);
+    bytes.expect(fits(mesh));
+  } catch (const BytesError&) {
+    failure = "loses its way";
+  }
+  if (!failure.empty())
     failMesh(file.path,
              fmt::format("cannot be read: the importer {}; try .stl, or a mesh tool that "
                          "writes the file anew",
-                         child.failure));
-  std::string_view bytes(child.bytes);
-  const char kind = bytes[0];
-  bytes.remove_prefix(1);
-  if (kind == kProblem) failMesh(file.path, std::string(bytes));
-  take(bytes, mesh.vertices);
-  take(bytes, mesh.triangles);
-  take(bytes, mesh.parts);
+                         failure));
+  if (!problem.empty()) failMesh(file.path, problem);
   return mesh;
 }
 

@@ -34,13 +34,6 @@ bool isStandardOutputsFile(const struct stat& info) {
          out.st_ino == info.st_ino;
 }
 
-/// Devices, pipes and standard output cannot be renamed.
-bool isWrittenInPlace(const fs::path& file) {
-  if (isStandardOutput(file)) return true;
-  const std::optional<struct stat> info = infoOf(file);
-  return info && (!S_ISREG(info->st_mode) || isStandardOutputsFile(*info));
-}
-
 /// Where links lead; the last part of the way need not exist.
 fs::path withoutLinks(fs::path file) {
   constexpr int kMostLinks = 40;
@@ -93,6 +86,12 @@ bool canBeOpened(const fs::path& file, const struct stat& info) {
 }
 
 }  // namespace
+
+bool isWrittenInPlace(const fs::path& file) {
+  if (isStandardOutput(file)) return true;
+  const std::optional<struct stat> info = infoOf(file);
+  return info && (!S_ISREG(info->st_mode) || isStandardOutputsFile(*info));
+}
 
 OpenFile openInPlace(const fs::path& file) {
   const std::optional<struct stat> info = infoOf(file);

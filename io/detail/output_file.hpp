@@ -20,6 +20,9 @@ using OpenFile = std::unique_ptr<std::FILE, FileCloser>;
 /// file may be too; links are followed. Null where it cannot be opened, errno says why.
 OpenFile openInPlace(const std::filesystem::path& file);
 
+/// Devices, pipes and standard output, which cannot be renamed and begin nowhere.
+bool isWrittenInPlace(const std::filesystem::path& file);
+
 /// Writes to files and remembers the first error.
 class OutputFile {
  public:

@@ -3,8 +3,10 @@
 
 /// A table of comma-separated values that is written row by row while a run goes on.
 
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,9 +18,11 @@ namespace softgauss::io::detail {
 /// Rows are buffered; what was written is on disk after flush(), close() or the end of its life.
 class RowFile {
  public:
-  /// `what` names the table in messages. Throws ModelError if the file cannot be made.
+  /// `what` names the table in messages. `after`: end() of the rows of an earlier process, which
+  /// these go on from; what comes later is cut off. Throws ModelError if the file cannot be made,
+  /// or is not what was written then.
   RowFile(const std::filesystem::path& file, std::string what,
-          const std::vector<std::string>& columns);
+          const std::vector<std::string>& columns, std::optional<std::int64_t> after = {});
   ~RowFile();
   RowFile(RowFile&&) noexcept = default;
   RowFile& operator=(RowFile&&) = delete;
@@ -42,14 +46,18 @@ class RowFile {
   void endRow();
   void flush();
   void close();
+  /// Flushes. How long the file is [bytes]; −1 of a device, a pipe or standard output.
+  std::int64_t end();
 
  private:
   void next() {
     if (!rowIsEmpty_) buffer_ += ',';
     rowIsEmpty_ = false;
   }
+  [[noreturn]] void refuse() const;
   [[noreturn]] void failed() const;
   bool send() noexcept;
+  void goOn(const std::string& header, std::int64_t after);
 
   std::string path_, what_;
   OpenFile file_;

@@ -90,6 +90,19 @@ void FrameTrack::add(const Snapshot& s, std::span<const std::optional<gdd::GoalM
   if (bytes() > mostBytes_) dropEverySecond();
 }
 
+bool FrameTrack::fits() const {
+  const std::size_t frames = time.size(), contacts = contactPoint.size() / 3;
+  const auto bodies = static_cast<std::size_t>(bodies_), goals = static_cast<std::size_t>(goals_);
+  return pose.size() == frames * 7 * bodies && velocity.size() == frames * 6 * bodies &&
+         centerOfMass.size() == frames * 3 && centerOfPressure.size() == frames * 3 &&
+         goalPoint.size() == frames * 3 * goals && goalTarget.size() == frames * 3 * goals &&
+         contactStart.size() == frames + 1 && contactStart.front() == 0 &&
+         std::is_sorted(contactStart.begin(), contactStart.end()) &&
+         contactStart.back() == contacts && contactPoint.size() == 3 * contacts &&
+         contactNormal.size() == 3 * contacts && contactForce.size() == 3 * contacts &&
+         contactGeometry.size() == 2 * contacts && interval_ > 0.0 && std::isfinite(interval_);
+}
+
 void FrameTrack::rewind(double from) {
   const auto first = std::lower_bound(time.begin(), time.end(), from);
   const auto frames = static_cast<std::size_t>(first - time.begin());

@@ -33,6 +33,14 @@ class FrameTrack {
   /// Forgets all frames. The origin stays, and the next frame is due at once.
   void forget();
 
+  template <class Archive>
+  void archive(Archive& a) {
+    a(origin, time, pose, velocity, centerOfMass, centerOfPressure, goalPoint, goalTarget,
+      contactStart, contactPoint, contactNormal, contactForce, contactGeometry, interval_, next_,
+      placed_);
+    if constexpr (Archive::kReads) a.expect(fits());
+  }
+
   int count() const { return static_cast<int>(time.size()); }
 
   Vector3 origin = Vector3::Zero();                ///< [m] set by the first frame of all
@@ -48,6 +56,7 @@ class FrameTrack {
   std::vector<std::uint32_t> contactGeometry;      ///< (contacts, 2) A, B
 
  private:
+  bool fits() const;  ///< what was read, together
   std::size_t bytes() const;
   void dropEverySecond();
   void appendPoint(std::vector<float>& track, const Vector3& p_W) const;

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "engine/model/state.hpp"
+#include "engine/step/saved_contacts.hpp"
 #include "io/log.hpp"
 #include "io/replay/frames.hpp"
 #include "io/replay/series.hpp"
@@ -79,6 +80,13 @@ class Recording {
   /// The state that the run ended with, whose stages are in `data`. The frame shows the contact
   /// forces of the last step, which led there; curves of what a solve gives end before it.
   void finish(const StepRecord& last, const Data& data);
+
+  /// What was recorded, for a run that goes on later.
+  template <class Archive>
+  void archive(Archive& a) {
+    a(series_, frames_, contacts_);
+    if constexpr (Archive::kReads) a.expect(fits(model_, contacts_));
+  }
 
   const Model& model() const { return model_; }
   const FrameTrack& frames() const { return frames_; }

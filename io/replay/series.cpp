@@ -87,6 +87,13 @@ void SeriesTable::coarsen() {
   width_ *= width_ == 1 ? static_cast<int>(kMerged) : 2;
 }
 
+bool SeriesTable::fits() const {
+  const auto n = static_cast<std::size_t>(columns_);
+  return width_ >= 1 && times_.size() <= most_ + 2 && rows_.size() == n * times_.size() &&
+         openTimes_.size() <= static_cast<std::size_t>(width_) &&
+         openRows_.size() == n * openTimes_.size();
+}
+
 void SeriesTable::rewind(double time) {
   const auto n = static_cast<std::size_t>(columns_);
   const auto cut = [&](std::vector<double>& times, std::vector<double>& rows) {

@@ -29,6 +29,12 @@ class SeriesTable {
   /// from there.
   void rewind(double time);
 
+  template <class Archive>
+  void archive(Archive& a) {
+    a(width_, times_, rows_, openTimes_, openRows_);
+    if constexpr (Archive::kReads) a.expect(fits());
+  }
+
   int size() const { return static_cast<int>(times_.size()); }  ///< entries
   int columns() const { return columns_; }
   const std::vector<double>& times() const { return times_; }
@@ -40,6 +46,7 @@ class SeriesTable {
   SeriesTable thinned(int most) const;
 
  private:
+  bool fits() const;  ///< what was read, together
   void makeRoom();
   void coarsen();
   void appendBucket(std::span<const double> times, std::span<const double> rows);

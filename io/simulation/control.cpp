@@ -5,8 +5,8 @@
 
 #include <set>
 
+#include "collision/clearance.hpp"
 #include "engine/model/followers.hpp"
-#include "io/goals.hpp"
 #include "io/names.hpp"
 #include "io/simulation/scene.hpp"
 
@@ -32,9 +32,18 @@ void setJointPositions(const Model& model, const std::vector<std::pair<std::stri
   placeFollowers(model, placed, state.q);
 }
 
+io::GoalFile readGoalFile(const std::filesystem::path& file, const Scene& scene) {
+  std::shared_ptr<ShapeDistances> distances;  // one for all goals of a controller
+  return io::readGoalFile(file, scene.model, scene.initial, [&](const Model& model) {
+    if (!distances)
+      distances = std::make_shared<collision::Clearance>(model, scene.contacts->meshes());
+    return distances;
+  });
+}
+
 void addGoals(const std::filesystem::path& file, const Scene& scene,
               gdd::GoalDirectedController& controller) {
-  io::GoalFile asked = io::readGoalFile(file, scene.model, scene.initial);
+  io::GoalFile asked = readGoalFile(file, scene);
   if (asked.controlCost) controller.controlCost = *asked.controlCost;
   for (std::unique_ptr<gdd::Goal>& goal : asked.goals) controller.goals.push_back(std::move(goal));
 }

@@ -35,9 +35,7 @@ struct SimulationOptions {
   std::optional<Cone> cone;                     ///< absent: the file's own, or pyramidal
   std::optional<gdd::GddSolver> gddSolver;      ///< absent: the file's own, or the active set
   std::optional<gdd::ControlCost> controlCost;  ///< absent: the files' own, or about gravity
-  /// Absent: the file's own; else the leapfrog where goals are followed and semi-implicit Euler
-  /// where none are.
-  std::optional<Integrator> integrator;
+  std::optional<Integrator> integrator;         ///< absent: the file's own, or the leapfrog
   std::optional<double> integrationTolerance;
   bool stepDoubling = false;
   std::optional<bool> throughFcl;  ///< absent: as the file says, or own

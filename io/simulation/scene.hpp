@@ -13,6 +13,7 @@
 #include "collision/scene_contacts.hpp"
 #include "gdd/gdd.hpp"
 #include "io/actuators.hpp"
+#include "io/goals.hpp"
 #include "io/scene.hpp"
 #include "io/simulation/base_notes.hpp"
 #include "io/simulation/options.hpp"
@@ -71,6 +72,9 @@ void setJointPositions(const Model& model, const std::vector<std::pair<std::stri
 /// goals of the scene file, unless they are left out. Throws ModelError.
 void setUpControl(const Scene& scene, const SimulationOptions& options,
                   gdd::GoalDirectedController& controller);
+
+/// The goals of a file. They refer to the scene's model. Throws ModelError.
+io::GoalFile readGoalFile(const std::filesystem::path& file, const Scene& scene);
 
 /// The goals of a file, beside those that the controller has. Throws ModelError.
 void addGoals(const std::filesystem::path& file, const Scene& scene,

@@ -5,14 +5,20 @@
 
 #include <algorithm>
 
+#include "engine/core/bytes.hpp"
+#include "engine/core/sealed.hpp"
 #include "engine/engine.hpp"
 #include "engine/model/followers.hpp"
+#include "engine/model/saved_state.hpp"
 #include "io/names.hpp"
 #include "io/simulation/ground.hpp"
 #include "io/simulation/simulation_parts.hpp"
 
 namespace softgauss {
 namespace {
+
+constexpr std::string_view kSavedKind = "SGSIMUL\n";
+constexpr std::uint32_t kSavedVersion = 1;
 
 /// The body of a joint of one degree of freedom.
 const Body& scalarJoint(const Model& model, const std::string& joint) {
@@ -104,6 +110,26 @@ ControlSolution Simulation::solve() {
 }
 
 void Simulation::reset() { parts_->state = parts_->scene->initial; }
+
+std::string Simulation::save() const {
+  ByteWriter content;
+  content(softgauss::save(model(), state()), parts_->grid);
+  return sealed(kSavedKind, kSavedVersion, content.bytes());
+}
+
+void Simulation::restore(std::string_view bytes) {
+  std::string saved;
+  TimeGrid grid;
+  try {
+    ByteReader content(unsealed(kSavedKind, kSavedVersion, bytes));
+    content(saved, grid);
+    content.expectEnd();
+  } catch (const BytesError& error) {
+    throw ModelError({scene().file.string(), 0}, "saved simulation", error.what());
+  }
+  state() = softgauss::restore(model(), saved);
+  parts_->grid = grid;
+}
 
 void Simulation::standOnGround() {
   if (!scene().ground) throw NameError("standOnGround: the scene has no ground plane");

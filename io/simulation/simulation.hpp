@@ -16,6 +16,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "io/simulation/scene.hpp"
@@ -59,6 +60,12 @@ class Simulation {
   ControlSolution solve();
   /// Back to the state at which it started; goals stay.
   void reset();
+  /// State and time as bytes: restore() goes on from them to the same bits, in another process too,
+  /// with the same file, options, goals and input(), which are not among them.
+  std::string save() const;
+  /// Throws ModelError where the bytes are no save() of the same scene with the same options, or
+  /// were changed; the state is then as it was.
+  void restore(std::string_view bytes);
   /// Every floating base is raised or lowered until its lowest point touches the ground plane.
   /// Throws NameError where there is none.
   void standOnGround();

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/simulation/simulation_goals.hpp"
 
-#include "io/goals.hpp"
 #include "io/names.hpp"
 #include "io/simulation/simulation_parts.hpp"
 
@@ -61,7 +60,7 @@ gdd::Posture& SimulationGoals::posture(double weight) {
 }
 
 void SimulationGoals::read(const std::filesystem::path& file) {
-  io::GoalFile asked = io::readGoalFile(file, parts_->scene->model, parts_->scene->initial);
+  io::GoalFile asked = readGoalFile(file, *parts_->scene);
   if (asked.controlCost && !parts_->options.controlCost)
     parts_->controller->controlCost = *asked.controlCost;
   for (auto& goal : asked.goals) add(std::move(goal));

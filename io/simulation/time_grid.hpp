@@ -21,6 +21,11 @@ class TimeGrid {
     return last_ = origin_ + static_cast<double>(++steps_) * h;
   }
 
+  template <class Archive>
+  void archive(Archive& a) {
+    a(origin_, last_, h_, steps_);
+  }
+
  private:
   double origin_ = 0.0, last_ = 0.0, h_ = 0.0;
   long steps_ = 0;

@@ -264,12 +264,12 @@ const BadGoal kBadGoals[] = {
     // Kinds
     {"UnknownKind", "posture:", "posutre:",
      "bad.yaml:6: goal 2: found the unknown kind 'posutre', expected one of reach, "
-     "link_acceleration, look_at, hold, posture, joint_posture, acceleration, damping, effort, "
-     "center_of_mass, momentum, capture_point and 2 more, did you mean 'posture'?"},
+     "link_acceleration, look_at, hold, keep_clear, posture, joint_posture, acceleration, damping, "
+     "effort, center_of_mass, momentum and 3 more, did you mean 'posture'?"},
     {"GoalIsAWord", "- posture", "- damping\n  - posture",
      "bad.yaml:6: goal 2: found 'damping', expected kind: {…}, the kind one of reach, "
-     "link_acceleration, look_at, hold, posture, joint_posture, acceleration, damping, effort, "
-     "center_of_mass, momentum, capture_point and 2 more"},
+     "link_acceleration, look_at, hold, keep_clear, posture, joint_posture, acceleration, damping, "
+     "effort, center_of_mass, momentum and 3 more"},
     {"KeysNotIndented", "      weight: 0.5\n      rate: 3", "    weight: 0.5\n    rate: 3",
      "bad.yaml:7: goal 3: found 3 keys (damping, weight, rate), expected one, the kind, whose own "
      "keys are in {…} or indented below it"},

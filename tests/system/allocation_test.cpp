@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "collision/clearance.hpp"
 #include "tests/gdd/robot_scene.hpp"
 #include "tests/support/allocation_guard.hpp"
 #include "tests/support/scene.hpp"
@@ -158,6 +159,9 @@ void addEveryQuadraticGoal(RobotScene& r) {
   add(foot);
   add(toe);
   add(gdd::LookAt(model, "head", Vector3(2.0, 0.5, 1.0)));
+  const auto distances = std::make_shared<collision::Clearance>(model);
+  add(gdd::KeepClear(model, "right_hand", "pelvis", 0.3, distances));
+  add(gdd::KeepClear(model, "left_hand", "world", 0.05, distances));
   add(gdd::CenterOfMass(model, robot, Vector3(0.0, 0.0, 0.9)));
   add(gdd::MomentumGoal(model, robot));
   add(gdd::CapturePoint(model, robot, Vector3::Zero()));

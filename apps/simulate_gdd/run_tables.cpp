@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/simulate_gdd/run_tables.hpp"
+
+namespace softgauss::app {
+
+void RunTables::open(const Model& model, const std::vector<std::string>& goals) {
+  if (!options_.log.empty()) log_.emplace(options_.log, model, goals, options_.logEvery, logEnd_);
+  if (!options_.contacts.empty()) contacts_.emplace(options_.contacts, model, contactsEnd_);
+}
+
+void RunTables::write(const io::StepRecord& row,
+                      const std::vector<Snapshot::ContactForce>& touching) {
+  if (!errors_.none()) return;
+  if (log_) errors_.attempt([&] { log_->write(row); });
+  if (contacts_ && !row.isEnd) errors_.attempt([&] { contacts_->write(row.time, touching); });
+}
+
+void RunTables::close() {
+  if (!errors_.none()) return;
+  if (log_) errors_.attempt([&] { log_->close(); });
+  if (contacts_) errors_.attempt([&] { contacts_->close(); });
+}
+
+}  // namespace softgauss::app

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/model/saved_state.hpp"
+
+#include <cmath>
+
+#include "engine/core/bytes.hpp"
+#include "engine/core/sealed.hpp"
+#include "engine/model/model_hash.hpp"
+
+namespace softgauss {
+namespace {
+
+constexpr std::string_view kStateKind = "SGSTATE\n";
+constexpr std::uint32_t kStateVersion = 1;
+
+}  // namespace
+
+void expectStateOf(const Model& model, const State& state) {
+  const auto expect = [](bool holds, const char* problem) {
+    if (!holds) ByteReader::fail(problem);
+  };
+  const WarmStart& warm = state.warmstart;
+  expect(state.q.size() == model.nq && state.v.size() == model.nv && state.a.size() == model.nv,
+         "holds vectors that are not of the model's size");
+  for (const VectorX* x : {&warm.a, &warm.gddA, &warm.multipliers, &warm.control})
+    expect(x->size() == model.nv, "holds a warm start that is not of the model's size");
+  expect(std::isfinite(state.time) && state.q.allFinite() && state.v.allFinite() &&
+             state.a.allFinite(),
+         "holds numbers that are not finite");
+  constexpr int kMostSolves = 1 << 24;
+  expect(warm.gddSearchAge >= 0 && warm.gddSearchAge < kMostSolves && warm.gddSearchWait >= 1 &&
+             warm.gddSearchWait < kMostSolves,
+         "holds counts of solves that no run has");
+}
+
+std::string save(const Model& model, const State& state) {
+  ByteWriter content;
+  content(hash(model), state);
+  return sealed(kStateKind, kStateVersion, content.bytes());
+}
+
+State restore(const Model& model, std::string_view bytes) {
+  try {
+    ByteReader content(unsealed(kStateKind, kStateVersion, bytes));
+    std::uint64_t ofModel = 0;
+    content(ofModel);
+    if (ofModel != hash(model))
+      ByteReader::fail("found a state of another model, or of other options, than '" + model.name +
+                       "'");
+    State state(model);
+    content(state);
+    content.expectEnd();
+    expectStateOf(model, state);
+    return state;
+  } catch (const BytesError& error) {
+    throw ModelError({}, "saved state", error.what());
+  }
+}
+
+}  // namespace softgauss

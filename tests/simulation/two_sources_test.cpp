@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Whole scenes with either source of contacts, our own and FCL's: they come to the same rest. With
+/// SOFTGAUSS_TABLES it prints the table of docs/benchmarks/two_sources.md.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <map>
+
+#include "apps/shared/cpu_time.hpp"
+#include "engine/engine.hpp"
+#include "io/simulation/simulation.hpp"
+#include "tests/simulation/data_file.hpp"
+
+namespace softgauss::test {
+namespace {
+
+struct Case {
+  const char* name;
+  double seconds;          ///< until it is at rest
+  const char* goals = "";  ///< a file of data/goals; then the name is that of a robot
+};
+
+constexpr Case kScenes[] = {
+    {"stability/sphere", 2.0},
+    {"stability/slope", 2.0},
+    {"stability/boxes_1_on_1", 2.0},
+    {"stability/boxes_1000_on_1", 2.0},
+    {"stability/tower_20", 2.0},
+    {"stability/light_feet", 2.0},
+    {"landscape", 12.0},
+    {"arm_presses_table", 5.0},
+    {"two_arms", 6.0},
+    {"hand_and_ball", 6.0},
+    {"humanoid", 4.0, "stand_and_reach"},
+};
+
+/// A scene after its time with one source.
+struct Rest {
+  std::map<std::string, Vector3> place, force;  ///< of links; of all that touches them
+  double speed = 0.0;                           ///< of the fastest link [m/s]
+  double us = 0.0;                              ///< of a step, least of rounds [µs]
+  int contacts = 0;
+
+  Rest(const Case& c, bool throughFcl) {
+    SimulationOptions options;
+    options.throughFcl = throughFcl;
+    // Its soles are level to 5e-12 rad, as its file writes angles. A nanometre up, all of both
+    // lands in one step; else the sources see other corners in the first.
+    if (*c.goals) options.baseHeight = 0.92 + 1e-9;
+    const std::string file = *c.goals ? robot(c.name) : sceneFile(c.name);
+    Simulation sim = Simulation::load(file, options);
+    if (*c.goals)
+      sim.goals.read(std::string(SOFTGAUSS_SOURCE_DIR) + "/data/goals/" + c.goals + ".yaml");
+    constexpr int kRounds = 8;
+    us = kInfinity;
+    const double steps = c.seconds / sim.model().options.timestep / kRounds;
+    for (int i = 0; i < kRounds; ++i) {
+      const double start = app::cpuSeconds();
+      sim.run(c.seconds / kRounds);
+      us = std::min(us, 1e6 * (app::cpuSeconds() - start) / steps);
+    }
+    const Model& model = sim.model();
+    std::vector<Snapshot::ContactForce> touching;
+    contactForces(sim.data(), touching);
+    contacts = static_cast<int>(touching.size());
+    for (const Geometry& g : model.geometries) {
+      if (g.body == 0) continue;
+      place[g.link] = sim.pose(g.link).p;
+      force[g.link] = sim.contactForceOn(g.link);
+    }
+    speed = sim.state().v.size() > 0 ? sim.state().v.cwiseAbs().maxCoeff() : 0.0;
+  }
+};
+
+struct Difference {
+  double place = 0.0;  ///< of the links' frames, largest [m]
+  double force = 0.0;  ///< on links, largest, over the largest force on any
+};
+
+Difference between(const Rest& own, const Rest& fcl) {
+  Difference d;
+  double largest = 1e-12;
+  for (const auto& [link, force] : own.force) largest = std::max(largest, force.norm());
+  for (const auto& [link, place] : own.place) {
+    d.place = std::max(d.place, (place - fcl.place.at(link)).norm());
+    d.force = std::max(d.force, (own.force.at(link) - fcl.force.at(link)).norm() / largest);
+  }
+  return d;
+}
+
+}  // namespace
+
+TEST(TwoSources, BringScenesToTheSameRest) {
+  const bool print = std::getenv("SOFTGAUSS_TABLES") != nullptr;
+  for (const Case& c : kScenes) {
+    SCOPED_TRACE(c.name);
+    const Rest own(c, false), fcl(c, true);
+    const Difference d = between(own, fcl);
+    if (print)
+      std::printf("| %s | %.3g | %.2g %% | %.2g | %d, %d | %.1f | %.1f |\n", c.name, 1e3 * d.place,
+                  1e2 * d.force, std::max(own.speed, fcl.speed), own.contacts, fcl.contacts, own.us,
+                  fcl.us);
+    EXPECT_GT(own.contacts, 0);
+    EXPECT_LE(d.place, 2e-4);
+    EXPECT_LE(d.force, 0.01);
+  }
+}
+
+}  // namespace softgauss::test
