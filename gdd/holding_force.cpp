@@ -15,26 +15,37 @@ void HoldingForce::setStatics(const Model& model, const State& state, const Data
 }
 
 /// Whether there is a z.
-bool HoldingForce::findFree(const ControlBox& box) {
+bool HoldingForce::findFree(const Model& model, const ControlBox& box) {
   free_.resize(static_cast<std::size_t>(force_.size()));
   bool any = false;
   for (int i = 0; i < force_.size(); ++i) {
     const bool pulled = box.transmission && box.transmission->pulls(i);
-    free_[i] = !pulled && box.lower[i] == box.upper[i];
+    free_[i] = !pulled && (!model.dofs[i].actuated || box.lower[i] == box.upper[i]);
     any |= free_[i] != 0;
   }
   return any;
 }
 
+/// x ← the free fall of what floats, joints at rest.
+void HoldingForce::setFall(const Model& model, const Data& data) {
+  x_.setZero(force_.size());
+  if (!data.plan.gravity) return;
+  for (const Body& body : model.bodies) {
+    if (body.joint != JointKind::floating) continue;
+    for (int i = body.v; i < body.v + 3; ++i)
+      if (free_[i]) x_[i] = data.kinematics.S[i].linear.dot(model.options.gravity);
+  }
+}
+
 /// force ← force + P x, x the acceleration of z.
-void HoldingForce::stand(const ControlBox& box, Data& data) {
+void HoldingForce::stand(const Model& model, const ControlBox& box, Data& data) {
   constexpr double kStiffer = 1e4;  // κ: rows at rest have carried the weight that this leaves over
   Constraints& rows = data.constraints;
   P_.resize(rows.sparsity());
   P_.setZero();
   if (rows.rowCount() > 0) {
     bool changed = false;
-    x_.setZero(force_.size());
+    setFall(model, data);
     rows.setResidual(x_);
     rows.evaluate(changed);
     rows.addCurvature(P_);
@@ -52,7 +63,7 @@ void HoldingForce::stand(const ControlBox& box, Data& data) {
   }
   x_.setZero(force_.size());
   for (int i = 0; i < x_.size(); ++i)
-    if (free_[i]) x_[i] = box.lower[i] - force_[i];
+    if (free_[i]) x_[i] = (box.lower[i] == box.upper[i] ? box.lower[i] : 0.0) - force_[i];
   if (!factor_.compute(masked_)) return;  // not finite: the solver will say so
   factor_.solve(x_);
   Px_.resize(x_.size());
@@ -63,7 +74,7 @@ void HoldingForce::stand(const ControlBox& box, Data& data) {
 const VectorX& HoldingForce::compute(const Model& model, const State& state, const ControlBox& box,
                                      Data& data) {
   setStatics(model, state, data);
-  if (findFree(box)) stand(box, data);
+  if (findFree(model, box)) stand(model, box, data);
   return force_;
 }
 

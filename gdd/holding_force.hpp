@@ -6,9 +6,10 @@
 /// A price of force about zero, the paper's, pulls at all that stands: a reach comes to rest short
 /// of its place, and a robot leans to where its motors have less to carry. Priced is therefore what
 /// a control does beyond the force ĝ under which actuated dofs stay at rest, while all others (z: a
-/// floating base, free bodies) do as they then must: fall, or stand on the rows that would press at
-/// a = 0. Statics, so without the forces of motion, and with those rows stiffened κ times, so that
-/// they carry the whole weight:
+/// floating base, free bodies) do as they then must: fall, or stand on the rows that would press in
+/// the fall, a_z = gravity for what floats. (At a = 0 rounding would choose among the corners of a
+/// foot that has only just touched.) Statics, so without the forces of motion, and with those rows
+/// stiffened κ times, so that they carry the whole weight:
 ///
 ///   P_zz x = −c_z(q, 0),   P = M̂ + κ JᵀH J,      ĝ = c(q, 0) + P_{·z} x                    (T.134)
 ///
@@ -27,14 +28,15 @@ namespace softgauss::gdd {
 class HoldingForce {
  public:
   /// ĝ (nv) [N, N m], from data.forces, without an applied force in it. Leaves the rows evaluated
-  /// at a = 0. A dof is of z where the box fixes it and no actuator of a transmission pulls it; ĝ
-  /// is there what the box fixes.
+  /// in the fall. A dof is of z where no actuator acts on it, root forces that a price allows
+  /// included, or where the box fixes it; ĝ is there what the box fixes, or 0.
   const VectorX& compute(const Model& model, const State& state, const ControlBox& box, Data& data);
 
  private:
   void setStatics(const Model& model, const State& state, const Data& data);
-  bool findFree(const ControlBox& box);
-  void stand(const ControlBox& box, Data& data);
+  bool findFree(const Model& model, const ControlBox& box);
+  void setFall(const Model& model, const Data& data);
+  void stand(const Model& model, const ControlBox& box, Data& data);
 
   VectorX force_;           ///< c(q, 0), then ĝ
   VectorX x_, Px_;          ///< (nv)

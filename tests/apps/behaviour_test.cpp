@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 /// What the commands of the docs make robots do, seen in the logs.
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <regex>
 
 #include "tests/apps/process.hpp"
 #include "tests/support/tolerance.hpp"
@@ -92,6 +95,18 @@ TEST(Behaviour, AReachAloneLeavesTheHumanoidOnItsFeet) {
   std::vector<std::string> byPaper = reach;
   byPaper.insert(byPaper.end(), {"--control-cost", "total"});
   EXPECT_LT(lowest(logOf(byPaper), "q:pelvis.z"), 0.5);
+}
+
+// Soles that touch to the last bit press by rounding or do not, which says nothing of who stands.
+TEST(Behaviour, AReachLeavesOnItsFeetWhatJustTouches) {
+  const io::TempFolder folder;
+  const std::string rounded = readFile(dataFile("robots/humanoid.urdf"));
+  const std::string level = std::regex_replace(rounded, std::regex("1\\.57079632679"),
+                                               fmt::format("{:.17g}", 0.5 * M_PI));
+  ASSERT_NE(level, rounded);
+  const Csv log = logOf({folder.write("level.urdf", level), "--reach", "right_hand=0.45,-0.25,1.1",
+                         "--duration", "2"});
+  EXPECT_GT(lowest(log, "q:pelvis.z"), 0.9);
 }
 
 // Half a second for the hand to close; then the ball hangs on the fingers alone.
