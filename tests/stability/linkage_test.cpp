@@ -6,10 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
-#include "engine/core/rotation.hpp"
-#include "tests/stability/scenes.hpp"
+#include "tests/stability/random_scenes.hpp"
 
 namespace softgauss::test {
 namespace {
@@ -155,42 +153,11 @@ TEST(Linkage, CamsNeitherGainNorBrake) {
   }
 }
 
-/// A flywheel and a slider on joints of a heavy base, tied by a rod that is a free body. It begins
-/// at its dead centre, as fast as the flywheel turns, and is left to itself.
+/// A slider-crank that is left to itself.
 void crank(int seed, double timestep) {
-  Random random(seed);
-  const double rod = decades(random, 0.003, 0.05), speed = random.uniform(10.0, 60.0);
-  const double flywheel = decades(random, 0.1, 20.0), slider = decades(random, 0.02, 2.0);
-  const double radius = random.uniform(0.02, 0.1), length = radius + random.uniform(0.05, 0.3);
-  ModelBuilder builder = with(ModelBuilder("crank"), timestep);
-  builder.base = BaseKind::floating;
-  builder.options.gravity.setZero();
-  builder.link(boxLink("base", 1000.0, Vector3::Constant(0.5)));
-  builder.link(boxLink("flywheel", flywheel, Vector3(radius, 0.01, radius)));
-  builder.link(boxLink("slider", slider, Vector3::Constant(0.02)));
-  builder.link(boxLink("rod", rod, Vector3(0.5 * length, 0.005, 0.005)));
-  builder.joint(jointSpec("axle", JointType::continuous, "base", "flywheel", {}, Vector3::UnitY()));
-  Transform dead;
-  dead.p.x() = radius + length;
-  JointSpec rail =
-      jointSpec("rail", JointType::prismatic, "base", "slider", dead, Vector3::UnitX());
-  rail.lower = -1.0, rail.upper = 1.0;
-  builder.joint(rail);
-  for (const std::string end : {"flywheel", "slider"}) {
-    ConnectSpec tie;
-    tie.linkA = "rod", tie.p_LAP.x() = (end == "slider" ? 0.5 : -0.5) * length;
-    tie.linkB = end, tie.p_LBP.x() = end == "slider" ? 0.0 : radius;
-    builder.connect(tie);
-  }
-  std::ostringstream name;
-  name << "crank " << seed << ", " << speed << " rad/s";
-  Trial t(name.str(), builder);
-  const Model& m = t.model;
-  const Body& free = m.bodies[m.frames[m.findFrame("rod")].body];
-  t.state.q[free.q] = radius + 0.5 * length;
-  t.state.v[free.v + 2] = -0.5 * speed * radius;
-  t.state.v[free.v + 4] = -speed * radius / length;
-  t.state.v[m.bodies[m.findJoint("axle")].v] = speed;
+  RandomScene scene = randomCrank(seed, timestep);
+  Trial t("crank " + std::to_string(seed), std::move(scene.model));
+  t.state = scene.state;
   const double begun = t.energy().kinetic;
   t.mayGain = kInfinity;  // of energies half a step apart; the law has the start too
   t.mayRise = 0.01 * begun;
