@@ -40,10 +40,10 @@ Resolution::Resolution(const Model& model)
       tied_(model.trees.size(), 0),
       touched_(model.trees.size(), 0),
       change_(VectorX::Zero(model.nv)),
-      velocity_(VectorX::Zero(model.nv)),
-      Mchange_(change_),
-      Mv_(change_),
-      Ma_(change_) {
+      velocity_(change_),
+      bias_(change_),
+      alone_(change_),
+      Mx_(change_) {
   const auto tie = [&](int body) {
     if (model.bodies[body].tree >= 0) tied_[model.bodies[body].tree] = 1;
   };
@@ -52,7 +52,7 @@ Resolution::Resolution(const Model& model)
 }
 
 std::size_t Resolution::bytes() const {
-  return bytesOfAll(turn, free, tied_, touched_, change_, velocity_, Mchange_, Mv_, Ma_);
+  return bytesOfAll(turn, free, tied_, touched_, change_, velocity_, bias_, alone_, Mx_);
 }
 
 void Resolution::findTouched(const Model& model, const Data& data) {
@@ -72,32 +72,47 @@ void Resolution::findTouched(const Model& model, const Data& data) {
   }
 }
 
-/// turn of every tree: Δb = b(q, v′) − b(q, v), of v and the velocity of turning v′.
-void Resolution::findTurns(const Model& model, const State& state, Data& data) {
+/// How far tree t turns in a step by Δb, `change_` being M⁻¹Δb and `a` the acceleration that made
+/// it: (T.93).
+double Resolution::turnBy(const Model& model, int t, const State& state, const VectorX& a,
+                          const Data& data) {
   const double h = model.options.timestep;
-  computeBiasAt(model, data.kinematics, data.inertia, state.v, data.forces.work, change_);
-  ++data.forces.calls.coriolis;
-  change_ = data.forces.bias - change_;
-  if (!solveMass(data, nullptr, change_)) return;  // the solve will say so
-  const VectorX& a = state.a;
-  bool multiplied = false;
-  for (std::size_t t = 0; t < model.trees.size(); ++t) {
-    const Tree& tree = model.trees[t];
+  const Tree& tree = model.trees[t];
+  const double turned = h * turnRate(model, tree, data, state.v, a, change_);
+  if (!isPassive(tree, tied_[t], data, state.v, state.a, h)) return turned;
+  const auto square = [&](const VectorX& x) {
+    data.inertia.M.multiply(x, Mx_);
     const int first = tree.firstDof, dofs = tree.dofEnd - first;
-    turn[t] = h * turnRate(model, tree, data, state.v, a, change_);
-    if (!isPassive(tree, tied_[t], data, state.v, a, h)) continue;
-    if (!multiplied) {
-      data.inertia.M.multiply(change_, Mchange_);
-      data.inertia.M.multiply(state.v, Mv_);
-      data.inertia.M.multiply(a, Ma_);
-      multiplied = true;
-    }
-    const auto dot = [&](const VectorX& x, const VectorX& y) {
-      return x.segment(first, dofs).dot(y.segment(first, dofs));
-    };
-    const double moving = dot(state.v, Mv_) + h * h * dot(a, Ma_);
-    turn[t] = std::max(turn[t], h * energyRate(dot(change_, Mchange_), moving));
-  }
+    return x.segment(first, dofs).dot(Mx_.segment(first, dofs));
+  };
+  const double moving = square(state.v) + h * h * square(a);
+  return std::max(turned, h * energyRate(square(change_), moving));
+}
+
+/// turn of every tree, of Δb = b(q, v′) − b(q, v) with v′ the velocity of turning.
+void Resolution::findTurns(const Model& model, const State& state, Data& data) {
+  computeBiasAt(model, data.kinematics, data.inertia, state.v, data.forces.work, bias_);
+  ++data.forces.calls.coriolis;
+  change_ = data.forces.bias - bias_;
+  if (!solveMass(data, nullptr, change_)) return;  // the solve will say so
+  for (int t = 0; t < static_cast<int>(model.trees.size()); ++t)
+    turn[t] = turnBy(model, t, state, state.a, data);
+}
+
+/// change_ ← M⁻¹Δb of v″ = v′ + ½ h alone_, alone_ = −M⁻¹c with the Coriolis forces c(q, v′).
+bool Resolution::findAlone(const Model& model, Data& data) {
+  const auto bias = [&](const VectorX& v, VectorX& b) {
+    computeBiasAt(model, data.kinematics, data.inertia, v, data.forces.work, b);
+    ++data.forces.calls.coriolis;
+  };
+  alone_.setZero();
+  bias(alone_, change_);
+  alone_ = change_ - data.forces.bias;
+  if (!solveMass(data, nullptr, alone_)) return false;
+  Mx_ = data.turning + 0.5 * model.options.timestep * alone_;
+  bias(Mx_, change_);
+  change_ -= data.forces.bias;
+  return solveMass(data, nullptr, change_);
 }
 
 /// A control acts on the tree, or applied forces that change its motion by more than a thousandth.
@@ -122,7 +137,7 @@ void Resolution::find(const Model& model, const State& state, bool controlled, D
   const MechanismSet& mechanisms = model.options.mechanisms;
   if (state.aIsKnown) findTurns(model, state, data);
   double rate = std::max(contactRate(model, data), tieRate(model, data));
-  bool touchedKnown = false;
+  bool touchedKnown = false, alone = false;
   for (std::size_t t = 0; t < model.trees.size(); ++t) {
     if (!(turn[t] > kFollowedTurn)) continue;
     if (!touchedKnown) findTouched(model, data), touchedKnown = true;
@@ -131,10 +146,15 @@ void Resolution::find(const Model& model, const State& state, bool controlled, D
     const bool mayFollow = mechanisms.has(Mechanism::freeTrees) && !touched_[t] &&
                            !dampingStops(model.trees[t], data, h);
     const bool tooMany = !(h * ofTree <= kMostParts * model.options.partAngle);
-    if (mayFollow && (tooMany || !driven(model, data, state, tree, controlled)))
+    if (mayFollow && (tooMany || !driven(model, data, state, tree, controlled))) {
       free[t] = 1, anyFree = true;
-    else
-      rate = std::max(rate, ofTree);
+      continue;
+    }
+    if (h * ofTree > model.options.partAngle) {
+      if (!alone) alone = findAlone(model, data);
+      if (alone) turn[t] = std::min(turn[t], turnBy(model, tree, state, state.a, data));
+    }
+    rate = std::max(rate, 4.0 * std::sqrt(2.0 * turn[t]) / h);
   }
   if (!mechanisms.has(Mechanism::parts)) return;
   const double needed = std::ceil(h * rate / model.options.partAngle - 1e-9);

@@ -11,8 +11,10 @@
 ///            |s|/5           of a rim, s the rate at which the place of contact goes round it
 ///            4 |ω|           of what connections and welds hold )                          (T.136)
 ///
-/// turn is about ½ (h ω)² for a body that tumbles at ω, and nothing for a wheel or a ball. So r is
-/// a function of the state alone, its last acceleration included.
+/// turn is about ½ (h ω)² for a body that tumbles at ω, and nothing for a wheel or a ball. Of a
+/// tree that is pushed it is the lesser of two: of v′, what forces do to the velocity included, and
+/// of v″ = v′ − ½ h M⁻¹c, c(q, v′) its Coriolis forces alone. For what a push does to the velocity
+/// is in the solve already. So r is a function of the state alone, its last acceleration included.
 ///
 /// A part that comes to need more than two itself has the step begin again, in so many more.
 ///
@@ -48,15 +50,17 @@ class Resolution {
   std::size_t bytes() const;
 
  private:
+  double turnBy(const Model& model, int tree, const State& state, const VectorX& a,
+                const Data& data);
   void findTurns(const Model& model, const State& state, Data& data);
+  bool findAlone(const Model& model, Data& data);
   void findTouched(const Model& model, const Data& data);
   bool driven(const Model& model, const Data& data, const State& state, int tree,
               bool controlled) const;
 
-  std::vector<std::uint8_t> tied_;     ///< (trees) 1: connections or welds hold it
-  std::vector<std::uint8_t> touched_;  ///< (trees) 1: there are rows of it
-  VectorX change_, velocity_;          ///< (nv) scratch
-  VectorX Mchange_, Mv_, Ma_;          ///< (nv) scratch: M times these
+  std::vector<std::uint8_t> tied_;                 ///< (trees) 1: connections or welds hold it
+  std::vector<std::uint8_t> touched_;              ///< (trees) 1: there are rows of it
+  VectorX change_, velocity_, bias_, alone_, Mx_;  ///< (nv) scratch
 };
 
 }  // namespace softgauss

@@ -128,6 +128,11 @@ TEST(ErrorControl, IsCounted) {
   const std::string summary = folder.path() / "summary.json";
   ASSERT_EQ(run(ball(folder), {}, summary).exitCode, 0);
   EXPECT_FALSE(Json::parse(readFile(summary)).contains("integration"));
+  // One that goes in parts has: what is tied turns by 0.1 rad a step.
+  ASSERT_EQ(run(dataFile("scenes/stability/loop_5.yaml"), {"--timestep", "0.02"}, summary).exitCode,
+            0);
+  const Json loop = Json::parse(readFile(summary));
+  EXPECT_GT(loop["integration"]["parts"], loop["steps"]);
 }
 
 // Where nobody names an integrator, what has goals moves as they have been solved.

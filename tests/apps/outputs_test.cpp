@@ -184,7 +184,6 @@ TEST(SummaryFile, HasTheKeysOfTheInterfaceAndNoOthers) {
                              "stationarity",
                              "realised",
                              "gdd_minima",
-                             "integration",  // the parts of the leapfrog
                              "fallbacks",
                              "goals",
                              "energy_J",
