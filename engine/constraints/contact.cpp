@@ -163,6 +163,17 @@ Material pairMaterial(const Model& model, int geometryA, int geometryB) {
   return mixMaterials(inUse(first.material), inUse(second.material));
 }
 
+/// The inverse weight of a body at p_W [1/kg]: that of its centre of mass. Where that cannot move,
+/// a wheel's on its stand, a push moves p by turning the body alone: kTurned of that at least, or
+/// the row's mass would be without bound.
+double weightAt(const Assembly& in, int body, const Vector3& p_W) {
+  constexpr double kTurned = 1e-4;
+  const double ofCentre = in.weights.translation[body];
+  if (!in.model.options.ownSoftness) return ofCentre;
+  const Vector3 lever = p_W - in.kinematics.X_WB[body] * in.model.bodies[body].com;
+  return std::max(ofCentre, kTurned * in.weights.rotation[body] * lever.squaredNorm());
+}
+
 std::optional<Touch> touchAt(const Assembly& in, int i) {
   const Model& model = in.model;
   const Contact& c = in.contacts.contacts[i];
@@ -174,7 +185,7 @@ std::optional<Touch> touchAt(const Assembly& in, int i) {
   // NaN makes rows, so that the solve reports it.
   if (touch.distance >= touchingWithin(model.options, c.p_WC)) return std::nullopt;
   touch.frictionDim = frictionDim(material, model.options.effects);
-  double weight = in.weights.translation[c.bodyA] + in.weights.translation[c.bodyB];
+  double weight = weightAt(in, c.bodyA, c.p_WC) + weightAt(in, c.bodyB, c.p_WC);
   double load = in.load ? in.load->mass(model, c.bodyA, c.bodyB) : 0.0;
   touch.spring = material.spring.has_value();
   touch.carries = load > 0.0 && !touch.spring;  // springs keep their depth of rest and bounce

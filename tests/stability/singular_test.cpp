@@ -242,6 +242,27 @@ TEST(Singular, WeldTurnsBackFromHalfATurn) {
     }
 }
 
+// A wheel on a stand lies on the ground by 0.1 mm. Its centre of mass cannot move, so that its
+// inverse weight is rounding. The ground brakes it, and every solve converges.
+TEST(Singular, AWheelOnItsStandIsBrakedByTheGround) {
+  constexpr double kRadius = 0.1;
+  for (const Cone cone : kCones)
+    for (const double timestep : kSteps) {
+      ModelBuilder builder("wheel");
+      builder.link(emptyLink("world"));
+      builder.geometry(groundSpec(1.0));
+      builder.link(boxLink("wheel", 1.0, Vector3::Constant(kRadius)));
+      builder.geometry(geometrySpec("wheel", Shape::sphere(kRadius), 1.0));
+      builder.joint(jointSpec("hinge", JointType::continuous, "world", "wheel",
+                              {Matrix3::Identity(), Vector3(0, 0, kRadius - 1e-4)},
+                              Vector3(0.1, 1.0, 0.2).normalized()));
+      Trial trial("wheel on a stand", with(builder, timestep, cone));
+      trial.state.v[0] = 20.0;
+      trial.run(1.0);
+      trial.expect("turns at the end", trial.state.v[0], 0.02, "rad/s");
+    }
+}
+
 TEST(Singular, SameBits) {
   expectSameBits([] {
     Trial t("bent arm", stretched(1e-3));
