@@ -140,9 +140,7 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
   std::string integratorHelp;
   for (const IntegratorName& i : kIntegratorNames)
     integratorHelp += std::string(integratorHelp.empty() ? "" : ";\n") + std::string(i.name) +
-                      (i.integrator == Integrator::semiImplicitEuler ? " (default without goals): "
-                       : i.integrator == Integrator::leapfrog        ? " (default with goals): "
-                                                                     : ": ") +
+                      (i.integrator == Integrator::leapfrog ? " (default): " : ": ") +
                       std::string(i.description);
   app.add_option("--integrator", integrator, integratorHelp)
       ->check(CLI::IsMember(io::integratorNames()))

@@ -2,8 +2,8 @@
 #pragma once
 
 /// The mechanisms beside the bare step: each can be left out alone, Options::mechanisms, and
-/// `stability_report --ablate` tells which hard cases fail without it. `--compatibility mujoco` has
-/// none of them.
+/// `stability_report --ablate` tells which hard cases fail without it. `--compatibility mujoco`,
+/// by its own integrator, has none of them.
 
 #include <optional>
 #include <string_view>

@@ -227,6 +227,23 @@ SolveStatus integrate(const Model& model, const Given& given, const State& start
   return SolveStatus::notFinite;
 }
 
+/// The largest |moved − solved| over max(|solved|∞, 1), of accelerations. Trees that are `followed`
+/// by themselves do not count, but for those that a control acts on.
+double deviation(const Model& model, const Resolution* followed, bool controlled,
+                 const VectorX& moved, const VectorX& solved) {
+  if (solved.size() == 0) return 0.0;
+  double worst = 0.0;
+  for (std::size_t t = 0; t < model.trees.size(); ++t) {
+    const Tree& tree = model.trees[t];
+    const auto actuated = [&](int i) { return model.dofs[i].actuated; };
+    bool counts = !followed || !followed->free[t];
+    for (int i = tree.firstDof; i < tree.dofEnd && !counts; ++i) counts = controlled && actuated(i);
+    for (int i = tree.firstDof; i < tree.dofEnd && counts; ++i)
+      worst = std::max(worst, std::abs(moved[i] - solved[i]));
+  }
+  return worst / std::max(solved.cwiseAbs().maxCoeff(), 1.0);
+}
+
 enum class Tried : std::uint8_t { taken, refused, unresolved };
 
 /// A step, or a part of one, from `start`, which is the state: drift, stages, (8), (13), (23).
@@ -253,7 +270,6 @@ Tried tryStep(const Model& model, const Given& given, const State& start, int mo
     assembleRows(model, given.input, state, data, clock);
   }
   SolveStatus moved = integrate(model, given, start, data, state);
-  stats.realised = deviation(data.acceleration, aim ? *aim : data.forward.a);
   if (!isRefused(moved) && resolves && data.parts->resolution.anyFree) {
     StepParts& p = *data.parts;
     const bool finite = p.freeTrees.follow(model, given.input, p.resolution, start, data, state) &&
@@ -265,6 +281,10 @@ Tried tryStep(const Model& model, const Given& given, const State& start, int mo
     stats.badDof = worstDof(model, data, state);
     return Tried::refused;
   }
+  if (drifts) data.parts->moved = (state.v - start.v) / model.options.timestep;
+  stats.realised = deviation(
+      model, resolves ? &data.parts->resolution : nullptr, given.control && given.control->acts(),
+      drifts ? data.parts->moved : data.acceleration, aim ? *aim : data.forward.a);
   stats.shortSolves += stats.status != SolveStatus::converged;
   state.warmstart.a = data.forward.a;
   state.warmstart.valid = true;
@@ -309,11 +329,6 @@ SolveStatus computeStages(const Model& model, const Input& input, const State& s
                           ContactSource* contacts) noexcept {
   Clock::time_point clock;
   return computeStages(model, input, state, data, contacts, clock);
-}
-
-double deviation(const VectorX& realised, const VectorX& solved) noexcept {
-  if (solved.size() == 0) return 0.0;
-  return (realised - solved).cwiseAbs().maxCoeff() / std::max(solved.cwiseAbs().maxCoeff(), 1.0);
 }
 
 void poseForStep(const Model& model, const State& state, Data& data) {

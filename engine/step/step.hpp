@@ -14,9 +14,6 @@ namespace softgauss {
 SolveStatus computeStages(const Model& model, const Input& input, const State& state, Data& data,
                           ContactSource* contacts) noexcept;
 
-/// The largest |realised − solved| over max(|solved|∞, 1): StepStats::realised.
-double deviation(const VectorX& realised, const VectorX& solved) noexcept;
-
 /// One step: the stages; `control`, where there is one, finds the applied force (8); forward
 /// dynamics the acceleration (13); the integrator moves the state on by options.timestep (23).
 /// `contacts` may be null: nothing collides. `input` acts besides the control. `posed`:

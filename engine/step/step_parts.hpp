@@ -14,6 +14,7 @@ struct StepParts {
         before(m),
         start(m),
         predicted(VectorX::Zero(m.nv)),
+        moved(predicted),
         resolution(m),
         freeTrees(m) {}
 
@@ -21,6 +22,7 @@ struct StepParts {
   State before;       ///< where the step begins
   State start;        ///< where the part begins
   VectorX predicted;  ///< (nv) a₋ of the first part
+  VectorX moved;      ///< (nv) (v⁺ − v)/h, of what is followed too
   Resolution resolution;
   FreeTrees freeTrees;
 };

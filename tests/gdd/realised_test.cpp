@@ -129,7 +129,7 @@ TEST_P(RealisedGoals, AreWhatWasSolved) {
     }
 }
 
-// Semi-implicit Euler takes Coriolis forces of mid-step after the solve.
+// Semi-implicit Euler takes damping after the solve.
 TEST_P(RealisedGoals, AreThoseOfEulerButForCoriolisForces) {
   for (const double timestep : kTimesteps) {
     const Off off = offOver(

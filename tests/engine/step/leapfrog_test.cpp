@@ -82,7 +82,7 @@ TEST(Leapfrog, MovesAsWasSolved) {
       const VectorX moved = (state.v - before) / model.options.timestep;
       const double scale = std::max(1.0, data.forward.a.cwiseAbs().maxCoeff());
       EXPECT_SMALL((moved - data.forward.a).cwiseAbs().maxCoeff() / scale, 1e-10);
-      EXPECT_SMALL(data.stats.realised, 1e-14);
+      EXPECT_SMALL(data.stats.realised, 1e-13);  // rounding of v over h
     }
   }
 }
