@@ -40,6 +40,9 @@ const VectorX* GoalDirectedController::solve(Solver& used, const Model& model, c
     if (goal->actsAt(state.time)) goal->addCost({model, state, data}, cost_);
   data.stats.refusedGuesses += refuses(used, state.warmstart);
   report = solveOneSided(expansion, used, model, cost_, box, data, state.warmstart, between_);
+  const GddReport solved = report;
+  report.addEarlier(earlier_);
+  earlier_.addCounts(solved);
   solveTime += std::chrono::duration<double>(Clock::now() - start).count();
   if (isRefused(report.status)) {
     data.stats.status = SolveStatus::notFinite;
@@ -62,6 +65,11 @@ const VectorX* GoalDirectedController::apply(const Model& model, const State& st
   return solve(augmentedLagrangian, model, state, data);
 }
 
+void GoalDirectedController::keep(WarmStart& warmstart) noexcept {
+  expansion.keepWarmStart(warmstart);
+  earlier_ = report;
+}
+
 SolveStatus GoalDirectedController::step(const Model& model, const Input& input, State& state,
                                          Data& data, ContactSource* contacts, bool posed) noexcept {
   held_ = input;
@@ -69,6 +77,7 @@ SolveStatus GoalDirectedController::step(const Model& model, const Input& input,
   held_.softFriction = input.softFriction || box.open();
   outside_ = input.tau;
   solveTime = 0.0;
+  earlier_ = {};
   return softgauss::step(model, held_, state, data, contacts, this, posed);
 }
 

@@ -47,7 +47,7 @@ class GoalDirectedController final : public StepControl {
 
   VectorX control;   ///< τ = B u of the last step, 0 on unactuated dofs (nv) [N or N m]
   VectorX commands;  ///< u of the last step, of the actuators of box.transmission, in their order
-  GddReport report;  ///< of the last step
+  GddReport report;  ///< of the last step; of a step in parts the worst of them, counts are sums
   double solveTime = 0.0;  ///< wall time of the last step's GDD solves [s]
 
   /// One step. `input` acts besides the control (disturbances). On SolveStatus::notFinite, also
@@ -58,7 +58,7 @@ class GoalDirectedController final : public StepControl {
 
   const VectorX* apply(const Model& model, const State& state, Data& data) noexcept override;
   bool acts() const noexcept override { return box.open(); }
-  void keep(WarmStart& warmstart) noexcept override { expansion.keepWarmStart(warmstart); }
+  void keep(WarmStart& warmstart) noexcept override;
   /// Of the last GDD solve, before the final forward step (nv).
   const VectorX& acceleration() const { return expansion.acceleration(); }
 
@@ -66,6 +66,7 @@ class GoalDirectedController final : public StepControl {
   template <class Solver>
   const VectorX* solve(Solver& used, const Model& model, const State& state, Data& data);
 
+  GddReport earlier_;  ///< parts of the step that are taken, and what was spent beside
   GoalCost cost_;
   HoldingForce holding_;
   WarmStart between_;    ///< from one solve to the next of a step

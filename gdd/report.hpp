@@ -46,6 +46,14 @@ struct GddReport {
     cells += other.cells;
     forwardIterations += other.forwardIterations;
   }
+  /// Adds the earlier parts of a step: what is of the end stays, the rest is the worst.
+  void addEarlier(const GddReport& part) {
+    addCounts(part);
+    status = std::max(status, part.status);
+    restarts += part.restarts;
+    violation = std::max(violation, part.violation);
+    stationarity = std::max(stationarity, part.stationarity);
+  }
   /// Adds a problem beside this one: status, violation and stationarity are the worse ones.
   void add(const GddReport& other) {
     addCounts(other);

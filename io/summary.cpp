@@ -115,8 +115,11 @@ Summary::Summary(const Model& model)
       levelSlip_(model.options.levelsSlip()),
       stepDoubling_(model.options.stepDoubling),
       tolerance_(model.options.tolerance) {
-  for (const MechanismName& m : kMechanismNames)
-    if (!model.options.mechanisms.has(m.mechanism)) without_.emplace_back(m.name);
+  for (std::size_t m = 0; m < std::size(kMechanismNames); ++m) {
+    const MechanismName& name = kMechanismNames[m];
+    if (!model.options.mechanisms.has(name.mechanism)) without_.emplace_back(name.name);
+    if (model.options.uses(name.mechanism)) mechanismsInUse_.push_back(m);
+  }
   for (int i = 0; i < model.nv; ++i) {
     const Dof& dof = model.dofs[static_cast<std::size_t>(i)];
     if (!dof.actuated) continue;
@@ -245,6 +248,8 @@ std::string Summary::json() const {
       {"max_control_ratio", ratios.empty() ? 0.0 : ratios.front().ratio},
       {"control_ratios", ratioList},
       {"warnings", warnings}};
+  for (const std::size_t m : mechanismsInUse_)
+    summary["mechanisms"][std::string(kMechanismNames[m].name)] = mechanismActs[m];
   if (integration.evaluations > 0)
     summary["integration"] = {{"evaluations", integration.evaluations},
                               {"substeps", integration.substeps},

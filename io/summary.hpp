@@ -7,7 +7,9 @@
 /// not exceed; of more than 65,536 steps, of evenly spaced ones, half as many or more. Numbers that
 /// are not finite are null in JSON.
 
+#include <array>
 #include <filesystem>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <utility>
@@ -90,6 +92,9 @@ struct IntegrationCounts {
     a(evaluations, substeps, rejections, glances, parts, repeats);
   }
 };
+
+/// How often each mechanism of the step has acted over a run, in the order of Mechanism.
+using MechanismActs = std::array<long, std::size(kMechanismNames)>;
 
 /// Islands over the steps of a run; sums count every step.
 struct IslandOutcomes {
@@ -181,9 +186,10 @@ class Summary {
   /// What the steps have come to, for a run that goes on later.
   template <class Archive>
   void archive(Archive& a) {
-    a(gdd, fallbacks, integration, wallSeconds, steps_, startTime_, endTime_, initialEnergy_,
-      finalEnergy_, maxPenetration_, ratios_, forwardUs_, gddUs_, stepUs_, constraints_,
-      iterations_, dualUpdates_, physicsViolation_, gddViolation_, stationarity_, realised_);
+    a(gdd, fallbacks, integration, mechanismActs, wallSeconds, steps_, startTime_, endTime_,
+      initialEnergy_, finalEnergy_, maxPenetration_, ratios_, forwardUs_, gddUs_, stepUs_,
+      constraints_, iterations_, dualUpdates_, physicsViolation_, gddViolation_, stationarity_,
+      realised_);
     if constexpr (Archive::kReads) a.expect(ratios_.size() >= bounded_.size());
   }
   /// Of all that have a bound, the largest first.
@@ -217,6 +223,7 @@ class Summary {
   GddOutcomes gdd;
   Fallbacks fallbacks;
   IntegrationCounts integration;
+  MechanismActs mechanismActs{};
   IslandOutcomes islands;
   ErrorOutcome error;
   std::vector<std::string> warnings;  ///< preset to the model's
@@ -237,7 +244,8 @@ class Summary {
   std::string cone_;
   double impedanceRatio_ = 1.0;
   bool exactDiagonal_ = false, noSlip_ = false, levelSlip_ = false, stepDoubling_ = false;
-  std::vector<std::string> without_;  ///< mechanisms left out
+  std::vector<std::string> without_;          ///< mechanisms left out
+  std::vector<std::size_t> mechanismsInUse_;  ///< in the order of Mechanism
   double tolerance_ = 0.0;
   std::vector<Bounded> bounded_;  ///< controls with a box
   std::size_t steps_ = 0;

@@ -73,6 +73,12 @@ std::string Summary::detailsTable() const {
   else if (integration.parts > static_cast<long>(steps_) || integration.repeats > 1)
     add(fmt::format("  integration: {} parts of {} steps, {} solves repeated", integration.parts,
                     steps_, integration.repeats));
+  std::string acts;
+  for (const std::size_t m : mechanismsInUse_)
+    if (mechanismActs[m] > 0)
+      acts += fmt::format("{}{} {}", acts.empty() ? "" : ", ", kMechanismNames[m].name,
+                          mechanismActs[m]);
+  if (!acts.empty()) add("  mechanisms of the step, how often each acted: " + acts);
   add("");
   return out;
 }

@@ -23,6 +23,8 @@ void tally(const StepStats& stats, bool countsParts, io::Summary& summary) {
   i.repeats += stats.repeats;
   i.rejections += stats.rejections;
   i.glances += stats.glances;
+  for (const MechanismName& m : kMechanismNames)
+    summary.mechanismActs[static_cast<std::size_t>(m.mechanism)] += stats.acted[m.mechanism];
 }
 
 void tally(const gdd::GddReport& report, io::GddOutcomes& outcomes) {

@@ -30,6 +30,11 @@ struct Assembly {
   /// The velocity with which joints turn through the step (nv).
   const VectorX& turns() const { return turning ? *turning : state.v; }
 
+  /// Counts where the mechanism `did` something.
+  void count(Mechanism mechanism, bool did) const {
+    if (acted) (*acted)[mechanism] += did;
+  }
+
   const Model& model;
   const State& state;
   const Kinematics& kinematics;
@@ -39,6 +44,7 @@ struct Assembly {
   bool softFriction = false;          ///< Input::softFriction
   const VectorX* turning = nullptr;   ///< null: State::v
   const CarriedLoad* load = nullptr;  ///< null: no row knows of a load
+  MechanismCounts* acted = nullptr;   ///< null: nobody counts
 };
 
 }  // namespace softgauss

@@ -41,8 +41,10 @@ bool carries(const Assembly& in, const Impedance& tie) {
 double tieWeight(const Assembly& in, const Impedance& tie, int bodyA, int bodyB) {
   const double weight = in.weights.translation[bodyA] + in.weights.translation[bodyB];
   if (!carries(in, tie)) return weight;
-  return carrying(weight, std::max(in.load->mass(in.model, bodyA, bodyB),
-                                   in.load->partOnTie(in.model, bodyA, bodyB)));
+  const double loaded = carrying(weight, std::max(in.load->mass(in.model, bodyA, bodyB),
+                                                  in.load->partOnTie(in.model, bodyA, bodyB)));
+  in.count(Mechanism::carriedLoad, loaded < weight);
+  return loaded;
 }
 
 RelativeMotion offsetMotion(int bodyA, const Vector3& p_WA, int bodyB, const Vector3& p_WB) {
@@ -61,9 +63,8 @@ void ConnectionRows::assemble(const Assembly& in) {
   if (model.options.effects.has(Effect::equality)) {
     for (const Connection& c : model.connections) {
       const PointOffset offset(in, c.bodyA, c.p_AP, c.bodyB, c.p_BP);
-      const Softness soft =
-          tieSoftness(c.impedance, offset.r.norm(), tieWeight(in, c.impedance, c.bodyA, c.bodyB),
-                      model.options);
+      const Softness soft = tieSoftness(in, c.impedance, offset.r.norm(),
+                                        tieWeight(in, c.impedance, c.bodyA, c.bodyB));
       const RelativeMotion motion = offsetMotion(c.bodyA, offset.p_WA, c.bodyB, offset.p_WB);
       jacobian_.add(model, in.kinematics, in.tree, motion);
       pushRows(offset, soft);

@@ -23,6 +23,8 @@ bool isContact(int kind) {
 
 void Constraints::assemble(const Assembly& given) {
   Assembly in = given;
+  acted_ = {};
+  in.acted = &acted_;
   if (in.model.options.uses(Mechanism::carriedLoad)) {
     load_.assemble(in.model, in.kinematics, in.contacts, in.weights);
     in.load = &load_;

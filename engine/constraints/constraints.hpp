@@ -106,6 +106,8 @@ class Constraints {
   /// Kinds that may make rows, and those that have some in this step.
   RowKinds planned() const { return planned_; }
   RowKinds active() const { return active_; }
+  /// How often mechanisms have acted on the rows of this step.
+  const MechanismCounts& acted() const { return acted_; }
   /// How often each kind was asked for its rows since the start.
   const std::array<std::int64_t, kRowKinds>& calls() const { return calls_; }
   /// Pattern of P = M + Jᵀ∇²s J: the trees', or with fill-in where rows couple branches.
@@ -195,6 +197,7 @@ class Constraints {
   RowKinds active_ = RowKinds::none();
   std::array<std::int64_t, kRowKinds> calls_{};
   CarriedLoad load_;
+  MechanismCounts acted_;
   const TreeSparsity* sparsity_ = nullptr;
   TreeSparsity coupled_;
   VectorX rowForces_;  ///< (nv) Jᵀf

@@ -178,8 +178,8 @@ std::optional<Touch> touchAt(const Assembly& in, int i) {
   const Model& model = in.model;
   const Contact& c = in.contacts.contacts[i];
   if (model.bodies[c.bodyA].dofs == 0 && model.bodies[c.bodyB].dofs == 0) return std::nullopt;
-  const Material material = inForce(pairMaterial(model, c.geometryA, c.geometryB),
-                                    reducedMass(model, c.bodyA, c.bodyB), model.options);
+  const Material surface = pairMaterial(model, c.geometryA, c.geometryB);
+  const Material material = inForce(surface, reducedMass(model, c.bodyA, c.bodyB), model.options);
   Touch touch;
   touch.distance = c.distance - material.margin;
   // NaN makes rows, so that the solve reports it.
@@ -191,6 +191,7 @@ std::optional<Touch> touchAt(const Assembly& in, int i) {
   touch.carries = load > 0.0 && !touch.spring;  // springs keep their depth of rest and bounce
   if (in.load) load = std::max(load, in.load->partOnContact(model, c.bodyA, c.bodyB));
   if (!material.spring) touch.hardening = std::max(1.0, load * weight);
+  in.count(Mechanism::carriedLoad, load * weight > 1.0);
   weight = carrying(weight, load);
   touch.inverseMass = weight;
   touch.softness =
@@ -198,6 +199,8 @@ std::optional<Touch> touchAt(const Assembly& in, int i) {
   if (model.options.uses(Mechanism::stepBounds) && !material.spring &&
       (isSprung(model, c.bodyA) || isSprung(model, c.bodyB)))
     touch.softness = withLeastMass(touch.softness, model.options.rowTimestep());
+  const bool bounces = material.spring && !surface.spring;
+  in.count(Mechanism::stepBounds, bounces || touch.softness.bounded);
   if (touch.frictionDim > 0) {
     const double mu = material.slidingFriction;
     const double spin = std::max(material.torsionalFriction, kSmallestFriction);
@@ -245,6 +248,7 @@ ContactBlocks::BlockMotion ContactBlocks::addBlock(const Assembly& in, int i, co
     if (countsSoDeep(model.options, touch, load, *bias)) {
       made_.back().share = stickingShare(model.options, touch, load, moves.velocity, tangents);
       moves.bias = biasInFrame(made_.back(), bias->rate);
+      in.count(Mechanism::contactTurning, true);
       for (std::size_t axis = 0; axis < moves.bias.size(); ++axis)
         moves.velocity[axis] -= in.lag() * moves.bias[axis];
     }
@@ -264,7 +268,9 @@ Softness ContactBlocks::soften(const Assembly& in, const Touch& touch,
   const Softness& soft = touch.softness;
   const auto held = [&](const Softness& s) {
     if (touch.spring) return s;
-    return withinHorizon(s, horizonOf(in, in.contacts.contacts[made_.back().contact]));
+    const double horizon = horizonOf(in, in.contacts.contacts[made_.back().contact]);
+    in.count(Mechanism::contactHorizon, s.damping * horizon < 1.0);
+    return withinHorizon(s, horizon);
   };
   if (!touch.carries || !in.sticks() || touch.frictionDim == 0) return held(soft);
   if (!(soft.damping * soft.damping >= 4.0 * soft.stiffness)) return held(soft);  // it bounces
@@ -272,6 +278,7 @@ Softness ContactBlocks::soften(const Assembly& in, const Touch& touch,
   speeds.weight = creepUnderWeight(in.model.options, touch);
   speeds.creep = speeds.weight - soft.stiffness * touch.distance / soft.damping;
   made_.back().slip = speeds.slip();
+  in.count(Mechanism::sticking, made_.back().slip < 1.0);
   return held(sticking(soft, made_.back().slip));
 }
 

@@ -104,6 +104,7 @@ Softness withLeastMass(Softness s, double timestep) {
   const double mass = timestep * std::max(s.damping, timestep * s.stiffness);
   if (!(mass < 1.0)) return s;
   const double less = 1.0 / std::max(mass, kSomeMass);
+  s.bounded = true;
   s.R *= less;
   s.perInertia *= less;
   s.stiffness *= less;

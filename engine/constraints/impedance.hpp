@@ -32,6 +32,7 @@ struct Softness {
   double perInertia = 0.0;  ///< R per inverse inertia A; 0 where A has no part in it [-]
   double stiffness = 0.0;   ///< k d [1/s²]
   double damping = 0.0;     ///< b [1/s]
+  bool bounded = false;     ///< by what a step can follow, Mechanism::stepBounds
 
   double referenceAcceleration(double velocity, double distance) const {
     return -damping * velocity - stiffness * distance;
@@ -121,6 +122,7 @@ inline Softness takingItOnce(Softness s, double timestep) {
   s.perInertia /= adds;
   s.stiffness /= adds;
   s.damping /= adds;
+  s.bounded = adds > 1.0;
   return s;
 }
 
@@ -158,6 +160,7 @@ inline Softness atStepsEnd(const Softness& s, double t, const Options& options) 
   if (!(s.damping > 0.0)) return s;
   Softness atEnd = atStepsEnd(s.stiffness / s.R, s.damping / s.R, t, options);
   atEnd.perInertia = s.perInertia * (atEnd.R / s.R);
+  atEnd.bounded = s.bounded;
   return atEnd;
 }
 
@@ -167,7 +170,7 @@ inline Softness atStepsEnd(const Softness& s, double t, const Options& options) 
 inline Softness withinHorizon(const Softness& s, double horizon) {
   if (!(s.damping * horizon < 1.0)) return s;
   const double less = s.damping * horizon;  // D of the row over D of s
-  return {s.R / less, s.perInertia / less, s.stiffness / less, 1.0 / horizon};
+  return {s.R / less, s.perInertia / less, s.stiffness / less, 1.0 / horizon, s.bounded};
 }
 
 }  // namespace softgauss

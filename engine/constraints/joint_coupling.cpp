@@ -38,7 +38,7 @@ void CouplingRows::assemble(const Assembly& in) {
         rate -= pair.slope * in.state.v[leader.v];
         if (model.options.ownSoftness) pair.bend = c.curvature(q);
       }
-      const Softness soft = tieSoftness(c.impedance, r, weight, model.options);
+      const Softness soft = tieSoftness(in, c.impedance, r, weight);
       const double turning = -pair.bend * std::pow(in.turns()[pair.leader], 2.0);
       pairs_.push_back(pair);
       reference.push_back(soft.referenceAcceleration(rate - in.lag() * turning, r) - turning);

@@ -36,8 +36,11 @@ Softness limitSoftness(const Assembly& in, const JointRange& range, double r) {
   if (isSprung(in.model, range.body)) {
     if (options.uses(Mechanism::stepBounds)) soft = withLeastMass(soft, options.rowTimestep());
   } else if (options.uses(Mechanism::carriedLoad)) {
-    soft = softness(carrying(weight, kOfCarried * carriedInertia(in, range.body)));
+    const double loaded = carrying(weight, kOfCarried * carriedInertia(in, range.body));
+    soft = softness(loaded);
+    in.count(Mechanism::carriedLoad, loaded < weight);
   }
+  in.count(Mechanism::stepBounds, soft.bounded);
   return in.isPart() ? atStepsEnd(soft, 0.0, options) : soft;
 }
 

@@ -44,7 +44,7 @@ void WeldRows::assemble(const Assembly& in) {
       const RotationOffset turn(in, weld, X_WA.R, X_WB.R);
       const double distance = std::hypot(point.r.norm(), turn.r.norm());
       const auto softness = [&](double weight) {
-        return tieSoftness(weld.impedance, distance, weight, model.options);
+        return tieSoftness(in, weld.impedance, distance, weight);
       };
       RelativeMotion motion = offsetMotion(weld.bodyA, point.p_WA, weld.bodyB, point.p_WB);
       const Softness linear = softness(tieWeight(in, weld.impedance, weld.bodyA, weld.bodyB));

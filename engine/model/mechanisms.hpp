@@ -5,6 +5,8 @@
 /// `stability_report --ablate` tells which hard cases fail without it. `--compatibility mujoco`,
 /// by its own integrator, has none of them.
 
+#include <array>
+#include <iterator>
 #include <optional>
 #include <string_view>
 
@@ -47,6 +49,20 @@ inline constexpr MechanismName kMechanismNames[] = {
 };
 
 using MechanismSet = EnumSet<Mechanism>;
+
+/// How often each mechanism has acted: on contacts, joint limits, equality constraints, trees,
+/// bodies or parts of a step.
+class MechanismCounts {
+ public:
+  int& operator[](Mechanism m) { return counts_[static_cast<std::size_t>(m)]; }
+  int operator[](Mechanism m) const { return counts_[static_cast<std::size_t>(m)]; }
+  void add(const MechanismCounts& other) {
+    for (std::size_t i = 0; i < counts_.size(); ++i) counts_[i] += other.counts_[i];
+  }
+
+ private:
+  std::array<int, std::size(kMechanismNames)> counts_{};
+};
 
 /// The mechanism of that name, or nothing.
 constexpr std::optional<Mechanism> mechanismFromName(std::string_view name) {

@@ -63,6 +63,7 @@ struct StepStats {
   int rejections = 0;      ///< parts of the step that were tried and shortened
   int jumps = 0;           ///< shortest parts that were taken in spite of their estimate
   int glances = 0;         ///< parts cut short lest shapes pass through each other unseen (T.125)
+  MechanismCounts acted;   ///< how often each mechanism has
   // What was done in place of what was asked for, as abandonedTrees and jumps are.
   int shortSolves = 0;     ///< ended stalled or at the iteration limit
   int roundedSolves = 0;   ///< ended by rounding, within 10³ of the tolerance

@@ -134,16 +134,16 @@ void Resolution::find(const Model& model, const State& state, bool controlled, D
       !mayTurnFar(model, data, state.v, state.a))
     return;
   const double h = model.options.timestep;
-  const MechanismSet& mechanisms = model.options.mechanisms;
   if (state.aIsKnown) findTurns(model, state, data);
   double rate = std::max(contactRate(model, data), tieRate(model, data));
+  const auto rateOf = [&](std::size_t t) { return 4.0 * std::sqrt(2.0 * turn[t]) / h; };
   bool touchedKnown = false, alone = false;
   for (std::size_t t = 0; t < model.trees.size(); ++t) {
     if (!(turn[t] > kFollowedTurn)) continue;
     if (!touchedKnown) findTouched(model, data), touchedKnown = true;
     const int tree = static_cast<int>(t);
-    const double ofTree = 4.0 * std::sqrt(2.0 * turn[t]) / h;
-    const bool mayFollow = mechanisms.has(Mechanism::freeTrees) && !touched_[t] &&
+    double ofTree = rateOf(t);
+    const bool mayFollow = model.options.uses(Mechanism::freeTrees) && !touched_[t] &&
                            !dampingStops(model.trees[t], data, h);
     const bool tooMany = !(h * ofTree <= kMostParts * model.options.partAngle);
     if (mayFollow && (tooMany || !driven(model, data, state, tree, controlled))) {
@@ -153,10 +153,11 @@ void Resolution::find(const Model& model, const State& state, bool controlled, D
     if (h * ofTree > model.options.partAngle) {
       if (!alone) alone = findAlone(model, data);
       if (alone) turn[t] = std::min(turn[t], turnBy(model, tree, state, state.a, data));
+      ofTree = rateOf(t);
     }
-    rate = std::max(rate, 4.0 * std::sqrt(2.0 * turn[t]) / h);
+    rate = std::max(rate, ofTree);
   }
-  if (!mechanisms.has(Mechanism::parts)) return;
+  if (!model.options.uses(Mechanism::parts)) return;
   const double needed = std::ceil(h * rate / model.options.partAngle - 1e-9);
   parts = needed < kMostParts ? std::max(1, static_cast<int>(needed)) : kMostParts;
 }

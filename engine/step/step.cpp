@@ -108,6 +108,7 @@ void StepStats::add(const StepStats& other) {
         &StepStats::jumps, &StepStats::glances, &StepStats::shortSolves, &StepStats::roundedSolves,
         &StepStats::refusedGuesses, &StepStats::keptSlips, &StepStats::unseen})
     this->*count += other.*count;
+  acted.add(other.acted);
   badDof = std::max(badDof, other.badDof);
   for (double StepTimes::*time : {&StepTimes::kinematics, &StepTimes::collision, &StepTimes::rows,
                                   &StepTimes::solve, &StepTimes::integrate})
@@ -185,17 +186,18 @@ SolveStatus computeStages(const Model& model, const Input& input, const State& s
   return SolveStatus::converged;
 }
 
-/// (8), where there is a control, and (13). `aim`: the acceleration that is to be made.
+/// (8) where goals choose the control, then (13): what moves under it. `aim`: the acceleration that
+/// goals ask for.
 SolveStatus solve(const Model& model, const Given& given, const State& state, Data& data,
                   const VectorX*& aim, Clock::time_point& clock) noexcept {
   StepStats& stats = data.stats;
   const VectorX* guess = state.warmstart.valid ? &state.warmstart.a : nullptr;
-  if (given.control) {
+  if (given.control) {  // (8)
     aim = guess = given.control->apply(model, state, data);
     if (!guess) return stats.status;
     lap(clock);
   }
-  stats.status = forwardDynamics(model, guess, data);
+  stats.status = forwardDynamics(model, guess, data);  // (13)
   stats.iterations += data.forward.report.iterations;
   stats.factorizations += data.forward.report.factorizations;
   stats.residual = std::max(stats.residual, data.forward.report.residual);
@@ -204,7 +206,8 @@ SolveStatus solve(const Model& model, const Given& given, const State& state, Da
   return stats.status;
 }
 
-/// What became of the state; converged where it has moved on. `start`: where the step began.
+/// (23), v and q of the step's end, by the integrator that is chosen. Converged where the state has
+/// moved on. `start`: where the step began.
 SolveStatus integrate(const Model& model, const Given& given, const State& start, Data& data,
                       State& state) noexcept {
   const auto moved = [](bool finite) {
@@ -242,6 +245,15 @@ double deviation(const Model& model, const Resolution* followed, bool controlled
       worst = std::max(worst, std::abs(moved[i] - solved[i]));
   }
   return worst / std::max(solved.cwiseAbs().maxCoeff(), 1.0);
+}
+
+/// How often each mechanism has acted in what is now a step, or a part of one.
+void countMechanisms(const Model& model, const State& start, Data& data) {
+  MechanismCounts& acted = data.stats.acted;
+  acted = data.constraints.acted();
+  acted[Mechanism::prediction] = data.plan.drifts && predictsTurning(model, start);
+  acted[Mechanism::freeTrees] = data.stats.followedTrees;
+  acted[Mechanism::swingDamping] = data.stats.swings;
 }
 
 enum class Tried : std::uint8_t { taken, refused, unresolved };
@@ -285,6 +297,7 @@ Tried tryStep(const Model& model, const Given& given, const State& start, int mo
   stats.realised = deviation(
       model, resolves ? &data.parts->resolution : nullptr, given.control && given.control->acts(),
       drifts ? data.parts->moved : data.acceleration, aim ? *aim : data.forward.a);
+  countMechanisms(model, start, data);
   stats.shortSolves += stats.status != SolveStatus::converged;
   state.warmstart.a = data.forward.a;
   state.warmstart.valid = true;
@@ -317,6 +330,7 @@ Tried stepInParts(const Model& model, const Given& given, int parts, State& stat
   total.rows = data.stats.rows;
   data.stats = total;
   data.stats.parts = parts;
+  data.stats.acted[Mechanism::parts] = parts;
   data.stats.substeps += parts;
   data.acceleration = (state.v - p.before.v) / model.options.timestep;
   state.time = p.before.time + model.options.timestep;

@@ -40,7 +40,7 @@ void driftBefore(const Model& model, Data& data, State& state) {
 }
 
 bool predictsTurning(const Model& model, const State& state) {
-  return state.aIsKnown && model.options.mechanisms.has(Mechanism::prediction);
+  return state.aIsKnown && model.options.uses(Mechanism::prediction);
 }
 
 void predictTurning(const Model& model, const State& state, Data& data) {
@@ -51,7 +51,7 @@ void predictTurning(const Model& model, const State& state, Data& data) {
 
 bool forgetsPredicted(const Model& model, const Resolution& resolution, const Data& data,
                       State& state) {
-  if (!data.plan.coriolis || !model.options.mechanisms.has(Mechanism::prediction)) return false;
+  if (!data.plan.coriolis || !model.options.uses(Mechanism::prediction)) return false;
   const double h = model.options.timestep;
   const VectorX& a = data.forward.a;
   bool any = false;
