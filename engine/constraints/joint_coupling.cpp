@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/constraints/carried_inertia.hpp"
+#include "engine/constraints/connection.hpp"
 #include "engine/constraints/tie_softness.hpp"
 
 namespace softgauss {
@@ -13,6 +15,31 @@ namespace {
 bool isAncestor(const Model& model, int up, int down) {
   while (down > up) down = model.dofs[down].parent;
   return down == up;
+}
+
+/// L of a coupling (T.142): the heavier of what is on its two sides, in the unit of its follower,
+/// and at least what gear teeth hold of the two together.
+double coupledLoad(const Assembly& in, const JointCoupling& c, double slope) {
+  constexpr double kHolds = 3e3;
+  const double m_f = carriedInertia(in, c.follower);
+  if (c.leader == 0) return m_f;
+  const double m_l = carriedInertia(in, c.leader) / (slope * slope);
+  if (!(m_l < kInfinity)) return kHolds * m_f;  // the leader moves nothing here
+  return std::max({kHolds / (1.0 / m_f + 1.0 / m_l), m_f, m_l});
+}
+
+/// A of a coupling's row (T.30); MuJoCo's model takes the two joints without what multiplies them.
+double coupledWeight(const Assembly& in, const JointCoupling& c, double slope) {
+  const Model& model = in.model;
+  const std::vector<double>& w = in.weights.dof;
+  const double follower = w[model.bodies[c.follower].v];
+  const double leader = c.leader == 0 ? 0.0 : w[model.bodies[c.leader].v];
+  if (!model.options.ownSoftness) return follower + leader;
+  const double feels = follower + slope * slope * leader;
+  if (!carries(in, c.impedance)) return feels;
+  const double loaded = carrying(feels, coupledLoad(in, c, slope));
+  in.count(Mechanism::carriedLoad, loaded < feels);
+  return loaded;
 }
 
 }  // namespace
@@ -26,7 +53,7 @@ void CouplingRows::assemble(const Assembly& in) {
       const Body &follower = model.bodies[c.follower], &leader = model.bodies[c.leader];
       Pair pair{follower.v, follower.v};
       double r = in.state.q[follower.q] - c.polynomial[0];
-      double weight = in.weights.dof[follower.v], rate = in.state.v[follower.v];
+      double rate = in.state.v[follower.v];
       if (c.leader != 0) {
         const double q = in.state.q[leader.q];
         r = in.state.q[follower.q] - c.value(q);
@@ -34,11 +61,10 @@ void CouplingRows::assemble(const Assembly& in) {
         pair.slope = c.slope(q);
         pair.couples =
             !isAncestor(model, std::min(follower.v, leader.v), std::max(follower.v, leader.v));
-        weight += in.weights.dof[leader.v];
         rate -= pair.slope * in.state.v[leader.v];
         if (model.options.ownSoftness) pair.bend = c.curvature(q);
       }
-      const Softness soft = tieSoftness(in, c.impedance, r, weight);
+      const Softness soft = tieSoftness(in, c.impedance, r, coupledWeight(in, c, pair.slope));
       const double turning = -pair.bend * std::pow(in.turns()[pair.leader], 2.0);
       pairs_.push_back(pair);
       reference.push_back(soft.referenceAcceleration(rate - in.lag() * turning, r) - turning);

@@ -1,27 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/constraints/joint_limit.hpp"
 
+#include <cmath>
+
+#include "engine/constraints/carried_inertia.hpp"
 #include "engine/constraints/carried_load.hpp"
 #include "engine/constraints/contact_softness.hpp"
 
 namespace softgauss {
 namespace {
 
-/// M_ii of the joint of a body: the inertia of all that it carries [kg or kg m²].
-double carriedInertia(const Assembly& in, int body) {
+/// M_ii of the joint of a body, and that of all joints which follow it, by the slopes of their
+/// couplings.
+double borneInertia(const Assembly& in, int body) {
   const Model& model = in.model;
-  const Kinematics& k = in.kinematics;
-  const Body& joint = model.bodies[body];
-  const Motion& axis = k.S[joint.v];
-  double inertia = model.options.effects.has(Effect::armature) ? model.dofs[joint.v].armature : 0.0;
-  for (int b = body; b < joint.subtreeEnd; ++b) {
-    const Body& carried = model.bodies[b];
-    if (carried.massless) continue;
-    const Vector3 r = k.X_WB[b] * carried.com - k.p_WO[joint.tree];
-    const Vector3 turns = k.X_WB[b].R.transpose() * axis.angular;
-    inertia += carried.mass * (axis.linear + axis.angular.cross(r)).squaredNorm() +
-               turns.dot(carried.I_Bcm * turns);
-  }
+  double inertia = carriedInertia(in, body);
+  if (!model.options.effects.has(Effect::equality)) return inertia;
+  const double q = in.state.q[model.bodies[body].q];
+  for (const JointCoupling& c : model.couplings)
+    if (c.leader == body) inertia += std::pow(c.slope(q), 2.0) * borneInertia(in, c.follower);
   return inertia;
 }
 
@@ -36,7 +33,7 @@ Softness limitSoftness(const Assembly& in, const JointRange& range, double r) {
   if (isSprung(in.model, range.body)) {
     if (options.uses(Mechanism::stepBounds)) soft = withLeastMass(soft, options.rowTimestep());
   } else if (options.uses(Mechanism::carriedLoad)) {
-    const double loaded = carrying(weight, kOfCarried * carriedInertia(in, range.body));
+    const double loaded = carrying(weight, kOfCarried * borneInertia(in, range.body));
     soft = softness(loaded);
     in.count(Mechanism::carriedLoad, loaded < weight);
   }

@@ -92,7 +92,7 @@ TEST(DryFriction, HardensAsItComesToRest) {
 
 TEST(DryFriction, NeverExceedsItsLimitNorDrives) {
   int sliding = 0, sticking = 0;
-  for (int seed = 1; seed < 280; seed += 2) {
+  for (int seed = 1; seed < 400; seed += 2) {
     Scene s = lawScene(seed, 4);
     s.state.v *= 0.01;
     s.stages();

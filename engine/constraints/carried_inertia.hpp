@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// What a joint of one degree of freedom feels when all other joints are held.
+
+#include "engine/constraints/assembly.hpp"
+
+namespace softgauss {
+
+/// M_ii of the joint of a body, with armature: the inertia of all that it carries [kg or kg m²].
+double carriedInertia(const Assembly& in, int body);
+
+}  // namespace softgauss
