@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Mechanisms of the step are counted where they act, in the summary, and can be left out.
+
+#include "engine/model/mechanisms.hpp"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tests/apps/process.hpp"
+
+namespace softgauss::test {
+namespace {
+
+nlohmann::json summaryOf(std::vector<std::string> arguments) {
+  const io::TempFolder folder;
+  const std::string summary = folder.path() / "summary.json";
+  arguments.insert(arguments.end(),
+                   {"--passive", "--duration", "0.1", "--summary", summary, "--quiet"});
+  const Outcome outcome = simulate(arguments);
+  EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+  return nlohmann::json::parse(readFile(summary));
+}
+
+// A scene that calls for it has it act; without it, it is not counted, and is listed as left out.
+TEST(Mechanisms, ActWhereASceneCallsForThem) {
+  const io::TempFolder folder;
+  // Its surface gives back what it took.
+  const std::string bouncing =
+      folder.write("bouncing.yaml",
+                   "ground: 0\n"
+                   "objects:\n"
+                   "  - {name: ball, sphere: {radius: 0.1}, mass: 1, position: [0, 0, 0.1],\n"
+                   "     material: springy}\n"
+                   "materials: {springy: {damping_ratio: 0.1, priority: 1}}\n");
+  const auto hard = [](const std::string& name) {
+    return dataFile("scenes/stability/" + name + ".yaml");
+  };
+  const std::map<std::string, std::string> scenes = {{"prediction", hard("top_on_tip")},
+                                                     {"parts", hard("top_on_tip")},
+                                                     {"free_trees", hard("tumbling")},
+                                                     {"end_of_step_ties", hard("rope")},
+                                                     {"contact_horizon", hard("coin")},
+                                                     {"contact_turning", hard("sphere")},
+                                                     {"step_bounds", bouncing},
+                                                     {"carried_load", hard("boxes_1000_on_1")},
+                                                     {"sticking", hard("boxes_1000_on_1")},
+                                                     {"swing_damping", hard("rope")}};
+  for (const MechanismName& mechanism : kMechanismNames) {
+    const std::string name(mechanism.name);
+    ASSERT_EQ(scenes.count(name), 1u) << name;
+    const nlohmann::json with = summaryOf({scenes.at(name)});
+    EXPECT_GT(with["mechanisms"][name], 0) << name;
+    EXPECT_TRUE(with["options"]["without"].empty());
+    const nlohmann::json without = summaryOf({scenes.at(name), "--without", name});
+    EXPECT_FALSE(without["mechanisms"].contains(name)) << name;
+    EXPECT_EQ(without["options"]["without"], nlohmann::json{name});
+  }
+}
+
+// MuJoCo's step has none of them.
+TEST(Mechanisms, AreNotMuJoCos) {
+  const nlohmann::json summary =
+      summaryOf({dataFile("scenes/stability/boxes_1000_on_1.yaml"), "--compatibility", "mujoco"});
+  EXPECT_FALSE(summary.contains("mechanisms"));
+}
+
+}  // namespace
+}  // namespace softgauss::test
