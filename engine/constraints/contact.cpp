@@ -114,13 +114,17 @@ double stickingShare(const Options& options, const Touch& touch, double load,
 }
 
 /// The longest time over which a contact takes the velocity of its bodies [s] (T.140): a part of a
-/// step; else as long as its normal and levers hold, turning by Options::partAngle.
-double horizonOf(const Assembly& in, const Contact& contact) {
+/// step; else as long as its normal and levers hold, turning by Options::partAngle, and so long
+/// that what it carries gives it no more mass than it has without, which is 1/b over the load's
+/// share.
+double horizonOf(const Assembly& in, const Contact& contact, const Touch& touch, double damping) {
   const Options& options = in.model.options;
   if (!in.mayShorten()) return kInfinity;
   if (in.isPart()) return options.timestep;
   const double rate = turnRate(in.model, in.kinematics, contact);
-  return rate > 0.0 ? std::max(options.timestep, options.partAngle / rate) : kInfinity;
+  double longest = rate > 0.0 ? options.partAngle / rate : kInfinity;
+  if (touch.carries) longest = std::min(longest, 1.0 / (damping * touch.hardening));
+  return std::max(options.timestep, longest);
 }
 
 }  // namespace
@@ -268,7 +272,8 @@ Softness ContactBlocks::soften(const Assembly& in, const Touch& touch,
   const Softness& soft = touch.softness;
   const auto held = [&](const Softness& s) {
     if (touch.spring) return s;
-    const double horizon = horizonOf(in, in.contacts.contacts[made_.back().contact]);
+    const Contact& contact = in.contacts.contacts[made_.back().contact];
+    const double horizon = horizonOf(in, contact, touch, s.damping);
     in.count(Mechanism::contactHorizon, s.damping * horizon < 1.0);
     return withinHorizon(s, horizon);
   };

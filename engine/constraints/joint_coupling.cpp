@@ -17,15 +17,12 @@ bool isAncestor(const Model& model, int up, int down) {
   return down == up;
 }
 
-/// L of a coupling (T.142): the heavier of what is on its two sides, in the unit of its follower,
-/// and at least what gear teeth hold of the two together.
+/// L of a coupling (T.142): its follower, or what gear teeth hold of its two sides together.
 double coupledLoad(const Assembly& in, const JointCoupling& c, double slope) {
   constexpr double kHolds = 3e3;
   const double m_f = carriedInertia(in, c.follower);
   if (c.leader == 0) return m_f;
-  const double m_l = carriedInertia(in, c.leader) / (slope * slope);
-  if (!(m_l < kInfinity)) return kHolds * m_f;  // the leader moves nothing here
-  return std::max({kHolds / (1.0 / m_f + 1.0 / m_l), m_f, m_l});
+  return std::max(m_f, kHolds / (1.0 / m_f + slope * slope / carriedInertia(in, c.leader)));
 }
 
 /// A of a coupling's row (T.30); MuJoCo's model takes the two joints without what multiplies them.
@@ -67,7 +64,9 @@ void CouplingRows::assemble(const Assembly& in) {
       const Softness soft = tieSoftness(in, c.impedance, r, coupledWeight(in, c, pair.slope));
       const double turning = -pair.bend * std::pow(in.turns()[pair.leader], 2.0);
       pairs_.push_back(pair);
-      reference.push_back(soft.referenceAcceleration(rate - in.lag() * turning, r) - turning);
+      rate -= in.lag() * turning;
+      r -= 0.5 * in.lag() * in.lag() * turning;
+      reference.push_back(soft.referenceAcceleration(rate, r) - turning);
       pushSoftness(soft);
     }
   }

@@ -22,13 +22,23 @@ double contactRate(const Model& model, const Data& data) {
   return rate;
 }
 
-double tieRate(const Model& model, const Data& data) {
+/// Of the direction (1, −p′) in which a coupling holds its two joints.
+double couplingRate(const Model& model, const State& state, const JointCoupling& c) {
+  if (c.leader == 0) return 0.0;
+  const Body& leader = model.bodies[c.leader];
+  const double q = state.q[leader.q], slope = c.slope(q);
+  return std::abs(c.curvature(q) * state.v[leader.v]) / (1.0 + slope * slope);
+}
+
+double tieRate(const Model& model, const State& state, const Data& data) {
   double fastest = 0.0;
   const auto add = [&](int body) {
     fastest = std::max(fastest, data.kinematics.turning()[body].angular.norm());
   };
   for (const Connection& c : model.connections) add(c.bodyA), add(c.bodyB);
   for (const Weld& w : model.welds) add(w.bodyA), add(w.bodyB);
+  for (const JointCoupling& c : model.couplings)
+    fastest = std::max(fastest, couplingRate(model, state, c));
   return 4.0 * fastest;
 }
 
@@ -135,7 +145,7 @@ void Resolution::find(const Model& model, const State& state, bool controlled, D
     return;
   const double h = model.options.timestep;
   if (state.aIsKnown) findTurns(model, state, data);
-  double rate = std::max(contactRate(model, data), tieRate(model, data));
+  double rate = std::max(contactRate(model, data), tieRate(model, state, data));
   const auto rateOf = [&](std::size_t t) { return 4.0 * std::sqrt(2.0 * turn[t]) / h; };
   bool touchedKnown = false, alone = false;
   for (std::size_t t = 0; t < model.trees.size(); ++t) {

@@ -9,7 +9,8 @@
 ///   r = max( 4 √(2 turn)/h   of each tree's inertial forces, turn of (T.93)
 ///            |ω − (ω·n) n|   of what touches, n the normal, but for spheres
 ///            |s|/5           of a rim, s the rate at which the place of contact goes round it
-///            4 |ω|           of what connections and welds hold )                          (T.136)
+///            4 |ω|           of what connections and welds hold
+///            4 |p″ q̇|/(1 + p′²)   of a coupling, by which (1, −p′) turns )                 (T.136)
 ///
 /// turn is about ½ (h ω)² for a body that tumbles at ω, and nothing for a wheel or a ball. Of a
 /// tree that is pushed it is the lesser of two: of v′, what forces do to the velocity included, and

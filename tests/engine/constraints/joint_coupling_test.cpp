@@ -83,7 +83,7 @@ void screw(double lead, double inertia, Integrator integrator, double timestep) 
   s.input.tau[dof(s.model, "turn")] = 9.81 * lead;
   s.steps(static_cast<int>(1.0 / timestep));
   const double feels = 1.0 + lead * lead / inertia;  // diagonal: W is what the two sides feel
-  const double carries = std::max({3e3 / feels, 1.0, inertia / (lead * lead)});
+  const double carries = std::max(3e3 / feels, 1.0);
   const double off = givesWay(9.81, std::min(feels, 1.0 / carries), timestep);
   EXPECT_LT(off, 0.4e-3);  // m
   // What the integrator has left of the way down is less than a tenth of that, or a nanometre.
@@ -140,7 +140,7 @@ TEST(Coupling, SoftnessIsThatOfWhatItsRowFeels) {
     const double m_f = M(f, f), m_l = M(l, l) / (slope * slope);
     const auto A = [](double feels, double load) { return std::min(feels, 1.0 / load); };
     const double expected[] = {
-        A(w[f] + slope * slope * w[l], std::max({3e3 / (1.0 / m_f + 1.0 / m_l), m_f, m_l})),
+        A(w[f] + slope * slope * w[l], std::max(3e3 / (1.0 / m_f + 1.0 / m_l), m_f)),
         A(w[g], M(g, g))};
     for (int i = 0; i < 2; ++i)
       EXPECT_SMALL(1.0 / (rows.D[i] * rows.perInertia[i]) / expected[i] - 1.0, 1e-8);

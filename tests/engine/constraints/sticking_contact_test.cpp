@@ -48,6 +48,7 @@ TEST(StickingContact, HardensAsItSlowsDownUnderTheSameForce) {
   const double b = 2.0 / (0.95 * 0.02);
   for (const Cone cone : {Cone::pyramidal, Cone::elliptic}) {
     Scene scene = twoBalls(cone);
+    scene.model.options.mechanisms.remove(Mechanism::contactHorizon);  // (T.140) has its own tests
     const Row soft = firstRow(scene, true);
     const double edges = cone == Cone::pyramidal ? 4.0 : 1.0;
     const double square = cone == Cone::pyramidal ? kMu * kMu : 0.0;
@@ -67,6 +68,22 @@ TEST(StickingContact, HardensAsItSlowsDownUnderTheSameForce) {
         const double depthHard = hard.reference - same.reference + soft.reference;
         EXPECT_SMALL(hard.D * depthHard / (soft.D * soft.reference) - 1.0, 1e-9) << share << slides;
       }
+  }
+}
+
+// (T.140): what a contact carries gives it a spring and a damper, and no mass. What moves fast does
+// not stick.
+TEST(StickingContact, ALoadGivesNoMass) {
+  for (const Cone cone : {Cone::pyramidal, Cone::elliptic}) {
+    Scene scene = twoBalls(cone);
+    scene.state.v[2] = -1.0;
+    const Row loaded = firstRow(scene, false), withMass = firstRow(scene, true);
+    scene.model.options.mechanisms.remove(Mechanism::carriedLoad);
+    const Row alone = firstRow(scene, true);
+    EXPECT_GT(withMass.D, 1.5 * alone.D);
+    EXPECT_SMALL(loaded.D / alone.D - 1.0, 1e-12);
+    // The same spring and damper: D (−b ẋ − k r).
+    EXPECT_SMALL(loaded.D * loaded.reference / (withMass.D * withMass.reference) - 1.0, 1e-12);
   }
 }
 
