@@ -47,10 +47,14 @@ Complaints checkLicence(const SourceFile& file);
 /// No path of somebody's machine, and no note of work left over.
 Complaints checkWords(const SourceFile& file);
 
-/// Numbers n of all (T.n) in a file.
+/// Numbers c.n, chapter and equation, of all (c.n) in a file; of C++ in its comments.
 std::set<std::string> equationsIn(const SourceFile& file);
 
-/// Every (T.n) that C++ cites is in the theory.
+/// A chapter of docs/theory, and those numbers in it that are its own.
+bool isChapterOfTheory(const SourceFile& file);
+std::set<std::string> equationsOfChapter(const SourceFile& file);
+
+/// Every (c.n) that C++ cites is in the theory.
 Complaints checkEquations(const SourceFile& file, const std::set<std::string>& theory);
 
 /// Nothing at the root but what belongs there.

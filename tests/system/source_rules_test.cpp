@@ -38,7 +38,8 @@ TEST(Tree, NamesNoMachineAndNoWorkLeftOver) { expectHolds(checkWords); }
 TEST(Tree, CitedEquationsExist) {
   std::set<std::string> theory;
   for (const SourceFile& file : tree())
-    if (file.path == "docs/theory.md") theory = equationsIn(file);
+    if (isChapterOfTheory(file)) theory.merge(equationsOfChapter(file));
+  EXPECT_GT(theory.size(), 100u);
   // The rules' own tests cite equations that exist nowhere.
   expectHolds([&](const SourceFile& file) {
     return file.path.find("/source_rules") == std::string::npos ? checkEquations(file, theory)
@@ -143,10 +144,15 @@ TEST(SourceRules, MachinePathsAndLeftOversAreFound) {
 }
 
 TEST(SourceRules, UnknownEquationsAreFound) {
-  const std::set<std::string> theory = equationsIn({"docs/theory.md", {"x = y (T.1), (T.2a)"}});
-  EXPECT_EQ(theory, (std::set<std::string>{"1", "2a"}));
-  EXPECT_TRUE(checkEquations({"gdd/goal.hpp", {"/// (T.1) and (T.2a)"}}, theory).empty());
-  EXPECT_EQ(checkEquations({"gdd/goal.hpp", {"/// (T.1), (T.2), (T.3)"}}, theory).size(), 2u);
+  const SourceFile chapter{"docs/theory/03-softness.md",
+                           {"x = y (3.1), (3.12), as (4.2), 0.5 (0.5)"}};
+  EXPECT_TRUE(isChapterOfTheory(chapter));
+  EXPECT_FALSE(isChapterOfTheory({"docs/theory/notation.md", {}}));
+  const std::set<std::string> theory = equationsOfChapter(chapter);
+  EXPECT_EQ(theory, (std::set<std::string>{"3.1", "3.12"}));
+  EXPECT_TRUE(checkEquations({"gdd/goal.hpp", {"/// (3.1) and (3.12)"}}, theory).empty());
+  EXPECT_TRUE(checkEquations({"gdd/goal.hpp", {"y = std::sqrt(3.5);  // (3.1)"}}, theory).empty());
+  EXPECT_EQ(checkEquations({"gdd/goal.hpp", {"/// (3.1), (3.2), (3.3)"}}, theory).size(), 2u);
 }
 
 TEST(SourceRules, StrangersAtTheRootAreFound) {
