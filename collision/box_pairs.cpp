@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "collision/box_pairs.hpp"
+#include "softgauss/collision/box_pairs.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "collision/manifold.hpp"
-#include "engine/core/check.hpp"
+#include "softgauss/collision/manifold.hpp"
+#include "softgauss/engine/core/check.hpp"
 
 namespace softgauss::collision {
 namespace {

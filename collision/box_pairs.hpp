@@ -18,9 +18,9 @@
 /// clipped faces, see manifold.hpp; two edges give their nearest points. Between disjoint boxes σ
 /// may be less than their distance, where corners face each other.
 
-#include "collision/pair_contact.hpp"
-#include "engine/core/spatial.hpp"
-#include "engine/model/shape.hpp"
+#include "softgauss/collision/pair_contact.hpp"
+#include "softgauss/engine/core/spatial.hpp"
+#include "softgauss/engine/model/shape.hpp"
 
 namespace softgauss::collision {
 

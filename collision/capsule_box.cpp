@@ -3,9 +3,9 @@
 #include <array>
 #include <cmath>
 
-#include "collision/box_pairs.hpp"
-#include "collision/segment_contacts.hpp"
-#include "engine/core/check.hpp"
+#include "softgauss/collision/box_pairs.hpp"
+#include "softgauss/collision/segment_contacts.hpp"
+#include "softgauss/engine/core/check.hpp"
 
 namespace softgauss::collision {
 namespace {

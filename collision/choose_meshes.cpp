@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "collision/choose_meshes.hpp"
+#include "softgauss/collision/choose_meshes.hpp"
 
 #include <algorithm>
 #include <cstdio>
@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "engine/core/check.hpp"
-#include "engine/model/closed_surface.hpp"
-#include "engine/model/mass_properties.hpp"
+#include "softgauss/engine/core/check.hpp"
+#include "softgauss/engine/model/closed_surface.hpp"
+#include "softgauss/engine/model/mass_properties.hpp"
 
 namespace softgauss::collision {
 namespace {
@@ -72,8 +72,8 @@ void chooseMeshes(Model& model, PreparedMeshes& meshes) {
   std::map<const Mesh*, MeshFacts> known;
   Told filled, openHulls, openSurfaces, turned;
   for (Geometry& g : model.geometries) {
-    if (!g.eitherMesh) continue;
-    g.eitherMesh = false;
+    if (!g.automaticMesh) continue;
+    g.automaticMesh = false;
     const auto [at, isNew] = known.try_emplace(g.shape.mesh.get());
     if (isNew) at->second = factsOf(g.shape.mesh, meshes);
     const MeshFacts& facts = at->second;

@@ -4,7 +4,7 @@
 /// Whether a mesh collides as its convex hull or as its triangles, where nobody said.
 ///
 /// A hull fills what is hollow: it is the mesh where both have nearly the same volume. So a
-/// geometry with Geometry::eitherMesh collides as
+/// geometry with Geometry::automaticMesh collides as
 ///
 ///   its hull       where the hull's volume exceeds the mesh's by at most 5 %;
 ///   its triangles  else, where it is fixed to the world;
@@ -14,8 +14,8 @@
 /// what moves as its hull, both with a warning. A mesh whose triangles face mixed sides collides as
 /// its hull, with a warning.
 
-#include "collision/prepared_meshes.hpp"
-#include "engine/model/model.hpp"
+#include "softgauss/collision/prepared_meshes.hpp"
+#include "softgauss/engine/model/model.hpp"
 
 namespace softgauss::collision {
 

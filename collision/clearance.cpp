@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "collision/clearance.hpp"
+#include "softgauss/collision/clearance.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <utility>
 
-#include "collision/detail/geometry_set.hpp"
-#include "collision/detail/nearest_points.hpp"
-#include "collision/detail/nearest_triangle.hpp"
-#include "collision/filter.hpp"
-#include "collision/manifold.hpp"
+#include "softgauss/collision/detail/geometry_set.hpp"
+#include "softgauss/collision/detail/nearest_points.hpp"
+#include "softgauss/collision/detail/nearest_triangle.hpp"
+#include "softgauss/collision/filter.hpp"
+#include "softgauss/collision/manifold.hpp"
 
 namespace softgauss::collision {
 namespace {

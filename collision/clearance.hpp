@@ -17,10 +17,10 @@
 #include <string>
 #include <vector>
 
-#include "collision/prepared_meshes.hpp"
-#include "engine/dynamics/kinematics.hpp"
-#include "engine/model/model.hpp"
-#include "engine/model/shape_distances.hpp"
+#include "softgauss/collision/prepared_meshes.hpp"
+#include "softgauss/engine/dynamics/kinematics.hpp"
+#include "softgauss/engine/model/model.hpp"
+#include "softgauss/engine/model/shape_distances.hpp"
 
 namespace softgauss::collision {
 

@@ -15,7 +15,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "collision/pair_contact.hpp"
+#include "softgauss/collision/pair_contact.hpp"
 
 namespace softgauss::collision {
 

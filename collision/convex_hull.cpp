@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "collision/convex_hull.hpp"
+#include "softgauss/collision/convex_hull.hpp"
 
 #include <libqhull_r/qhull_ra.h>
 
@@ -9,7 +9,7 @@
 #include <set>
 #include <string>
 
-#include "engine/core/check.hpp"
+#include "softgauss/engine/core/check.hpp"
 
 namespace softgauss::collision {
 namespace {

@@ -11,8 +11,8 @@
 #include <span>
 #include <vector>
 
-#include "engine/core/types.hpp"
-#include "engine/model/shape.hpp"
+#include "softgauss/engine/core/types.hpp"
+#include "softgauss/engine/model/shape.hpp"
 
 namespace softgauss::collision {
 

@@ -11,15 +11,15 @@
 ///
 /// FCL knows no margin: contacts begin where shapes touch, to touchingWithin(): it is asked about
 /// shapes that are nearer by that. Its queries allocate. An exception of
-/// FCL leaves the pair to our own test and is counted in pairsLeft(). Contacts come in the order of
-/// the filter's pairs and depend on the poses alone.
+/// FCL leaves the pair to our own test and is counted in pairsFailed(). Contacts come in the order
+/// of the filter's pairs and depend on the poses alone.
 
 #include <cstdint>
 #include <memory>
 
-#include "collision/filter.hpp"
-#include "collision/prepared_meshes.hpp"
-#include "engine/step/contact_source.hpp"
+#include "softgauss/collision/filter.hpp"
+#include "softgauss/collision/prepared_meshes.hpp"
+#include "softgauss/engine/step/contact_source.hpp"
 
 namespace softgauss::collision {
 
@@ -34,12 +34,12 @@ class FclContacts final : public ContactSource {
   /// `model` must be the one given to the constructor.
   void detect(const Model& model, const Kinematics& kinematics,
               ContactSet& contacts) noexcept override;
-  double timeInSight(const Model& model, const Kinematics& kinematics, double longest,
-                     Way way) noexcept override;
+  double tunnellingTimeBound(const Model& model, const Kinematics& kinematics, double longest,
+                             TimeDirection direction) noexcept override;
 
   const PairFilter& filter() const;
   /// Pairs that FCL gave up on since the start.
-  std::int64_t pairsLeft() const;
+  std::int64_t pairsFailed() const;
 
  private:
   struct Scene;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "collision/filter.hpp"
+#include "softgauss/collision/filter.hpp"
 
 #include <algorithm>
 #include <array>
@@ -130,7 +130,7 @@ PairFilter makePairFilter(const Model& model, const InitialDistance& initialDist
       }
       const GeometryPair pair = inOrder(model, i, j);
       if (stayApart && stayApart(pair)) {
-        ++filter.apartPairs;
+        ++filter.unreachablePairs;
         continue;
       }
       candidates.push_back(pair);
@@ -184,7 +184,8 @@ std::optional<std::string> baseWarning(const PairFilter& filter) {
   if (count > kMostTold)
     told += " and " + std::to_string(count - kMostTold) + " more, which --explain lists";
   return "never tested for contact, as parts of one robot with its fixed base: " + told +
-         "; what shall stop the robot belongs to another object, or to a link fixed to 'world'";
+         "; to let such a part stop the robot, make it an object of its own, or a link fixed to "
+         "'world'";
 }
 
 }  // namespace softgauss::collision

@@ -24,7 +24,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/model/model.hpp"
+#include "softgauss/engine/model/model.hpp"
 
 namespace softgauss::collision {
 
@@ -52,7 +52,7 @@ struct PairFilter {
   std::vector<ExcludedPair> excluded;  ///< adjacent and overlapping links, by link names
   std::int64_t rigidPairs = 0;         ///< left out as rigid
   std::int64_t effectOffPairs = 0;     ///< left out because their effect is off
-  std::int64_t apartPairs = 0;         ///< left out because no configuration brings them together
+  std::int64_t unreachablePairs = 0;   ///< left out because no configuration brings them together
 };
 
 /// Overlap deeper than this [m] in the initial configuration counts. Fingers that are drawn closed

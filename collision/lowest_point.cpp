@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "collision/lowest_point.hpp"
+#include "softgauss/collision/lowest_point.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -3,8 +3,8 @@
 
 /// How low a robot reaches, for standing a floating base on the ground.
 
-#include "engine/dynamics/kinematics.hpp"
-#include "engine/model/model.hpp"
+#include "softgauss/engine/dynamics/kinematics.hpp"
+#include "softgauss/engine/model/model.hpp"
 
 namespace softgauss::collision {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "collision/manifold.hpp"
+#include "softgauss/collision/manifold.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "collision/contact_reduction.hpp"
+#include "softgauss/collision/contact_reduction.hpp"
 
 namespace softgauss::collision {
 namespace {

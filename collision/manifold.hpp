@@ -10,8 +10,8 @@
 /// between them measured along n. Since the faces belong to the shapes, d ≥ σ(n) everywhere, and a
 /// tilted face offers only the corners that really overlap: nothing is decided by an angle.
 
-#include "collision/pair_contact.hpp"
-#include "collision/support.hpp"
+#include "softgauss/collision/pair_contact.hpp"
+#include "softgauss/collision/support.hpp"
 
 namespace softgauss::collision {
 

@@ -14,10 +14,10 @@
 ///   hull       the vertices below the margin, thinned to four by addReduced()
 /// Points with d < margin are reported. Same points and order as MuJoCo's for the primitives.
 
-#include "collision/convex_hull.hpp"
-#include "collision/pair_contact.hpp"
-#include "engine/core/spatial.hpp"
-#include "engine/model/shape.hpp"
+#include "softgauss/collision/convex_hull.hpp"
+#include "softgauss/collision/pair_contact.hpp"
+#include "softgauss/engine/core/spatial.hpp"
+#include "softgauss/engine/model/shape.hpp"
 
 namespace softgauss::collision {
 

@@ -7,8 +7,8 @@
 #include <map>
 #include <memory>
 
-#include "collision/convex_hull.hpp"
-#include "collision/triangle_mesh.hpp"
+#include "softgauss/collision/convex_hull.hpp"
+#include "softgauss/collision/triangle_mesh.hpp"
 
 namespace softgauss::collision {
 

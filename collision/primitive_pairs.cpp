@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "collision/primitive_pairs.hpp"
+#include "softgauss/collision/primitive_pairs.hpp"
 
-#include "collision/box_pairs.hpp"
-#include "collision/plane_pairs.hpp"
-#include "collision/round_pairs.hpp"
-#include "engine/core/check.hpp"
+#include "softgauss/collision/box_pairs.hpp"
+#include "softgauss/collision/plane_pairs.hpp"
+#include "softgauss/collision/round_pairs.hpp"
+#include "softgauss/engine/core/check.hpp"
 
 namespace softgauss::collision {
 namespace {

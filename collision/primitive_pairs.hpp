@@ -13,10 +13,10 @@
 /// Pairs with triangles go through detail/surface_contacts.hpp, the others through
 /// detail/convex_pairs.hpp.
 
-#include "collision/convex_hull.hpp"
-#include "collision/pair_contact.hpp"
-#include "engine/core/spatial.hpp"
-#include "engine/model/shape.hpp"
+#include "softgauss/collision/convex_hull.hpp"
+#include "softgauss/collision/pair_contact.hpp"
+#include "softgauss/engine/core/spatial.hpp"
+#include "softgauss/engine/model/shape.hpp"
 
 namespace softgauss::collision {
 

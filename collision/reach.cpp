@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "collision/reach.hpp"
+#include "softgauss/collision/reach.hpp"
 
 #include <cmath>
 

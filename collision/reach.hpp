@@ -6,10 +6,10 @@
 /// A sphere that a hinge carries stays in the sphere about its orbit: the centre's foot on the axis
 /// and, added to the radius, its distance from the axis. Going up from both bodies to what carries
 /// both gives two spheres that never move against each other, so
-///   distance ≥ |c_A − c_B| − r_A − r_B                                                   (T.70)
+///   distance ≥ |c_A − c_B| − r_A − r_B                                                    (7.8)
 /// Sliders and free bodies have no bound. Ranges are soft and do not count.
 
-#include "engine/model/model.hpp"
+#include "softgauss/engine/model/model.hpp"
 
 namespace softgauss::collision {
 

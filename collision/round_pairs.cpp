@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "collision/round_pairs.hpp"
+#include "softgauss/collision/round_pairs.hpp"
 
 #include <cmath>
 
-#include "collision/segment_contacts.hpp"
+#include "softgauss/collision/segment_contacts.hpp"
 
 namespace softgauss::collision {
 namespace {

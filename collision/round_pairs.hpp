@@ -13,9 +13,9 @@
 /// interval in which they lie side by side, see segment_contacts.hpp; the blend is continuous in
 /// the poses and the single nearest pair away from parallel.
 
-#include "collision/pair_contact.hpp"
-#include "engine/core/spatial.hpp"
-#include "engine/model/shape.hpp"
+#include "softgauss/collision/pair_contact.hpp"
+#include "softgauss/engine/core/spatial.hpp"
+#include "softgauss/engine/model/shape.hpp"
 
 namespace softgauss::collision {
 

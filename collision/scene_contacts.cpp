@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "collision/scene_contacts.hpp"
+#include "softgauss/collision/scene_contacts.hpp"
 
 #include <algorithm>
 #include <utility>
 
-#include "collision/detail/broadphase.hpp"
-#include "collision/detail/geometry_set.hpp"
-#include "collision/passing.hpp"
-#include "collision/primitive_pairs.hpp"
-#include "collision/reach.hpp"
-#include "engine/constraints/contact.hpp"
-#include "engine/core/memory.hpp"
-#include "engine/model/state.hpp"
+#include "softgauss/collision/detail/broadphase.hpp"
+#include "softgauss/collision/detail/geometry_set.hpp"
+#include "softgauss/collision/primitive_pairs.hpp"
+#include "softgauss/collision/reach.hpp"
+#include "softgauss/collision/tunnelling.hpp"
+#include "softgauss/engine/constraints/contact.hpp"
+#include "softgauss/engine/core/memory.hpp"
+#include "softgauss/engine/model/state.hpp"
 
 namespace softgauss::collision {
 namespace {
@@ -42,7 +42,7 @@ struct SceneContacts::Scene {
   /// Poses of the geometries of some pair that move, or of all.
   void pose(const Kinematics& kinematics, bool all = false);
   void choosePosed();
-  void makeFlights();
+  void makeMovingShapes();
   void chooseSlack(const std::vector<GeometryPair>& pairs);
   void setPairs(const std::vector<GeometryPair>& pairs, int broadphasePairs);
   bool stayApart(int a, int b) const;
@@ -62,10 +62,10 @@ struct SceneContacts::Scene {
   bool moved() const;
   void findNear();
   void sweep();
-  /// (T.125) over all pairs, with `sign` times the velocities.
-  double timeInSight(const Kinematics& kinematics, double longest, double sign);
-  /// Sets flights and which of them are fast; false where none is.
-  bool launch(const Kinematics& kinematics, double longest, double sign);
+  /// (7.7) over all pairs, with `sign` times the velocities.
+  double tunnellingTimeBound(const Kinematics& kinematics, double longest, double sign);
+  /// Sets `moving` and which of them are fast; false where none is.
+  bool setMotion(const Kinematics& kinematics, double longest, double sign);
 
   /// Keeps the hulls and surfaces alone.
   void forget();
@@ -92,9 +92,9 @@ struct SceneContacts::Scene {
   double slack = 0.0;                        ///< [m]; 0: near rows are found at every step
   std::vector<Vector3> reference;            ///< centres when they were found; empty: never
   std::int64_t sweeps = 0;
-  std::vector<Flight> flights;     ///< of all geometries; those of posed ones are launch()'s
-  std::vector<std::uint8_t> fast;  ///< may pass through something as thin as itself
-  std::vector<int> firstRow;       ///< rows of geometry a are [firstRow[a], firstRow[a + 1])
+  std::vector<MovingShape> moving;  ///< of all geometries; those of posed ones are setMotion()'s
+  std::vector<std::uint8_t> fast;   ///< may pass through something as thin as itself
+  std::vector<int> firstRow;        ///< rows of geometry a are [firstRow[a], firstRow[a + 1])
 };
 
 SceneContacts::Scene::Scene(const Model& m, PreparedMeshes& meshes) : model(m), set(m, meshes) {
@@ -145,13 +145,13 @@ void SceneContacts::Scene::setPairs(const std::vector<GeometryPair>& pairs, int 
 }
 
 void SceneContacts::Scene::forget() {
-  release(X_WG), release(centre), release(turn), release(posed), release(flights), release(fast);
+  release(X_WG), release(centre), release(turn), release(posed), release(moving), release(fast);
   release(set.colliders), release(set.centreInG), release(set.radius);
 }
 
 std::size_t SceneContacts::Scene::bytes() const {
   return bytesOfAll(turn, posed, X_WG, centre, planeRows, rows, movable, movableCentre, near,
-                    nearPlaneRows, nearRows, reference, firstRow, flights, fast, set.colliders,
+                    nearPlaneRows, nearRows, reference, firstRow, moving, fast, set.colliders,
                     set.centreInG, set.radius);
 }
 
@@ -178,15 +178,15 @@ void SceneContacts::Scene::choosePosed() {
 }
 
 /// Of all at rest where they are now.
-void SceneContacts::Scene::makeFlights() {
+void SceneContacts::Scene::makeMovingShapes() {
   for (std::size_t i = 0; i < X_WG.size(); ++i) {
     const Shape& shape = model.geometries[i].shape;
     const ConvexHull* hull = set.hull[i].get();
     const TriangleMesh* surface = set.surface[i].get();
-    flights.push_back({&shape, hull, extentOf(shape, hull, surface), &X_WG[i], centre[i],
-                       Vector3::Zero(), Vector3::Zero(), surface});
+    moving.push_back({&shape, hull, extentOf(shape, hull, surface), &X_WG[i], centre[i],
+                      Vector3::Zero(), Vector3::Zero(), surface});
   }
-  fast.assign(flights.size(), 0);
+  fast.assign(moving.size(), 0);
 }
 
 void SceneContacts::Scene::pose(const Kinematics& kinematics, bool all) {
@@ -213,31 +213,31 @@ void SceneContacts::Scene::placeInitially() {
   pose(kinematics, true);
 }
 
-bool SceneContacts::Scene::launch(const Kinematics& kinematics, double longest, double sign) {
+bool SceneContacts::Scene::setMotion(const Kinematics& kinematics, double longest, double sign) {
   pose(kinematics);
   bool any = false;
   for (const int g : posed) {
     const auto i = static_cast<std::size_t>(g);
     const int body = model.geometries[i].body;
-    Flight& flight = flights[i];
-    flight.centre = centre[i];
-    flight.v = sign * pointVelocity(model, kinematics, body, centre[i]);
-    flight.omega = sign * kinematics.V[static_cast<std::size_t>(body)].angular;
-    fast[i] = flight.passesItself(longest);
+    MovingShape& shape = moving[i];
+    shape.centre = centre[i];
+    shape.v = sign * pointVelocity(model, kinematics, body, centre[i]);
+    shape.omega = sign * kinematics.V[static_cast<std::size_t>(body)].angular;
+    fast[i] = shape.mayTunnel(longest);
     any = any || fast[i];
   }
   return any;
 }
 
-double SceneContacts::Scene::timeInSight(const Kinematics& kinematics, double longest,
-                                         double sign) {
+double SceneContacts::Scene::tunnellingTimeBound(const Kinematics& kinematics, double longest,
+                                                 double sign) {
   // Where no shape moves by its share of its own thickness no two move by that of both.
-  if (!launch(kinematics, longest, sign)) return longest;
+  if (!setMotion(kinematics, longest, sign)) return longest;
   double time = longest;
   for (const Row& row : rows) {
     const auto a = static_cast<std::size_t>(row.a), b = static_cast<std::size_t>(row.b);
-    if ((fast[a] || fast[b]) && surfaceWithin(row, time * flights[a].speed()))
-      time = collision::timeInSight(flights[a], flights[b], row.margin, time);
+    if ((fast[a] || fast[b]) && surfaceWithin(row, time * moving[a].speed()))
+      time = collision::tunnellingTimeBound(moving[a], moving[b], row.margin, time);
   }
   return time;
 }
@@ -357,7 +357,7 @@ void SceneContacts::setUp(int broadphasePairs, bool pruning) {
   if (pruning) scene_->chooseSlack(filter_.pairs);
   scene_->setPairs(filter_.pairs, broadphasePairs);
   scene_->choosePosed();
-  scene_->makeFlights();
+  scene_->makeMovingShapes();
   mayTouch_ = !filter_.pairs.empty();
   if (!mayTouch_) scene_->forget();
 }
@@ -382,9 +382,10 @@ void SceneContacts::detect(const Model&, const Kinematics& kinematics,
     }
 }
 
-double SceneContacts::timeInSight(const Model&, const Kinematics& kinematics, double longest,
-                                  Way way) noexcept {
-  return scene_->timeInSight(kinematics, longest, way == Way::onwards ? 1.0 : -1.0);
+double SceneContacts::tunnellingTimeBound(const Model&, const Kinematics& kinematics,
+                                          double longest, TimeDirection direction) noexcept {
+  return scene_->tunnellingTimeBound(kinematics, longest,
+                                     direction == TimeDirection::forward ? 1.0 : -1.0);
 }
 
 std::int64_t SceneContacts::sweeps() const { return scene_->sweeps; }

@@ -19,10 +19,10 @@
 #include <memory>
 #include <vector>
 
-#include "collision/filter.hpp"
-#include "collision/pair_contact.hpp"
-#include "collision/prepared_meshes.hpp"
-#include "engine/step/contact_source.hpp"
+#include "softgauss/collision/filter.hpp"
+#include "softgauss/collision/pair_contact.hpp"
+#include "softgauss/collision/prepared_meshes.hpp"
+#include "softgauss/engine/step/contact_source.hpp"
 
 namespace softgauss::collision {
 
@@ -46,8 +46,8 @@ class SceneContacts final : public ContactSource {
   void detect(const Model& model, const Kinematics& kinematics,
               ContactSet& contacts) noexcept override;
 
-  double timeInSight(const Model& model, const Kinematics& kinematics, double longest,
-                     Way way) noexcept override;
+  double tunnellingTimeBound(const Model& model, const Kinematics& kinematics, double longest,
+                             TimeDirection direction) noexcept override;
 
   /// Rows of pairs, poses and bounds; nothing where no two shapes may touch.
   std::size_t bytes() const noexcept override;

@@ -18,7 +18,7 @@
 
 #include <algorithm>
 
-#include "collision/pair_contact.hpp"
+#include "softgauss/collision/pair_contact.hpp"
 
 namespace softgauss::collision {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "collision/support.hpp"
+#include "softgauss/collision/support.hpp"
 
 #include <cmath>
 

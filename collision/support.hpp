@@ -14,10 +14,10 @@
 #include <array>
 #include <span>
 
-#include "collision/convex_hull.hpp"
-#include "engine/core/check.hpp"
-#include "engine/core/spatial.hpp"
-#include "engine/model/shape.hpp"
+#include "softgauss/collision/convex_hull.hpp"
+#include "softgauss/engine/core/check.hpp"
+#include "softgauss/engine/core/spatial.hpp"
+#include "softgauss/engine/model/shape.hpp"
 
 namespace softgauss::collision {
 

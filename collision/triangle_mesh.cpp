@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "collision/triangle_mesh.hpp"
+#include "softgauss/collision/triangle_mesh.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,9 +9,9 @@
 #include <tuple>
 #include <utility>
 
-#include "collision/detail/fcl_triangle_tree.hpp"
-#include "engine/core/check.hpp"
-#include "engine/core/index.hpp"
+#include "softgauss/collision/detail/fcl_triangle_tree.hpp"
+#include "softgauss/engine/core/check.hpp"
+#include "softgauss/engine/core/index.hpp"
 
 namespace softgauss::collision {
 namespace {

@@ -23,8 +23,8 @@
 #include <span>
 #include <vector>
 
-#include "collision/convex_hull.hpp"
-#include "collision/support.hpp"
+#include "softgauss/collision/convex_hull.hpp"
+#include "softgauss/collision/support.hpp"
 
 namespace softgauss::collision {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "collision/unit_contacts.hpp"
+#include "softgauss/collision/unit_contacts.hpp"
 
 #include <algorithm>
 
-#include "collision/detail/neighbours.hpp"
-#include "collision/scene_contacts.hpp"
+#include "softgauss/collision/detail/neighbours.hpp"
+#include "softgauss/collision/scene_contacts.hpp"
 
 namespace softgauss::collision {
 

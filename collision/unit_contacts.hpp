@@ -10,10 +10,10 @@
 
 #include <memory>
 
-#include "collision/filter.hpp"
-#include "collision/prepared_meshes.hpp"
-#include "engine/islands/island_contacts.hpp"
-#include "engine/islands/units.hpp"
+#include "softgauss/collision/filter.hpp"
+#include "softgauss/collision/prepared_meshes.hpp"
+#include "softgauss/engine/islands/island_contacts.hpp"
+#include "softgauss/engine/islands/units.hpp"
 
 namespace softgauss::collision {
 

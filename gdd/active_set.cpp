@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gdd/active_set.hpp"
+#include "softgauss/gdd/active_set.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -21,7 +21,7 @@ void ActiveSet::computeResidual(const Data& data) {
 /// P, S, K and the sides of held rows, in the cell in which the rows are kept; a made exact in it.
 bool ActiveSet::enterCell(const GoalCost& cost, Data& data) {
   Constraints& rows = data.constraints;
-  if (!entered_ || cell_.isWorn()) {
+  if (!entered_ || cell_.needsRefactor()) {
     entered_ = true;
     ++report_.factorizations;
     if (!cell_.enter(data)) return false;
@@ -37,17 +37,17 @@ bool ActiveSet::enterCell(const GoalCost& cost, Data& data) {
   cell_.computeHessian();
   constrained_.clear();
   for (int i = 0; i < path_.held.size(); ++i) {
-    HeldKnot& h = path_.held[i];
+    HeldBreakpoint& h = path_.held[i];
     h.multiplier = 0.0;
-    if (!h.atKnot && h.paths < kGuarded) continue;
+    if (!h.atBreakpoint && h.paths < kMaxFreeCrossings) continue;
     constrained_.push_back(i);
-    const bool above = rows.isAbove(h.knot);
-    if (h.atKnot) rows.enterPiece(h.knot, above);
+    const bool above = rows.isAbove(h.breakpoint);
+    if (h.atBreakpoint) rows.enterPiece(h.breakpoint, above);
     h.sign = above ? 1.0 : -1.0;
-    h.distance = std::max(0.0, h.sign * rows.aboveKnot(h.knot));
-    h.jump = -h.sign * rows.curvatureJump(h.knot);
+    h.distance = std::max(0.0, h.sign * rows.aboveBreakpoint(h.breakpoint));
+    h.jump = -h.sign * rows.curvatureJump(h.breakpoint);
     h.J.resize(force_.size());
-    rows.knotGradient(h.knot, h.J);
+    rows.breakpointGradient(h.breakpoint, h.J);
     cell_.multiplyTransposed(h.J, h.side);
     h.side *= h.sign;
   }
@@ -58,7 +58,7 @@ bool ActiveSet::enterCell(const GoalCost& cost, Data& data) {
   return true;
 }
 
-/// ∇ℓ at a in the cell in which the rows are kept: with that of contact forces (T.54).
+/// ∇ℓ at a in the cell in which the rows are kept: with that of contact forces (9.20).
 const VectorX& ActiveSet::costSlope(Data& data) {
   if (!forces_.active()) return path_.slope;
   evaluateForces(data);
@@ -70,14 +70,14 @@ const VectorX& ActiveSet::costSlope(Data& data) {
 /// q = Bᵀ(R (B u − ĝ) + P⁻¹∇ℓ); false when not finite.
 bool ActiveSet::computeGradient(Data& data) {
   cell_.multiplyTransposed(costSlope(data), gradient_);
-  merit_ =
-      effort() + cell_.price().freeCost() + std::abs(path_.value - constant_) + forces_.value();
+  merit_ = effort() + cell_.controlCost().freeCost() + std::abs(path_.value - constant_) +
+           forces_.value();
   gradient_ += effortSlope_;
   return gradient_.allFinite() && std::isfinite(merit_);
 }
 
-/// The step p within the box and the sides of held rows; returns the decrease it promises, −1 where
-/// rounding kept it from an answer.
+/// The step p within the limits and the sides of held rows; returns the decrease it promises, −1
+/// where rounding kept it from an answer.
 double ActiveSet::solveProgram() {
   ++report_.cells;
   stepLower_ = lower_ - u_;
@@ -113,7 +113,7 @@ PathEnd ActiveSet::followPath(const GoalCost& cost, Data& data) {
   const VectorX& p = program_.solution();
   PathStart start;
   start.forceSlope = p.dot(effortSlope_);
-  cell_.multiplyForcePrice(p, best_);
+  cell_.multiplyControlCost(p, best_);
   start.forceCurvature = p.dot(best_);
   cell_.multiply(p, rate_);
   start.tMax = kInfinity;
@@ -122,8 +122,8 @@ PathEnd ActiveSet::followPath(const GoalCost& cost, Data& data) {
     start.tMax = std::min(start.tMax, (p[i] > 0.0 ? stepUpper_[i] : stepLower_[i]) / p[i]);
   }
   start.tMax = std::max(1.0, start.tMax);
-  for (const HeldKnot& h : path_.held)
-    if (h.multiplier > 0.0 && !h.atKnot) start.tMax = 1.0;
+  for (const HeldBreakpoint& h : path_.held)
+    if (h.multiplier > 0.0 && !h.atBreakpoint) start.tMax = 1.0;
   const PathEnd end = path_.follow(start, cell_, cost, forces_, rate_, data);
   effortSlope_ += end.t * best_;
   u_ = (u_ + end.t * p).cwiseMax(lower_).cwiseMin(upper_);
@@ -131,14 +131,14 @@ PathEnd ActiveSet::followPath(const GoalCost& cost, Data& data) {
   return end;
 }
 
-/// (T.63), (T.56). Stationary in this cell: looks for one beside it that descends, and enters it.
-ActiveSet::Next ActiveSet::leaveCell(Data& data) {
+/// (10.10), (10.11). Stationary in this cell: looks for one beside it that descends, and enters it.
+ActiveSet::Next ActiveSet::tryNeighbourCell(Data& data) {
   constexpr double kTolerance = 1e-9;
-  atKnot_.clear();
+  atBreakpoint_.clear();
   for (int i = 0; i < path_.held.size(); ++i)
-    if (path_.held[i].atKnot) atKnot_.push_back(i);
-  const int n = static_cast<int>(atKnot_.size());
-  const auto row = [&](int k) -> HeldKnot& { return path_.held[atKnot_[k]]; };
+    if (path_.held[i].atBreakpoint) atBreakpoint_.push_back(i);
+  const int n = static_cast<int>(atBreakpoint_.size());
+  const auto row = [&](int k) -> HeldBreakpoint& { return path_.held[atBreakpoint_[k]]; };
   std::uint64_t here = 0;
   for (int k = 0; k < std::min(n, 64); ++k)
     if (row(k).sign > 0.0) here |= std::uint64_t{1} << k;
@@ -155,8 +155,8 @@ ActiveSet::Next ActiveSet::leaveCell(Data& data) {
   double least = 0.0;
   bool settled = true;
   for (int k = 0; k < n; ++k) {
-    const HeldKnot& h = row(k);
-    const double pull = forces_.pull(h.knot, data.constraints);
+    const HeldBreakpoint& h = row(k);
+    const double pull = forces_.pull(h.breakpoint, data.constraints);
     const double change = h.sign * h.jump * (h.J.dot(adjoint_) + pull);
     const double other = change - h.multiplier;
     const double tolerance = kTolerance * (std::abs(change) + h.multiplier);
@@ -184,14 +184,14 @@ ActiveSet::Next ActiveSet::leaveCell(Data& data) {
   }
   for (int k = 0; k < n; ++k) {
     if ((((pattern ^ here) >> k) & 1) == 0) continue;
-    data.constraints.enterPiece(row(k).knot, ((pattern >> k) & 1) != 0);
+    data.constraints.enterPiece(row(k).breakpoint, ((pattern >> k) & 1) != 0);
     cell_.cross(row(k).J, row(k).jump);
   }
   return Next::cell;
 }
 
 /// a to rounding, the rows as they are there, and the report.
-void ActiveSet::finish(const ControlBox& box, const GoalCost& cost, Data& data) {
+void ActiveSet::finish(const ControlLimits& limits, const GoalCost& cost, Data& data) {
   constexpr int kCorrections = 3;
   constexpr double kRounding = 1e-13;
   const double scale =
@@ -207,59 +207,59 @@ void ActiveSet::finish(const ControlBox& box, const GoalCost& cost, Data& data) 
   }
   setAppliedForce(force_, data.forces);
   rate_ = force_ - residual_;  // g(a)
-  report_.violation = box.violation(rate_);
+  report_.violation = limits.violation(rate_);
   forces_.evaluate(data.constraints);
   path_.value = cost.value(path_.a, Ma_);
   report_.objective = objective();
-  report_.heldRows = path_.held.atKnots();
-  knots_.clear();
-  for (const HeldKnot& held : path_.held)
-    if (held.atKnot) knots_.push_back(data.constraints.nameOf(held.knot));
+  report_.heldRows = path_.held.atBreakpoints();
+  breakpoints_.clear();
+  for (const HeldBreakpoint& held : path_.held)
+    if (held.atBreakpoint) breakpoints_.push_back(data.constraints.nameOf(held.breakpoint));
 }
 
 /// From where start() has put it. Gives up, with no status, where after some paths the cell still
 /// promises no F below `wanted`.
 std::optional<GddStatus> ActiveSet::descend(const GoalCost& cost, double wanted, Data& data) {
   constexpr int kPatience = 2;
-  HeldKnots& held = path_.held;
+  HeldBreakpoints& held = path_.held;
   for (;;) {
     if (!enterCell(cost, data) || !computeGradient(data)) return GddStatus::notFinite;
-    double promised = solveProgram();
-    if (promised < 0.0 && !cell_.isFresh()) {
+    double predicted = solveProgram();
+    if (predicted < 0.0 && !cell_.isFresh()) {
       entered_ = false;  // corrections have cost K too many digits
       continue;
     }
-    if (promised < 0.0) {
+    if (predicted < 0.0) {
       report_.stationarity = 1.0;  // nobody knows
       return GddStatus::undecided;
     }
-    if (report_.iterations >= kPatience && objective() - promised > wanted) return std::nullopt;
-    const int heldBefore = held.atKnots();
-    bool stationary = promised <= options.tolerance * merit_ || isRounding(data);
+    if (report_.iterations >= kPatience && objective() - predicted > wanted) return std::nullopt;
+    const int heldBefore = held.atBreakpoints();
+    bool stationary = predicted <= options.tolerance * merit_ || isRounding(data);
     if (!stationary) {
       if (report_.iterations == options.maxIterations) {
-        report_.stationarity = promised / merit_;
+        report_.stationarity = predicted / merit_;
         return GddStatus::iterationLimit;
       }
       const PathEnd path = followPath(cost, data);
       ++report_.iterations;
       const bool moved = path.decrease > 1e-3 * options.tolerance * merit_;
-      if (moved || held.atKnots() > heldBefore) tried_.clear();
+      if (moved || held.atBreakpoints() > heldBefore) tried_.clear();
       if (moved && path.crossings == 0) {
         // Still in the cell: its minimum, if rounding has not spoilt it.
         if (!computeGradient(data)) return GddStatus::notFinite;
-        promised = program_.promise(gradient_);
-        stationary = promised <= options.tolerance * merit_;
+        predicted = program_.predictedDecrease(gradient_);
+        stationary = predicted <= options.tolerance * merit_;
       } else {
-        stationary = !moved && path.crossings == 0 && held.atKnots() <= heldBefore;
+        stationary = !moved && path.crossings == 0 && held.atBreakpoints() <= heldBefore;
       }
     }
     if (!stationary) continue;
-    report_.stationarity = promised / std::max(merit_, 1e-300);
-    if (held.atKnots() == 0) return GddStatus::converged;
-    switch (leaveCell(data)) {
+    report_.stationarity = predicted / std::max(merit_, 1e-300);
+    if (held.atBreakpoints() == 0) return GddStatus::converged;
+    switch (tryNeighbourCell(data)) {
       case Next::done:
-        return GddStatus::kink;
+        return GddStatus::nonsmoothMinimum;
       case Next::undecided:
         return GddStatus::undecided;
       case Next::cell:
@@ -268,27 +268,27 @@ std::optional<GddStatus> ActiveSet::descend(const GoalCost& cost, double wanted,
   }
 }
 
-GddReport ActiveSet::solve(const Model& model, GoalCost& cost, const ControlBox& box, Data& data,
-                           const WarmStart& warm) {
+GddReport ActiveSet::solve(const Model& model, GoalCost& cost, const ControlLimits& limits,
+                           Data& data, const WarmStart& warm) {
   SOFTGAUSS_ASSERT(data.constraints.piecewiseQuadratic());
   report_ = {};
   searchAge_ = 0;
   searchWait_ = 1;
   if (model.nv == 0) return report_;
-  badDof_ = box.firstBad(model.nv);
+  badDof_ = limits.firstBad(model.nv);
   if (badDof_ >= 0) {
-    report_.status = GddStatus::badBox;
+    report_.status = GddStatus::badLimits;
     return report_;
   }
   constant_ = cost.expansionStart();
-  report_.status = start(model, cost, box, data, warm);
+  report_.status = start(model, cost, limits, data, warm);
   if (report_.status == GddStatus::notFinite) return report_;
   if (cell_.columns() > 0)
     report_.status = *descend(cost, kInfinity, data);
   else if (!cell_.enter(data))
     report_.status = GddStatus::notFinite;
   if (report_.status == GddStatus::notFinite) return report_;
-  finish(box, cost, data);
+  finish(limits, cost, data);
 
   if (!known_) return report_;  // a cold start has looked
   searchAge_ = warm.gddSearchAge;
@@ -298,22 +298,22 @@ GddReport ActiveSet::solve(const Model& model, GoalCost& cost, const ControlBox&
       data.constraints.rowCount() > 0 && cell_.columns() > 0 && !cost.hasFunctions();
   if (!canSearch || options.longestSearchWait == 0 || ++searchAge_ < searchWait_) return report_;
   searchAge_ = 0;
-  const bool found = startAgain(model, cost, box, data);
+  const bool found = startAgain(model, cost, limits, data);
   searchWait_ = found ? 1 : std::min(2 * searchWait_, options.longestSearchWait);
   return report_;
 }
 
 /// A minimum is local, and a warm start stays with it: looks from u = 0 for a better one, and takes
 /// that. Returns whether it has found one.
-bool ActiveSet::startAgain(const Model& model, const GoalCost& cost, const ControlBox& box,
+bool ActiveSet::startAgain(const Model& model, const GoalCost& cost, const ControlLimits& limits,
                            Data& data) {
   constexpr double kBetter = 1e-6;  // of F: less is no reason to leave
   const auto certified = [](const GddReport& report) {
-    return report.status == GddStatus::converged || report.status == GddStatus::kink;
+    return report.status == GddStatus::converged || report.status == GddStatus::nonsmoothMinimum;
   };
   first_.a = path_.a;
   first_.u = u_;
-  first_.knots = knots_;
+  first_.breakpoints = breakpoints_;
   first_.report = report_;
   const double wanted = report_.objective - kBetter * merit_;
   report_ = {};
@@ -323,7 +323,7 @@ bool ActiveSet::startAgain(const Model& model, const GoalCost& cost, const Contr
   if (std::isfinite(moveTo(model, cost, nullptr, data))) {
     const std::optional<GddStatus> status = descend(cost, wanted, data);
     report_.status = status.value_or(GddStatus::notFinite);
-    if (report_.status != GddStatus::notFinite) finish(box, cost, data);
+    if (report_.status != GddStatus::notFinite) finish(limits, cost, data);
   } else {
     report_.status = GddStatus::notFinite;
   }
@@ -338,7 +338,7 @@ bool ActiveSet::startAgain(const Model& model, const GoalCost& cost, const Contr
     report_ = first_.report;
     path_.a = first_.a;
     u_ = first_.u;
-    knots_ = first_.knots;
+    breakpoints_ = first_.breakpoints;
     cell_.force(u_, force_);
     setAppliedForce(force_, data.forces);
     data.constraints.setResidual(path_.a);
@@ -356,7 +356,7 @@ void ActiveSet::keepWarmStart(WarmStart& warm) const {
   warm.gddA = path_.a;
   cell_.place(u_, warm.control);
   warm.multipliers.setZero(force_.size());
-  warm.knots = knots_;
+  warm.breakpoints = breakpoints_;
   warm.gddSearchAge = searchAge_;
   warm.gddSearchWait = searchWait_;
   warm.gddValid = true;

@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// Solver 2: a feasible path over the controls, by an active set of bounds and of rows at knots.
+/// Solver 2: a feasible path over the controls, by an active set of bounds and of rows at
+/// breakpoints.
 ///
-/// The forward form (7) of the problem (T.60):
+/// The forward form (7) of the problem (10.7):
 ///   min_u  F(u) = ½ (B u)ᵀ R (B u) + ℓ(f(u))    subject to   lower ≤ u ≤ upper
-/// f = g⁻¹ is forward dynamics, B holds what the actuators pull (T.64). g_z = 0 holds by
+/// f = g⁻¹ is forward dynamics, B holds what the actuators pull (8.2). g_z = 0 holds by
 /// construction, and a = f(u) is exact at all times. In a cell f is affine, F quadratic and convex:
 ///   S = ∂a/∂u = P⁻¹B,   q = ∂F/∂u = Bᵀ(R B u + P⁻¹∇ℓ),   K = ∂²F/∂u² = BᵀR B + Sᵀ∇²ℓ S
-/// Each iteration minimises that quadratic within the box, and, for rows held at their knots, on
-/// their side of it (quadratic_program.hpp), then follows the exact path f(u + t p) through as many
-/// cells as descend (forward_path.hpp). It ends where every cell that meets at the point promises
-/// nothing: all of them at once where the multipliers say so (T.63), one by one otherwise.
+/// Each iteration minimises that quadratic within the limits, and, for rows held at their
+/// breakpoints, on their side of it (quadratic_program.hpp), then follows the exact path f(u + t p)
+/// through as many cells as descend (forward_path.hpp). It ends where every cell that meets at the
+/// point promises nothing: all of them at once where the multipliers say so (10.10), one by one
+/// otherwise.
 ///
 /// Needs rows that are piecewise quadratic: no elliptic cones.
 
@@ -19,19 +21,19 @@
 #include <optional>
 #include <vector>
 
-#include "gdd/cell_response.hpp"
-#include "gdd/cost.hpp"
-#include "gdd/forward_path.hpp"
-#include "gdd/problem.hpp"
-#include "gdd/quadratic_program.hpp"
-#include "gdd/report.hpp"
+#include "softgauss/gdd/cell_response.hpp"
+#include "softgauss/gdd/cost.hpp"
+#include "softgauss/gdd/forward_path.hpp"
+#include "softgauss/gdd/problem.hpp"
+#include "softgauss/gdd/quadratic_program.hpp"
+#include "softgauss/gdd/report.hpp"
 
 namespace softgauss::gdd {
 
 struct ActiveSetOptions {
   double tolerance = 1e-12;  ///< of the decrease still promised, over the objective
   int maxIterations = 100;
-  int maxPatternRows = 6;  ///< dependent rows at their knots of which all 2^n cells are tried
+  int maxPatternRows = 6;  ///< dependent rows at their breakpoints of which all 2^n cells are tried
   /// A search for a better minimum follows the last one after 1, 2, 4 … solves, as many as this at
   /// most; after 1 again when it has found one. 0: none.
   int longestSearchWait = 32;
@@ -45,29 +47,29 @@ class ActiveSet {
 
   /// Reads the stages of `data` up to the rows and leaves the rows evaluated at the result; sets
   /// the applied force to the control found.
-  GddReport solve(const Model& model, GoalCost& cost, const ControlBox& box, Data& data,
+  GddReport solve(const Model& model, GoalCost& cost, const ControlLimits& limits, Data& data,
                   const WarmStart& warm);
   /// Writes the solution where the next solve starts from.
   void keepWarmStart(WarmStart& warm) const;
 
-  /// After GddStatus::notFinite: the first dof whose force is not finite, or −1. After badBox: the
-  /// coordinate whose bounds are none.
+  /// After GddStatus::notFinite: the first dof whose force is not finite, or −1. After badLimits:
+  /// the coordinate whose bounds are none.
   int badDof() const { return badDof_; }
   const VectorX& acceleration() const { return path_.a; }
-  const VectorX& force() const { return force_; }  ///< B u, within the box (nv)
+  const VectorX& force() const { return force_; }  ///< B u, within the limits (nv)
 
  private:
   enum class Next { done, cell, undecided };
   /// Paths that may cross a row freely. After that the program keeps it in its cell: where many
   /// rows meet, paths would else go back and forth between the same cells, ever shorter.
-  static constexpr int kGuarded = 2;
+  static constexpr int kMaxFreeCrossings = 2;
   struct Solution {
     VectorX a, u;
-    std::vector<KnotName> knots;
+    std::vector<BreakpointKey> breakpoints;
     GddReport report;
   };
 
-  GddStatus start(const Model& model, const GoalCost& cost, const ControlBox& box, Data& data,
+  GddStatus start(const Model& model, const GoalCost& cost, const ControlLimits& limits, Data& data,
                   const WarmStart& warm);
   void chooseStart(const Model& model, const GoalCost& cost, Data& data);
   double moveTo(const Model& model, const GoalCost& cost, const VectorX* guess, Data& data);
@@ -85,25 +87,26 @@ class ActiveSet {
   double solveProgram();
   bool isRounding(const Data& data);
   PathEnd followPath(const GoalCost& cost, Data& data);
-  Next leaveCell(Data& data);
+  Next tryNeighbourCell(Data& data);
   std::optional<GddStatus> descend(const GoalCost& cost, double wanted, Data& data);
-  bool startAgain(const Model& model, const GoalCost& cost, const ControlBox& box, Data& data);
-  void finish(const ControlBox& box, const GoalCost& cost, Data& data);
+  bool startAgain(const Model& model, const GoalCost& cost, const ControlLimits& limits,
+                  Data& data);
+  void finish(const ControlLimits& limits, const GoalCost& cost, Data& data);
 
   CellResponse cell_;
   QuadraticProgram program_;
-  ForwardPath path_;                  ///< holds a and the rows at their knots
-  ForceTerms forces_;                 ///< ℓ_f, which path_ is without
+  ForwardPath path_;                  ///< holds a and the rows at their breakpoints
+  ContactForceTerms forces_;          ///< ℓ_f, which path_ is without
   VectorX costSlope_;                 ///< ∇ℓ with that of ℓ_f (nv)
   std::vector<std::uint64_t> tried_;  ///< patterns of cells here that promise nothing
   VectorX u_, best_, lower_, upper_, stepLower_, stepUpper_;  ///< (columns of B)
-  std::vector<int> constrained_;  ///< entries of path_.held that the program knows
-  std::vector<int> atKnot_;       ///< entries of path_.held that are at knots
-  std::vector<KnotName> knots_;   ///< at which the solution has rows
+  std::vector<int> constrained_;            ///< entries of path_.held that the program knows
+  std::vector<int> atBreakpoint_;           ///< entries of path_.held that are at breakpoints
+  std::vector<BreakpointKey> breakpoints_;  ///< at which the solution has rows
   VectorX distances_;
   VectorX gradient_;       ///< q
   RowMajorMatrixX sides_;  ///< a row for each row held
-  VectorX effortSlope_;    ///< of the price of force in u
+  VectorX effortSlope_;    ///< of the control cost in u
   VectorX givenSlope_;     ///< the same at u = 0: BᵀR (given force − ĝ)
   double givenEffort_ = 0.0;
   VectorX force_;  ///< B u (nv)

@@ -2,14 +2,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/step/forward.hpp"
-#include "gdd/active_set.hpp"
+#include "softgauss/engine/step/forward.hpp"
+#include "softgauss/gdd/active_set.hpp"
 
 /// Where solver 2 starts from.
 
 namespace softgauss::gdd {
 
-/// Takes u, within the box, as the present control and a = f(u). Returns F, ∞ if it is not finite.
+/// Takes u, within the limits, as the present control and a = f(u). Returns F, ∞ if it is not
+/// finite.
 double ActiveSet::moveTo(const Model& model, const GoalCost& cost, const VectorX* guess,
                          Data& data) {
   u_ = u_.cwiseMax(lower_).cwiseMin(upper_);
@@ -67,7 +68,7 @@ void ActiveSet::evaluateForces(Data& data) {
 
 /// The gradient in u of the price of τ = B u + what is given.
 void ActiveSet::computeEffortSlope() {
-  cell_.multiplyForcePrice(u_, effortSlope_);
+  cell_.multiplyControlCost(u_, effortSlope_);
   effortSlope_ += givenSlope_;
 }
 
@@ -84,13 +85,13 @@ bool ActiveSet::setInertia(const GoalCost& cost, const TreeFactor* massFactor, c
   }
   givenEffort_ = 0.0;
   givenSlope_.setZero(cell_.columns());
-  const ForcePrice& price = cell_.price();
+  const ControlCostTerm& controlCost = cell_.controlCost();
   const bool given = (cell_.given().array() != 0.0).any();
-  if (!given && !price.hasFree()) return true;
+  if (!given && !controlCost.hasFree()) return true;
   rate_.setZero();
   if (given) cell_.multiplyR(cell_.given(), rate_);
-  givenEffort_ = price.value(cell_.given(), rate_);
-  if (price.hasFree()) rate_ -= price.freeSlope();
+  givenEffort_ = controlCost.value(cell_.given(), rate_);
+  if (controlCost.hasFree()) rate_ -= controlCost.freeSlope();
   cell_.select(rate_, givenSlope_);
   return true;
 }
@@ -138,20 +139,20 @@ void ActiveSet::chooseStart(const Model& model, const GoalCost& cost, Data& data
   u_ = best_;
 }
 
-/// u of the last step, within the box, and a = f(u). Rows that were at knots are kept in their cell
-/// at first: most of them stay at their knots.
-GddStatus ActiveSet::start(const Model& model, const GoalCost& cost, const ControlBox& box,
+/// u of the last step, within the limits, and a = f(u). Rows that were at breakpoints are kept in
+/// their cell at first: most of them stay at their breakpoints.
+GddStatus ActiveSet::start(const Model& model, const GoalCost& cost, const ControlLimits& limits,
                            Data& data, const WarmStart& warm) {
   badDof_ = -1;
   ready_ = entered_ = false;
   forces_.setCost(cost.forces());
   tried_.clear();
   path_.held.clear();
-  knots_.clear();
+  breakpoints_.clear();
   constrained_.clear();
-  cell_.setDriven(model, box);
-  cell_.pick(box.lower, lower_);
-  cell_.pick(box.upper, upper_);
+  cell_.setDriven(model, limits);
+  cell_.pick(limits.lower, lower_);
+  cell_.pick(limits.upper, upper_);
   u_.setZero(cell_.columns());
   known_ = warm.gddValid && warm.gddA.allFinite() && warm.control.size() == model.nv &&
            warm.control.allFinite();
@@ -164,8 +165,9 @@ GddStatus ActiveSet::start(const Model& model, const GoalCost& cost, const Contr
   if (known_) {
     u_ = u_.cwiseMax(lower_).cwiseMin(upper_);
     cell_.force(u_, force_);
-    for (const KnotName& name : warm.knots)
-      if (const auto knot = data.constraints.find(name)) path_.held.entry(*knot).paths = kGuarded;
+    for (const BreakpointKey& name : warm.breakpoints)
+      if (const auto breakpoint = data.constraints.find(name))
+        path_.held.entry(*breakpoint).paths = kMaxFreeCrossings;
     value = moveAlongPath(cost, warm.gddA, data);
   }
   if (!std::isfinite(value)) value = moveTo(model, cost, known_ ? &warm.gddA : nullptr, data);

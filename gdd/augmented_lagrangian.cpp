@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gdd/augmented_lagrangian.hpp"
+#include "softgauss/gdd/augmented_lagrangian.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -26,8 +26,8 @@ void AugmentedLagrangian::evaluate(Data& data) {
 
 /// w and ∇Φ at the present point; false when not finite.
 bool AugmentedLagrangian::gradient(const BoundPenalty& bounds, const GoalCost& cost, Data& data) {
-  cost.price().multiply(massFactor_, g_, Rg_);
-  bounds.box.coordinates(g_, y_);
+  cost.controlCost().multiply(massFactor_, g_, Rg_);
+  bounds.limits.coordinates(g_, y_);
   penalty_ = 0.0;
   for (Eigen::Index i = 0; i < y_.size(); ++i) {
     const Jet psi = bounds.at(i, y_[i]);
@@ -37,8 +37,8 @@ bool AugmentedLagrangian::gradient(const BoundPenalty& bounds, const GoalCost& c
     curvature_[i] = psi.curvature;
   }
   w_ = Rg_;
-  if (cost.price().hasFree()) w_ -= cost.price().freeSlope();
-  bounds.box.addSlope(slope_, w_);
+  if (cost.controlCost().hasFree()) w_ -= cost.controlCost().freeSlope();
+  bounds.limits.addSlope(slope_, w_);
   if (rowsChanged_) {
     hessian_.setCell(data);
     rowsChanged_ = false;
@@ -71,34 +71,34 @@ double AugmentedLagrangian::stationarity(const VectorX& forceScale) {
 }
 
 /// Distance from the bounds in force, as force, also from inside, where a λ too large holds y off.
-double AugmentedLagrangian::gap(const ControlBox& box) const {
+double AugmentedLagrangian::gap(const ControlLimits& limits) const {
   double most = 0.0;
   for (Eigen::Index i = 0; i < rho_.size(); ++i)
-    most = std::max(most, std::abs((slope_[i] - lambda_[i]) / rho_[i]) * box.size(i));
+    most = std::max(most, std::abs((slope_[i] - lambda_[i]) / rho_[i]) * limits.forcePerUnit(i));
   return most;
 }
 
 /// ρ as R has it: penalty · w, or more where R is larger; of a coordinate, along its column of T.
 /// w, the inverse inertia of a dof, with what implicit forces add: 1/(1/w + added).
-void AugmentedLagrangian::setPenalties(const GoalCost& cost, const ControlBox& box,
+void AugmentedLagrangian::setPenalties(const GoalCost& cost, const ControlLimits& limits,
                                        const Data& data) {
   scratch_ = Eigen::Map<const VectorX>(data.weights.dof.data(), rho_.size());
   scratch_.array() /= 1.0 + scratch_.array() * data.inertia.added.array();
-  if (!cost.price().hasInverseMass()) {
-    w_ = cost.price().diagonal();
-    for (int k = 0; k < cost.price().directionCount(); ++k)
-      w_ += cost.price().direction(k).cwiseAbs2();
+  if (!cost.controlCost().hasInverseMass()) {
+    w_ = cost.controlCost().diagonal();
+    for (int k = 0; k < cost.controlCost().directionCount(); ++k)
+      w_ += cost.controlCost().direction(k).cwiseAbs2();
     scratch_ = scratch_.cwiseMax(w_);
   }
   for (Eigen::Index i = 0; i < rho_.size(); ++i)
-    rho_[i] =
-        options.penalty *
-        (box.isPlain(i) ? scratch_[i] : box.transmission->T().col(i).cwiseAbs2().dot(scratch_));
+    rho_[i] = options.penalty * (limits.isPlain(i)
+                                     ? scratch_[i]
+                                     : limits.transmission->T().col(i).cwiseAbs2().dot(scratch_));
 }
 
-void AugmentedLagrangian::start(const GoalCost& cost, const ControlBox& box, Data& data,
+void AugmentedLagrangian::start(const GoalCost& cost, const ControlLimits& limits, Data& data,
                                 const WarmStart& warm) {
-  setPenalties(cost, box, data);
+  setPenalties(cost, limits, data);
   if (warm.gddValid && warm.gddA.allFinite() && warm.multipliers.allFinite()) {
     a_ = warm.gddA;
     lambda_ = warm.multipliers;
@@ -114,17 +114,18 @@ void AugmentedLagrangian::start(const GoalCost& cost, const ControlBox& box, Dat
   evaluate(data);
 }
 
-GddReport AugmentedLagrangian::solve(const Model& model, GoalCost& cost, const ControlBox& box,
-                                     Data& data, const WarmStart& warm) {
-  badBound_ = box.firstBad(model.nv);
-  if (badBound_ >= 0) return {.status = GddStatus::badBox};
-  GddReport report = minimizeFrom(model, cost, box, data, warm);
+GddReport AugmentedLagrangian::solve(const Model& model, GoalCost& cost,
+                                     const ControlLimits& limits, Data& data,
+                                     const WarmStart& warm) {
+  badBound_ = limits.firstBad(model.nv);
+  if (badBound_ >= 0) return {.status = GddStatus::badLimits};
+  GddReport report = minimizeFrom(model, cost, limits, data, warm);
   if (report.status != GddStatus::notFinite || !warm.gddValid || massFactor_.failedRow() >= 0 ||
       !data.forces.c.allFinite())
     return report;
   // Multipliers that an unfinished solve left may make a matrix that cannot be factored.
   const GddReport first = report;
-  report = minimizeFrom(model, cost, box, data, WarmStart{});
+  report = minimizeFrom(model, cost, limits, data, WarmStart{});
   report.iterations += first.iterations;
   report.dualUpdates += first.dualUpdates;
   report.factorizations += first.factorizations;
@@ -133,7 +134,7 @@ GddReport AugmentedLagrangian::solve(const Model& model, GoalCost& cost, const C
 }
 
 GddReport AugmentedLagrangian::minimizeFrom(const Model& model, GoalCost& cost,
-                                            const ControlBox& box, Data& data,
+                                            const ControlLimits& limits, Data& data,
                                             const WarmStart& warm) {
   GddReport report;
   const auto end = [&](GddStatus status) {
@@ -144,19 +145,19 @@ GddReport AugmentedLagrangian::minimizeFrom(const Model& model, GoalCost& cost,
   const TreeMatrix& M = data.inertia.M;
   if (!data.forces.c.allFinite() || !massFactor_.compute(data.inertia.hat()))
     return end(GddStatus::notFinite);
-  cost.preparePrice(massFactor_);
-  start(cost, box, data, warm);
-  const BoundPenalty bounds{box, lambda_, rho_, &cost.price()};
+  cost.prepareControlCost(massFactor_);
+  start(cost, limits, data, warm);
+  const BoundPenalty bounds{limits, lambda_, rho_, &cost.controlCost()};
   const double forceScale = std::max(1.0, data.forces.c.cwiseAbs().maxCoeff());
-  double promised = kInfinity, lastViolation = kInfinity;
-  bool wholeStep = false;  // the last step met no knot
+  double predicted = kInfinity, lastViolation = kInfinity;
+  bool wholeStep = false;  // the last step met no breakpoint
   constexpr double kSmallGradient = 1e-6;
   bool lastTaken = false;  // its decrement was one that the objective cannot show
 
   for (;;) {
     if (!gradient(bounds, cost, data)) return end(GddStatus::notFinite);
-    report.violation = box.violation(g_);
-    report.objective = cost.price().value(g_, Rg_) + cost.value(a_, Ma_) + forces_.value();
+    report.violation = limits.violation(g_);
+    report.objective = cost.controlCost().value(g_, Rg_) + cost.value(a_, Ma_) + forces_.value();
     if (report.iterations == options.maxIterations) return end(GddStatus::iterationLimit);
 
     // Direction in this cell.
@@ -164,7 +165,7 @@ GddReport AugmentedLagrangian::minimizeFrom(const Model& model, GoalCost& cost,
     wholeStep = false;
     if (stale_ || boundsChanged_) {
       ++report.factorizations;
-      if (!hessian_.factorize(data, massFactor_, curvature_, box, cost, forces_))
+      if (!hessian_.factorize(data, massFactor_, curvature_, limits, cost, forces_))
         return end(GddStatus::notFinite);
       stale_ = boundsChanged_ = false;
     }
@@ -175,27 +176,28 @@ GddReport AugmentedLagrangian::minimizeFrom(const Model& model, GoalCost& cost,
     // that promises no less than the first has reached rounding. A decrement that the objective
     // cannot show leaves a gradient of its root times the stiffness of H: where nothing is held,
     // one more step is worth taking if that gradient is large.
-    const double merit = std::abs(report.objective) + cost.price().freeCost() + penalty_;
+    const double merit = std::abs(report.objective) + cost.controlCost().freeCost() + penalty_;
     const bool unseen = decrement <= 1e-14 * merit;
     const bool last = unseen && held_.empty() && !lastTaken && report.stationarity > kSmallGradient;
-    const bool rounding = (unseen && !last) || (sameCell && decrement > 0.01 * promised);
+    const bool rounding = (unseen && !last) || (sameCell && decrement > 0.01 * predicted);
     if (report.stationarity <= options.gradientTolerance || rounding) {
       bool towardsStiff = false;
       const int leaving = held_.leaving(w_, forces_, data.constraints, towardsStiff);
       if (leaving >= 0) {
         if (towardsStiff) {
-          data.constraints.placeAtKnot(held_[leaving].knot, true);
+          data.constraints.placeAtBreakpoint(held_[leaving].breakpoint, true);
           data.constraints.evaluate(rowsChanged_);
         }
         held_.release(leaving);
         ++report.iterations;
         continue;
       }
-      const double off = gap(box);
+      const double off = gap(limits);
       const bool feasible = off <= options.violationTolerance * forceScale;
       const bool noBetter =
           off > 0.5 * lastViolation && off <= 1e2 * options.violationTolerance * forceScale;
-      if (feasible || noBetter) return end(held_.empty() ? GddStatus::converged : GddStatus::kink);
+      if (feasible || noBetter)
+        return end(held_.empty() ? GddStatus::converged : GddStatus::nonsmoothMinimum);
       if (report.dualUpdates == options.maxDualUpdates) return end(GddStatus::iterationLimit);
       lambda_ = slope_;
       lastViolation = off;
@@ -204,7 +206,7 @@ GddReport AugmentedLagrangian::minimizeFrom(const Model& model, GoalCost& cost,
     }
 
     lastTaken = last;
-    // Exact line search; a minimum at a knot holds its row there.
+    // Exact line search; a minimum at a breakpoint holds its row there.
     data.constraints.setRay(direction_);
     held_.holdOnRay(data.constraints);
     hessian_.multiplyP(direction_, scratch_);
@@ -224,14 +226,14 @@ GddReport AugmentedLagrangian::minimizeFrom(const Model& model, GoalCost& cost,
                                                     costSlope, costCurvature, forces_);
     if (ray.bend && ray.alpha * decrement <= 1e-10 * merit) {
       evaluate(data);
-      return end(GddStatus::bend);
+      return end(GddStatus::nonsmoothStall);
     }
     ++report.iterations;
     a_ += ray.alpha * direction_;
     if (ray.kink) held_.hold(ray.last, data.constraints);
     evaluate(data);
     wholeStep = ray.crossings == 0;
-    promised = decrement;
+    predicted = decrement;
   }
 }
 
@@ -246,7 +248,7 @@ int AugmentedLagrangian::badDof() const {
 void AugmentedLagrangian::keepWarmStart(WarmStart& warm) const {
   warm.gddA = a_;
   warm.multipliers = lambda_;
-  warm.knots.clear();
+  warm.breakpoints.clear();
   warm.gddValid = true;
 }
 

@@ -1,21 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gdd/cell_model.hpp"
+#include "softgauss/gdd/cell_model.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
-#include "engine/step/inverse.hpp"
+#include "softgauss/engine/step/inverse.hpp"
 
 namespace softgauss::gdd {
 namespace {
 
-constexpr double kHard = 1e6;    // what is held costs so much more than the price of force
-constexpr double kClose = 1e-7;  // at a bound, at a knot: relative to the terms that cancel there
+constexpr double kHard = 1e6;  // what is held costs so much more than the control cost
+constexpr double kClose =
+    1e-7;  // at a bound, at a breakpoint: relative to the terms that cancel there
 
 }  // namespace
 
-void CellModel::set(GoalCost& cost, const ControlBox& box, Data& data, const VectorX& t,
+void CellModel::set(GoalCost& cost, const ControlLimits& limits, Data& data, const VectorX& t,
                     const VectorX& g) {
   const TreeMatrix& M = data.inertia.M;
   const Eigen::Index n = t.size();
@@ -29,8 +30,8 @@ void CellModel::set(GoalCost& cost, const ControlBox& box, Data& data, const Vec
   inverseDynamicsJacobian(data, sparse);
   P_ = sparse.dense();
   const MatrixX mass = M.dense();
-  const ForcePrice& price = cost.price();
-  if (price.hasInverseMass())
+  const ControlCostTerm& controlCost = cost.controlCost();
+  if (controlCost.hasInverseMass())
     Q_ = P_ * data.inertia.hat().dense().llt().solve(P_);
   else
     Q_.setZero(n, n);
@@ -39,17 +40,17 @@ void CellModel::set(GoalCost& cost, const ControlBox& box, Data& data, const Vec
     const VectorX Px = P_ * x;
     Q_ += c * Px * Px.transpose();
   };
-  for (int k = 0; k < price.directionCount(); ++k) addForce(price.direction(k), 1.0);
+  for (int k = 0; k < controlCost.directionCount(); ++k) addForce(controlCost.direction(k), 1.0);
 
   const double scale = std::max(1.0, data.forces.c.cwiseAbs().maxCoeff());
   for (Eigen::Index i = 0; i < n; ++i) {
-    const double y = box.coordinate(i, g), close = kClose * scale / box.size(i);
-    const bool bound = y >= box.upper[i] - close || y <= box.lower[i] + close;
+    const double y = limits.coordinate(i, g), close = kClose * scale / limits.forcePerUnit(i);
+    const bool bound = y >= limits.upper[i] - close || y <= limits.lower[i] + close;
     const double hard = bound ? kHard * data.weights.dof[i] : 0.0;
-    const double single = price.diagonal()[i] + (box.isPlain(i) ? hard : 0.0);
+    const double single = controlCost.diagonal()[i] + (limits.isPlain(i) ? hard : 0.0);
     if (single > 0.0) Q_ += single * P_.col(i) * P_.row(i);
-    if (bound && !box.isPlain(i))
-      addForce(box.transmission->C().row(i).transpose() * box.size(i), hard);
+    if (bound && !limits.isPlain(i))
+      addForce(limits.transmission->C().row(i).transpose() * limits.forcePerUnit(i), hard);
   }
   const TreeSparsity full = TreeSparsity::dense(static_cast<int>(n));
   TreeMatrix curvature;
@@ -61,11 +62,11 @@ void CellModel::set(GoalCost& cost, const ControlBox& box, Data& data, const Vec
   forces_.setJacobian(data.constraints, static_cast<int>(n));
   forces_.addCurvature(curvature);
   Q_ += curvature.dense();
-  addKinks(data.constraints, mass);
+  addNonsmoothRows(data.constraints, mass);
 }
 
-/// Rows at their knots are held there. A ray and its reverse meet every knot.
-void CellModel::addKinks(Constraints& rows, const MatrixX& mass) {
+/// Rows at their breakpoints are held there. A ray and its reverse meet every breakpoint.
+void CellModel::addNonsmoothRows(Constraints& rows, const MatrixX& mass) {
   const Eigen::Index n = t_.size();
   const Eigen::LLT<MatrixX> factor(mass);
   VectorX J(n), d(n);
@@ -77,9 +78,9 @@ void CellModel::addKinks(Constraints& rows, const MatrixX& mass) {
     rows.findCrossings(crossings_);
   }
   for (const Crossing& crossing : crossings_) {
-    rows.knotGradient(crossing.knot, J);
+    rows.breakpointGradient(crossing.breakpoint, J);
     const double size = std::max(1.0, J.cwiseAbs().dot(t_.cwiseAbs()));
-    if (std::abs(rows.aboveKnot(crossing.knot)) > kClose * size) continue;
+    if (std::abs(rows.aboveBreakpoint(crossing.breakpoint)) > kClose * size) continue;
     const double felt = J.dot(factor.solve(J));
     if (felt > 0.0) Q_ += kHard / felt * J * J.transpose();
   }
@@ -107,17 +108,18 @@ const VectorX& CellModel::minimize(GoalCost& cost, const TreeMatrix& M) {
       factor.compute(Q_ + hessian);
     }
     d = factor.solve(down);
-    const double promised = down.dot(d);
-    if (!(promised > 1e-15 * std::abs(value))) break;
+    const double predicted = down.dot(d);
+    if (!(predicted > 1e-15 * std::abs(value))) break;
     // Where the slope along d ends: a root between lo and hi, by secants kept inside.
-    double alpha = 1.0, lo = 0.0, hi = kInfinity, slopeLo = -promised, slopeHi = 0.0, found = value;
+    double alpha = 1.0, lo = 0.0, hi = kInfinity, slopeLo = -predicted, slopeHi = 0.0,
+           found = value;
     bool falls = false;
     for (int k = 0; k < kMaxTries; ++k) {
       next = x_ + alpha * d;
       found = q(next, nextDown, nextHessian);
       const double along = -nextDown.dot(d);
-      falls = found <= value - 1e-4 * alpha * promised;
-      if (falls && std::abs(along) <= 0.2 * promised) break;
+      falls = found <= value - 1e-4 * alpha * predicted;
+      if (falls && std::abs(along) <= 0.2 * predicted) break;
       if (falls && along < 0.0) {
         if (alpha >= 1.0) break;
         lo = alpha, slopeLo = along;

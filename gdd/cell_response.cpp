@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gdd/cell_response.hpp"
+#include "softgauss/gdd/cell_response.hpp"
 
 #include <algorithm>
 
-#include "engine/core/vector_clones.hpp"
-#include "engine/core/vector_kernels.hpp"
-#include "gdd/weighted_rows.hpp"
+#include "softgauss/engine/core/vector_clones.hpp"
+#include "softgauss/engine/core/vector_kernels.hpp"
+#include "softgauss/gdd/weighted_rows.hpp"
 
 namespace softgauss::gdd {
 namespace {
@@ -51,12 +51,12 @@ SOFTGAUSS_VECTOR_CLONES void setWeightedGram(const RowMajorMatrixX& Y, const Tre
 
 }  // namespace
 
-void CellResponse::setDriven(const Model& model, const ControlBox& box) {
+void CellResponse::setDriven(const Model& model, const ControlLimits& limits) {
   driven_.clear();
-  fixed_ = box.lower;
+  fixed_ = limits.lower;
   for (int i = 0; i < model.nv; ++i)
-    if (box.lower[i] < box.upper[i]) driven_.push_back(i), fixed_[i] = 0.0;
-  transmission_ = box.transmission;
+    if (limits.lower[i] < limits.upper[i]) driven_.push_back(i), fixed_[i] = 0.0;
+  transmission_ = limits.transmission;
   givenForce_ = fixed_;
   if (!transmission_) return;
   B_.resize(model.nv, columns());
@@ -89,7 +89,7 @@ bool CellResponse::setInertia(const Data& data, const TreeFactor* massFactor,
                               const GoalCost& cost) {
   M_ = &data.inertia.M;
   cost_ = &cost;
-  price_ = cost.price();
+  controlCost_ = cost.controlCost();
   massFactor_ = massFactor ? massFactor : &ownMassFactor_;
   if (!massFactor && !ownMassFactor_.compute(data.inertia.hat())) return false;
   // Goals weigh by M itself.
@@ -97,34 +97,34 @@ bool CellResponse::setInertia(const Data& data, const TreeFactor* massFactor,
   if (data.inertia.anyAdded && cost.metricWeight() != 0.0 &&
       !ownGoalMassFactor_.compute(data.inertia.M))
     return false;
-  price_.prepare(*massFactor_);
-  computeForcePrice();
+  controlCost_.prepare(*massFactor_);
+  computeControlCost();
   return true;
 }
 
 /// BᵀR B, its part of M⁻¹ as BᵀM⁻¹B = YᵀD⁻¹Y, Y = L⁻ᵀB, M = LᵀDL. Row k of Y has entries only where
 /// a column of B moves dof k or one that it carries.
-void CellResponse::computeForcePrice() {
+void CellResponse::computeControlCost() {
   const int count = padded();
   RowMajorMatrixX& Y = rootS_;
-  forcePrice_.setZero(count, count);
-  if (price_.hasInverseMass()) {
+  reducedControlCost_.setZero(count, count);
+  if (controlCost_.hasInverseMass()) {
     setColumns(Y);
     massFactor_->solveTransposed(Y, range_);
-    setWeightedGram(Y, *massFactor_, range_, forcePrice_);
+    setWeightedGram(Y, *massFactor_, range_, reducedControlCost_);
   }
   const int n = columns();
   if (transmission_) {
     for (int i = 0; i < n; ++i)
       for (int j = 0; j < n; ++j)
-        forcePrice_(i, j) += B_.col(i).cwiseProduct(price_.diagonal()).dot(B_.col(j));
+        reducedControlCost_(i, j) += B_.col(i).cwiseProduct(controlCost_.diagonal()).dot(B_.col(j));
   } else {
-    for (int i = 0; i < n; ++i) forcePrice_(i, i) += price_.diagonal()[driven_[i]];
+    for (int i = 0; i < n; ++i) reducedControlCost_(i, i) += controlCost_.diagonal()[driven_[i]];
   }
-  for (int k = 0; k < price_.directionCount(); ++k) {
-    scratch_ = price_.direction(k);
+  for (int k = 0; k < controlCost_.directionCount(); ++k) {
+    scratch_ = controlCost_.direction(k);
     select(scratch_, pull_);
-    forcePrice_.topLeftCorner(n, n).noalias() += pull_ * pull_.transpose();
+    reducedControlCost_.topLeftCorner(n, n).noalias() += pull_ * pull_.transpose();
   }
 }
 
@@ -134,9 +134,9 @@ void CellResponse::multiplyTransposed(const VectorX& x, VectorX& y) const {
   y = padded_.head(columns());
 }
 
-void CellResponse::multiplyForcePrice(const VectorX& p, VectorX& y) const {
+void CellResponse::multiplyControlCost(const VectorX& p, VectorX& y) const {
   padded_.setZero(padded());
-  addWeightedRows(p.data(), forcePrice_.data(), columns(), padded(), padded_.data());
+  addWeightedRows(p.data(), reducedControlCost_.data(), columns(), padded(), padded_.data());
   y = padded_.head(columns());
 }
 
@@ -165,7 +165,7 @@ void CellResponse::solve(VectorX& x) const {
 }
 
 void CellResponse::multiplyR(const VectorX& x, VectorX& Rx) const {
-  price_.multiply(*massFactor_, x, Rx);
+  controlCost_.multiply(*massFactor_, x, Rx);
 }
 
 const CellResponse::Correction& CellResponse::cross(const VectorX& J, double jump) {
@@ -188,7 +188,7 @@ const CellResponse::Correction& CellResponse::cross(const VectorX& J, double jum
   return c;
 }
 
-void CellResponse::addToHessian(ForceTerms& forces) {
+void CellResponse::addToHessian(ContactForceTerms& forces) {
   forceK_ = K_;
   forces.addReducedCurvature(S_, forceK_);
   withForces_ = true;
@@ -202,7 +202,7 @@ void CellResponse::computeHessian() {
     for (int k = 0; k < correctionCount_; ++k)
       subtractRankOne(corrections_[k].y.data(), corrections_[k].By.data(), corrections_[k].scale,
                       S_);
-    K_ = forcePrice_;
+    K_ = reducedControlCost_;
     rootS_.resize(S_.rows(), S_.cols());
     cost_->addReducedCurvature(*goalMassFactor_, S_, rootS_, K_);
     correctionsInS_ = correctionCount_;

@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// How acceleration answers control in one cell, and what that makes of the objective (T.60):
+/// How acceleration answers control in one cell, and what that makes of the objective (10.7):
 ///
 ///   S = P⁻¹B,   K = BᵀR B + Sᵀ∇²ℓ S,   P = M + Jᵀ∇²s J
 ///
 /// R holds the prices W. B has a column for each coordinate of force whose box is open
 /// (problem.hpp): a unit column where that is the force on a dof. All columns are solved for at
-/// once. Where a row changes its piece, P changes by Δs″ JᵀJ, and nothing is factored anew (T.62):
+/// once. Where a row changes its piece, P changes by Δs″ JᵀJ, and nothing is factored anew (10.9):
 ///   P⁻¹ ← P⁻¹ − γ y yᵀ,   y = P⁻¹Jᵀ,   γ = Δs″/(1 + Δs″ J y),   S ← S − γ y sᵀ,   s = Bᵀy
 ///   K ← K − s bᵀ − b sᵀ,   b = γ Sᵀ∇²ℓ y − ½ γ² (yᵀ∇²ℓ y) s
 
 #include <vector>
 
-#include "engine/core/vector_kernels.hpp"
-#include "engine/step/data.hpp"
-#include "gdd/cost.hpp"
-#include "gdd/problem.hpp"
+#include "softgauss/engine/core/vector_kernels.hpp"
+#include "softgauss/engine/step/data.hpp"
+#include "softgauss/gdd/cost.hpp"
+#include "softgauss/gdd/problem.hpp"
 
 namespace softgauss::gdd {
 
@@ -26,8 +26,8 @@ class CellResponse {
   CellResponse(const CellResponse&) = delete;  // factors are pointed at
   CellResponse& operator=(const CellResponse&) = delete;
 
-  /// Takes B from the box.
-  void setDriven(const Model& model, const ControlBox& box);
+  /// Takes B from the limits.
+  void setDriven(const Model& model, const ControlLimits& limits);
   /// Takes R from the cost and M̂, and ∇²ℓ from the cost; M and the cost must stay. `massFactor`, of
   /// M̂, may be null. Returns false when M is not positive definite.
   bool setInertia(const Data& data, const TreeFactor* massFactor, const GoalCost& cost);
@@ -45,12 +45,12 @@ class CellResponse {
   /// Enters the next cell, in which the row J (nv) has `jump` more curvature.
   const Correction& cross(const VectorX& J, double jump);
   /// Whether so many rows have been crossed that it is better to enter() anew.
-  bool isWorn() const { return correctionCount_ > kMaxCorrections; }
+  bool needsRefactor() const { return correctionCount_ > kMaxCorrections; }
   /// K of this cell, without ℓ_f.
   void computeHessian();
   /// Adds what ℓ_f makes of K in the cell in which `forces` has its Jacobian, until K is computed
   /// anew.
-  void addToHessian(ForceTerms& forces);
+  void addToHessian(ContactForceTerms& forces);
 
   int columns() const { return static_cast<int>(driven_.size()); }
   bool isFresh() const { return correctionCount_ == 0; }  ///< no row has been crossed
@@ -65,9 +65,9 @@ class CellResponse {
   /// y ← Sᵀx and a ← S p, after computeHessian().
   void multiplyTransposed(const VectorX& x, VectorX& y) const;
   void multiply(const VectorX& p, VectorX& a) const { a.noalias() = S_.leftCols(columns()) * p; }
-  void multiplyR(const VectorX& x, VectorX& Rx) const;          ///< Rx ← R x
-  const ForcePrice& price() const { return price_; }            ///< prepared
-  void multiplyForcePrice(const VectorX& p, VectorX& y) const;  ///< y ← BᵀR B p
+  void multiplyR(const VectorX& x, VectorX& Rx) const;                 ///< Rx ← R x
+  const ControlCostTerm& controlCost() const { return controlCost_; }  ///< prepared
+  void multiplyControlCost(const VectorX& p, VectorX& y) const;        ///< y ← BᵀR B p
   /// Lower triangle.
   auto hessian() const { return (withForces_ ? forceK_ : K_).topLeftCorner(columns(), columns()); }
   int massFailedRow() const { return massFactor_->failedRow(); }
@@ -75,7 +75,7 @@ class CellResponse {
  private:
   int padded() const { return paddedSize(columns()); }
   void setColumns(RowMajorMatrixX& X);
-  void computeForcePrice();
+  void computeControlCost();
   void addToHessian(const Correction& c);
 
   static constexpr int kMaxCorrections = 16;
@@ -95,10 +95,10 @@ class CellResponse {
   int correctionCount_ = 0;
   int correctionsInS_ = 0;  ///< −1: S is not of this factor
   TreeMatrix P_;
-  RowMajorMatrixX S_, rootS_;   ///< S, and scratch of its size
-  std::vector<Segment> range_;  ///< columns of a row of L⁻ᵀB that are not zero
-  ForcePrice price_;            ///< R
-  MatrixX forcePrice_;          ///< BᵀR B
+  RowMajorMatrixX S_, rootS_;    ///< S, and scratch of its size
+  std::vector<Segment> range_;   ///< columns of a row of L⁻ᵀB that are not zero
+  ControlCostTerm controlCost_;  ///< R
+  MatrixX reducedControlCost_;   ///< BᵀR B
   MatrixX K_;
   MatrixX forceK_;  ///< K_ with ℓ_f
   bool withForces_ = false;

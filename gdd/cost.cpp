@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gdd/cost.hpp"
+#include "softgauss/gdd/cost.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
-#include "engine/core/vector_clones.hpp"
-#include "engine/core/vector_kernels.hpp"
-#include "gdd/weighted_rows.hpp"
+#include "softgauss/engine/core/vector_clones.hpp"
+#include "softgauss/engine/core/vector_kernels.hpp"
+#include "softgauss/gdd/weighted_rows.hpp"
 
 namespace softgauss::gdd {
 namespace {
@@ -43,7 +43,7 @@ void GoalCost::clear(const ForceMetric& R) {
   sides_.clear();
   dofWeight_.setZero();
   dofOffset_.setZero();
-  price_.set(R);
+  controlCost_.set(R);
   functions_.clear();
   forces_.clear();
   metricWeight_ = 0.0;
@@ -226,10 +226,10 @@ void GoalCost::raiseCurvature(const TreeMatrix& M, MatrixX& H) const {
   constexpr double kShare = 0.9;
   const MatrixX mass = M.dense();
   double least = -kShare;
-  if (!price_.hasInverseMass()) {
+  if (!controlCost_.hasInverseMass()) {
     // R − σ M⁻¹ ⪰ 0 is LᵀR L ⪰ σ with M = L Lᵀ.
     const MatrixX L = Eigen::LLT<MatrixX>(mass).matrixL();
-    const MatrixX seen = L.transpose() * price_.dense() * L;
+    const MatrixX seen = L.transpose() * controlCost_.dense() * L;
     least *= std::min(1.0, Eigen::SelfAdjointEigenSolver<MatrixX>(seen).eigenvalues().minCoeff());
   }
   if (Eigen::LLT<MatrixX>(H - least * mass).info() == Eigen::Success) return;

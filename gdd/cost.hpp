@@ -3,28 +3,28 @@
 
 /// The cost ℓ(a) that goals put on the acceleration, equation (8) of the paper.
 ///
-/// Goals write residuals; ℓ is their weighted sum (T.21):
+/// Goals write residuals; ℓ is their weighted sum (9.1):
 ///   ℓ(a) = Σ ½ w |J a − y|²  +  ½ aᵀD a + aᵀe  +  ½ m aᵀM a + aᵀM o
-/// Rows may be one-sided, ½ w max(0, y − J a)² (T.141): each counts or does not, as chooseSides()
+/// Rows may be one-sided, ½ w max(0, y − J a)² (9.22): each counts or does not, as chooseSides()
 /// has it.
 /// J: rows of a Jacobian block or any other rows, y: wished value less the bias J̇ v; D, e: of
 /// single dofs, D diagonal; m, o: the terms of virtual damping,
 /// ½ α (a + βv)ᵀM(a + βv) = ½ α aᵀMa + α β aᵀM v + const.
 ///
-/// Functions that are no such sum enter by expansions of second order (expanded_solve.hpp). The
-/// price of force, ½ gᵀ(R + W) g, is no function of a alone: R is given, goals add W
-/// (force_price.hpp). What goals want of contact forces is kept apart (force_cost.hpp): value(),
-/// gradient() and the curvatures here are without it.
+/// Functions that are no such sum enter by expansions of second order
+/// (sequential_quadratic_solve.hpp). The control cost, ½ gᵀ(R + W) g, is no function of a alone: R
+/// is given, goals add W (control_cost_term.hpp). What goals want of contact forces is kept apart
+/// (contact_force_cost.hpp): value(), gradient() and the curvatures here are without it.
 ///
 /// Nothing here allocates in steady state, but what is for functions does.
 
 #include <functional>
 #include <vector>
 
-#include "engine/constraints/block_jacobian.hpp"
-#include "engine/dynamics/centroidal.hpp"
-#include "gdd/force_cost.hpp"
-#include "gdd/force_price.hpp"
+#include "softgauss/engine/constraints/block_jacobian.hpp"
+#include "softgauss/engine/dynamics/centroidal.hpp"
+#include "softgauss/gdd/contact_force_cost.hpp"
+#include "softgauss/gdd/control_cost_term.hpp"
 
 namespace softgauss::gdd {
 
@@ -45,7 +45,7 @@ class GoalCost {
   explicit GoalCost(int dofs)
       : dofWeight_(VectorX::Zero(dofs)),
         dofOffset_(VectorX::Zero(dofs)),
-        price_(dofs),
+        controlCost_(dofs),
         metricSlope_(VectorX::Zero(dofs)),
         scratch_(VectorX::Zero(dofs)),
         workspace_(dofs) {}
@@ -64,7 +64,7 @@ class GoalCost {
   /// ½ weight max(0, least − J a)² for one row J (nv). It does not count before chooseSides().
   void addOneSided(const VectorX& J, double weight, double least);
   bool hasSides() const { return !sides_.empty(); }
-  /// From here on those one-sided rows count that are short of their least at a, and ℓ is (T.141)
+  /// From here on those one-sided rows count that are short of their least at a, and ℓ is (9.22)
   /// there; with `first` no more than one row changes. Returns whether any has.
   bool chooseSides(const VectorX& a, bool first = false);
   /// ½ weight (a_dof − target)², up to a constant.
@@ -78,28 +78,30 @@ class GoalCost {
     metricSlope_ += scratch_;
   }
 
-  /// The price of force counts from `force` (nv) [N, N m], not from 0. To be called before goals
+  /// The control cost counts from `force` (nv) [N, N m], not from 0. To be called before goals
   /// add to the price.
-  void setFreeForce(const VectorX& force) { price_.setFree(force); }
+  void setFreeControl(const VectorX& force) { controlCost_.setFree(force); }
   /// ½ weight g_dof².
-  void addForcePrice(int dof, double weight) { price_.add(dof, weight); }
+  void addControlCost(int dof, double weight) { controlCost_.add(dof, weight); }
   /// ½ weight (c·g)².
-  void addForcePrice(const Eigen::Ref<const VectorX>& c, double weight) { price_.add(c, weight); }
+  void addControlCost(const Eigen::Ref<const VectorX>& c, double weight) {
+    controlCost_.add(c, weight);
+  }
   /// φ(a).
   void addFunction(Function function) { functions_.push_back(std::move(function)); }
 
   /// What goals want of contact forces.
-  ForceCost& forces() { return forces_; }
-  const ForceCost& forces() const { return forces_; }
+  ContactForceCost& forces() { return forces_; }
+  const ContactForceCost& forces() const { return forces_; }
 
   GoalWorkspace& workspace() { return workspace_; }
   double metricWeight() const { return metricWeight_; }
-  const ForcePrice& price() const { return price_; }  ///< R + W
+  const ControlCostTerm& controlCost() const { return controlCost_; }  ///< R + W
   /// For a factor of the M in R.
-  void preparePrice(const TreeFactor& massFactor) { price_.prepare(massFactor); }
+  void prepareControlCost(const TreeFactor& massFactor) { controlCost_.prepare(massFactor); }
 
   bool hasFunctions() const { return !functions_.empty(); }
-  /// From here on the functions count as their expansion m about a (T.52). Returns false when it is
+  /// From here on the functions count as their expansion m about a (9.18). Returns false when it is
   /// not finite.
   bool expand(const TreeMatrix& M, const VectorX& a, double mu);
   double expansionStart() const { return hasFunctions() ? expansionStart_ : 0.0; }  ///< φ there
@@ -144,10 +146,10 @@ class GoalCost {
   std::vector<double> denseWeight_;
   std::vector<double> denseTarget_;
   std::vector<OneSided> sides_;
-  VectorX dofWeight_;  ///< D
-  VectorX dofOffset_;  ///< e
-  ForcePrice price_;   ///< R + W
-  ForceCost forces_;
+  VectorX dofWeight_;            ///< D
+  VectorX dofOffset_;            ///< e
+  ControlCostTerm controlCost_;  ///< R + W
+  ContactForceCost forces_;
   std::vector<Function> functions_;
   VectorX expandedAt_, expansionSlope_;  ///< a_k, ∇φ(a_k)
   MatrixX expansionCurvature_;           ///< [∇²φ] + μ M

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gdd/curved_ray.hpp"
+#include "softgauss/gdd/curved_ray.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -16,11 +16,11 @@ CurvedRay::CurvedRay(const Model& model)
 
 RayResult CurvedRay::minimize(Constraints& constraints, const TreeFactor& massFactor,
                               const BoundPenalty& bounds, const VectorX& g, const VectorX& Md,
-                              double costSlope, double costCurvature, ForceTerms& forces) {
+                              double costSlope, double costCurvature, ContactForceTerms& forces) {
   constexpr int kMaxEvaluations = 100;
   constexpr double kSlope = 1e-9;      // at the result, of that at the start
   constexpr double kRounding = 1e-14;  // of Φ
-  constexpr double kBeside = 1e-10;    // of a knot, relative
+  constexpr double kBeside = 1e-10;    // of a breakpoint, relative
 
   crossings_.clear();
   constraints.findCrossings(crossings_);
@@ -43,8 +43,8 @@ RayResult CurvedRay::minimize(Constraints& constraints, const TreeFactor& massFa
     constraints.addForceRate(rate_);
     rate_ = -rate_;
     bounds.multiplyR(massFactor, g_, Rg_);
-    bounds.box.coordinates(g_, y_);
-    bounds.box.coordinates(rate_, yRate_);
+    bounds.limits.coordinates(g_, y_);
+    bounds.limits.coordinates(rate_, yRate_);
     Jet jet{0.5 * g_.dot(Rg_) + alpha * (costSlope + 0.5 * alpha * costCurvature),
             Rg_.dot(rate_) + costSlope + alpha * costCurvature, 0.0};
     if (const VectorX* free = bounds.freeSlope()) {
@@ -92,7 +92,7 @@ RayResult CurvedRay::minimize(Constraints& constraints, const TreeFactor& massFa
       alpha *= 2.0;
       continue;
     }
-    // The knots inside the bracket, halved; then what is left is smooth.
+    // The breakpoints inside the bracket, halved; then what is left is smooth.
     const auto inside = [&](double a) {
       return a * (1.0 - kBeside) > lower && a * (1.0 + kBeside) < upper;
     };
@@ -101,8 +101,9 @@ RayResult CurvedRay::minimize(Constraints& constraints, const TreeFactor& massFa
     const auto end =
         std::find_if(first, crossings_.end(), [&](const Crossing& c) { return !inside(c.alpha); });
     if (first != end) {
-      const Crossing& knot = *(first + (end - first) / 2);
-      const double before = knot.alpha * (1.0 - kBeside), after = knot.alpha * (1.0 + kBeside);
+      const Crossing& breakpoint = *(first + (end - first) / 2);
+      const double before = breakpoint.alpha * (1.0 - kBeside),
+                   after = breakpoint.alpha * (1.0 + kBeside);
       if (narrow(before)) {
         result.alpha = before;
         return result;
@@ -113,8 +114,8 @@ RayResult CurvedRay::minimize(Constraints& constraints, const TreeFactor& massFa
       }
       narrow(after);
       if (upper == after) {
-        result.alpha = knot.alpha;
-        result.last = knot.knot;
+        result.alpha = breakpoint.alpha;
+        result.last = breakpoint.breakpoint;
         result.kink = true;
         return result;
       }

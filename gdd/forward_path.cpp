@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gdd/forward_path.hpp"
+#include "softgauss/gdd/forward_path.hpp"
 
 #include <algorithm>
 
 namespace softgauss::gdd {
 namespace {
 
-/// t past which a row that shall come to its knot at t = 1 has done so, up to rounding.
+/// t past which a row that shall come to its breakpoint at t = 1 has done so, up to rounding.
 constexpr double kArrival = 1.0 - 1e-6;
 
 }  // namespace
@@ -16,13 +16,13 @@ ForwardPath::ForwardPath(const Model& model) {
 }
 
 PathEnd ForwardPath::follow(const PathStart& start, CellResponse& cell, const GoalCost& cost,
-                            ForceTerms& forces, const VectorX& rate, Data& data) {
+                            ContactForceTerms& forces, const VectorX& rate, Data& data) {
   Constraints& rows = data.constraints;
   rate_ = rate;
   crossed_.clear();
   rows.setRay(rate_);
-  for (const HeldKnot& h : held)
-    if (h.atKnot && h.multiplier > 0.0) rows.holdOnRay(h.knot.row);
+  for (const HeldBreakpoint& h : held)
+    if (h.atBreakpoint && h.multiplier > 0.0) rows.holdOnRay(h.breakpoint.row);
 
   PathEnd end;
   data.inertia.M.multiply(rate_, Mrate_);
@@ -43,9 +43,9 @@ PathEnd ForwardPath::follow(const PathStart& start, CellResponse& cell, const Go
     const double newton = curvature > 0.0 ? descent / curvature : kInfinity;
     const double length = std::min(newton, start.tMax - end.t);
     const Crossing next = rows.nextCrossing();
-    // What the program let come to its knot gets there at t = 1, and not past it.
+    // What the program let come to its breakpoint gets there at t = 1, and not past it.
     const bool arrives =
-        end.crossings == 0 && end.t + next.alpha > kArrival && isBlocked(next.knot);
+        end.crossings == 0 && end.t + next.alpha > kArrival && isBlocked(next.breakpoint);
     const bool crosses = next.alpha < length && !arrives;
     const double step = crosses ? next.alpha : length;
     a += step * rate_;
@@ -57,19 +57,20 @@ PathEnd ForwardPath::follow(const PathStart& start, CellResponse& cell, const Go
     if (!crosses) break;
     const CellResponse::Correction& c = cross(next, cell, rows);
     slopeRate_ -= c.scale * next.rate * c.Hy;
-    crossed_.push_back(next.knot);
+    crossed_.push_back(next.breakpoint);
     ++end.crossings;
   }
   if (end.crossings == 0 && end.t > kArrival)
-    for (const HeldKnot& h : held)
-      if (h.multiplier > 0.0) rows.enterPiece(h.knot, h.sign > 0.0);
+    for (const HeldBreakpoint& h : held)
+      if (h.multiplier > 0.0) rows.enterPiece(h.breakpoint, h.sign > 0.0);
   findHeld(rows);
   return end;
 }
 
-bool ForwardPath::isBlocked(Knot knot) const {
-  return std::any_of(held.begin(), held.end(),
-                     [&](const HeldKnot& h) { return h.multiplier > 0.0 && h.knot == knot; });
+bool ForwardPath::isBlocked(Breakpoint breakpoint) const {
+  return std::any_of(held.begin(), held.end(), [&](const HeldBreakpoint& h) {
+    return h.multiplier > 0.0 && h.breakpoint == breakpoint;
+  });
 }
 
 bool ForwardPath::reach(const VectorX& rate, CellResponse& cell, Data& data) {
@@ -90,24 +91,25 @@ bool ForwardPath::reach(const VectorX& rate, CellResponse& cell, Data& data) {
   }
 }
 
-/// (T.62)
+/// (10.9)
 const CellResponse::Correction& ForwardPath::cross(const Crossing& crossing, CellResponse& cell,
                                                    Constraints& rows) {
-  rows.enterPiece(crossing.knot, crossing.rate > 0.0);
+  rows.enterPiece(crossing.breakpoint, crossing.rate > 0.0);
   J_.setZero();
-  rows.addRow(crossing.knot.row, 1.0, J_);
+  rows.addRow(crossing.breakpoint.row, 1.0, J_);
   const CellResponse::Correction& c = cell.cross(J_, crossing.curvatureJump);
   rate_ -= c.scale * crossing.rate * c.y;
   rows.setRay(rate_);
   return c;
 }
 
-/// Rows are put exactly at their knots, and no step leaves them there.
+/// Rows are put exactly at their breakpoints, and no step leaves them there.
 void ForwardPath::findHeld(const Constraints& rows) {
   std::sort(crossed_.begin(), crossed_.end());
   crossed_.erase(std::unique(crossed_.begin(), crossed_.end()), crossed_.end());
-  for (const Knot& knot : crossed_) ++held.entry(knot).paths;
-  for (int i = held.size() - 1; i >= 0; --i) held[i].atKnot = rows.aboveKnot(held[i].knot) == 0.0;
+  for (const Breakpoint& breakpoint : crossed_) ++held.entry(breakpoint).paths;
+  for (int i = held.size() - 1; i >= 0; --i)
+    held[i].atBreakpoint = rows.aboveBreakpoint(held[i].breakpoint) == 0.0;
 }
 
 }  // namespace softgauss::gdd

@@ -3,18 +3,18 @@
 
 /// The exact path a(t) = f(u + t p) of forward dynamics along a ray of controls.
 ///
-/// In a cell it is straight, P ȧ = B p. Where row r meets a knot, P gains Δs″ JᵀJ and
-///   ȧ ← ȧ − Δs″ (J ȧ)/(1 + Δs″ J P⁻¹Jᵀ) · P⁻¹Jᵀ                                            (T.62)
+/// In a cell it is straight, P ȧ = B p. Where row r meets a breakpoint, P gains Δs″ JᵀJ and
+///   ȧ ← ȧ − Δs″ (J ȧ)/(1 + Δs″ J P⁻¹Jᵀ) · P⁻¹Jᵀ                                            (10.9)
 /// The row's own rate J ȧ keeps its sign, so the path goes on into the next cell. The path ends at
-/// the first local minimum of F along it: inside a cell, at a knot past which F does not descend (a
-/// kink), or where the box ends.
+/// the first local minimum of F along it: inside a cell, at a breakpoint past which F does not
+/// descend (a kink), or where the box ends.
 
 #include <vector>
 
-#include "engine/step/data.hpp"
-#include "gdd/cell_response.hpp"
-#include "gdd/cost.hpp"
-#include "gdd/held_knots.hpp"
+#include "softgauss/engine/step/data.hpp"
+#include "softgauss/gdd/cell_response.hpp"
+#include "softgauss/gdd/cost.hpp"
+#include "softgauss/gdd/held_breakpoints.hpp"
 
 namespace softgauss::gdd {
 
@@ -35,30 +35,30 @@ class ForwardPath {
  public:
   explicit ForwardPath(const Model& model);
 
-  VectorX a;       ///< f(u), moved along the path
-  VectorX slope;   ///< ∇ℓ(a) without contact forces, moved along
-  double value;    ///< ℓ(a) likewise
-  HeldKnots held;  ///< rows at knots, and all that paths have crossed
+  VectorX a;             ///< f(u), moved along the path
+  VectorX slope;         ///< ∇ℓ(a) without contact forces, moved along
+  double value;          ///< ℓ(a) likewise
+  HeldBreakpoints held;  ///< rows at breakpoints, and all that paths have crossed
 
   /// Follows the path from the present point, where ȧ = rate; moves a, ℓ, ∇ℓ and the rows along.
-  /// Held rows with a multiplier stay at their knots within the present cell, or come to them at t
-  /// = 1. Afterwards `cell` is that of the end, and `held` tells which rows are at knots.
-  /// `forces` has what contact forces cost; it is left somewhere on the path.
+  /// Held rows with a multiplier stay at their breakpoints within the present cell, or come to them
+  /// at t = 1. Afterwards `cell` is that of the end, and `held` tells which rows are at
+  /// breakpoints. `forces` has what contact forces cost; it is left somewhere on the path.
   PathEnd follow(const PathStart& start, CellResponse& cell, const GoalCost& cost,
-                 ForceTerms& forces, const VectorX& rate, Data& data);
+                 ContactForceTerms& forces, const VectorX& rate, Data& data);
 
   /// Moves a and the rows along the path P ȧ = ρ from `rate` = P⁻¹ρ on, until g(a) has grown by ρ.
-  /// Returns false when it meets so many knots that Newton's method is the better way.
+  /// Returns false when it meets so many breakpoints that Newton's method is the better way.
   bool reach(const VectorX& rate, CellResponse& cell, Data& data);
 
  private:
   const CellResponse::Correction& cross(const Crossing& crossing, CellResponse& cell,
                                         Constraints& rows);
-  bool isBlocked(Knot knot) const;
+  bool isBlocked(Breakpoint breakpoint) const;
   void findHeld(const Constraints& rows);
 
   VectorX rate_, Mrate_, slopeRate_, J_;
-  std::vector<Knot> crossed_;
+  std::vector<Breakpoint> crossed_;
 };
 
 }  // namespace softgauss::gdd

@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "engine/islands/sub_model.hpp"
-#include "engine/step/data.hpp"
-#include "engine/step/snapshot.hpp"
-#include "gdd/cost.hpp"
+#include "softgauss/engine/islands/sub_model.hpp"
+#include "softgauss/engine/step/data.hpp"
+#include "softgauss/engine/step/snapshot.hpp"
+#include "softgauss/gdd/cost.hpp"
 
 namespace softgauss::gdd {
 
@@ -32,7 +32,7 @@ struct GoalMark {
 };
 
 /// How far a robot is from a goal, in the goal's own unit.
-struct GoalFigure {
+struct GoalError {
   double value = 0.0;       ///< ≥ 0
   const char* unit = "m";   ///< of the value
   double met = kMetLength;  ///< the goal is met where the value is at most this
@@ -54,7 +54,7 @@ class Goal {
  public:
   double startTime = -kInfinity;  ///< the goal acts from here on [s]
   double endTime = kInfinity;     ///< and before this [s]
-  bool onlyRegularises = false;   ///< holds what other goals leave free: no aim of its own
+  bool isRegulariser = false;     ///< holds what other goals leave free: no aim of its own
 
   virtual ~Goal() = default;
   bool actsAt(double time) const { return startTime <= time && time < endTime; }
@@ -72,10 +72,10 @@ class Goal {
   virtual std::optional<GoalMark> mark(const GoalContext&) const { return std::nullopt; }
   /// Appends how far the robot is from the goal; nothing where it has no aim that one could reach,
   /// or none now. By default the distance of its mark.
-  virtual void figures(const GoalContext& context, const ContactForces& contacts,
-                       std::vector<GoalFigure>& out) const;
+  virtual void errors(const GoalContext& context, const ContactForces& contacts,
+                      std::vector<GoalError>& out) const;
   /// Whether it may have a figure later where it has none now, as what is of forces.
-  virtual bool findsFiguresLater() const { return false; }
+  virtual bool hasLaterErrors() const { return false; }
   /// Distance from the goal [m]; nothing for a goal that is no place.
   std::optional<double> error(const GoalContext& context) const {
     const std::optional<GoalMark> m = mark(context);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gdd/goal_directed_islands.hpp"
+#include "softgauss/gdd/goal_directed_islands.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -8,9 +8,10 @@ namespace softgauss::gdd {
 namespace {
 
 [[noreturn]] void failTied(const std::string& element, const std::string& what) {
-  throw ModelError(
-      {}, element,
-      what + " robots that may be apart, expected none where islands are solved apart");
+  throw ModelError({}, element,
+                   what +
+                       " robots that may be in different islands, expected none where islands are "
+                       "solved separately");
 }
 
 /// The whole's actuators that pull dofs of the island, in its dofs; `taken`: which they are.
@@ -45,7 +46,7 @@ ForceMetric metricWithin(const ForceMetric& metric, const Model& whole, const Su
     if (here < 0) continue;
     const VectorX column = R.col(i);
     island.gather(whole, column, part);
-    if (part.squaredNorm() != column.squaredNorm()) failTied("price of force", "ties");
+    if (part.squaredNorm() != column.squaredNorm()) failTied("control cost", "ties");
     ofPart.col(here) = part;
   }
   return ForceMetric::dense(ofPart);
@@ -75,20 +76,20 @@ class GoalDirectedIslands::Control final : public IslandControl {
       concerned_.push_back(here != nullptr);
       if (here) goals.push_back(std::move(here));
     }
-    ControlBox box(island_.model);
+    ControlLimits limits(island_.model);
     actuators_.clear();
-    if (from.box.transmission)
-      box.transmission = std::make_shared<const Transmission>(
-          island_.model.nv, actuatorsWithin(*from.box.transmission, whole, island_, actuators_));
-    island_.gather(whole, from.box.lower, box.lower);
-    island_.gather(whole, from.box.upper, box.upper);
-    mayChoose_ = (box.lower.array() < box.upper.array()).any();
-    mustPull_ = !((box.lower.array() <= 0.0) && (box.upper.array() >= 0.0)).all();
+    if (from.limits.transmission)
+      limits.transmission = std::make_shared<const Transmission>(
+          island_.model.nv, actuatorsWithin(*from.limits.transmission, whole, island_, actuators_));
+    island_.gather(whole, from.limits.lower, limits.lower);
+    island_.gather(whole, from.limits.upper, limits.upper);
+    mayChoose_ = (limits.lower.array() < limits.upper.array()).any();
+    mustPull_ = !((limits.lower.array() <= 0.0) && (limits.upper.array() >= 0.0)).all();
     if (!hasActuators()) return part_.reset();
 
     if (!part_) part_ = std::make_unique<GoalDirectedController>(island_.model);
     part_->goals = std::move(goals);
-    part_->box = std::move(box);
+    part_->limits = std::move(limits);
     part_->forceMetric = metricWithin(from.forceMetric, whole, island_);
     part_->controlCost = from.controlCost;
     part_->solver = from.solver;
@@ -158,12 +159,12 @@ GoalDirectedIslands::GoalDirectedIslands(const Model& model, GoalDirectedControl
 GoalDirectedIslands::~GoalDirectedIslands() = default;
 
 void GoalDirectedIslands::changed() {
-  if (const int i = controller_.box.firstBad(model_.nv); i >= 0)
+  if (const int i = controller_.limits.firstBad(model_.nv); i >= 0)
     throw ModelError({}, "control box",
                      "has bounds that cross or are not numbers at coordinate " + std::to_string(i));
   for (Control* control : controls_) control->read();
   controller_.control.setZero(model_.nv);
-  const auto& transmission = controller_.box.transmission;
+  const auto& transmission = controller_.limits.transmission;
   controller_.commands.setZero(
       transmission ? static_cast<Eigen::Index>(transmission->actuators().size()) : 0);
   acting_.assign(controller_.goals.size(), 0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gdd/goal_directed_step.hpp"
+#include "softgauss/gdd/goal_directed_step.hpp"
 
 #include <chrono>
 
@@ -34,12 +34,12 @@ const VectorX* GoalDirectedController::solve(Solver& used, const Model& model, c
   // A disturbance is not the control's: it belongs to what the control has to cope with.
   data.forces.c -= data.forces.tau;
   cost_.clear(forceMetric);
-  if (controlCost == ControlCost::aboutGravity && box.firstBad(model.nv) < 0)
-    cost_.setFreeForce(holding_.compute(model, state, box, data));
+  if (controlCost == ControlCost::aboutGravity && limits.firstBad(model.nv) < 0)
+    cost_.setFreeControl(holding_.compute(model, state, limits, data));
   for (const auto& goal : goals)
     if (goal->actsAt(state.time)) goal->addCost({model, state, data}, cost_);
-  data.stats.refusedGuesses += refuses(used, state.warmstart);
-  report = solveOneSided(expansion, used, model, cost_, box, data, state.warmstart, between_);
+  data.stats.invalidWarmStarts += refuses(used, state.warmstart);
+  report = solveOneSided(expansion, used, model, cost_, limits, data, state.warmstart, between_);
   const GddReport solved = report;
   report.addEarlier(earlier_);
   earlier_.addCounts(solved);
@@ -50,8 +50,8 @@ const VectorX* GoalDirectedController::solve(Solver& used, const Model& model, c
     return nullptr;
   }
 
-  box.clamp(expansion.force(), control, coordinates_);
-  box.commands(coordinates_, commands);
+  limits.clamp(expansion.force(), control, coordinates_);
+  limits.commands(coordinates_, commands);
   setAppliedForce(control, data.forces);
   if (data.stages)  // an integrator that looks at the dynamics again
     held_.tau = outside_.size() == model.nv ? VectorX(outside_ + control) : control;
@@ -74,7 +74,7 @@ SolveStatus GoalDirectedController::step(const Model& model, const Input& input,
                                          Data& data, ContactSource* contacts, bool posed) noexcept {
   held_ = input;
   // Where there is nothing to choose, nobody has to know what friction answers.
-  held_.softFriction = input.softFriction || box.open();
+  held_.softFriction = input.softFriction || limits.open();
   outside_ = input.tau;
   solveTime = 0.0;
   earlier_ = {};

@@ -3,20 +3,20 @@
 
 /// Goal directed dynamics: a step whose control is found from goals (figure 1 of the paper).
 ///
-/// Solve (T.17) for the acceleration that the goals want and the actuators can cause; clamp the
-/// control to its box; run forward dynamics from that acceleration; integrate. Solver 2 ends
+/// Solve (8.1) for the acceleration that the goals want and the actuators can cause; clamp the
+/// control to its limits; run forward dynamics from that acceleration; integrate. Solver 2 ends
 /// on the physics: it clamps nothing, and forward dynamics has nothing left to do.
 
 #include <memory>
 #include <vector>
 
-#include "engine/step/step.hpp"
-#include "gdd/active_set.hpp"
-#include "gdd/augmented_lagrangian.hpp"
-#include "gdd/expanded_solve.hpp"
-#include "gdd/goal.hpp"
-#include "gdd/holding_force.hpp"
-#include "gdd/one_sided_solve.hpp"
+#include "softgauss/engine/step/step.hpp"
+#include "softgauss/gdd/active_set.hpp"
+#include "softgauss/gdd/augmented_lagrangian.hpp"
+#include "softgauss/gdd/goal.hpp"
+#include "softgauss/gdd/gravity_compensation.hpp"
+#include "softgauss/gdd/one_sided_solve.hpp"
+#include "softgauss/gdd/sequential_quadratic_solve.hpp"
 
 namespace softgauss::gdd {
 
@@ -25,7 +25,7 @@ enum class GddSolver {
   activeSet             ///< solver 2, over controls; where contacts have elliptic cones, solver 1
 };
 
-/// From where the price of force counts.
+/// From where the control cost counts.
 enum class ControlCost {
   aboutGravity,  ///< what holds the robot at rest against gravity: the price pulls nowhere then
   total          ///< zero, as in the paper
@@ -37,13 +37,13 @@ class GoalDirectedController final : public StepControl {
   explicit GoalDirectedController(const Model& model);
 
   std::vector<std::unique_ptr<Goal>> goals;
-  ControlBox box;  ///< what the actuators can do; change it, or give them gears and couplings
+  ControlLimits limits;  ///< what the actuators can do; change it, or give them gears and couplings
   ForceMetric forceMetric;  ///< R, M⁻¹ unless set
   ControlCost controlCost = ControlCost::aboutGravity;
   GddSolver solver = GddSolver::activeSet;
   AugmentedLagrangian augmentedLagrangian;
   ActiveSet activeSet;
-  ExpandedSolve expansion;  ///< for goals that are not quadratic
+  SequentialQuadraticSolve expansion;  ///< for goals that are not quadratic
 
   VectorX control;   ///< τ = B u of the last step, 0 on unactuated dofs (nv) [N or N m]
   VectorX commands;  ///< u of the last step, of the actuators of box.transmission, in their order
@@ -51,13 +51,13 @@ class GoalDirectedController final : public StepControl {
   double solveTime = 0.0;  ///< wall time of the last step's GDD solves [s]
 
   /// One step. `input` acts besides the control (disturbances). On SolveStatus::notFinite, also
-  /// where the box is none (GddStatus::badBox), the state is left as it was. `posed` as of
+  /// where the box is none (GddStatus::badLimits), the state is left as it was. `posed` as of
   /// softgauss::step().
   SolveStatus step(const Model& model, const Input& input, State& state, Data& data,
                    ContactSource* contacts, bool posed = false) noexcept;
 
   const VectorX* apply(const Model& model, const State& state, Data& data) noexcept override;
-  bool acts() const noexcept override { return box.open(); }
+  bool acts() const noexcept override { return limits.open(); }
   void keep(WarmStart& warmstart) noexcept override;
   /// Of the last GDD solve, before the final forward step (nv).
   const VectorX& acceleration() const { return expansion.acceleration(); }
@@ -68,7 +68,7 @@ class GoalDirectedController final : public StepControl {
 
   GddReport earlier_;  ///< parts of the step that are taken, and what was spent beside
   GoalCost cost_;
-  HoldingForce holding_;
+  GravityCompensation holding_;
   WarmStart between_;    ///< from one solve to the next of a step
   VectorX coordinates_;  ///< y of the control (nv)
   Input held_;           ///< over the step, with soft friction; its τ is the control's at the end

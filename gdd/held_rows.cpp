@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gdd/held_rows.hpp"
+#include "softgauss/gdd/held_rows.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,19 +7,19 @@
 
 namespace softgauss::gdd {
 
-void HeldRows::hold(Knot knot, const Constraints& constraints) {
+void HeldRows::hold(Breakpoint breakpoint, const Constraints& constraints) {
   for (int i = 0; i < count_; ++i)
-    if (rows_[i].knot == knot) return;
+    if (rows_[i].breakpoint == breakpoint) return;
   if (count_ == static_cast<int>(rows_.size())) {
     rows_.emplace_back();
     rows_.back().J.resize(dofs_);
     S_.resize(count_ + 1, count_ + 1);
   }
   Row& row = rows_[count_++];
-  row.knot = knot;
-  row.jump = constraints.curvatureJump(knot);
+  row.breakpoint = breakpoint;
+  row.jump = constraints.curvatureJump(breakpoint);
   row.drift = 0.0;
-  constraints.knotGradient(knot, row.J);
+  constraints.breakpointGradient(breakpoint, row.J);
 }
 
 void HeldRows::release(int i) {
@@ -29,19 +29,20 @@ void HeldRows::release(int i) {
 
 void HeldRows::place(Constraints& constraints) {
   for (int i = 0; i < count_; ++i) {
-    rows_[i].drift = constraints.aboveKnot(rows_[i].knot);
-    if (!constraints.piecewiseQuadratic()) constraints.knotGradient(rows_[i].knot, rows_[i].J);
-    constraints.placeAtKnot(rows_[i].knot, false);
+    rows_[i].drift = constraints.aboveBreakpoint(rows_[i].breakpoint);
+    if (!constraints.piecewiseQuadratic())
+      constraints.breakpointGradient(rows_[i].breakpoint, rows_[i].J);
+    constraints.placeAtBreakpoint(rows_[i].breakpoint, false);
   }
 }
 
 void HeldRows::holdOnRay(Constraints& constraints) const {
-  for (int i = 0; i < count_; ++i) constraints.holdOnRay(rows_[i].knot.row);
+  for (int i = 0; i < count_; ++i) constraints.holdOnRay(rows_[i].breakpoint.row);
 }
 
 void HeldRows::projectPrepared(VectorX& d) {
   // Cholesky of S = J H⁻¹ Jᵀ, leaving out rows that depend on those before (a pyramid's four
-  // edges at their knots have rank three).
+  // edges at their breakpoints have rank three).
   constexpr double kDependent = 1e-9;
   for (int i = 0; i < count_; ++i) {
     Row& row = rows_[i];
@@ -73,8 +74,8 @@ void HeldRows::projectPrepared(VectorX& d) {
   }
 }
 
-int HeldRows::leaving(const VectorX& w, const ForceTerms& forces, const Constraints& constraints,
-                      bool& towardsStiff) const {
+int HeldRows::leaving(const VectorX& w, const ContactForceTerms& forces,
+                      const Constraints& constraints, bool& towardsStiff) const {
   // Descent per unit of the row's own residual, in units of the jump it would face.
   constexpr double kTolerance = 1e-9;
   int worst = -1;
@@ -82,7 +83,7 @@ int HeldRows::leaving(const VectorX& w, const ForceTerms& forces, const Constrai
   for (int i = 0; i < count_; ++i) {
     const Row& row = rows_[i];
     // Of the gradient, from the free to the stiff side, as if the free side were above.
-    const double jump = -row.jump * (row.J.dot(w) - forces.pull(row.knot, constraints)),
+    const double jump = -row.jump * (row.J.dot(w) - forces.pull(row.breakpoint, constraints)),
                  sign = row.jump < 0.0 ? 1.0 : -1.0;
     const double free = sign * row.multiplier, stiff = jump - free;
     const double tolerance = kTolerance * (std::abs(jump) + std::abs(row.multiplier));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gdd/hessian.hpp"
+#include "softgauss/gdd/hessian.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -44,18 +44,18 @@ void GaussNewtonHessian::setCell(Data& data) {
 }
 
 bool GaussNewtonHessian::factorize(const Data& data, const TreeFactor& massFactor,
-                                   const VectorX& boundCurvature, const ControlBox& box,
-                                   GoalCost& cost, ForceTerms& forces) {
+                                   const VectorX& boundCurvature, const ControlLimits& limits,
+                                   GoalCost& cost, ContactForceTerms& forces) {
   const int n = H_.size();
   H_.setZero();
-  if (cost.price().hasInverseMass()) {
+  if (cost.controlCost().hasInverseMass()) {
     // M̂ + 2 G + G M̂⁻¹G
     H_.add(data.inertia.hat());
     H_.add(G_, 2.0);
     addReflectedContacts(data, massFactor);
   }
   H_.add(data.inertia.M, cost.metricWeight());
-  addForceTerms(boundCurvature, box, cost.price());
+  addForceTerms(boundCurvature, limits, cost.controlCost());
   cost.addRowCurvature(H_);
   if (forces.active()) {
     forces.setJacobian(data.constraints, n);
@@ -121,19 +121,19 @@ void GaussNewtonHessian::addReflectedContacts(const Data& data, const TreeFactor
 }
 
 /// H gains one rank √c P x for each force x that costs ½ c (x·g)².
-void GaussNewtonHessian::addForceTerms(const VectorX& boundCurvature, const ControlBox& box,
-                                       const ForcePrice& price) {
+void GaussNewtonHessian::addForceTerms(const VectorX& boundCurvature, const ControlLimits& limits,
+                                       const ControlCostTerm& controlCost) {
   const int n = P_.size();
   forceRows_.clear();
   for (int i = 0; i < n; ++i) {
-    const bool plain = box.isPlain(i);
-    const double curvature = price.diagonal()[i] + (plain ? boundCurvature[i] : 0.0);
+    const bool plain = limits.isPlain(i);
+    const double curvature = controlCost.diagonal()[i] + (plain ? boundCurvature[i] : 0.0);
     if (curvature != 0.0) addForceRow(i, curvature);
     if (plain || boundCurvature[i] == 0.0) continue;
-    force_ = box.transmission->C().row(i).transpose();
+    force_ = limits.transmission->C().row(i).transpose();
     addForceRow(force_, boundCurvature[i]);
   }
-  for (int k = 0; k < price.directionCount(); ++k) addForceRow(price.direction(k), 1.0);
+  for (int k = 0; k < controlCost.directionCount(); ++k) addForceRow(controlCost.direction(k), 1.0);
   if (forceRows_.empty()) return;
   const int rows = static_cast<int>(forceRows_.size()) / n;
   for (int i = 0; i < n; ++i) addGramRow(forceRows_.data(), rows, n, i, i + 1, H_.row(i));

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// The Gauss–Newton Hessian of (T.19), for R = M⁻¹ assembled without an n³ product:
+/// The Gauss–Newton Hessian of (10.2), for R = M⁻¹ assembled without an n³ product:
 ///
 ///   H = P M⁻¹ P + P ψ″ P + ∇²ℓ,   P = M + G,   G = Jᵀ∇²s J
-///   P M⁻¹ P = M + 2 G + Cᵀ D⁻¹ C,   C = L⁻ᵀ G,   M = LᵀDL                              (T.20)
+///   P M⁻¹ P = M + 2 G + Cᵀ D⁻¹ C,   C = L⁻ᵀ G,   M = LᵀDL                              (10.4)
 ///
 /// C is non-zero only at the dofs that active rows move, and P ψ″ P has one rank-one term for each
 /// bound that is in force, of a coordinate y_i = C_i g the term P C_iᵀ ψ″ C_i P. Prices of forces
-/// are such terms too, and so is any other R, column by column (force_price.hpp).
+/// are such terms too, and so is any other R, column by column (control_cost_term.hpp).
 
 #include <vector>
 
-#include "engine/step/data.hpp"
-#include "gdd/cost.hpp"
-#include "gdd/problem.hpp"
+#include "softgauss/engine/step/data.hpp"
+#include "softgauss/gdd/cost.hpp"
+#include "softgauss/gdd/problem.hpp"
 
 namespace softgauss::gdd {
 
@@ -29,7 +29,7 @@ class GaussNewtonHessian {
   /// Factors H, with ∇²ℓ of contact forces in this cell. `massFactor` is of M̂, `boundCurvature` ψ″
   /// of every coordinate. Returns false when H is not positive definite.
   bool factorize(const Data& data, const TreeFactor& massFactor, const VectorX& boundCurvature,
-                 const ControlBox& box, GoalCost& cost, ForceTerms& forces);
+                 const ControlLimits& limits, GoalCost& cost, ContactForceTerms& forces);
   /// x ← H⁻¹ x.
   void solve(VectorX& x) const { factor_.solve(x); }
   /// y ← P x.
@@ -37,7 +37,8 @@ class GaussNewtonHessian {
 
  private:
   void addReflectedContacts(const Data& data, const TreeFactor& massFactor);
-  void addForceTerms(const VectorX& boundCurvature, const ControlBox& box, const ForcePrice& price);
+  void addForceTerms(const VectorX& boundCurvature, const ControlLimits& limits,
+                     const ControlCostTerm& controlCost);
   void addForceRow(int dof, double curvature);
   void addForceRow(const Eigen::Ref<const VectorX>& force, double curvature);
 

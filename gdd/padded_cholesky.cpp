@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gdd/padded_cholesky.hpp"
+#include "softgauss/gdd/padded_cholesky.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "engine/core/vector_clones.hpp"
+#include "softgauss/engine/core/vector_clones.hpp"
 
 namespace softgauss::gdd {
 namespace {

@@ -6,8 +6,8 @@
 
 #include <vector>
 
-#include "engine/core/types.hpp"
-#include "engine/core/vector_kernels.hpp"
+#include "softgauss/engine/core/types.hpp"
+#include "softgauss/engine/core/vector_kernels.hpp"
 
 namespace softgauss::gdd {
 

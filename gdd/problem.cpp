@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gdd/problem.hpp"
+#include "softgauss/gdd/problem.hpp"
 
 namespace softgauss::gdd {
 
-ControlBox::ControlBox(const Model& model, std::vector<Actuator> actuators) : ControlBox(model) {
+ControlLimits::ControlLimits(const Model& model, std::vector<Actuator> actuators)
+    : ControlLimits(model) {
   transmission = std::make_shared<const Transmission>(model.nv, std::move(actuators));
   const bool actuation = model.options.effects.has(Effect::actuation);
   for (int i = 0; i < model.nv; ++i)
@@ -15,7 +16,7 @@ ControlBox::ControlBox(const Model& model, std::vector<Actuator> actuators) : Co
   }
 }
 
-void ControlBox::clamp(const VectorX& g, VectorX& tau, VectorX& y) const {
+void ControlLimits::clamp(const VectorX& g, VectorX& tau, VectorX& y) const {
   coordinates(g, y);
   tau = g;
   bool inside = true;

@@ -3,29 +3,29 @@
 
 /// The goal directed dynamics problem in its inverse form, equation (8) of the paper:
 ///
-///   min_a  ½ g(a)ᵀ R g(a) + ℓ(a)   subject to  lower ≤ y ≤ upper,  g(a) = T y               (T.17)
+///   min_a  ½ g(a)ᵀ R g(a) + ℓ(a)   subject to  lower ≤ y ≤ upper,  g(a) = T y                (8.1)
 ///
-/// g is the inverse dynamics (T.2), y its coordinates: commands u of actuators, and forces z that
-/// no actuator causes (T.65). T is the identity unless actuators have gears or drive several dofs.
+/// g is the inverse dynamics (1.2), y its coordinates: commands u of actuators, and forces z that
+/// no actuator causes (8.3). T is the identity unless actuators have gears or drive several dofs.
 /// A coordinate without an actuator has lower = upper = 0 (the paper's g_z = 0), a command its
-/// effort box, or no bound. A solution is an acceleration that the actuators can cause, with
+/// effort limits, or no bound. A solution is an acceleration that the actuators can cause, with
 /// contact forces that the physics agrees to.
 
 #include <memory>
 
-#include "engine/model/model.hpp"
-#include "gdd/transmission.hpp"
+#include "softgauss/engine/model/model.hpp"
+#include "softgauss/gdd/transmission.hpp"
 
 namespace softgauss::gdd {
 
-struct ControlBox {
+struct ControlLimits {
   VectorX lower;  ///< (nv) of y [N or N m, or the unit of a command]
   VectorX upper;
-  std::shared_ptr<const Transmission> transmission;  ///< null: y = g, τ is selected by the box
+  std::shared_ptr<const Transmission> transmission;  ///< null: y = g, τ is selected by the limits
 
-  ControlBox() = default;
+  ControlLimits() = default;
   /// One actuator for each actuated dof, with the effort of its joint.
-  explicit ControlBox(const Model& model) : lower(model.nv), upper(model.nv) {
+  explicit ControlLimits(const Model& model) : lower(model.nv), upper(model.nv) {
     const bool actuation = model.options.effects.has(Effect::actuation);
     for (int i = 0; i < model.nv; ++i) {
       const Dof& dof = model.dofs[static_cast<std::size_t>(i)];
@@ -36,7 +36,7 @@ struct ControlBox {
   }
   /// These actuators. A dof that none of them pulls keeps its own, if it has one; of one that they
   /// pull, the joint's effort is no bound any more. Throws ModelError as Transmission does.
-  ControlBox(const Model& model, std::vector<Actuator> actuators);
+  ControlLimits(const Model& model, std::vector<Actuator> actuators);
 
   /// The first coordinate whose bounds leave no finite value, or −1: a box has lower ≤ upper, lower
   /// < ∞ and upper > −∞ (nv).
@@ -48,7 +48,7 @@ struct ControlBox {
   }
   /// Whether the box leaves anything to choose.
   bool open() const { return (lower.array() != 0.0).any() || (upper.array() != 0.0).any(); }
-  /// Opens the box of every force that no actuator causes: root forces are then allowed, and
+  /// Opens the limits of every force that no actuator causes: root forces are then allowed, and
   /// applied.
   void allowRootForces(const Model& model) {
     for (int i = 0; i < model.nv; ++i)
@@ -81,8 +81,8 @@ struct ControlBox {
       x.noalias() += transmission->C().transpose() * s;
   }
   /// The largest force on a dof that coordinate i = 1 makes.
-  double size(Eigen::Index i) const {
-    return transmission ? transmission->size(static_cast<int>(i)) : 1.0;
+  double forcePerUnit(Eigen::Index i) const {
+    return transmission ? transmission->forcePerUnit(static_cast<int>(i)) : 1.0;
   }
 
   /// How far coordinates of g are outside their bounds, as the force that this makes; the largest
@@ -91,12 +91,12 @@ struct ControlBox {
     double most = 0.0;
     for (Eigen::Index i = 0; i < g.size(); ++i) {
       const double y = coordinate(i, g);
-      const double over = std::abs(y - std::min(std::max(y, lower[i]), upper[i])) * size(i);
+      const double over = std::abs(y - std::min(std::max(y, lower[i]), upper[i])) * forcePerUnit(i);
       if (!(over <= most)) most = over;  // NaN stays
     }
     return most;
   }
-  /// tau ← the force within the box that has the coordinates of g, clamped; y ← those.
+  /// tau ← the force within the limits that has the coordinates of g, clamped; y ← those.
   void clamp(const VectorX& g, VectorX& tau, VectorX& y) const;
   VectorX clamp(const VectorX& g) const {
     VectorX tau, y;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gdd/program_face.hpp"
+#include "softgauss/gdd/program_face.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "engine/core/vector_clones.hpp"
-#include "gdd/weighted_rows.hpp"
+#include "softgauss/engine/core/vector_clones.hpp"
+#include "softgauss/gdd/weighted_rows.hpp"
 
 namespace softgauss::gdd {
 namespace {

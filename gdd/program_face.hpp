@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// The quadratic program (T.61) by guessing its face: the constraints n_c·p ≥ b_c, bounds and rows,
+/// The quadratic program (10.8) by guessing its face: the constraints n_c·p ≥ b_c, bounds and rows,
 /// that hold with equality. With K = L Lᵀ and w_c = L⁻¹n_c the minimum on a face A is
 ///
 ///   p = L⁻ᵀ(Σ_c ν_c w_c − L⁻¹q),      Σ_d (w_c·w_d) ν_d = b_c + w_c·L⁻¹q,      c, d in A
@@ -13,11 +13,11 @@
 
 #include <vector>
 
-#include "gdd/padded_cholesky.hpp"
+#include "softgauss/gdd/padded_cholesky.hpp"
 
 namespace softgauss::gdd {
 
-/// What (T.61) minimises over; p = 0 is feasible.
+/// What (10.8) minimises over; p = 0 is feasible.
 struct ProgramData {
   const VectorX* q = nullptr;
   const VectorX* lower = nullptr;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gdd/quadratic_program.hpp"
+#include "softgauss/gdd/quadratic_program.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "engine/core/check.hpp"
-#include "engine/core/vector_clones.hpp"
-#include "engine/core/vector_kernels.hpp"
-#include "gdd/weighted_rows.hpp"
+#include "softgauss/engine/core/check.hpp"
+#include "softgauss/engine/core/vector_clones.hpp"
+#include "softgauss/engine/core/vector_kernels.hpp"
+#include "softgauss/gdd/weighted_rows.hpp"
 
 namespace softgauss::gdd {
 namespace {
@@ -149,7 +149,7 @@ bool QuadraticProgram::minimize(const VectorX& q, const VectorX& lower, const Ve
   return solved;
 }
 
-double QuadraticProgram::promise(const VectorX& q) const {
+double QuadraticProgram::predictedDecrease(const VectorX& q) const {
   const int n = factor_.size();
   scratch_.assign(static_cast<std::size_t>(factor_.stride()), 0.0);
   Eigen::Map<VectorX> left(scratch_.data(), n);  // ρ, then L⁻¹ρ

@@ -3,7 +3,7 @@
 
 /// A small convex quadratic program, by the dual active-set method of Goldfarb and Idnani (1983):
 ///
-///   min_p  ½ pᵀK p + qᵀp    subject to   lower ≤ p ≤ upper,   N p ≥ −distance               (T.61)
+///   min_p  ½ pᵀK p + qᵀp    subject to   lower ≤ p ≤ upper,   N p ≥ −distance               (10.8)
 ///
 /// K is symmetric positive definite. The method starts at −K⁻¹q and takes in violated constraints
 /// one at a time, so linearly dependent rows of N do no harm: one that depends on active rows
@@ -12,8 +12,8 @@
 
 #include <vector>
 
-#include "engine/core/types.hpp"
-#include "gdd/program_face.hpp"
+#include "softgauss/engine/core/types.hpp"
+#include "softgauss/gdd/program_face.hpp"
 
 namespace softgauss::gdd {
 
@@ -27,7 +27,7 @@ class QuadraticProgram {
                 const RowMajorMatrixX& N, const VectorX& distance, int rows);
   /// What the program would promise at its solution, had it the gradient q there: the decrease, by
   /// the multipliers that it has.
-  double promise(const VectorX& q) const;
+  double predictedDecrease(const VectorX& q) const;
 
   const VectorX& solution() const { return p_; }
   double decrease() const { return decrease_; }  ///< −(½ pᵀK p + qᵀp) ≥ 0

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gdd/ray.hpp"
+#include "softgauss/gdd/ray.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "engine/solver/line_search.hpp"
+#include "softgauss/engine/solver/line_search.hpp"
 
 namespace softgauss::gdd {
 
@@ -20,12 +20,12 @@ Jet Ray::slopeAt(const BoundPenalty& bounds, double tau) const {
 
 RayResult Ray::minimize(const Constraints& constraints, const TreeFactor& massFactor,
                         const BoundPenalty& bounds, const VectorX& g, const VectorX& rate,
-                        double costSlope, double costCurvature, ForceTerms& forces) {
+                        double costSlope, double costCurvature, ContactForceTerms& forces) {
   crossings_.clear();
   constraints.findCrossings(crossings_);
   const auto later = [](const Crossing& a, const Crossing& b) {
     if (a.alpha != b.alpha) return a.alpha > b.alpha;
-    return a.knot > b.knot;
+    return a.breakpoint > b.breakpoint;
   };
   std::make_heap(crossings_.begin(), crossings_.end(), later);
 
@@ -35,8 +35,8 @@ RayResult Ray::minimize(const Constraints& constraints, const TreeFactor& massFa
   for (;;) {
     // The quadratic of this interval.
     bounds.multiplyR(massFactor, rate_, Rrate_);
-    bounds.box.coordinates(g_, y_);
-    bounds.box.coordinates(rate_, yRate_);
+    bounds.limits.coordinates(g_, y_);
+    bounds.limits.coordinates(rate_, yRate_);
     smoothSlope_ = g_.dot(Rrate_) + costSlope + result.alpha * costCurvature;
     if (const VectorX* free = bounds.freeSlope()) smoothSlope_ -= free->dot(rate_);
     smoothCurvature_ = rate_.dot(Rrate_) + costCurvature;
@@ -63,11 +63,11 @@ RayResult Ray::minimize(const Constraints& constraints, const TreeFactor& massFa
     std::pop_heap(crossings_.begin(), crossings_.end(), later);
     crossings_.pop_back();
     g_ += length * rate_;
-    constraints.addRow(crossing.knot.row, crossing.curvatureJump * crossing.rate, rate_);
+    constraints.addRow(crossing.breakpoint.row, crossing.curvatureJump * crossing.rate, rate_);
     forces.advance(length);
     forces.cross(crossing, constraints);
     result.alpha = crossing.alpha;
-    result.last = crossing.knot;
+    result.last = crossing.breakpoint;
     ++result.crossings;
   }
 }

@@ -1,45 +1,45 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// Exact line search for the augmented Lagrangian Φ along a + α d (T.18).
+/// Exact line search for the augmented Lagrangian Φ along a + α d (10.1).
 ///
-/// Between two knots of the rows g is affine in α, so Φ is convex there and piecewise quadratic,
-/// its only pieces being those of the bounds, which are on y = C g. The search walks from knot to
-/// knot: the rate dg/dα gains s″-jump · ẋ · Jᵀ at each, and the rates of contact forces change
-/// alike. It ends at the first local minimum: inside an interval, or at a knot past which the slope
-/// is not negative (a kink).
+/// Between two breakpoints of the rows g is affine in α, so Φ is convex there and piecewise
+/// quadratic, its only pieces being those of the bounds, which are on y = C g. The search walks
+/// from breakpoint to breakpoint: the rate dg/dα gains s″-jump · ẋ · Jᵀ at each, and the rates of
+/// contact forces change alike. It ends at the first local minimum: inside an interval, or at a
+/// breakpoint past which the slope is not negative (a kink).
 
 #include <vector>
 
-#include "engine/step/data.hpp"
-#include "gdd/force_cost.hpp"
-#include "gdd/force_price.hpp"
-#include "gdd/problem.hpp"
+#include "softgauss/engine/step/data.hpp"
+#include "softgauss/gdd/contact_force_cost.hpp"
+#include "softgauss/gdd/control_cost_term.hpp"
+#include "softgauss/gdd/problem.hpp"
 
 namespace softgauss::gdd {
 
-/// The penalty ψ of the bounds on y (T.18), and the price R + W of force.
+/// The penalty ψ of the bounds on y (10.1), and the price R + W of force.
 struct BoundPenalty {
-  const ControlBox& box;
+  const ControlLimits& limits;
   const VectorX& lambda;  ///< multipliers
   const VectorX& rho;
-  const ForcePrice* price = nullptr;  ///< null: M⁻¹ alone
+  const ControlCostTerm* controlCost = nullptr;  ///< null: M⁻¹ alone
 
   /// Rx ← (R + W) x.
   void multiplyR(const TreeFactor& massFactor, const VectorX& x, VectorX& Rx) const {
-    if (price) return price->multiply(massFactor, x, Rx);
+    if (controlCost) return controlCost->multiply(massFactor, x, Rx);
     Rx = x;
     massFactor.solve(Rx);
   }
   /// R ĝ, the part of the price's slope that does not depend on g; none where ĝ = 0.
   const VectorX* freeSlope() const {
-    return price && price->hasFree() ? &price->freeSlope() : nullptr;
+    return controlCost && controlCost->hasFree() ? &controlCost->freeSlope() : nullptr;
   }
-  double freeCost() const { return price ? price->freeCost() : 0.0; }  ///< ½ ĝᵀR ĝ
+  double freeCost() const { return controlCost ? controlCost->freeCost() : 0.0; }  ///< ½ ĝᵀR ĝ
   /// ½ ρ (t − clamp t)², its slope and curvature in y_i. A bound just met has curvature 0.
   Jet at(Eigen::Index i, double y) const {
     const double t = y + lambda[i] / rho[i];
-    const double lower = box.lower[i], upper = box.upper[i];
+    const double lower = limits.lower[i], upper = limits.upper[i];
     const double over = t > upper ? t - upper : (t < lower ? t - lower : 0.0);
     const bool active = over != 0.0 || lower == upper;
     return {0.5 * rho[i] * over * over, rho[i] * over, active ? rho[i] : 0.0};
@@ -48,10 +48,10 @@ struct BoundPenalty {
 
 struct RayResult {
   double alpha = 0.0;
-  bool kink = false;  ///< ended at a knot of a row, `last`
+  bool kink = false;  ///< ended at a breakpoint of a row, `last`
   bool bend = false;  ///< ended where the slope jumps at an elliptic cone
-  int crossings = 0;  ///< knots passed
-  Knot last;          ///< the last knot passed
+  int crossings = 0;  ///< breakpoints passed
+  Breakpoint last;    ///< the last breakpoint passed
 };
 
 class Ray {
@@ -68,7 +68,7 @@ class Ray {
   /// (Constraints::setRay).
   RayResult minimize(const Constraints& constraints, const TreeFactor& massFactor,
                      const BoundPenalty& bounds, const VectorX& g, const VectorX& rate,
-                     double costSlope, double costCurvature, ForceTerms& forces);
+                     double costSlope, double costCurvature, ContactForceTerms& forces);
 
  private:
   Jet slopeAt(const BoundPenalty& bounds, double tau) const;

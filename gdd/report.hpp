@@ -9,18 +9,19 @@ namespace softgauss::gdd {
 
 enum class GddStatus {
   converged,
-  kink,            ///< converged, with rows held at their knots
-  iterationLimit,  ///< the best point so far
-  bend,       ///< no descent along the direction, past a kink of an elliptic cone: not certified
+  nonsmoothMinimum,  ///< converged, with rows held at their breakpoints
+  iterationLimit,    ///< the best point so far
+  nonsmoothStall,    ///< no descent along the direction, past a kink of an elliptic cone: not
+                     ///< certified
   undecided,  ///< solver 2: at a kink of more dependent rows than it tries in all combinations, or
               ///< where rounding keeps its quadratic program from an answer
-  badBox,     ///< bounds of a control cross or are not numbers: nothing was solved
+  badLimits,  ///< bounds of a control cross or are not numbers: nothing was solved
   notFinite
 };
 
 /// Whether the solve has no control to apply.
 constexpr bool isRefused(GddStatus status) {
-  return status == GddStatus::badBox || status == GddStatus::notFinite;
+  return status == GddStatus::badLimits || status == GddStatus::notFinite;
 }
 
 struct GddReport {
@@ -29,10 +30,10 @@ struct GddReport {
   int dualUpdates = 0;  ///< of solver 1
   int factorizations = 0;
   int cells = 0;              ///< solver 2: cells in which a quadratic program was solved
-  int heldRows = 0;           ///< rows at their knots at the end
+  int heldRows = 0;           ///< rows at their breakpoints at the end
   int restarts = 0;           ///< solver 1: cold, after a warm start that it could not factor
   int forwardIterations = 0;  ///< solver 2: Newton iterations of its one forward solve
-  double violation = 0.0;     ///< distance of y(a) from its box, as force [N or N m]
+  double violation = 0.0;     ///< distance of y(a) from its limits, as force [N or N m]
   /// Solver 1: max |∇Φ + J_Kᵀμ|ᵢ/√M_ii over max(1, max |∇ℓᵢ|/√M_ii). Solver 2: the decrease that
   /// its quadratic program promises still, over the objective; 1 where that has no answer.
   double stationarity = 0.0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gdd/transmission.hpp"
+#include "softgauss/gdd/transmission.hpp"
 
 #include <Eigen/QR>
 #include <algorithm>

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// How actuators pull: τ = B u, with any B of full column rank (T.64).
+/// How actuators pull: τ = B u, with any B of full column rank (8.2).
 ///
 /// An actuator has one command u and pulls each of its dofs by a coefficient times u: one dof for a
 /// motor with a gear, several for a differential or a tendon. A dof may have several actuators.
 /// With Z an orthonormal basis of the left null space of B, ZᵀB = 0, every generalised force is
-///   g = T y,   y = (u, z),   T = [B  Z],   T⁻¹ = C = [B⁺; Zᵀ],   B⁺ = (BᵀB)⁻¹Bᵀ (T.65)
+///   g = T y,   y = (u, z),   T = [B  Z],   T⁻¹ = C = [B⁺; Zᵀ],   B⁺ = (BᵀB)⁻¹Bᵀ (8.3)
 /// so that g = B u is z = Zᵀg = 0: no force that no actuator causes (a root force).
 ///
 /// T has a block for each set of dofs that actuators tie together, and is the identity elsewhere:
@@ -16,8 +16,8 @@
 #include <string>
 #include <vector>
 
-#include "engine/core/check.hpp"
-#include "engine/core/types.hpp"
+#include "softgauss/engine/core/check.hpp"
+#include "softgauss/engine/core/types.hpp"
 
 namespace softgauss::gdd {
 
@@ -51,7 +51,7 @@ class Transmission {
   /// Whether coordinate i is one of z, among dofs that actuators pull.
   bool isRootForce(int i) const { return kind_[static_cast<std::size_t>(i)] == Kind::root; }
   /// The largest force on a dof that coordinate i = 1 makes.
-  double size(int i) const { return size_[i]; }
+  double forcePerUnit(int i) const { return size_[i]; }
 
  private:
   enum class Kind : char { free, command, root };  ///< free: no actuator of the list pulls the dof

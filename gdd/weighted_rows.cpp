@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gdd/weighted_rows.hpp"
+#include "softgauss/gdd/weighted_rows.hpp"
 
-#include "engine/core/vector_clones.hpp"
-#include "engine/core/vector_kernels.hpp"
+#include "softgauss/engine/core/vector_clones.hpp"
+#include "softgauss/engine/core/vector_kernels.hpp"
 
 namespace softgauss::gdd {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/actuators.hpp"
+#include "softgauss/io/actuators.hpp"
 
 namespace softgauss::io {
 
-gdd::ControlBox controlBox(const Model& model, const std::vector<SceneActuator>& actuators) {
-  if (actuators.empty()) return gdd::ControlBox(model);
+gdd::ControlLimits controlLimits(const Model& model, const std::vector<SceneActuator>& actuators) {
+  if (actuators.empty()) return gdd::ControlLimits(model);
   std::vector<gdd::Actuator> list;
   for (const SceneActuator& actuator : actuators) {
     gdd::Actuator out;

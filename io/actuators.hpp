@@ -2,14 +2,14 @@
 #pragma once
 
 /// Actuators that drive joints through gears and couplings, as scene files list them
-/// (docs/scenes.md): force on a joint = coefficient · u, summed over the actuators (T.64).
+/// (docs/scenes.md): force on a joint = coefficient · u, summed over the actuators (8.2).
 
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "engine/model/model.hpp"
-#include "gdd/problem.hpp"
+#include "softgauss/engine/model/model.hpp"
+#include "softgauss/gdd/problem.hpp"
 
 namespace softgauss::io {
 
@@ -24,6 +24,6 @@ struct SceneActuator {
 /// What these can do, and every actuated joint that none of them drives by itself. Throws
 /// ModelError where a joint does not exist or has not one degree of freedom, or as
 /// gdd::Transmission does.
-gdd::ControlBox controlBox(const Model& model, const std::vector<SceneActuator>& actuators);
+gdd::ControlLimits controlLimits(const Model& model, const std::vector<SceneActuator>& actuators);
 
 }  // namespace softgauss::io

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/contact_links.hpp"
+#include "softgauss/io/contact_links.hpp"
 
 #include <map>
 #include <utility>

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "engine/model/model.hpp"
-#include "engine/step/snapshot.hpp"
+#include "softgauss/engine/model/model.hpp"
+#include "softgauss/engine/step/snapshot.hpp"
 
 namespace softgauss::io {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/contact_log.hpp"
+#include "softgauss/io/contact_log.hpp"
 
-#include "io/detail/row_file.hpp"
+#include "softgauss/io/detail/row_file.hpp"
 
 namespace softgauss::io {
 

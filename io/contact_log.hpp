@@ -12,9 +12,9 @@
 #include <memory>
 #include <vector>
 
-#include "engine/model/model.hpp"
-#include "engine/step/snapshot.hpp"
-#include "io/log.hpp"
+#include "softgauss/engine/model/model.hpp"
+#include "softgauss/engine/step/snapshot.hpp"
+#include "softgauss/io/log.hpp"
 
 namespace softgauss::io {
 

@@ -4,8 +4,8 @@
 #include <map>
 #include <set>
 
-#include "io/detail/text.hpp"
-#include "io/explain.hpp"
+#include "softgauss/io/detail/text.hpp"
+#include "softgauss/io/explain.hpp"
 
 namespace softgauss::io {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/explain.hpp"
+#include "softgauss/io/explain.hpp"
 
 #include <fmt/format.h>
 
@@ -8,11 +8,11 @@
 #include <map>
 #include <set>
 
-#include "engine/core/index.hpp"
-#include "engine/islands/units.hpp"
-#include "io/detail/text.hpp"
-#include "io/detail/text_table.hpp"
-#include "io/warning_list.hpp"
+#include "softgauss/engine/core/index.hpp"
+#include "softgauss/engine/islands/units.hpp"
+#include "softgauss/io/detail/text.hpp"
+#include "softgauss/io/detail/text_table.hpp"
+#include "softgauss/io/warning_list.hpp"
 
 namespace softgauss::io {
 namespace {
@@ -50,7 +50,8 @@ std::string headText(const Model& model, const ExplainContext& context) {
                   model.bodies.size() - 1);
   out += fmt::format("  {} degrees of freedom, {} actuated\n", model.nv, actuated);
   if (const int units = Units(model).size(); units > 1)
-    out += fmt::format("  {} units, solved apart with --islands while they do not touch\n", units);
+    out += fmt::format(
+        "  {} groups of trees, solved separately with --islands while they do not touch\n", units);
   out += fmt::format("  {:.6g} kg", mass);
   if (std::abs(mass - moving) > 1e-9 * mass)
     out += fmt::format(", of which {:.6g} kg move", moving);
@@ -110,8 +111,9 @@ std::string framesText(const Model& model) {
 
   std::string out;
   if (!massless.empty())
-    out += fmt::format("moving links without mass, carried by what hangs from them\n  {}\n",
-                       listed(massless, massless.size()));
+    out += fmt::format(
+        "moving links without mass, which move with the links that hang from them\n  {}\n",
+        listed(massless, massless.size()));
   if (!merged.empty()) {
     detail::TextTable table;
     for (const auto& [body, names] : merged)
@@ -159,9 +161,9 @@ std::string shapesText(const Model& model, const ExplainContext& context) {
   for (const FilteredPair& pair : context.filtered)
     byReason[pair.reason].push_back(fmt::format("{} - {}{}{}", pair.first, pair.second,
                                                 pair.detail.empty() ? "" : " ", pair.detail));
-  if (context.apartPairs > 0)
+  if (context.unreachablePairs > 0)
     out += fmt::format("  {} never tested: out of each other's reach\n",
-                       counted(static_cast<std::size_t>(context.apartPairs), "pair"));
+                       counted(static_cast<std::size_t>(context.unreachablePairs), "pair"));
   for (const auto& [reason, pairs] : byReason) {
     out += fmt::format("  {} never tested: {}\n", counted(pairs.size(), "pair"), reason);
     for (const std::string& pair : pairs) out += fmt::format("    {}\n", pair);
@@ -278,7 +280,7 @@ std::string effectsText(const Model& model, const ExplainContext& context) {
             mostRows(model, context, *effectFromName(note.name)), fmt::format("{} B", cost.bytes),
             found == context.costs.end() ? "-" : costText(cost.us), note.reason});
   }
-  return "effects that are simulated, and what calls them\n" + on.text() +
+  return "effects that are simulated, and the elements that call for them\n" + on.text() +
          "effects that are off, and why\n" + off.text();
 }
 

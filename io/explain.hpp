@@ -11,10 +11,10 @@
 #include <utility>
 #include <vector>
 
-#include "engine/model/model.hpp"
-#include "io/actuators.hpp"
-#include "io/urdf.hpp"
-#include "io/wrenches.hpp"
+#include "softgauss/engine/model/model.hpp"
+#include "softgauss/io/actuators.hpp"
+#include "softgauss/io/urdf.hpp"
+#include "softgauss/io/wrenches.hpp"
 
 namespace softgauss::io {
 
@@ -65,7 +65,7 @@ struct ExplainContext {
   std::vector<std::pair<std::string, Material>> materials;  ///< the surfaces that have a name
   std::vector<TimedWrench> wrenches;                        ///< that act from outside
   std::map<std::string, EffectCost> costs;                  ///< by name of an effect; may be empty
-  std::int64_t apartPairs = 0;           ///< pairs of shapes that no configuration brings together
+  std::int64_t unreachablePairs = 0;     ///< pairs of shapes that no configuration brings together
   std::vector<SceneActuator> actuators;  ///< that drive joints through gears and couplings
 };
 

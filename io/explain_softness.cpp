@@ -7,15 +7,15 @@
 #include <map>
 #include <tuple>
 
-#include "engine/constraints/carried_load.hpp"
-#include "engine/constraints/contact.hpp"
-#include "engine/constraints/contact_softness.hpp"
-#include "engine/constraints/inverse_weight.hpp"
-#include "engine/constraints/sticking_friction.hpp"
-#include "engine/core/index.hpp"
-#include "io/detail/text.hpp"
-#include "io/detail/text_table.hpp"
-#include "io/explain.hpp"
+#include "softgauss/engine/constraints/contact.hpp"
+#include "softgauss/engine/constraints/contact_softness.hpp"
+#include "softgauss/engine/constraints/inverse_weight.hpp"
+#include "softgauss/engine/constraints/no_slip_friction.hpp"
+#include "softgauss/engine/constraints/supported_mass.hpp"
+#include "softgauss/engine/core/index.hpp"
+#include "softgauss/io/detail/text.hpp"
+#include "softgauss/io/detail/text_table.hpp"
+#include "softgauss/io/explain.hpp"
 
 namespace softgauss::io {
 namespace {
@@ -24,7 +24,7 @@ namespace {
 struct Rest {
   int geometryA = 0, geometryB = 0;
   double mass = 0.0;    ///< that rests [kg]
-  double weight = 0.0;  ///< A [1/kg], as (T.80) and (T.131) have it
+  double weight = 0.0;  ///< A [1/kg], as (5.1) and (5.3) have it
   double sinks = 0.0;   ///< rises with the depth
 };
 
@@ -52,8 +52,9 @@ std::vector<Group> groupsOf(const Model& model, const ExplainContext& context) {
     Rest rest{a, b, restingMass(model, first.body, second.body),
               weights.translation[idx(first.body)] + weights.translation[idx(second.body)], 0.0};
     if (rest.mass == 0.0) continue;
-    if (model.options.ownSoftness)
-      rest.weight = carrying(rest.weight, partOnContact(model, first.body, second.body, 1, 1));
+    if (model.options.constraintModel == ConstraintModel::softgauss)
+      rest.weight =
+          cappedInverseMass(rest.weight, contactShare(model, first.body, second.body, 1, 1));
     std::pair<std::string, std::string> key = std::minmax(names[idx(a)], names[idx(b)]);
     std::string surfaces = key.first == key.second
                                ? fmt::format("{} on itself", key.first)
@@ -84,8 +85,8 @@ std::vector<Group> groupsOf(const Model& model, const ExplainContext& context) {
 Material surfaceOf(const Model& model, const Rest& rest) {
   const int a = model.geometries[idx(rest.geometryA)].body;
   const int b = model.geometries[idx(rest.geometryB)].body;
-  return inForce(pairMaterial(model, rest.geometryA, rest.geometryB), reducedMass(model, a, b),
-                 model.options);
+  return effectiveMaterial(pairMaterial(model, rest.geometryA, rest.geometryB),
+                           reducedMass(model, a, b), model.options);
 }
 
 /// The body that rests, of the two that a pair of geometries joins.
@@ -115,7 +116,7 @@ std::string formOf(const Material& pair) {
 std::string softnessText(const Model& model, const ExplainContext& context) {
   const double gravity = model.options.gravity.norm();
   if (context.pairs.empty() || gravity == 0.0) return {};
-  const double stiffer = model.options.noSlip ? StickingFriction::kStiffer : 1.0;
+  const double stiffer = model.options.noSlip ? NoSlipFriction::kStiffer : 1.0;
   std::string out;
   for (const Group& group : groupsOf(model, context)) {
     detail::TextTable table;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/figure_text.hpp"
+#include "softgauss/io/figure_text.hpp"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/goals.hpp"
+#include "softgauss/io/goals.hpp"
 
 #include <fmt/format.h>
 
@@ -8,11 +8,11 @@
 #include <string>
 #include <utility>
 
-#include "io/detail/goal_kinds.hpp"
-#include "io/detail/input_file.hpp"
-#include "io/detail/scene_parts.hpp"
-#include "io/detail/text.hpp"
-#include "io/detail/yaml.hpp"
+#include "softgauss/io/detail/goal_kinds.hpp"
+#include "softgauss/io/detail/input_file.hpp"
+#include "softgauss/io/detail/scene_parts.hpp"
+#include "softgauss/io/detail/text.hpp"
+#include "softgauss/io/detail/yaml.hpp"
 
 namespace softgauss::io {
 namespace {

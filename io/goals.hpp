@@ -13,9 +13,9 @@
 #include <optional>
 #include <vector>
 
-#include "engine/model/shape_distances.hpp"
-#include "engine/model/state.hpp"
-#include "gdd/goal_directed_step.hpp"
+#include "softgauss/engine/model/shape_distances.hpp"
+#include "softgauss/engine/model/state.hpp"
+#include "softgauss/gdd/goal_directed_step.hpp"
 
 namespace softgauss::io {
 

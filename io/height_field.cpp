@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/height_field.hpp"
+#include "softgauss/io/height_field.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "engine/core/check.hpp"
-#include "engine/core/index.hpp"
-#include "io/detail/csv.hpp"
-#include "io/detail/input_file.hpp"
-#include "io/detail/png.hpp"
-#include "io/detail/text.hpp"
+#include "softgauss/engine/core/check.hpp"
+#include "softgauss/engine/core/index.hpp"
+#include "softgauss/io/detail/csv.hpp"
+#include "softgauss/io/detail/input_file.hpp"
+#include "softgauss/io/detail/png.hpp"
+#include "softgauss/io/detail/text.hpp"
 
 namespace softgauss::io {
 namespace {

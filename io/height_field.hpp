@@ -10,7 +10,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "engine/model/shape.hpp"
+#include "softgauss/engine/model/shape.hpp"
 
 namespace softgauss::io {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/log.hpp"
+#include "softgauss/io/log.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <span>
 
-#include "engine/core/check.hpp"
-#include "engine/dynamics/energy.hpp"
-#include "io/detail/row_file.hpp"
+#include "softgauss/engine/core/check.hpp"
+#include "softgauss/engine/dynamics/energy.hpp"
+#include "softgauss/io/detail/row_file.hpp"
 
 namespace softgauss::io {
 namespace {

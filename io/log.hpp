@@ -24,8 +24,8 @@
 #include <string>
 #include <vector>
 
-#include "engine/dynamics/kinematics.hpp"
-#include "io/contact_links.hpp"
+#include "softgauss/engine/dynamics/kinematics.hpp"
+#include "softgauss/io/contact_links.hpp"
 
 namespace softgauss::io {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/mesh.hpp"
+#include "softgauss/io/mesh.hpp"
 
 #include <utility>
 
-#include "engine/core/check.hpp"
-#include "io/detail/mesh_file.hpp"
-#include "io/detail/mesh_import.hpp"
+#include "softgauss/engine/core/check.hpp"
+#include "softgauss/io/detail/mesh_file.hpp"
+#include "softgauss/io/detail/mesh_import.hpp"
 
 namespace softgauss::io {
 namespace {

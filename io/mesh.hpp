@@ -16,7 +16,7 @@
 #include <memory>
 #include <vector>
 
-#include "engine/model/shape.hpp"
+#include "softgauss/engine/model/shape.hpp"
 
 namespace softgauss::io {
 

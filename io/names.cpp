@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/names.hpp"
+#include "softgauss/io/names.hpp"
 
 #include <fmt/format.h>
 
-#include "io/detail/text.hpp"
+#include "softgauss/io/detail/text.hpp"
 
 namespace softgauss::io {
 namespace {

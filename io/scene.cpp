@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/scene.hpp"
+#include "softgauss/io/scene.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <set>
 
-#include "engine/core/check.hpp"
-#include "engine/core/rotation.hpp"
-#include "engine/model/mass_properties.hpp"
-#include "io/detail/input_file.hpp"
-#include "io/detail/mesh_defects.hpp"
-#include "io/detail/scene_actuators.hpp"
-#include "io/detail/scene_constraints.hpp"
-#include "io/detail/scene_options.hpp"
-#include "io/detail/scene_parts.hpp"
-#include "io/detail/text.hpp"
-#include "io/detail/unit_mistakes.hpp"
+#include "softgauss/engine/core/check.hpp"
+#include "softgauss/engine/core/rotation.hpp"
+#include "softgauss/engine/model/mass_properties.hpp"
+#include "softgauss/io/detail/input_file.hpp"
+#include "softgauss/io/detail/mesh_defects.hpp"
+#include "softgauss/io/detail/scene_actuators.hpp"
+#include "softgauss/io/detail/scene_constraints.hpp"
+#include "softgauss/io/detail/scene_options.hpp"
+#include "softgauss/io/detail/scene_parts.hpp"
+#include "softgauss/io/detail/text.hpp"
+#include "softgauss/io/detail/unit_mistakes.hpp"
 
 namespace softgauss::io {
 namespace {
@@ -328,7 +328,7 @@ class SceneReader {
     geometry.shape = shape;
     geometry.material = detail::materialOf(map, materials_);
     geometry.where = link.where;
-    geometry.eitherMesh = isMesh && use == MeshUse::automatic;
+    geometry.automaticMesh = isMesh && use == MeshUse::automatic;
     VisualSpec visual;
     visual.link = name;
     visual.shape = shape;

@@ -15,11 +15,11 @@
 #include <utility>
 #include <vector>
 
-#include "engine/model/state.hpp"
-#include "gdd/goal_directed_step.hpp"
-#include "io/actuators.hpp"
-#include "io/urdf.hpp"
-#include "io/wrenches.hpp"
+#include "softgauss/engine/model/state.hpp"
+#include "softgauss/gdd/goal_directed_step.hpp"
+#include "softgauss/io/actuators.hpp"
+#include "softgauss/io/urdf.hpp"
+#include "softgauss/io/wrenches.hpp"
 
 namespace softgauss::io {
 
@@ -32,7 +32,7 @@ struct IntegrationKeys {
 /// Whether Options::integrationTolerance changes anything.
 inline bool controlsError(const Options& options) {
   return options.integrator == Integrator::dormandPrince ||
-         (options.stepDoubling && options.solvesOnce());
+         (options.stepDoubling && options.isSingleSolve());
 }
 
 /// A scene as its file describes it.
@@ -67,7 +67,7 @@ struct SceneFile {
 
   IntegrationKeys integration;
   std::vector<TimedWrench> wrenches;
-  std::vector<SceneActuator> actuators;  ///< controlBox() makes them a box of controls
+  std::vector<SceneActuator> actuators;  ///< controlLimits() makes them a control limits
 
   // Lines of what only the whole program can judge; 0 where the file does not say it.
   SourceLocation timestepWhere, collisionWhere;

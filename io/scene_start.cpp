@@ -5,9 +5,9 @@
 
 #include <map>
 
-#include "engine/core/check.hpp"
-#include "engine/model/followers.hpp"
-#include "io/scene.hpp"
+#include "softgauss/engine/core/check.hpp"
+#include "softgauss/engine/model/followers.hpp"
+#include "softgauss/io/scene.hpp"
 
 namespace softgauss::io {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/step_warnings.hpp"
+#include "softgauss/io/step_warnings.hpp"
 
 #include <fmt/format.h>
 
@@ -8,11 +8,11 @@
 #include <map>
 #include <utility>
 
-#include "engine/constraints/carried_load.hpp"
-#include "engine/constraints/contact.hpp"
-#include "engine/constraints/inverse_weight.hpp"
-#include "engine/core/index.hpp"
-#include "engine/core/rotation.hpp"
+#include "softgauss/engine/constraints/contact.hpp"
+#include "softgauss/engine/constraints/inverse_weight.hpp"
+#include "softgauss/engine/constraints/supported_mass.hpp"
+#include "softgauss/engine/core/index.hpp"
+#include "softgauss/engine/core/rotation.hpp"
 
 namespace softgauss::io {
 namespace {
@@ -35,7 +35,8 @@ void joints(const Model& model, const InverseWeights& weights, std::vector<std::
     if (const double swing = h * std::sqrt(std::max(0.0, dof.stiffness * w));
         swing > kFastestSpring && effects.has(Effect::spring))
       out.push_back(fmt::format(
-          "joint '{}': its spring of {:g} on an inertia of {:.3g} swings by {:.3g} rad in a step "
+          "joint '{}': its spring of {:g} on an inertia of {:.3g} oscillates by {:.3g} rad in a "
+          "step "
           "of "
           "{:g} s, expected at most {:g}; try a step below {:.2g} s, armature above {:.2g}, or a "
           "softer spring",
@@ -62,7 +63,7 @@ void joints(const Model& model, const InverseWeights& weights, std::vector<std::
   }
 }
 
-/// What a step does not follow of a reference (T.115): what it counts as instead or, where it is
+/// What a step does not follow of a reference (3.5): what it counts as instead or, where it is
 /// taken as it is, that it grows.
 void reference(const Impedance& p, const std::string& what, const Options& options,
                std::vector<std::string>& out) {
@@ -73,10 +74,10 @@ void reference(const Impedance& p, const std::string& what, const Options& optio
   const double K = given.stiffness, B = given.damping;
   if (!p.direct && p.timeConstant < 2.0 * h)
     out.push_back(
-        fmt::format("{}: its time constant of {:g} s counts as {:g} s, two steps; try a step "
+        fmt::format("{}: its time constant of {:g} s is clamped to {:g} s, two steps; try a step "
                     "of {:.2g} s",
                     what, p.timeConstant, 2.0 * h, 0.5 * p.timeConstant));
-  if (!options.ownSoftness) {
+  if (options.constraintModel == ConstraintModel::mujoco) {
     if (h * h * K + 2.0 * h * B > 4.0)
       out.push_back(
           fmt::format("{}: its reference of {:g}/s² and {:g}/s grows in steps of {:g} s; try a "
@@ -85,16 +86,17 @@ void reference(const Impedance& p, const std::string& what, const Options& optio
   } else if (!p.direct) {
     if (tc * p.dampingRatio < 2.0 * h)
       out.push_back(fmt::format(
-          "{}: its damping ratio of {:g} counts as {:g} with a time constant of {:g} s, for it "
-          "would swing by more than half a radian in a step of {:g} s; try a step of {:.2g} s",
+          "{}: its damping ratio of {:g} is clamped to {:g} with a time constant of {:g} s, as it "
+          "would oscillate by more than half a radian in a step of {:g} s; try a step of {:.2g} s",
           what, p.dampingRatio, 2.0 * h / tc, tc, h, 0.5 * p.timeConstant * p.dampingRatio));
-  } else if (const ReferenceSpring s = followed(given, h);
+  } else if (const ReferenceSpring s = clampToTimestep(given, h);
              s.stiffness < K * (1.0 - 1e-9) || s.damping < B * (1.0 - 1e-9)) {
-    out.push_back(fmt::format(
-        "{}: its reference of {:g}/s² and {:g}/s counts as {:g}/s² and {:g}/s in steps of {:g} s; "
-        "try a step of {:.2g} s, or lower numbers",
-        what, K, B, s.stiffness, s.damping, h,
-        std::min(1.0 / B, std::max(0.5 / std::sqrt(K), B / K))));
+    out.push_back(
+        fmt::format("{}: its reference of {:g}/s² and {:g}/s is clamped to {:g}/s² and {:g}/s in "
+                    "steps of {:g} s; "
+                    "try a step of {:.2g} s, or lower numbers",
+                    what, K, B, s.stiffness, s.damping, h,
+                    std::min(1.0 / B, std::max(0.5 / std::sqrt(K), B / K))));
   }
 }
 
@@ -129,8 +131,8 @@ void references(const Model& model, std::vector<std::string>& out) {
               options, out);
 }
 
-/// A free body that hangs on ties swings about its centre, as a bead on a string does: the string's
-/// force is L g on each, at its arm r, against the least inertia across r.
+/// A free body that hangs on equality constraints swings about its centre, as a bead on a string
+/// does: the string's force is L g on each, at its arm r, against the least inertia across r.
 void tiedSwings(const Model& model, const InverseWeights& weights, const ContactSet& touching,
                 std::vector<std::string>& out) {
   const double h = model.options.timestep, g = model.options.gravity.norm();
@@ -138,7 +140,7 @@ void tiedSwings(const Model& model, const InverseWeights& weights, const Contact
   if (!effects.has(Effect::equality) || !effects.has(Effect::gravity)) return;
   Kinematics kinematics(model);
   computeKinematics(model, State(model), kinematics);
-  CarriedLoad load;
+  SupportedMass load;
   load.assemble(model, kinematics, touching, weights);
   std::vector<double> squares(model.bodies.size(), 0.0);  // ω²
   const auto add = [&](int body, int other, const Vector3& p_BP) {
@@ -158,11 +160,12 @@ void tiedSwings(const Model& model, const InverseWeights& weights, const Contact
     add(w.bodyA, w.bodyB, w.X_AF.p), add(w.bodyB, w.bodyA, w.X_BF.p);
   for (int b = 1; b < model.bodyCount(); ++b)
     if (const double swing = h * std::sqrt(squares[idx(b)]); swing > kFastestTie)
-      out.push_back(fmt::format(
-          "link '{}' is light for what hangs on its connections and welds: it swings by {:.3g} rad "
-          "in a step of {:g} s, expected at most {:g}; try a step below {:.2g} s, or joints, which "
-          "have no such swing",
-          model.bodyNames[idx(b)], swing, h, kFastestTie, h * kFastestTie / swing));
+      out.push_back(
+          fmt::format("link '{}' is light for the load on its connections and welds: it oscillates "
+                      "by {:.3g} rad "
+                      "in a step of {:g} s, expected at most {:g}; try a step below {:.2g} s, or "
+                      "joints, which do not oscillate",
+                      model.bodyNames[idx(b)], swing, h, kFastestTie, h * kFastestTie / swing));
 }
 
 /// `implicit` makes energy where links swing freely in each other.
@@ -183,10 +186,10 @@ void freeLinks(const Model& model, const InverseWeights& weights, std::vector<st
     }
     const bool floats = model.floats(model.bodies[idx(tree.rootBody)].tree);
     if (free < 0 || joints + floats < 2) continue;
-    out.push_back(fmt::format(
-        "joint '{}' is hardly damped, and links that swing freely gain energy by the integrator "
-        "{}, by as much as they have within seconds; try leapfrog, or a damping",
-        model.jointNames[idx(free)], integratorName(options.integrator)));
+    out.push_back(
+        fmt::format("joint '{}' is hardly damped, and the integrator {} adds energy to freely "
+                    "swinging links, as much as they have within seconds; try leapfrog, or damping",
+                    model.jointNames[idx(free)], integratorName(options.integrator)));
   }
 }
 
@@ -224,8 +227,8 @@ std::vector<std::string> stepWarnings(const Model& model, const ContactSet& touc
   const double times = model.options.timestep / kUsualStep;
   if (times >= kLongStep) {
     out.push_back(fmt::format(
-        "a step of {:g} s is {:.3g} times the usual {:g} s: contacts, ranges, springs and whatever "
-        "else is faster than it are softened or run away; try --timestep {:g}",
+        "a step of {:g} s is {:.3g} times the usual {:g} s: contacts, joint limits, springs and "
+        "all else that is faster are softened or diverge; try --timestep {:g}",
         model.options.timestep, times, kUsualStep, kUsualStep));
   } else {
     joints(model, weights, out);

@@ -5,22 +5,22 @@
 /// than it, surfaces that it softens, shapes that overlap at the start. Each warning names the
 /// joint, the surface or the pair, with its number against that of the step, and says what to try.
 ///
-/// With w_i the inverse inertia of a dof (T.12) and h the step:
+/// With w_i the inverse inertia of a dof (2.7) and h the step:
 ///   spring       h √(k w_i) > 1          it swings by more than a radian in a step
 ///   damping      h d w_i > 100           it stops the joint within the step, whatever drives it
 ///   effort       h² u w_i > π            it turns by half a turn in the first step
-///   reference    what a step of h does not follow counts as what it does (T.115); as MuJoCo has it
+///   reference    what a step of h does not follow counts as what it does (3.5); as MuJoCo has it
 ///                it is taken as it is, and grows where h² K + 2 h B > 4
-///   time constant below 2 h              (T.11): it counts as 2 h
-///   light body   h ω > 1                 between its ties it swings by more than a radian a step
+///   time constant below 2 h              (3.2): it counts as 2 h
+///   light body   h ω > 1   between its equality constraints it swings by more than a radian a step
 ///   step         from 50 times the usual 2 ms on, that alone in place of all of these
 ///   `implicit`   d w_i < 0.1/s            a joint among others that gain energy by it
 
 #include <string>
 #include <vector>
 
-#include "engine/constraints/contact_set.hpp"
-#include "engine/model/model.hpp"
+#include "softgauss/engine/constraints/contact_set.hpp"
+#include "softgauss/engine/model/model.hpp"
 
 namespace softgauss::io {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/summary.hpp"
+#include "softgauss/io/summary.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numeric>
 
-#include "engine/core/check.hpp"
-#include "io/detail/output_file.hpp"
-#include "io/nearest_rank.hpp"
+#include "softgauss/engine/core/check.hpp"
+#include "softgauss/io/detail/output_file.hpp"
+#include "softgauss/io/nearest_rank.hpp"
 
 namespace softgauss::io {
 namespace {
@@ -112,7 +112,7 @@ Summary::Summary(const Model& model)
       impedanceRatio_(model.options.impedanceRatio),
       exactDiagonal_(model.options.exactDiagonal),
       noSlip_(model.options.noSlip),
-      levelSlip_(model.options.levelsSlip()),
+      levelSlip_(model.options.limitsGliding()),
       stepDoubling_(model.options.stepDoubling),
       tolerance_(model.options.tolerance) {
   for (std::size_t m = 0; m < std::size(kMechanismNames); ++m) {
@@ -228,20 +228,20 @@ std::string Summary::json() const {
       {"realised", spreadOf(realised_)},
       {"gdd_minima",
        {{"certified", gdd.certified},
-        {"kinks", gdd.kinks},
+        {"kinks", gdd.nonsmoothMinima},
         {"iteration_limit", gdd.iterationLimit},
-        {"bend", gdd.bend},
+        {"bend", gdd.nonsmoothStalls},
         {"undecided", gdd.undecided},
         {"restarts", gdd.restarts}}},
       {"fallbacks",
-       {{"short_solves", fallbacks.shortSolves},
-        {"rounded_solves", fallbacks.roundedSolves},
-        {"refused_guesses", fallbacks.refusedGuesses},
-        {"kept_slips", fallbacks.keptSlips},
+       {{"short_solves", fallbacks.unconvergedSolves},
+        {"rounded_solves", fallbacks.roundingLimitedSolves},
+        {"refused_guesses", fallbacks.invalidWarmStarts},
+        {"kept_slips", fallbacks.noSlipFallbacks},
         {"abandoned_trees", fallbacks.abandonedTrees},
-        {"held_swings", fallbacks.heldSwings},
-        {"jumps", fallbacks.jumps},
-        {"unseen", fallbacks.unseen}}},
+        {"held_swings", fallbacks.stabilisedBodies},
+        {"jumps", fallbacks.minimumStepsAccepted},
+        {"unseen", fallbacks.possibleTunnelling}}},
       {"goals", goalList},
       {"energy_J", {{"initial", initialEnergy_}, {"final", finalEnergy_}}},
       {"max_penetration_m", maxPenetration_},
@@ -254,7 +254,7 @@ std::string Summary::json() const {
     summary["integration"] = {{"evaluations", integration.evaluations},
                               {"substeps", integration.substeps},
                               {"rejections", integration.rejections},
-                              {"glances", integration.glances}};
+                              {"glances", integration.tunnellingSplits}};
   else if (integration.parts > static_cast<long>(steps_) || integration.repeats > 1)
     summary["integration"] = {{"parts", integration.parts}, {"repeats", integration.repeats}};
   if (islands.on)

@@ -15,8 +15,8 @@
 #include <utility>
 #include <vector>
 
-#include "engine/model/model.hpp"
-#include "io/log.hpp"
+#include "softgauss/engine/model/model.hpp"
+#include "softgauss/io/log.hpp"
 
 namespace softgauss::io {
 
@@ -46,50 +46,52 @@ struct GoalOutcome {
 
 /// How the solves of goals ended, over the steps.
 struct GddOutcomes {
-  long certified = 0;       ///< minima of one cell, with a certificate
-  long kinks = 0;           ///< minima at knots, with a certificate
-  long iterationLimit = 0;  ///< the best that was found, no certificate
-  long bend = 0;            ///< at a kink of an elliptic cone, no certificate
-  long undecided = 0;       ///< rounding or too many rows at knots kept it from a certificate
-  long restarts = 0;        ///< solves that were begun again without their warm start
+  long certified = 0;        ///< minima of one cell, with a certificate
+  long nonsmoothMinima = 0;  ///< minima at breakpoints, with a certificate
+  long iterationLimit = 0;   ///< the best that was found, no certificate
+  long nonsmoothStalls = 0;  ///< at a kink of an elliptic cone, no certificate
+  long undecided = 0;  ///< rounding or too many rows at breakpoints kept it from a certificate
+  long restarts = 0;   ///< solves that were begun again without their warm start
   template <class Archive>
   void archive(Archive& a) {
-    a(certified, kinks, iterationLimit, bend, undecided, restarts);
+    a(certified, nonsmoothMinima, iterationLimit, nonsmoothStalls, undecided, restarts);
   }
-  long all() const { return certified + kinks + iterationLimit + bend + undecided; }
-  long uncertified() const { return iterationLimit + bend + undecided; }
+  long all() const {
+    return certified + nonsmoothMinima + iterationLimit + nonsmoothStalls + undecided;
+  }
+  long uncertified() const { return iterationLimit + nonsmoothStalls + undecided; }
 };
 
 /// What steps did in place of what was asked for (StepStats), over a run.
 struct Fallbacks {
-  long shortSolves = 0;     ///< stalled or at the iteration limit
-  long roundedSolves = 0;   ///< ended by rounding, within 10³ of the tolerance
-  long refusedGuesses = 0;  ///< warm starts that were not finite
-  long keptSlips = 0;       ///< no_slip: second solves that failed
-  long abandonedTrees = 0;  ///< not followed through the step
-  long heldSwings = 0;      ///< bodies that swing too fast between connections, held
-  long jumps = 0;           ///< shortest parts of a step, taken in spite of their estimate
-  long unseen = 0;          ///< parts in which shapes may have passed through each other unseen
+  long unconvergedSolves = 0;      ///< stalled or at the iteration limit
+  long roundingLimitedSolves = 0;  ///< ended by rounding, within 10³ of the tolerance
+  long invalidWarmStarts = 0;      ///< warm starts that were not finite
+  long noSlipFallbacks = 0;        ///< no_slip: second solves that failed
+  long abandonedTrees = 0;         ///< not followed through the step
+  long stabilisedBodies = 0;       ///< bodies that swing too fast between connections, held
+  long minimumStepsAccepted = 0;   ///< shortest parts of a step, taken in spite of their estimate
+  long possibleTunnelling = 0;  ///< parts in which shapes may have passed through each other unseen
 
   template <class Archive>
   void archive(Archive& a) {
-    a(shortSolves, roundedSolves, refusedGuesses, keptSlips, abandonedTrees, heldSwings, jumps,
-      unseen);
+    a(unconvergedSolves, roundingLimitedSolves, invalidWarmStarts, noSlipFallbacks, abandonedTrees,
+      stabilisedBodies, minimumStepsAccepted, possibleTunnelling);
   }
 };
 
 /// What integrators that look within a step did there (StepStats), over a run.
 struct IntegrationCounts {
-  long evaluations = 0;  ///< of forward dynamics; 0 where a step is one solve
-  long substeps = 0;     ///< parts that steps went in
-  long rejections = 0;   ///< parts that were tried and shortened
-  long glances = 0;      ///< parts cut short lest shapes pass through each other unseen
-  long parts = 0;        ///< into which the leapfrog has divided steps, summed (T.136)
-  long repeats = 0;      ///< solves of the leapfrog that were repeated, with another prediction
+  long evaluations = 0;       ///< of forward dynamics; 0 where a step is one solve
+  long substeps = 0;          ///< parts that steps went in
+  long rejections = 0;        ///< parts that were tried and shortened
+  long tunnellingSplits = 0;  ///< parts cut short lest shapes pass through each other unseen
+  long parts = 0;             ///< into which the leapfrog has divided steps, summed (6.3)
+  long repeats = 0;  ///< solves of the leapfrog that were repeated, with another prediction
 
   template <class Archive>
   void archive(Archive& a) {
-    a(evaluations, substeps, rejections, glances, parts, repeats);
+    a(evaluations, substeps, rejections, tunnellingSplits, parts, repeats);
   }
 };
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "io/figure_text.hpp"
-#include "io/summary.hpp"
+#include "softgauss/io/figure_text.hpp"
+#include "softgauss/io/summary.hpp"
 
 namespace softgauss::io {
 namespace {
@@ -61,17 +61,17 @@ std::string Summary::detailsTable() const {
     addRow(out, "realised, relative", "", realised_);
   }
   if (gdd.all() > 0)
-    add(fmt::format("  minima of goals: {:.4g} % certified, {:.3g} % of all at kinks",
-                    100.0 * static_cast<double>(gdd.certified + gdd.kinks) / gdd.all(),
-                    100.0 * static_cast<double>(gdd.kinks) / gdd.all()));
+    add(fmt::format("  goal solves: {:.4g} % certified minima, {:.3g} % of all nonsmooth minima",
+                    100.0 * static_cast<double>(gdd.certified + gdd.nonsmoothMinima) / gdd.all(),
+                    100.0 * static_cast<double>(gdd.nonsmoothMinima) / gdd.all()));
   if (integration.evaluations > 0)
-    add(fmt::format(
-        "  integration: {} evaluations of the dynamics, {} parts of steps, {} more tried "
-        "and shortened, {} taken in spite of their error, {} cut short lest shapes pass unseen",
-        integration.evaluations, integration.substeps, integration.rejections, fallbacks.jumps,
-        integration.glances));
+    add(
+        fmt::format("  integration: {} evaluations of the dynamics, {} substeps, {} more tried and "
+                    "rejected, {} accepted at the minimum step, {} shortened against tunnelling",
+                    integration.evaluations, integration.substeps, integration.rejections,
+                    fallbacks.minimumStepsAccepted, integration.tunnellingSplits));
   else if (integration.parts > static_cast<long>(steps_) || integration.repeats > 1)
-    add(fmt::format("  integration: {} parts of {} steps, {} solves repeated", integration.parts,
+    add(fmt::format("  integration: {} substeps of {} steps, {} solves repeated", integration.parts,
                     steps_, integration.repeats));
   std::string acts;
   for (const std::size_t m : mechanismsInUse_)
@@ -98,13 +98,13 @@ std::string Summary::table(bool details) const {
   const std::vector<ControlRatio> ratios = controlRatios();
   add(fmt::format("  energy {:.4g} J to {:.4g} J; deepest penetration {}; largest control {}",
                   initialEnergy_, finalEnergy_, lengthText(maxPenetration_),
-                  ratios.empty() ? std::string("without a box")
-                                 : fmt::format("{:.0f} % of its box, {}",
+                  ratios.empty() ? std::string("without limits")
+                                 : fmt::format("{:.0f} % of its limit, {}",
                                                100.0 * ratios.front().ratio, ratios.front().name)));
   if (error.estimated)
     add(fmt::format("  error of these settings: {:.2g} m, {:.2g} rad, estimated; {}",
                     error.position, error.orientation,
-                    error.ofSteps ? "what the steps err by, added up" : "root mean square"));
+                    error.ofSteps ? "local errors of the steps, summed" : "root mean square"));
   for (const std::string& warning : warnings) add("  warning: " + warning);
   add("");
   return out + verdictText(verdict, outcome);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/torque_table.hpp"
+#include "softgauss/io/torque_table.hpp"
 
 #include <fmt/format.h>
 
@@ -8,9 +8,9 @@
 #include <set>
 #include <string>
 
-#include "io/detail/csv.hpp"
-#include "io/detail/input_file.hpp"
-#include "io/detail/text.hpp"
+#include "softgauss/io/detail/csv.hpp"
+#include "softgauss/io/detail/input_file.hpp"
+#include "softgauss/io/detail/text.hpp"
 
 namespace softgauss::io {
 namespace {

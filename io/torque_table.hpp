@@ -11,7 +11,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "engine/model/model.hpp"
+#include "softgauss/engine/model/model.hpp"
 
 namespace softgauss::io {
 

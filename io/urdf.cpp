@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/urdf.hpp"
+#include "softgauss/io/urdf.hpp"
 
 #include <fmt/format.h>
 
 #include <utility>
 
-#include "engine/dynamics/coupled_mass.hpp"
-#include "io/detail/input_file.hpp"
-#include "io/detail/mesh_defects.hpp"
-#include "io/detail/other_formats.hpp"
-#include "io/detail/resources.hpp"
-#include "io/detail/text.hpp"
-#include "io/detail/unit_mistakes.hpp"
-#include "io/detail/urdf_check.hpp"
-#include "io/detail/urdf_description.hpp"
-#include "io/mesh.hpp"
+#include "softgauss/engine/dynamics/coupled_mass.hpp"
+#include "softgauss/io/detail/input_file.hpp"
+#include "softgauss/io/detail/mesh_defects.hpp"
+#include "softgauss/io/detail/other_formats.hpp"
+#include "softgauss/io/detail/resources.hpp"
+#include "softgauss/io/detail/text.hpp"
+#include "softgauss/io/detail/unit_mistakes.hpp"
+#include "softgauss/io/detail/urdf_check.hpp"
+#include "softgauss/io/detail/urdf_description.hpp"
+#include "softgauss/io/mesh.hpp"
 
 namespace softgauss::io {
 namespace {
@@ -41,7 +41,7 @@ class ShapeReader {
     if (shape.shape.kind != ShapeKind::mesh) return spec;
     spec.shape = options_.meshes == MeshUse::triangles ? Shape::surface(mesh(shape))
                                                        : Shape::hull(mesh(shape));
-    spec.eitherMesh = options_.meshes == MeshUse::automatic;
+    spec.automaticMesh = options_.meshes == MeshUse::automatic;
     if (options_.meshes == MeshUse::hull)
       unsoundHulls_.look(*spec.shape.mesh, "link '" + link + "'");
     return spec;
@@ -191,7 +191,7 @@ ModelBuilder readUrdf(const std::filesystem::path& file, const UrdfOptions& opti
 
 Model loadUrdf(const std::filesystem::path& file, const UrdfOptions& options) {
   Model model = readUrdf(file, options).build();
-  steadyCoupledJoints(model, model.q0);
+  regulariseCoupledJoints(model, model.q0);
   return model;
 }
 

@@ -10,8 +10,8 @@
 /// (transmissions, sensors, …), and what a user should know, is in Model::warnings. Angles [rad],
 /// SI units throughout.
 ///
-/// effort is the box of the control, |u| ≤ effort; 0 means not actuated (ModelBuilder says which);
-/// none means no box. A mimic joint is coupled to its leader (T.30) and not actuated.
+/// effort is the control limits, |u| ≤ effort; 0 means not actuated (ModelBuilder says which);
+/// none means no box. A mimic joint is coupled to its leader (4.6) and not actuated.
 
 #include <filesystem>
 #include <map>
@@ -19,14 +19,14 @@
 #include <utility>
 #include <vector>
 
-#include "engine/model/model_builder.hpp"
-#include "io/mesh.hpp"
+#include "softgauss/engine/model/model_builder.hpp"
+#include "softgauss/io/mesh.hpp"
 
 namespace softgauss::io {
 
 /// What meshes collide as.
 enum class MeshUse {
-  automatic,  ///< as Geometry::eitherMesh: their hulls until collision::chooseMeshes()
+  automatic,  ///< as Geometry::automaticMesh: their hulls until collision::chooseMeshes()
   hull,       ///< their convex hulls
   triangles   ///< their triangles
 };
@@ -63,7 +63,7 @@ struct UrdfContents {
 ModelBuilder readUrdf(const std::filesystem::path& file, const UrdfOptions& options = {},
                       UrdfContents* contents = nullptr);
 
-/// readUrdf(...).build(), and steadyCoupledJoints() at its q0.
+/// readUrdf(...).build(), and regulariseCoupledJoints() at its q0.
 Model loadUrdf(const std::filesystem::path& file, const UrdfOptions& options = {});
 
 }  // namespace softgauss::io

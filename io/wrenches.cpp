@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/wrenches.hpp"
+#include "softgauss/io/wrenches.hpp"
 
 #include <algorithm>
 #include <string_view>
 #include <unordered_map>
 
-#include "engine/core/check.hpp"
+#include "softgauss/engine/core/check.hpp"
 
 namespace softgauss::io {
 

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/dynamics/kinematics.hpp"
+#include "softgauss/engine/dynamics/kinematics.hpp"
 
 namespace softgauss::io {
 

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "apps/accuracy_cost/problem.hpp"
-#include "collision/lowest_point.hpp"
-#include "io/urdf.hpp"
+#include "softgauss/collision/lowest_point.hpp"
+#include "softgauss/io/urdf.hpp"
 
 /// Problems with contact.
 

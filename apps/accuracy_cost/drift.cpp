@@ -16,16 +16,16 @@ constexpr double kStep = 0.002, kDuration = 10.0;  // [s]
 
 Drift measure(const Problem& problem, const Method& method) {
   Drift drift{problem.name, method, 0.0, 0.0, 0.0};
-  const auto contestant = makeContestant(problem, method, kStep);
-  const Model& model = contestant->model();
+  const auto tested = makeEngine(problem, method, kStep);
+  const Model& model = tested->model();
   State state(model);
   if (problem.start) problem.start(model, state);
-  contestant->start(state);
+  tested->start(state);
   Kinematics k(model);
   const auto look = [&](Momentum& momentum) {
-    computeKinematics(model, contestant->state(), k);
+    computeKinematics(model, tested->state(), k);
     momentum = computeMomentum(model, k);
-    return computeEnergy(model, k, contestant->state().q, contestant->state().v);
+    return computeEnergy(model, k, tested->state().q, tested->state().v);
   };
   Momentum momentum, before;
   const Energy first = look(before);
@@ -34,7 +34,7 @@ Drift measure(const Problem& problem, const Method& method) {
   const bool isFree = !model.options.effects.has(Effect::gravity) && model.trees.size() == 1 &&
                       model.bodies[model.trees[0].rootBody].joint == JointKind::floating;
   for (int i = 0; i < static_cast<int>(std::lround(kDuration / kStep)); ++i) {
-    if (!contestant->advance({}, 1)) {
+    if (!tested->advance({}, 1)) {
       drift.energy = kInfinity;
       return drift;
     }

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "apps/accuracy_cost/contestant.hpp"
+#include "apps/accuracy_cost/engine_under_test.hpp"
 
 namespace softgauss::app {
 

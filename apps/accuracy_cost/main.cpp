@@ -9,15 +9,15 @@
 #include <filesystem>
 #include <optional>
 
+#include "apps/accuracy_cost/divergence.hpp"
 #include "apps/accuracy_cost/drift.hpp"
-#include "apps/accuracy_cost/honesty.hpp"
 #include "apps/accuracy_cost/order_table.hpp"
 #include "apps/accuracy_cost/own_model.hpp"
-#include "apps/accuracy_cost/parting.hpp"
 #include "apps/accuracy_cost/pictures.hpp"
 #include "apps/accuracy_cost/ratio_table.hpp"
 #include "apps/accuracy_cost/study.hpp"
 #include "apps/accuracy_cost/table.hpp"
+#include "apps/accuracy_cost/verify_accuracy.hpp"
 #include "apps/shared/progress.hpp"
 #include "apps/shared/run_choice.hpp"
 
@@ -168,15 +168,15 @@ int main(int argc, char** argv) {
          "CPU time that a setting may take for one run of a problem, else it is given up [s]")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
-  bool list = false, drift = false, parting = false, honesty = false;
+  bool list = false, drift = false, divergence = false, verifying = false;
   app.add_flag("--drift", drift,
                "instead: energy and momentum over 10 s at 2 ms, every integrator;\n"
                "begins anew where it was interrupted");
-  app.add_flag("--parting", parting,
-               "instead: by how much a small difference grows, which tells chaos;\n"
+  app.add_flag("--divergence", divergence,
+               "instead: growth of a small difference, a measure of chaos;\n"
                "begins anew where it was interrupted");
-  CLI::Option* const honestyFlag = app.add_flag(
-      "--honesty", honesty,
+  CLI::Option* const verifyFlag = app.add_flag(
+      "--verify-accuracy", verifying,
       "and then: choose a setting for accuracies of 1e-2 … 1e-6 m on each problem, as\n"
       "simulate_gdd --accuracy does, and check its true error and its time; exit code 1\n"
       "where less than 95 % of them are within the accuracy and 1.5 times the best time;\n"
@@ -186,30 +186,31 @@ int main(int argc, char** argv) {
                  "whole motions of so long, those with contact too, instead of windows of 1 s [s]")
       ->check(CLI::Range(0.032, 1000.0));
   double wholeSeconds = kTrialCpuSeconds;
-  app.add_option(
-         "--trial-seconds", wholeSeconds,
-         "with --honesty: CPU time that a trial of a whole motion may take; 0: each is tried\n"
-         "on its first 2 s [s]")
+  app.add_option("--trial-seconds", wholeSeconds,
+                 "with --verify-accuracy: CPU time that a trial of a whole motion may take; 0: "
+                 "each is tried\n"
+                 "on its first 2 s [s]")
       ->check(CLI::NonNegativeNumber)
-      ->needs(honestyFlag)
+      ->needs(verifyFlag)
       ->capture_default_str();
   CLI::Option* const runsFlag =
       app.add_flag(
              "--runs", arguments.runs,
-             "with --honesty: simulate_gdd --accuracy itself, on whole motions, those with\n"
+             "with --verify-accuracy: simulate_gdd --accuracy itself, on whole motions, those "
+             "with\n"
              "contact of 1 s; ours alone, and the search is finer: tolerances by half decades,\n"
              "steps by 4/3 and 3/2 in turn. The table is runs.csv")
-          ->needs(honestyFlag)
+          ->needs(verifyFlag)
           ->excludes(own);
   app.add_flag("--list", list, "name the problems and end");
   // What they would not look at.
   for (const char* other :
-       {"--repeats", "--min-time", "--most-steps", "--most-seconds", "--honesty"})
-    for (const char* instead : {"--drift", "--parting"})
+       {"--repeats", "--min-time", "--most-steps", "--most-seconds", "--verify-accuracy"})
+    for (const char* instead : {"--drift", "--divergence"})
       app.get_option(instead)->excludes(app.get_option(other));
   runsFlag->excludes(app.get_option("--trial-seconds"));
   for (const char* other : {"--scene", "--robots", "--list"}) own->excludes(app.get_option(other));
-  app.get_option("--drift")->excludes(app.get_option("--parting"));
+  app.get_option("--drift")->excludes(app.get_option("--divergence"));
   app.get_option("--drift")->excludes(app.get_option("--seconds"));
   try {
     app.parse(argc, argv);
@@ -242,8 +243,8 @@ int main(int argc, char** argv) {
       measureDrifts(arguments.out, problems);
       return interrupted() ? 130 : 0;
     }
-    if (parting) {
-      writePartings(arguments.out, problems);
+    if (divergence) {
+      writeDivergences(arguments.out, problems);
       return interrupted() ? 130 : 0;
     }
     // The file of a model may have changed since, or be another one of that name.
@@ -260,9 +261,9 @@ int main(int argc, char** argv) {
       writeRatioTable(arguments.out, problems, table.results());
       writeOrderTables(arguments.out, problems, table.results());
     }
-    const bool kept = !honesty || interrupted() ||
-                      checkHonesty(arguments.out, problems, table.results(), arguments.study,
-                                   wholeSeconds, arguments.runs);
+    const bool kept = !verifying || interrupted() ||
+                      verifyAccuracy(arguments.out, problems, table.results(), arguments.study,
+                                     wholeSeconds, arguments.runs);
     return interrupted() ? 130 : kept ? 0 : 1;
   } catch (const ModelError& error) {
     fmt::print(stderr, "{}\n", error.what());

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "apps/accuracy_cost/contestant.hpp"
-#include "io/scene.hpp"
-#include "io/simulation/ground.hpp"
+#include "apps/accuracy_cost/engine_under_test.hpp"
+#include "softgauss/io/scene.hpp"
+#include "softgauss/io/simulation/ground.hpp"
 
 namespace softgauss::app {
 namespace {
@@ -100,7 +100,7 @@ OwnProblem ownProblem(const OwnModel& own) {
   p.lossless = isLossless(model, contact);
   const std::vector<Method> theirs = mujocoMethods(p);
   try {
-    if (!theirs.empty()) makeContestant(p, theirs.front(), kPeriod);
+    if (!theirs.empty()) makeEngine(p, theirs.front(), kPeriod);
   } catch (const ModelError& error) {
     p.inMujoco = false;
     result.notes.push_back(fmt::format("MuJoCo is left out: {}", error.what()));

@@ -10,7 +10,7 @@
 #include <stdexcept>
 
 #include "apps/accuracy_cost/best.hpp"
-#include "io/replay/gnuplot.hpp"
+#include "softgauss/io/replay/gnuplot.hpp"
 
 namespace softgauss::app {
 namespace {
@@ -128,7 +128,7 @@ std::string script(const Problem& problem, const std::vector<std::vector<Result>
   const auto level = [&](double error, int dash, const char* title) {
     plot += fmt::format(", {:.6g} linecolor '#666666' dashtype {} title '{}'", error, dash, title);
   };
-  if (ours > 0.0) level(ours, 1, "below (hollow): not told");
+  if (ours > 0.0) level(ours, 1, "below (hollow): not resolved");
   if (theirs > 0.0 && theirs != ours) level(theirs, 2, "the same of MuJoCo");
   add(plot);
   add("unset output");

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "collision/scene_contacts.hpp"
-#include "engine/engine.hpp"
+#include "softgauss/collision/scene_contacts.hpp"
+#include "softgauss/engine/engine.hpp"
 
 namespace softgauss::app {
 
@@ -22,7 +22,7 @@ inline constexpr double kPeriod = 0.032;
 /// Step sizes: kPeriod over 1, 2, 4 … 256 [s].
 inline constexpr int kFewestSteps = 1, kMostSteps = 256;
 /// With contact: at most half the time constant of contacts, beyond which the step size would
-/// change the model (T.11).
+/// change the model (3.2).
 inline constexpr int kFewestContactSteps = 4;
 
 struct Problem {
@@ -33,7 +33,7 @@ struct Problem {
   bool contact = false;
   bool passive = true;    ///< nothing adds energy
   bool lossless = false;  ///< and nothing takes it
-  bool chaotic = false;   ///< small differences grow e-fold within the motion (--parting)
+  bool chaotic = false;   ///< small differences grow e-fold within the motion (--divergence)
   bool inMujoco = true;   ///< false: something in it has no counterpart there
   /// What sticks is as soft as what slides, as it is in MuJoCo; false: as simulate_gdd has it.
   bool softFriction = true;

@@ -19,7 +19,7 @@ std::string cells(const Best& best, double error) {
                        best.result->time);
   if (std::isinf(best.referenceError)) return "not there | ";
   if (tells(best.referenceError, error)) return "not reached | ";
-  return fmt::format("not told: its references differ by {:.1g} m | ", best.referenceError);
+  return fmt::format("not resolved: its references differ by {:.1g} m | ", best.referenceError);
 }
 
 }  // namespace

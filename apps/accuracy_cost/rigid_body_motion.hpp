@@ -5,7 +5,7 @@
 /// top [Landau, Lifshitz, Mechanics, §35 and §37]. What turns about the fixed axis is an integral
 /// of a smooth function of time, taken by Gauss' rule to rounding.
 
-#include "engine/core/types.hpp"
+#include "softgauss/engine/core/types.hpp"
 
 namespace softgauss::app {
 

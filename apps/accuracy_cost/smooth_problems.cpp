@@ -5,7 +5,7 @@
 #include "apps/accuracy_cost/elliptic.hpp"
 #include "apps/accuracy_cost/problem.hpp"
 #include "apps/accuracy_cost/rigid_body_motion.hpp"
-#include "io/urdf.hpp"
+#include "softgauss/io/urdf.hpp"
 
 /// Problems without contact.
 

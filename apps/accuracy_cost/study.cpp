@@ -8,7 +8,7 @@
 
 #include "apps/shared/cpu_time.hpp"
 #include "apps/shared/progress.hpp"
-#include "engine/dynamics/energy.hpp"
+#include "softgauss/engine/dynamics/energy.hpp"
 
 namespace softgauss::app {
 namespace {
@@ -50,26 +50,25 @@ VectorX Study::force(const Model& model, double time) const {
 
 /// States at the ends of periods; ends early where one is not finite, time is up, or the user
 /// wishes to end.
-std::vector<State> Study::run(Contestant& contestant, const State& start, int periods, int steps,
+std::vector<State> Study::run(EngineUnderTest& tested, const State& start, int periods, int steps,
                               Budget& budget, Watch* watch) const {
   std::vector<State> samples;
-  contestant.start(start);
+  tested.start(start);
   for (int k = 0; k < periods; ++k) {
     const double time = start.time + k * kPeriod;
-    const VectorX tau = force(contestant.model(), time);
+    const VectorX tau = force(tested.model(), time);
     const int atOnce = watch ? 1 : steps;
     bool finite = true;
     for (int done = 0; finite && done < steps; done += atOnce) {
       const double begin = cpuSeconds();
-      finite = contestant.advance(tau, atOnce);
+      finite = tested.advance(tau, atOnce);
       budget.spent += cpuSeconds() - begin;
       if (!watch || !finite) continue;
-      watch->overlap = std::max(watch->overlap, contestant.deepestOverlap());
-      watch->overshoot =
-          std::max(watch->overshoot, overshoot(contestant.model(), contestant.state()));
+      watch->overlap = std::max(watch->overlap, tested.deepestOverlap());
+      watch->overshoot = std::max(watch->overshoot, overshoot(tested.model(), tested.state()));
     }
     if (!finite || budget.exceeded() || interrupted()) break;
-    samples.push_back(contestant.state());
+    samples.push_back(tested.state());
     samples.back().time = time + kPeriod;
   }
   return samples;
@@ -79,26 +78,25 @@ std::vector<State> Study::run(Contestant& contestant, const State& start, int pe
 std::vector<State> Study::firstSteps(const References& of, const State& start) const {
   std::vector<State> states;
   const int parts = std::max(1, of.fineSteps / kMostSteps);
-  const auto contestant = makeContestant(problem_, of.fine, kPeriod / (kMostSteps * parts));
-  contestant->start(start);
-  const VectorX tau = force(contestant->model(), start.time);
+  const auto tested = makeEngine(problem_, of.fine, kPeriod / (kMostSteps * parts));
+  tested->start(start);
+  const VectorX tau = force(tested->model(), start.time);
   for (int done = 0, k = 1; k <= kMostSteps / kFewestContactSteps; done = k, k *= 2) {
-    if (!contestant->advance(tau, (k - done) * parts)) break;
-    states.push_back(contestant->state());
+    if (!tested->advance(tau, (k - done) * parts)) break;
+    states.push_back(tested->state());
   }
   return states;
 }
 
-double Study::oneStep(Contestant& contestant, double h) const {
-  LinkPoses pose(contestant.model()), reference(contestant.model());
+double Study::oneStep(EngineUnderTest& tested, double h) const {
+  LinkPoses pose(tested.model()), reference(tested.model());
   const std::size_t k = std::lround(std::log2(h * kMostSteps / kPeriod));
   double sum = 0.0;
   for (const Window& window : windows()) {
-    contestant.start(window.start);
-    if (k >= window.first.size() ||
-        !contestant.advance(force(contestant.model(), window.start.time), 1))
+    tested.start(window.start);
+    if (k >= window.first.size() || !tested.advance(force(tested.model(), window.start.time), 1))
       return kInfinity;
-    pose.set(contestant.state());
+    pose.set(tested.state());
     reference.set(window.first[k]);
     sum += std::pow(pose.against(reference).total, 2);
   }
@@ -116,8 +114,8 @@ bool Study::prepare(const Method& method) {
 Study::Reference Study::makeReference(const References& of) const {
   Reference reference;
   reference.of = of;
-  const auto fine = makeContestant(problem_, of.fine, kPeriod / of.fineSteps);
-  const auto coarse = makeContestant(problem_, of.coarse, kPeriod / of.coarseSteps);
+  const auto fine = makeEngine(problem_, of.fine, kPeriod / of.fineSteps);
+  const auto coarse = makeEngine(problem_, of.coarse, kPeriod / of.coarseSteps);
   const Model& model = fine->model();
 
   // Where windows start: on the motion of the coarser one.
@@ -172,8 +170,8 @@ Result Study::measure(const Method& method, double h) {
   result.method = method;
   result.h = h;
   result.referenceError = referenceError();
-  const auto contestant = makeContestant(problem_, method, h);
-  const Model& model = contestant->model();
+  const auto tested = makeEngine(problem_, method, h);
+  const Model& model = tested->model();
   LinkPoses pose(model), reference(model);
   Kinematics kinematics(model);
   const auto energy = [&](const State& state, Momentum& momentum) {
@@ -189,7 +187,7 @@ Result Study::measure(const Method& method, double h) {
   Watch watch;
   for (const Window& window : windows()) {
     const std::vector<State> states =
-        run(*contestant, window.start, problem_.windowPeriods, stepsOf(h), budget, &watch);
+        run(*tested, window.start, problem_.windowPeriods, stepsOf(h), budget, &watch);
     if (states.size() < window.samples.size()) {
       const bool late = budget.exceeded();
       result.error = result.orientation =
@@ -217,7 +215,7 @@ Result Study::measure(const Method& method, double h) {
   result.time = budget.spent / simulatedOf(problem_);
   // The reference is known after these steps.
   if (problem_.contact && std::has_single_bit(static_cast<unsigned>(stepsOf(h))))
-    result.oneStep = oneStep(*contestant, h);
+    result.oneStep = oneStep(*tested, h);
   result.error = std::sqrt(sum / count);
   result.orientation = std::sqrt(turned / count);
   result.energyDrift = kinetic > 0.0 ? result.energyDrift / kinetic : 0.0;
@@ -227,20 +225,20 @@ Result Study::measure(const Method& method, double h) {
 }
 
 void Study::measureTimes(std::vector<Result>& results) {
-  std::vector<std::pair<Result*, std::unique_ptr<Contestant>>> again;
+  std::vector<std::pair<Result*, std::unique_ptr<EngineUnderTest>>> again;
   for (Result& r : results)
     if (options_.repeats > 0 && std::isfinite(r.error) &&
         r.time * simulatedOf(problem_) <= options_.longRun) {
-      again.emplace_back(&r, makeContestant(problem_, r.method, r.h));
+      again.emplace_back(&r, makeEngine(problem_, r.method, r.h));
       r.time = kInfinity;
     }
   for (int repeat = 0; repeat < options_.repeats; ++repeat) {
-    for (const auto& [result, contestant] : again) {
+    for (const auto& [result, tested] : again) {
       Budget budget;
       int rounds = 0;
       do {
         for (const Window& window : windows())
-          run(*contestant, window.start, problem_.windowPeriods, stepsOf(result->h), budget);
+          run(*tested, window.start, problem_.windowPeriods, stepsOf(result->h), budget);
         ++rounds;
       } while (budget.spent < options_.minTime && rounds < 1000);
       result->time = std::min(result->time, budget.spent / (rounds * simulatedOf(problem_)));
@@ -250,10 +248,10 @@ void Study::measureTimes(std::vector<Result>& results) {
 
 TrialRun Study::tryOut(const Method& method, double h, int periods, double mostSeconds) const {
   TrialRun result;
-  const auto contestant = makeContestant(problem_, method, h);
+  const auto tested = makeEngine(problem_, method, h);
   Budget budget{mostSeconds};
   for (const Window& window : windows()) {
-    const std::vector<State> states = run(*contestant, window.start, periods, stepsOf(h), budget);
+    const std::vector<State> states = run(*tested, window.start, periods, stepsOf(h), budget);
     result.samples.insert(result.samples.end(), states.begin(), states.end());
     result.seconds = budget.spent;
     result.late = budget.exceeded();

@@ -3,7 +3,7 @@
 
 /// Error and time of every method and step size on a problem.
 ///
-/// A problem is cut into windows, each from a state of the reference; every contestant starts each
+/// A problem is cut into windows, each from a state of the reference; every engine starts each
 /// window there, and is compared with the reference at the end of every period. A smooth problem
 /// has one window, the whole motion. The reference is the closed form where there is one, else the
 /// most accurate method; a second, coarser one tells how good it is. With other cones, or in
@@ -11,7 +11,7 @@
 /// which says how far it is from its own limit. With contact the error of one step is measured too,
 /// from the start of every window.
 
-#include "apps/accuracy_cost/contestant.hpp"
+#include "apps/accuracy_cost/engine_under_test.hpp"
 #include "apps/shared/pose_error.hpp"
 #include "apps/shared/setting.hpp"
 
@@ -92,10 +92,10 @@ class Study {
     double overlap = 0.0;    ///< deepest of a contact [m]
     double overshoot = 0.0;  ///< beyond a joint's limit, largest [rad or m]
   };
-  std::vector<State> run(Contestant& contestant, const State& start, int periods, int steps,
+  std::vector<State> run(EngineUnderTest& tested, const State& start, int periods, int steps,
                          Budget& budget, Watch* watch = nullptr) const;
   std::vector<State> firstSteps(const References& of, const State& start) const;
-  double oneStep(Contestant& contestant, double h) const;
+  double oneStep(EngineUnderTest& tested, double h) const;
   State initialState(const Model& model) const;
   VectorX force(const Model& model, double time) const;
 

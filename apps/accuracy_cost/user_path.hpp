@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <string>
 
-#include "apps/accuracy_cost/contestant.hpp"
+#include "apps/accuracy_cost/engine_under_test.hpp"
 
 namespace softgauss::app {
 

@@ -22,12 +22,12 @@
 #include "apps/compare_mujoco/urdf_copy.hpp"
 #include "apps/compare_mujoco/urdf_reading.hpp"
 #include "apps/shared/wall_clock.hpp"
-#include "collision/lowest_point.hpp"
-#include "collision/scene_contacts.hpp"
-#include "engine/engine.hpp"
-#include "io/nearest_rank.hpp"
-#include "io/simulation/time_grid.hpp"
-#include "io/urdf.hpp"
+#include "softgauss/collision/lowest_point.hpp"
+#include "softgauss/collision/scene_contacts.hpp"
+#include "softgauss/engine/engine.hpp"
+#include "softgauss/io/nearest_rank.hpp"
+#include "softgauss/io/simulation/time_grid.hpp"
+#include "softgauss/io/urdf.hpp"
 
 namespace {
 
@@ -168,7 +168,7 @@ class Comparison {
             {"max", percentile(values, 1.0)}};
   }
 
-  /// (T.1) and (T.2) against MuJoCo's, both converged.
+  /// (1.1) and (1.2) against MuJoCo's, both converged.
   void compareAccelerations(const State& state, const VectorX& tau) {
     input_.tau = tau;
     computeStages(model_, input_, state, data_, &contacts_);

@@ -7,9 +7,9 @@
 #include <map>
 #include <set>
 
-#include "engine/constraints/contact.hpp"
-#include "engine/core/index.hpp"
-#include "engine/dynamics/kinematics.hpp"
+#include "softgauss/engine/constraints/contact.hpp"
+#include "softgauss/engine/core/index.hpp"
+#include "softgauss/engine/dynamics/kinematics.hpp"
 
 namespace softgauss::app {
 namespace {

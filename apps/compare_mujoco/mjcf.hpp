@@ -11,7 +11,7 @@
 
 #include <string>
 
-#include "collision/filter.hpp"
+#include "softgauss/collision/filter.hpp"
 
 namespace softgauss::app {
 

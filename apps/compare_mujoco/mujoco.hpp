@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "engine/constraints/contact_set.hpp"
-#include "engine/model/state.hpp"
+#include "softgauss/engine/constraints/contact_set.hpp"
+#include "softgauss/engine/model/state.hpp"
 
 namespace softgauss::app {
 

@@ -7,7 +7,7 @@
 #include <memory>
 #include <string_view>
 
-#include "engine/core/check.hpp"
+#include "softgauss/engine/core/check.hpp"
 
 namespace softgauss::app {
 namespace {

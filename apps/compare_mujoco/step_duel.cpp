@@ -11,8 +11,8 @@
 #include "apps/compare_mujoco/mjcf.hpp"
 #include "apps/compare_mujoco/mujoco.hpp"
 #include "apps/shared/cpu_time.hpp"
-#include "collision/scene_contacts.hpp"
-#include "io/simulation/time_grid.hpp"
+#include "softgauss/collision/scene_contacts.hpp"
+#include "softgauss/io/simulation/time_grid.hpp"
 
 namespace softgauss::app {
 

@@ -6,7 +6,7 @@
 #include <functional>
 #include <stdexcept>
 
-#include "engine/engine.hpp"
+#include "softgauss/engine/engine.hpp"
 
 namespace softgauss::app {
 

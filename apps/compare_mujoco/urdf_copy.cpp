@@ -13,7 +13,7 @@
 #include <set>
 #include <string_view>
 
-#include "engine/core/check.hpp"
+#include "softgauss/engine/core/check.hpp"
 
 namespace softgauss::app {
 namespace {

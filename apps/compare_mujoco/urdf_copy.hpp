@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/model/model.hpp"
+#include "softgauss/engine/model/model.hpp"
 
 namespace softgauss::app {
 

@@ -9,8 +9,8 @@
 #include <random>
 
 #include "apps/compare_mujoco/mujoco_load.hpp"
-#include "engine/core/index.hpp"
-#include "engine/engine.hpp"
+#include "softgauss/engine/core/index.hpp"
+#include "softgauss/engine/engine.hpp"
 
 namespace softgauss::app {
 namespace {

@@ -7,7 +7,7 @@
 
 #include <cstdio>
 #include <exception>
-#include <io/simulation/simulation.hpp>
+#include <softgauss/softgauss.hpp>
 
 int main(int argc, char** argv) {
   if (argc != 2) {

@@ -3,9 +3,9 @@
 
 #include <fmt/format.h>
 
-#include "collision/lowest_point.hpp"
-#include "gdd/goals/virtual_damping.hpp"
-#include "io/urdf.hpp"
+#include "softgauss/collision/lowest_point.hpp"
+#include "softgauss/gdd/goals/virtual_damping.hpp"
+#include "softgauss/io/urdf.hpp"
 
 namespace softgauss::app {
 
@@ -59,17 +59,17 @@ void poseProblem(const gdd::Reach& reach, const gdd::GoalContext& context, gdd::
 
 namespace {
 
-/// Puts the scripted goals of an operator to a contestant, step after step, and records what it
+/// Puts the scripted goals of an operator to a solver, step after step, and records what it
 /// finds. What is solved again is recorded as it was solved last.
 class Recording final : public StepControl {
  public:
-  Recording(const Robot& robot, Contestant& recorder, double weight, std::uint64_t seed,
+  Recording(const Robot& robot, SolverUnderTest& recorder, double weight, std::uint64_t seed,
             Dataset& dataset)
       : recorder_(recorder),
         dataset_(dataset),
         scripted_(robot.model, robot.deviate, robot.lowest, weight, seed),
         cost_(robot.model.nv),
-        box_(robot.model) {}
+        limits_(robot.model) {}
 
   void begin() { begins_ = true; }
 
@@ -77,7 +77,7 @@ class Recording final : public StepControl {
     if (begins_ && dataset_.records.size() >= kStepsPerGoal * dataset_.goals.size())
       dataset_.goals.push_back(scripted_.nextGoal(data.kinematics));
     poseProblem(dataset_.goals.back(), {model, state, data}, cost_);
-    const gdd::GddReport report = recorder_.solve(model, cost_, box_, data, state.warmstart);
+    const gdd::GddReport report = recorder_.solve(model, cost_, limits_, data, state.warmstart);
     if (report.status == gdd::GddStatus::notFinite) {
       data.stats.status = SolveStatus::notFinite;
       return nullptr;
@@ -86,7 +86,7 @@ class Recording final : public StepControl {
     auto& records = dataset_.records;
     while (!records.empty() && records.back().state.time >= state.time) records.pop_back();
     const Options& o = model.options;
-    records.push_back({state, o.timestep, o.wholeTimestep, box_.clamp(recorder_.force()),
+    records.push_back({state, o.timestep, o.outerTimestep, limits_.clamp(recorder_.force()),
                        recorder_.acceleration(), report.status, data.stats.contacts,
                        static_cast<int>(dataset_.goals.size()) - 1});
     setAppliedForce(records.back().control, data.forces);
@@ -95,17 +95,17 @@ class Recording final : public StepControl {
   void keep(WarmStart& warmstart) noexcept override { recorder_.keepWarmStart(warmstart); }
 
  private:
-  Contestant& recorder_;
+  SolverUnderTest& recorder_;
   Dataset& dataset_;
   ScriptedOperator scripted_;
   gdd::GoalCost cost_;
-  const gdd::ControlBox box_;
+  const gdd::ControlLimits limits_;
   bool begins_ = true;
 };
 
 }  // namespace
 
-Dataset recordRun(const Robot& robot, Contestant& recorder, int records, double weight,
+Dataset recordRun(const Robot& robot, SolverUnderTest& recorder, int records, double weight,
                   std::uint64_t seed, Progress& progress) {
   const Model& model = robot.model;
   Dataset dataset;

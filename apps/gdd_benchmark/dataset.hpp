@@ -10,11 +10,11 @@
 #include <string>
 #include <vector>
 
-#include "apps/gdd_benchmark/contestant.hpp"
 #include "apps/gdd_benchmark/scripted_operator.hpp"
+#include "apps/gdd_benchmark/solver_under_test.hpp"
 #include "apps/shared/progress.hpp"
-#include "collision/scene_contacts.hpp"
-#include "engine/engine.hpp"
+#include "softgauss/collision/scene_contacts.hpp"
+#include "softgauss/engine/engine.hpp"
 
 namespace softgauss::app {
 
@@ -37,7 +37,7 @@ std::unique_ptr<Robot> loadRobot(const std::string& folder, const std::string& n
 
 struct Record {
   State state;                                 ///< of the solve: q at mid-step
-  double timestep = 0.0, wholeTimestep = 0.0;  ///< of Options, those of the part
+  double timestep = 0.0, outerTimestep = 0.0;  ///< of Options, those of the part
   VectorX control;                             ///< applied, within its box (nv) [N or N m]
   VectorX acceleration;  ///< the solver's own, before the control was clamped (nv)
   gdd::GddStatus status = gdd::GddStatus::converged;
@@ -59,7 +59,7 @@ void poseProblem(const gdd::Reach& reach, const gdd::GoalContext& context, gdd::
 /// Simulates until there are `records` of them, under the operator's goals and records them; fewer
 /// on an interrupt. `weight` is the humanoid's w [kg]. Throws std::runtime_error when the state
 /// becomes non-finite.
-Dataset recordRun(const Robot& robot, Contestant& recorder, int records, double weight,
+Dataset recordRun(const Robot& robot, SolverUnderTest& recorder, int records, double weight,
                   std::uint64_t seed, Progress& progress);
 
 }  // namespace softgauss::app

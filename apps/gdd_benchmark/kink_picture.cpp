@@ -9,8 +9,8 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "gdd/cell_response.hpp"
-#include "io/replay/gnuplot.hpp"
+#include "softgauss/gdd/cell_response.hpp"
+#include "softgauss/io/replay/gnuplot.hpp"
 
 namespace softgauss::app {
 namespace {
@@ -18,7 +18,7 @@ namespace {
 constexpr int kHalf = 50;            ///< points on either side of the minimum
 constexpr double kLength = 0.5;      ///< of either side [N m]
 constexpr double kProbe = 1e-3;      ///< of the slopes at the minimum [N m]
-constexpr double kAtKnot = 1e-6;     ///< |x| of a row at its knot, rounding above it [m/s²]
+constexpr double kAtKnot = 1e-6;     ///< |x| of a row at its breakpoint, rounding above it [m/s²]
 constexpr double kFromBound = 1e-9;  ///< controls nearer to a bound are at it [N m]
 
 /// A line of controls u + t p.
@@ -28,11 +28,11 @@ struct Line {
 
 struct Kink {
   const Record* record = nullptr;
-  VectorX control;  ///< at the minimum (nv)
-  Knot knot;        ///< the row at it
-  int contact = 0;  ///< of that row, index into ContactSet::contacts
+  VectorX control;        ///< at the minimum (nv)
+  Breakpoint breakpoint;  ///< the row at it
+  int contact = 0;        ///< of that row, index into ContactSet::contacts
   VectorX across, along;
-  double below = 0.0, above = 0.0;  ///< slopes up from the minimum, across the knot
+  double below = 0.0, above = 0.0;  ///< slopes up from the minimum, across the breakpoint
 };
 
 class KinkFinder {
@@ -43,19 +43,20 @@ class KinkFinder {
         dataset_(dataset),
         data_(model_),
         cost_(model_.nv),
-        box_(model_),
+        limits_(model_),
         solver_(model_) {}
 
   Kink sharpest() {
     Kink best;
     for (const Record& record : dataset_.records) {
-      if (record.status != gdd::GddStatus::kink) continue;
+      if (record.status != gdd::GddStatus::nonsmoothMinimum) continue;
       const std::optional<Kink> kink = kinkOf(record);
       if (kink && std::min(kink->below, kink->above) > std::min(best.below, best.above))
         best = *kink;
     }
     if (!best.record)
-      throw std::runtime_error("no record has its minimum at the knot of one row of a contact");
+      throw std::runtime_error(
+          "no record has its minimum at the breakpoint of one row of a contact");
     pose(*best.record);
     return best;
   }
@@ -68,9 +69,9 @@ class KinkFinder {
       const double t = kLength * i / kHalf;
       line.t.push_back(t);
       line.F.push_back(objective(kink.control + t * p) - F);
-      const double x = data_.constraints.aboveKnot(kink.knot);
+      const double x = data_.constraints.aboveBreakpoint(kink.breakpoint);
       line.x.push_back(x);
-      line.force.push_back(data_.constraints.curvatureJump(kink.knot) * std::min(x, 0.0));
+      line.force.push_back(data_.constraints.curvatureJump(kink.breakpoint) * std::min(x, 0.0));
     }
     return line;
   }
@@ -96,8 +97,8 @@ class KinkFinder {
     warm.gddA = record.acceleration;
     warm.control = record.control;
     warm.gddValid = true;
-    const gdd::GddReport report = solver_.solve(model_, cost_, box_, data_, warm);
-    if (report.status != gdd::GddStatus::kink || report.heldRows != 1) return {};
+    const gdd::GddReport report = solver_.solve(model_, cost_, limits_, data_, warm);
+    if (report.status != gdd::GddStatus::nonsmoothMinimum || report.heldRows != 1) return {};
     Kink kink;
     kink.record = &record;
     kink.control = solver_.force();
@@ -114,15 +115,15 @@ class KinkFinder {
     return kink;
   }
 
-  /// The one row of a contact that is at its knot.
+  /// The one row of a contact that is at its breakpoint.
   bool findRow(Kink& kink) const {
     const PyramidalContact& contact = data_.constraints.contact;
     constexpr int kPlace = static_cast<int>(RowKind::pyramid);
     int found = 0;
-    for (const ContactRows& made : contact.made())
+    for (const ContactRows& made : contact.contactsWithRows())
       for (int i = made.row; i < made.row + std::max(1, 2 * made.frictionDim); ++i) {
         if (std::abs(contact.x[i]) > kAtKnot) continue;
-        kink.knot = {{kPlace, i}, 0};
+        kink.breakpoint = {{kPlace, i}, 0};
         kink.contact = made.contact;
         ++found;
       }
@@ -131,17 +132,17 @@ class KinkFinder {
 
   /// Of the controls that are not at a bound.
   bool findDirections(Kink& kink) {
-    data_.constraints.enterPiece(kink.knot, true);  // rounding must not choose
-    cell_.setDriven(model_, box_);
+    data_.constraints.enterPiece(kink.breakpoint, true);  // rounding must not choose
+    cell_.setDriven(model_, limits_);
     if (!cell_.setInertia(data_, nullptr, cost_) || !cell_.enter(data_)) return false;
     cell_.computeHessian();
     VectorX J(model_.nv), n, u, lower, upper;
-    data_.constraints.knotGradient(kink.knot, J);
+    data_.constraints.breakpointGradient(kink.breakpoint, J);
     cell_.solve(J);
     cell_.select(J, n);
     cell_.select(kink.control, u);
-    cell_.select(box_.lower, lower);
-    cell_.select(box_.upper, upper);
+    cell_.select(limits_.lower, lower);
+    cell_.select(limits_.upper, upper);
     MatrixX K = cell_.hessian().selfadjointView<Eigen::Lower>();
     for (Eigen::Index i = 0; i < u.size(); ++i) {
       if (u[i] > lower[i] + kFromBound && u[i] < upper[i] - kFromBound) continue;
@@ -166,9 +167,9 @@ class KinkFinder {
     bool changed = false;
     data_.constraints.setResidual(data_.forward.a);
     data_.constraints.evaluate(changed);
-    cost_.price().multiply(massFactor_, control, price_);
+    cost_.controlCost().multiply(massFactor_, control, controlCost_);
     data_.inertia.M.multiply(data_.forward.a, Ma_);
-    return 0.5 * control.dot(price_) + cost_.value(data_.forward.a, Ma_);
+    return 0.5 * control.dot(controlCost_) + cost_.value(data_.forward.a, Ma_);
   }
 
   const Robot& robot_;
@@ -176,11 +177,11 @@ class KinkFinder {
   const Dataset& dataset_;
   Data data_;
   gdd::GoalCost cost_;
-  const gdd::ControlBox box_;
+  const gdd::ControlLimits limits_;
   gdd::ActiveSet solver_;
   gdd::CellResponse cell_;
   TreeFactor massFactor_;
-  VectorX guess_, price_, Ma_{VectorX::Zero(model_.nv)};
+  VectorX guess_, controlCost_, Ma_{VectorX::Zero(model_.nv)};
 };
 
 /// Of two to five tics in a range: 1, 2 or 5 times a power of ten.
@@ -210,7 +211,8 @@ std::string script(const std::array<Line, 2>& lines, const std::string& title) {
   add("unset key; set style data lines");
   add(fmt::format("set xrange [{}:{}]", -kLength, kLength));
   add("set lmargin 10; set rmargin 2; set tmargin 1.5; set bmargin 2.5");
-  const std::array<const char*, 2> heads = {"across the knot", "along it, F magnified 50 times"};
+  const std::array<const char*, 2> heads = {"across the breakpoint",
+                                            "along it, F magnified 50 times"};
   const std::array<const char*, 3> names = {"F less its minimum [N m/s²]", "x of the row [m/s²]",
                                             "force of the row [N]"};
   const std::array<const char*, 3> colours = {"#0072b2", "#009e73", "#d55e00"};

@@ -16,7 +16,7 @@
 #include "apps/gdd_benchmark/kink_picture.hpp"
 #include "apps/gdd_benchmark/report.hpp"
 #include "apps/gdd_benchmark/states.hpp"
-#include "io/replay/gnuplot.hpp"
+#include "softgauss/io/replay/gnuplot.hpp"
 
 namespace {
 
@@ -79,7 +79,7 @@ nlohmann::ordered_json runAll(const BenchmarkOptions& options) {
     for (const double weight : options.weights) {
       if (app::interrupted()) return json;
       const auto robot = app::loadRobot(options.robots, name);
-      const auto recorder = app::makeContestant(options.recorder, robot->model);
+      const auto recorder = app::makeSolver(options.recorder, robot->model);
       app::Dataset dataset;
       {
         app::Progress progress(fmt::format("{}, weight {:g}: recording", name, weight));

@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "apps/gdd_benchmark/statistics.hpp"
-#include "gdd/goals/virtual_damping.hpp"
+#include "softgauss/gdd/goals/virtual_damping.hpp"
 
 namespace softgauss::app {
 namespace {
@@ -43,9 +43,9 @@ class Replayer {
         dataset_(dataset),
         data_(model_),
         cost_(model_.nv),
-        box_(model_) {
+        limits_(model_) {
     for (const std::string& name : solvers) {
-      solvers_.push_back(makeContestant(name, model_));
+      solvers_.push_back(makeSolver(name, model_));
       result_.solvers.push_back({name, {}});
     }
     warm_.resize(solvers.size());
@@ -75,7 +75,7 @@ class Replayer {
     times.solve.resize(solvers_.size());
     times.finish.resize(solvers_.size());
     model_.options.timestep = record.timestep;
-    model_.options.wholeTimestep = record.wholeTimestep;
+    model_.options.outerTimestep = record.outerTimestep;
     Clock::time_point clock = Clock::now();
     computeStages(model_, {}, record.state, data_, robot_.contacts.get());
     times.stages = lap(clock);
@@ -101,16 +101,16 @@ class Replayer {
 
   void runSolver(long who, long i, Times& times, bool first) {
     const Record& record = dataset_.records[i];
-    Contestant& solver = *solvers_[who];
+    SolverUnderTest& solver = *solvers_[who];
     Solved solved;
     Clock::time_point clock = Clock::now();
     poseProblem(dataset_.goals[record.goal], {model_, record.state, data_}, cost_);
-    solved.report = solver.solve(model_, cost_, box_, data_, warm_[who]);
+    solved.report = solver.solve(model_, cost_, limits_, data_, warm_[who]);
     times.solve[who] = lap(clock);
     if (solved.report.status == gdd::GddStatus::notFinite)
       checkFinite(SolveStatus::notFinite, record);
     clock = Clock::now();
-    control_ = solver.force().cwiseMax(box_.lower).cwiseMin(box_.upper);
+    control_ = solver.force().cwiseMax(limits_.lower).cwiseMin(limits_.upper);
     setAppliedForce(control_, data_.forces);
     checkFinite(forwardDynamics(model_, &solver.acceleration(), data_), record);
     times.finish[who] = lap(clock);
@@ -174,8 +174,8 @@ class Replayer {
   const Dataset& dataset_;
   Data data_;
   gdd::GoalCost cost_;
-  const gdd::ControlBox box_;
-  std::vector<std::unique_ptr<Contestant>> solvers_;
+  const gdd::ControlLimits limits_;
+  std::vector<std::unique_ptr<SolverUnderTest>> solvers_;
   std::vector<WarmStart> warm_;            ///< one a solver
   std::vector<std::vector<Times>> times_;  ///< by pass, by record
   TreeFactor factor_;

@@ -103,7 +103,7 @@ std::string tables(const Robot& robot, const Dataset& dataset, const Replay& rep
          paper.violation);
   t.line("smooth minima: residual gradient", cells([](auto& s) { return sizes(s.smoothGradient); }),
          paper.gradient);
-  t.line("minima that are kinks", cells([](auto& s) { return share(s.kinks); }), none);
+  t.line("nonsmooth minima", cells([](auto& s) { return share(s.kinks); }), none);
   t.line("certified minima", cells([](auto& s) { return share(s.certified); }), none);
   t.line("at the iteration limit", cells([](auto& s) { return fmt::format("{}", s.atLimit); }),
          none);

@@ -13,7 +13,7 @@
 #include <random>
 #include <vector>
 
-#include "gdd/goals/reach.hpp"
+#include "softgauss/gdd/goals/reach.hpp"
 
 namespace softgauss::app {
 

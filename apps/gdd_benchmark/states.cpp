@@ -22,15 +22,15 @@ const char* statusName(gdd::GddStatus status) {
   switch (status) {
     case gdd::GddStatus::converged:
       return "converged";
-    case gdd::GddStatus::kink:
+    case gdd::GddStatus::nonsmoothMinimum:
       return "kink";
     case gdd::GddStatus::iterationLimit:
       return "iterationLimit";
-    case gdd::GddStatus::bend:
+    case gdd::GddStatus::nonsmoothStall:
       return "bend";
     case gdd::GddStatus::undecided:
       return "undecided";
-    case gdd::GddStatus::badBox:
+    case gdd::GddStatus::badLimits:
       return "badBox";
     case gdd::GddStatus::notFinite:
       return "notFinite";

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "io/nearest_rank.hpp"
+#include "softgauss/io/nearest_rank.hpp"
 
 namespace softgauss::app {
 
@@ -33,7 +33,7 @@ SolverStatistics::SolverStatistics(const Replay& replay, const Replay::Solver& s
     dualsOf.push_back(r.report.dualUpdates);
     violationOf.push_back(r.report.violation);
     const bool smooth = r.report.status == gdd::GddStatus::converged;
-    const bool kink = r.report.status == gdd::GddStatus::kink;
+    const bool kink = r.report.status == gdd::GddStatus::nonsmoothMinimum;
     if (smooth) {
       gradientOf.push_back(r.report.stationarity);
       smoothIterationsOf.push_back(r.report.iterations);

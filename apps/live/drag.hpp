@@ -4,7 +4,7 @@
 /// A spatial goal that begins when somebody takes hold of a point, equation (11) of the paper by a
 /// virtual spring-damper, and ends when it is let go.
 
-#include "gdd/goals/reach.hpp"
+#include "softgauss/gdd/goals/reach.hpp"
 
 namespace softgauss::live {
 
@@ -27,11 +27,11 @@ class Drag final : public gdd::Goal {
     return reach.mark(context);
   }
   /// None while nobody holds it.
-  void figures(const gdd::GoalContext& context, const gdd::ContactForces& contacts,
-               std::vector<gdd::GoalFigure>& out) const override {
-    if (held()) reach.figures(context, contacts, out);
+  void errors(const gdd::GoalContext& context, const gdd::ContactForces& contacts,
+              std::vector<gdd::GoalError>& out) const override {
+    if (held()) reach.errors(context, contacts, out);
   }
-  bool findsFiguresLater() const override { return true; }
+  bool hasLaterErrors() const override { return true; }
 
   gdd::Reach reach;  ///< what it asks for while it is held
 

@@ -14,7 +14,7 @@
 #include <variant>
 #include <vector>
 
-#include "engine/core/types.hpp"
+#include "softgauss/engine/core/types.hpp"
 
 namespace softgauss::live {
 

@@ -5,9 +5,9 @@
 
 #include <cmath>
 
-#include "io/detail/input_file.hpp"
-#include "io/detail/text.hpp"
-#include "io/detail/yaml.hpp"
+#include "softgauss/io/detail/input_file.hpp"
+#include "softgauss/io/detail/text.hpp"
+#include "softgauss/io/detail/yaml.hpp"
 
 namespace softgauss::live {
 namespace {

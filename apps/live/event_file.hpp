@@ -8,7 +8,7 @@
 
 #include "apps/live/event.hpp"
 #include "apps/live/names.hpp"
-#include "io/detail/output_file.hpp"
+#include "softgauss/io/detail/output_file.hpp"
 
 namespace softgauss::live {
 

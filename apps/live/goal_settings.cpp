@@ -2,7 +2,7 @@
 #include "apps/live/goal_settings.hpp"
 
 #include "apps/live/drag.hpp"
-#include "gdd/gdd.hpp"
+#include "softgauss/gdd/gdd.hpp"
 
 namespace softgauss::live {
 namespace {

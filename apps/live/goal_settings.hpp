@@ -3,7 +3,7 @@
 
 /// The numbers of a goal that may change while a run goes on, whatever its kind.
 
-#include "gdd/goal.hpp"
+#include "softgauss/gdd/goal.hpp"
 
 namespace softgauss::live {
 

@@ -6,8 +6,8 @@
 #include <algorithm>
 
 #include "apps/live/goal_settings.hpp"
-#include "engine/model/followers.hpp"
-#include "gdd/gdd.hpp"
+#include "softgauss/engine/model/followers.hpp"
+#include "softgauss/gdd/gdd.hpp"
 
 namespace softgauss::live {
 namespace {
@@ -99,7 +99,7 @@ Drag* Hands::held() const {
 /// times the weight of the strongest posture in force.
 double Hands::dragWeight(const std::string& link) const {
   double weight =
-      gdd::kReachWeightPerMass * gdd::massBehind(run_.model, run_.model.findFrame(link));
+      gdd::kReachWeightPerMass * gdd::referenceMass(run_.model, run_.model.findFrame(link));
   double strongest = 1.0;
   for (const auto& goal : run_.controller.goals) {
     const auto* posture = dynamic_cast<const gdd::Posture*>(goal.get());
@@ -177,7 +177,7 @@ std::string Hands::setJoint(const Event& event) {
   placeFollowers(run_.model, {joint.body}, state.q);
   // What the last step has found is of another place.
   state.warmstart = State(run_.model).warmstart;
-  state.aIsKnown = false;
+  state.hasAcceleration = false;
   jumped_ = true;
   return "";
 }

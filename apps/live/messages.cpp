@@ -6,7 +6,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
-#include "io/detail/text.hpp"
+#include "softgauss/io/detail/text.hpp"
 
 namespace softgauss::live {
 namespace {

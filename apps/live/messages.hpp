@@ -9,7 +9,7 @@
 
 #include "apps/live/event.hpp"
 #include "apps/live/names.hpp"
-#include "io/replay/frames.hpp"
+#include "softgauss/io/replay/frames.hpp"
 
 namespace softgauss::live {
 

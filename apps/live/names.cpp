@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
-#include "engine/model/plan.hpp"
-#include "io/detail/text.hpp"
+#include "softgauss/engine/model/plan.hpp"
+#include "softgauss/io/detail/text.hpp"
 
 namespace softgauss::live {
 namespace {

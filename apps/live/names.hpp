@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "apps/live/event.hpp"
-#include "gdd/goal_directed_step.hpp"
+#include "softgauss/gdd/goal_directed_step.hpp"
 
 namespace softgauss::live {
 

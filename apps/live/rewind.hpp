@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "engine/model/state.hpp"
+#include "softgauss/engine/model/state.hpp"
 
 namespace softgauss::live {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "io/nearest_rank.hpp"
+#include "softgauss/io/nearest_rank.hpp"
 
 namespace softgauss::live {
 namespace {

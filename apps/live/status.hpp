@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "apps/live/hands.hpp"
-#include "io/log.hpp"
+#include "softgauss/io/log.hpp"
 
 namespace softgauss::live {
 

@@ -5,7 +5,7 @@
 
 #include <initializer_list>
 
-#include "io/output.hpp"
+#include "softgauss/io/output.hpp"
 
 namespace softgauss::app {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "engine/core/rotation.hpp"
+#include "softgauss/engine/core/rotation.hpp"
 
 namespace softgauss::app {
 

@@ -8,7 +8,7 @@
 /// p: a link's centre of mass; ρ: its radius of gyration, ρ² = tr I/(3 m); Δθ: the angle between
 /// its two orientations. Links without mass are not counted.
 
-#include "engine/engine.hpp"
+#include "softgauss/engine/engine.hpp"
 
 namespace softgauss::app {
 

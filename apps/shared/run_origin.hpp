@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "io/summary.hpp"
+#include "softgauss/io/summary.hpp"
 
 namespace softgauss::app {
 

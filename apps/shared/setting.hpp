@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/engine.hpp"
+#include "softgauss/engine/engine.hpp"
 
 namespace softgauss::app {
 

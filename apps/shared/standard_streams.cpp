@@ -9,7 +9,7 @@
 #include <cerrno>
 #include <cstring>
 
-#include "io/printable.hpp"
+#include "softgauss/io/printable.hpp"
 
 namespace softgauss::app {
 namespace {

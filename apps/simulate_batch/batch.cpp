@@ -22,8 +22,8 @@
 #include "apps/simulate_batch/batch_summary.hpp"
 #include "apps/simulate_batch/runner.hpp"
 #include "apps/simulate_gdd/scene.hpp"
-#include "io/detail/output_file.hpp"
-#include "io/replay/gnuplot.hpp"
+#include "softgauss/io/detail/output_file.hpp"
+#include "softgauss/io/replay/gnuplot.hpp"
 
 namespace softgauss::app {
 namespace {

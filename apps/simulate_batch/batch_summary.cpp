@@ -7,10 +7,10 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "engine/core/check.hpp"
-#include "io/detail/text.hpp"
-#include "io/nearest_rank.hpp"
-#include "io/replay/gnuplot.hpp"
+#include "softgauss/engine/core/check.hpp"
+#include "softgauss/io/detail/text.hpp"
+#include "softgauss/io/nearest_rank.hpp"
+#include "softgauss/io/replay/gnuplot.hpp"
 
 namespace softgauss::app {
 namespace {

@@ -12,7 +12,7 @@
 #include "apps/simulate_batch/sweep.hpp"
 #include "apps/simulate_gdd/goal_record.hpp"
 #include "apps/simulate_gdd/standing.hpp"
-#include "io/simulation/rollout.hpp"
+#include "softgauss/io/simulation/rollout.hpp"
 
 namespace softgauss::app {
 

@@ -9,8 +9,8 @@
 #include <numbers>
 
 #include "apps/simulate_batch/sweep.hpp"
-#include "io/names.hpp"
-#include "io/simulation/simulation_goals.hpp"
+#include "softgauss/io/names.hpp"
+#include "softgauss/io/simulation/simulation_goals.hpp"
 
 namespace softgauss::app {
 namespace {

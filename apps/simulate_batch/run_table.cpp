@@ -9,9 +9,9 @@
 #include <optional>
 #include <stdexcept>
 
-#include "engine/core/check.hpp"
-#include "io/detail/output_file.hpp"
-#include "io/detail/text.hpp"
+#include "softgauss/engine/core/check.hpp"
+#include "softgauss/io/detail/output_file.hpp"
+#include "softgauss/io/detail/text.hpp"
 
 namespace softgauss::app {
 namespace {

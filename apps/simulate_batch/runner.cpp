@@ -11,8 +11,8 @@
 #include "apps/shared/cpu_time.hpp"
 #include "apps/shared/file_hash.hpp"
 #include "apps/simulate_gdd/scene.hpp"
-#include "io/detail/text.hpp"
-#include "io/simulation/time_grid.hpp"
+#include "softgauss/io/detail/text.hpp"
+#include "softgauss/io/simulation/time_grid.hpp"
 
 namespace softgauss::app {
 namespace {

@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "io/detail/input_file.hpp"
-#include "io/detail/text.hpp"
-#include "io/detail/yaml.hpp"
-#include "io/names.hpp"
+#include "softgauss/io/detail/input_file.hpp"
+#include "softgauss/io/detail/text.hpp"
+#include "softgauss/io/detail/yaml.hpp"
+#include "softgauss/io/names.hpp"
 
 namespace softgauss::app {
 namespace {

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "apps/simulate_gdd/options.hpp"
-#include "engine/model/model.hpp"
-#include "io/simulation/parameter.hpp"
+#include "softgauss/engine/model/model.hpp"
+#include "softgauss/io/simulation/parameter.hpp"
 
 namespace softgauss::app {
 

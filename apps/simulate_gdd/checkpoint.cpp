@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/core/sealed.hpp"
-#include "engine/model/model_hash.hpp"
-#include "io/detail/input_file.hpp"
-#include "io/detail/output_file.hpp"
+#include "softgauss/engine/core/sealed.hpp"
+#include "softgauss/engine/model/model_hash.hpp"
+#include "softgauss/io/detail/input_file.hpp"
+#include "softgauss/io/detail/output_file.hpp"
 
 namespace softgauss::app {
 namespace {

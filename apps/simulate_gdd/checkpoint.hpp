@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "apps/simulate_gdd/options.hpp"
-#include "engine/core/bytes.hpp"
-#include "io/summary.hpp"
+#include "softgauss/engine/core/bytes.hpp"
+#include "softgauss/io/summary.hpp"
 
 namespace softgauss::app {
 

@@ -27,15 +27,16 @@ bool isAmong(const char* const (&names)[N], const std::string& name) {
 
 void addCheckpointOptions(CLI::App& app, SimulateOptions& options) {
   const char* const group = "Checkpoints";
-  app.add_option("--checkpoint", options.checkpoint,
-                 "keep in this file, which is replaced as a whole, from where the run can go on")
+  app.add_option(
+         "--checkpoint", options.checkpoint,
+         "write checkpoints to this file, replaced as a whole, from which --resume continues")
       ->group(group);
   app.add_option("--checkpoint-every", options.checkpointEvery,
                  "simulated time between two checkpoints [s], default 1; one more at the end")
       ->group(group);
   app.add_option("--resume", options.resume,
-                 "go on from such a file, to the bits of a run without a break; give the other\n"
-                 "options as before, --duration may be longer")
+                 "continue from a checkpoint, bit for bit as a run without a break; give the "
+                 "other\noptions as before, --duration may be longer")
       ->group(group);
 }
 

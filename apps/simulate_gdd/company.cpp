@@ -6,7 +6,7 @@
 
 #include "apps/simulate_gdd/live_run.hpp"
 #include "apps/simulate_gdd/play_run.hpp"
-#include "io/simulation/time_grid.hpp"
+#include "softgauss/io/simulation/time_grid.hpp"
 
 namespace softgauss::app {
 

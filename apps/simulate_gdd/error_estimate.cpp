@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "io/scene.hpp"
+#include "softgauss/io/scene.hpp"
 
 namespace softgauss::app {
 namespace {
@@ -50,19 +50,19 @@ double factorOf(const Options& options) {
 ErrorEstimate::Halves::Halves(const Model& halved, const State& start, double f)
     : factor(f), model(halved), contacts(model), data(model), state(start), poses(model) {}
 
-double ErrorEstimate::Halves::lengthInSight(double half, double left) {
+double ErrorEstimate::Halves::tunnellingLengthBound(double half, double left) {
   const double most = std::min(half, left);
   if (!contacts.mayTouch() || io::controlsError(model.options)) return most;
   computeKinematics(model, state, data.kinematics);
-  const double sight =
-      contacts.timeInSight(model, data.kinematics, 2.0 * most, ContactSource::Way::onwards);
+  const double sight = contacts.tunnellingTimeBound(model, data.kinematics, 2.0 * most,
+                                                    ContactSource::TimeDirection::forward);
   return std::min(most, std::max(0.5 * sight, 2.0 * kShortestPart * half));
 }
 
 ErrorEstimate::ErrorEstimate(const Model& model, const State& start, const OutsideInput& outside,
                              bool withGoals)
     : outside_(outside), withGoals_(withGoals), run_(model) {
-  // Ties of the leapfrog are its own (T.137): no other method's motion is theirs.
+  // Equality constraints of the leapfrog are its own (3.14): no other method's motion is theirs.
   const bool tied = !(model.connections.empty() && model.welds.empty() && model.couplings.empty());
   const Integrator integrator = model.options.integrator;
   const bool divides =
@@ -84,7 +84,7 @@ void ErrorEstimate::observe(Halves& h, const State& before, const Input& input, 
   if (withGoals_) h.state = before;
   input_ = input;
   for (double left = length; left > 1e-9 * length && !h.lost;) {
-    h.model.options.timestep = h.lengthInSight(0.5 * length, left);
+    h.model.options.timestep = h.tunnellingLengthBound(0.5 * length, left);
     left -= h.model.options.timestep;
     outside_.at(h.model, h.state, h.data.kinematics, input_);
     if (input_.tau != input.tau) h.factor = std::max(h.factor, kFirstOrder);

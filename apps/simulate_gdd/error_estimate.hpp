@@ -15,7 +15,7 @@
 /// of time, and each half asks them anew. Where that gives it another control p is 1, whatever the
 /// method: the run holds a control from the start of a step.
 ///
-/// Where shapes may pass through each other between two halves, the halves go in parts (T.125).
+/// Where shapes may pass through each other between two halves, the halves go in parts (7.7).
 ///
 /// Without goals the halves go on by themselves, and the estimate is of the whole run: root mean
 /// square over links and steps. With goals every pair of halves begins where its step does, for the
@@ -26,10 +26,10 @@
 
 #include "apps/shared/pose_error.hpp"
 #include "apps/simulate_gdd/outside_input.hpp"
-#include "collision/scene_contacts.hpp"
-#include "engine/engine.hpp"
-#include "engine/model/saved_state.hpp"
-#include "io/summary.hpp"
+#include "softgauss/collision/scene_contacts.hpp"
+#include "softgauss/engine/engine.hpp"
+#include "softgauss/engine/model/saved_state.hpp"
+#include "softgauss/io/summary.hpp"
 
 namespace softgauss::app {
 
@@ -55,7 +55,7 @@ class ErrorEstimate {
     Halves(const Model& halved, const State& start, double factor);
 
     /// Of the next part, where so much is left of a step: a half, or what is in sight [s].
-    double lengthInSight(double half, double left);
+    double tunnellingLengthBound(double half, double left);
 
     double factor;  ///< 2^p/(2^p − 1)
     Model model;

@@ -14,12 +14,12 @@ GoalRecord::GoalRecord(const std::vector<std::unique_ptr<gdd::Goal>>& goals,
                        const gdd::GoalContext& start)
     : dofs_(start.model.nv) {
   for (const auto& goal : goals) {
-    if (goal->onlyRegularises) continue;
+    if (goal->isRegulariser) continue;
     figures_.clear();
-    goal->figures(start, {}, figures_);
+    goal->errors(start, {}, figures_);
     // A goal without a figure now, such as a centre of pressure in the air, may have one later.
-    if (figures_.empty() && goal->findsFiguresLater()) figures_.emplace_back();
-    for (const gdd::GoalFigure& figure : figures_) {
+    if (figures_.empty() && goal->hasLaterErrors()) figures_.emplace_back();
+    for (const gdd::GoalError& figure : figures_) {
       Track track{goal.get(), {}, figure};
       track.outcome.name =
           *figure.what ? fmt::format("{} ({})", goal->name(), figure.what) : goal->name();
@@ -37,7 +37,7 @@ bool GoalRecord::Track::wasNotAsked() const {
   return !outcome.began && dynamic_cast<const live::Drag*>(goal) != nullptr;
 }
 
-void GoalRecord::see(Track& track, const gdd::GoalFigure& figure, double time, bool acts) {
+void GoalRecord::see(Track& track, const gdd::GoalError& figure, double time, bool acts) {
   io::GoalOutcome& o = track.outcome;
   track.last = figure;
   if (!acts) return;
@@ -66,10 +66,10 @@ std::vector<GoalRecord::Track*> GoalRecord::observe(const gdd::GoalContext& cont
     const double time = context.state.time;
     const bool acts = goal.actsAt(time);
     figures_.clear();
-    goal.figures(context, contacts, figures_);
+    goal.errors(context, contacts, figures_);
     for (std::size_t i = first; i < end; ++i) {
       Track& track = tracks_[i];
-      for (const gdd::GoalFigure& figure : figures_)
+      for (const gdd::GoalError& figure : figures_)
         if (std::strcmp(figure.what, track.last.what) == 0) {
           errors_[static_cast<Eigen::Index>(i)] = figure.value;
           see(track, figure, time, acts);

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "gdd/goal.hpp"
-#include "io/summary.hpp"
+#include "softgauss/gdd/goal.hpp"
+#include "softgauss/io/summary.hpp"
 
 namespace softgauss::app {
 
@@ -19,8 +19,8 @@ class GoalRecord {
   struct Track {
     const gdd::Goal* goal;
     io::GoalOutcome outcome;
-    gdd::GoalFigure last;  ///< while the goal acted
-    bool acts = false;     ///< in the last step seen
+    gdd::GoalError last;  ///< while the goal acted
+    bool acts = false;    ///< in the last step seen
 
     template <class Archive>
     void archive(Archive& a) {
@@ -51,11 +51,11 @@ class GoalRecord {
   const VectorX& errors() const { return errors_; }
 
  private:
-  void see(Track& track, const gdd::GoalFigure& figure, double time, bool acts);
+  void see(Track& track, const gdd::GoalError& figure, double time, bool acts);
 
   int dofs_;
   std::vector<Track> tracks_;
-  std::vector<gdd::GoalFigure> figures_;  ///< scratch
+  std::vector<gdd::GoalError> figures_;  ///< scratch
   VectorX errors_;
 };
 

@@ -6,11 +6,11 @@
 #include <map>
 #include <optional>
 
-#include "collision/unit_contacts.hpp"
-#include "engine/engine.hpp"
-#include "engine/step/saved_contacts.hpp"
-#include "gdd/gdd.hpp"
-#include "io/summary.hpp"
+#include "softgauss/collision/unit_contacts.hpp"
+#include "softgauss/engine/engine.hpp"
+#include "softgauss/engine/step/saved_contacts.hpp"
+#include "softgauss/gdd/gdd.hpp"
+#include "softgauss/io/summary.hpp"
 
 namespace softgauss::app {
 

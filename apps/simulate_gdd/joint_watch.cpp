@@ -22,7 +22,7 @@ std::vector<WatchedControl> worstFirst(std::vector<WatchedControl> list) {
 
 }  // namespace
 
-JointWatch::JointWatch(const Model& model, const gdd::ControlBox& box) : model_(model) {
+JointWatch::JointWatch(const Model& model, const gdd::ControlLimits& limits) : model_(model) {
   for (int i = 0; i < model.nv; ++i) {
     const Dof& dof = model.dofs[i];
     if (!dof.actuated) continue;
@@ -33,8 +33,8 @@ JointWatch::JointWatch(const Model& model, const gdd::ControlBox& box) : model_(
                     dof.effortUpper};
     controls_.push_back(std::move(control));
   }
-  if (!box.transmission) return;
-  for (const gdd::Actuator& actuator : box.transmission->actuators()) {
+  if (!limits.transmission) return;
+  for (const gdd::Actuator& actuator : limits.transmission->actuators()) {
     Control control{actuator.name, "", {}, actuator.lower, actuator.upper};
     for (const gdd::Actuator::Pull& pull : actuator.pulls) control.dofs.push_back(pull.dof);
     controls_.push_back(std::move(control));
@@ -42,7 +42,7 @@ JointWatch::JointWatch(const Model& model, const gdd::ControlBox& box) : model_(
   }
   // Of a joint that actuators pull, the effort is no bound.
   for (std::size_t i = 0; i + actuators_ < controls_.size(); ++i)
-    controls_[i].actuated = !box.transmission->pulls(controls_[i].dofs[0]);
+    controls_[i].actuated = !limits.transmission->pulls(controls_[i].dofs[0]);
 }
 
 void JointWatch::see(Control& control, double u, double forget) {

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "engine/model/state.hpp"
-#include "gdd/problem.hpp"
+#include "softgauss/engine/model/state.hpp"
+#include "softgauss/gdd/problem.hpp"
 
 namespace softgauss::app {
 
@@ -24,7 +24,7 @@ struct WatchedControl {
 
 class JointWatch {
  public:
-  JointWatch(const Model& model, const gdd::ControlBox& box);
+  JointWatch(const Model& model, const gdd::ControlLimits& limits);
 
   /// Forces on joints and commands of the box's actuators as applied in a step of length `h` [s],
   /// and the state after it.

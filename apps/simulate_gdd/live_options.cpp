@@ -6,7 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
-#include "gdd/goals/posture.hpp"
+#include "softgauss/gdd/goals/posture.hpp"
 
 namespace softgauss::app {
 namespace {
@@ -42,10 +42,10 @@ void addLiveOptions(CLI::App& app, SimulateOptions& options) {
   app.add_option("--live-address", options.liveAddress,
                  "another address to listen on; pages then need a token, which is printed")
       ->group(live);
-  app.add_option("--record", options.record, "write what is done to a live run to a .yaml file")
+  app.add_option("--record", options.record, "write the events of a live run to a .yaml file")
       ->group(live);
   app.add_option("--play", options.play,
-                 "do again what such a file holds, to the same bits, without pages or waiting")
+                 "replay the events of such a file, bit for bit, without pages or waiting")
       ->group(live);
 }
 

@@ -9,7 +9,7 @@
 #include "apps/live/messages.hpp"
 #include "apps/shared/interrupt.hpp"
 #include "apps/simulate_gdd/replay.hpp"
-#include "io/replay/page.hpp"
+#include "softgauss/io/replay/page.hpp"
 
 namespace softgauss::app {
 namespace {
@@ -42,7 +42,7 @@ double weightOf(const Model& model) {
 }
 
 bool isCertified(gdd::GddStatus status) {
-  return status == gdd::GddStatus::converged || status == gdd::GddStatus::kink;
+  return status == gdd::GddStatus::converged || status == gdd::GddStatus::nonsmoothMinimum;
 }
 
 }  // namespace

@@ -14,7 +14,7 @@
 #include "apps/live/status.hpp"
 #include "apps/simulate_gdd/companion.hpp"
 #include "apps/simulate_gdd/scene.hpp"
-#include "io/replay/recording.hpp"
+#include "softgauss/io/replay/recording.hpp"
 
 namespace softgauss::app {
 

@@ -115,7 +115,7 @@ std::string Oddities::speedText(int body, const Seen& seen, const std::string& w
 
 std::string Oddities::energyText(const std::string& when) const {
   return fmt::format(
-      "the scene gains {:.3g} J that nothing gives it{}{}; try a smaller "
+      "the energy of the scene increases by {:.3g} J without a source{}{}; try a smaller "
       "--timestep, --integrator implicit-midpoint, or a start without overlaps",
       gain_, when,
       fastest_ > 0 ? fmt::format(", joint '{}' moving fastest", model_.jointNames[fastest_]) : "");

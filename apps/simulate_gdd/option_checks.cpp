@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "apps/simulate_gdd/options.hpp"
-#include "io/inputs.hpp"
-#include "io/output.hpp"
+#include "softgauss/io/inputs.hpp"
+#include "softgauss/io/output.hpp"
 
 namespace softgauss::app {
 namespace {

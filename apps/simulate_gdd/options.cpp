@@ -11,8 +11,8 @@
 #include "apps/simulate_gdd/checkpoint_options.hpp"
 #include "apps/simulate_gdd/command_line.hpp"
 #include "apps/simulate_gdd/live_options.hpp"
-#include "io/inputs.hpp"
-#include "io/names.hpp"
+#include "softgauss/io/inputs.hpp"
+#include "softgauss/io/names.hpp"
 
 namespace softgauss::app {
 namespace {
@@ -77,18 +77,19 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
                  "the effects to simulate: auto, none, a list, or no_NAME,… for all but those")
       ->group(scene);
   app.add_option("--zero-effort", zeroEffort,
-                 "what effort=\"0\" means: passive (not actuated) or unlimited")
+                 "meaning of effort=\"0\": passive (not actuated) or unlimited")
       ->check(CLI::IsMember({"passive", "unlimited"}))
       ->group(scene);
-  app.add_option("--meshes", meshes,
-                 "what collision meshes collide as where a scene does not say. hull: their convex\n"
-                 "hulls; triangles: themselves; auto (default): the hull where it is at most 5 %\n"
-                 "larger or the mesh moves, else the triangles")
+  app.add_option(
+         "--meshes", meshes,
+         "collision shape of meshes where a scene names none. hull: the convex hull;\ntriangles: "
+         "the mesh itself; auto (default): the hull where it is at most 5 %\n"
+         "larger or the mesh moves, else the triangles")
       ->check(CLI::IsMember({"hull", "triangles", "auto"}))
       ->group(scene);
   app.add_option("--collision", collision,
-                 "where contacts come from. own (default); fcl: FCL finds what touches and along\n"
-                 "which direction, slower, for a second opinion")
+                 "collision detection: own (default); fcl: FCL finds the touching pairs and "
+                 "their\nnormals, slower, for a second opinion")
       ->check(CLI::IsMember({"own", "fcl"}))
       ->group(scene);
   app.add_option("--package-path", options.packagePaths,
@@ -170,39 +171,38 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
                "softness of constraints from the present inertia, not from constants of the model")
       ->group(simulation);
   app.add_flag("--no-slip", options.noSlip,
-               "friction without creep, by a second solve bounded by the first; inverse\n"
-               "dynamics then miss the control by what the summary calls physics violation")
+               "friction without creep, by a second solve bounded by the first; inverse\ndynamics "
+               "then differ from the control by the summary's physics_violation")
       ->group(simulation);
   app.add_flag("--level-slip", options.levelSlip,
-               "slip adds no push to contacts, and pyramids turn with it: what slides stays\n"
-               "level and keeps its line")
+               "no gliding: slip adds no normal force, and friction pyramids align with it, "
+               "so\nthat sliding bodies stay level and keep their direction")
       ->group(simulation);
   app.add_option("--without", without,
-                 "mechanisms of the step that are left out, by name: to see what each is for\n"
-                 "(docs/stability.md has a table of them)")
+                 "mechanisms of the step to leave out, by name, for "
+                 "comparisons\n(docs/stability.md has a table of them)")
       ->group(simulation);
   app.add_option(
          "--gdd-solver", solver,
-         "active-set (default): over the controls, ends on the physics with a certificate;\n"
+         "active-set (default): over the controls, exact in the physics, with a certificate;\n"
          "augmented-lagrangian: the paper's primal-dual Gauss-Newton solver, slower with\n"
          "strong goals; it also solves where contacts have elliptic cones")
       ->check(CLI::IsMember({"active-set", "augmented-lagrangian"}))
       ->group(simulation);
   app.add_option("--control-cost", controlCost,
-                 "about-gravity (default): force costs by how far it is from what holds the robot\n"
-                 "at rest, so that a reach ends at its place; total: all force costs, as in the\n"
-                 "paper, and whatever is held against gravity sags a little")
+                 "about-gravity (default): cost of the force beyond gravity compensation, so "
+                 "that\na reach ends at its target; total: cost of all force, as in the paper, and "
+                 "links\nthat are held against gravity sag a little")
       ->check(CLI::IsMember({"about-gravity", "total"}))
       ->group(simulation);
-  app.add_option(
-         "--compatibility", compatibility,
-         "none (default) or mujoco: as MuJoCo has it, Coriolis forces of the step's start and\n"
-         "contacts and connections that do not know what they carry")
+  app.add_option("--compatibility", compatibility,
+                 "none (default) or mujoco: MuJoCo's model, with Coriolis forces of the step's "
+                 "start and\nconstraints that are not regularised by the mass that they support")
       ->check(CLI::IsMember({"none", "mujoco"}))
       ->group(simulation);
 
   app.add_option("--islands", islands,
-                 "apart: robots and objects that do not touch are solved apart from each other;\n"
+                 "apart: robots and objects that do not touch are solved separately;\n"
                  "sleep: and those at rest that no goal controls cost nothing until something\n"
                  "touches or pushes them; sleep-all: robots at rest under their goals too")
       ->check(CLI::IsMember({"apart", "sleep", "sleep-all"}))
@@ -212,7 +212,7 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
   addCheckpointOptions(app, options);
 
   const char* const output = "Output";
-  app.add_flag("--explain", options.explain, "tell what was loaded and simulate nothing")
+  app.add_flag("--explain", options.explain, "report what was loaded and simulate nothing")
       ->group(output);
   app.add_option("--log", options.log,
                  "write every step to a .csv file; here and below - is standard output")
@@ -233,7 +233,7 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
                  "draw the run's curves with gnuplot: an .svg file, or a folder for one file each")
       ->group(output);
   app.add_flag("--details", options.details,
-               "tell at the end also what the solver did and what it took")
+               "report at the end also the solver's statistics and times")
       ->group(output);
   app.add_flag("--quiet", options.quiet, "print errors only")->group(output);
 

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "engine/islands/islands.hpp"
-#include "io/simulation/options.hpp"
-#include "io/simulation/scene.hpp"
+#include "softgauss/engine/islands/islands.hpp"
+#include "softgauss/io/simulation/options.hpp"
+#include "softgauss/io/simulation/scene.hpp"
 
 namespace softgauss::app {
 

@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "apps/simulate_gdd/scene.hpp"
-#include "io/torque_table.hpp"
+#include "softgauss/io/torque_table.hpp"
 
 namespace softgauss::app {
 

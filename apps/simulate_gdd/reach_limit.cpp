@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "engine/dynamics/jacobian.hpp"
+#include "softgauss/engine/dynamics/jacobian.hpp"
 
 namespace softgauss::app {
 namespace {

@@ -3,7 +3,7 @@
 
 /// How near a chain of joints can bring a point of a link to a place, whatever forces it takes.
 
-#include "engine/dynamics/kinematics.hpp"
+#include "softgauss/engine/dynamics/kinematics.hpp"
 
 namespace softgauss::app {
 

@@ -6,9 +6,9 @@
 #include <optional>
 
 #include "apps/simulate_gdd/scene.hpp"
-#include "io/replay/page.hpp"
-#include "io/replay/plot.hpp"
-#include "io/summary.hpp"
+#include "softgauss/io/replay/page.hpp"
+#include "softgauss/io/replay/plot.hpp"
+#include "softgauss/io/summary.hpp"
 
 namespace softgauss::app {
 

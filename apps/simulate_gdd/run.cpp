@@ -21,10 +21,10 @@
 #include "apps/simulate_gdd/run_tables.hpp"
 #include "apps/simulate_gdd/run_tally.hpp"
 #include "apps/simulate_gdd/verdict.hpp"
-#include "engine/engine.hpp"
-#include "engine/model/saved_state.hpp"
-#include "io/explain.hpp"
-#include "io/summary.hpp"
+#include "softgauss/engine/engine.hpp"
+#include "softgauss/engine/model/saved_state.hpp"
+#include "softgauss/io/explain.hpp"
+#include "softgauss/io/summary.hpp"
 
 namespace softgauss::app {
 namespace {
@@ -325,11 +325,11 @@ class Runner {
 
   /// A step that is not divided sees nothing of what begins and ends within it.
   void tellUnseen() {
-    if (summary_.fallbacks.unseen == 0) return;
-    summary_.warnings.push_back(fmt::format(
-        "{} times shapes were so fast that they may have passed through each other between two "
-        "looks: try a smaller --timestep, or dormand-prince, which divides such steps",
-        summary_.fallbacks.unseen));
+    if (summary_.fallbacks.possibleTunnelling == 0) return;
+    summary_.warnings.push_back(
+        fmt::format("{} times shapes may have tunnelled through each other between two collision "
+                    "checks: try a smaller --timestep, or dormand-prince, which divides such steps",
+                    summary_.fallbacks.possibleTunnelling));
   }
 
   const SimulateOptions& options_;

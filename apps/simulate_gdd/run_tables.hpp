@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "apps/simulate_gdd/options.hpp"
-#include "io/contact_log.hpp"
-#include "io/log.hpp"
+#include "softgauss/io/contact_log.hpp"
+#include "softgauss/io/log.hpp"
 
 namespace softgauss::app {
 

@@ -8,21 +8,21 @@ namespace softgauss::app {
 
 void tally(const StepStats& stats, bool countsParts, io::Summary& summary) {
   io::Fallbacks& f = summary.fallbacks;
-  f.shortSolves += stats.shortSolves;
-  f.roundedSolves += stats.roundedSolves;
-  f.refusedGuesses += stats.refusedGuesses;
-  f.keptSlips += stats.keptSlips;
+  f.unconvergedSolves += stats.unconvergedSolves;
+  f.roundingLimitedSolves += stats.roundingLimitedSolves;
+  f.invalidWarmStarts += stats.invalidWarmStarts;
+  f.noSlipFallbacks += stats.noSlipFallbacks;
   f.abandonedTrees += stats.abandonedTrees;
-  f.heldSwings += stats.swings;
-  f.jumps += stats.jumps;
-  f.unseen += stats.unseen;
+  f.stabilisedBodies += stats.stabilisedBodies;
+  f.minimumStepsAccepted += stats.minimumStepsAccepted;
+  f.possibleTunnelling += stats.possibleTunnelling;
   io::IntegrationCounts& i = summary.integration;
   i.evaluations += stats.evaluations;
   i.substeps += stats.substeps;
   i.parts += countsParts ? stats.parts : 0;
   i.repeats += stats.repeats;
   i.rejections += stats.rejections;
-  i.glances += stats.glances;
+  i.tunnellingSplits += stats.tunnellingSplits;
   for (const MechanismName& m : kMechanismNames)
     summary.mechanismActs[static_cast<std::size_t>(m.mechanism)] += stats.acted[m.mechanism];
 }
@@ -33,19 +33,19 @@ void tally(const gdd::GddReport& report, io::GddOutcomes& outcomes) {
     case gdd::GddStatus::converged:
       ++outcomes.certified;
       break;
-    case gdd::GddStatus::kink:
-      ++outcomes.kinks;
+    case gdd::GddStatus::nonsmoothMinimum:
+      ++outcomes.nonsmoothMinima;
       break;
     case gdd::GddStatus::iterationLimit:
       ++outcomes.iterationLimit;
       break;
-    case gdd::GddStatus::bend:
-      ++outcomes.bend;
+    case gdd::GddStatus::nonsmoothStall:
+      ++outcomes.nonsmoothStalls;
       break;
     case gdd::GddStatus::undecided:
       ++outcomes.undecided;
       break;
-    case gdd::GddStatus::badBox:
+    case gdd::GddStatus::badLimits:
     case gdd::GddStatus::notFinite:
       break;
   }
@@ -54,7 +54,7 @@ void tally(const gdd::GddReport& report, io::GddOutcomes& outcomes) {
 void tallyCommands(const gdd::GoalDirectedController& controller, io::Summary& summary) {
   for (Eigen::Index k = 0; k < controller.commands.size(); ++k) {
     const gdd::Actuator& actuator =
-        controller.box.transmission->actuators()[static_cast<std::size_t>(k)];
+        controller.limits.transmission->actuators()[static_cast<std::size_t>(k)];
     const double bound = std::max(-actuator.lower, actuator.upper);
     if (std::isfinite(bound) && bound > 0.0)
       summary.addControlRatio(actuator.name, std::abs(controller.commands[k]) / bound);

@@ -3,9 +3,9 @@
 
 /// What the steps of a run add to its summary.
 
-#include "engine/step/data.hpp"
-#include "gdd/goal_directed_step.hpp"
-#include "io/summary.hpp"
+#include "softgauss/engine/step/data.hpp"
+#include "softgauss/gdd/goal_directed_step.hpp"
+#include "softgauss/io/summary.hpp"
 
 namespace softgauss::app {
 

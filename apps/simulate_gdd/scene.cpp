@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 
 #include "apps/simulate_gdd/trial.hpp"
-#include "collision/clearance.hpp"
-#include "io/explain.hpp"
-#include "io/names.hpp"
+#include "softgauss/collision/clearance.hpp"
+#include "softgauss/io/explain.hpp"
+#include "softgauss/io/names.hpp"
 
 namespace softgauss::app {
 namespace {
@@ -74,7 +74,7 @@ std::string explainScene(const Scene& scene) {
   context.testedPairs = static_cast<int>(filter.pairs.size());
   for (const collision::GeometryPair& pair : filter.pairs)
     context.pairs.emplace_back(pair.a, pair.b);
-  context.apartPairs = filter.apartPairs;
+  context.unreachablePairs = filter.unreachablePairs;
   context.costs = tryEffects(scene);
   context.materials = scene.materials;
   for (const collision::ExcludedPair& pair : filter.excluded) {

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "apps/simulate_gdd/options.hpp"
-#include "io/simulation/scene.hpp"
+#include "softgauss/io/simulation/scene.hpp"
 
 namespace softgauss::app {
 

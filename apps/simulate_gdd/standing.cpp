@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "collision/lowest_point.hpp"
-#include "io/simulation/base_notes.hpp"
+#include "softgauss/collision/lowest_point.hpp"
+#include "softgauss/io/simulation/base_notes.hpp"
 
 namespace softgauss::app {
 namespace {

@@ -17,8 +17,8 @@
 #include <string>
 #include <vector>
 
-#include "engine/step/snapshot.hpp"
-#include "io/contact_links.hpp"
+#include "softgauss/engine/step/snapshot.hpp"
+#include "softgauss/io/contact_links.hpp"
 
 namespace softgauss::app {
 

@@ -5,7 +5,7 @@
 
 #include "apps/shared/median.hpp"
 #include "apps/shared/wall_clock.hpp"
-#include "engine/engine.hpp"
+#include "softgauss/engine/engine.hpp"
 
 namespace softgauss::app {
 namespace {

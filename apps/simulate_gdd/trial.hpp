@@ -7,7 +7,7 @@
 #include <string>
 
 #include "apps/simulate_gdd/scene.hpp"
-#include "io/explain.hpp"
+#include "softgauss/io/explain.hpp"
 
 namespace softgauss::app {
 

@@ -8,8 +8,8 @@
 
 #include "apps/simulate_gdd/names.hpp"
 #include "apps/simulate_gdd/reach_limit.hpp"
-#include "gdd/goals/reach.hpp"
-#include "io/figure_text.hpp"
+#include "softgauss/gdd/goals/reach.hpp"
+#include "softgauss/io/figure_text.hpp"
 
 namespace softgauss::app {
 namespace {
@@ -38,7 +38,7 @@ Verdict::Verdict(const gdd::GoalDirectedController& controller, const gdd::GoalC
       baseOrigin_(baseOrigin),
       bolted_(boltedTrees(start)),
       goals_(controller.goals, start),
-      joints_(start.model, controller.box),
+      joints_(start.model, controller.limits),
       standing_(start.model, start.data.kinematics),
       oddities_(start.model, passive) {}
 
@@ -67,7 +67,7 @@ void Verdict::finish(const SeenStep& end) {
     if (!o.began)
       o.reason = track.goal->startTime > r.time
                      ? fmt::format("it begins at {:.4g} s, after the end", track.goal->startTime)
-                     : "nothing touched that it is about";
+                     : "no contact that it counts";
     else if (!o.isMet() && o.reason.empty())
       o.reason = reasonOf(track, end);
   }
@@ -92,7 +92,7 @@ bool Verdict::fell() const {
 /// farthest off, or all.
 std::vector<char> Verdict::dofsOf(const GoalRecord::Track& track) const {
   std::vector<char> counts(static_cast<std::size_t>(model_.nv), 0);
-  const gdd::GoalFigure& figure = track.last;
+  const gdd::GoalError& figure = track.last;
   if (figure.frame >= 0) {
     for (int b = model_.frames[figure.frame].body; b > 0; b = model_.bodies[b].parent)
       if (model_.bodies[b].dofs == 1) counts[model_.bodies[b].v] = 1;
@@ -153,7 +153,7 @@ std::string Verdict::reasonOf(const GoalRecord::Track& track, const SeenStep& st
     const auto actuated = [&](int i) { return counts[i] && model_.dofs[i].actuated; };
     bool any = false;
     for (int i = 0; i < model_.nv; ++i) any = any || actuated(i);
-    if (!any && controller_.box.transmission == nullptr)
+    if (!any && controller_.limits.transmission == nullptr)
       parts.emplace_back(track.last.dof >= 0 ? "which is not actuated"
                                              : "no joint of it is actuated");
     if (const auto weak = joints_.saturatedNow(counts); !weak.empty())
@@ -169,7 +169,7 @@ std::string Verdict::reasonOf(const GoalRecord::Track& track, const SeenStep& st
   const auto said = std::count_if(parts.begin(), parts.end(),
                                   [](const std::string& part) { return !part.empty(); });
   if (said == (track.last.dof >= 0 ? 1 : 0))
-    parts.emplace_back("other goals or the price of force outweigh it");
+    parts.emplace_back("other goals or the control cost outweigh it");
   return joined(parts);
 }
 
@@ -256,9 +256,9 @@ void Verdict::tellControls(io::Summary& summary) const {
     summary.verdict.emplace_back(
         "not certified",
         fmt::format("{} of {} steps took the best control that was found, without a certificate "
-                    "that it is a minimum: {} at the iteration limit, {} at a bend of an elliptic "
-                    "cone, {} undecided",
-                    g.uncertified(), g.all(), g.iterationLimit, g.bend, g.undecided));
+                    "that it is a minimum: {} at the iteration limit, {} at a nonsmooth point of "
+                    "an elliptic cone, {} undecided",
+                    g.uncertified(), g.all(), g.iterationLimit, g.nonsmoothStalls, g.undecided));
 }
 
 void Verdict::tell(const std::string& ending, const std::vector<std::string>& baseWarnings,

@@ -12,8 +12,8 @@
 #include "apps/simulate_gdd/joint_watch.hpp"
 #include "apps/simulate_gdd/oddities.hpp"
 #include "apps/simulate_gdd/standing.hpp"
-#include "gdd/goal_directed_step.hpp"
-#include "io/simulation/base_notes.hpp"
+#include "softgauss/gdd/goal_directed_step.hpp"
+#include "softgauss/io/simulation/base_notes.hpp"
 
 namespace softgauss::app {
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "collision/scene_contacts.hpp"
-#include "engine/engine.hpp"
+#include "softgauss/collision/scene_contacts.hpp"
+#include "softgauss/engine/engine.hpp"
 
 namespace softgauss::app {
 

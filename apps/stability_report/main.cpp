@@ -18,7 +18,7 @@
 
 #include "apps/stability_report/ablation.hpp"
 #include "apps/stability_report/rival.hpp"
-#include "io/replay/gnuplot.hpp"
+#include "softgauss/io/replay/gnuplot.hpp"
 
 namespace {
 

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "io/scene.hpp"
+#include "softgauss/io/scene.hpp"
 
 namespace softgauss::app {
 

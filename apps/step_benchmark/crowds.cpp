@@ -13,9 +13,9 @@
 #include "apps/step_benchmark/in_turn.hpp"
 #include "apps/step_benchmark/scaling.hpp"
 #include "apps/step_benchmark/scenes.hpp"
-#include "collision/unit_contacts.hpp"
-#include "gdd/gdd.hpp"
-#include "io/urdf.hpp"
+#include "softgauss/collision/unit_contacts.hpp"
+#include "softgauss/gdd/gdd.hpp"
+#include "softgauss/io/urdf.hpp"
 
 namespace softgauss::app {
 namespace {

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
-#include "collision/lowest_point.hpp"
-#include "io/urdf.hpp"
+#include "softgauss/collision/lowest_point.hpp"
+#include "softgauss/io/urdf.hpp"
 
 namespace softgauss::app {
 namespace {

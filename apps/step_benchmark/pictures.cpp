@@ -12,7 +12,7 @@
 
 #include "apps/step_benchmark/ladder.hpp"
 #include "apps/step_benchmark/scaling.hpp"
-#include "io/replay/gnuplot.hpp"
+#include "softgauss/io/replay/gnuplot.hpp"
 
 namespace softgauss::app {
 namespace {

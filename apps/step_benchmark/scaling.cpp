@@ -6,8 +6,8 @@
 #include <cmath>
 #include <regex>
 
-#include "collision/lowest_point.hpp"
-#include "io/urdf.hpp"
+#include "softgauss/collision/lowest_point.hpp"
+#include "softgauss/io/urdf.hpp"
 
 namespace softgauss::app {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
-#include "collision/lowest_point.hpp"
-#include "io/urdf.hpp"
+#include "softgauss/collision/lowest_point.hpp"
+#include "softgauss/io/urdf.hpp"
 
 namespace softgauss::app {
 

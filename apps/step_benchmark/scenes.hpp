@@ -7,11 +7,11 @@
 #include <stdexcept>
 #include <string>
 
-#include "collision/scene_contacts.hpp"
-#include "collision/unit_contacts.hpp"
-#include "engine/engine.hpp"
-#include "gdd/gdd.hpp"
-#include "io/replay/recording.hpp"
+#include "softgauss/collision/scene_contacts.hpp"
+#include "softgauss/collision/unit_contacts.hpp"
+#include "softgauss/engine/engine.hpp"
+#include "softgauss/gdd/gdd.hpp"
+#include "softgauss/io/replay/recording.hpp"
 
 namespace softgauss::app {
 

@@ -3,8 +3,8 @@
 
 /// An axis-aligned box.
 
-#include "engine/core/check.hpp"
-#include "engine/core/types.hpp"
+#include "softgauss/engine/core/check.hpp"
+#include "softgauss/engine/core/types.hpp"
 
 namespace softgauss::collision::detail {
 

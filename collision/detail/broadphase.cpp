@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "collision/detail/broadphase.hpp"
+#include "softgauss/collision/detail/broadphase.hpp"
 
 #include <algorithm>
 

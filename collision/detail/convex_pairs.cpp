@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "collision/detail/convex_pairs.hpp"
+#include "softgauss/collision/detail/convex_pairs.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "collision/box_pairs.hpp"
-#include "collision/detail/separating_direction.hpp"
-#include "collision/manifold.hpp"
+#include "softgauss/collision/box_pairs.hpp"
+#include "softgauss/collision/detail/separating_direction.hpp"
+#include "softgauss/collision/manifold.hpp"
 
 namespace softgauss::collision::detail {
 namespace {

@@ -9,8 +9,8 @@
 /// so that two faces that rest on each other share an exact normal. The distance is σ(n), and the
 /// manifold comes from the support faces.
 
-#include "collision/pair_contact.hpp"
-#include "collision/support.hpp"
+#include "softgauss/collision/pair_contact.hpp"
+#include "softgauss/collision/support.hpp"
 
 namespace softgauss::collision::detail {
 

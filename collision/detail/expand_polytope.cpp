@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 
-#include "collision/detail/minkowski.hpp"
+#include "softgauss/collision/detail/minkowski.hpp"
 
 namespace softgauss::collision::detail {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "collision/fcl_contacts.hpp"
+#include "softgauss/collision/fcl_contacts.hpp"
 
 #include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
 #include <fcl/geometry/shape/box.h>
@@ -15,10 +15,10 @@
 #include <utility>
 #include <vector>
 
-#include "collision/detail/geometry_set.hpp"
-#include "collision/scene_contacts.hpp"
-#include "engine/constraints/contact.hpp"
-#include "engine/core/index.hpp"
+#include "softgauss/collision/detail/geometry_set.hpp"
+#include "softgauss/collision/scene_contacts.hpp"
+#include "softgauss/engine/constraints/contact.hpp"
+#include "softgauss/engine/core/index.hpp"
 
 namespace softgauss::collision {
 namespace {
@@ -201,12 +201,12 @@ void FclContacts::detect(const Model&, const Kinematics& kinematics,
   for (const int pair : scene_->near) scene_->testPair(pair, contacts);
 }
 
-double FclContacts::timeInSight(const Model& model, const Kinematics& kinematics, double longest,
-                                Way way) noexcept {
-  return scene_->own.timeInSight(model, kinematics, longest, way);
+double FclContacts::tunnellingTimeBound(const Model& model, const Kinematics& kinematics,
+                                        double longest, TimeDirection direction) noexcept {
+  return scene_->own.tunnellingTimeBound(model, kinematics, longest, direction);
 }
 
 const PairFilter& FclContacts::filter() const { return scene_->own.filter(); }
-std::int64_t FclContacts::pairsLeft() const { return scene_->left; }
+std::int64_t FclContacts::pairsFailed() const { return scene_->left; }
 
 }  // namespace softgauss::collision

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "collision/detail/fcl_triangle_tree.hpp"
+#include "softgauss/collision/detail/fcl_triangle_tree.hpp"
 
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/math/bv/AABB.h>
@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "engine/core/index.hpp"
+#include "softgauss/engine/core/index.hpp"
 
 namespace softgauss::collision::detail {
 namespace {

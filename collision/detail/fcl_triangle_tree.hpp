@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "collision/detail/box.hpp"
-#include "engine/core/spatial.hpp"
+#include "softgauss/collision/detail/box.hpp"
+#include "softgauss/engine/core/spatial.hpp"
 
 namespace softgauss::collision::detail {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "collision/detail/geometry_set.hpp"
+#include "softgauss/collision/detail/geometry_set.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "collision/primitive_pairs.hpp"
+#include "softgauss/collision/primitive_pairs.hpp"
 
 namespace softgauss::collision::detail {
 namespace {

@@ -7,13 +7,13 @@
 #include <memory>
 #include <vector>
 
-#include "collision/detail/convex_pairs.hpp"
-#include "collision/detail/surface_contacts.hpp"
-#include "collision/detail/surface_pairs.hpp"
-#include "collision/pair_contact.hpp"
-#include "collision/prepared_meshes.hpp"
-#include "engine/constraints/contact_set.hpp"
-#include "engine/model/model.hpp"
+#include "softgauss/collision/detail/convex_pairs.hpp"
+#include "softgauss/collision/detail/surface_contacts.hpp"
+#include "softgauss/collision/detail/surface_pairs.hpp"
+#include "softgauss/collision/pair_contact.hpp"
+#include "softgauss/collision/prepared_meshes.hpp"
+#include "softgauss/engine/constraints/contact_set.hpp"
+#include "softgauss/engine/model/model.hpp"
 
 namespace softgauss::collision::detail {
 

@@ -4,7 +4,7 @@
 /// The Minkowski difference D = A − B of two cores, as a support function that keeps the best
 /// direction it was ever asked for.
 
-#include "collision/detail/separating_direction.hpp"
+#include "softgauss/collision/detail/separating_direction.hpp"
 
 namespace softgauss::collision::detail {
 

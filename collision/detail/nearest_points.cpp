@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "collision/detail/nearest_points.hpp"
+#include "softgauss/collision/detail/nearest_points.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "collision/detail/minkowski.hpp"
-#include "engine/core/index.hpp"
+#include "softgauss/collision/detail/minkowski.hpp"
+#include "softgauss/engine/core/index.hpp"
 
 namespace softgauss::collision::detail {
 namespace {

@@ -7,8 +7,8 @@
 /// v = Σ λ_i w_i, w_i = a_i − b_i; Σ λ_i a_i and Σ λ_i b_i are then the nearest points of the cores
 /// of A and B (Gilbert, Johnson, Keerthi 1988), and the shapes' own are their radii further on.
 
-#include "collision/detail/convex_pairs.hpp"
-#include "engine/model/shape_distances.hpp"
+#include "softgauss/collision/detail/convex_pairs.hpp"
+#include "softgauss/engine/model/shape_distances.hpp"
 
 namespace softgauss::collision::detail {
 

@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <array>
 
-#include "collision/detail/fcl_triangle_tree.hpp"
-#include "engine/core/index.hpp"
+#include "softgauss/collision/detail/fcl_triangle_tree.hpp"
+#include "softgauss/engine/core/index.hpp"
 
 namespace softgauss::collision::detail {
 

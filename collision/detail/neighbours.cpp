@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "collision/detail/neighbours.hpp"
+#include "softgauss/collision/detail/neighbours.hpp"
 
 #include <algorithm>
 
-#include "engine/constraints/contact.hpp"
-#include "engine/core/index.hpp"
+#include "softgauss/engine/constraints/contact.hpp"
+#include "softgauss/engine/core/index.hpp"
 
 namespace softgauss::collision::detail {
 Neighbours::Neighbours(const Model& model, const Units& units, PreparedMeshes& meshes)

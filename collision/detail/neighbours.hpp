@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include "collision/detail/box.hpp"
-#include "collision/detail/geometry_set.hpp"
-#include "collision/filter.hpp"
-#include "engine/islands/units.hpp"
+#include "softgauss/collision/detail/box.hpp"
+#include "softgauss/collision/detail/geometry_set.hpp"
+#include "softgauss/collision/filter.hpp"
+#include "softgauss/engine/islands/units.hpp"
 
 namespace softgauss::collision::detail {
 

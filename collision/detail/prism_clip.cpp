@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "collision/detail/prism_clip.hpp"
+#include "softgauss/collision/detail/prism_clip.hpp"
 
 namespace softgauss::collision::detail {
 namespace {

@@ -16,7 +16,7 @@
 /// the plane together cut no corner there. A corner of the triangle is one of theirs only where
 /// their outline turns.
 
-#include "collision/support.hpp"
+#include "softgauss/collision/support.hpp"
 
 namespace softgauss::collision::detail {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "collision/detail/separating_direction.hpp"
+#include "softgauss/collision/detail/separating_direction.hpp"
 
 #include <algorithm>
 
-#include "collision/detail/minkowski.hpp"
+#include "softgauss/collision/detail/minkowski.hpp"
 
 namespace softgauss::collision::detail {
 namespace {

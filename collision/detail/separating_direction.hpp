@@ -15,7 +15,7 @@
 /// Spheres and capsules enter as their cores, a point and a segment: cores are mostly disjoint,
 /// where the answer is exact.
 
-#include "collision/support.hpp"
+#include "softgauss/collision/support.hpp"
 
 namespace softgauss::collision::detail {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "collision/detail/surface_contacts.hpp"
+#include "softgauss/collision/detail/surface_contacts.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "collision/detail/fcl_triangle_tree.hpp"
-#include "collision/detail/minkowski.hpp"
-#include "collision/detail/prism_clip.hpp"
-#include "engine/core/index.hpp"
+#include "softgauss/collision/detail/fcl_triangle_tree.hpp"
+#include "softgauss/collision/detail/minkowski.hpp"
+#include "softgauss/collision/detail/prism_clip.hpp"
+#include "softgauss/engine/core/index.hpp"
 
 namespace softgauss::collision::detail {
 namespace {

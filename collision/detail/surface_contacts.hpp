@@ -30,12 +30,12 @@
 
 #include <vector>
 
-#include "collision/detail/box.hpp"
-#include "collision/detail/convex_pairs.hpp"
-#include "collision/detail/surface_patches.hpp"
-#include "collision/detail/surface_reduction.hpp"
-#include "collision/pair_contact.hpp"
-#include "collision/triangle_mesh.hpp"
+#include "softgauss/collision/detail/box.hpp"
+#include "softgauss/collision/detail/convex_pairs.hpp"
+#include "softgauss/collision/detail/surface_patches.hpp"
+#include "softgauss/collision/detail/surface_reduction.hpp"
+#include "softgauss/collision/pair_contact.hpp"
+#include "softgauss/collision/triangle_mesh.hpp"
 
 namespace softgauss::collision::detail {
 

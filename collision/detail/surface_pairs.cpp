@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "collision/detail/surface_pairs.hpp"
+#include "softgauss/collision/detail/surface_pairs.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "collision/detail/fcl_triangle_tree.hpp"
-#include "collision/detail/triangle_pairs.hpp"
-#include "engine/core/index.hpp"
+#include "softgauss/collision/detail/fcl_triangle_tree.hpp"
+#include "softgauss/collision/detail/triangle_pairs.hpp"
+#include "softgauss/engine/core/index.hpp"
 
 namespace softgauss::collision::detail {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "collision/detail/surface_patches.hpp"
+#include "softgauss/collision/detail/surface_patches.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "engine/core/index.hpp"
+#include "softgauss/engine/core/index.hpp"
 
 namespace softgauss::collision::detail {
 namespace {

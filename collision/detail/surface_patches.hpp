@@ -11,9 +11,9 @@
 #include <span>
 #include <vector>
 
-#include "collision/detail/convex_pairs.hpp"
-#include "collision/detail/prism_clip.hpp"
-#include "collision/triangle_mesh.hpp"
+#include "softgauss/collision/detail/convex_pairs.hpp"
+#include "softgauss/collision/detail/prism_clip.hpp"
+#include "softgauss/collision/triangle_mesh.hpp"
 
 namespace softgauss::collision::detail {
 

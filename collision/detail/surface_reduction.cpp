@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "collision/detail/surface_reduction.hpp"
+#include "softgauss/collision/detail/surface_reduction.hpp"
 
 #include <algorithm>
 
-#include "collision/contact_reduction.hpp"
-#include "engine/core/index.hpp"
+#include "softgauss/collision/contact_reduction.hpp"
+#include "softgauss/engine/core/index.hpp"
 
 namespace softgauss::collision::detail {
 namespace {

@@ -10,7 +10,7 @@
 
 #include <vector>
 
-#include "collision/pair_contact.hpp"
+#include "softgauss/collision/pair_contact.hpp"
 
 namespace softgauss::collision::detail {
 

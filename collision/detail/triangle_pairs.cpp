@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "collision/detail/triangle_pairs.hpp"
+#include "softgauss/collision/detail/triangle_pairs.hpp"
 
 #include <algorithm>
 

@@ -9,7 +9,7 @@
 /// sides, are tried as well.  (Separating axes: Gottschalk, Lin and Manocha, OBBTree, SIGGRAPH
 /// 1996.)
 
-#include "collision/detail/convex_pairs.hpp"
+#include "softgauss/collision/detail/convex_pairs.hpp"
 
 namespace softgauss::collision::detail {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/constraints/block_jacobian.hpp"
+#include "softgauss/engine/constraints/block_jacobian.hpp"
 
 #include <algorithm>
 
-#include "engine/dynamics/jacobian.hpp"
+#include "softgauss/engine/dynamics/jacobian.hpp"
 
 namespace softgauss {
 namespace {

@@ -12,9 +12,9 @@
 
 #include <vector>
 
-#include "engine/core/memory.hpp"
-#include "engine/dynamics/kinematics.hpp"
-#include "engine/dynamics/tree_matrix.hpp"
+#include "softgauss/engine/core/memory.hpp"
+#include "softgauss/engine/dynamics/kinematics.hpp"
+#include "softgauss/engine/dynamics/tree_matrix.hpp"
 
 namespace softgauss {
 

@@ -7,13 +7,13 @@
 #include <cstddef>
 #include <vector>
 
-#include "engine/constraints/block_jacobian.hpp"
-#include "engine/constraints/rows.hpp"
+#include "softgauss/engine/constraints/block_jacobian.hpp"
+#include "softgauss/engine/constraints/rows.hpp"
 
 namespace softgauss {
 
 /// A distance of three components and how it changes:
-///   a_ref = −b (J v − lag J̇ v) − k d r − J̇ v                                            (T.116)
+///   a_ref = −b (J v − lag J̇ v) − k d r − J̇ v                                              (4.5)
 struct Offset {
   Vector3 r;     ///< [m]
   Vector3 rate;  ///< where the step begins, J v − lag J̇ v [m/s]

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/constraints/carried_inertia.hpp"
+#include "softgauss/engine/constraints/carried_inertia.hpp"
 
 namespace softgauss {
 
-double carriedInertia(const Assembly& in, int body) {
+double supportedInertia(const Assembly& in, int body) {
   const Model& model = in.model;
   const Kinematics& k = in.kinematics;
   const Body& joint = model.bodies[body];

@@ -3,11 +3,11 @@
 
 /// What a joint of one degree of freedom feels when all other joints are held.
 
-#include "engine/constraints/assembly.hpp"
+#include "softgauss/engine/constraints/assembly.hpp"
 
 namespace softgauss {
 
 /// M_ii of the joint of a body, with armature: the inertia of all that it carries [kg or kg m²].
-double carriedInertia(const Assembly& in, int body);
+double supportedInertia(const Assembly& in, int body);
 
 }  // namespace softgauss

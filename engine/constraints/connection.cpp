@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/constraints/connection.hpp"
+#include "softgauss/engine/constraints/connection.hpp"
 
 #include <algorithm>
 
-#include "engine/constraints/contact_softness.hpp"
-#include "engine/constraints/tie_softness.hpp"
+#include "softgauss/engine/constraints/contact_softness.hpp"
+#include "softgauss/engine/constraints/equality_softness.hpp"
 
 namespace softgauss {
 
@@ -15,35 +15,36 @@ PointOffset::PointOffset(const Assembly& in, int bodyA, const Vector3& p_AP, int
   const Kinematics& k = in.kinematics;
   r = p_WA - p_WB;
   bias.setZero();
-  if (model.options.ownSoftness) {
+  if (model.options.constraintModel == ConstraintModel::softgauss) {
     // The force acts in one place, lest it makes a moment: where what turns more easily is held.
     const double turnsA = in.weights.rotation[bodyA], turnsB = in.weights.rotation[bodyB];
     const double share = turnsA + turnsB > 0.0 ? turnsA / (turnsA + turnsB) : 0.5;
     const Vector3 place = p_WB + share * r;
-    const Vector3 runs = share * pointTurning(model, k, bodyA, p_WA) +
-                         (1.0 - share) * pointTurning(model, k, bodyB, p_WB);
+    const Vector3 runs = share * pointMidstepVelocity(model, k, bodyA, p_WA) +
+                         (1.0 - share) * pointMidstepVelocity(model, k, bodyB, p_WB);
     p_WA = p_WB = place;
-    const std::vector<Motion>& V = k.turning();
-    bias = V[bodyA].angular.cross(runs - pointTurning(model, k, bodyA, place)) -
-           V[bodyB].angular.cross(runs - pointTurning(model, k, bodyB, place));
+    const std::vector<Motion>& V = k.midstepVelocities();
+    bias = V[bodyA].angular.cross(runs - pointMidstepVelocity(model, k, bodyA, place)) -
+           V[bodyB].angular.cross(runs - pointMidstepVelocity(model, k, bodyB, place));
   }
   rate = pointVelocity(model, k, bodyA, p_WA) - pointVelocity(model, k, bodyB, p_WB);
   bias +=
       pointBiasAcceleration(model, k, bodyA, p_WA) - pointBiasAcceleration(model, k, bodyB, p_WB);
-  rate -= in.lag() * bias;
-  r -= 0.5 * in.lag() * in.lag() * bias;
+  rate -= in.velocityLag() * bias;
+  r -= 0.5 * in.velocityLag() * in.velocityLag() * bias;
 }
 
-bool carries(const Assembly& in, const Impedance& tie) {
-  return in.load && !bouncing(tie, in.model.options);
+bool usesSupportedMass(const Assembly& in, const Impedance& tie) {
+  return in.load && !underdampedReference(tie, in.model.options);
 }
 
-double tieWeight(const Assembly& in, const Impedance& tie, int bodyA, int bodyB) {
+double equalityInverseMass(const Assembly& in, const Impedance& tie, int bodyA, int bodyB) {
   const double weight = in.weights.translation[bodyA] + in.weights.translation[bodyB];
-  if (!carries(in, tie)) return weight;
-  const double loaded = carrying(weight, std::max(in.load->mass(in.model, bodyA, bodyB),
-                                                  in.load->partOnTie(in.model, bodyA, bodyB)));
-  in.count(Mechanism::carriedLoad, loaded < weight);
+  if (!usesSupportedMass(in, tie)) return weight;
+  const double loaded =
+      cappedInverseMass(weight, std::max(in.load->mass(in.model, bodyA, bodyB),
+                                         in.load->equalityShare(in.model, bodyA, bodyB)));
+  in.count(Mechanism::supportedMass, loaded < weight);
   return loaded;
 }
 
@@ -63,8 +64,8 @@ void ConnectionRows::assemble(const Assembly& in) {
   if (model.options.effects.has(Effect::equality)) {
     for (const Connection& c : model.connections) {
       const PointOffset offset(in, c.bodyA, c.p_AP, c.bodyB, c.p_BP);
-      const Softness soft = tieSoftness(in, c.impedance, offset.r.norm(),
-                                        tieWeight(in, c.impedance, c.bodyA, c.bodyB));
+      const Softness soft = equalitySoftness(
+          in, c.impedance, offset.r.norm(), equalityInverseMass(in, c.impedance, c.bodyA, c.bodyB));
       const RelativeMotion motion = offsetMotion(c.bodyA, offset.p_WA, c.bodyB, offset.p_WB);
       jacobian_.add(model, in.kinematics, in.tree, motion);
       pushRows(offset, soft);

@@ -5,14 +5,14 @@
 ///
 /// Distance r = p_A − p_B, J = J_A − J_B of the two points, and the force f pulls body A along +f,
 /// body B along −f:
-///   x = J a − a_ref,   a_ref = −b ṙ − k d(|r|) r − J̇ v,   s(x) = ½ D x²                  (T.28)
+///   x = J a − a_ref,   a_ref = −b ṙ − k d(|r|) r − J̇ v,   s(x) = ½ D x²                   (4.3)
 /// with A = w_A + w_B, the bodies' translational inverse weights, or less where the connection
-/// carries more than they are (T.80). With J̇ v, r̈ is the acceleration of the distance itself, and
+/// carries more than they are (5.1). With J̇ v, r̈ is the acceleration of the distance itself, and
 /// closed loops do not drift when they turn fast. Where v lags by half a step, ṙ and J̇ v are those
-/// of (T.116), by how r has come and would go on.
+/// of (4.5), by how r has come and would go on.
 
-#include "engine/constraints/assembly.hpp"
-#include "engine/constraints/block_rows.hpp"
+#include "softgauss/engine/constraints/assembly.hpp"
+#include "softgauss/engine/constraints/block_rows.hpp"
 
 namespace softgauss {
 
@@ -32,9 +32,10 @@ struct PointOffset : Offset {
 /// The Jacobian J_A − J_B of that offset.
 RelativeMotion offsetMotion(int bodyA, const Vector3& p_WA, int bodyB, const Vector3& p_WB);
 
-/// Whether a tie of this impedance knows what it carries: those that bounce do not (T.80).
-bool carries(const Assembly& in, const Impedance& tie);
-/// A of a tie of two bodies' translation [1/kg].
-double tieWeight(const Assembly& in, const Impedance& tie, int bodyA, int bodyB);
+/// Whether an equality constraint of this impedance knows what it carries: those that bounce do not
+/// (5.1).
+bool usesSupportedMass(const Assembly& in, const Impedance& tie);
+/// A of an equality constraint of two bodies' translation [1/kg].
+double equalityInverseMass(const Assembly& in, const Impedance& tie, int bodyA, int bodyB);
 
 }  // namespace softgauss

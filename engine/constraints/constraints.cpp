@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/constraints/constraints.hpp"
+#include "softgauss/engine/constraints/constraints.hpp"
 
 #include <algorithm>
 
@@ -12,7 +12,9 @@ bool same(const std::vector<Segment>& a, const std::vector<Segment>& b) {
 }
 
 /// Made of what connections do, after them.
-bool isSwing(int kind) { return kind == static_cast<int>(RowKind::swing); }
+bool isGeometricStiffness(int kind) {
+  return kind == static_cast<int>(RowKind::geometricStiffness);
+}
 
 bool isContact(int kind) {
   return kind == static_cast<int>(RowKind::pyramid) ||
@@ -25,14 +27,14 @@ void Constraints::assemble(const Assembly& given) {
   Assembly in = given;
   acted_ = {};
   in.acted = &acted_;
-  if (in.model.options.uses(Mechanism::carriedLoad)) {
+  if (in.model.options.uses(Mechanism::supportedMass)) {
     load_.assemble(in.model, in.kinematics, in.contacts, in.weights);
     in.load = &load_;
   }
   active_ = RowKinds::none();
   visitThese(*this, planned_, [&](auto& c, int kind) {
     // Without contacts there is nothing to look at, but old rows to drop.
-    const bool nothing = isSwing(kind) || (isContact(kind) && in.contacts.size() == 0);
+    const bool nothing = isGeometricStiffness(kind) || (isContact(kind) && in.contacts.size() == 0);
     if (nothing && c.rowCount() == 0) return;
     ++calls_[kind];
     c.assemble(in);
@@ -64,13 +66,13 @@ void Constraints::couple(const TreeSparsity& tree) {
   sparsity_ = &coupled_;
 }
 
-int Constraints::holdSwings(const Assembly& in) {
-  if (!planned_.has(RowKind::swing) || !active_.has(RowKind::connection)) return 0;
+int Constraints::addGeometricStiffness(const Assembly& in) {
+  if (!planned_.has(RowKind::geometricStiffness) || !active_.has(RowKind::connection)) return 0;
   rowForces_.setZero(in.model.nv);
   addForce(rowForces_);
-  const int held = swing.hold(in, connection, rowForces_);
+  const int held = geometricStiffness.assembleRows(in, connection, rowForces_);
   if (held > 0) {
-    active_.insert(RowKind::swing);
+    active_.insert(RowKind::geometricStiffness);
     couple(in.tree);
   }
   return held;
@@ -87,7 +89,7 @@ void Constraints::setResidual(const VectorX& a) {
     c.multiply(a, c.x);
     for (std::size_t i = 0; i < c.x.size(); ++i) c.x[i] -= c.reference[i];
   });
-  if (active_.has(RowKind::ellipticCone)) ellipticContact.letGo();
+  if (active_.has(RowKind::ellipticCone)) ellipticContact.clearBreakpointPlacement();
 }
 
 void Constraints::setRay(const VectorX& d) {
@@ -140,17 +142,18 @@ Crossing Constraints::nextCrossing() const {
   return next;
 }
 
-void Constraints::enterPiece(Knot knot, bool above) {
-  visitOne(*this, knot.row.kind, [&](auto& c) {
+void Constraints::enterPiece(Breakpoint breakpoint, bool above) {
+  visitOne(*this, breakpoint.row.kind, [&](auto& c) {
     if constexpr (requires { c.enterPiece(0, 0, above); })
-      c.enterPiece(knot.row.row, knot.index, above);
+      c.enterPiece(breakpoint.row.row, breakpoint.index, above);
   });
 }
 
-bool Constraints::isAbove(Knot knot) const {
+bool Constraints::isAbove(Breakpoint breakpoint) const {
   bool above = false;
-  visitOne(*this, knot.row.kind, [&](const auto& c) {
-    if constexpr (requires { c.isAbove(0, 0); }) above = c.isAbove(knot.row.row, knot.index);
+  visitOne(*this, breakpoint.row.kind, [&](const auto& c) {
+    if constexpr (requires { c.isAbove(0, 0); })
+      above = c.isAbove(breakpoint.row.row, breakpoint.index);
   });
   return above;
 }
@@ -165,50 +168,51 @@ void Constraints::addRow(RowId id, double scale, VectorX& y) const {
   visitOne(*this, id.kind, [&](const auto& c) { c.addRow(id.row, scale, y); });
 }
 
-double Constraints::aboveKnot(Knot knot) const {
+double Constraints::aboveBreakpoint(Breakpoint breakpoint) const {
   double x = 0.0;
-  visitOne(*this, knot.row.kind, [&](const auto& c) { x = c.aboveKnot(knot.row.row, knot.index); });
+  visitOne(*this, breakpoint.row.kind,
+           [&](const auto& c) { x = c.aboveBreakpoint(breakpoint.row.row, breakpoint.index); });
   return x;
 }
 
-void Constraints::knotGradient(Knot knot, VectorX& y) const {
+void Constraints::breakpointGradient(Breakpoint breakpoint, VectorX& y) const {
   y.setZero();
-  visitOne(*this, knot.row.kind, [&](const auto& c) {
-    if constexpr (requires { c.addKnotGradient(0, 0, 1.0, y); })
-      c.addKnotGradient(knot.row.row, knot.index, 1.0, y);
+  visitOne(*this, breakpoint.row.kind, [&](const auto& c) {
+    if constexpr (requires { c.addBreakpointGradient(0, 0, 1.0, y); })
+      c.addBreakpointGradient(breakpoint.row.row, breakpoint.index, 1.0, y);
     else
-      c.addRow(knot.row.row, 1.0, y);
+      c.addRow(breakpoint.row.row, 1.0, y);
   });
 }
 
-double Constraints::curvatureJump(Knot knot) const {
+double Constraints::curvatureJump(Breakpoint breakpoint) const {
   double jump = 0.0;
-  visitOne(*this, knot.row.kind,
-           [&](const auto& c) { jump = c.curvatureJump(knot.row.row, knot.index); });
+  visitOne(*this, breakpoint.row.kind,
+           [&](const auto& c) { jump = c.curvatureJump(breakpoint.row.row, breakpoint.index); });
   return jump;
 }
 
-KnotName Constraints::nameOf(Knot knot) const {
-  KnotName name{.kind = knot.row.kind, .row = {}, .index = knot.index};
-  visitOne(*this, knot.row.kind, [&](const auto& c) {
-    if constexpr (requires { c.name(0); }) name.row = c.name(knot.row.row);
+BreakpointKey Constraints::nameOf(Breakpoint breakpoint) const {
+  BreakpointKey name{.kind = breakpoint.row.kind, .row = {}, .index = breakpoint.index};
+  visitOne(*this, breakpoint.row.kind, [&](const auto& c) {
+    if constexpr (requires { c.name(0); }) name.row = c.name(breakpoint.row.row);
   });
   return name;
 }
 
-std::optional<Knot> Constraints::find(const KnotName& name) const {
-  std::optional<Knot> found;
+std::optional<Breakpoint> Constraints::find(const BreakpointKey& name) const {
+  std::optional<Breakpoint> found;
   visitOne(*this, name.kind, [&](const auto& c) {
     if constexpr (requires { c.name(0); })
       for (int row = 0; row < c.rowCount() && !found; ++row)
-        if (c.name(row) == name.row) found = Knot{{name.kind, row}, name.index};
+        if (c.name(row) == name.row) found = Breakpoint{{name.kind, row}, name.index};
   });
   return found;
 }
 
-void Constraints::placeAtKnot(Knot knot, bool stiffSide) {
-  visitOne(*this, knot.row.kind,
-           [&](auto& c) { c.placeAtKnot(knot.row.row, knot.index, stiffSide); });
+void Constraints::placeAtBreakpoint(Breakpoint breakpoint, bool stiffSide) {
+  visitOne(*this, breakpoint.row.kind,
+           [&](auto& c) { c.placeAtBreakpoint(breakpoint.row.row, breakpoint.index, stiffSide); });
 }
 
 void Constraints::holdOnRay(RowId id) {

@@ -2,7 +2,7 @@
 #pragma once
 
 /// Every soft constraint of the engine, and the operations that run over all of them:
-///   s(Ja − r) of the extended Gauss principle (T.1), its force −Jᵀ∇s and curvature Jᵀ∇²s J.
+///   s(Ja − r) of the extended Gauss principle (1.1), its force −Jᵀ∇s and curvature Jᵀ∇²s J.
 ///
 /// To add an effect: write its file, add a member, name it in visitThese(). A kind that the plan
 /// does not have is never called; one without rows in this step is called once, to find that out.
@@ -12,15 +12,15 @@
 #include <optional>
 #include <vector>
 
-#include "engine/constraints/connection.hpp"
-#include "engine/constraints/dry_friction.hpp"
-#include "engine/constraints/elliptic_contact.hpp"
-#include "engine/constraints/joint_coupling.hpp"
-#include "engine/constraints/joint_limit.hpp"
-#include "engine/constraints/pyramidal_contact.hpp"
-#include "engine/constraints/swing_damping.hpp"
-#include "engine/constraints/weld.hpp"
-#include "engine/model/plan.hpp"
+#include "softgauss/engine/constraints/connection.hpp"
+#include "softgauss/engine/constraints/dry_friction.hpp"
+#include "softgauss/engine/constraints/elliptic_contact.hpp"
+#include "softgauss/engine/constraints/geometric_stiffness.hpp"
+#include "softgauss/engine/constraints/joint_coupling.hpp"
+#include "softgauss/engine/constraints/joint_limit.hpp"
+#include "softgauss/engine/constraints/pyramidal_contact.hpp"
+#include "softgauss/engine/constraints/weld.hpp"
+#include "softgauss/engine/model/plan.hpp"
 
 namespace softgauss {
 
@@ -39,10 +39,10 @@ concept SoftConstraint = requires(C c, const Assembly& in, const VectorX& a, Vec
   c.addTransposed(y, tau);                                 // tau += Jᵀ y
   c.addCurvature(P);                                       // P += Jᵀ ∇²s J
   c.addRow(0, 1.0, tau);                                   // tau += scale · (row of J)ᵀ
-  c.findCrossings(0, crossings);                           // knots along a ray
-  { c.aboveKnot(0, 0) } -> std::convertible_to<double>;
+  c.findCrossings(0, crossings);                           // breakpoints along a ray
+  { c.aboveBreakpoint(0, 0) } -> std::convertible_to<double>;
   { c.curvatureJump(0, 0) } -> std::convertible_to<double>;
-  c.placeAtKnot(0, 0, true);
+  c.placeAtBreakpoint(0, 0, true);
   c.holdOnRay(0);
 };
 
@@ -53,7 +53,7 @@ class Constraints {
   CouplingRows coupling;
   DryFriction dryFriction;
   JointLimit jointLimit;
-  SwingDamping swing;
+  GeometricStiffness geometricStiffness;
   PyramidalContact contact;
   EllipticContact ellipticContact;
 
@@ -94,14 +94,14 @@ class Constraints {
   template <class F>
   void visitContactsOf(RowId id, F&& f) const {
     visitOne(*this, id.kind, [&](const auto& c) {
-      if constexpr (requires { c.knotInFrame(0, 0); }) f(c);
+      if constexpr (requires { c.breakpointInFrame(0, 0); }) f(c);
     });
   }
 
   void assemble(const Assembly& in);
-  /// Makes rows against what swings too fast on the connections, by their forces (T.128); returns
+  /// Makes rows against what swings too fast on the connections, by their forces (6.9); returns
   /// how many bodies they hold.
-  int holdSwings(const Assembly& in);
+  int addGeometricStiffness(const Assembly& in);
   int rowCount() const;
   /// Kinds that may make rows, and those that have some in this step.
   RowKinds planned() const { return planned_; }
@@ -130,30 +130,30 @@ class Constraints {
   void addCurvature(TreeMatrix& P);
   /// Whether s is a sum of piecewise quadratics at present, so that findCrossings() is complete.
   bool piecewiseQuadratic() const { return ellipticContact.rowCount() == 0; }
-  /// All knots ahead on the ray, α ≥ 0, unordered.
+  /// All breakpoints ahead on the ray, α ≥ 0, unordered.
   void findCrossings(std::vector<Crossing>& crossings) const;
-  /// The first knot ahead on the ray, counted from the pieces in which the rows are kept; alpha = ∞
-  /// if there is none. Only where s is piecewise quadratic.
+  /// The first breakpoint ahead on the ray, counted from the pieces in which the rows are kept;
+  /// alpha = ∞ if there is none. Only where s is piecewise quadratic.
   Crossing nextCrossing() const;
-  /// Puts a row at a knot, in the piece above it or the one below.
-  void enterPiece(Knot knot, bool above);
-  bool isAbove(Knot knot) const;
+  /// Puts a row at a breakpoint, in the piece above it or the one below.
+  void enterPiece(Breakpoint breakpoint, bool above);
+  bool isAbove(Breakpoint breakpoint) const;
   /// Forces and curvatures at x with every row in the piece in which it is kept.
   void evaluateInPlace();
   /// y ← y + scale · (row of J)ᵀ.
   void addRow(RowId id, double scale, VectorX& y) const;
-  /// How far the row is above its knot: x less x there, or what takes its place on a cone.
-  double aboveKnot(Knot knot) const;
+  /// How far the row is above its breakpoint: x less x there, or what takes its place on a cone.
+  double aboveBreakpoint(Breakpoint breakpoint) const;
   /// y ← the gradient in a of that distance.
-  void knotGradient(Knot knot, VectorX& y) const;
-  /// s″ above a knot less s″ below it.
-  double curvatureJump(Knot knot) const;
-  /// The name by which find() has the knot again in a later step.
-  KnotName nameOf(Knot knot) const;
-  /// The knot of that name; nothing where its row does not exist now.
-  std::optional<Knot> find(const KnotName& name) const;
-  /// Puts the row exactly at its knot, where it is free, or next to it on the stiff side.
-  void placeAtKnot(Knot knot, bool stiffSide);
+  void breakpointGradient(Breakpoint breakpoint, VectorX& y) const;
+  /// s″ above a breakpoint less s″ below it.
+  double curvatureJump(Breakpoint breakpoint) const;
+  /// The name by which find() has the breakpoint again in a later step.
+  BreakpointKey nameOf(Breakpoint breakpoint) const;
+  /// The breakpoint of that name; nothing where its row does not exist now.
+  std::optional<Breakpoint> find(const BreakpointKey& name) const;
+  /// Puts the row exactly at its breakpoint, where it is free, or next to it on the stiff side.
+  void placeAtBreakpoint(Breakpoint breakpoint, bool stiffSide);
   /// Takes a row off the ray.
   void holdOnRay(RowId id);
   /// (rows × nv) J, dense; allocates.
@@ -175,7 +175,7 @@ class Constraints {
     call(self.coupling, RowKind::coupling, kinds, f);
     call(self.dryFriction, RowKind::dryFriction, kinds, f);
     call(self.jointLimit, RowKind::jointLimit, kinds, f);
-    call(self.swing, RowKind::swing, kinds, f);
+    call(self.geometricStiffness, RowKind::geometricStiffness, kinds, f);
   }
   /// Sets the pattern of P.
   void couple(const TreeSparsity& tree);
@@ -196,7 +196,7 @@ class Constraints {
   RowKinds planned_ = RowKinds::all();
   RowKinds active_ = RowKinds::none();
   std::array<std::int64_t, kRowKinds> calls_{};
-  CarriedLoad load_;
+  SupportedMass load_;
   MechanismCounts acted_;
   const TreeSparsity* sparsity_ = nullptr;
   TreeSparsity coupled_;
@@ -210,7 +210,7 @@ static_assert(SoftConstraint<WeldRows>);
 static_assert(SoftConstraint<CouplingRows>);
 static_assert(SoftConstraint<DryFriction>);
 static_assert(SoftConstraint<JointLimit>);
-static_assert(SoftConstraint<SwingDamping>);
+static_assert(SoftConstraint<GeometricStiffness>);
 static_assert(SoftConstraint<PyramidalContact>);
 static_assert(SoftConstraint<EllipticContact>);
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/constraints/contact.hpp"
+#include "softgauss/engine/constraints/contact.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "engine/constraints/contact_motion.hpp"
-#include "engine/constraints/contact_softness.hpp"
-#include "engine/constraints/contact_turn.hpp"
-#include "engine/constraints/sticking_contact.hpp"
-#include "engine/core/rotation.hpp"
+#include "softgauss/engine/constraints/contact_motion.hpp"
+#include "softgauss/engine/constraints/contact_rotation.hpp"
+#include "softgauss/engine/constraints/contact_softness.hpp"
+#include "softgauss/engine/constraints/stiction.hpp"
+#include "softgauss/engine/core/rotation.hpp"
 
 namespace softgauss {
 namespace {
@@ -68,12 +68,12 @@ double creepUnderWeight(const Options& options, const Touch& touch) {
   return residualUnder(options.gravity.norm(), options, touch) / touch.softness.damping;
 }
 
-/// Whether a pyramid turns with the slip (T.139): where its depth and normal speed let it slide,
+/// Whether a pyramid turns with the slip (5.9): where its depth and normal speed let it slide,
 /// and ten times its weight would. There friction then points against the slip, whatever tangents
 /// the pyramid has.
 bool slides(const Options& options, const Touch& touch, const Vector3& n_W, const Vector3& slip) {
   constexpr double kSure = 10.0;
-  if (touch.frictionDim == 0 || options.cone != Cone::pyramidal || !options.levelsSlip())
+  if (touch.frictionDim == 0 || options.cone != Cone::pyramidal || !options.limitsGliding())
     return false;
   const double normal = n_W.dot(slip);
   const double push = touch.softness.referenceAcceleration(normal, touch.distance);
@@ -89,12 +89,12 @@ double presses(const Options& options, const Vector3& n_W, const ContactBias& bi
 
 /// Whether J̇ v counts as deep as the contact lies: as deep as that says, and deeper where it lies
 /// at most half as deep again as its weight and J̇ v press it at rest. So deep it goes in and out as
-/// on a spring (T.124). What came in deeper, by a fall, they would push out by more than what it
+/// on a spring (4.12). What came in deeper, by a fall, they would push out by more than what it
 /// came in against, and it would gain.
-bool countsSoDeep(const Options& options, const Touch& touch, double load,
-                  const ContactBias& bias) {
+bool isWithinBiasDepth(const Options& options, const Touch& touch, double load,
+                       const ContactBias& bias) {
   const double atRest = residualUnder(load, options, touch) / touch.softness.stiffness;
-  return -touch.distance < std::min(bias.deepest, std::max(bias.deep, 1.5 * atRest));
+  return -touch.distance < std::min(bias.loadedBiasDepth, std::max(bias.biasDepth, 1.5 * atRest));
 }
 
 /// (x/most)⁻² where x > most, else 1.
@@ -113,17 +113,17 @@ double stickingShare(const Options& options, const Touch& touch, double load,
          fallsOff(alongTangents.norm(), kHeld * touch.mu() * load);
 }
 
-/// The longest time over which a contact takes the velocity of its bodies [s] (T.140): a part of a
-/// step; else as long as its normal and levers hold, turning by Options::partAngle, and so long
+/// The longest time over which a contact takes the velocity of its bodies [s] (3.15): a part of a
+/// step; else as long as its normal and levers hold, turning by Options::substepAngle, and so long
 /// that what it carries gives it no more mass than it has without, which is 1/b over the load's
 /// share.
 double horizonOf(const Assembly& in, const Contact& contact, const Touch& touch, double damping) {
   const Options& options = in.model.options;
-  if (!in.mayShorten()) return kInfinity;
-  if (in.isPart()) return options.timestep;
-  const double rate = turnRate(in.model, in.kinematics, contact);
-  double longest = rate > 0.0 ? options.partAngle / rate : kInfinity;
-  if (touch.carries) longest = std::min(longest, 1.0 / (damping * touch.hardening));
+  if (!in.mayCapDampingTime()) return kInfinity;
+  if (in.isSubstep()) return options.timestep;
+  const double rate = contactRotationRate(in.model, in.kinematics, contact);
+  double longest = rate > 0.0 ? options.substepAngle / rate : kInfinity;
+  if (touch.supportsOthers) longest = std::min(longest, 1.0 / (damping * touch.loadStiffening));
   return std::max(options.timestep, longest);
 }
 
@@ -173,7 +173,7 @@ Material pairMaterial(const Model& model, int geometryA, int geometryB) {
 double weightAt(const Assembly& in, int body, const Vector3& p_W) {
   constexpr double kTurned = 1e-4;
   const double ofCentre = in.weights.translation[body];
-  if (!in.model.options.ownSoftness) return ofCentre;
+  if (in.model.options.constraintModel == ConstraintModel::mujoco) return ofCentre;
   const Vector3 lever = p_W - in.kinematics.X_WB[body] * in.model.bodies[body].com;
   return std::max(ofCentre, kTurned * in.weights.rotation[body] * lever.squaredNorm());
 }
@@ -183,7 +183,8 @@ std::optional<Touch> touchAt(const Assembly& in, int i) {
   const Contact& c = in.contacts.contacts[i];
   if (model.bodies[c.bodyA].dofs == 0 && model.bodies[c.bodyB].dofs == 0) return std::nullopt;
   const Material surface = pairMaterial(model, c.geometryA, c.geometryB);
-  const Material material = inForce(surface, reducedMass(model, c.bodyA, c.bodyB), model.options);
+  const Material material =
+      effectiveMaterial(surface, reducedMass(model, c.bodyA, c.bodyB), model.options);
   Touch touch;
   touch.distance = c.distance - material.margin;
   // NaN makes rows, so that the solve reports it.
@@ -192,19 +193,20 @@ std::optional<Touch> touchAt(const Assembly& in, int i) {
   double weight = weightAt(in, c.bodyA, c.p_WC) + weightAt(in, c.bodyB, c.p_WC);
   double load = in.load ? in.load->mass(model, c.bodyA, c.bodyB) : 0.0;
   touch.spring = material.spring.has_value();
-  touch.carries = load > 0.0 && !touch.spring;  // springs keep their depth of rest and bounce
-  if (in.load) load = std::max(load, in.load->partOnContact(model, c.bodyA, c.bodyB));
-  if (!material.spring) touch.hardening = std::max(1.0, load * weight);
-  in.count(Mechanism::carriedLoad, load * weight > 1.0);
-  weight = carrying(weight, load);
+  touch.supportsOthers =
+      load > 0.0 && !touch.spring;  // springs keep their penetration at rest and bounce
+  if (in.load) load = std::max(load, in.load->contactShare(model, c.bodyA, c.bodyB));
+  if (!material.spring) touch.loadStiffening = std::max(1.0, load * weight);
+  in.count(Mechanism::supportedMass, load * weight > 1.0);
+  weight = cappedInverseMass(weight, load);
   touch.inverseMass = weight;
   touch.softness =
       contactSoftness(material, touch.frictionDim, touch.distance, weight, model.options);
-  if (model.options.uses(Mechanism::stepBounds) && !material.spring &&
+  if (model.options.uses(Mechanism::referenceClamp) && !material.spring &&
       (isSprung(model, c.bodyA) || isSprung(model, c.bodyB)))
-    touch.softness = withLeastMass(touch.softness, model.options.rowTimestep());
+    touch.softness = withoutVirtualMass(touch.softness, model.options.rowTimestep());
   const bool bounces = material.spring && !surface.spring;
-  in.count(Mechanism::stepBounds, bounces || touch.softness.bounded);
+  in.count(Mechanism::referenceClamp, bounces || touch.softness.bounded);
   if (touch.frictionDim > 0) {
     const double mu = material.slidingFriction;
     const double spin = std::max(material.torsionalFriction, kSmallestFriction);
@@ -231,8 +233,8 @@ ContactBlocks::BlockMotion ContactBlocks::addBlock(const Assembly& in, int i, co
   while (place < i && all[i - place - 1].geometryA == c.geometryA &&
          all[i - place - 1].geometryB == c.geometryB)
     ++place;
-  made_.push_back({i, c.geometryA, c.geometryB, c.bodyA, c.bodyB, place, row, R_WC,
-                   touch.frictionDim, touch.friction, touch.hardening, 1.0});
+  contactsWithRows_.push_back({i, c.geometryA, c.geometryB, c.bodyA, c.bodyB, place, row, R_WC,
+                               touch.frictionDim, touch.friction, touch.loadStiffening, 1.0});
 
   RelativeMotion motion;
   motion.bodyA = c.bodyA;
@@ -245,16 +247,17 @@ ContactBlocks::BlockMotion ContactBlocks::addBlock(const Assembly& in, int i, co
 
   BlockMotion moves;
   moves.velocity = inFrame(R_WC, touch.frictionDim, slips);
-  if (!model.options.uses(Mechanism::contactTurning)) return moves;
+  if (!model.options.uses(Mechanism::contactBiasAcceleration)) return moves;
   if (const std::optional<ContactBias> bias = contactBias(model, k, c)) {
     const Vector3 tangents = bias->rate.linear - c.n_W * c.n_W.dot(bias->rate.linear);
     const double load = presses(model.options, c.n_W, *bias);
-    if (countsSoDeep(model.options, touch, load, *bias)) {
-      made_.back().share = stickingShare(model.options, touch, load, moves.velocity, tangents);
-      moves.bias = biasInFrame(made_.back(), bias->rate);
-      in.count(Mechanism::contactTurning, true);
+    if (isWithinBiasDepth(model.options, touch, load, *bias)) {
+      contactsWithRows_.back().share =
+          stickingShare(model.options, touch, load, moves.velocity, tangents);
+      moves.bias = biasInFrame(contactsWithRows_.back(), bias->rate);
+      in.count(Mechanism::contactBiasAcceleration, true);
       for (std::size_t axis = 0; axis < moves.bias.size(); ++axis)
-        moves.velocity[axis] -= in.lag() * moves.bias[axis];
+        moves.velocity[axis] -= in.velocityLag() * moves.bias[axis];
     }
   }
   return moves;
@@ -272,26 +275,27 @@ Softness ContactBlocks::soften(const Assembly& in, const Touch& touch,
   const Softness& soft = touch.softness;
   const auto held = [&](const Softness& s) {
     if (touch.spring) return s;
-    const Contact& contact = in.contacts.contacts[made_.back().contact];
+    const Contact& contact = in.contacts.contacts[contactsWithRows_.back().contact];
     const double horizon = horizonOf(in, contact, touch, s.damping);
-    in.count(Mechanism::contactHorizon, s.damping * horizon < 1.0);
-    return withinHorizon(s, horizon);
+    in.count(Mechanism::contactDampingTime, s.damping * horizon < 1.0);
+    return withDampingTime(s, horizon);
   };
-  if (!touch.carries || !in.sticks() || touch.frictionDim == 0) return held(soft);
+  if (!touch.supportsOthers || !in.usesStiction() || touch.frictionDim == 0) return held(soft);
   if (!(soft.damping * soft.damping >= 4.0 * soft.stiffness)) return held(soft);  // it bounces
-  SlipSpeeds speeds{slipSpeed(touch, velocity), std::abs(velocity[0])};
+  ContactSpeeds speeds{slipSpeed(touch, velocity), std::abs(velocity[0])};
   speeds.weight = creepUnderWeight(in.model.options, touch);
   speeds.creep = speeds.weight - soft.stiffness * touch.distance / soft.damping;
-  made_.back().slip = speeds.slip();
-  in.count(Mechanism::sticking, made_.back().slip < 1.0);
-  return held(sticking(soft, made_.back().slip));
+  contactsWithRows_.back().regularisationScale = speeds.regularisationScale();
+  in.count(Mechanism::stiction, contactsWithRows_.back().regularisationScale < 1.0);
+  return held(stiffened(soft, contactsWithRows_.back().regularisationScale));
 }
 
 void ContactBlocks::indexRows(std::size_t rows) {
   contactOfRow_.resize(rows);
-  for (std::size_t i = 0; i < made_.size(); ++i) {
-    const std::size_t end = i + 1 < made_.size() ? made_[i + 1].row : rows;
-    for (std::size_t row = made_[i].row; row < end; ++row) contactOfRow_[row] = static_cast<int>(i);
+  for (std::size_t i = 0; i < contactsWithRows_.size(); ++i) {
+    const std::size_t end = i + 1 < contactsWithRows_.size() ? contactsWithRows_[i + 1].row : rows;
+    for (std::size_t row = contactsWithRows_[i].row; row < end; ++row)
+      contactOfRow_[row] = static_cast<int>(i);
   }
 }
 

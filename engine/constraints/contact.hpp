@@ -7,7 +7,7 @@
 /// At a contact of distance r with normal n (from A to B) and tangents t₁, t₂, let y be the
 /// relative acceleration of the touching bodies less its bias J̇ v: y_n, y₁, y₂ that of the touching
 /// points along n, t₁, t₂, and, with condim 4 and 6, the angular y₃, y₄, y₅ about n, t₁, t₂. J̇ v is
-/// that of contact_motion.hpp, where it is known, and is in the references (T.122). The
+/// that of contact_motion.hpp, where it is known, and is in the references (4.11). The
 /// friction coefficients are μ₁ = μ₂ = μ [-] of sliding, μ₃ [m] of torsional and μ₄ = μ₅ [m] of
 /// rolling friction.
 
@@ -15,15 +15,15 @@
 #include <optional>
 #include <vector>
 
-#include "engine/constraints/assembly.hpp"
-#include "engine/constraints/block_jacobian.hpp"
-#include "engine/constraints/impedance.hpp"
-#include "engine/constraints/rows.hpp"
+#include "softgauss/engine/constraints/assembly.hpp"
+#include "softgauss/engine/constraints/block_jacobian.hpp"
+#include "softgauss/engine/constraints/impedance.hpp"
+#include "softgauss/engine/constraints/rows.hpp"
 
 namespace softgauss {
 
-/// Surface parameters of a pair (T.15): condim and frictions are the larger of the two, impedance
-/// parameters their mean by mixWeight, margins the sum. Springs, in newtons, are in series (T.38);
+/// Surface parameters of a pair (3.13): condim and frictions are the larger of the two, impedance
+/// parameters their mean by mixWeight, margins the sum. Springs, in newtons, are in series (3.10);
 /// where only one surface has a spring, the other is rigid. Where priorities differ, the surface of
 /// higher priority gives all but the margin.
 Material mixMaterials(const Material& a, const Material& b);
@@ -36,7 +36,9 @@ Material pairMaterial(const Model& model, int geometryA, int geometryB);
 /// else, each on what has already sunk in. MuJoCo's contacts have to overlap.
 inline double touchingWithin(const Options& options, const Vector3& p_W) {
   constexpr double kRounding = 1e-12;
-  return options.ownSoftness ? kRounding * p_W.cwiseAbs().maxCoeff() : 0.0;
+  return options.constraintModel == ConstraintModel::softgauss
+             ? kRounding * p_W.cwiseAbs().maxCoeff()
+             : 0.0;
 }
 
 /// Two surfaces that touch.
@@ -44,10 +46,10 @@ struct Touch {
   double distance = 0.0;             ///< r: that of the contact less the margin, < 0 [m]
   int frictionDim = 0;               ///< condim − 1; 0 when frictionless
   Softness softness;                 ///< of an edge, or of the row along the normal
-  double hardening = 1.0;            ///< of it by the load it carries (T.80): (w_A + w_B)/A, ≥ 1
+  double loadStiffening = 1.0;       ///< of it by the load it carries (5.1): (w_A + w_B)/A, ≥ 1
   double inverseMass = 0.0;          ///< A [1/kg]
-  bool spring = false;               ///< given in N/m: at the step's end in any case (T.36)
-  bool carries = false;              ///< L > 0: other trees stand on each other here
+  bool spring = false;               ///< given in N/m: at the step's end in any case (3.8)
+  bool supportsOthers = false;       ///< L > 0: other trees stand on each other here
   std::array<double, 5> friction{};  ///< μ_k of frictionDim directions
 
   double mu() const { return friction[0]; }  ///< of sliding; 0 when frictionless
@@ -66,8 +68,8 @@ struct ContactRows {
   Matrix3 R_WC;                      ///< columns n, t₁, t₂
   int frictionDim = 0;               ///< condim − 1; 0 when frictionless
   std::array<double, 5> friction{};  ///< μ_k
-  double hardening = 1.0;            ///< Touch::hardening
-  double slip = 1.0;                 ///< ρ (T.97), 1 where it does not stick
+  double loadStiffening = 1.0;       ///< Touch::loadStiffening
+  double regularisationScale = 1.0;  ///< ρ (5.7), 1 where it does not stick
   double share = 1.0;                ///< of J̇ v along the tangents
 };
 
@@ -75,12 +77,12 @@ struct ContactRows {
 class ContactBlocks {
  public:
   /// Of row i of these contacts.
-  RowName name(int row) const {
-    const ContactRows& m = made_[contactOfRow_[row]];
+  RowKey name(int row) const {
+    const ContactRows& m = contactsWithRows_[contactOfRow_[row]];
     return {m.geometryA, m.geometryB, m.place, row - m.row};
   }
-  /// Contacts with rows; contact i starts at row made()[i].row.
-  const std::vector<ContactRows>& made() const { return made_; }
+  /// Contacts with rows; contact i starts at row contactsWithRows()[i].row.
+  const std::vector<ContactRows>& contactsWithRows() const { return contactsWithRows_; }
   void appendCouplings(std::vector<Segment>& segments, std::vector<int>& setEnd) const {
     jacobian_.appendCouplings(segments, setEnd);
   }
@@ -91,15 +93,17 @@ class ContactBlocks {
   const BlockJacobian& jacobian() const { return jacobian_; }
   /// The first three of a frame's six numbers in world axes, and the last three.
   Vector3 linearInWorld(int i, const FrameVector& y) const {
-    return made_[i].R_WC * Vector3(y[0], y[1], y[2]);
+    return contactsWithRows_[i].R_WC * Vector3(y[0], y[1], y[2]);
   }
   Vector3 angularInWorld(int i, const FrameVector& y) const {
-    return made_[i].R_WC * Vector3(y[3], y[4], y[5]);
+    return contactsWithRows_[i].R_WC * Vector3(y[3], y[4], y[5]);
   }
-  /// Place in made() of the contact that has this row.
+  /// Place in contactsWithRows() of the contact that has this row.
   int contactOfRow(int row) const { return contactOfRow_[row]; }
 
-  std::size_t bytes() const { return jacobian_.bytes() + bytesOfAll(made_, contactOfRow_); }
+  std::size_t bytes() const {
+    return jacobian_.bytes() + bytesOfAll(contactsWithRows_, contactOfRow_);
+  }
 
  protected:
   /// How a contact moves, in its frame.
@@ -109,19 +113,19 @@ class ContactBlocks {
   };
   void clearBlocks() {
     jacobian_.clear();
-    made_.clear();
+    contactsWithRows_.clear();
   }
   /// The block of contact i, whose rows begin at `row`.
   BlockMotion addBlock(const Assembly& in, int i, const Touch& touch, int row);
   /// |(μ_k ẏ_k)|, of all directions of friction in the units of the normal [m/s].
   static double slipSpeed(const Touch& touch, const FrameVector& velocity);
-  /// How soft the last block is: as it is, or harder where it sticks (T.97).
+  /// How soft the last block is: as it is, or harder where it sticks (5.7).
   Softness soften(const Assembly& in, const Touch& touch, const FrameVector& velocity);
   /// Contact of each of `rows` rows.
   void indexRows(std::size_t rows);
 
   BlockJacobian jacobian_;  ///< block i: y of contact i
-  std::vector<ContactRows> made_;
+  std::vector<ContactRows> contactsWithRows_;
   std::vector<int> contactOfRow_;
 };
 

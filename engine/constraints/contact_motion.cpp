@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/constraints/contact_motion.hpp"
+#include "softgauss/engine/constraints/contact_motion.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@ namespace {
 
 /// From where on the rate at its start tells little of a step: by what a body tilts and by what the
 /// place on a rim goes round [rad].
-constexpr double kTilts = 0.3, kGoesRound = 1.0;
+constexpr double kMaxTilt = 0.3, kMaxRimAngle = 1.0;
 
 /// Whether the surface is a plane where its outward normal is ±n.
 bool isFlat(const Shape& shape, const Transform& X_WG, const Vector3& n_W) {
@@ -20,28 +20,30 @@ bool isFlat(const Shape& shape, const Transform& X_WG, const Vector3& n_W) {
          (X_WG.R.transpose() * n_W).cwiseAbs().maxCoeff() > kAligned;
 }
 
-/// ν of (T.121) [m/s], of the place whose outward normal is −n, and the depths of ContactBias; ω of
+/// ν of (4.10) [m/s], of the place whose outward normal is −n, and the depths of ContactBias; ω of
 /// the shape against n.
-struct Runs {
+struct ContactPointVelocity {
   Vector3 along;
-  double deep = std::numeric_limits<double>::infinity(), deepest = deep;
+  double biasDepth = std::numeric_limits<double>::infinity(), loadedBiasDepth = biasDepth;
 };
 
-std::optional<Runs> alongSurface(const Shape& shape, const Transform& X_WG, const Vector3& n,
-                                 const Vector3& omega, const Contact& c, double timestep) {
+std::optional<ContactPointVelocity> alongSurface(const Shape& shape, const Transform& X_WG,
+                                                 const Vector3& n, const Vector3& omega,
+                                                 const Contact& c, double timestep) {
   switch (shape.kind) {
     case ShapeKind::sphere:
     case ShapeKind::capsule:
-      return Runs{shape.radius * omega.cross(n), 0.3 * shape.radius, 0.3 * shape.radius};
+      return ContactPointVelocity{shape.radius * omega.cross(n), 0.3 * shape.radius,
+                                  0.3 * shape.radius};
     case ShapeKind::box:
-      return Runs{Vector3::Zero()};
+      return ContactPointVelocity{Vector3::Zero()};
     case ShapeKind::cylinder: {
       const Vector3 a = X_WG.R.col(2);
       const double slope2 = a.cross(n).squaredNorm(), turns = -a.dot(n.cross(omega.cross(n)));
-      if (!(timestep * std::abs(turns) < kGoesRound * slope2)) return std::nullopt;
+      if (!(timestep * std::abs(turns) < kMaxRimAngle * slope2)) return std::nullopt;
       const double height = shape.radius * std::sqrt(slope2);  // of its middle above the place
-      return Runs{turns / slope2 * a.cross(c.p_WC - X_WG.p + 0.5 * c.distance * n), 0.1 * height,
-                  0.3 * height};
+      return ContactPointVelocity{turns / slope2 * a.cross(c.p_WC - X_WG.p + 0.5 * c.distance * n),
+                                  0.1 * height, 0.3 * height};
     }
     case ShapeKind::plane:
     case ShapeKind::mesh:
@@ -55,9 +57,9 @@ std::optional<Runs> alongSurface(const Shape& shape, const Transform& X_WG, cons
 
 std::optional<ContactBias> contactBias(const Model& model, const Kinematics& k, const Contact& c) {
   // What looks within the step asks for the rate at each of its places.
-  const double h = model.options.looksWithin() ? 0.0 : model.options.timestep;
-  const Motion &V_A = k.turning()[c.bodyA], &V_B = k.turning()[c.bodyB];
-  if (!(h * std::max(c.n_W.cross(V_A.angular).norm(), c.n_W.cross(V_B.angular).norm()) <= kTilts))
+  const double h = model.options.isMultiStage() ? 0.0 : model.options.timestep;
+  const Motion &V_A = k.midstepVelocities()[c.bodyA], &V_B = k.midstepVelocities()[c.bodyB];
+  if (!(h * std::max(c.n_W.cross(V_A.angular).norm(), c.n_W.cross(V_B.angular).norm()) <= kMaxTilt))
     return std::nullopt;
   const Geometry &A = model.geometries[c.geometryA], &B = model.geometries[c.geometryB];
   const Transform X_WA = k.X_WB[c.bodyA] * A.X_BG, X_WB = k.X_WB[c.bodyB] * B.X_BG;
@@ -66,18 +68,18 @@ std::optional<ContactBias> contactBias(const Model& model, const Kinematics& k, 
 
   const Motion &V_flat = flatA ? V_A : V_B, &V_other = flatA ? V_B : V_A;
   const Vector3 n = flatA ? c.n_W : -c.n_W, turns = V_other.angular - V_flat.angular;
-  const std::optional<Runs> runs =
+  const std::optional<ContactPointVelocity> moves =
       alongSurface(flatA ? B.shape : A.shape, flatA ? X_WB : X_WA, n, turns, c, h);
-  if (!runs) return std::nullopt;
+  if (!moves) return std::nullopt;
 
-  const Vector3 v_A = pointTurning(model, k, c.bodyA, c.p_WC),
-                v_B = pointTurning(model, k, c.bodyB, c.p_WC);
+  const Vector3 v_A = pointMidstepVelocity(model, k, c.bodyA, c.p_WC),
+                v_B = pointMidstepVelocity(model, k, c.bodyB, c.p_WC);
   const Vector3 slips = v_B - v_A;
-  const Vector3 v_P = (flatA ? v_B : v_A) + runs->along + 0.5 * c.distance * turns.cross(n) -
+  const Vector3 v_P = (flatA ? v_B : v_A) + moves->along + 0.5 * c.distance * turns.cross(n) -
                       0.5 * c.n_W.dot(slips) * n;
   ContactBias bias;
-  bias.deep = runs->deep;
-  bias.deepest = runs->deepest;
+  bias.biasDepth = moves->biasDepth;
+  bias.loadedBiasDepth = moves->loadedBiasDepth;
   bias.rate.angular = k.A_bias[c.bodyB].angular - k.A_bias[c.bodyA].angular -
                       V_flat.angular.cross(V_B.angular - V_A.angular);
   bias.rate.linear = pointBiasAcceleration(model, k, c.bodyB, c.p_WC) -

@@ -7,7 +7,7 @@
 /// other points. It runs along at ṗ, and so does the place at which the bodies' velocities are
 /// compared, in the frame C of the flat one, which turns with it at ω_C:
 ///
-///   J̇ v = a_B − a_A + ω_B × (ṗ − v_B) − ω_A × (ṗ − v_A) − ω_C × (v_B − v_A)            (T.121)
+///   J̇ v = a_B − a_A + ω_B × (ṗ − v_B) − ω_A × (ṗ − v_A) − ω_C × (v_B − v_A)             (4.10)
 ///   angular:  α_B − α_A − ω_C × (ω_B − ω_A)
 ///
 /// with v, a and α of the bodies at p where v̇ = 0. What touches the flat one tells ṗ. It turns
@@ -24,8 +24,8 @@
 
 #include <optional>
 
-#include "engine/constraints/contact_set.hpp"
-#include "engine/dynamics/kinematics.hpp"
+#include "softgauss/engine/constraints/contact_set.hpp"
+#include "softgauss/engine/dynamics/kinematics.hpp"
 
 namespace softgauss {
 
@@ -34,7 +34,7 @@ struct ContactBias {
   /// How deep it counts whatever presses, and where its load presses it so deep [m]: 0.3 of the
   /// radius of a ball or capsule, 0.1 and 0.3 of the height of a rim's middle above the place,
   /// which turns the faster the flatter it lies; a corner at any depth.
-  double deep = 0.0, deepest = 0.0;
+  double biasDepth = 0.0, loadedBiasDepth = 0.0;
 };
 
 /// Nothing where J̇ v is not known: neither surface is flat, or both are; a mesh touches; or, in a

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine/core/types.hpp"
+#include "softgauss/engine/core/types.hpp"
 
 namespace softgauss {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/constraints/contact_softness.hpp"
+#include "softgauss/engine/constraints/contact_softness.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -37,28 +37,28 @@ double reducedMass(const Model& model, int bodyA, int bodyB) {
   return lighter * heavier / (lighter + heavier);
 }
 
-std::optional<ReferenceSpring> bouncing(const Impedance& p, const Options& options) {
+std::optional<ReferenceSpring> underdampedReference(const Impedance& p, const Options& options) {
   constexpr double kRounding = 1e-12;
-  // (T.115) damps more, never less.
+  // (3.5) damps more, never less.
   if (!p.direct && p.dampingRatio > 0.5 * (1.0 + kRounding)) return std::nullopt;
   // k d = K d/d_max², b = B/d_max.
   const Softness s =
-      softnessAt(p, 0.0, 1.0, options.rowTimestep(), options.uses(Mechanism::stepBounds));
+      softnessAt(p, 0.0, 1.0, options.rowTimestep(), options.uses(Mechanism::referenceClamp));
   const double dMax = std::clamp(p.dMax, 1e-4, 0.9999);
   const double K = s.stiffness * dMax * dMax / impedanceAt(p, 0.0), B = s.damping * dMax;
   if (!(B * B <= K * (1.0 + kRounding))) return std::nullopt;
   return ReferenceSpring{K, B};
 }
 
-Material inForce(const Material& pair, double mass, const Options& options) {
-  if (pair.spring || !options.uses(Mechanism::stepBounds) || !(mass > 0.0)) return pair;
-  const std::optional<ReferenceSpring> reference = bouncing(pair.impedance, options);
+Material effectiveMaterial(const Material& pair, double mass, const Options& options) {
+  if (pair.spring || !options.uses(Mechanism::referenceClamp) || !(mass > 0.0)) return pair;
+  const std::optional<ReferenceSpring> reference = underdampedReference(pair.impedance, options);
   if (!reference) return pair;
   const double K = reference->stiffness, B = reference->damping;
   Material springy = pair;
   ContactSpring& spring = springy.spring.emplace();
   spring.stiffness = mass * K;
-  spring.damping = mass * std::max(0.0, B - restOfStep(options) * K);
+  spring.damping = mass * std::max(0.0, B - timeToStepEnd(options) * K);
   return springy;
 }
 
@@ -76,7 +76,8 @@ Softness contactSoftness(const Material& pair, int frictionDim, double distance,
     // Stiff, it swings by more than a radian in a step, and would give back what it was found with.
     const double h = options.timestep, K = pair.spring->stiffness;
     const bool stiff = h * h * K * weight > 1.0;
-    Softness s = atStepsEnd(K, pair.spring->damping, stiff ? h : restOfStep(options), options);
+    Softness s =
+        implicitSpringDamper(K, pair.spring->damping, stiff ? h : timeToStepEnd(options), options);
     if (edges) s.R *= 2.0 * frictionDim;
     return s;
   }
@@ -84,8 +85,9 @@ Softness contactSoftness(const Material& pair, int frictionDim, double distance,
   Softness s = softnessAt(pair.impedance, distance, weight * (1.0 + mu * mu), options);
   if (!edges) return s;
   double scale = 2.0 * mu * mu / options.impedanceRatio;
-  // (T.96): a friction above 1 makes no contact softer than one of 1.
-  if (options.uses(Mechanism::carriedLoad) && mu > 1.0) scale *= 2.0 / (mu * mu * (1.0 + mu * mu));
+  // (4.9): a friction above 1 makes no contact softer than one of 1.
+  if (options.uses(Mechanism::supportedMass) && mu > 1.0)
+    scale *= 2.0 / (mu * mu * (1.0 + mu * mu));
   s.R *= scale;
   s.perInertia *= scale;
   return s;
@@ -99,7 +101,7 @@ bool isSprung(const Model& model, int body) {
                      [](const Dof& dof) { return dof.stiffness != 0.0; });
 }
 
-Softness withLeastMass(Softness s, double timestep) {
+Softness withoutVirtualMass(Softness s, double timestep) {
   constexpr double kSomeMass = 1e-6;  // of a row without spring and damper
   const double mass = timestep * std::max(s.damping, timestep * s.stiffness);
   if (!(mass < 1.0)) return s;

@@ -5,13 +5,13 @@
 /// s/m, and what that comes to: how deep it sinks, how fast it creeps.
 ///
 /// A spring: with r < 0 the distance less the margin, K the stiffness and B the damping, the normal
-/// force is that of the end of the step, r⁺ = r + h ẏ + h² y and ẏ⁺ = ẏ + h y (T.36):
+/// force is that of the end of the step, r⁺ = r + h ẏ + h² y and ẏ⁺ = ẏ + h y (3.8):
 ///   f = max(0, −K r⁺ − B ẏ⁺) = max(0, −D (y − a_ref)),   D = h (K h + B),   a_ref = −ẏ/h − (K/D) r
 /// At rest f = −K r, whatever mass and friction are, and no stiffness makes the step unstable. The
 /// edges of a friction pyramid share D alike; an elliptic cone has it along the normal.
 ///
 /// What bounces, a reference of an impedance that is at most half damped, is such a spring too, of
-/// the mass that the two trees have by themselves (T.117): a reference pushes whatever mass is
+/// the mass that the two trees have by themselves (3.11): a reference pushes whatever mass is
 /// behind it, so that a light body that is pressed in as it bounces would throw up a heavy one.
 ///
 /// The force of a reference, f = −D (y + b ẏ + k d r), is that of a spring D k d, a damper D b, and
@@ -19,13 +19,13 @@
 /// ½ D ẏ². The damper takes it, where nothing else does. A joint's spring does: the foot of a
 /// sprung leg comes in alone, and is then pushed out under the load that the spring has come to. So
 /// rows that come and go on trees with sprung joints have the least mass that the step can follow,
-///   (R, k d, b) ← (R, k d, b)/μ,   μ = h max(b, h k d) < 1                           (T.132)
+///   (R, k d, b) ← (R, k d, b)/μ,   μ = h max(b, h k d) < 1                             (3.7)
 /// which is the same spring and damper, with the mass μ D.
 
 #include <optional>
 
-#include "engine/constraints/impedance.hpp"
-#include "engine/model/model.hpp"
+#include "softgauss/engine/constraints/impedance.hpp"
+#include "softgauss/engine/model/model.hpp"
 
 namespace softgauss {
 
@@ -33,11 +33,11 @@ namespace softgauss {
 /// The world rests on nothing; 0 where neither body moves.
 double restingMass(const Model& model, int bodyA, int bodyB);
 
-/// The same spring by its stiffness and damping alone (T.37): K = m g/restDepth and
+/// The same spring by its stiffness and damping alone (3.9): K = m g/restDepth and
 /// B = 2 dampingRatio √(K m), with `mass` m [kg] and `gravity` g [m/s²] > 0.
 ContactSpring inNewtons(const ContactSpring& spring, double mass, double gravity);
 
-/// Two springs in newtons, one behind the other, pressed by the same force (T.38); the damping is
+/// Two springs in newtons, one behind the other, pressed by the same force (3.10); the damping is
 /// that of slow motion.
 ContactSpring inSeries(const ContactSpring& a, const ContactSpring& b);
 
@@ -45,20 +45,20 @@ ContactSpring inSeries(const ContactSpring& a, const ContactSpring& b);
 /// body moves.
 double reducedMass(const Model& model, int bodyA, int bodyB);
 
-/// K and B of the reference that a step follows (T.115), where it is at most half damped, B² ≤ K;
+/// K and B of the reference that a step follows (3.5), where it is at most half damped, B² ≤ K;
 /// else nothing.
-std::optional<ReferenceSpring> bouncing(const Impedance& p, const Options& options);
+std::optional<ReferenceSpring> underdampedReference(const Impedance& p, const Options& options);
 
 /// What a step takes for the surface of a pair of this reduced mass [kg]: itself or, where it
-/// bounces, its spring (T.117).
-Material inForce(const Material& pair, double mass, const Options& options);
+/// bounces, its spring (3.11).
+Material effectiveMaterial(const Material& pair, double mass, const Options& options);
 
 /// Directions of friction that a contact has with the effects that are switched on: condim − 1; 0
 /// where it is frictionless. Rolling friction comes with torsional friction.
 int frictionDim(const Material& pair, const EffectSet& effects);
 
 /// R, k d and b of the row along the normal, or with pyramids of each of the 2 `frictionDim` edges
-/// (T.14), (T.36). `pair` is the surface that is in force, its spring in newtons; `distance` is
+/// (4.7), (3.8). `pair` is the surface that is in force, its spring in newtons; `distance` is
 /// measured from the margin, `weight` is w_A + w_B [1/kg].
 Softness contactSoftness(const Material& pair, int frictionDim, double distance, double weight,
                          const Options& options);
@@ -66,8 +66,8 @@ Softness contactSoftness(const Material& pair, int frictionDim, double distance,
 /// Whether a joint that moves the tree of a body has a spring.
 bool isSprung(const Model& model, int body);
 
-/// The row with the same spring and damper, and the least mass (T.132).
-Softness withLeastMass(Softness s, double timestep);
+/// The row with the same spring and damper, and the least mass (3.7).
+Softness withoutVirtualMass(Softness s, double timestep);
 
 /// One contact that holds still under a load along its normal.
 struct ContactAtRest {
@@ -79,7 +79,7 @@ struct ContactAtRest {
   Impedance equivalent;     ///< impedance of constant d that has all this too, at this `weight`
 };
 
-/// Of the contact that contactSoftness() describes, under `load` > 0 [N] (T.39).
+/// Of the contact that contactSoftness() describes, under `load` > 0 [N] (3.12).
 ContactAtRest contactAtRest(const Material& pair, double weight, double load,
                             const Options& options);
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/constraints/dry_friction.hpp"
+#include "softgauss/engine/constraints/dry_friction.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "engine/constraints/impedance.hpp"
+#include "softgauss/engine/constraints/impedance.hpp"
 
 namespace softgauss {
 namespace {
 
-/// (T.94): a joint that hardly moves sticks. `rate` = |v|, `limit` = f_max.
+/// (5.6): a joint that hardly moves sticks. `rate` = |v|, `limit` = f_max.
 void harden(Softness& soft, double rate, double limit) {
   constexpr double kAtRest = 1e-9;  // of R: a joint at rest
   if (!(soft.damping > 0.0)) return;
@@ -32,7 +32,7 @@ void DryFriction::assemble(const Assembly& in) {
       if (dof.dryFriction == 0.0) continue;
       const double rate = in.state.v[i];
       Softness soft = softnessAt(dof.frictionImpedance, 0.0, in.weights.dof[i], model.options);
-      if (in.sticks()) harden(soft, std::abs(rate), dof.dryFriction);
+      if (in.usesStiction()) harden(soft, std::abs(rate), dof.dryFriction);
       dof_.push_back(i);
       reference.push_back(soft.referenceAcceleration(rate, 0.0));
       pushSoftness(soft);

@@ -4,16 +4,16 @@
 /// Dry (Coulomb) friction of joints, one row for each dof that has it.
 ///
 /// The row wants the joint to come to rest, with a force of at most f_max = Dof::dryFriction:
-///   x = aᵢ − a_ref,   a_ref = −b vᵢ,   f = −D x clamped to ± f_max                        (T.27)
+///   x = aᵢ − a_ref,   a_ref = −b vᵢ,   f = −D x clamped to ± f_max                         (4.2)
 /// There is no distance: b, D come from the dof's Impedance at r = 0. While the joint slides, the
 /// force is f_max against the motion. While it sticks under a load f, it would creep at R f/b, but
-/// slower than 2 R f_max/b its row hardens (T.94), unless friction is asked
-/// to stay soft (Options::ownSoftness, Input::softFriction). Contract: |f| ≤ f_max.
+/// slower than 2 R f_max/b its row hardens (5.6), unless friction is asked
+/// to stay soft (Options::constraintModel, Input::softFriction). Contract: |f| ≤ f_max.
 
 #include <vector>
 
-#include "engine/constraints/assembly.hpp"
-#include "engine/constraints/rows.hpp"
+#include "softgauss/engine/constraints/assembly.hpp"
+#include "softgauss/engine/constraints/rows.hpp"
 
 namespace softgauss {
 
@@ -33,7 +33,7 @@ class DryFriction : public ScalarRows<Huber> {
   void addRow(int i, double scale, VectorX& y) const { y[dof_[i]] += scale; }
   std::size_t bytes() const { return ScalarRows::bytes() + bytesOf(dof_); }
   int dof(int row) const { return dof_[row]; }
-  RowName name(int row) const { return {.first = dof_[row]}; }
+  RowKey name(int row) const { return {.first = dof_[row]}; }
 
  private:
   std::vector<int> dof_;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// Penalty of a contact with an elliptic friction cone (T.32).
+/// Penalty of a contact with an elliptic friction cone (4.13).
 ///
 /// In the coordinates  z = (N, U),  N = μ̂ x₀,  U_k = μ_k x_k  (k = 1 … dim − 1),  T = |U|,
 /// the penalty is D/μ̂² times half the squared distance of z from the cone K = { N ≥ μ̂ T }:
@@ -9,7 +9,7 @@
 ///   s(x) = ½ (D/μ̂²) dist²(z, K) = ½ c (min(φ, 0)² + min(χ, 0)²)
 ///   φ = N − μ̂ T,   χ = μ̂ N + T,   c = D/(μ̂² (1 + μ̂²))
 ///
-/// so it is convex and C¹ on three zones (T.33):
+/// so it is convex and C¹ on three zones (4.14):
 ///   top     φ ≥ 0          no force: the contact breaks
 ///   middle  φ < 0 ≤ χ      the force lies on the cone: the contact slides
 ///   bottom  χ < 0          s = ½ D x₀² + ½ (D/μ̂²) T²: the contact sticks
@@ -97,10 +97,10 @@ struct EllipticCone {
     return 0.5 * c * z.phi * z.phi;
   }
 
-  /// Knot k lies between the zones k and k + 1: χ = 0, then φ = 0.
-  static double aboveKnot(const Point& z, int k) { return k == 0 ? z.chi : z.phi; }
-  /// Gradient in x of what vanishes at knot k (dim).
-  void knotGradient(const Point& z, int k, double* gradient) const {
+  /// Breakpoint k lies between the zones k and k + 1: χ = 0, then φ = 0.
+  static double aboveBreakpoint(const Point& z, int k) { return k == 0 ? z.chi : z.phi; }
+  /// Gradient in x of what vanishes at breakpoint k (dim).
+  void breakpointGradient(const Point& z, int k, double* gradient) const {
     gradient[0] = k == 0 ? mu * mu : mu;
     for (int i = 0; i + 1 < dim; ++i) gradient[i + 1] = (k == 0 ? 1.0 : -mu) * z.u[i] * friction[i];
   }

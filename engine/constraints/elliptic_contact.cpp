@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/constraints/elliptic_contact.hpp"
+#include "softgauss/engine/constraints/elliptic_contact.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "engine/constraints/slip_push.hpp"
+#include "softgauss/engine/constraints/gliding_correction.hpp"
 
 namespace softgauss {
 
@@ -24,10 +24,12 @@ void EllipticContact::assemble(const Assembly& in) {
       cones_.push_back({touch->frictionDim + 1, 1.0 / soft.R,
                         touch->mu() / std::sqrt(options.impedanceRatio), touch->friction});
       double push = soft.referenceAcceleration(moves.velocity[0], touch->distance);
-      if (options.levelsSlip()) {
+      if (options.limitsGliding()) {
         const double friction = soft.damping * slipSpeed(*touch, moves.velocity);
-        push -= made_.back().slip * SlipPush::share(touch->mu()) *
-                SlipPush(push, soft.damping, options.timestep).ofCone(friction, cones_.back().mu);
+        push -= contactsWithRows_.back().regularisationScale *
+                GlidingCorrection::share(touch->mu()) *
+                GlidingCorrection(push, soft.damping, options.timestep)
+                    .ofCone(friction, cones_.back().mu);
       }
       reference.push_back(push - moves.bias[0]);
       for (int k = 1; k <= touch->frictionDim; ++k)
@@ -41,8 +43,8 @@ void EllipticContact::assemble(const Assembly& in) {
 }
 
 void EllipticContact::multiply(const VectorX& a, std::vector<double>& y) const {
-  for (std::size_t i = 0; i < made_.size(); ++i)
-    jacobian_.multiply(static_cast<int>(i), a, y.data() + made_[i].row);
+  for (std::size_t i = 0; i < contactsWithRows_.size(); ++i)
+    jacobian_.multiply(static_cast<int>(i), a, y.data() + contactsWithRows_[i].row);
 }
 
 double EllipticContact::evaluate(std::size_t i, const double* at, double* force, double* H,
@@ -54,9 +56,10 @@ double EllipticContact::evaluate(std::size_t i, const double* at, double* force,
 
 double EllipticContact::evaluate(bool& cellChanged) {
   double cost = 0.0;
-  for (std::size_t i = 0; i < made_.size(); ++i) {
+  for (std::size_t i = 0; i < contactsWithRows_.size(); ++i) {
     ConeZone zone;
-    cost += evaluate(i, x.data() + made_[i].row, f.data() + made_[i].row, nullptr, zone);
+    cost += evaluate(i, x.data() + contactsWithRows_[i].row, f.data() + contactsWithRows_[i].row,
+                     nullptr, zone);
     // The middle zone bends: there the curvature changes with every step.
     cellChanged |= placed_[i] || zone != zones_[i] || zone == ConeZone::middle;
     zones_[i] = zone;
@@ -65,9 +68,10 @@ double EllipticContact::evaluate(bool& cellChanged) {
 }
 
 void EllipticContact::along(double alpha, Jet& sum) const {
-  for (std::size_t i = 0; i < made_.size(); ++i) {
+  for (std::size_t i = 0; i < contactsWithRows_.size(); ++i) {
     const int dim = cones_[i].dim;
-    const double *from = x.data() + made_[i].row, *rate = dx.data() + made_[i].row;
+    const double *from = x.data() + contactsWithRows_[i].row,
+                 *rate = dx.data() + contactsWithRows_[i].row;
     double at[EllipticCone::kMaxDim], force[EllipticCone::kMaxDim];
     double H[EllipticCone::kMaxDim * EllipticCone::kMaxDim];
     for (int k = 0; k < dim; ++k) at[k] = from[k] + alpha * rate[k];
@@ -86,9 +90,9 @@ void EllipticContact::advance(double alpha) {
 }
 
 void EllipticContact::setForceRate() {
-  for (std::size_t i = 0; i < made_.size(); ++i) {
+  for (std::size_t i = 0; i < contactsWithRows_.size(); ++i) {
     const int dim = cones_[i].dim;
-    const std::size_t first = static_cast<std::size_t>(made_[i].row);
+    const std::size_t first = static_cast<std::size_t>(contactsWithRows_[i].row);
     double force[EllipticCone::kMaxDim], H[EllipticCone::kMaxDim * EllipticCone::kMaxDim];
     ConeZone zone;
     evaluate(i, x.data() + first, force, H, zone);
@@ -101,33 +105,34 @@ void EllipticContact::setForceRate() {
 
 ContactBlocks::FrameVector EllipticContact::frameForce(int i) const {
   FrameVector frame{};
-  std::copy_n(f.data() + made_[i].row, cones_[i].dim, frame.data());
+  std::copy_n(f.data() + contactsWithRows_[i].row, cones_[i].dim, frame.data());
   return frame;
 }
 
 ContactBlocks::FrameVector EllipticContact::frameForceRate(int i) const {
   FrameVector frame{};
-  std::copy_n(df.data() + made_[i].row, cones_[i].dim, frame.data());
+  std::copy_n(df.data() + contactsWithRows_[i].row, cones_[i].dim, frame.data());
   return frame;
 }
 
 int EllipticContact::frameCurvature(int i, double* H) const {
   double force[EllipticCone::kMaxDim];
   ConeZone zone;
-  evaluate(static_cast<std::size_t>(i), x.data() + made_[i].row, force, H, zone);
+  evaluate(static_cast<std::size_t>(i), x.data() + contactsWithRows_[i].row, force, H, zone);
   return cones_[i].dim;
 }
 
 void EllipticContact::addTransposed(const std::vector<double>& y, VectorX& tau) const {
-  for (int i = 0; i < static_cast<int>(made_.size()); ++i)
-    if (zones_[i] != ConeZone::top) jacobian_.addTransposed(i, y.data() + made_[i].row, tau);
+  for (int i = 0; i < static_cast<int>(contactsWithRows_.size()); ++i)
+    if (zones_[i] != ConeZone::top)
+      jacobian_.addTransposed(i, y.data() + contactsWithRows_[i].row, tau);
 }
 
 void EllipticContact::addCurvature(TreeMatrix& P) {
-  for (std::size_t i = 0; i < made_.size(); ++i) {
+  for (std::size_t i = 0; i < contactsWithRows_.size(); ++i) {
     double force[EllipticCone::kMaxDim], H[EllipticCone::kMaxDim * EllipticCone::kMaxDim];
     ConeZone zone;
-    evaluate(i, x.data() + made_[i].row, force, H, zone);
+    evaluate(i, x.data() + contactsWithRows_[i].row, force, H, zone);
     if (zone != ConeZone::top) jacobian_.addCurvature(static_cast<int>(i), H, P);
   }
 }
@@ -135,15 +140,16 @@ void EllipticContact::addCurvature(TreeMatrix& P) {
 void EllipticContact::addRow(int row, double scale, VectorX& y) const {
   const int i = contactOfRow_[row];
   FrameVector frame{};
-  frame[row - made_[i].row] = scale;
+  frame[row - contactsWithRows_[i].row] = scale;
   jacobian_.addTransposed(i, frame.data(), y);
 }
 
 void EllipticContact::findCrossings(int kind, std::vector<Crossing>& crossings) const {
-  for (std::size_t i = 0; i < made_.size(); ++i) {
+  for (std::size_t i = 0; i < contactsWithRows_.size(); ++i) {
     if (placed_[i]) continue;
     const EllipticCone& cone = cones_[i];
-    const double *from = x.data() + made_[i].row, *rate = dx.data() + made_[i].row;
+    const double *from = x.data() + contactsWithRows_[i].row,
+                 *rate = dx.data() + contactsWithRows_[i].row;
     // N(α) = n₀ + n₁ α,  T(α)² = t₀ + 2 t₁ α + t₂ α².
     const double n0 = cone.mu * from[0], n1 = cone.mu * rate[0];
     double t0 = 0.0, t1 = 0.0, t2 = 0.0;
@@ -151,9 +157,9 @@ void EllipticContact::findCrossings(int kind, std::vector<Crossing>& crossings) 
       const double U = cone.friction[k - 1] * from[k], dU = cone.friction[k - 1] * rate[k];
       t0 += U * U, t1 += U * dU, t2 += dU * dU;
     }
-    for (const int knot : {0, 1}) {
+    for (const int breakpoint : {0, 1}) {
       // χ = 0 where N = −T/μ̂, φ = 0 where N = μ̂ T: the same quadratic with slope², and a sign.
-      const double slope = knot == 0 ? -1.0 / cone.mu : cone.mu;
+      const double slope = breakpoint == 0 ? -1.0 / cone.mu : cone.mu;
       const double a = n1 * n1 - slope * slope * t2, b = n0 * n1 - slope * slope * t1;
       const double c = n0 * n0 - slope * slope * t0, discriminant = b * b - a * c;
       if (!(discriminant >= 0.0)) continue;
@@ -164,40 +170,43 @@ void EllipticContact::findCrossings(int kind, std::vector<Crossing>& crossings) 
                      T = std::sqrt(std::max(0.0, t0 + alpha * (2.0 * t1 + alpha * t2)));
         if (N * slope < 0.0 || T == 0.0) continue;  // the other nappe
         const double dT = (t1 + alpha * t2) / T;
-        const double above = knot == 0 ? cone.mu * n1 + dT : n1 - cone.mu * dT;
-        const double jump = curvatureJump(made_[i].row, knot);
-        crossings.push_back(
-            {alpha, above > 0.0 ? jump : -jump, above, {{kind, made_[i].row}, knot}});
+        const double above = breakpoint == 0 ? cone.mu * n1 + dT : n1 - cone.mu * dT;
+        const double jump = curvatureJump(contactsWithRows_[i].row, breakpoint);
+        crossings.push_back({alpha,
+                             above > 0.0 ? jump : -jump,
+                             above,
+                             {{kind, contactsWithRows_[i].row}, breakpoint}});
       }
     }
   }
 }
 
-double EllipticContact::aboveKnot(int row, int knot) const {
+double EllipticContact::aboveBreakpoint(int row, int breakpoint) const {
   const EllipticCone& cone = cones_[contactOfRow_[row]];
-  return EllipticCone::aboveKnot(cone.point(x.data() + row), knot);
+  return EllipticCone::aboveBreakpoint(cone.point(x.data() + row), breakpoint);
 }
 
 double EllipticContact::curvatureJump(int row, int) const {
   return -cones_[contactOfRow_[row]].stiffness();
 }
 
-ContactBlocks::FrameVector EllipticContact::knotInFrame(int row, int knot) const {
+ContactBlocks::FrameVector EllipticContact::breakpointInFrame(int row, int breakpoint) const {
   const EllipticCone& cone = cones_[contactOfRow_[row]];
   FrameVector gradient{};
-  cone.knotGradient(cone.point(x.data() + row), knot, gradient.data());
+  cone.breakpointGradient(cone.point(x.data() + row), breakpoint, gradient.data());
   return gradient;
 }
 
-void EllipticContact::addKnotGradient(int row, int knot, double scale, VectorX& y) const {
-  FrameVector gradient = knotInFrame(row, knot);
+void EllipticContact::addBreakpointGradient(int row, int breakpoint, double scale,
+                                            VectorX& y) const {
+  FrameVector gradient = breakpointInFrame(row, breakpoint);
   for (double& entry : gradient) entry *= scale;
   jacobian_.addTransposed(contactOfRow_[row], gradient.data(), y);
 }
 
-void EllipticContact::placeAtKnot(int row, int knot, bool stiffSide) {
+void EllipticContact::placeAtBreakpoint(int row, int breakpoint, bool stiffSide) {
   const int i = contactOfRow_[row];
-  zones_[i] = static_cast<ConeZone>(stiffSide ? knot : knot + 1);
+  zones_[i] = static_cast<ConeZone>(stiffSide ? breakpoint : breakpoint + 1);
   placed_[i] = true;
 }
 

@@ -3,14 +3,14 @@
 
 /// Frictional contact with an elliptic cone.
 ///
-/// The rows of a contact are its condim directions themselves (T.32):
+/// The rows of a contact are its condim directions themselves (4.13):
 ///   x = y − a_ref,   a_ref = (−b ẏ_n − k d r, −b ẏ₁, …, −b ẏ_{condim − 1}) − (1 − lag b) J̇ v
 ///   D = d/((1 − d)(w_A + w_B)) of the normal row,   μ̂ = μ/√impratio
 /// and their penalty is that of elliptic_cone.hpp. Normal softness does not depend on friction.
 
-#include "engine/constraints/contact.hpp"
-#include "engine/constraints/elliptic_cone.hpp"
-#include "engine/constraints/rows.hpp"
+#include "softgauss/engine/constraints/contact.hpp"
+#include "softgauss/engine/constraints/elliptic_cone.hpp"
+#include "softgauss/engine/constraints/rows.hpp"
 
 namespace softgauss {
 
@@ -35,16 +35,17 @@ class EllipticContact : public ContactBlocks {
   void addCurvature(TreeMatrix& P);
   void addRow(int i, double scale, VectorX& y) const;
 
-  // Knots, where a contact changes its zone (elliptic_cone.hpp). Their row is the contact's first.
+  // Breakpoints, where a contact changes its zone (elliptic_cone.hpp). Their row is the contact's
+  // first.
   void findCrossings(int kind, std::vector<Crossing>& crossings) const;
-  double aboveKnot(int row, int knot) const;
-  double curvatureJump(int row, int knot) const;
-  /// y ← y + scale · Jᵀ∇(what vanishes at the knot).
-  void addKnotGradient(int row, int knot, double scale, VectorX& y) const;
-  /// The contact counts as in the zone above the knot, or below it on the stiff side, wherever it
-  /// is, until letGo().
-  void placeAtKnot(int row, int knot, bool stiffSide);
-  void letGo() { placed_.assign(placed_.size(), false); }
+  double aboveBreakpoint(int row, int breakpoint) const;
+  double curvatureJump(int row, int breakpoint) const;
+  /// y ← y + scale · Jᵀ∇(what vanishes at the breakpoint).
+  void addBreakpointGradient(int row, int breakpoint, double scale, VectorX& y) const;
+  /// The contact counts as in the zone above the breakpoint, or below it on the stiff side,
+  /// wherever it is, until clearBreakpointPlacement().
+  void placeAtBreakpoint(int row, int breakpoint, bool stiffSide);
+  void clearBreakpointPlacement() { placed_.assign(placed_.size(), false); }
   void holdOnRay(int) {}
 
   const EllipticCone& cone(int i) const { return cones_[i]; }
@@ -67,8 +68,8 @@ class EllipticContact : public ContactBlocks {
   /// H ← ∇²s of contact i in its frame (dim × dim, row-major), so that ∂(frame force)/∂a = −H J.
   /// Returns dim.
   int frameCurvature(int i, double* H) const;
-  /// Gradient of what vanishes at the knot, in the frame of the contact.
-  FrameVector knotInFrame(int row, int knot) const;
+  /// Gradient of what vanishes at the breakpoint, in the frame of the contact.
+  FrameVector breakpointInFrame(int row, int breakpoint) const;
 
  private:
   /// Penalty of contact i at x; where it is not placed, `zone` is that of x.

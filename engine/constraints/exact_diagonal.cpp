@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/constraints/exact_diagonal.hpp"
+#include "softgauss/engine/constraints/exact_diagonal.hpp"
 
 #include <algorithm>
 
@@ -27,18 +27,18 @@ bool ExactDiagonal::apply(const TreeMatrix& M, Constraints& constraints) {
       effect.D[i] = stiffness(effect, i, effect.perInertia[i], effect.D[i]);
   });
   PyramidalContact& pyramids = constraints.contact;
-  for (const ContactRows& made : pyramids.made()) {
+  for (const ContactRows& made : pyramids.contactsWithRows()) {
     if (pyramids.perInertia[made.row] == 0.0) continue;
     const double D =
         stiffness(pyramids, made.row, pyramids.perInertia[made.row], pyramids.D[made.row]);
     std::fill_n(pyramids.D.begin() + made.row, std::max(1, 2 * made.frictionDim), D);
   }
   EllipticContact& cones = constraints.ellipticContact;
-  for (int i = 0; i < static_cast<int>(cones.made().size()); ++i) {
+  for (int i = 0; i < static_cast<int>(cones.contactsWithRows().size()); ++i) {
     const double perInertia = cones.perInertia(i);
     if (perInertia != 0.0)
-      cones.setNormalStiffness(i,
-                               stiffness(cones, cones.made()[i].row, perInertia, cones.cone(i).D));
+      cones.setNormalStiffness(
+          i, stiffness(cones, cones.contactsWithRows()[i].row, perInertia, cones.cone(i).D));
   }
   return true;
 }

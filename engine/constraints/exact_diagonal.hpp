@@ -3,14 +3,14 @@
 
 /// The regulariser from the inverse inertia that rows have now, in place of constants of the model.
 ///
-/// R = (1 − d)/d A of (T.10) takes A from the inverse weights (T.12). With Options::exactDiagonal
+/// R = (1 − d)/d A of (3.1) takes A from the inverse weights (2.7). With Options::exactDiagonal
 /// it is the diagonal of J M⁻¹ Jᵀ at the present configuration, a triangular solve for each row.
 /// All edges of a friction pyramid take the A of the first one, all rows of an elliptic cone that
 /// of the normal; contact springs have no A. That is MuJoCo's `diagexact`, but for rows along which
 /// nothing moves: R keeps 10⁻⁹ of its constant.
 
-#include "engine/constraints/constraints.hpp"
-#include "engine/dynamics/inertia.hpp"
+#include "softgauss/engine/constraints/constraints.hpp"
+#include "softgauss/engine/dynamics/inertia.hpp"
 
 namespace softgauss {
 

@@ -1,26 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// From the parameters of an Impedance to the numbers of a row (T.10, T.11).
+/// From the parameters of an Impedance to the numbers of a row (3.1), (3.2).
 ///
 /// With distance r (negative when violated, measured from the margin) and row velocity ẋ = J v:
 ///   d(r)   impedance, rises from dMin at r = 0 to dMax at |r| ≥ width
 ///   R      = (1 − d)/d · A          regulariser; A approximates J M⁻¹ Jᵀ
-///   k      = 1/(dMax² tc² ζ²),  b = 2/(dMax tc)     or, given directly (T.35),
+///   k      = 1/(dMax² tc² ζ²),  b = 2/(dMax tc)     or, given directly (3.3),
 ///   k      = stiffness/dMax²,   b = damping/dMax
 ///   a_ref  = −b ẋ − k d r            so that ẍ + b ẋ + k d r = 0 where the row is hard
 /// The force at acceleration x̂ is f = D (a_ref − x̂) with D = 1/R.
 ///
 /// A step follows a reference, K = k dMax² and B = b dMax, that returns nothing faster than it came
-/// (T.115). tc is at least 2h, as MuJoCo's is, so that h B ≤ 1. Beyond that, where it is asked for:
+/// (3.5). tc is at least 2h, as MuJoCo's is, so that h B ≤ 1. Beyond that, where it is asked for:
 ///   tc ζ ≥ 2h,   or, given directly,   h B ≤ 1,  h² K ≤ max(¼, h B);      h B ≥ (h² K)^1.5/8
 /// The first is half a radian a step, the last what a body brings that arrives within a step.
-/// And of the row, whatever shares its load: h b ≤ 1.1 (T.126).
+/// And of the row, whatever shares its load: h b ≤ 1.1 (3.6).
 
 #include <algorithm>
 #include <cmath>
 
-#include "engine/model/model.hpp"
+#include "softgauss/engine/model/model.hpp"
 
 namespace softgauss {
 
@@ -32,7 +32,7 @@ struct Softness {
   double perInertia = 0.0;  ///< R per inverse inertia A; 0 where A has no part in it [-]
   double stiffness = 0.0;   ///< k d [1/s²]
   double damping = 0.0;     ///< b [1/s]
-  bool bounded = false;     ///< by what a step can follow, Mechanism::stepBounds
+  bool bounded = false;     ///< by what a step can follow, Mechanism::referenceClamp
 
   double referenceAcceleration(double velocity, double distance) const {
     return -damping * velocity - stiffness * distance;
@@ -56,7 +56,7 @@ inline double impedanceAt(const Impedance& p, double distance) {
   return dMin + y * (dMax - dMin);
 }
 
-/// The impedance of a contact between two surfaces (T.15): the mean of all parameters, `share` that
+/// The impedance of a contact between two surfaces (3.13): the mean of all parameters, `share` that
 /// of the first. A reference that is given directly replaces one that is not; of two, the stiffer
 /// and the more damped.
 inline Impedance mixImpedances(const Impedance& p, const Impedance& q, double share = 0.5) {
@@ -75,8 +75,8 @@ inline Impedance mixImpedances(const Impedance& p, const Impedance& q, double sh
   return m;
 }
 
-/// The reference that a step of h follows in place of one that is given directly (T.115).
-inline ReferenceSpring followed(ReferenceSpring s, double timestep) {
+/// The reference that a step of h follows in place of one that is given directly (3.5).
+inline ReferenceSpring clampToTimestep(ReferenceSpring s, double timestep) {
   const double h = timestep;
   s.damping = std::min(s.damping, 1.0 / h);
   s.stiffness = std::min(s.stiffness, std::max(0.25 / (h * h), s.damping / h));
@@ -84,17 +84,18 @@ inline ReferenceSpring followed(ReferenceSpring s, double timestep) {
   return s;
 }
 
-/// `inverseInertia` is A; `follow` bounds the reference by what steps of `timestep` follow (T.115),
-/// else the time constant alone, as MuJoCo does.
+/// `inverseInertia` is A; `clampReference` bounds the reference by what steps of `timestep` follow
+/// (3.5), else the time constant alone, as MuJoCo does.
 inline Softness softnessAt(const Impedance& p, double distance, double inverseInertia,
-                           double timestep, bool follow = false) {
+                           double timestep, bool clampReference = false) {
   const double d = impedanceAt(p, distance);
   const double dMax = std::clamp(p.dMax, 1e-4, 0.9999);
   Softness s;
   s.perInertia = (1.0 - d) / d;
   s.R = std::max(kSmallestRegulariser, s.perInertia * inverseInertia);
   if (p.direct) {
-    const ReferenceSpring reference = follow ? followed(*p.direct, timestep) : *p.direct;
+    const ReferenceSpring reference =
+        clampReference ? clampToTimestep(*p.direct, timestep) : *p.direct;
     s.stiffness = reference.stiffness * d / (dMax * dMax);
     s.damping = reference.damping / dMax;
     return s;
@@ -103,7 +104,7 @@ inline Softness softnessAt(const Impedance& p, double distance, double inverseIn
   const double tc = std::max(p.timeConstant, least);
   double root = dMax * tc * p.dampingRatio;
   s.damping = 2.0 / (dMax * tc);
-  if (follow) {
+  if (clampReference) {
     root = std::max(root, dMax * least);
     const double x = dMax / root;  // √K
     s.damping = std::max(s.damping, timestep * timestep * x * x * x / (8.0 * dMax));
@@ -113,9 +114,9 @@ inline Softness softnessAt(const Impedance& p, double distance, double inverseIn
 }
 
 /// The row with the same spring k d/R and damper b/R that takes ẋ at most 1.1 times in a step,
-/// whatever it moves (T.126): 1.1, that time constants of two steps stay as MuJoCo's where d_max is
+/// whatever it moves (3.6): 1.1, that time constants of two steps stay as MuJoCo's where d_max is
 /// at least 0.91.
-inline Softness takingItOnce(Softness s, double timestep) {
+inline Softness limitDampingPerStep(Softness s, double timestep) {
   constexpr double kMost = 1.1;
   const double adds = std::max(1.0, timestep * s.damping / kMost);
   s.R = std::max(kSmallestRegulariser, s.R / adds);
@@ -130,23 +131,23 @@ inline Softness takingItOnce(Softness s, double timestep) {
 inline Softness softnessAt(const Impedance& p, double distance, double inverseInertia,
                            const Options& options) {
   const double h = options.rowTimestep();
-  if (!options.uses(Mechanism::stepBounds)) return softnessAt(p, distance, inverseInertia, h);
-  return takingItOnce(softnessAt(p, distance, inverseInertia, h, true), h);
+  if (!options.uses(Mechanism::referenceClamp)) return softnessAt(p, distance, inverseInertia, h);
+  return limitDampingPerStep(softnessAt(p, distance, inverseInertia, h, true), h);
 }
 
 /// From where positions are taken to the step's end [s]: the leapfrog takes them at mid-step.
-inline double restOfStep(const Options& options) {
+inline double timeToStepEnd(const Options& options) {
   return options.integrator == Integrator::leapfrog ? 0.5 * options.timestep : options.timestep;
 }
 
 /// The row whose spring K is that of `t` [s] after its r and whose damper B is that of the step's
 /// end, r + t ẋ⁺ and ẋ⁺ = ẋ + h ẍ:
 ///
-///   f = −K (r + t ẋ⁺) − B ẋ⁺ = −D (ẍ + ẋ/h + (K/D) r),     D = h (t K + B)               (T.137)
+///   f = −K (r + t ẋ⁺) − B ẋ⁺ = −D (ẍ + ẋ/h + (K/D) r),     D = h (t K + B)                (3.14)
 ///
 /// It has no more mass than its force has work to do: K and B may change from step to step, and
 /// nothing is gained by it.
-inline Softness atStepsEnd(double K, double B, double t, const Options& options) {
+inline Softness implicitSpringDamper(double K, double B, double t, const Options& options) {
   const double h = options.timestep, D = h * (t * K + B);
   Softness s;
   s.R = 1.0 / D;
@@ -156,9 +157,9 @@ inline Softness atStepsEnd(double K, double B, double t, const Options& options)
 }
 
 /// The row with the same spring k d/R and damper b/R, likewise.
-inline Softness atStepsEnd(const Softness& s, double t, const Options& options) {
+inline Softness implicitSpringDamper(const Softness& s, double t, const Options& options) {
   if (!(s.damping > 0.0)) return s;
-  Softness atEnd = atStepsEnd(s.stiffness / s.R, s.damping / s.R, t, options);
+  Softness atEnd = implicitSpringDamper(s.stiffness / s.R, s.damping / s.R, t, options);
   atEnd.perInertia = s.perInertia * (atEnd.R / s.R);
   atEnd.bounded = s.bounded;
   return atEnd;
@@ -166,8 +167,8 @@ inline Softness atStepsEnd(const Softness& s, double t, const Options& options) 
 
 /// The row with the same spring K = k d/R and damper B = b/R that takes its velocity within
 /// `horizon` T [s], f = −K r − B (ẋ + T ẍ), where 1/b is longer: its mass is D = T B in place of
-/// B/b (T.140).
-inline Softness withinHorizon(const Softness& s, double horizon) {
+/// B/b (3.15).
+inline Softness withDampingTime(const Softness& s, double horizon) {
   if (!(s.damping * horizon < 1.0)) return s;
   const double less = s.damping * horizon;  // D of the row over D of s
   return {s.R / less, s.perInertia / less, s.stiffness / less, 1.0 / horizon, s.bounded};

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/constraints/inverse_weight.hpp"
+#include "softgauss/engine/constraints/inverse_weight.hpp"
 
 #include <Eigen/Cholesky>
 
-#include "engine/core/rotation.hpp"
-#include "engine/dynamics/regular_mass.hpp"
+#include "softgauss/engine/core/rotation.hpp"
+#include "softgauss/engine/dynamics/regular_mass.hpp"
 
 namespace softgauss {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// Constant inverse inertias that scale the regulariser of every row (T.12).
+/// Constant inverse inertias that scale the regulariser of every row (2.7).
 ///
 /// Computed once with all joints at zero, as MuJoCo does it, or, where the mass matrix is singular
 /// there, in Model::q0; armature included: for a body the mean
@@ -10,7 +10,7 @@
 
 #include <vector>
 
-#include "engine/model/model.hpp"
+#include "softgauss/engine/model/model.hpp"
 
 namespace softgauss {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/constraints/joint_coupling.hpp"
+#include "softgauss/engine/constraints/joint_coupling.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "engine/constraints/carried_inertia.hpp"
-#include "engine/constraints/connection.hpp"
-#include "engine/constraints/tie_softness.hpp"
+#include "softgauss/engine/constraints/carried_inertia.hpp"
+#include "softgauss/engine/constraints/connection.hpp"
+#include "softgauss/engine/constraints/equality_softness.hpp"
 
 namespace softgauss {
 namespace {
@@ -17,25 +17,25 @@ bool isAncestor(const Model& model, int up, int down) {
   return down == up;
 }
 
-/// L of a coupling (T.142): its follower, or what gear teeth hold of its two sides together.
+/// L of a coupling (4.6): its follower, or what gear teeth hold of its two sides together.
 double coupledLoad(const Assembly& in, const JointCoupling& c, double slope) {
   constexpr double kHolds = 3e3;
-  const double m_f = carriedInertia(in, c.follower);
+  const double m_f = supportedInertia(in, c.follower);
   if (c.leader == 0) return m_f;
-  return std::max(m_f, kHolds / (1.0 / m_f + slope * slope / carriedInertia(in, c.leader)));
+  return std::max(m_f, kHolds / (1.0 / m_f + slope * slope / supportedInertia(in, c.leader)));
 }
 
-/// A of a coupling's row (T.30); MuJoCo's model takes the two joints without what multiplies them.
+/// A of a coupling's row (4.6); MuJoCo's model takes the two joints without what multiplies them.
 double coupledWeight(const Assembly& in, const JointCoupling& c, double slope) {
   const Model& model = in.model;
   const std::vector<double>& w = in.weights.dof;
   const double follower = w[model.bodies[c.follower].v];
   const double leader = c.leader == 0 ? 0.0 : w[model.bodies[c.leader].v];
-  if (!model.options.ownSoftness) return follower + leader;
+  if (model.options.constraintModel == ConstraintModel::mujoco) return follower + leader;
   const double feels = follower + slope * slope * leader;
-  if (!carries(in, c.impedance)) return feels;
-  const double loaded = carrying(feels, coupledLoad(in, c, slope));
-  in.count(Mechanism::carriedLoad, loaded < feels);
+  if (!usesSupportedMass(in, c.impedance)) return feels;
+  const double loaded = cappedInverseMass(feels, coupledLoad(in, c, slope));
+  in.count(Mechanism::supportedMass, loaded < feels);
   return loaded;
 }
 
@@ -59,13 +59,13 @@ void CouplingRows::assemble(const Assembly& in) {
         pair.couples =
             !isAncestor(model, std::min(follower.v, leader.v), std::max(follower.v, leader.v));
         rate -= pair.slope * in.state.v[leader.v];
-        if (model.options.ownSoftness) pair.bend = c.curvature(q);
+        if (model.options.constraintModel == ConstraintModel::softgauss) pair.bend = c.curvature(q);
       }
-      const Softness soft = tieSoftness(in, c.impedance, r, coupledWeight(in, c, pair.slope));
-      const double turning = -pair.bend * std::pow(in.turns()[pair.leader], 2.0);
+      const Softness soft = equalitySoftness(in, c.impedance, r, coupledWeight(in, c, pair.slope));
+      const double turning = -pair.bend * std::pow(in.coriolisVelocity()[pair.leader], 2.0);
       pairs_.push_back(pair);
-      rate -= in.lag() * turning;
-      r -= 0.5 * in.lag() * in.lag() * turning;
+      rate -= in.velocityLag() * turning;
+      r -= 0.5 * in.velocityLag() * in.velocityLag() * turning;
       reference.push_back(soft.referenceAcceleration(rate, r) - turning);
       pushSoftness(soft);
     }

@@ -6,17 +6,17 @@
 ///
 /// Distance r = q_f − p(q_l), so J = e_fᵀ − p′(q_l) e_lᵀ:
 ///   x = J a − a_ref,   a_ref = −b J v − k d(|r|) r − (1 − lag b) J̇ v,   J̇ v = −p″ v_l²
-///   s(x) = ½ D x²,   A = min(w_f + p′² w_l, 1/L)                                         (T.30)
-///   L = max(m_f, 3000/(1/m_f + p′²/m_l)),   m_f = M_ff,   m_l = M_ll                     (T.142)
-/// with the lag of (T.116). A coupling carries its follower, and what presses its joints against
+///   s(x) = ½ D x²,   A = min(w_f + p′² w_l, 1/L)                                          (4.6)
+///   L = max(m_f, 3000/(1/m_f + p′²/m_l)),   m_f = M_ff,   m_l = M_ll                       (4.6)
+/// with the lag of (4.5). A coupling carries its follower, and what presses its joints against
 /// each other, motors and what is gripped, of which no inertia tells: gear teeth hold three
 /// thousand times what moves them. Without a leader, tied to the world, L = m_f. What bounces
 /// carries nothing. In MuJoCo's model A = w_f + w_l.
 
 #include <vector>
 
-#include "engine/constraints/assembly.hpp"
-#include "engine/constraints/rows.hpp"
+#include "softgauss/engine/constraints/assembly.hpp"
+#include "softgauss/engine/constraints/rows.hpp"
 
 namespace softgauss {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/constraints/joint_limit.hpp"
+#include "softgauss/engine/constraints/joint_limit.hpp"
 
 #include <cmath>
 
-#include "engine/constraints/carried_inertia.hpp"
-#include "engine/constraints/carried_load.hpp"
-#include "engine/constraints/contact_softness.hpp"
+#include "softgauss/engine/constraints/carried_inertia.hpp"
+#include "softgauss/engine/constraints/contact_softness.hpp"
+#include "softgauss/engine/constraints/supported_mass.hpp"
 
 namespace softgauss {
 namespace {
@@ -14,7 +14,7 @@ namespace {
 /// couplings.
 double borneInertia(const Assembly& in, int body) {
   const Model& model = in.model;
-  double inertia = carriedInertia(in, body);
+  double inertia = supportedInertia(in, body);
   if (!model.options.effects.has(Effect::equality)) return inertia;
   const double q = in.state.q[model.bodies[body].q];
   for (const JointCoupling& c : model.couplings)
@@ -22,8 +22,8 @@ double borneInertia(const Assembly& in, int body) {
   return inertia;
 }
 
-/// Harder where the joint carries far more than it feels (T.133). Of what is sprung the springs
-/// press and not the inertia, and a harder row has more mass to give them (T.132).
+/// Harder where the joint carries far more than it feels (5.4). Of what is sprung the springs
+/// press and not the inertia, and a harder row has more mass to give them (3.7).
 Softness limitSoftness(const Assembly& in, const JointRange& range, double r) {
   constexpr double kOfCarried = 0.2;
   const Options& options = in.model.options;
@@ -31,14 +31,15 @@ Softness limitSoftness(const Assembly& in, const JointRange& range, double r) {
   const auto softness = [&](double A) { return softnessAt(range.impedance, r, A, options); };
   Softness soft = softness(weight);
   if (isSprung(in.model, range.body)) {
-    if (options.uses(Mechanism::stepBounds)) soft = withLeastMass(soft, options.rowTimestep());
-  } else if (options.uses(Mechanism::carriedLoad)) {
-    const double loaded = carrying(weight, kOfCarried * borneInertia(in, range.body));
+    if (options.uses(Mechanism::referenceClamp))
+      soft = withoutVirtualMass(soft, options.rowTimestep());
+  } else if (options.uses(Mechanism::supportedMass)) {
+    const double loaded = cappedInverseMass(weight, kOfCarried * borneInertia(in, range.body));
     soft = softness(loaded);
-    in.count(Mechanism::carriedLoad, loaded < weight);
+    in.count(Mechanism::supportedMass, loaded < weight);
   }
-  in.count(Mechanism::stepBounds, soft.bounded);
-  return in.isPart() ? atStepsEnd(soft, 0.0, options) : soft;
+  in.count(Mechanism::referenceClamp, soft.bounded);
+  return in.isSubstep() ? implicitSpringDamper(soft, 0.0, options) : soft;
 }
 
 }  // namespace

@@ -4,13 +4,13 @@
 /// Joint limits  q_min ≤ q ≤ q_max, one row per end whose distance r < margin.
 ///
 /// Distance r = q − q_min (lower) or q_max − q (upper), so J = ±eᵢ and a force ≥ 0 pushes inward:
-///   x = ±aᵢ − a_ref,   a_ref = −b ṙ − k d (r − margin),   s(x) = ½ D min(x, 0)²          (T.13)
-/// b, k, D: of the joint's Impedance, A of (T.133). Contract: f ≥ 0, f·max(x, 0) = 0.
+///   x = ±aᵢ − a_ref,   a_ref = −b ṙ − k d (r − margin),   s(x) = ½ D min(x, 0)²           (4.1)
+/// b, k, D: of the joint's Impedance, A of (5.4). Contract: f ≥ 0, f·max(x, 0) = 0.
 
 #include <vector>
 
-#include "engine/constraints/assembly.hpp"
-#include "engine/constraints/rows.hpp"
+#include "softgauss/engine/constraints/assembly.hpp"
+#include "softgauss/engine/constraints/rows.hpp"
 
 namespace softgauss {
 
@@ -30,7 +30,7 @@ class JointLimit : public ScalarRows<HalfQuadratic> {
   void addRow(int i, double scale, VectorX& y) const { y[dof_[i]] += sign_[i] * scale; }
   std::size_t bytes() const { return ScalarRows::bytes() + bytesOfAll(dof_, sign_); }
   int dof(int row) const { return dof_[row]; }
-  RowName name(int row) const { return {.first = dof_[row], .second = sign_[row] > 0.0 ? 0 : 1}; }
+  RowKey name(int row) const { return {.first = dof_[row], .second = sign_[row] > 0.0 ? 0 : 1}; }
   double sign(int row) const { return sign_[row]; }
 
  private:

@@ -2,26 +2,27 @@
 #pragma once
 
 /// Penalties s(x) on the residual x = J a − a_ref of a scalar row: convex, C¹, piecewise quadratic
-/// (T.8). Value, slope and curvature come from the one kernel `at`, so that forward dynamics, its
+/// (1.4). Value, slope and curvature come from the one kernel `at`, so that forward dynamics, its
 /// inverse, the line search and goal directed dynamics cannot disagree.
 ///
-/// A penalty's pieces are numbered upwards from x = −∞; knot k lies between the pieces k and k + 1.
-/// s″ is D in one piece, the stiff one, and 0 in the others, the free ones. At a knot a row counts
-/// as free. The kernel is `in`, the polynomial of one piece; `at` picks the piece by x. A method
-/// that walks from cell to cell keeps the pieces itself, for at a knot rounding must not choose.
+/// A penalty's pieces are numbered upwards from x = −∞; breakpoint k lies between the pieces k and
+/// k + 1. s″ is D in one piece, the stiff one, and 0 in the others, the free ones. At a breakpoint
+/// a row counts as free. The kernel is `in`, the polynomial of one piece; `at` picks the piece by
+/// x. A method that walks from cell to cell keeps the pieces itself, for at a breakpoint rounding
+/// must not choose.
 
 #include <concepts>
 
-#include "engine/core/check.hpp"
-#include "engine/core/jet.hpp"
+#include "softgauss/engine/core/check.hpp"
+#include "softgauss/engine/core/jet.hpp"
 
 namespace softgauss {
 
 /// Unilateral constraint: limits, contact normals, edges of a friction pyramid.
 ///   s(x) = ½ D min(x, 0)²,   force f = −s′(x) = −D min(x, 0) ≥ 0
-/// A row is active where x < 0; the knot is x = 0.
+/// A row is active where x < 0; the breakpoint is x = 0.
 struct HalfQuadratic {
-  static constexpr int kKnots = 1;
+  static constexpr int kBreakpoints = 1;
   static constexpr bool kLimited = false;
   double D;
 
@@ -31,29 +32,29 @@ struct HalfQuadratic {
   }
   Jet at(double x) const { return in(piece(x), x); }
   int piece(double x) const { return x >= 0.0 ? 1 : 0; }
-  double knot(int) const { return 0.0; }
-  /// s″ above a knot less s″ below it.
+  double breakpoint(int) const { return 0.0; }
+  /// s″ above a breakpoint less s″ below it.
   double curvatureJump(int) const { return -D; }
 };
 
 /// Bilateral constraint: equalities.   s(x) = ½ D x²,   f = −D x
 struct Quadratic {
-  static constexpr int kKnots = 0;
+  static constexpr int kBreakpoints = 0;
   static constexpr bool kLimited = false;
   double D;
 
   Jet in(int, double x) const { return {0.5 * D * x * x, D * x, D}; }
   Jet at(double x) const { return in(0, x); }
   int piece(double) const { return 0; }
-  double knot(int) const { return 0.0; }
+  double breakpoint(int) const { return 0.0; }
   double curvatureJump(int) const { return 0.0; }
 };
 
 /// Bilateral constraint whose force is limited: dry friction. With r = limit/D,
 ///   s(x) = ½ D x² where |x| < r,   limit (|x| − ½ r) beyond;   f = −D x clamped to ± limit
-/// The knots are ∓ r; between them the row is stiff.
+/// The breakpoints are ∓ r; between them the row is stiff.
 struct Huber {
-  static constexpr int kKnots = 2;
+  static constexpr int kBreakpoints = 2;
   static constexpr bool kLimited = true;
   double D;
   double limit;  ///< of the force, > 0
@@ -65,20 +66,20 @@ struct Huber {
     return {0.5 * D * x * x, D * x, D};
   }
   Jet at(double x) const { return in(piece(x), x); }
-  int piece(double x) const { return x <= knot(0) ? 0 : (x >= knot(1) ? 2 : 1); }
-  double knot(int k) const { return k == 0 ? -(limit / D) : limit / D; }
+  int piece(double x) const { return x <= breakpoint(0) ? 0 : (x >= breakpoint(1) ? 2 : 1); }
+  double breakpoint(int k) const { return k == 0 ? -(limit / D) : limit / D; }
   double curvatureJump(int k) const { return k == 0 ? D : -D; }
 };
 
 template <class P>
 concept ScalarPenalty = requires(const P s, double x, int k) {
   { s.D } -> std::convertible_to<double>;
-  { P::kKnots } -> std::convertible_to<int>;
+  { P::kBreakpoints } -> std::convertible_to<int>;
   { P::kLimited } -> std::convertible_to<bool>;
   { s.in(k, x) } -> std::same_as<Jet>;
   { s.at(x) } -> std::same_as<Jet>;
   { s.piece(x) } -> std::same_as<int>;
-  { s.knot(k) } -> std::same_as<double>;
+  { s.breakpoint(k) } -> std::same_as<double>;
   { s.curvatureJump(k) } -> std::same_as<double>;
 };
 static_assert(ScalarPenalty<HalfQuadratic>);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/constraints/pyramidal_contact.hpp"
+#include "softgauss/engine/constraints/pyramidal_contact.hpp"
 
 #include <algorithm>
 
-#include "engine/constraints/slip_push.hpp"
+#include "softgauss/engine/constraints/gliding_correction.hpp"
 
 namespace softgauss {
 namespace {
@@ -36,10 +36,12 @@ void PyramidalContact::assemble(const Assembly& in) {
     double asks[10];
     for (int edge = 0; edge < edges; ++edge)
       asks[edge] = soft.referenceAcceleration(velocity[edge], touch->distance);
-    if (touch->frictionDim > 0 && options.levelsSlip()) {
+    if (touch->frictionDim > 0 && options.limitsGliding()) {
       const double push = soft.referenceAcceleration(moves.velocity[0], touch->distance);
-      SlipPush(push, soft.damping, options.timestep)
-          .level(asks, edges, made_.back().slip * SlipPush::share(touch->mu()));
+      GlidingCorrection(push, soft.damping, options.timestep)
+          .level(
+              asks, edges,
+              contactsWithRows_.back().regularisationScale * GlidingCorrection::share(touch->mu()));
     }
     for (int edge = 0; edge < edges; ++edge) {
       reference.push_back(asks[edge] - bias[edge]);
@@ -51,16 +53,17 @@ void PyramidalContact::assemble(const Assembly& in) {
 }
 
 void PyramidalContact::multiply(const VectorX& a, std::vector<double>& y) const {
-  for (std::size_t i = 0; i < made_.size(); ++i) {
+  for (std::size_t i = 0; i < contactsWithRows_.size(); ++i) {
     double frame[6];
     jacobian_.multiply(static_cast<int>(i), a, frame);
-    toEdges(frame, made_[i].frictionDim, made_[i].friction, y.data() + made_[i].row);
+    toEdges(frame, contactsWithRows_[i].frictionDim, contactsWithRows_[i].friction,
+            y.data() + contactsWithRows_[i].row);
   }
 }
 
 ContactBlocks::FrameVector PyramidalContact::inFrame(int i, const std::vector<double>& y) const {
-  const double* e = y.data() + made_[i].row;
-  const ContactRows& made = made_[i];
+  const double* e = y.data() + contactsWithRows_[i].row;
+  const ContactRows& made = contactsWithRows_[i];
   FrameVector frame{};
   if (made.frictionDim == 0) frame[0] = e[0];
   for (int k = 0; k < made.frictionDim; ++k) {
@@ -71,15 +74,15 @@ ContactBlocks::FrameVector PyramidalContact::inFrame(int i, const std::vector<do
 }
 
 void PyramidalContact::addTransposed(const std::vector<double>& y, VectorX& tau) const {
-  for (int i = 0; i < static_cast<int>(made_.size()); ++i) {
+  for (int i = 0; i < static_cast<int>(contactsWithRows_.size()); ++i) {
     const FrameVector frame = inFrame(i, y);
     if (frame != FrameVector{}) jacobian_.addTransposed(i, frame.data(), tau);
   }
 }
 
 int PyramidalContact::frameCurvature(int i, double* H) const {
-  const double* e = h.data() + made_[i].row;
-  const int pairs = made_[i].frictionDim, dim = pairs + 1;
+  const double* e = h.data() + contactsWithRows_[i].row;
+  const int pairs = contactsWithRows_[i].frictionDim, dim = pairs + 1;
   if (pairs == 0) {
     H[0] = e[0];
     return 1;
@@ -87,7 +90,7 @@ int PyramidalContact::frameCurvature(int i, double* H) const {
   // Σ over edges of D (1, ±μ_k e_k)(1, ±μ_k e_k)ᵀ.
   std::fill_n(H, dim * dim, 0.0);
   for (int k = 0; k < pairs; ++k) {
-    const double mu = made_[i].friction[k], sum = e[2 * k] + e[2 * k + 1];
+    const double mu = contactsWithRows_[i].friction[k], sum = e[2 * k] + e[2 * k + 1];
     H[0] = H[0] + e[2 * k] + e[2 * k + 1];
     H[k + 1] = H[(k + 1) * dim] = mu * (e[2 * k] - e[2 * k + 1]);
     H[(k + 1) * dim + k + 1] = mu * mu * sum;
@@ -97,14 +100,14 @@ int PyramidalContact::frameCurvature(int i, double* H) const {
 
 void PyramidalContact::addCurvature(TreeMatrix& P) {
   double H[36];
-  for (int i = 0; i < static_cast<int>(made_.size()); ++i) {
+  for (int i = 0; i < static_cast<int>(contactsWithRows_.size()); ++i) {
     frameCurvature(i, H);
     if (H[0] != 0.0) jacobian_.addCurvature(i, H, P);
   }
 }
 
 ContactBlocks::FrameVector PyramidalContact::rowInFrame(int row, double scale) const {
-  const ContactRows& made = made_[contactOfRow_[row]];
+  const ContactRows& made = contactsWithRows_[contactOfRow_[row]];
   const int edge = row - made.row;
   FrameVector frame = {scale};
   if (made.frictionDim > 0)
@@ -112,7 +115,7 @@ ContactBlocks::FrameVector PyramidalContact::rowInFrame(int row, double scale) c
   return frame;
 }
 
-ContactBlocks::FrameVector PyramidalContact::knotInFrame(int row, int) const {
+ContactBlocks::FrameVector PyramidalContact::breakpointInFrame(int row, int) const {
   return rowInFrame(row, 1.0);
 }
 

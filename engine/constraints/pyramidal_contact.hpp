@@ -3,7 +3,7 @@
 
 /// Frictional contact with a pyramidal cone, and frictionless contact.
 ///
-/// The rows of a contact are the edges of its friction pyramid (T.14):
+/// The rows of a contact are the edges of its friction pyramid (4.7):
 ///   x = (y_n ± μ_k y_k) − a_ref,   a_ref = −b (ẏ_n ± μ_k ẏ_k) − k d r,   k = 1 … condim − 1,
 ///   less (1 − lag b) J̇ v of the edge
 ///   s(x) = ½ D min(x, 0)²,         D = impratio/(2 μ² R₀),   R₀ = (1 − d)/d (w_A + w_B)(1 + μ²)
@@ -11,8 +11,8 @@
 ///   f_n = Σ f,   f_k = μ_k (f₊ − f₋),   so Σ |f_k|/μ_k ≤ f_n whatever the acceleration.
 /// A contact without friction has the one row x = y_n − a_ref with R = (1 − d)/d (w_A + w_B).
 
-#include "engine/constraints/contact.hpp"
-#include "engine/constraints/rows.hpp"
+#include "softgauss/engine/constraints/contact.hpp"
+#include "softgauss/engine/constraints/rows.hpp"
 
 namespace softgauss {
 
@@ -41,8 +41,8 @@ class PyramidalContact : public ScalarRows<HalfQuadratic>, public ContactBlocks 
   /// H ← ∇²s of contact i in its frame (dim × dim, row-major), so that ∂(frame force)/∂a = −H J.
   /// Returns dim.
   int frameCurvature(int i, double* H) const;
-  /// A row in the frame of its contact: x = row · y − a_ref, and the same of its knot.
-  FrameVector knotInFrame(int row, int knot) const;
+  /// A row in the frame of its contact: x = row · y − a_ref, and the same of its breakpoint.
+  FrameVector breakpointInFrame(int row, int breakpoint) const;
 
  private:
   /// scale · row of J, by the frame of its contact.

@@ -15,10 +15,10 @@
 #include <limits>
 #include <vector>
 
-#include "engine/constraints/impedance.hpp"
-#include "engine/constraints/penalty.hpp"
-#include "engine/core/check.hpp"
-#include "engine/core/memory.hpp"
+#include "softgauss/engine/constraints/impedance.hpp"
+#include "softgauss/engine/constraints/penalty.hpp"
+#include "softgauss/engine/core/check.hpp"
+#include "softgauss/engine/core/memory.hpp"
 
 namespace softgauss {
 
@@ -31,19 +31,19 @@ struct RowId {
   auto operator<=>(const RowId&) const = default;
 };
 
-/// A knot of a row's penalty.
-struct Knot {
+/// A breakpoint of a row's penalty.
+struct Breakpoint {
   RowId row;
-  int index = 0;  ///< among the knots of the row, upwards
-  auto operator<=>(const Knot&) const = default;
+  int index = 0;  ///< among the breakpoints of the row, upwards
+  auto operator<=>(const Breakpoint&) const = default;
 };
 
-/// A row that reaches a knot of its penalty at α = alpha along the ray a + α d.
+/// A row that reaches a breakpoint of its penalty at α = alpha along the ray a + α d.
 struct Crossing {
   double alpha = 0.0;
   double curvatureJump = 0.0;  ///< s″ after − before
   double rate = 0.0;           ///< dx of the row
-  Knot knot;
+  Breakpoint breakpoint;
 };
 
 template <ScalarPenalty Penalty>
@@ -120,16 +120,16 @@ class ScalarRows {
     }
   }
 
-  /// Appends the knots that x + α dx meets at α ≥ 0.
+  /// Appends the breakpoints that x + α dx meets at α ≥ 0.
   void findCrossings(int kind, std::vector<Crossing>& crossings) const {
-    if constexpr (Penalty::kKnots > 0) {
+    if constexpr (Penalty::kBreakpoints > 0) {
       for (std::size_t i = 0; i < x.size(); ++i) {
         if (dx[i] == 0.0) continue;
         const Penalty s = penalty(i);
         const bool up = dx[i] > 0.0;
-        for (int k = up ? s.piece(x[i]) : s.piece(x[i]) - 1; 0 <= k && k < Penalty::kKnots;
+        for (int k = up ? s.piece(x[i]) : s.piece(x[i]) - 1; 0 <= k && k < Penalty::kBreakpoints;
              up ? ++k : --k) {
-          const double alpha = (s.knot(k) - x[i]) / dx[i];
+          const double alpha = (s.breakpoint(k) - x[i]) / dx[i];
           if (!(alpha < kInfinity)) break;  // also NaN
           const double jump = up ? s.curvatureJump(k) : -s.curvatureJump(k);
           crossings.push_back({alpha, jump, dx[i], {{kind, static_cast<int>(i)}, k}});
@@ -138,17 +138,17 @@ class ScalarRows {
     }
   }
 
-  /// The first knot that x + α dx meets if it is sooner than `next`, counted from the piece in
-  /// which every row was; a row that is past its knot by rounding meets it at once.
+  /// The first breakpoint that x + α dx meets if it is sooner than `next`, counted from the piece
+  /// in which every row was; a row that is past its breakpoint by rounding meets it at once.
   void findNextCrossing(int kind, Crossing& next) const {
-    if constexpr (Penalty::kKnots > 0) {
+    if constexpr (Penalty::kBreakpoints > 0) {
       for (std::size_t i = 0; i < x.size(); ++i) {
         if (dx[i] == 0.0) continue;
         const bool up = dx[i] > 0.0;
         const int k = up ? piece_[i] : piece_[i] - 1;
-        if (k < 0 || k >= Penalty::kKnots) continue;
+        if (k < 0 || k >= Penalty::kBreakpoints) continue;
         const Penalty s = penalty(i);
-        const double alpha = std::max(0.0, (s.knot(k) - x[i]) / dx[i]);
+        const double alpha = std::max(0.0, (s.breakpoint(k) - x[i]) / dx[i]);
         if (!(alpha < next.alpha)) continue;
         const double jump = up ? s.curvatureJump(k) : -s.curvatureJump(k);
         next = {alpha, jump, dx[i], {{kind, static_cast<int>(i)}, k}};
@@ -156,32 +156,36 @@ class ScalarRows {
     }
   }
 
-  /// Puts a row at a knot, in the piece above it or the one below.
-  void enterPiece(int row, int knot, bool above) {
+  /// Puts a row at a breakpoint, in the piece above it or the one below.
+  void enterPiece(int row, int breakpoint, bool above) {
     const Penalty s = penalty(row);
-    piece_[row] = static_cast<std::int8_t>(above ? knot + 1 : knot);
-    x[row] = s.knot(knot);
+    piece_[row] = static_cast<std::int8_t>(above ? breakpoint + 1 : breakpoint);
+    x[row] = s.breakpoint(breakpoint);
     h[row] = s.in(piece_[row], x[row]).curvature;
   }
-  /// Whether a row is in the piece above a knot, or in one that is higher.
-  bool isAbove(int row, int knot) const { return piece_[row] > knot; }
+  /// Whether a row is in the piece above a breakpoint, or in one that is higher.
+  bool isAbove(int row, int breakpoint) const { return piece_[row] > breakpoint; }
 
-  double curvatureJump(int row, int knot) const { return penalty(row).curvatureJump(knot); }
+  double curvatureJump(int row, int breakpoint) const {
+    return penalty(row).curvatureJump(breakpoint);
+  }
   /// Takes a row off the ray.
   void holdOnRay(int row) { dx[row] = 0.0; }
 
-  /// x of a row above one of its knots.
-  double aboveKnot(int row, int knot) const { return x[row] - penalty(row).knot(knot); }
+  /// x of a row above one of its breakpoints.
+  double aboveBreakpoint(int row, int breakpoint) const {
+    return x[row] - penalty(row).breakpoint(breakpoint);
+  }
 
-  /// Puts a row at a knot, where it counts as free, or next to it on the stiff side.
-  void placeAtKnot(int row, int knot, bool stiffSide) {
+  /// Puts a row at a breakpoint, where it counts as free, or next to it on the stiff side.
+  void placeAtBreakpoint(int row, int breakpoint, bool stiffSide) {
     constexpr double kSmallest = std::numeric_limits<double>::min();
     constexpr double kRelative = std::numeric_limits<double>::epsilon();
     const Penalty s = penalty(row);
-    x[row] = s.knot(knot);
+    x[row] = s.breakpoint(breakpoint);
     if (!stiffSide) return;
     const double step = std::max(kSmallest, kRelative * std::abs(x[row]));
-    x[row] += s.curvatureJump(knot) > 0.0 ? step : -step;
+    x[row] += s.curvatureJump(breakpoint) > 0.0 ? step : -step;
   }
 
   /// Memory held [bytes].

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/constraints/weld.hpp"
+#include "softgauss/engine/constraints/weld.hpp"
 
 #include <cmath>
 
-#include "engine/constraints/connection.hpp"
-#include "engine/constraints/tie_softness.hpp"
-#include "engine/core/rotation.hpp"
+#include "softgauss/engine/constraints/connection.hpp"
+#include "softgauss/engine/constraints/equality_softness.hpp"
+#include "softgauss/engine/core/rotation.hpp"
 
 namespace softgauss {
 namespace {
@@ -24,10 +24,11 @@ struct RotationOffset : Offset {
     const Kinematics& k = in.kinematics;
     const Motion &A = k.A_bias[weld.bodyA], &B = k.A_bias[weld.bodyB];
     rate = J_r * (k.V[weld.bodyA].angular - k.V[weld.bodyB].angular);
-    const Vector3 wA = k.turning()[weld.bodyA].angular, w = wA - k.turning()[weld.bodyB].angular;
+    const Vector3 wA = k.midstepVelocities()[weld.bodyA].angular,
+                  w = wA - k.midstepVelocities()[weld.bodyB].angular;
     bias = J_r * (A.angular - B.angular - wA.cross(w)) - 0.25 * w.squaredNorm() * r;
-    rate -= in.lag() * bias;
-    r -= 0.5 * in.lag() * in.lag() * bias;
+    rate -= in.velocityLag() * bias;
+    r -= 0.5 * in.velocityLag() * in.velocityLag() * bias;
   }
 };
 
@@ -44,19 +45,20 @@ void WeldRows::assemble(const Assembly& in) {
       const RotationOffset turn(in, weld, X_WA.R, X_WB.R);
       const double distance = std::hypot(point.r.norm(), turn.r.norm());
       const auto softness = [&](double weight) {
-        return tieSoftness(in, weld.impedance, distance, weight);
+        return equalitySoftness(in, weld.impedance, distance, weight);
       };
       RelativeMotion motion = offsetMotion(weld.bodyA, point.p_WA, weld.bodyB, point.p_WB);
-      const Softness linear = softness(tieWeight(in, weld.impedance, weld.bodyA, weld.bodyB));
+      const Softness linear =
+          softness(equalityInverseMass(in, weld.impedance, weld.bodyA, weld.bodyB));
       jacobian_.add(model, k, in.tree, motion);
       pushRows(point, linear);
 
       // Bodies that slide only cannot be turned back.
       double weight = in.weights.rotation[weld.bodyA] + in.weights.rotation[weld.bodyB];
       if (weight == 0.0) continue;
-      if (carries(in, weld.impedance))
-        weight = carrying(weight,
-                          in.load->inertia(model, weld.bodyA, weld.bodyB, 0.5 * (X_WA.p + X_WB.p)));
+      if (usesSupportedMass(in, weld.impedance))
+        weight = cappedInverseMass(
+            weight, in.load->inertia(model, weld.bodyA, weld.bodyB, 0.5 * (X_WA.p + X_WB.p)));
       motion.linearDim = 0;
       motion.angularDim = 3;
       motion.angular = turn.J_r.transpose();

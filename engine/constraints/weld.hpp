@@ -7,15 +7,15 @@
 /// quaternion that turns F_B into F_A (half the angle between them, where it is small), times a
 /// length s, the torque scale:
 ///   e = q̄_B q_A = (e₀, ē),   r = s ē,   J = ½ s (e₀ 1 + [ē]×) R_WAᵀ (J_ωA − J_ωB)
-///   J̇ v = ½ s [(e₀ 1 + [ē]×) R_WAᵀ(ω̇ − ω_A × ω) − ½ |ω|² ē],   ω = ω_A − ω_B            (T.29)
+///   J̇ v = ½ s [(e₀ 1 + [ē]×) R_WAᵀ(ω̇ − ω_A × ω) − ½ |ω|² ē],   ω = ω_A − ω_B             (4.4)
 ///   x = J a − a_ref,   a_ref = −b J v − k d r − J̇ v,   s(x) = ½ D x²
 /// All six rows share d, of the length of their six distances; A is the translational inverse
 /// weight of the two bodies in three rows, the rotational one in the others, or less where the weld
-/// carries more than they are (T.80, T.119). Bodies that cannot
+/// carries more than they are (5.1), (5.5). Bodies that cannot
 /// turn have the first three rows only.
 
-#include "engine/constraints/assembly.hpp"
-#include "engine/constraints/block_rows.hpp"
+#include "softgauss/engine/constraints/assembly.hpp"
+#include "softgauss/engine/constraints/block_rows.hpp"
 
 namespace softgauss {
 

@@ -24,7 +24,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/core/types.hpp"
+#include "softgauss/engine/core/types.hpp"
 
 namespace softgauss {
 

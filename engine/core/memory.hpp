@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "engine/core/types.hpp"
+#include "softgauss/engine/core/types.hpp"
 
 namespace softgauss {
 

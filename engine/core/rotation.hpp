@@ -8,7 +8,7 @@
 
 #include <cmath>
 
-#include "engine/core/types.hpp"
+#include "softgauss/engine/core/types.hpp"
 
 namespace softgauss {
 
@@ -41,7 +41,7 @@ inline Vector3 quaternionLog(const Quaternion& q) {
   return scale * v;
 }
 
-/// φ̇ = dexp⁻¹_φ(ω) of R = R₀ exp(φ) that turns with ω in its own axes (T.92):
+/// φ̇ = dexp⁻¹_φ(ω) of R = R₀ exp(φ) that turns with ω in its own axes (6.6):
 ///   φ̇ = ω + ½ φ × ω + (1 − ½ θ cot ½θ)/θ² φ × (φ × ω),   θ = |φ| < 2π
 inline Vector3 rotationRate(const Vector3& phi, const Vector3& omega) {
   const double angle2 = phi.squaredNorm();

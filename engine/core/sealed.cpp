@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/core/sealed.hpp"
+#include "softgauss/engine/core/sealed.hpp"
 
-#include "engine/core/bytes.hpp"
-#include "engine/core/check.hpp"
+#include "softgauss/engine/core/bytes.hpp"
+#include "softgauss/engine/core/check.hpp"
 
 namespace softgauss {
 namespace {

@@ -7,7 +7,7 @@
 /// world axes about one point O of that tree (the origin of its root body, at this instant). All
 /// bodies then share one coordinate system, so the tree recursions add vectors without transforms.
 
-#include "engine/core/types.hpp"
+#include "softgauss/engine/core/types.hpp"
 
 namespace softgauss {
 

@@ -3,8 +3,8 @@
 /// Spatial quantities as 6-vectors and 6 × 6 matrices, for algorithms that factorise them: the
 /// angular part first (Featherstone, Rigid Body Dynamics Algorithms, 2008, section 2).
 
-#include "engine/core/rotation.hpp"
-#include "engine/core/spatial.hpp"
+#include "softgauss/engine/core/rotation.hpp"
+#include "softgauss/engine/core/spatial.hpp"
 
 namespace softgauss {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/dynamics/aba.hpp"
+#include "softgauss/engine/dynamics/aba.hpp"
 
 #include <Eigen/Cholesky>
 
-#include "engine/core/spatial_matrix.hpp"
+#include "softgauss/engine/core/spatial_matrix.hpp"
 
 namespace softgauss {
 namespace {

@@ -4,7 +4,7 @@
 /// Articulated-body algorithm (Featherstone 2008, section 7.3): v̇ = M⁻¹(τ − b) in O(n), without
 /// forming M. An independent oracle for CRBA, RNEA and the tree factorisation.
 
-#include "engine/dynamics/inertia.hpp"
+#include "softgauss/engine/dynamics/inertia.hpp"
 
 namespace softgauss {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/dynamics/centroidal.hpp"
+#include "softgauss/engine/dynamics/centroidal.hpp"
 
 namespace softgauss {
 

@@ -3,7 +3,7 @@
 
 /// Centroidal momentum of one robot: what the sum of its external forces can change.
 ///
-///   h = (p; k) = A v,     ḣ = A v̇ + ḣ⁰                                                  (T.46)
+///   h = (p; k) = A v,     ḣ = A v̇ + ḣ⁰                                                   (2.8)
 /// p is the linear momentum and k the angular momentum about the centre of mass C, world axes. With
 /// I^c_b the composite inertia of body b's subtree about O, and spatial vectors about O,
 ///   column i of A:   (moment, force) = I^c_b(i) S_i,   p = force,   k = moment + (O − C) × force
@@ -11,7 +11,7 @@
 /// That C moves adds nothing to k̇: it would add −v_C × p, and p is m v_C. Rotor inertias (armature)
 /// are not counted. (Orin, Goswami, Lee 2013.)
 
-#include "engine/dynamics/inertia.hpp"
+#include "softgauss/engine/dynamics/inertia.hpp"
 
 namespace softgauss {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/dynamics/coriolis_derivative.hpp"
+#include "softgauss/engine/dynamics/coriolis_derivative.hpp"
 
-#include "engine/core/rotation.hpp"
+#include "softgauss/engine/core/rotation.hpp"
 
 namespace softgauss {
 namespace {

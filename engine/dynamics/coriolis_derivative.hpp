@@ -7,7 +7,7 @@
 /// δA_b = E_j − V_b × S_j for a change of v_j, j at or above b,
 ///
 ///   C_ij = S_i · (I^c_k E_j + B^c_k S_j),   k the deeper one of the bodies of i and j
-///   B_b = V_b ×* I_b − I_b V_b × + (I_b V_b) ×̄*,   E_j = ∂A_j/∂v_j + V_j × S_j          (T.111)
+///   B_b = V_b ×* I_b − I_b V_b × + (I_b V_b) ×̄*,   E_j = ∂A_j/∂v_j + V_j × S_j            (2.9)
 ///
 /// ×̄* is the same product as ×*, as a matrix on its left factor; ᶜ sums over the subtree. C is not
 /// symmetric, and has entries only where i is at or above j or below it (after Echeandia and
@@ -15,7 +15,7 @@
 
 #include <vector>
 
-#include "engine/dynamics/inertia.hpp"
+#include "softgauss/engine/dynamics/inertia.hpp"
 
 namespace softgauss {
 

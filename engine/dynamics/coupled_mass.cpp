@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/dynamics/coupled_mass.hpp"
+#include "softgauss/engine/dynamics/coupled_mass.hpp"
 
 #include <set>
 
-#include "engine/core/index.hpp"
-#include "engine/dynamics/regular_mass.hpp"
+#include "softgauss/engine/core/index.hpp"
+#include "softgauss/engine/dynamics/regular_mass.hpp"
 
 namespace softgauss {
 namespace {
@@ -54,7 +54,7 @@ bool isSingular(const MatrixX& A) {
 
 }  // namespace
 
-void steadyCoupledJoints(Model& model, const VectorX& q) {
+void regulariseCoupledJoints(Model& model, const VectorX& q) {
   if (model.couplings.empty()) return;
   Kinematics k(model);
   MassMatrix inertia(model);

@@ -8,7 +8,7 @@
 /// that are free is regular, and that is what the robot feels. The step takes M⁻¹ all the same, as
 /// its couplings are soft.
 
-#include "engine/model/model.hpp"
+#include "softgauss/engine/model/model.hpp"
 
 namespace softgauss {
 
@@ -17,6 +17,6 @@ inline constexpr double kCoupledShare = 0.01;
 
 /// Where M is singular at q and GᵀM G is not: gives every coupled joint of the trees in question an
 /// armature of kCoupledShare of its M_ii, and the model a warning. Else nothing is changed.
-void steadyCoupledJoints(Model& model, const VectorX& q);
+void regulariseCoupledJoints(Model& model, const VectorX& q);
 
 }  // namespace softgauss

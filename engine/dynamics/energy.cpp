@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/dynamics/energy.hpp"
+#include "softgauss/engine/dynamics/energy.hpp"
 
 namespace softgauss {
 namespace {

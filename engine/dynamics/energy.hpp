@@ -3,7 +3,7 @@
 
 /// Mechanical energy and momentum of the moving bodies.
 
-#include "engine/dynamics/inertia.hpp"
+#include "softgauss/engine/dynamics/inertia.hpp"
 
 namespace softgauss {
 

@@ -4,14 +4,14 @@
 /// Mass matrix by the composite-rigid-body algorithm (Featherstone 2008, section 6.2).
 ///
 ///   M_ij = S_iᵀ I^c_b(i) S_j  for j an ancestor of i (or i itself),  + armature on the diagonal
-///   (T.6)
+///   (2.3)
 ///
 /// I^c_b is the inertia of body b and everything that hangs from it, in world axes about O.
 
 #include <vector>
 
-#include "engine/dynamics/kinematics.hpp"
-#include "engine/dynamics/tree_matrix.hpp"
+#include "softgauss/engine/dynamics/kinematics.hpp"
+#include "softgauss/engine/dynamics/tree_matrix.hpp"
 
 namespace softgauss {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/dynamics/jacobian.hpp"
+#include "softgauss/engine/dynamics/jacobian.hpp"
 
 namespace softgauss {
 void pointJacobian(const Model& model, const Kinematics& k, int body, const Vector3& p_WP,

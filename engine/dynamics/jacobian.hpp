@@ -3,7 +3,7 @@
 
 /// Jacobians of points: v_P = J v, a_P = J v̇ + J̇ v  (J̇ v: pointBiasAcceleration()).
 
-#include "engine/dynamics/kinematics.hpp"
+#include "softgauss/engine/dynamics/kinematics.hpp"
 
 namespace softgauss {
 

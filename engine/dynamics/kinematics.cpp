@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/dynamics/kinematics.hpp"
+#include "softgauss/engine/dynamics/kinematics.hpp"
 
-#include "engine/core/rotation.hpp"
+#include "softgauss/engine/core/rotation.hpp"
 
 namespace softgauss {
 
@@ -68,12 +68,12 @@ void computePoses(const Model& model, const VectorX& q, Kinematics& k) {
 void computeKinematics(const Model& model, const State& state, Kinematics& k) {
   computePoses(model, state.q, k);
   computeVelocities(model, k, state.v, k.V, k.A_bias);
-  k.V_turning.clear();
+  k.V_midstep.clear();
 }
 
-void setTurning(const Model& model, const VectorX& v, Kinematics& k) {
-  k.V_turning.resize(model.bodies.size());
-  computeVelocities(model, k, v, k.V_turning, k.A_bias);
+void setMidstepVelocity(const Model& model, const VectorX& v, Kinematics& k) {
+  k.V_midstep.resize(model.bodies.size());
+  computeVelocities(model, k, v, k.V_midstep, k.A_bias);
 }
 
 void computeVelocities(const Model& model, const Kinematics& k, const VectorX& v,
@@ -110,8 +110,9 @@ Vector3 pointVelocity(const Model& model, const Kinematics& k, int body, const V
   return pointAt(model, k, k.V, body, p_WP);
 }
 
-Vector3 pointTurning(const Model& model, const Kinematics& k, int body, const Vector3& p_WP) {
-  return pointAt(model, k, k.turning(), body, p_WP);
+Vector3 pointMidstepVelocity(const Model& model, const Kinematics& k, int body,
+                             const Vector3& p_WP) {
+  return pointAt(model, k, k.midstepVelocities(), body, p_WP);
 }
 
 Vector3 pointBiasAcceleration(const Model& model, const Kinematics& k, int body,
@@ -119,7 +120,7 @@ Vector3 pointBiasAcceleration(const Model& model, const Kinematics& k, int body,
   if (body == 0) return Vector3::Zero();
   const Vector3 r = p_WP - k.p_WO[model.bodies[body].tree];
   const Motion& A = k.A_bias[body];
-  const Motion& V = k.turning()[body];
+  const Motion& V = k.midstepVelocities()[body];
   const Vector3& omega = V.angular;
   const Vector3 v = V.linear + omega.cross(r);
   // Classical from spatial acceleration: a = A_lin + α × r + ω × v.

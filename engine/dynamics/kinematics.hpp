@@ -3,12 +3,12 @@
 
 /// Forward kinematics: poses, joint axes and velocities of all bodies.
 ///
-/// Spatial vectors of a tree are in world axes about O (T.4): the origin of the tree's root body,
+/// Spatial vectors of a tree are in world axes about O (2.1): the origin of the tree's root body,
 /// at q = 0 when that body slides.
 
 #include <vector>
 
-#include "engine/model/state.hpp"
+#include "softgauss/engine/model/state.hpp"
 
 namespace softgauss {
 
@@ -19,11 +19,11 @@ struct Kinematics {
   std::vector<Motion> S;        ///< (nv) motion subspace of each dof, about O
   std::vector<Motion> V;        ///< (bodies) spatial velocity about O
   std::vector<Motion> A_bias;  ///< (bodies) spatial acceleration at v̇ = 0, without gravity: J̇ v
-  /// (bodies) the velocity with which bodies turn through the step, where setTurning() has
+  /// (bodies) the velocity with which bodies turn through the step, where setMidstepVelocity() has
   /// predicted one; empty: V. A_bias is of it.
-  std::vector<Motion> V_turning;
+  std::vector<Motion> V_midstep;
 
-  const std::vector<Motion>& turning() const { return V_turning.empty() ? V : V_turning; }
+  const std::vector<Motion>& midstepVelocities() const { return V_midstep.empty() ? V : V_midstep; }
 
   Kinematics() = default;
   explicit Kinematics(const Model& model);
@@ -39,7 +39,7 @@ void computeVelocities(const Model& model, const Kinematics& k, const VectorX& v
                        std::vector<Motion>& V, std::vector<Motion>& A_bias);
 
 /// What turns, does so by this velocity (nv): Coriolis forces and J̇ v are of it, V of State::v.
-void setTurning(const Model& model, const VectorX& v, Kinematics& k);
+void setMidstepVelocity(const Model& model, const VectorX& v, Kinematics& k);
 
 /// Pose of a named frame in the world.
 inline Transform framePose(const Model& model, const Kinematics& k, int frame) {
@@ -51,7 +51,8 @@ inline Transform framePose(const Model& model, const Kinematics& k, int frame) {
 Vector3 pointVelocity(const Model& model, const Kinematics& k, int body, const Vector3& p_WP);
 
 /// The same of the velocity of turning.
-Vector3 pointTurning(const Model& model, const Kinematics& k, int body, const Vector3& p_WP);
+Vector3 pointMidstepVelocity(const Model& model, const Kinematics& k, int body,
+                             const Vector3& p_WP);
 
 /// Acceleration [m/s²] at v̇ = 0 (that is, J̇ v, of turning) of the point of `body` that is now at
 /// p_WP.

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/dynamics/regular_mass.hpp"
+#include "softgauss/engine/dynamics/regular_mass.hpp"
 
 #include <cmath>
 #include <cstdio>
 
-#include "engine/core/index.hpp"
+#include "softgauss/engine/core/index.hpp"
 
 namespace softgauss {
 namespace {
@@ -85,9 +85,9 @@ std::optional<SingularMass> findSingularMass(const Model& model, const VectorX& 
                         "moves an inertia of " + number(own) +
                             ", whose inverse overflows; expected more, or an armature"};
   return SingularMass{element, link,
-                      "moves nothing that other joints do not move in the same way: the mass "
-                      "matrix is singular where the motion starts; try another start (--q0, or "
-                      "joints: in a scene), or give what lies between these joints an inertia"};
+                      "moves nothing that other joints do not move alike: the mass matrix is "
+                      "singular in the initial configuration; try another start (--q0, or "
+                      "joints: in a scene), or give the links between these joints an inertia"};
 }
 
 }  // namespace softgauss

@@ -9,7 +9,7 @@
 #include <optional>
 #include <string>
 
-#include "engine/dynamics/inertia.hpp"
+#include "softgauss/engine/dynamics/inertia.hpp"
 
 namespace softgauss {
 

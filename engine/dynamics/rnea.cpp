@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/dynamics/rnea.hpp"
+#include "softgauss/engine/dynamics/rnea.hpp"
 
 namespace softgauss {
 namespace {
@@ -42,7 +42,7 @@ void biasFrom(const Model& model, const Kinematics& k, const std::vector<Motion>
 
 void computeBias(const Model& model, const Kinematics& k, const MassMatrix& inertia,
                  RneaWorkspace& work, VectorX& bias) {
-  biasFrom(model, k, k.turning(), k.A_bias, inertia, work, bias);
+  biasFrom(model, k, k.midstepVelocities(), k.A_bias, inertia, work, bias);
 }
 
 void computeBiasAt(const Model& model, const Kinematics& k, const MassMatrix& inertia,
@@ -55,7 +55,7 @@ void inverseDynamicsTree(const Model& model, const Kinematics& k, const MassMatr
                          const VectorX& vdot, RneaWorkspace& work, VectorX& tau) {
   const Vector3 g = gravityOf(model);
   const bool coriolis = model.options.effects.has(Effect::coriolis);
-  const std::vector<Motion>& V = k.turning();
+  const std::vector<Motion>& V = k.midstepVelocities();
   for (int b = 1; b < model.bodyCount(); ++b) {
     const Body& body = model.bodies[b];
     // Acceleration without the bias part, which the kinematics already hold.

@@ -2,11 +2,11 @@
 #pragma once
 
 /// Recursive Newton–Euler algorithm (Featherstone 2008, section 5.3): bias forces and inverse
-/// dynamics of the tree without constraints,  τ = M v̇ + b  (T.5).
+/// dynamics of the tree without constraints,  τ = M v̇ + b  (2.2).
 
 #include <vector>
 
-#include "engine/dynamics/inertia.hpp"
+#include "softgauss/engine/dynamics/inertia.hpp"
 
 namespace softgauss {
 

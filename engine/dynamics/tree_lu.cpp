@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/dynamics/tree_lu.hpp"
+#include "softgauss/engine/dynamics/tree_lu.hpp"
 
 #include <cmath>
 

@@ -7,7 +7,7 @@
 /// dofs above it, which are on one branch, so nothing is filled in. No pivoting: the matrices are
 /// M and terms of O(h).
 
-#include "engine/dynamics/coriolis_derivative.hpp"
+#include "softgauss/engine/dynamics/coriolis_derivative.hpp"
 
 namespace softgauss {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/dynamics/tree_matrix.hpp"
+#include "softgauss/engine/dynamics/tree_matrix.hpp"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 
-#include "engine/core/check.hpp"
-#include "engine/core/vector_clones.hpp"
-#include "engine/core/vector_kernels.hpp"
+#include "softgauss/engine/core/check.hpp"
+#include "softgauss/engine/core/vector_clones.hpp"
+#include "softgauss/engine/core/vector_kernels.hpp"
 
 namespace softgauss {
 

@@ -4,7 +4,7 @@
 /// Symmetric matrices with the sparsity of kinematic trees, and their factorisation  A = LᵀDL.
 ///
 /// Row i of the lower triangle is non-zero only at dofs that move together with dof i: its
-/// ancestors, and dofs that a constraint couples to it (T.9). In depth-first order these are a few
+/// ancestors, and dofs that a constraint couples to it (2.6). In depth-first order these are a few
 /// contiguous ranges of columns (segments), so all inner loops run over contiguous memory.
 /// Eliminating from the leaves to the root fills nothing in beyond the pattern
 /// (Featherstone 2008, section 6.5; George and Liu for the coupled case).
@@ -13,7 +13,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine/model/model.hpp"
+#include "softgauss/engine/model/model.hpp"
 
 namespace softgauss {
 

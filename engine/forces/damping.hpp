@@ -4,7 +4,7 @@
 /// Viscous joint damping: force −d v on each dof, so c gains d v. The Euler step treats it
 /// implicitly, see integrators/semi_implicit_euler.hpp.
 
-#include "engine/core/types.hpp"
+#include "softgauss/engine/core/types.hpp"
 
 namespace softgauss {
 

@@ -3,7 +3,7 @@
 
 /// A wrench F applied to a body adds Jᵀ F to the generalised force, so c loses it.
 
-#include "engine/dynamics/kinematics.hpp"
+#include "softgauss/engine/dynamics/kinematics.hpp"
 
 namespace softgauss {
 

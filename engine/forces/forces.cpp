@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/forces/forces.hpp"
+#include "softgauss/engine/forces/forces.hpp"
 
-#include "engine/forces/damping.hpp"
-#include "engine/forces/external_wrench.hpp"
-#include "engine/forces/spring.hpp"
+#include "softgauss/engine/forces/damping.hpp"
+#include "softgauss/engine/forces/external_wrench.hpp"
+#include "softgauss/engine/forces/spring.hpp"
 
 namespace softgauss {
 
@@ -17,15 +17,15 @@ void computeSmoothForces(const Model& model, const Plan& plan, const State& stat
     computeBias(model, k, inertia, stage.work, stage.bias);
   }
   stage.c = stage.bias;
-  if (plan.damped()) {
+  if (plan.hasDamping()) {
     ++calls.damping;
     addDamping(plan.damping, state.v, stage.c);
   }
-  if (plan.sprung()) {
+  if (plan.hasSprings()) {
     ++calls.spring;
     addSprings(plan.springs, state.q, stage.c);
   }
-  if (plan.pushed())
+  if (plan.hasExternalWrench())
     for (const ExternalWrench& wrench : input.wrenches) {
       ++calls.externalWrench;
       addExternalWrench(model, k, wrench, stage.c);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// Smooth forces: everything in  M a + c = τ + Jᵀ f  that no constraint makes (T.7).
+/// Smooth forces: everything in  M a + c = τ + Jᵀ f  that no constraint makes (2.4).
 ///
 ///   c = b(q, v) + D v + K (q − q_s) − Σ J_Bᵀ F_B,   τ = applied generalised force
 ///
@@ -9,8 +9,8 @@
 /// joint springs; F_B: external wrenches.
 /// c is the paper's c(q, v): all that does not depend on the control or the acceleration.
 
-#include "engine/dynamics/rnea.hpp"
-#include "engine/model/plan.hpp"
+#include "softgauss/engine/dynamics/rnea.hpp"
+#include "softgauss/engine/model/plan.hpp"
 
 namespace softgauss {
 

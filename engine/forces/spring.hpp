@@ -2,12 +2,12 @@
 #pragma once
 
 /// Joint springs: force −k (q − q_s) on each scalar joint that has a stiffness k, so c gains
-/// k (q − q_s) (T.31). The step takes it explicitly, as MuJoCo's does: h √(k/m) < 2 is needed, m
+/// k (q − q_s) (2.5). The step takes it explicitly, as MuJoCo's does: h √(k/m) < 2 is needed, m
 /// being the inertia that the joint moves.
 
 #include <vector>
 
-#include "engine/model/plan.hpp"
+#include "softgauss/engine/model/plan.hpp"
 
 namespace softgauss {
 

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "engine/islands/sub_model.hpp"
-#include "engine/step/contact_source.hpp"
+#include "softgauss/engine/islands/sub_model.hpp"
+#include "softgauss/engine/step/contact_source.hpp"
 
 namespace softgauss {
 

@@ -6,9 +6,9 @@
 #include <memory>
 #include <vector>
 
-#include "engine/islands/sub_model.hpp"
-#include "engine/step/contact_source.hpp"
-#include "engine/step/data.hpp"
+#include "softgauss/engine/islands/sub_model.hpp"
+#include "softgauss/engine/step/contact_source.hpp"
+#include "softgauss/engine/step/data.hpp"
 
 namespace softgauss {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/islands/islands.hpp"
+#include "softgauss/engine/islands/islands.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <span>
 #include <utility>
 
-#include "engine/core/index.hpp"
+#include "softgauss/engine/core/index.hpp"
 
 namespace softgauss {
 namespace {
@@ -249,7 +249,7 @@ SolveStatus Islands::take(Island& island, const Input& input) {
     state.warmstart.gddA = state.warmstart.a;
     state.warmstart.multipliers.setZero();
     state.warmstart.control.setZero();
-    state.warmstart.knots.clear();
+    state.warmstart.breakpoints.clear();
   }
   computeKinematics(model, state, island.data.kinematics);
   return status;

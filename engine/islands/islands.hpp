@@ -4,7 +4,7 @@
 /// A scene that is stepped island by island, and whose islands may sleep.
 ///
 /// An island is a set of units (units.hpp) that touch one another. P = M + JᵀHJ has no entry
-/// between two islands, so the objective of (T.1) is the sum of theirs, and each is solved alone,
+/// between two islands, so the objective of (1.1) is the sum of theirs, and each is solved alone,
 /// as a model of its own (sub_model.hpp): it stops when it has converged, and its result is the
 /// same, bit for bit, whoever else is in the scene. The joint solve of step() finds the same
 /// accelerations up to rounding.
@@ -30,11 +30,11 @@
 #include <memory>
 #include <vector>
 
-#include "engine/islands/island_contacts.hpp"
-#include "engine/islands/island_control.hpp"
-#include "engine/islands/union_find.hpp"
-#include "engine/islands/units.hpp"
-#include "engine/step/step.hpp"
+#include "softgauss/engine/islands/island_contacts.hpp"
+#include "softgauss/engine/islands/island_control.hpp"
+#include "softgauss/engine/islands/union_find.hpp"
+#include "softgauss/engine/islands/units.hpp"
+#include "softgauss/engine/step/step.hpp"
 
 namespace softgauss {
 

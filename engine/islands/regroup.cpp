@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "engine/core/index.hpp"
-#include "engine/islands/islands.hpp"
-#include "engine/islands/union_find.hpp"
+#include "softgauss/engine/core/index.hpp"
+#include "softgauss/engine/islands/islands.hpp"
+#include "softgauss/engine/islands/union_find.hpp"
 
 namespace softgauss {
 /// Makes an island of each set of the units of `old` islands, unless there is such a one already.

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <utility>
 
-#include "engine/core/bytes.hpp"
-#include "engine/core/index.hpp"
-#include "engine/islands/islands.hpp"
-#include "engine/model/saved_state.hpp"
-#include "engine/step/saved_contacts.hpp"
+#include "softgauss/engine/core/bytes.hpp"
+#include "softgauss/engine/core/index.hpp"
+#include "softgauss/engine/islands/islands.hpp"
+#include "softgauss/engine/model/saved_state.hpp"
+#include "softgauss/engine/step/saved_contacts.hpp"
 
 namespace softgauss {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/islands/sub_model.hpp"
+#include "softgauss/engine/islands/sub_model.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -194,7 +194,7 @@ void SubModel::gather(const Model& whole, const State& from, State& to) const {
   gatherPosition(whole, from.q, to.q);
   gather(whole, from.v, to.v);
   const WarmStart& ofWhole = from.warmstart;
-  to.warmstart.knots.clear();
+  to.warmstart.breakpoints.clear();
   to.warmstart.gddSearchAge = 0;
   to.warmstart.gddSearchWait = 1;
   for (const auto warm : kWarmVectors)
@@ -203,7 +203,7 @@ void SubModel::gather(const Model& whole, const State& from, State& to) const {
       gather(whole, ofWhole.*warm, to.warmstart.*warm);
     }
   if (from.a.size() == whole.nv) gather(whole, from.a, to.a);
-  to.aIsKnown = from.aIsKnown;
+  to.hasAcceleration = from.hasAcceleration;
   to.warmstart.valid = ofWhole.valid;
   to.warmstart.gddValid = ofWhole.gddValid;
   to.time = from.time;
@@ -217,7 +217,7 @@ void SubModel::scatter(const Model& whole, const State& from, State& to) const {
   scatter(whole, from.v, to.v);
   if (to.a.size() == whole.nv) {
     scatter(whole, from.a, to.a);
-    to.aIsKnown = to.aIsKnown || from.aIsKnown;
+    to.hasAcceleration = to.hasAcceleration || from.hasAcceleration;
   }
   for (const auto warm : kWarmVectors)
     if ((from.warmstart.*warm).size() == model.nv && (to.warmstart.*warm).size() == whole.nv)

@@ -10,7 +10,7 @@
 
 #include <vector>
 
-#include "engine/model/state.hpp"
+#include "softgauss/engine/model/state.hpp"
 
 namespace softgauss {
 
@@ -24,7 +24,7 @@ struct SubModel {
   SubModel(const Model& whole, std::vector<int> ofWhole);
 
   /// Entries of q, v and what goes with them, from the whole's state. Of the warm start the vectors
-  /// are taken along; the knots of rows, which have other names here, are not.
+  /// are taken along; the breakpoints of rows, which have other names here, are not.
   void gather(const Model& whole, const State& from, State& to) const;
   /// The same back. The time is not written.
   void scatter(const Model& whole, const State& from, State& to) const;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/islands/units.hpp"
+#include "softgauss/engine/islands/units.hpp"
 
 #include <map>
 
-#include "engine/islands/union_find.hpp"
+#include "softgauss/engine/islands/union_find.hpp"
 
 namespace softgauss {
 

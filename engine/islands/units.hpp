@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "engine/model/model.hpp"
+#include "softgauss/engine/model/model.hpp"
 
 namespace softgauss {
 

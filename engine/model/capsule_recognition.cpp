@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/model/capsule_recognition.hpp"
+#include "softgauss/engine/model/capsule_recognition.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -7,7 +7,7 @@
 /// triangles (mass_properties.hpp) is the same from any origin. A shell, triangles that hang
 /// together by edges, must enclose a positive volume, unless it bounds a cavity within another.
 
-#include "engine/model/shape.hpp"
+#include "softgauss/engine/model/shape.hpp"
 
 namespace softgauss {
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include "engine/core/enum_set.hpp"
+#include "softgauss/engine/core/enum_set.hpp"
 
 namespace softgauss {
 

@@ -6,8 +6,8 @@
 
 #include <array>
 
-#include "engine/core/spatial.hpp"
-#include "engine/model/material.hpp"
+#include "softgauss/engine/core/spatial.hpp"
+#include "softgauss/engine/model/material.hpp"
 
 namespace softgauss {
 

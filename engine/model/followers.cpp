@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/model/followers.hpp"
+#include "softgauss/engine/model/followers.hpp"
 
-#include "engine/core/index.hpp"
+#include "softgauss/engine/core/index.hpp"
 
 namespace softgauss {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/model/mass_properties.hpp"
+#include "softgauss/engine/model/mass_properties.hpp"
 
 #include <cmath>
 

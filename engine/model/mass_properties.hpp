@@ -8,7 +8,7 @@
 ///   V = Σ det[a b c]/6,   c = Σ det (a + b + c)/24 / V,
 ///   ∫ x xᵀ dV = Σ det (a aᵀ + b bᵀ + c cᵀ + (a + b + c)(a + b + c)ᵀ)/120
 
-#include "engine/model/shape.hpp"
+#include "softgauss/engine/model/shape.hpp"
 
 namespace softgauss {
 

@@ -16,7 +16,8 @@ struct ReferenceSpring {
   bool operator==(const ReferenceSpring&) const = default;
 };
 
-/// Impedance of a soft constraint. With r the constraint's distance or violation (docs/theory.md):
+/// Impedance of a soft constraint. With r the constraint's distance or violation
+/// (docs/theory/README.md):
 ///   reference acceleration  a_ref = −b ṙ − k d(r) r,   regulariser  R = (1 − d)/d · A
 /// where d(r) rises from dMin at r = 0 to dMax at |r| = width along a power curve. Defaults are
 /// MuJoCo's (solref 0.02 1, solimp 0.9 0.95 0.001 0.5 2).
@@ -32,7 +33,7 @@ struct Impedance {
   bool operator==(const Impedance&) const = default;
 };
 
-/// Softness of a contact in physical units, in place of its Impedance (T.36): a spring and a damper
+/// Softness of a contact in physical units, in place of its Impedance (3.8): a spring and a damper
 /// that make the normal force, the same for every friction, mass and cone. Either way of giving the
 /// spring, and of giving the damper, excludes the other.
 struct ContactSpring {
@@ -53,7 +54,7 @@ struct Material {
   double rollingFriction = 0.0001;   ///< [m], read by condim 6
   int condim = 3;                    ///< 1 frictionless, 3 sliding, 4 and torsional, 6 and rolling
   double margin = 0.0;               ///< [m] a contact makes rows where distance < margin
-  int priority = 0;                  ///< of two surfaces, the higher one alone decides (T.15)
+  int priority = 0;                  ///< of two surfaces, the higher one alone decides (3.13)
   double mixWeight = 1.0;            ///< ≥ 0, share of this surface in the pair's impedance
   Impedance impedance;
   std::optional<ContactSpring> spring = {};  ///< in place of the impedance

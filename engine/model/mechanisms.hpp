@@ -10,21 +10,21 @@
 #include <optional>
 #include <string_view>
 
-#include "engine/core/enum_set.hpp"
+#include "softgauss/engine/core/enum_set.hpp"
 
 namespace softgauss {
 
 enum class Mechanism : std::uint8_t {
-  prediction,
-  parts,
-  freeTrees,
-  endOfStepTies,
-  contactHorizon,
-  contactTurning,
-  stepBounds,
-  carriedLoad,
-  sticking,
-  swingDamping
+  midpointVelocity,
+  substepping,
+  treeSubstepping,
+  implicitEqualities,
+  contactDampingTime,
+  contactBiasAcceleration,
+  referenceClamp,
+  supportedMass,
+  stiction,
+  geometricStiffness
 };
 
 struct MechanismName {
@@ -34,18 +34,25 @@ struct MechanismName {
 };
 
 inline constexpr MechanismName kMechanismNames[] = {
-    {Mechanism::prediction, "prediction",
-     "Coriolis forces and J̇ v at the velocity of mid-step that the last acceleration predicts"},
-    {Mechanism::parts, "parts", "steps in parts where bodies turn far"},
-    {Mechanism::freeTrees, "free_trees", "trees that turn far by themselves are followed"},
-    {Mechanism::endOfStepTies, "end_of_step_ties", "connections and welds hold at the step's end"},
-    {Mechanism::contactHorizon, "contact_horizon",
-     "contacts take their velocity while their normal and levers hold"},
-    {Mechanism::contactTurning, "contact_turning", "contacts know how their place moves, J̇ v"},
-    {Mechanism::stepBounds, "step_bounds", "softness that a step can follow"},
-    {Mechanism::carriedLoad, "carried_load", "softness by the load that a row carries"},
-    {Mechanism::sticking, "sticking", "friction hardens where it sticks"},
-    {Mechanism::swingDamping, "swing_damping", "light bodies between taut connections are held"},
+    {Mechanism::midpointVelocity, "midpoint_velocity",
+     "Coriolis forces and J̇ v at the mid-step velocity, predicted from the last acceleration"},
+    {Mechanism::substepping, "substepping",
+     "the step is divided into substeps where bodies rotate far"},
+    {Mechanism::treeSubstepping, "tree_substepping",
+     "free trees that rotate far are integrated in substeps of their own"},
+    {Mechanism::implicitEqualities, "implicit_equalities",
+     "connections, welds and couplings are implicit spring-dampers"},
+    {Mechanism::contactDampingTime, "contact_damping_time",
+     "contacts damp their velocity while their normal and levers are valid"},
+    {Mechanism::contactBiasAcceleration, "contact_bias_acceleration",
+     "contacts include the bias acceleration J̇ v of the contact point"},
+    {Mechanism::referenceClamp, "reference_clamp",
+     "references of constraints are clamped to the timestep"},
+    {Mechanism::supportedMass, "supported_mass",
+     "constraints are regularised by the mass that they support"},
+    {Mechanism::stiction, "stiction", "friction is regularised less where it sticks"},
+    {Mechanism::geometricStiffness, "geometric_stiffness",
+     "the geometric stiffness of taut connections stabilises light bodies"},
 };
 
 using MechanismSet = EnumSet<Mechanism>;

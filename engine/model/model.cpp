@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/model/model.hpp"
+#include "softgauss/engine/model/model.hpp"
 
 #include <algorithm>
 

@@ -13,13 +13,13 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/core/check.hpp"
-#include "engine/core/spatial.hpp"
-#include "engine/model/effects.hpp"
-#include "engine/model/equality.hpp"
-#include "engine/model/material.hpp"
-#include "engine/model/mechanisms.hpp"
-#include "engine/model/shape.hpp"
+#include "softgauss/engine/core/check.hpp"
+#include "softgauss/engine/core/spatial.hpp"
+#include "softgauss/engine/model/effects.hpp"
+#include "softgauss/engine/model/equality.hpp"
+#include "softgauss/engine/model/material.hpp"
+#include "softgauss/engine/model/mechanisms.hpp"
+#include "softgauss/engine/model/shape.hpp"
 
 namespace softgauss {
 
@@ -70,7 +70,7 @@ struct Dof {
   double stiffness = 0.0;           ///< of a spring, scalar joints only [N m/rad or N/m]
   double springReference = 0.0;     ///< q at which the spring is at rest [rad or m]
   bool actuated = false;            ///< has a control u
-  double effortLower = -kInfinity;  ///< control box [N m or N]
+  double effortLower = -kInfinity;  ///< control limits [N m or N]
   double effortUpper = kInfinity;
   double velocityLimit = kInfinity;  ///< [rad/s or m/s], read, not enforced
 };
@@ -115,7 +115,8 @@ struct IntegratorName {
 
 inline constexpr IntegratorName kIntegratorNames[] = {
     {Integrator::leapfrog, "leapfrog",
-     "order 2, one solve a step, implicit joint damping, moves as goals have been solved"},
+     "order 2, one solve a step, implicit joint damping; the motion realises the solved "
+     "acceleration"},
     {Integrator::semiImplicitEuler, "semi-implicit-euler",
      "order 1, one solve a step, implicit joint damping"},
     {Integrator::implicit, "implicit",
@@ -138,6 +139,12 @@ inline std::string_view integratorName(Integrator integrator) {
   return kIntegratorNames[static_cast<int>(integrator)].name;
 }
 
+/// Whose laws of softness, friction and load the rows of constraints have.
+enum class ConstraintModel : std::uint8_t {
+  mujoco,    ///< as MuJoCo has them, for comparisons
+  softgauss  ///< they know the load that they support and the step that resolves them
+};
+
 /// Choices that hold for the whole simulation.
 struct Options {
   double timestep = 0.002;                     ///< h [s]
@@ -148,21 +155,21 @@ struct Options {
   double integrationTolerance = 1e-6;
   /// Error control for integrators of one solve (integrators/step_doubling.hpp).
   bool stepDoubling = false;
-  /// Joint damping and stiff springs are in the solve, as inertia (T.95), or follow it as MuJoCo's.
+  /// Joint damping and stiff springs are in the solve, as inertia (6.1), or follow it as MuJoCo's.
   bool implicitInSolve = true;
   Cone cone = Cone::pyramidal;  ///< of contacts with friction
   double impedanceRatio = 1.0;  ///< impratio: friction against normal impedance
-  /// Of the leapfrog: what turns further in a step is stepped in parts (T.136) [rad].
-  double partAngle = 0.1;
+  /// Of the leapfrog: what turns further in a step is stepped in parts (6.3) [rad].
+  double substepAngle = 0.1;
   /// h of the step that this one is a part of, whose rows and stiff springs it keeps; 0: of none.
-  double wholeTimestep = 0.0;
-  /// Softness beyond MuJoCo's: (T.80), (T.94), (T.96), (T.97), (T.115), (T.117), and the curvature
-  /// of couplings (T.30).
-  bool ownSoftness = true;
-  /// Slip adds no push to a contact (T.135), and pyramids turn with it (T.139): what slides stays
-  /// level and keeps its line. Beside `ownSoftness` alone.
+  double outerTimestep = 0.0;
+  /// softgauss's is beyond MuJoCo's by (5.1), (5.6), (4.9), (5.7), (3.5), (3.11), and the curvature
+  /// of couplings (4.6).
+  ConstraintModel constraintModel = ConstraintModel::softgauss;
+  /// Slip adds no push to a contact (5.8), and pyramids turn with it (5.9): what slides stays
+  /// level and keeps its line. Of softgauss's `constraintModel` alone.
   bool levelSlip = false;
-  /// Of `ownSoftness` and the leapfrog, which mechanisms may be used.
+  /// Of softgauss's `constraintModel` and the leapfrog, which mechanisms may be used.
   MechanismSet mechanisms = MechanismSet::all();
   bool exactDiagonal = false;  ///< see constraints/exact_diagonal.hpp
   bool noSlip = false;         ///< friction without creep (step/no_slip.hpp)
@@ -172,20 +179,23 @@ struct Options {
   /// Softness as MuJoCo has it and, where nothing else is named, Euler's step, `--compatibility
   /// mujoco`; or softness as softgauss has it.
   void useMujocoModel(bool mujoco = true) {
-    implicitInSolve = ownSoftness = !mujoco;
+    implicitInSolve = !mujoco;
+    constraintModel = mujoco ? ConstraintModel::mujoco : ConstraintModel::softgauss;
     if (mujoco && integrator == Integrator::leapfrog) integrator = Integrator::semiImplicitEuler;
   }
   /// The integrator moves on with one solve, unless it is doubled.
-  bool solvesOnce() const {
+  bool isSingleSolve() const {
     return integrator == Integrator::semiImplicitEuler || integrator == Integrator::leapfrog ||
            integrator == Integrator::implicit;
   }
-  bool levelsSlip() const { return ownSoftness && levelSlip; }
-  bool uses(Mechanism m) const { return ownSoftness && mechanisms.has(m); }
+  bool limitsGliding() const { return constraintModel == ConstraintModel::softgauss && levelSlip; }
+  bool uses(Mechanism m) const {
+    return constraintModel == ConstraintModel::softgauss && mechanisms.has(m);
+  }
   /// h by which rows bound their softness: what a whole step follows, a part of it does too [s].
-  double rowTimestep() const { return wholeTimestep > 0.0 ? wholeTimestep : timestep; }
+  double rowTimestep() const { return outerTimestep > 0.0 ? outerTimestep : timestep; }
   /// The step evaluates the dynamics again within it.
-  bool looksWithin() const { return !solvesOnce() || stepDoubling; }
+  bool isMultiStage() const { return !isSingleSolve() || stepDoubling; }
 };
 
 struct Model {

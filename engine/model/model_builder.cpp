@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/model/model_builder.hpp"
+#include "softgauss/engine/model/model_builder.hpp"
 
 #include <algorithm>
 #include <string_view>
 #include <unordered_map>
 #include <utility>
 
-#include "engine/core/index.hpp"
-#include "engine/model/capsule_recognition.hpp"
-#include "engine/model/detail/contact_pairs.hpp"
-#include "engine/model/detail/equalities.hpp"
-#include "engine/model/detail/follower_ranges.hpp"
-#include "engine/model/detail/kinematic_tree.hpp"
-#include "engine/model/detail/leader_inertia.hpp"
-#include "engine/model/detail/spec_checks.hpp"
-#include "engine/model/followers.hpp"
+#include "softgauss/engine/core/index.hpp"
+#include "softgauss/engine/model/capsule_recognition.hpp"
+#include "softgauss/engine/model/detail/contact_pairs.hpp"
+#include "softgauss/engine/model/detail/equalities.hpp"
+#include "softgauss/engine/model/detail/follower_ranges.hpp"
+#include "softgauss/engine/model/detail/kinematic_tree.hpp"
+#include "softgauss/engine/model/detail/leader_inertia.hpp"
+#include "softgauss/engine/model/detail/spec_checks.hpp"
+#include "softgauss/engine/model/followers.hpp"
 
 namespace softgauss {
 
@@ -183,7 +183,7 @@ class Assembler {
         tree.actuated = tree.actuated || model_.dofs[idx(i)].actuated;
       model_.trees.push_back(tree);
     }
-    detail::giveLeadersInertia(model_);
+    detail::addLeaderArmature(model_);
     detail::checkMovingInertias(model_, merged_);
     if (!negative_.empty())
       model_.warnings.push_back(
@@ -351,7 +351,7 @@ Model ModelBuilder::build() const {
   for (const GeometrySpec& spec : recogniseCapsules(geometries_)) {
     const Placement at = placementOf(spec.link, spec.where, "geometry '" + spec.name + "'");
     model.geometries.push_back({spec.name, spec.link, at.body, at.X_BL * spec.X_LG, spec.shape,
-                                spec.material, at.base, spec.eitherMesh});
+                                spec.material, at.base, spec.automaticMesh});
   }
   for (const VisualSpec& spec : visuals_) {
     const Placement at = placementOf(spec.link, {}, "visual");
@@ -363,7 +363,7 @@ Model ModelBuilder::build() const {
   detail::addCouplings(model, joints_, couplings_);
   assembler.finish();
   model.q0 = initialConfiguration(model);
-  detail::letRangesYield(model);
+  detail::relaxFollowerRanges(model);
   return model;
 }
 

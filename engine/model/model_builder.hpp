@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/model/model.hpp"
+#include "softgauss/engine/model/model.hpp"
 
 namespace softgauss {
 
@@ -59,7 +59,7 @@ struct GeometrySpec {
   Shape shape;
   Material material;
   SourceLocation where;
-  bool eitherMesh = false;  ///< as Geometry::eitherMesh
+  bool automaticMesh = false;  ///< as Geometry::automaticMesh
 };
 
 /// Gives what touches each other a surface of its own. A name is that of a link, for all its

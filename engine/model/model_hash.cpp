@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/model/model_hash.hpp"
+#include "softgauss/engine/model/model_hash.hpp"
 
 #include <map>
 
-#include "engine/core/bytes.hpp"
+#include "softgauss/engine/core/bytes.hpp"
 
 namespace softgauss {
 namespace {
@@ -47,11 +47,12 @@ class Hasher {
   }
   void add(const Options& o) {
     const auto& [timestep, gravity, effects, integrator, integrationTolerance, stepDoubling,
-                 implicitInSolve, cone, impedanceRatio, partAngle, wholeTimestep, ownSoftness,
-                 levelSlip, mechanisms, exactDiagonal, noSlip, maxIterations, tolerance] = o;
+                 implicitInSolve, cone, impedanceRatio, substepAngle, outerTimestep,
+                 constraintModel, levelSlip, mechanisms, exactDiagonal, noSlip, maxIterations,
+                 tolerance] = o;
     (*this)(timestep, gravity, effects, integrator, integrationTolerance, stepDoubling,
-            implicitInSolve, cone, impedanceRatio, partAngle, wholeTimestep, ownSoftness, levelSlip,
-            mechanisms, exactDiagonal, noSlip, maxIterations, tolerance);
+            implicitInSolve, cone, impedanceRatio, substepAngle, outerTimestep, constraintModel,
+            levelSlip, mechanisms, exactDiagonal, noSlip, maxIterations, tolerance);
   }
   void add(const Body& b) {
     const auto& [joint, massless, parent, q, v, dofs, tree, robot, subtreeEnd, X_PB, axis, mass,
@@ -118,8 +119,8 @@ class Hasher {
     (*this)(vertices, triangles);
   }
   void add(const Geometry& g) {
-    const auto& [name, link, body, X_BG, shape, material, base, eitherMesh] = g;
-    (*this)(name, link, body, X_BG, shape, material, base, eitherMesh);
+    const auto& [name, link, body, X_BG, shape, material, base, automaticMesh] = g;
+    (*this)(name, link, body, X_BG, shape, material, base, automaticMesh);
   }
   void add(const ContactPair& p) {
     const auto& [geometryA, geometryB, material] = p;

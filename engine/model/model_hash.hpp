@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-#include "engine/model/model.hpp"
+#include "softgauss/engine/model/model.hpp"
 
 namespace softgauss {
 

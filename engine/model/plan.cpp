@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/model/plan.hpp"
+#include "softgauss/engine/model/plan.hpp"
 
 #include <algorithm>
 #include <set>
@@ -37,10 +37,11 @@ EffectSet possibleContacts(const Model& model) {
 }
 
 /// Whether a connection has a lever on a floating tree, which may swing too fast for a step
-/// (T.127).
-bool maySwing(const Model& model) {
+/// (6.8).
+bool mayNeedGeometricStiffness(const Model& model) {
   const Options& o = model.options;
-  if (!o.uses(Mechanism::swingDamping) || o.looksWithin() || o.integrator == Integrator::implicit)
+  if (!o.uses(Mechanism::geometricStiffness) || o.isMultiStage() ||
+      o.integrator == Integrator::implicit)
     return false;
   const auto hasLever = [&](int body, const Vector3& p_BP) {
     const Body& b = model.bodies[body];
@@ -104,7 +105,7 @@ Plan::Plan(const Model& model) : options_(model.options) {
   if (run(Effect::equality,
           !model.connections.empty() || !model.welds.empty() || !model.couplings.empty())) {
     if (!model.connections.empty()) rows.insert(RowKind::connection);
-    if (maySwing(model)) rows.insert(RowKind::swing);
+    if (mayNeedGeometricStiffness(model)) rows.insert(RowKind::geometricStiffness);
     if (!model.welds.empty()) rows.insert(RowKind::weld);
     if (!model.couplings.empty()) rows.insert(RowKind::coupling);
   }
@@ -133,7 +134,7 @@ bool Plan::fits(const Model& model) const {
     if (dof.dryFriction != 0.0 && now.effects.has(Effect::dryFriction) &&
         !rows.has(RowKind::dryFriction))
       return false;
-    const double planned = damped() ? damping[i] : 0.0;
+    const double planned = hasDamping() ? damping[i] : 0.0;
     if (now.effects.has(Effect::damping) && dof.damping != planned) return false;
   }
   return now.effects == then.effects && now.gravity == then.gravity &&

@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine/model/model.hpp"
+#include "softgauss/engine/model/model.hpp"
 
 namespace softgauss {
 
@@ -21,7 +21,7 @@ enum class RowKind : std::uint8_t {
   coupling,
   dryFriction,
   jointLimit,
-  swing,
+  geometricStiffness,
   pyramid,
   ellipticCone
 };
@@ -53,7 +53,8 @@ constexpr RowKinds builtRows() {
   const auto add = [&](RowKind kind, auto... effects) {
     if ((kBuiltEffects.has(effects) || ...)) rows.insert(kind);
   };
-  for (const RowKind kind : {RowKind::connection, RowKind::weld, RowKind::coupling, RowKind::swing})
+  for (const RowKind kind :
+       {RowKind::connection, RowKind::weld, RowKind::coupling, RowKind::geometricStiffness})
     add(kind, Effect::equality);
   add(RowKind::dryFriction, Effect::dryFriction);
   add(RowKind::jointLimit, Effect::jointLimit);
@@ -86,9 +87,11 @@ struct Plan {
 
   Plan() = default;
   explicit Plan(const Model& model);
-  bool damped() const { return kBuiltEffects.has(Effect::damping) && damping.size() > 0; }
-  bool sprung() const { return kBuiltEffects.has(Effect::spring) && !springs.empty(); }
-  bool pushed() const { return kBuiltEffects.has(Effect::externalWrench) && externalWrench; }
+  bool hasDamping() const { return kBuiltEffects.has(Effect::damping) && damping.size() > 0; }
+  bool hasSprings() const { return kBuiltEffects.has(Effect::spring) && !springs.empty(); }
+  bool hasExternalWrench() const {
+    return kBuiltEffects.has(Effect::externalWrench) && externalWrench;
+  }
   /// Whether the model still has the options, dampings and dry friction of this. For assertions.
   bool fits(const Model& model) const;
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/model/saved_state.hpp"
+#include "softgauss/engine/model/saved_state.hpp"
 
 #include <cmath>
 
-#include "engine/core/bytes.hpp"
-#include "engine/core/sealed.hpp"
-#include "engine/model/model_hash.hpp"
+#include "softgauss/engine/core/bytes.hpp"
+#include "softgauss/engine/core/sealed.hpp"
+#include "softgauss/engine/model/model_hash.hpp"
 
 namespace softgauss {
 namespace {

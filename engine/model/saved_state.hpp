@@ -13,7 +13,7 @@
 #include <string>
 #include <string_view>
 
-#include "engine/model/state.hpp"
+#include "softgauss/engine/model/state.hpp"
 
 namespace softgauss {
 
@@ -27,25 +27,26 @@ State restore(const Model& model, std::string_view bytes);
 // The parts, for who keeps more than a state (core/bytes.hpp). Structured bindings name every
 // field: one that is added does not compile before it is saved.
 template <class Archive>
-void archive(Archive& a, RowName& name) {
+void archive(Archive& a, RowKey& name) {
   auto& [first, second, contact, direction] = name;
   a(first, second, contact, direction);
 }
 template <class Archive>
-void archive(Archive& a, KnotName& name) {
+void archive(Archive& a, BreakpointKey& name) {
   auto& [kind, row, index] = name;
   a(kind, row, index);
 }
 template <class Archive>
 void archive(Archive& a, WarmStart& warmstart) {
-  auto& [acceleration, gddA, multipliers, control, knots, gddSearchAge, gddSearchWait, valid,
+  auto& [acceleration, gddA, multipliers, control, breakpoints, gddSearchAge, gddSearchWait, valid,
          gddValid] = warmstart;
-  a(acceleration, gddA, multipliers, control, knots, gddSearchAge, gddSearchWait, valid, gddValid);
+  a(acceleration, gddA, multipliers, control, breakpoints, gddSearchAge, gddSearchWait, valid,
+    gddValid);
 }
 template <class Archive>
 void archive(Archive& a, State& state) {
-  auto& [q, v, time, acceleration, aIsKnown, warmstart] = state;
-  a(q, v, time, acceleration, aIsKnown, warmstart);
+  auto& [q, v, time, acceleration, hasAcceleration, warmstart] = state;
+  a(q, v, time, acceleration, hasAcceleration, warmstart);
 }
 
 /// Throws BytesError where a state that was read is none of the model's.

@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "engine/core/spatial.hpp"
-#include "engine/model/material.hpp"
+#include "softgauss/engine/core/spatial.hpp"
+#include "softgauss/engine/model/material.hpp"
 
 namespace softgauss {
 
@@ -94,7 +94,7 @@ struct Geometry {
   /// The fixed base of a robot that it is part of, or that the first joint of its tree hangs from;
   /// −1 for scenery, and on what floats or hangs from the world itself.
   int base = -1;
-  bool eitherMesh = false;  ///< of kind mesh or triangles: collision::chooseMeshes() says
+  bool automaticMesh = false;  ///< of kind mesh or triangles: collision::chooseMeshes() says
 };
 
 /// A pair of geometries with a surface of its own, in place of the mix of theirs.

@@ -6,8 +6,8 @@
 #include <array>
 #include <span>
 
-#include "engine/core/check.hpp"
-#include "engine/core/spatial.hpp"
+#include "softgauss/engine/core/check.hpp"
+#include "softgauss/engine/core/spatial.hpp"
 
 namespace softgauss {
 

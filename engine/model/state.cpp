@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/model/state.hpp"
+#include "softgauss/engine/model/state.hpp"
 
 #include <cstring>
 
-#include "engine/core/rotation.hpp"
+#include "softgauss/engine/core/rotation.hpp"
 
 namespace softgauss {
 namespace {
@@ -49,11 +49,11 @@ std::uint64_t hash(const State& state) {
   mix(h, rest, 3);
   mixBits(h, static_cast<std::uint64_t>(state.warmstart.gddSearchAge));
   mixBits(h, static_cast<std::uint64_t>(state.warmstart.gddSearchWait));
-  for (const KnotName& k : state.warmstart.knots)
+  for (const BreakpointKey& k : state.warmstart.breakpoints)
     for (const int part :
          {k.kind, k.row.first, k.row.second, k.row.contact, k.row.direction, k.index})
       mixBits(h, static_cast<std::uint64_t>(part));
-  if (state.aIsKnown) mix(h, state.a.data(), state.a.size());
+  if (state.hasAcceleration) mix(h, state.a.data(), state.a.size());
   return h;
 }
 

@@ -6,48 +6,48 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine/model/model.hpp"
+#include "softgauss/engine/model/model.hpp"
 
 namespace softgauss {
 
 /// A constraint row, named by what it is of, so that the next step finds it again: its place among
 /// the rows changes from step to step as contacts come and go.
-struct RowName {
+struct RowKey {
   int first = 0;      ///< a dof, or the geometries that touch
   int second = 0;     ///< and the other one, or the end of a range
   int contact = 0;    ///< among the contacts of the pair
   int direction = 0;  ///< among the rows of the contact
-  bool operator==(const RowName&) const = default;
+  bool operator==(const RowKey&) const = default;
 };
 
-/// A knot of a row's penalty, named likewise.
-struct KnotName {
+/// A breakpoint of a row's penalty, named likewise.
+struct BreakpointKey {
   int kind = 0;  ///< of constraint
-  RowName row;
-  int index = 0;  ///< among the knots of the row, upwards
-  bool operator==(const KnotName&) const = default;
+  RowKey row;
+  int index = 0;  ///< among the breakpoints of the row, upwards
+  bool operator==(const BreakpointKey&) const = default;
 };
 
 /// Solutions of the last step, from which the next solve starts: they may choose a local minimum.
 struct WarmStart {
-  VectorX a;                    ///< acceleration of the forward solve (nv)
-  VectorX gddA;                 ///< acceleration of the GDD solve (nv)
-  VectorX multipliers;          ///< of g_z = 0 and of the control box, GDD solver 1 (nv)
-  VectorX control;              ///< of GDD solver 2, coordinates y of its force (nv)
-  std::vector<KnotName> knots;  ///< at which rows are, GDD solver 2
-  int gddSearchAge = 0;         ///< solves since GDD solver 2 last looked for a better minimum
-  int gddSearchWait = 1;        ///< solves from that search to the next
-  bool valid = false;           ///< a is set
+  VectorX a;            ///< acceleration of the forward solve (nv)
+  VectorX gddA;         ///< acceleration of the GDD solve (nv)
+  VectorX multipliers;  ///< of g_z = 0 and of the control limits, GDD solver 1 (nv)
+  VectorX control;      ///< of GDD solver 2, coordinates y of its force (nv)
+  std::vector<BreakpointKey> breakpoints;  ///< at which rows are, GDD solver 2
+  int gddSearchAge = 0;   ///< solves since GDD solver 2 last looked for a better minimum
+  int gddSearchWait = 1;  ///< solves from that search to the next
+  bool valid = false;     ///< a is set
   bool gddValid = false;
 };
 
 /// Everything that the next step depends on, and nothing else. Copyable.
 struct State {
-  VectorX q;              ///< configuration (nq)
-  VectorX v;              ///< generalised velocity (nv)
-  double time = 0.0;      ///< [s]
-  VectorX a;              ///< acceleration by which the last step ended (nv), of the leapfrog
-  bool aIsKnown = false;  ///< a is set
+  VectorX q;          ///< configuration (nq)
+  VectorX v;          ///< generalised velocity (nv)
+  double time = 0.0;  ///< [s]
+  VectorX a;          ///< acceleration by which the last step ended (nv), of the leapfrog
+  bool hasAcceleration = false;  ///< a is set
   WarmStart warmstart;
 
   State() = default;
@@ -65,8 +65,8 @@ struct ExternalWrench {
 struct Input {
   VectorX tau;  ///< generalised applied force (nv) [N or N m]; empty: none
   std::vector<ExternalWrench> wrenches;
-  /// Friction is as soft at rest as in motion, as MuJoCo's, and creeps under load: (T.94) and
-  /// (T.97) are left out. What sticks hard does not answer its control, so goals see it like this.
+  /// Friction is as soft at rest as in motion, as MuJoCo's, and creeps under load: (5.6) and
+  /// (5.7) are left out. What sticks hard does not answer its control, so goals see it like this.
   bool softFriction = false;
 };
 

@@ -9,8 +9,8 @@
 
 #include <cmath>
 
-#include "engine/core/check.hpp"
-#include "engine/core/jet.hpp"
+#include "softgauss/engine/core/check.hpp"
+#include "softgauss/engine/core/jet.hpp"
 
 namespace softgauss {
 

@@ -13,22 +13,22 @@
 #include <cmath>
 #include <concepts>
 
-#include "engine/core/types.hpp"
-#include "engine/solver/line_search.hpp"
+#include "softgauss/engine/core/types.hpp"
+#include "softgauss/engine/solver/line_search.hpp"
 
 namespace softgauss {
 
 enum class SolveStatus {
-  converged,       ///< the gradient is within tolerance
-  stalled,         ///< no further decrease was possible; residual says how far off
-  iterationLimit,  ///< residual says how far off
-  notFinite,       ///< the input or the result has a NaN or an infinity
-  notClosed        ///< of a step: the iteration of its integrator has not closed
+  converged,          ///< the gradient is within tolerance
+  stalled,            ///< no further decrease was possible; residual says how far off
+  iterationLimit,     ///< residual says how far off
+  notFinite,          ///< the input or the result has a NaN or an infinity
+  integratorDiverged  ///< of a step: the iteration of its integrator has not closed
 };
 
 /// A step with this status leaves the state as it was.
 inline bool isRefused(SolveStatus status) {
-  return status == SolveStatus::notFinite || status == SolveStatus::notClosed;
+  return status == SolveStatus::notFinite || status == SolveStatus::integratorDiverged;
 }
 
 inline const char* statusName(SolveStatus status) {
@@ -41,8 +41,8 @@ inline const char* statusName(SolveStatus status) {
       return "iteration limit";
     case SolveStatus::notFinite:
       return "not finite";
-    case SolveStatus::notClosed:
-      return "not closed";
+    case SolveStatus::integratorDiverged:
+      return "integrator diverged";
   }
   return "unknown";
 }
@@ -52,8 +52,8 @@ struct NewtonReport {
   int iterations = 0;
   int factorizations = 0;
   int lineSearchEvaluations = 0;
-  double residual = 0.0;  ///< scaled gradient at the result
-  bool rounded = false;   ///< converged as far as rounding lets it, short of the tolerance
+  double residual = 0.0;         ///< scaled gradient at the result
+  bool roundingLimited = false;  ///< converged as far as rounding lets it, short of the tolerance
 };
 
 /// What is minimised. It holds the present point.
@@ -91,7 +91,7 @@ NewtonReport minimize(Objective& objective, double tolerance, int maxIterations,
     slowSteps = slow && near ? slowSteps + 1 : 0;
     const bool stuck = (slow && !objective.cellChanged()) || slowSteps == kSlowSteps;
     if (stuck || report.iterations == maxIterations) {
-      report.rounded = near;
+      report.roundingLimited = near;
       if (near) return report;
       report.status = stuck ? SolveStatus::stalled : SolveStatus::iterationLimit;
       return report;
@@ -110,7 +110,7 @@ NewtonReport minimize(Objective& objective, double tolerance, int maxIterations,
     report.lineSearchEvaluations += search.evaluations;
     ++report.iterations;
     if (search.alpha == 0.0) {
-      report.rounded = near;
+      report.roundingLimited = near;
       if (!near) report.status = SolveStatus::stalled;
       return report;
     }

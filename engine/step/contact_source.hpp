@@ -5,9 +5,9 @@
 
 #include <cstdint>
 
-#include "engine/constraints/contact_set.hpp"
-#include "engine/dynamics/kinematics.hpp"
-#include "engine/model/model.hpp"
+#include "softgauss/engine/constraints/contact_set.hpp"
+#include "softgauss/engine/dynamics/kinematics.hpp"
+#include "softgauss/engine/model/model.hpp"
 
 namespace softgauss {
 
@@ -25,12 +25,13 @@ class ContactSource {
                       ContactSet& contacts) noexcept = 0;
 
   /// Which way a motion is followed from a state.
-  enum class Way : std::uint8_t { onwards, back };
+  enum class TimeDirection : std::uint8_t { forward, backward };
 
   /// A time [s], at most `longest`, in which no two shapes pass through each other unseen, going on
   /// or back with the velocities of `kinematics`, by someone who looks at least twice in it, evenly
-  /// (T.125). Depends on the poses and the velocities alone.
-  virtual double timeInSight(const Model&, const Kinematics&, double longest, Way) noexcept {
+  /// (7.7). Depends on the poses and the velocities alone.
+  virtual double tunnellingTimeBound(const Model&, const Kinematics&, double longest,
+                                     TimeDirection) noexcept {
     return longest;
   }
 

@@ -2,23 +2,24 @@
 #pragma once
 
 /// Everything a step computes, as stages. Each stage is written by exactly one function, and
-/// algorithms take the stages they need, so a signature is the data flow (docs/the_step.md).
+/// algorithms take the stages they need, so a signature is the data flow
+/// (docs/theory/11-pipeline.md).
 
 #include <algorithm>
 #include <cstdint>
 #include <memory>
 
-#include "engine/constraints/constraints.hpp"
-#include "engine/constraints/exact_diagonal.hpp"
-#include "engine/constraints/sticking_friction.hpp"
-#include "engine/forces/forces.hpp"
-#include "engine/solver/newton.hpp"
+#include "softgauss/engine/constraints/constraints.hpp"
+#include "softgauss/engine/constraints/exact_diagonal.hpp"
+#include "softgauss/engine/constraints/no_slip_friction.hpp"
+#include "softgauss/engine/forces/forces.hpp"
+#include "softgauss/engine/solver/newton.hpp"
 
 namespace softgauss {
 
 /// Stage written by forwardDynamics().
 struct ForwardSolution {
-  VectorX a;              ///< continuous-time acceleration of (T.1) (nv)
+  VectorX a;              ///< continuous-time acceleration of (1.1) (nv)
   VectorX Ma;             ///< M a
   VectorX gradient;       ///< M a + c − τ − Jᵀf, the residual force [N, N m]
   TreeFactor factor;      ///< of P = M + Jᵀ∇²s J in the last cell, or of M
@@ -53,24 +54,24 @@ struct StepStats {
   double realised = 0.0;
   double maxPenetration = 0.0;  ///< deepest overlap of a contact [m], ≥ 0
   std::int64_t pairsSkipped = 0;
-  int followedTrees = 0;   ///< that moved freely, followed within the step (T.136)
-  int abandonedTrees = 0;  ///< that needed more sub-steps than allowed and took (T.138) instead
-  int swings = 0;          ///< bodies that swing too fast, held in a second solve (T.128)
-  int substeps = 0;        ///< of followed trees, over all of them; parts of a divided step
-  int parts = 1;           ///< into which the leapfrog has divided the step (T.136)
-  int repeats = 0;         ///< solves that were repeated, with another prediction (T.138)
-  int evaluations = 0;     ///< of forward dynamics, where the step looks within itself
-  int rejections = 0;      ///< parts of the step that were tried and shortened
-  int jumps = 0;           ///< shortest parts that were taken in spite of their estimate
-  int glances = 0;         ///< parts cut short lest shapes pass through each other unseen (T.125)
-  MechanismCounts acted;   ///< how often each mechanism has
-  // What was done in place of what was asked for, as abandonedTrees and jumps are.
-  int shortSolves = 0;     ///< ended stalled or at the iteration limit
-  int roundedSolves = 0;   ///< ended by rounding, within 10³ of the tolerance
-  int refusedGuesses = 0;  ///< warm starts that are not finite: the solve began without
-  int keptSlips = 0;       ///< Options::noSlip: the second solve failed, the first stands
-  int unseen = 0;          ///< parts in which shapes may have passed through each other unseen
-  int badDof = -1;         ///< with SolveStatus::notFinite: the first dof that is not finite
+  int substeppedTrees = 0;       ///< that moved freely, followed within the step (6.3)
+  int abandonedTrees = 0;        ///< that needed more sub-steps than allowed and took (6.2) instead
+  int stabilisedBodies = 0;      ///< bodies that swing too fast, held in a second solve (6.9)
+  int substeps = 0;              ///< of followed trees, over all of them; parts of a divided step
+  int parts = 1;                 ///< into which the leapfrog has divided the step (6.3)
+  int repeats = 0;               ///< solves that were repeated, with another prediction (6.2)
+  int evaluations = 0;           ///< of forward dynamics, where the step looks within itself
+  int rejections = 0;            ///< parts of the step that were tried and shortened
+  int minimumStepsAccepted = 0;  ///< shortest parts that were taken in spite of their estimate
+  int tunnellingSplits = 0;  ///< parts cut short lest shapes pass through each other unseen (7.7)
+  MechanismCounts acted;     ///< how often each mechanism has
+  // What was done in place of what was asked for, as abandonedTrees and minimumStepsAccepted are.
+  int unconvergedSolves = 0;      ///< ended stalled or at the iteration limit
+  int roundingLimitedSolves = 0;  ///< ended by rounding, within 10³ of the tolerance
+  int invalidWarmStarts = 0;      ///< warm starts that are not finite: the solve began without
+  int noSlipFallbacks = 0;        ///< Options::noSlip: the second solve failed, the first stands
+  int possibleTunnelling = 0;  ///< parts in which shapes may have passed through each other unseen
+  int badDof = -1;             ///< with SolveStatus::notFinite: the first dof that is not finite
   StepTimes times;
 
   /// Counts another solve within the step, and how it ended; false where it has no result.
@@ -88,7 +89,7 @@ struct StepStats {
 };
 
 struct IntegratorStages;
-struct StepParts;
+struct SubstepWorkspace;
 struct VelocityDerivative;
 
 /// Owns all memory of a simulation thread. Copies of the model share nothing. Holds for the model
@@ -110,11 +111,11 @@ struct Data {
   ContactSet contacts;
   Constraints constraints;
   ExactDiagonal exactDiagonal;
-  StickingFriction sticking;  ///< with Options::noSlip: friction of the last solve, else empty
+  NoSlipFriction noSlipFriction;  ///< with Options::noSlip: friction of the last solve, else empty
   ForwardSolution forward;
-  VectorX turning;                   ///< (nv) velocity of turning, v′ of (T.138), of the leapfrog
-  VectorX acceleration;              ///< discrete, (v⁺ − v)/h (nv)
-  std::unique_ptr<StepParts> parts;  ///< of the leapfrog, else null
+  VectorX midstepVelocity;  ///< (nv) of mid-step, predicted: v′ of (6.2), of the leapfrog
+  VectorX acceleration;     ///< discrete, (v⁺ − v)/h (nv)
+  std::unique_ptr<SubstepWorkspace> parts;         ///< of the leapfrog, else null
   std::unique_ptr<IntegratorStages> stages;        ///< null where the step is one solve
   std::unique_ptr<VelocityDerivative> derivative;  ///< of the implicit integrators, else null
   StepStats stats;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/step/effect_use.hpp"
+#include "softgauss/engine/step/effect_use.hpp"
 
 #include <algorithm>
 #include <tuple>
 
-#include "engine/step/step_parts.hpp"
+#include "softgauss/engine/step/substep_workspace.hpp"
 
 namespace softgauss {
 namespace {
@@ -33,7 +33,8 @@ std::array<EffectUse, kEffects> effectUse(const Model& model, const Data& data,
   at(Effect::gravity).bytes = plan.gravity ? bytesOf(work.F) : 0;
   at(Effect::coriolis).bytes = plan.coriolis ? bytesOfAll(work.F, work.V, work.A) : 0;
   if (plan.coriolis && data.parts)
-    at(Effect::coriolis).bytes += data.parts->resolution.bytes() + data.parts->freeTrees.bytes();
+    at(Effect::coriolis).bytes +=
+        data.parts->substepSelection.bytes() + data.parts->treeSubstepping.bytes();
   at(Effect::damping) = {forces.damping, 0, bytesOf(plan.damping)};
   at(Effect::spring) = {forces.spring, 0, bytesOf(plan.springs)};
   at(Effect::externalWrench).calls = forces.externalWrench;
@@ -44,9 +45,9 @@ std::array<EffectUse, kEffects> effectUse(const Model& model, const Data& data,
   };
   at(Effect::jointLimit) = of(rows.jointLimit, RowKind::jointLimit);
   at(Effect::dryFriction) = of(rows.dryFriction, RowKind::dryFriction);
-  for (const EffectUse& kind :
-       {of(rows.connection, RowKind::connection), of(rows.weld, RowKind::weld),
-        of(rows.coupling, RowKind::coupling), of(rows.swing, RowKind::swing)}) {
+  for (const EffectUse& kind : {of(rows.connection, RowKind::connection),
+                                of(rows.weld, RowKind::weld), of(rows.coupling, RowKind::coupling),
+                                of(rows.geometricStiffness, RowKind::geometricStiffness)}) {
     EffectUse& equality = at(Effect::equality);
     equality.calls += kind.calls;
     equality.rows += kind.rows;
@@ -78,8 +79,8 @@ std::array<EffectUse, kEffects> effectUse(const Model& model, const Data& data,
       }
     }
   };
-  count(rows.contact.made(), 2);
-  count(rows.ellipticContact.made(), 1);
+  count(rows.contact.contactsWithRows(), 2);
+  count(rows.ellipticContact.contactsWithRows(), 1);
   return use;
 }
 

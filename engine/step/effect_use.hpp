@@ -8,8 +8,8 @@
 
 #include <array>
 
-#include "engine/step/contact_source.hpp"
-#include "engine/step/data.hpp"
+#include "softgauss/engine/step/contact_source.hpp"
+#include "softgauss/engine/step/data.hpp"
 
 namespace softgauss {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/step/forward.hpp"
+#include "softgauss/engine/step/forward.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "engine/step/gauss_objective.hpp"
-#include "engine/step/no_slip.hpp"
+#include "softgauss/engine/step/gauss_objective.hpp"
+#include "softgauss/engine/step/no_slip.hpp"
 
 namespace softgauss {
 namespace {
@@ -63,7 +63,7 @@ SolveStatus minimizeGauss(const Model& model, const VectorX* guess, Data& data) 
   ForwardSolution& s = data.forward;
   s.report = {};
   s.cellFactored = false;
-  data.stats.refusedGuesses += guess && !guess->allFinite();
+  data.stats.invalidWarmStarts += guess && !guess->allFinite();
   if (model.nv == 0) return SolveStatus::converged;
   const auto notFinite = [&] {
     data.stats.badDof = firstNotFinite(data.forces.net);
@@ -75,7 +75,7 @@ SolveStatus minimizeGauss(const Model& model, const VectorX* guess, Data& data) 
     return s.report.status;
   };
   const auto finish = [&] {
-    data.stats.roundedSolves += s.report.rounded;
+    data.stats.roundingLimitedSolves += s.report.roundingLimited;
     if (s.report.status == SolveStatus::notFinite) data.stats.badDof = firstNotFinite(s.a);
     return s.report.status;
   };

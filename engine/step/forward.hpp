@@ -3,12 +3,12 @@
 
 /// Forward dynamics by the extended Gauss principle, equation (13) of the paper:
 ///
-///   a = argmin  ½ aᵀM a + aᵀ(c − τ) + s(J a − a_ref)                                 (T.1)
+///   a = argmin  ½ aᵀM a + aᵀ(c − τ) + s(J a − a_ref)                                 (1.1)
 ///
 /// The objective is strictly convex and piecewise quadratic; its gradient is the inverse dynamics
-/// minus τ (T.2) and its curvature is P = M + Jᵀ∇²s J (T.3).
+/// minus τ (1.2) and its curvature is P = M + Jᵀ∇²s J (1.3).
 
-#include "engine/step/data.hpp"
+#include "softgauss/engine/step/data.hpp"
 
 namespace softgauss {
 
@@ -16,7 +16,7 @@ namespace softgauss {
 /// Starts from `guess` (null: none) or the unconstrained acceleration, whichever costs less.
 SolveStatus forwardDynamics(const Model& model, const VectorX* guess, Data& data) noexcept;
 
-/// (T.1) itself: forwardDynamics() without the second solve of Options::noSlip.
+/// (1.1) itself: forwardDynamics() without the second solve of Options::noSlip.
 SolveStatus minimizeGauss(const Model& model, const VectorX* guess, Data& data) noexcept;
 
 /// Of Newton's iterations: a step ends in another cell or at the minimum, and the more rows, the

@@ -3,11 +3,11 @@
 
 #include <algorithm>
 
-#include "engine/step/data.hpp"
+#include "softgauss/engine/step/data.hpp"
 
 namespace softgauss {
 
-/// The objective of (T.1) as the Newton solver sees it; `Rows` is what holds the penalty s:
+/// The objective of (1.1) as the Newton solver sees it; `Rows` is what holds the penalty s:
 /// Constraints, or another set with its operations.
 template <class Rows>
 class GaussObjective {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/step/inverse.hpp"
+#include "softgauss/engine/step/inverse.hpp"
 
 namespace softgauss {
 

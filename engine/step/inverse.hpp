@@ -3,10 +3,10 @@
 
 /// Analytical inverse dynamics, equations (14) and (15) of the paper:
 ///
-///   g(a) = M a + c + Jᵀ∇s(J a − a_ref)      explicit: no iteration                     (T.2)
-///   P    = ∂g/∂a = M + Jᵀ∇²s J               symmetric positive definite                (T.3)
+///   g(a) = M a + c + Jᵀ∇s(J a − a_ref)      explicit: no iteration                     (1.2)
+///   P    = ∂g/∂a = M + Jᵀ∇²s J               symmetric positive definite                (1.3)
 
-#include "engine/step/data.hpp"
+#include "softgauss/engine/step/data.hpp"
 
 namespace softgauss {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/step/no_slip.hpp"
+#include "softgauss/engine/step/no_slip.hpp"
 
-#include "engine/step/gauss_objective.hpp"
+#include "softgauss/engine/step/gauss_objective.hpp"
 
 namespace softgauss {
 namespace {
@@ -9,7 +9,7 @@ namespace {
 /// All constraints, with the contacts' bounded friction in place of the contacts.
 class BoundedFriction {
  public:
-  BoundedFriction(Constraints& constraints, StickingFriction& friction)
+  BoundedFriction(Constraints& constraints, NoSlipFriction& friction)
       : constraints_(constraints), friction_(friction) {}
 
   const TreeSparsity& sparsity() const { return constraints_.sparsity(); }
@@ -49,7 +49,7 @@ class BoundedFriction {
 
  private:
   Constraints& constraints_;
-  StickingFriction& friction_;
+  NoSlipFriction& friction_;
 };
 
 }  // namespace
@@ -57,8 +57,8 @@ class BoundedFriction {
 void removeSlip(const Model& model, Data& data) noexcept {
   ForwardSolution& s = data.forward;
   Constraints& constraints = data.constraints;
-  if (!data.sticking.take(constraints.contact, constraints.ellipticContact, s.a)) return;
-  BoundedFriction rows(constraints, data.sticking);
+  if (!data.noSlipFriction.take(constraints.contact, constraints.ellipticContact, s.a)) return;
+  BoundedFriction rows(constraints, data.noSlipFriction);
   GaussObjective objective(data.inertia, data.forces.net, rows, s);
   s.start = s.a;  // moveTo() writes s.a
   objective.moveTo(s.start);
@@ -68,14 +68,14 @@ void removeSlip(const Model& model, Data& data) noexcept {
                       s.direction);
   if (s.report.status != SolveStatus::converged) {
     // The first solution is a solution of the soft problem: this step creeps.
-    data.sticking.clear();
+    data.noSlipFriction.clear();
     bool changed = false;
     s.a = s.start;
     constraints.setResidual(s.a);
     constraints.evaluate(changed);
     s.report.status = first.status;
     s.report.residual = first.residual;
-    ++data.stats.keptSlips;
+    ++data.stats.noSlipFallbacks;
   }
   s.report.iterations += first.iterations;
   s.report.factorizations += first.factorizations;

@@ -3,7 +3,7 @@
 
 /// The parts of contacts, for who keeps them (core/bytes.hpp).
 
-#include "engine/step/snapshot.hpp"
+#include "softgauss/engine/step/snapshot.hpp"
 
 namespace softgauss {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/step/snapshot.hpp"
+#include "softgauss/engine/step/snapshot.hpp"
 
-#include "engine/dynamics/energy.hpp"
+#include "softgauss/engine/dynamics/energy.hpp"
 
 namespace softgauss {
 namespace {
@@ -33,16 +33,17 @@ void contactForces(const Data& data, std::vector<Snapshot::ContactForce>& contac
   contacts.clear();
   const PyramidalContact& pyramids = data.constraints.contact;
   const EllipticContact& cones = data.constraints.ellipticContact;
-  const int pyramidCount = static_cast<int>(pyramids.made().size());
-  const int coneCount = static_cast<int>(cones.made().size());
+  const int pyramidCount = static_cast<int>(pyramids.contactsWithRows().size());
+  const int coneCount = static_cast<int>(cones.contactsWithRows().size());
   // In the order of the contacts, of whichever kind.
   for (int i = 0, k = 0; i < pyramidCount || k < coneCount;) {
-    const bool pyramid = k == coneCount ||
-                         (i < pyramidCount && pyramids.made()[i].contact < cones.made()[k].contact);
-    const Contact& c =
-        data.contacts.contacts[pyramid ? pyramids.made()[i].contact : cones.made()[k].contact];
-    const Vector3 force = data.sticking.rowCount() > 0
-                              ? data.sticking.force(pyramid ? i : pyramidCount + k)
+    const bool pyramid =
+        k == coneCount || (i < pyramidCount && pyramids.contactsWithRows()[i].contact <
+                                                   cones.contactsWithRows()[k].contact);
+    const Contact& c = data.contacts.contacts[pyramid ? pyramids.contactsWithRows()[i].contact
+                                                      : cones.contactsWithRows()[k].contact];
+    const Vector3 force = data.noSlipFriction.rowCount() > 0
+                              ? data.noSlipFriction.force(pyramid ? i : pyramidCount + k)
                               : (pyramid ? pyramids.force(i) : cones.force(k));
     contacts.push_back({c.geometryA, c.geometryB, c.p_WC, c.n_W, force});
     ++(pyramid ? i : k);

@@ -8,7 +8,7 @@
 
 #include <optional>
 
-#include "engine/step/data.hpp"
+#include "softgauss/engine/step/data.hpp"
 
 namespace softgauss {
 

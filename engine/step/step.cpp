@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/step/step.hpp"
+#include "softgauss/engine/step/step.hpp"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 
-#include "engine/step/forward.hpp"
-#include "engine/step/integrators/implicit_forces.hpp"
-#include "engine/step/integrators/implicit_midpoint.hpp"
-#include "engine/step/integrators/runge_kutta.hpp"
-#include "engine/step/integrators/sight.hpp"
-#include "engine/step/integrators/single_solve.hpp"
-#include "engine/step/integrators/stages.hpp"
-#include "engine/step/integrators/step_doubling.hpp"
-#include "engine/step/integrators/velocity_derivative.hpp"
-#include "engine/step/step_parts.hpp"
+#include "softgauss/engine/step/forward.hpp"
+#include "softgauss/engine/step/integrators/implicit_forces.hpp"
+#include "softgauss/engine/step/integrators/implicit_midpoint.hpp"
+#include "softgauss/engine/step/integrators/runge_kutta.hpp"
+#include "softgauss/engine/step/integrators/single_solve.hpp"
+#include "softgauss/engine/step/integrators/stages.hpp"
+#include "softgauss/engine/step/integrators/step_doubling.hpp"
+#include "softgauss/engine/step/integrators/tunnelling.hpp"
+#include "softgauss/engine/step/integrators/velocity_derivative.hpp"
+#include "softgauss/engine/step/substep_workspace.hpp"
 
 namespace softgauss {
 namespace {
@@ -71,8 +71,8 @@ int worstDof(const Model& model, const Data& data, const State& state) {
 Data::~Data() = default;
 
 Data::Data(const Model& model) : Data(model, Evaluation{}) {
-  if (model.options.looksWithin()) stages = std::make_unique<IntegratorStages>(model);
-  if (plan.drifts) parts = std::make_unique<StepParts>(model);
+  if (model.options.isMultiStage()) stages = std::make_unique<IntegratorStages>(model);
+  if (plan.drifts) parts = std::make_unique<SubstepWorkspace>(model);
 }
 
 Data::Data(const Model& model, Evaluation)
@@ -83,7 +83,7 @@ Data::Data(const Model& model, Evaluation)
       forces(model, plan),
       constraints(plan.rows),
       exactDiagonal(model.options.exactDiagonal ? model.nv : 0),
-      turning(VectorX::Zero(plan.drifts ? model.nv : 0)),
+      midstepVelocity(VectorX::Zero(plan.drifts ? model.nv : 0)),
       acceleration(VectorX::Zero(model.nv)),
       derivative(isImplicit(model.options.integrator) ? std::make_unique<VelocityDerivative>(model)
                                                       : nullptr) {
@@ -103,10 +103,11 @@ void StepStats::add(const StepStats& other) {
   parts = std::max(parts, other.parts);
   for (int StepStats::*count :
        {&StepStats::contacts, &StepStats::rows, &StepStats::iterations, &StepStats::factorizations,
-        &StepStats::followedTrees, &StepStats::abandonedTrees, &StepStats::swings,
+        &StepStats::substeppedTrees, &StepStats::abandonedTrees, &StepStats::stabilisedBodies,
         &StepStats::substeps, &StepStats::repeats, &StepStats::evaluations, &StepStats::rejections,
-        &StepStats::jumps, &StepStats::glances, &StepStats::shortSolves, &StepStats::roundedSolves,
-        &StepStats::refusedGuesses, &StepStats::keptSlips, &StepStats::unseen})
+        &StepStats::minimumStepsAccepted, &StepStats::tunnellingSplits,
+        &StepStats::unconvergedSolves, &StepStats::roundingLimitedSolves,
+        &StepStats::invalidWarmStarts, &StepStats::noSlipFallbacks, &StepStats::possibleTunnelling})
     this->*count += other.*count;
   acted.add(other.acted);
   badDof = std::max(badDof, other.badDof);
@@ -127,7 +128,7 @@ struct Given {
 /// Smooth forces and rows, of the velocity of turning that the state predicts.
 void computeForces(const Model& model, const Input& input, const State& state, Data& data,
                    Clock::time_point& clock) {
-  if (data.plan.drifts) predictTurning(model, state, data);
+  if (data.plan.drifts) predictMidstepVelocity(model, state, data);
   computeSmoothForces(model, data.plan, state, input, data.kinematics, data.inertia, data.forces);
   if (data.plan.inSolve) addImplicitForces(model, state, data);
   data.stats.times.kinematics += lap(clock);
@@ -143,12 +144,13 @@ void assembleRows(const Model& model, const Input& input, const State& state, Da
                     data.weights,
                     data.inertia.sparsity,
                     input.softFriction};
-  if (data.plan.drifts && predictsTurning(model, state)) assembly.turning = &data.turning;
+  if (data.plan.drifts && predictsMidstepVelocity(model, state))
+    assembly.midstepVelocity = &data.midstepVelocity;
   data.constraints.assemble(assembly);
   // A mass matrix that cannot be factored is found, and reported, by the solve.
   if (model.options.exactDiagonal && !data.constraints.active().empty())
     data.exactDiagonal.apply(data.inertia.M, data.constraints);
-  if (model.options.noSlip) data.sticking.clear();
+  if (model.options.noSlip) data.noSlipFriction.clear();
   data.stats.rows = data.constraints.rowCount();
   data.stats.times.rows += lap(clock);
 }
@@ -232,7 +234,7 @@ SolveStatus integrate(const Model& model, const Given& given, const State& start
 
 /// The largest |moved − solved| over max(|solved|∞, 1), of accelerations. Trees that are `followed`
 /// by themselves do not count, but for those that a control acts on.
-double deviation(const Model& model, const Resolution* followed, bool controlled,
+double deviation(const Model& model, const SubstepSelection* followed, bool controlled,
                  const VectorX& moved, const VectorX& solved) {
   if (solved.size() == 0) return 0.0;
   double worst = 0.0;
@@ -251,15 +253,15 @@ double deviation(const Model& model, const Resolution* followed, bool controlled
 void countMechanisms(const Model& model, const State& start, Data& data) {
   MechanismCounts& acted = data.stats.acted;
   acted = data.constraints.acted();
-  acted[Mechanism::prediction] = data.plan.drifts && predictsTurning(model, start);
-  acted[Mechanism::freeTrees] = data.stats.followedTrees;
-  acted[Mechanism::swingDamping] = data.stats.swings;
+  acted[Mechanism::midpointVelocity] = data.plan.drifts && predictsMidstepVelocity(model, start);
+  acted[Mechanism::treeSubstepping] = data.stats.substeppedTrees;
+  acted[Mechanism::geometricStiffness] = data.stats.stabilisedBodies;
 }
 
 enum class Tried : std::uint8_t { taken, refused, unresolved };
 
 /// A step, or a part of one, from `start`, which is the state: drift, stages, (8), (13), (23).
-/// Where motion needs more than `most` parts of it (T.136) it ends before the solve.
+/// Where motion needs more than `most` parts of it (6.3) it ends before the solve.
 Tried tryStep(const Model& model, const Given& given, const State& start, int most, bool posed,
               State& state, Data& data) noexcept {
   Clock::time_point clock;
@@ -271,21 +273,23 @@ Tried tryStep(const Model& model, const Given& given, const State& start, int mo
   const VectorX* aim = nullptr;
   for (bool again = false;; again = true) {
     if (resolves) {
-      data.parts->resolution.find(model, state, given.control && given.control->acts(), data);
-      if (data.parts->resolution.parts > most) return Tried::unresolved;
+      data.parts->substepSelection.find(model, state, given.control && given.control->acts(), data);
+      if (data.parts->substepSelection.parts > most) return Tried::unresolved;
     }
     if (isRefused(solve(model, given, state, data, aim, clock))) return Tried::refused;
-    if (!drifts || again || !forgetsPredicted(model, data.parts->resolution, data, state)) break;
+    if (!drifts || again || !predictionFailed(model, data.parts->substepSelection, data, state))
+      break;
     ++stats.repeats;
     stats.residual = 0.0;  // what was predicted by it does not move
     computeForces(model, given.input, state, data, clock);
     assembleRows(model, given.input, state, data, clock);
   }
   SolveStatus moved = integrate(model, given, start, data, state);
-  if (!isRefused(moved) && resolves && data.parts->resolution.anyFree) {
-    StepParts& p = *data.parts;
-    const bool finite = p.freeTrees.follow(model, given.input, p.resolution, start, data, state) &&
-                        state.v.allFinite();
+  if (!isRefused(moved) && resolves && data.parts->substepSelection.anyFree) {
+    SubstepWorkspace& p = *data.parts;
+    const bool finite =
+        p.treeSubstepping.integrate(model, given.input, p.substepSelection, start, data, state) &&
+        state.v.allFinite();
     if (!finite) moved = SolveStatus::notFinite;
   }
   if (isRefused(moved)) {
@@ -294,11 +298,12 @@ Tried tryStep(const Model& model, const Given& given, const State& start, int mo
     return Tried::refused;
   }
   if (drifts) data.parts->moved = (state.v - start.v) / model.options.timestep;
-  stats.realised = deviation(
-      model, resolves ? &data.parts->resolution : nullptr, given.control && given.control->acts(),
-      drifts ? data.parts->moved : data.acceleration, aim ? *aim : data.forward.a);
+  stats.realised =
+      deviation(model, resolves ? &data.parts->substepSelection : nullptr,
+                given.control && given.control->acts(),
+                drifts ? data.parts->moved : data.acceleration, aim ? *aim : data.forward.a);
   countMechanisms(model, start, data);
-  stats.shortSolves += stats.status != SolveStatus::converged;
+  stats.unconvergedSolves += stats.status != SolveStatus::converged;
   state.warmstart.a = data.forward.a;
   state.warmstart.valid = true;
   if (given.control) given.control->keep(state.warmstart);
@@ -310,14 +315,14 @@ Tried tryStep(const Model& model, const Given& given, const State& start, int mo
 /// parts itself ends it, but for the shortest.
 Tried stepInParts(const Model& model, const Given& given, int parts, State& state,
                   Data& data) noexcept {
-  StepParts& p = *data.parts;
+  SubstepWorkspace& p = *data.parts;
   p.model.options = model.options;
   p.model.options.timestep = model.options.timestep / parts;
-  p.model.options.wholeTimestep = model.options.timestep;
-  const int most = parts < Resolution::kMostParts ? 2 : Resolution::kMostParts;
+  p.model.options.outerTimestep = model.options.timestep;
+  const int most = parts < SubstepSelection::kMaxDivisions ? 2 : SubstepSelection::kMaxDivisions;
   p.start = p.before;
   p.start.a = p.predicted;
-  p.start.aIsKnown = true;
+  p.start.hasAcceleration = true;
   StepStats total;
   Tried tried = Tried::taken;
   for (int k = 0; k < parts && tried == Tried::taken; ++k) {
@@ -330,7 +335,7 @@ Tried stepInParts(const Model& model, const Given& given, int parts, State& stat
   total.rows = data.stats.rows;
   data.stats = total;
   data.stats.parts = parts;
-  data.stats.acted[Mechanism::parts] = parts;
+  data.stats.acted[Mechanism::substepping] = parts;
   data.stats.substeps += parts;
   data.acceleration = (state.v - p.before.v) / model.options.timestep;
   state.time = p.before.time + model.options.timestep;
@@ -355,19 +360,19 @@ void poseForStep(const Model& model, const State& state, Data& data) {
 
 SolveStatus step(const Model& model, const Input& input, State& state, Data& data,
                  ContactSource* contacts, StepControl* control, bool posed) noexcept {
-  constexpr int kAny = Resolution::kMostParts;
+  constexpr int kAny = SubstepSelection::kMaxDivisions;
   const Given given{input, contacts, control};
   if (!data.plan.drifts) {
     tryStep(model, given, state, kAny, posed, state, data);
     return data.stats.status;
   }
-  StepParts& p = *data.parts;
+  SubstepWorkspace& p = *data.parts;
   p.before = state;
   const int most = model.options.stepDoubling ? kAny : 1;
   Tried tried = tryStep(model, given, p.before, most, posed, state, data);
   p.predicted = state.a;
   for (int parts = 1; tried == Tried::unresolved;) {
-    parts = std::min(Resolution::kMostParts, parts * p.resolution.parts);
+    parts = std::min(SubstepSelection::kMaxDivisions, parts * p.substepSelection.parts);
     tried = stepInParts(model, given, parts, state, data);
   }
   if (tried == Tried::refused) state = p.before;

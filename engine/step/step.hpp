@@ -3,8 +3,8 @@
 
 /// One step of the simulation.
 
-#include "engine/step/contact_source.hpp"
-#include "engine/step/step_control.hpp"
+#include "softgauss/engine/step/contact_source.hpp"
+#include "softgauss/engine/step/step_control.hpp"
 
 namespace softgauss {
 
@@ -18,9 +18,9 @@ SolveStatus computeStages(const Model& model, const Input& input, const State& s
 /// dynamics the acceleration (13); the integrator moves the state on by options.timestep (23).
 /// `contacts` may be null: nothing collides. `input` acts besides the control. `posed`:
 /// data.kinematics is what poseForStep() has made of this state.
-/// On SolveStatus::notFinite and notClosed (isRefused()) the state is left as it was, data.stats
-/// tells the dof. Other statuses advance the state; data.stats.residual tells how accurate the
-/// solve was.
+/// On SolveStatus::notFinite and integratorDiverged (isRefused()) the state is left as it was,
+/// data.stats tells the dof. Other statuses advance the state; data.stats.residual tells how
+/// accurate the solve was.
 SolveStatus step(const Model& model, const Input& input, State& state, Data& data,
                  ContactSource* contacts, StepControl* control = nullptr,
                  bool posed = false) noexcept;

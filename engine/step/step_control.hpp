@@ -3,7 +3,7 @@
 
 /// What finds the applied force of a step from the step's own problem: goals do this (gdd/).
 
-#include "engine/step/data.hpp"
+#include "softgauss/engine/step/data.hpp"
 
 namespace softgauss {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gdd/goals/balance.hpp"
+#include "softgauss/gdd/goals/balance.hpp"
 
 #include <cmath>
 
-#include "gdd/goals/reach.hpp"
+#include "softgauss/gdd/goals/reach.hpp"
 
 namespace softgauss::gdd {
 namespace {

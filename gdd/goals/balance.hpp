@@ -3,11 +3,11 @@
 
 /// Goals of a robot as a whole: its centre of mass, its momentum, its capture point.
 ///
-/// All are rows of the centroidal momentum matrix A (T.46), m the robot's mass, x its centre of
+/// All are rows of the centroidal momentum matrix A (2.8), m the robot's mass, x its centre of
 /// mass, h = (p; k) its momentum about that:
-///   centre of mass   ½ w |S (ẍ − k_p (x* − x) + k_d ẋ)|²,   S: the chosen axes              (T.47)
-///   momentum         ½ w_p |ṗ − β (p* − p)|² + ½ w_k |k̇ − β (k* − k)|²                      (T.48)
-///   capture point    ½ w |ẍ − ẍ*|² over the horizontal axes                               (T.49)
+///   centre of mass   ½ w |S (ẍ − k_p (x* − x) + k_d ẋ)|²,   S: the chosen axes              (9.13)
+///   momentum         ½ w_p |ṗ − β (p* − p)|² + ½ w_k |k̇ − β (k* − k)|²                      (9.14)
+///   capture point    ½ w |ẍ − ẍ*|² over the horizontal axes                               (9.15)
 /// The instantaneous capture point ξ = x + ẋ/ω₀, ω₀ = √(g/z), is where a robot with the height z of
 /// its centre of mass over the ground would have to put its foot to come to rest (Pratt 2006). ẍ*
 /// is the acceleration with which ξ̇ = −β (ξ − ξ*):
@@ -17,8 +17,8 @@
 #include <array>
 #include <optional>
 
-#include "engine/dynamics/centroidal.hpp"
-#include "gdd/goal.hpp"
+#include "softgauss/engine/dynamics/centroidal.hpp"
+#include "softgauss/gdd/goal.hpp"
 
 namespace softgauss::gdd {
 
@@ -39,8 +39,8 @@ class CenterOfMass final : public Goal {
   std::string name() const override { return "center_of_mass"; }
   void addCost(const GoalContext& context, GoalCost& cost) const override;
   std::unique_ptr<Goal> within(const Model& whole, const SubModel& island) const override;
-  void figures(const GoalContext& context, const ContactForces& contacts,
-               std::vector<GoalFigure>& out) const override;
+  void errors(const GoalContext& context, const ContactForces& contacts,
+              std::vector<GoalError>& out) const override;
 };
 
 class MomentumGoal final : public Goal {
@@ -57,8 +57,8 @@ class MomentumGoal final : public Goal {
   std::string name() const override { return "momentum"; }
   void addCost(const GoalContext& context, GoalCost& cost) const override;
   std::unique_ptr<Goal> within(const Model& whole, const SubModel& island) const override;
-  void figures(const GoalContext& context, const ContactForces& contacts,
-               std::vector<GoalFigure>& out) const override;
+  void errors(const GoalContext& context, const ContactForces& contacts,
+              std::vector<GoalError>& out) const override;
 };
 
 class CapturePoint final : public Goal {
@@ -76,9 +76,9 @@ class CapturePoint final : public Goal {
   std::string name() const override { return "capture_point"; }
   void addCost(const GoalContext& context, GoalCost& cost) const override;
   std::unique_ptr<Goal> within(const Model& whole, const SubModel& island) const override;
-  void figures(const GoalContext& context, const ContactForces& contacts,
-               std::vector<GoalFigure>& out) const override;
-  bool findsFiguresLater() const override { return true; }
+  void errors(const GoalContext& context, const ContactForces& contacts,
+              std::vector<GoalError>& out) const override;
+  bool hasLaterErrors() const override { return true; }
 };
 
 }  // namespace softgauss::gdd

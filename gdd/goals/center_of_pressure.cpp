@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gdd/goals/center_of_pressure.hpp"
+#include "softgauss/gdd/goals/center_of_pressure.hpp"
 
-#include "engine/core/rotation.hpp"
-#include "gdd/goals/reach.hpp"
+#include "softgauss/engine/core/rotation.hpp"
+#include "softgauss/gdd/goals/reach.hpp"
 
 namespace softgauss::gdd {
 namespace {
@@ -33,8 +33,8 @@ void CenterOfPressure::addCost(const GoalContext& context, GoalCost& cost) const
   const Matrix3 across = Matrix3::Identity() - n_W * n_W.transpose();
   cost.forces().add(weight, Vector3::Zero());
   contacts.visit(context.data, [&](const auto& rows, int i, const Contact& c, double sign) {
-    const Matrix3& R_WC = rows.made()[i].R_WC;
-    ForceCost::Map C;
+    const Matrix3& R_WC = rows.contactsWithRows()[i].R_WC;
+    ContactForceCost::Map C;
     C.leftCols<3>() = sign * across * skew(c.p_WC - p_WTarget) * R_WC;
     C.rightCols<3>() = sign * across * R_WC;
     cost.forces().addContact(rows.kCone, i, C);

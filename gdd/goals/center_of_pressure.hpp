@@ -4,7 +4,7 @@
 /// Centre of pressure: the contact forces that the world exerts on a robot, or on some of its
 /// links, act as if at a given place p*.
 ///
-///   ℓ_f(a) = ½ w |Π m|²,   m = Σ_i (p_i − p*) × f_i + m_i,   Π = 1 − n nᵀ                 (T.55)
+///   ℓ_f(a) = ½ w |Π m|²,   m = Σ_i (p_i − p*) × f_i + m_i,   Π = 1 − n nᵀ                 (9.21)
 /// f_i, m_i: force and moment of contact i at p_i; n: upwards, against gravity. The centre of
 /// pressure p on the plane through p* across n has Π m = (p − p*) × n f_n, f_n the force along n:
 /// the residual is the distance from p* times the load, zero exactly where p = p*. Undivided by f_n
@@ -13,7 +13,7 @@
 
 #include <optional>
 
-#include "gdd/goals/contact_selection.hpp"
+#include "softgauss/gdd/goals/contact_selection.hpp"
 
 namespace softgauss::gdd {
 
@@ -33,9 +33,9 @@ class CenterOfPressure final : public Goal {
   std::string name() const override { return "center_of_pressure"; }
   void addCost(const GoalContext& context, GoalCost& cost) const override;
   std::unique_ptr<Goal> within(const Model& whole, const SubModel& island) const override;
-  void figures(const GoalContext& context, const ContactForces& contacts,
-               std::vector<GoalFigure>& out) const override;
-  bool findsFiguresLater() const override { return true; }
+  void errors(const GoalContext& context, const ContactForces& contacts,
+              std::vector<GoalError>& out) const override;
+  bool hasLaterErrors() const override { return true; }
   /// p, of the rows' present forces: after a step, those that acted in it [m]. Nothing where the
   /// contacts do not push up.
   std::optional<Vector3> measured(const Data& data) const;

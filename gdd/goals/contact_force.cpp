@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gdd/goals/contact_force.hpp"
+#include "softgauss/gdd/goals/contact_force.hpp"
 
-#include "gdd/goals/reach.hpp"
+#include "softgauss/gdd/goals/reach.hpp"
 
 namespace softgauss::gdd {
 
 ContactForce::ContactForce(const Model& model, const std::string& linkName, const Vector3& wished)
     : link(linkName),
       force(wished),
-      weight(kReachWeightPerMass / massBehind(model, model.findFrame(linkName))) {
+      weight(kReachWeightPerMass / referenceMass(model, model.findFrame(linkName))) {
   contacts.on = geometriesOf(model, link, name());
   for (const char on : contacts.on) contacts.by.push_back(!on);
 }
@@ -23,8 +23,8 @@ void ContactForce::addCost(const GoalContext& context, GoalCost& cost) const {
   const Vector3 chosen(axes[0], axes[1], axes[2]);
   cost.forces().add(weight, chosen.cwiseProduct(force));
   contacts.visit(context.data, [&](const auto& rows, int i, const Contact&, double sign) {
-    ForceCost::Map C = ForceCost::Map::Zero();
-    C.leftCols<3>() = sign * chosen.asDiagonal() * rows.made()[i].R_WC;
+    ContactForceCost::Map C = ContactForceCost::Map::Zero();
+    C.leftCols<3>() = sign * chosen.asDiagonal() * rows.contactsWithRows()[i].R_WC;
     cost.forces().addContact(rows.kCone, i, C);
   });
 }

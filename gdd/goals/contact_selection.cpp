@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gdd/goals/contact_selection.hpp"
+#include "softgauss/gdd/goals/contact_selection.hpp"
 
 #include <algorithm>
 
@@ -35,8 +35,8 @@ std::optional<ContactSelection> contactsWithin(const ContactSelection& contacts,
     any = true;
     if (island.model.geometries[g].body == 0)
       throw ModelError({}, "goal '" + goal + "'",
-                       "is of forces on what is fixed to the world, expected forces on what moves "
-                       "where islands are solved apart");
+                       "counts forces on the world, expected forces on moving bodies where islands "
+                       "are solved separately");
   }
   if (!any) return std::nullopt;
   return part;

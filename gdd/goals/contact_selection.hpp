@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "gdd/goal.hpp"
+#include "softgauss/gdd/goal.hpp"
 
 namespace softgauss::gdd {
 
@@ -23,12 +23,12 @@ struct ContactSelection {
   }
 
   /// Calls f(contacts, i, contact, sign) for every contact meant: contacts of either cone, place in
-  /// their made(), contact.
+  /// their contactsWithRows(), contact.
   template <class F>
   void visit(const Data& data, F&& f) const {
     data.constraints.visitContacts([&](const auto& contacts) {
-      for (int i = 0; i < static_cast<int>(contacts.made().size()); ++i) {
-        const Contact& c = data.contacts.contacts[contacts.made()[i].contact];
+      for (int i = 0; i < static_cast<int>(contacts.contactsWithRows().size()); ++i) {
+        const Contact& c = data.contacts.contacts[contacts.contactsWithRows()[i].contact];
         if (const double s = sign(c); s != 0.0) f(contacts, i, c, s);
       }
     });

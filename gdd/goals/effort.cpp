@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gdd/goals/effort.hpp"
+#include "softgauss/gdd/goals/effort.hpp"
 
 namespace softgauss::gdd {
 namespace {
@@ -16,17 +16,17 @@ std::vector<int> dofsThat(const Model& model, bool actuated) {
 std::vector<int> Effort::actuatedDofs(const Model& model) { return dofsThat(model, true); }
 std::vector<int> Effort::rootDofs(const Model& model) { return dofsThat(model, false); }
 
-Effort Effort::rootForces(const Model& model, const ControlBox& box) {
+Effort Effort::rootForces(const Model& model, const ControlLimits& limits) {
   Effort effort({});
   for (int i = 0; i < model.nv; ++i) {
-    if (!box.isRootForce(model, i)) continue;
-    if (box.isPlain(i)) {
+    if (!limits.isRootForce(model, i)) continue;
+    if (limits.isPlain(i)) {
       effort.dofs.push_back(i);
       continue;
     }
     const Eigen::Index k = effort.directions.cols();
     effort.directions.conservativeResize(model.nv, k + 1);
-    effort.directions.col(k) = box.transmission->C().row(i).transpose();
+    effort.directions.col(k) = limits.transmission->C().row(i).transpose();
   }
   return effort;
 }
@@ -34,12 +34,12 @@ Effort Effort::rootForces(const Model& model, const ControlBox& box) {
 void Effort::addCost(const GoalContext& context, GoalCost& cost) const {
   const std::vector<double>& inverseInertia = context.data.weights.dof;
   for (const int i : dofs)
-    cost.addForcePrice(i, weight * inverseInertia[static_cast<std::size_t>(i)]);
+    cost.addControlCost(i, weight * inverseInertia[static_cast<std::size_t>(i)]);
   for (Eigen::Index k = 0; k < directions.cols(); ++k) {
     double share = 0.0;
     for (Eigen::Index i = 0; i < directions.rows(); ++i)
       share += directions(i, k) * directions(i, k) * inverseInertia[static_cast<std::size_t>(i)];
-    cost.addForcePrice(directions.col(k), weight * share);
+    cost.addControlCost(directions.col(k), weight * share);
   }
 }
 

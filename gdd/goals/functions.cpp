@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gdd/goals/functions.hpp"
+#include "softgauss/gdd/goals/functions.hpp"
 
 namespace softgauss::gdd {
 

@@ -4,18 +4,18 @@
 /// Costs that the user writes: any smooth function of the acceleration, and value functions.
 ///
 ///   function   ℓ(a) = φ(a)
-///   value      ℓ(a) = w V(q ⊕ h v, v + h a)        equation (22) of the paper             (T.51)
+///   value      ℓ(a) = w V(q ⊕ h v, v + h a)        equation (22) of the paper             (9.17)
 ///              ∇ℓ = w h ∂V/∂v,   ∇²ℓ = w h² ∂²V/∂v²   at the next state
 /// The next state's q does not depend on a, so only derivatives in v are asked for. h is the time
-/// step. The next state is that of (19); the integrator's differs by damping (T.16).
+/// step. The next state is that of (19); the integrator's differs by damping (7.1).
 ///
-/// φ and V need not be quadratic, nor convex: see expanded_solve.hpp for how they are minimised.
-/// Functions are called up to some hundreds of times a step; they must not throw. With them the
-/// step allocates.
+/// φ and V need not be quadratic, nor convex: see sequential_quadratic_solve.hpp for how they are
+/// minimised. Functions are called up to some hundreds of times a step; they must not throw. With
+/// them the step allocates.
 
 #include <functional>
 
-#include "gdd/goal.hpp"
+#include "softgauss/gdd/goal.hpp"
 
 namespace softgauss::gdd {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gdd/goals/hold.hpp"
+#include "softgauss/gdd/goals/hold.hpp"
 
 namespace softgauss::gdd {
 
 Hold::Hold(const Model& model, const std::string& linkName)
     : link(linkName),
       frame(model.findFrame(linkName)),
-      weight(kReachWeightPerMass * massBehind(model, frame)),
+      weight(kReachWeightPerMass * referenceMass(model, frame)),
       rotationWeight(kRotationWeightPerWeight * weight) {
   if (frame < 0)
     throw ModelError({}, "goal 'hold " + linkName + "'", "the model has no link of that name");

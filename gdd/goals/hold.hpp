@@ -3,11 +3,11 @@
 
 /// Hold: a point of a link, or the whole link, does not move; the no-slip goal of a placed foot.
 ///
-///   ℓ(a) = ½ w |p̈ + β ṗ|² + ½ w_r |ω̇ + β ω|²                                            (T.45)
+///   ℓ(a) = ½ w |p̈ + β ṗ|² + ½ w_r |ω̇ + β ω|²                                            (9.11)
 /// What velocity there is decays at the rate β. No place is named: unlike a Reach, the goal does
 /// not pull a foot that has slipped back to where it was. For a point the second term is absent.
 
-#include "gdd/goals/reach.hpp"
+#include "softgauss/gdd/goals/reach.hpp"
 
 namespace softgauss::gdd {
 
@@ -17,7 +17,7 @@ class Hold final : public Goal {
   int frame = 0;                   ///< index into Model::frames
   Vector3 p_FP = Vector3::Zero();  ///< the point in the link's frame [m]
   bool wholeLink = true;           ///< false: the point only
-  double weight;                   ///< w [kg]; default 2.5 × massBehind()
+  double weight;                   ///< w [kg]; default 2.5 × referenceMass()
   double rotationWeight;           ///< w_r [kg m²]; default 0.01 m² × w
   double rate = 20.0;              ///< β [1/s]
 
@@ -29,8 +29,8 @@ class Hold final : public Goal {
   std::unique_ptr<Goal> within(const Model&, const SubModel& island) const override {
     return ofLinkWithin(*this, island);
   }
-  void figures(const GoalContext& context, const ContactForces& contacts,
-               std::vector<GoalFigure>& out) const override;
+  void errors(const GoalContext& context, const ContactForces& contacts,
+              std::vector<GoalError>& out) const override;
 };
 
 }  // namespace softgauss::gdd

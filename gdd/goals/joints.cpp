@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gdd/goals/joints.hpp"
+#include "softgauss/gdd/goals/joints.hpp"
 
 #include <cmath>
 

@@ -3,16 +3,16 @@
 
 /// Goals of chosen joints of one degree of freedom: target accelerations, and postures.
 ///
-///   ℓ(a) = ½ w Σ_i M_ii (a_i − a*_i)²                                                   (T.40)
+///   ℓ(a) = ½ w Σ_i M_ii (a_i − a*_i)²                                                    (9.8)
 ///   acceleration   a*_i given
-///   posture        a*_i = k_p (q*_i − q_i) − k_d v_i                                     (T.41)
+///   posture        a*_i = k_p (q*_i − q_i) − k_d v_i                                      (9.9)
 /// over the chosen dofs i. M_ii, of the present configuration, is the inertia that joint i moves
 /// when all others are locked: one w serves heavy and light joints. Joints that are not chosen are
-/// free to move; a Posture of the whole robot (T.26) counts their motion too.
+/// free to move; a Posture of the whole robot (9.7) counts their motion too.
 
 #include <vector>
 
-#include "gdd/goal.hpp"
+#include "softgauss/gdd/goal.hpp"
 
 namespace softgauss::gdd {
 
@@ -34,8 +34,8 @@ class JointAcceleration final : public Goal {
   std::string name() const override { return "acceleration"; }
   void addCost(const GoalContext& context, GoalCost& cost) const override;
   std::unique_ptr<Goal> within(const Model& whole, const SubModel& island) const override;
-  void figures(const GoalContext& context, const ContactForces& contacts,
-               std::vector<GoalFigure>& out) const override;
+  void errors(const GoalContext& context, const ContactForces& contacts,
+              std::vector<GoalError>& out) const override;
 };
 
 class JointPosture final : public Goal {
@@ -48,8 +48,8 @@ class JointPosture final : public Goal {
   std::string name() const override { return "joint_posture"; }
   void addCost(const GoalContext& context, GoalCost& cost) const override;
   std::unique_ptr<Goal> within(const Model& whole, const SubModel& island) const override;
-  void figures(const GoalContext& context, const ContactForces& contacts,
-               std::vector<GoalFigure>& out) const override;
+  void errors(const GoalContext& context, const ContactForces& contacts,
+              std::vector<GoalError>& out) const override;
 };
 
 }  // namespace softgauss::gdd

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gdd/goals/keep_clear.hpp"
+#include "softgauss/gdd/goals/keep_clear.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "engine/core/index.hpp"
-#include "engine/dynamics/jacobian.hpp"
+#include "softgauss/engine/core/index.hpp"
+#include "softgauss/engine/dynamics/jacobian.hpp"
 
 namespace softgauss::gdd {
 namespace {
@@ -29,7 +29,7 @@ bool areJoined(const Model& model, const Geometry& a, const Geometry& b) {
   return hangs && ((a.body != 0 && b.body != 0) || (a.base >= 0 && a.base == b.base));
 }
 
-/// c of (T.141): what d̈ has besides n·(p̈_B − p̈_A) because edges and faces turn. `u` is the velocity
+/// c of (9.22): what d̈ has besides n·(p̈_B − p̈_A) because edges and faces turn. `u` is the velocity
 /// of p_B against p_A. Where both have as many as there are, the less of what they say.
 double turning(const NearPoints& x, const Vector3& u, const Vector3& spinA, const Vector3& spinB) {
   const auto from = [&](const std::array<Vector3, 2>& first, const Vector3& spinOfFirst,
@@ -91,7 +91,7 @@ KeepClear::KeepClear(const Model& model, const std::string& linkName, const std:
       from(fromName),
       pairs(pairsOf(model, linkName, fromName)),
       distance(least),
-      weight(kClearWeightPerMass * massBehind(model, model.findFrame(linkName))),
+      weight(kClearWeightPerMass * referenceMass(model, model.findFrame(linkName))),
       shapes(std::move(source)) {
   const auto fail = [&](const std::string& problem) {
     throw ModelError({}, "goal '" + name() + "'", problem);
@@ -100,7 +100,7 @@ KeepClear::KeepClear(const Model& model, const std::string& linkName, const std:
   if (from != "world" && model.findFrame(from) < 0) fail("the model has no link '" + from + "'");
   if (pairs.empty()) fail("no two shapes of the two can move against each other");
   if (!(distance >= 0.0 && std::isfinite(distance))) fail("the distance is no number >= 0");
-  if (!shapes) fail("nobody tells the distances of shapes");
+  if (!shapes) fail("there is no source of shape distances");
 }
 
 template <class Visit>

@@ -6,7 +6,7 @@
 /// For points p_A, p_B of the two that lie opposite each other along the normal n, A to B, at the
 /// distance d (ShapeDistances):
 ///   ḋ = n·u,   u = ṗ_B − ṗ_A,   d̈ ≥ n·(p̈_B − p̈_A) + c
-///   ℓ(a) = ½ w Σ max(0, y − n·(p̈_B − p̈_A) − c)²,   y = −k_p (d − d*) − k_d ḋ          (T.141)
+///   ℓ(a) = ½ w Σ max(0, y − n·(p̈_B − p̈_A) − c)²,   y = −k_p (d − d*) − k_d ḋ           (9.22)
 /// with c = −Σ r_t (2 t·u + d r_t), r_t = n·(ω × t), over directions t across n in which faces and
 /// edges of the two lie there, each turning at its body's ω.
 /// The sum is over the points of all pairs of shapes of the two. With w large d̈ ≥ y, and d falls
@@ -22,8 +22,8 @@
 #include <string>
 #include <vector>
 
-#include "engine/model/shape_distances.hpp"
-#include "gdd/goals/reach.hpp"
+#include "softgauss/engine/model/shape_distances.hpp"
+#include "softgauss/gdd/goals/reach.hpp"
 
 namespace softgauss::gdd {
 
@@ -43,7 +43,7 @@ class KeepClear final : public Goal {
   std::string link, from;  ///< for the name
   std::vector<Pair> pairs;
   double distance;           ///< d* [m]
-  double weight;             ///< w [kg]; default 2500 × massBehind()
+  double weight;             ///< w [kg]; default 2500 × referenceMass()
   double stiffness = 400.0;  ///< k_p [1/s²]
   double damping = 40.0;     ///< k_d [1/s]
   std::shared_ptr<ShapeDistances> shapes;
@@ -60,8 +60,8 @@ class KeepClear final : public Goal {
   std::string name() const override { return "keep_clear " + link + " from " + from; }
   void addCost(const GoalContext& context, GoalCost& cost) const override;
   std::unique_ptr<Goal> within(const Model& whole, const SubModel& island) const override;
-  void figures(const GoalContext& context, const ContactForces& contacts,
-               std::vector<GoalFigure>& out) const override;
+  void errors(const GoalContext& context, const ContactForces& contacts,
+              std::vector<GoalError>& out) const override;
   /// The least distance of two shapes [m], < 0 where they overlap; nothing where it is not known.
   std::optional<double> clearance(const GoalContext& context) const;
 

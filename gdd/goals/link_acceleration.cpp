@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gdd/goals/link_acceleration.hpp"
+#include "softgauss/gdd/goals/link_acceleration.hpp"
 
-#include "gdd/goals/reach.hpp"
+#include "softgauss/gdd/goals/reach.hpp"
 
 namespace softgauss::gdd {
 
@@ -11,7 +11,7 @@ LinkAcceleration::LinkAcceleration(const Model& model, const std::string& linkNa
       frame(model.findFrame(linkName)),
       p_FP(point),
       linear(wished),
-      weight(kReachWeightPerMass * massBehind(model, frame)),
+      weight(kReachWeightPerMass * referenceMass(model, frame)),
       rotationWeight(kRotationWeightPerWeight * weight) {
   const std::string element = "goal 'acceleration of " + linkName + "'";
   if (frame < 0) throw ModelError({}, element, "the model has no link of that name");

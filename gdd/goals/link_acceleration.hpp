@@ -4,13 +4,13 @@
 /// A given acceleration of a point of a link, and of the link's rotation: equation (11) of the
 /// paper as it stands, for callers with a law of their own.
 ///
-///   ℓ(a) = ½ w |J a + J̇ v − a*|² + ½ w_r |J_r a + J̇_r v − α*|²                           (T.68)
+///   ℓ(a) = ½ w |J a + J̇ v − a*|² + ½ w_r |J_r a + J̇_r v − α*|²                           (9.12)
 ///
-/// The metric may be the consistent one (T.43) instead of the Euclidean.
+/// The metric may be the consistent one (9.5) instead of the Euclidean.
 
 #include <optional>
 
-#include "gdd/goals/link_rows.hpp"
+#include "softgauss/gdd/goals/link_rows.hpp"
 
 namespace softgauss::gdd {
 
@@ -21,7 +21,7 @@ class LinkAcceleration final : public Goal {
   Vector3 p_FP = Vector3::Zero();  ///< the point in the link's frame [m]
   Vector3 linear;                  ///< a* of the point, world axes [m/s²]
   std::optional<Vector3> angular;  ///< α* of the link, world axes [rad/s²]; absent: any
-  double weight;                   ///< w [kg; - if consistent]; default 2.5 × massBehind()
+  double weight;                   ///< w [kg; - if consistent]; default 2.5 × referenceMass()
   double rotationWeight;           ///< w_r [kg m²; - if consistent]; default 0.01 m² × w
   LinkMetric metric = LinkMetric::euclidean;
 
@@ -34,8 +34,8 @@ class LinkAcceleration final : public Goal {
   std::unique_ptr<Goal> within(const Model&, const SubModel& island) const override {
     return ofLinkWithin(*this, island);
   }
-  void figures(const GoalContext& context, const ContactForces& contacts,
-               std::vector<GoalFigure>& out) const override;
+  void errors(const GoalContext& context, const ContactForces& contacts,
+              std::vector<GoalError>& out) const override;
 };
 
 }  // namespace softgauss::gdd

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gdd/goals/link_rows.hpp"
+#include "softgauss/gdd/goals/link_rows.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
-#include "engine/dynamics/jacobian.hpp"
+#include "softgauss/engine/dynamics/jacobian.hpp"
 
 namespace softgauss::gdd {
 

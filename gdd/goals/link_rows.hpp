@@ -7,20 +7,20 @@
 ///   y = J a + J̇ v,   y = (acceleration of the point [m/s²], angular acceleration [rad/s²])
 ///
 /// In the consistent metric a residual e = J a − y* is weighted by the inertia that the rows feel:
-///   ℓ(a) = ½ (W½ e)ᵀ (J M⁻¹ Jᵀ)⁻¹ (W½ e),   W diagonal, [-]                              (T.43)
+///   ℓ(a) = ½ (W½ e)ᵀ (J M⁻¹ Jᵀ)⁻¹ (W½ e),   W diagonal, [-]                               (9.5)
 /// With one weight w, and nothing else, the share w/(1 + w) of every wish comes true, in every
 /// configuration. Directions in which the rows cannot move have no inertia to weigh: with rows
 /// scaled to (J M⁻¹Jᵀ)_ii = 1, eigenvectors whose eigenvalue is below 10⁻⁶ of the largest are left
 /// out of ℓ.
 
-#include "gdd/goal.hpp"
+#include "softgauss/gdd/goal.hpp"
 
 namespace softgauss::gdd {
 
 /// How the residual of a goal of a link is measured.
 enum class LinkMetric {
   euclidean,  ///< ½ w |e|², w in kg (points) and kg m² (rotations)
-  consistent  ///< (T.43), w without unit
+  consistent  ///< (9.5), w without unit
 };
 
 /// The rows of a point of a body and of the body's rotation, world axes.

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gdd/goals/look_at.hpp"
+#include "softgauss/gdd/goals/look_at.hpp"
 
 #include <cmath>
 
-#include "engine/core/rotation.hpp"
-#include "gdd/goals/reach.hpp"
+#include "softgauss/engine/core/rotation.hpp"
+#include "softgauss/gdd/goals/reach.hpp"
 
 namespace softgauss::gdd {
 namespace {
@@ -26,7 +26,7 @@ LookAt::LookAt(const Model& model, const std::string& linkName, const Vector3& t
       axis_F(axis.stableNormalized()),
       p_FP(point),
       p_WTarget(target),
-      weight(kRotationWeightPerWeight * kReachWeightPerMass * massBehind(model, frame)) {
+      weight(kRotationWeightPerWeight * kReachWeightPerMass * referenceMass(model, frame)) {
   const std::string element = "goal 'look_at " + linkName + "'";
   if (frame < 0) throw ModelError({}, element, "the model has no link of that name");
   if (!target.allFinite() || !point.allFinite() || !axis.allFinite())

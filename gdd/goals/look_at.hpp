@@ -8,11 +8,11 @@
 ///   ω_d = d × ḋ,   α_d = d × d̈ = −(d × (p̈ + 2 ṙ ḋ))/r,   ḋ = (−ṗ − ṙ d)/r,   ṙ = −d·ṗ
 /// The cost asks the angle θ between them, taken as the rotation vector that turns u into d the
 /// shorter way, to decay as a spring-damper:
-///   ℓ(a) = ½ w |Π (ω̇ − α_d − k_p θ + k_d (ω − ω_d))|²,   Π = 1 − u uᵀ                    (T.44)
+///   ℓ(a) = ½ w |Π (ω̇ − α_d − k_p θ + k_d (ω − ω_d))|²,   Π = 1 − u uᵀ                    (9.10)
 /// ω̇ and p̈ are affine in a; rolling about u is free. A place nearer than 1 mm has no direction:
 /// then the goal asks for nothing. Where u points away from the place, any axis across is taken.
 
-#include "gdd/goals/link_rows.hpp"
+#include "softgauss/gdd/goals/link_rows.hpp"
 
 namespace softgauss::gdd {
 
@@ -23,7 +23,7 @@ class LookAt final : public Goal {
   Vector3 axis_F;                       ///< u in the link's frame, length 1
   Vector3 p_FP = Vector3::Zero();       ///< p in the link's frame [m]
   Vector3 p_WTarget = Vector3::Zero();  ///< p* [m]
-  double weight;                        ///< w [kg m²]; default 0.025 m² × massBehind()
+  double weight;                        ///< w [kg m²]; default 0.025 m² × referenceMass()
   double stiffness = 100.0;             ///< k_p [1/s²]
   double damping = 20.0;                ///< k_d [1/s]
 

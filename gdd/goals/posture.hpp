@@ -3,14 +3,14 @@
 
 /// Posture: every joint and floating base seeks a reference configuration, as a spring-damper.
 ///
-///   ℓ(a) = ½ w (a − a*)ᵀ M (a − a*),   a* = k_p (q* ⊖ q) − k_d v                        (T.26)
+///   ℓ(a) = ½ w (a − a*)ᵀ M (a − a*),   a* = k_p (q* ⊖ q) − k_d v                         (9.7)
 /// in the metric M, so that one weight serves heavy and light joints. ⊖ is the difference on the
 /// configuration manifold. With R = M⁻¹ torques at light links are dear: a weight of 10³ makes a
 /// standing humanoid stay up.
 
 #include <utility>
 
-#include "gdd/goal.hpp"
+#include "softgauss/gdd/goal.hpp"
 
 namespace softgauss::gdd {
 
@@ -36,8 +36,8 @@ class Posture final : public Goal {
     island.gatherPosition(whole, q, goal->q);
     return goal;
   }
-  void figures(const GoalContext& context, const ContactForces& contacts,
-               std::vector<GoalFigure>& out) const override;
+  void errors(const GoalContext& context, const ContactForces& contacts,
+              std::vector<GoalError>& out) const override;
 };
 
 }  // namespace softgauss::gdd

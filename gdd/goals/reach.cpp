@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gdd/goals/reach.hpp"
+#include "softgauss/gdd/goals/reach.hpp"
 
 #include <algorithm>
 
-#include "engine/core/rotation.hpp"
+#include "softgauss/engine/core/rotation.hpp"
 
 namespace softgauss::gdd {
 namespace {
@@ -30,7 +30,7 @@ double massOfRobot(const Model& model, int robot) {
   return mass;
 }
 
-double massBehind(const Model& model, int frame) {
+double referenceMass(const Model& model, int frame) {
   if (frame < 0) return model.totalMass();
   const int robot = model.bodies[model.frames[frame].body].robot;
   const bool driven = std::any_of(model.dofs.begin(), model.dofs.end(), [&](const Dof& dof) {
@@ -45,7 +45,7 @@ Reach::Reach(const Model& model, const std::string& linkName, const Vector3& tar
       frame(model.findFrame(linkName)),
       p_FP(point),
       p_WTarget(target),
-      weight(kReachWeightPerMass * massBehind(model, frame)),
+      weight(kReachWeightPerMass * referenceMass(model, frame)),
       rotationWeight(kRotationWeightPerWeight * weight) {
   const std::string element = "goal 'reach " + linkName + "'";
   if (frame < 0) throw ModelError({}, element, "the model has no link of that name");

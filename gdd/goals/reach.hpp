@@ -4,19 +4,19 @@
 /// Spatial goal: a point P of a link seeks a place in the world, equation (11) of the paper; the
 /// link may seek an orientation too.
 ///
-///   ℓ(a) = ½ w |J a + J̇ v − a*|² + ½ w_r |J_r a + J̇_r v − α*|²                           (T.22)
+///   ℓ(a) = ½ w |J a + J̇ v − a*|² + ½ w_r |J_r a + J̇_r v − α*|²                            (9.2)
 /// with the wished acceleration of P from one of two laws, e = p* − p:
 ///   spring-damper   a* = k_p e − k_d ṗ
-///   minimum jerk    a* = r̈(t) + k_p (r − p) + k_d (ṙ − ṗ)                                (T.23)
+///   minimum jerk    a* = r̈(t) + k_p (r − p) + k_d (ṙ − ṗ)                                 (9.3)
 /// r is the minimum-jerk line of Flash and Hogan (1985) from the start p₀, at rest, to p* in the
 /// duration T:  r = p₀ + (p* − p₀)(10 s³ − 15 s⁴ + 6 s⁵),  s = (t − t₀)/T in [0, 1].
 /// The angular acceleration α* follows the same laws with θ, the rotation vector of R* Rᵀ, for e,
-/// and ω for ṗ; along a minimum-jerk line the link turns about one axis                   (T.42)
-/// The metric may be the consistent one (T.43) instead of the Euclidean.
+/// and ω for ṗ; along a minimum-jerk line the link turns about one axis                    (9.4)
+/// The metric may be the consistent one (9.5) instead of the Euclidean.
 
 #include <optional>
 
-#include "gdd/goals/link_rows.hpp"
+#include "softgauss/gdd/goals/link_rows.hpp"
 
 namespace softgauss::gdd {
 
@@ -36,7 +36,7 @@ double massOfRobot(const Model& model, int robot);
 /// The mass by which goals of a link weigh, of a frame or of none (< 0): that of its robot, whoever
 /// else is in the scene; of all that moves where nothing drives that robot, as others then move it
 /// [kg].
-double massBehind(const Model& model, int frame);
+double referenceMass(const Model& model, int frame);
 
 /// w_r over w by default [m²]: a link of radius of gyration 0.1 m.
 inline constexpr double kRotationWeightPerWeight = 0.01;
@@ -48,7 +48,7 @@ class Reach final : public Goal {
   Vector3 p_FP = Vector3::Zero();       ///< the point in the link's frame [m]
   Vector3 p_WTarget = Vector3::Zero();  ///< p* [m]
   std::optional<Matrix3> R_WTarget;     ///< R*: orientation of the link; absent: any
-  double weight;                        ///< w [kg; - if consistent]; default 2.5 × massBehind()
+  double weight;                        ///< w [kg; - if consistent]; default 2.5 × referenceMass()
   double rotationWeight;                ///< w_r [kg m²; - if consistent]; default 0.01 m² × w
   LinkMetric metric = LinkMetric::euclidean;
   double stiffness = 100.0;                ///< k_p [1/s²]
@@ -68,8 +68,8 @@ class Reach final : public Goal {
   std::unique_ptr<Goal> within(const Model&, const SubModel& island) const override {
     return ofLinkWithin(*this, island);
   }
-  void figures(const GoalContext& context, const ContactForces& contacts,
-               std::vector<GoalFigure>& out) const override;
+  void errors(const GoalContext& context, const ContactForces& contacts,
+              std::vector<GoalError>& out) const override;
   std::optional<GoalMark> mark(const GoalContext& context) const override;
   Vector3 position(const GoalContext& context) const;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gdd/goals/virtual_damping.hpp"
+#include "softgauss/gdd/goals/virtual_damping.hpp"
 
 #include <cmath>
 

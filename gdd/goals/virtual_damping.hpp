@@ -3,11 +3,11 @@
 
 /// Virtual damping, equation (26) of the paper: tells the robot to stop moving.
 ///
-///   ℓ(a) = ½ α (a + β v)ᵀ W (a + β v),   W = M, or R = M⁻¹                               (T.24)
+///   ℓ(a) = ½ α (a + β v)ᵀ W (a + β v),   W = M, or R = M⁻¹                                (9.6)
 /// M is the metric that matches the units of accelerations, as R = M⁻¹ does for forces. With R the
 /// heaviest motions are damped least.
 
-#include "gdd/goal.hpp"
+#include "softgauss/gdd/goal.hpp"
 
 namespace softgauss::gdd {
 

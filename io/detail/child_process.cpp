@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/detail/child_process.hpp"
+#include "softgauss/io/detail/child_process.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>

@@ -11,9 +11,9 @@
 #include <string_view>
 #include <vector>
 
-#include "io/detail/mesh_file.hpp"
-#include "io/detail/text.hpp"
-#include "io/detail/urdf_xml.hpp"
+#include "softgauss/io/detail/mesh_file.hpp"
+#include "softgauss/io/detail/text.hpp"
+#include "softgauss/io/detail/urdf_xml.hpp"
 
 namespace softgauss::io::detail {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/detail/csv.hpp"
+#include "softgauss/io/detail/csv.hpp"
 
 namespace softgauss::io::detail {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Goals of a robot as a whole: center_of_mass, momentum, capture_point.
 
-#include "gdd/goals/balance.hpp"
-#include "io/detail/goal_kinds.hpp"
+#include "softgauss/gdd/goals/balance.hpp"
+#include "softgauss/io/detail/goal_kinds.hpp"
 
 namespace softgauss::io::detail {
 

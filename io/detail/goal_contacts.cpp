@@ -5,11 +5,11 @@
 
 #include <algorithm>
 
-#include "gdd/goals/center_of_pressure.hpp"
-#include "gdd/goals/contact_force.hpp"
-#include "gdd/goals/keep_clear.hpp"
-#include "io/detail/goal_kinds.hpp"
-#include "io/detail/text.hpp"
+#include "softgauss/gdd/goals/center_of_pressure.hpp"
+#include "softgauss/gdd/goals/contact_force.hpp"
+#include "softgauss/gdd/goals/keep_clear.hpp"
+#include "softgauss/io/detail/goal_kinds.hpp"
+#include "softgauss/io/detail/text.hpp"
 
 namespace softgauss::io::detail {
 namespace {
@@ -68,13 +68,13 @@ GoalPointer readKeepClear(const YamlMap& keys, const GoalScene& scene) {
     expectTouchable(keys, other, quotedText(from), from, touchableLinks(model, false), model,
                     "world or a link");
   if (gdd::KeepClear::pairsOf(model, link, from).empty())
-    keys.fail(other, fmt::format("found {}, expected what has shapes that move against those of "
-                                 "{}, and is not joined to it by a joint",
+    keys.fail(other, fmt::format("found {}, expected a link with shapes that move against those of "
+                                 "{}, and that no joint joins to it",
                                  quotedText(from), quotedText(link)));
   double distance = 0.0;
   keys.required("distance", "a number of metres");
   keys.read("distance", distance, Range::notNegative);
-  if (!scene.distances) keys.fail(entry, "found where nobody tells the distances of shapes");
+  if (!scene.distances) keys.fail(entry, "found without a source of shape distances");
   auto goal = std::make_unique<gdd::KeepClear>(model, link, from, distance, scene.distances(model));
   keys.read("weight", goal->weight, Range::notNegative);
   keys.read("stiffness", goal->stiffness, Range::notNegative);

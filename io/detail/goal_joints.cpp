@@ -5,12 +5,12 @@
 
 #include <algorithm>
 
-#include "gdd/goals/effort.hpp"
-#include "gdd/goals/joints.hpp"
-#include "gdd/goals/posture.hpp"
-#include "gdd/goals/virtual_damping.hpp"
-#include "io/detail/goal_kinds.hpp"
-#include "io/detail/text.hpp"
+#include "softgauss/gdd/goals/effort.hpp"
+#include "softgauss/gdd/goals/joints.hpp"
+#include "softgauss/gdd/goals/posture.hpp"
+#include "softgauss/gdd/goals/virtual_damping.hpp"
+#include "softgauss/io/detail/goal_kinds.hpp"
+#include "softgauss/io/detail/text.hpp"
 
 namespace softgauss::io::detail {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/detail/goal_kinds.hpp"
+#include "softgauss/io/detail/goal_kinds.hpp"
 
 namespace softgauss::io::detail {
 

@@ -11,10 +11,10 @@
 #include <string>
 #include <vector>
 
-#include "engine/model/state.hpp"
-#include "gdd/goal.hpp"
-#include "io/detail/yaml.hpp"
-#include "io/goals.hpp"
+#include "softgauss/engine/model/state.hpp"
+#include "softgauss/gdd/goal.hpp"
+#include "softgauss/io/detail/yaml.hpp"
+#include "softgauss/io/goals.hpp"
 
 namespace softgauss::io::detail {
 

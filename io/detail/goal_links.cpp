@@ -5,12 +5,12 @@
 
 #include <algorithm>
 
-#include "gdd/goals/hold.hpp"
-#include "gdd/goals/link_acceleration.hpp"
-#include "gdd/goals/look_at.hpp"
-#include "gdd/goals/reach.hpp"
-#include "io/detail/goal_kinds.hpp"
-#include "io/detail/scene_parts.hpp"
+#include "softgauss/gdd/goals/hold.hpp"
+#include "softgauss/gdd/goals/link_acceleration.hpp"
+#include "softgauss/gdd/goals/look_at.hpp"
+#include "softgauss/gdd/goals/reach.hpp"
+#include "softgauss/io/detail/goal_kinds.hpp"
+#include "softgauss/io/detail/scene_parts.hpp"
 
 namespace softgauss::io::detail {
 namespace {

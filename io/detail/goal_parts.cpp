@@ -3,11 +3,11 @@
 
 #include <algorithm>
 
-#include "engine/dynamics/kinematics.hpp"
-#include "gdd/goals/balance.hpp"
-#include "io/detail/goal_kinds.hpp"
-#include "io/detail/text.hpp"
-#include "io/names.hpp"
+#include "softgauss/engine/dynamics/kinematics.hpp"
+#include "softgauss/gdd/goals/balance.hpp"
+#include "softgauss/io/detail/goal_kinds.hpp"
+#include "softgauss/io/detail/text.hpp"
+#include "softgauss/io/names.hpp"
 
 namespace softgauss::io::detail {
 

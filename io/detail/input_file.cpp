@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/detail/input_file.hpp"
+#include "softgauss/io/detail/input_file.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -11,8 +11,8 @@
 #include <cstring>
 #include <optional>
 
-#include "engine/core/check.hpp"
-#include "io/inputs.hpp"
+#include "softgauss/engine/core/check.hpp"
+#include "softgauss/io/inputs.hpp"
 
 namespace softgauss::io {
 

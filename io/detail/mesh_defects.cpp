@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/detail/mesh_defects.hpp"
+#include "softgauss/io/detail/mesh_defects.hpp"
 
 #include <fmt/format.h>
 
 #include <filesystem>
 
-#include "engine/core/index.hpp"
-#include "io/detail/text.hpp"
+#include "softgauss/engine/core/index.hpp"
+#include "softgauss/io/detail/text.hpp"
 
 namespace softgauss::io::detail {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/model/closed_surface.hpp"
+#include "softgauss/engine/model/closed_surface.hpp"
 
 namespace softgauss::io::detail {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/detail/mesh_import.hpp"
+#include "softgauss/io/detail/mesh_import.hpp"
 
 #include <assimp/config.h>
 #include <assimp/material.h>
@@ -17,9 +17,9 @@
 #include <unordered_map>
 #include <utility>
 
-#include "engine/core/bytes.hpp"
-#include "engine/core/check.hpp"
-#include "io/detail/child_process.hpp"
+#include "softgauss/engine/core/bytes.hpp"
+#include "softgauss/engine/core/check.hpp"
+#include "softgauss/io/detail/child_process.hpp"
 
 namespace softgauss {
 

@@ -6,8 +6,8 @@
 /// An STL is read in place: its size bounds time and memory. How long assimp takes for an OBJ or a
 /// DAE no check can tell, so it reads them in a child process that has limits.
 
-#include "engine/model/shape.hpp"
-#include "io/detail/mesh_file.hpp"
+#include "softgauss/engine/model/shape.hpp"
+#include "softgauss/io/detail/mesh_file.hpp"
 
 namespace softgauss::io::detail {
 

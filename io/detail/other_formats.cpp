@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/detail/other_formats.hpp"
+#include "softgauss/io/detail/other_formats.hpp"
 
 #include <algorithm>
 #include <string_view>
 
-#include "engine/core/check.hpp"
+#include "softgauss/engine/core/check.hpp"
 
 namespace softgauss::io::detail {
 namespace {

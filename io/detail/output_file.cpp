@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/detail/output_file.hpp"
+#include "softgauss/io/detail/output_file.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -12,9 +12,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "engine/core/check.hpp"
-#include "io/detail/part_files.hpp"
-#include "io/output.hpp"
+#include "softgauss/engine/core/check.hpp"
+#include "softgauss/io/detail/part_files.hpp"
+#include "softgauss/io/output.hpp"
 
 namespace softgauss::io::detail {
 namespace {

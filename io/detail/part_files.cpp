@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/detail/part_files.hpp"
+#include "softgauss/io/detail/part_files.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -8,7 +8,7 @@
 #include <atomic>
 #include <cstring>
 
-#include "io/output.hpp"
+#include "softgauss/io/output.hpp"
 
 namespace softgauss::io {
 namespace {

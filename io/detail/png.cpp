@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/detail/png.hpp"
+#include "softgauss/io/detail/png.hpp"
 
 #include <fmt/format.h>
 #include <zlib.h>
@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "engine/core/check.hpp"
+#include "softgauss/engine/core/check.hpp"
 
 namespace softgauss::io::detail {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/detail/resources.hpp"
+#include "softgauss/io/detail/resources.hpp"
 
 #include <algorithm>
 #include <charconv>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/detail/row_file.hpp"
+#include "softgauss/io/detail/row_file.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -9,9 +9,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "engine/core/check.hpp"
-#include "io/detail/csv.hpp"
-#include "io/detail/text.hpp"
+#include "softgauss/engine/core/check.hpp"
+#include "softgauss/io/detail/csv.hpp"
+#include "softgauss/io/detail/text.hpp"
 
 namespace softgauss::io::detail {
 namespace {

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "engine/core/types.hpp"
-#include "io/detail/output_file.hpp"
+#include "softgauss/engine/core/types.hpp"
+#include "softgauss/io/detail/output_file.hpp"
 
 namespace softgauss::io::detail {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/detail/scene_actuators.hpp"
+#include "softgauss/io/detail/scene_actuators.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "io/detail/text.hpp"
+#include "softgauss/io/detail/text.hpp"
 
 namespace softgauss::io::detail {
 namespace {

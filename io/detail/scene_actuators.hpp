@@ -5,9 +5,9 @@
 
 #include <set>
 
-#include "engine/model/model_builder.hpp"
-#include "io/actuators.hpp"
-#include "io/detail/yaml.hpp"
+#include "softgauss/engine/model/model_builder.hpp"
+#include "softgauss/io/actuators.hpp"
+#include "softgauss/io/detail/yaml.hpp"
 
 namespace softgauss::io::detail {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/detail/scene_constraints.hpp"
+#include "softgauss/io/detail/scene_constraints.hpp"
 
 #include <fmt/format.h>
 
-#include "engine/constraints/contact.hpp"
-#include "engine/core/check.hpp"
-#include "io/detail/scene_parts.hpp"
-#include "io/detail/text.hpp"
+#include "softgauss/engine/constraints/contact.hpp"
+#include "softgauss/engine/core/check.hpp"
+#include "softgauss/io/detail/scene_parts.hpp"
+#include "softgauss/io/detail/text.hpp"
 
 namespace softgauss::io::detail {
 namespace {

@@ -6,10 +6,10 @@
 #include <set>
 #include <string>
 
-#include "engine/model/model_builder.hpp"
-#include "io/detail/scene_parts.hpp"
-#include "io/detail/yaml.hpp"
-#include "io/wrenches.hpp"
+#include "softgauss/engine/model/model_builder.hpp"
+#include "softgauss/io/detail/scene_parts.hpp"
+#include "softgauss/io/detail/yaml.hpp"
+#include "softgauss/io/wrenches.hpp"
 
 namespace softgauss::io::detail {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/detail/scene_options.hpp"
+#include "softgauss/io/detail/scene_options.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
 
-#include "io/names.hpp"
+#include "softgauss/io/names.hpp"
 
 namespace softgauss::io::detail {
 namespace {
@@ -53,7 +53,7 @@ IntegrationKeys readIntegration(const YamlMap& map, Options& options) {
   if (!integrator && tolerance && !options.stepDoubling)
     options.integrator = Integrator::dormandPrince;
   const std::string_view name = integratorName(options.integrator);
-  if (options.stepDoubling && !options.solvesOnce())
+  if (options.stepDoubling && !options.isSingleSolve())
     map.fail(*doubling, fmt::format("found true beside integrator {}, where it changes nothing, "
                                     "expected leapfrog, semi-implicit-euler or implicit",
                                     name));

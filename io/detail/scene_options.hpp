@@ -5,10 +5,10 @@
 
 #include <optional>
 
-#include "engine/model/model.hpp"
-#include "gdd/goal_directed_step.hpp"
-#include "io/detail/yaml.hpp"
-#include "io/scene.hpp"
+#include "softgauss/engine/model/model.hpp"
+#include "softgauss/gdd/goal_directed_step.hpp"
+#include "softgauss/io/detail/yaml.hpp"
+#include "softgauss/io/scene.hpp"
 
 namespace softgauss::io::detail {
 

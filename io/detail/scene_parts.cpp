@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/detail/scene_parts.hpp"
+#include "softgauss/io/detail/scene_parts.hpp"
 
 #include <fmt/format.h>
 
@@ -7,13 +7,13 @@
 #include <array>
 #include <cmath>
 
-#include "engine/core/check.hpp"
-#include "engine/core/rotation.hpp"
-#include "engine/model/mass_properties.hpp"
-#include "io/detail/input_file.hpp"
-#include "io/detail/mesh_defects.hpp"
-#include "io/detail/text.hpp"
-#include "io/height_field.hpp"
+#include "softgauss/engine/core/check.hpp"
+#include "softgauss/engine/core/rotation.hpp"
+#include "softgauss/engine/model/mass_properties.hpp"
+#include "softgauss/io/detail/input_file.hpp"
+#include "softgauss/io/detail/mesh_defects.hpp"
+#include "softgauss/io/detail/text.hpp"
+#include "softgauss/io/height_field.hpp"
 
 namespace softgauss::io::detail {
 namespace {

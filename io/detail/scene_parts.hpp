@@ -6,10 +6,10 @@
 #include <map>
 #include <string>
 
-#include "engine/model/shape.hpp"
-#include "io/detail/yaml.hpp"
-#include "io/mesh.hpp"
-#include "io/urdf.hpp"
+#include "softgauss/engine/model/shape.hpp"
+#include "softgauss/io/detail/yaml.hpp"
+#include "softgauss/io/mesh.hpp"
+#include "softgauss/io/urdf.hpp"
 
 namespace softgauss::io::detail {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/detail/text.hpp"
+#include "softgauss/io/detail/text.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -12,7 +12,7 @@
 #include <memory>
 #include <numeric>
 
-#include "io/printable.hpp"
+#include "softgauss/io/printable.hpp"
 
 namespace softgauss::io::detail {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/detail/text_table.hpp"
+#include "softgauss/io/detail/text_table.hpp"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/detail/urdf_check.hpp"
+#include "softgauss/io/detail/urdf_check.hpp"
 
 #include <console_bridge/console.h>
 #include <fmt/format.h>
@@ -15,8 +15,8 @@
 #include <string_view>
 #include <unordered_map>
 
-#include "io/detail/text.hpp"
-#include "io/detail/urdf_schema.hpp"
+#include "softgauss/io/detail/text.hpp"
+#include "softgauss/io/detail/urdf_schema.hpp"
 
 namespace softgauss::io::detail {
 namespace {

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "io/detail/urdf_description.hpp"
-#include "io/detail/urdf_xml.hpp"
+#include "softgauss/io/detail/urdf_description.hpp"
+#include "softgauss/io/detail/urdf_xml.hpp"
 
 namespace softgauss::io::detail {
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/detail/urdf_description.hpp"
+#include "softgauss/io/detail/urdf_description.hpp"
 
 #include <fmt/format.h>
 
 #include <Eigen/Eigenvalues>
 #include <set>
 
-#include "io/detail/text.hpp"
-#include "io/detail/urdf_joints.hpp"
-#include "io/detail/urdf_schema.hpp"
-#include "io/detail/yaml.hpp"
+#include "softgauss/io/detail/text.hpp"
+#include "softgauss/io/detail/urdf_joints.hpp"
+#include "softgauss/io/detail/urdf_schema.hpp"
+#include "softgauss/io/detail/yaml.hpp"
 
 namespace softgauss::io::detail {
 namespace {

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "engine/model/model_builder.hpp"
-#include "io/detail/urdf_xml.hpp"
+#include "softgauss/engine/model/model_builder.hpp"
+#include "softgauss/io/detail/urdf_xml.hpp"
 
 namespace softgauss::io::detail {
 

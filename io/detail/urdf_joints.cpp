@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/detail/urdf_joints.hpp"
+#include "softgauss/io/detail/urdf_joints.hpp"
 
 #include <fmt/format.h>
 
@@ -7,8 +7,8 @@
 #include <unordered_set>
 #include <utility>
 
-#include "io/detail/text.hpp"
-#include "io/detail/yaml.hpp"
+#include "softgauss/io/detail/text.hpp"
+#include "softgauss/io/detail/yaml.hpp"
 
 namespace softgauss::io::detail {
 namespace {

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "io/detail/urdf_xml.hpp"
+#include "softgauss/io/detail/urdf_xml.hpp"
 
 namespace softgauss::io::detail {
 

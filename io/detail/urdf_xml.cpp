@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/detail/urdf_xml.hpp"
+#include "softgauss/io/detail/urdf_xml.hpp"
 
 #include <fmt/format.h>
 #include <tinyxml2.h>
@@ -7,9 +7,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/core/rotation.hpp"
-#include "io/detail/text.hpp"
-#include "io/detail/yaml.hpp"
+#include "softgauss/engine/core/rotation.hpp"
+#include "softgauss/io/detail/text.hpp"
+#include "softgauss/io/detail/yaml.hpp"
 
 namespace softgauss::io::detail {
 namespace {

@@ -9,8 +9,8 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/core/check.hpp"
-#include "engine/core/spatial.hpp"
+#include "softgauss/engine/core/check.hpp"
+#include "softgauss/engine/core/spatial.hpp"
 
 namespace tinyxml2 {
 class XMLDocument;

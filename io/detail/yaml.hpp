@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
-#include "engine/core/check.hpp"
-#include "engine/core/types.hpp"
-#include "io/detail/text.hpp"
+#include "softgauss/engine/core/check.hpp"
+#include "softgauss/engine/core/types.hpp"
+#include "softgauss/io/detail/text.hpp"
 
 namespace softgauss::io::detail {
 

@@ -10,8 +10,8 @@
 #include <cstdint>
 #include <span>
 
-#include "engine/step/snapshot.hpp"
-#include "gdd/goal.hpp"
+#include "softgauss/engine/step/snapshot.hpp"
+#include "softgauss/gdd/goal.hpp"
 
 namespace softgauss::io {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/replay/gnuplot.hpp"
+#include "softgauss/io/replay/gnuplot.hpp"
 
 #include <fmt/format.h>
 #include <spawn.h>
@@ -13,8 +13,8 @@
 #include <optional>
 #include <stdexcept>
 
-#include "io/detail/output_file.hpp"
-#include "io/detail/text.hpp"
+#include "softgauss/io/detail/output_file.hpp"
+#include "softgauss/io/detail/text.hpp"
 
 namespace softgauss::io {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/replay/page.hpp"
+#include "softgauss/io/replay/page.hpp"
 
 #include <fmt/format.h>
 #include <zlib.h>
@@ -9,10 +9,10 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "engine/core/check.hpp"
-#include "io/detail/text.hpp"
-#include "io/replay/detail/page_template.hpp"
-#include "io/replay/detail/payload.hpp"
+#include "softgauss/engine/core/check.hpp"
+#include "softgauss/io/detail/text.hpp"
+#include "softgauss/io/replay/detail/page_template.hpp"
+#include "softgauss/io/replay/detail/payload.hpp"
 
 namespace softgauss::io {
 namespace {

@@ -9,8 +9,8 @@
 #include <filesystem>
 #include <string>
 
-#include "io/detail/output_file.hpp"
-#include "io/replay/recording.hpp"
+#include "softgauss/io/detail/output_file.hpp"
+#include "softgauss/io/replay/recording.hpp"
 
 namespace softgauss::io {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/replay/plot.hpp"
+#include "softgauss/io/replay/plot.hpp"
 
 #include <fmt/format.h>
 
@@ -7,10 +7,10 @@
 #include <cctype>
 #include <cmath>
 
-#include "engine/core/check.hpp"
-#include "io/detail/text.hpp"
-#include "io/output.hpp"
-#include "io/replay/gnuplot.hpp"
+#include "softgauss/engine/core/check.hpp"
+#include "softgauss/io/detail/text.hpp"
+#include "softgauss/io/output.hpp"
+#include "softgauss/io/replay/gnuplot.hpp"
 
 namespace softgauss::io {
 namespace {

@@ -10,8 +10,8 @@
 #include <filesystem>
 #include <optional>
 
-#include "io/detail/output_file.hpp"
-#include "io/replay/recording.hpp"
+#include "softgauss/io/detail/output_file.hpp"
+#include "softgauss/io/replay/recording.hpp"
 
 namespace softgauss::io {
 

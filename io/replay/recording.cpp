@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/replay/recording.hpp"
+#include "softgauss/io/replay/recording.hpp"
 
 #include <algorithm>
 #include <cmath>

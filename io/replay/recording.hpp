@@ -10,11 +10,11 @@
 #include <string>
 #include <utility>
 
-#include "engine/model/state.hpp"
-#include "engine/step/saved_contacts.hpp"
-#include "io/log.hpp"
-#include "io/replay/frames.hpp"
-#include "io/replay/series.hpp"
+#include "softgauss/engine/model/state.hpp"
+#include "softgauss/engine/step/saved_contacts.hpp"
+#include "softgauss/io/log.hpp"
+#include "softgauss/io/replay/frames.hpp"
+#include "softgauss/io/replay/series.hpp"
 
 namespace softgauss::io {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/replay/series.hpp"
+#include "softgauss/io/replay/series.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
-#include "io/replay/detail/fetch.hpp"
+#include "softgauss/io/replay/detail/fetch.hpp"
 
 namespace softgauss::io {
 

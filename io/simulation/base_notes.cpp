@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/simulation/base_notes.hpp"
+#include "softgauss/io/simulation/base_notes.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "collision/lowest_point.hpp"
-#include "io/detail/text.hpp"
-#include "io/figure_text.hpp"
+#include "softgauss/collision/lowest_point.hpp"
+#include "softgauss/io/detail/text.hpp"
+#include "softgauss/io/figure_text.hpp"
 
 namespace softgauss {
 namespace {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "engine/dynamics/kinematics.hpp"
-#include "engine/step/contact_source.hpp"
+#include "softgauss/engine/dynamics/kinematics.hpp"
+#include "softgauss/engine/step/contact_source.hpp"
 
 namespace softgauss {
 

@@ -5,10 +5,10 @@
 
 #include <set>
 
-#include "collision/clearance.hpp"
-#include "engine/model/followers.hpp"
-#include "io/names.hpp"
-#include "io/simulation/scene.hpp"
+#include "softgauss/collision/clearance.hpp"
+#include "softgauss/engine/model/followers.hpp"
+#include "softgauss/io/names.hpp"
+#include "softgauss/io/simulation/scene.hpp"
 
 namespace softgauss {
 
@@ -51,7 +51,7 @@ void addGoals(const std::filesystem::path& file, const Scene& scene,
 void setUpControl(const Scene& scene, const SimulationOptions& options,
                   gdd::GoalDirectedController& controller) {
   controller.solver = scene.gddSolver;
-  controller.box = io::controlBox(scene.model, scene.actuators);
+  controller.limits = io::controlLimits(scene.model, scene.actuators);
   controller.goals.clear();
   if (scene.hasGoals && !options.withoutGoals) addGoals(scene.file, scene, controller);
   if (options.controlCost) controller.controlCost = *options.controlCost;
@@ -64,7 +64,7 @@ std::vector<std::unique_ptr<gdd::Goal>> regularisers(const VectorX& q,
                                                      std::optional<double> postureWeight) {
   auto posture = std::make_unique<gdd::Posture>(q);
   posture->weight = postureWeight.value_or(kWeakPosture);
-  posture->onlyRegularises = !postureWeight;
+  posture->isRegulariser = !postureWeight;
   std::vector<std::unique_ptr<gdd::Goal>> goals;
   goals.push_back(std::move(posture));
   goals.push_back(std::make_unique<gdd::VirtualDamping>());

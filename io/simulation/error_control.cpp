@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/simulation/error_control.hpp"
+#include "softgauss/io/simulation/error_control.hpp"
 
 #include <fmt/format.h>
 
@@ -15,18 +15,19 @@ std::vector<std::string> setErrorControl(const SimulationOptions& options,
   else if (!named && !doubled && (options.integrationTolerance || scene.tolerance))
     o.integrator = Integrator::dormandPrince;
   else if (!named)
-    o.integrator = o.ownSoftness ? Integrator::leapfrog : Integrator::semiImplicitEuler;
+    o.integrator = o.constraintModel == ConstraintModel::softgauss ? Integrator::leapfrog
+                                                                   : Integrator::semiImplicitEuler;
 
   const std::string_view name = integratorName(o.integrator);
   const auto ignored = [&](const char* key, const char* reason) {
     warnings.push_back(fmt::format("{} of the scene changes nothing: {} {}", key, name, reason));
   };
-  if (options.stepDoubling && !o.solvesOnce())
+  if (options.stepDoubling && !o.isSingleSolve())
     throw OptionError(
         fmt::format("step-doubling changes nothing beside {}; it is for leapfrog, "
                     "semi-implicit-euler and implicit",
                     name));
-  o.stepDoubling = doubled && o.solvesOnce();
+  o.stepDoubling = doubled && o.isSingleSolve();
   if (doubled && !o.stepDoubling) ignored("step_doubling", "is not doubled");
 
   if (io::controlsError(o)) {

@@ -4,8 +4,8 @@
 /// Which integrator moves a scene on, and how its error is controlled: what the caller says over
 /// what the file says. A setting that would change nothing is refused.
 
-#include "io/scene.hpp"
-#include "io/simulation/options.hpp"
+#include "softgauss/io/scene.hpp"
+#include "softgauss/io/simulation/options.hpp"
 
 namespace softgauss {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/simulation/ground.hpp"
+#include "softgauss/io/simulation/ground.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "collision/lowest_point.hpp"
+#include "softgauss/collision/lowest_point.hpp"
 
 namespace softgauss {
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "engine/model/model_builder.hpp"
-#include "engine/model/state.hpp"
+#include "softgauss/engine/model/model_builder.hpp"
+#include "softgauss/engine/model/state.hpp"
 
 namespace softgauss {
 

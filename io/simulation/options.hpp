@@ -11,9 +11,9 @@
 #include <utility>
 #include <vector>
 
-#include "engine/model/model_builder.hpp"
-#include "gdd/goal_directed_step.hpp"
-#include "io/urdf.hpp"
+#include "softgauss/engine/model/model_builder.hpp"
+#include "softgauss/gdd/goal_directed_step.hpp"
+#include "softgauss/io/urdf.hpp"
 
 namespace softgauss {
 

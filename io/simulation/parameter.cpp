@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/simulation/parameter.hpp"
+#include "softgauss/io/simulation/parameter.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "gdd/goals/reach.hpp"
-#include "io/detail/text.hpp"
-#include "io/names.hpp"
-#include "io/simulation/simulation_goals.hpp"
+#include "softgauss/gdd/goals/reach.hpp"
+#include "softgauss/io/detail/text.hpp"
+#include "softgauss/io/names.hpp"
+#include "softgauss/io/simulation/simulation_goals.hpp"
 
 namespace softgauss {
 namespace {

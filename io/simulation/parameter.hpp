@@ -26,7 +26,7 @@
 #include <string>
 #include <vector>
 
-#include "gdd/goal_directed_step.hpp"
+#include "softgauss/gdd/goal_directed_step.hpp"
 
 namespace softgauss {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/simulation/rollout.hpp"
+#include "softgauss/io/simulation/rollout.hpp"
 
 #include <fmt/format.h>
 #include <malloc.h>
@@ -10,8 +10,8 @@
 #include <stdexcept>
 #include <thread>
 
-#include "engine/core/memory.hpp"
-#include "io/simulation/simulation_parts.hpp"
+#include "softgauss/engine/core/memory.hpp"
+#include "softgauss/io/simulation/simulation_parts.hpp"
 
 namespace softgauss {
 namespace {
@@ -275,7 +275,7 @@ std::size_t Rollout::bytesPerRun() const {
   const State& s = scene_.initial;
   const WarmStart& w = s.warmstart;
   // A warm start has five vectors of nv once a step has been taken.
-  return sizeof(State) + bytesOfAll(s.q, s.v, s.a) + bytesOf(w.knots) +
+  return sizeof(State) + bytesOfAll(s.q, s.v, s.a) + bytesOf(w.breakpoints) +
          6 * static_cast<std::size_t>(scene_.model.nv) * sizeof(double);
 }
 

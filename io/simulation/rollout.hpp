@@ -20,8 +20,8 @@
 #include <string>
 #include <vector>
 
-#include "io/simulation/parameter.hpp"
-#include "io/simulation/simulation.hpp"
+#include "softgauss/io/simulation/parameter.hpp"
+#include "softgauss/io/simulation/simulation.hpp"
 
 namespace softgauss {
 

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/simulation/scene.hpp"
+#include "softgauss/io/simulation/scene.hpp"
 
 #include <fmt/format.h>
 
 #include <set>
 
-#include "collision/choose_meshes.hpp"
-#include "engine/dynamics/coupled_mass.hpp"
-#include "engine/dynamics/regular_mass.hpp"
-#include "io/inputs.hpp"
-#include "io/simulation/error_control.hpp"
-#include "io/simulation/ground.hpp"
-#include "io/step_warnings.hpp"
-#include "io/warning_list.hpp"
+#include "softgauss/collision/choose_meshes.hpp"
+#include "softgauss/engine/dynamics/coupled_mass.hpp"
+#include "softgauss/engine/dynamics/regular_mass.hpp"
+#include "softgauss/io/inputs.hpp"
+#include "softgauss/io/simulation/error_control.hpp"
+#include "softgauss/io/simulation/ground.hpp"
+#include "softgauss/io/step_warnings.hpp"
+#include "softgauss/io/warning_list.hpp"
 
 namespace softgauss {
 namespace {
@@ -122,7 +122,7 @@ void loadSceneFile(const SimulationOptions& options, Scene& scene) {
 
 /// Refuses a start in which the mass matrix is singular, with the place of the link in its file.
 void expectRegularStart(Scene& scene) {
-  steadyCoupledJoints(scene.model, scene.initial.q);
+  regulariseCoupledJoints(scene.model, scene.initial.q);
   const auto refuseIfSingular = [&](const VectorX& q) {
     const std::optional<SingularMass> why = findSingularMass(scene.model, q);
     if (!why) return;
@@ -150,7 +150,7 @@ void addStepWarnings(Scene& scene) {
 void prepareContacts(const SimulationOptions& options, Scene& scene) {
   collision::PreparedMeshes meshes;
   // MuJoCo takes hulls.
-  if (options.meshes || scene.model.options.ownSoftness)
+  if (options.meshes || scene.model.options.constraintModel == ConstraintModel::softgauss)
     collision::chooseMeshes(scene.model, meshes);
   scene.contacts = std::make_unique<collision::SceneContacts>(
       scene.model, collision::SceneContacts::kBroadphasePairs, true, &meshes);

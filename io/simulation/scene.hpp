@@ -9,15 +9,15 @@
 #include <utility>
 #include <vector>
 
-#include "collision/fcl_contacts.hpp"
-#include "collision/scene_contacts.hpp"
-#include "gdd/gdd.hpp"
-#include "io/actuators.hpp"
-#include "io/goals.hpp"
-#include "io/scene.hpp"
-#include "io/simulation/base_notes.hpp"
-#include "io/simulation/options.hpp"
-#include "io/wrenches.hpp"
+#include "softgauss/collision/fcl_contacts.hpp"
+#include "softgauss/collision/scene_contacts.hpp"
+#include "softgauss/gdd/gdd.hpp"
+#include "softgauss/io/actuators.hpp"
+#include "softgauss/io/goals.hpp"
+#include "softgauss/io/scene.hpp"
+#include "softgauss/io/simulation/base_notes.hpp"
+#include "softgauss/io/simulation/options.hpp"
+#include "softgauss/io/wrenches.hpp"
 
 namespace softgauss {
 

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/simulation/simulation.hpp"
+#include "softgauss/io/simulation/simulation.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "engine/core/bytes.hpp"
-#include "engine/core/sealed.hpp"
-#include "engine/engine.hpp"
-#include "engine/model/followers.hpp"
-#include "engine/model/saved_state.hpp"
-#include "io/names.hpp"
-#include "io/simulation/ground.hpp"
-#include "io/simulation/simulation_parts.hpp"
+#include "softgauss/engine/core/bytes.hpp"
+#include "softgauss/engine/core/sealed.hpp"
+#include "softgauss/engine/engine.hpp"
+#include "softgauss/engine/model/followers.hpp"
+#include "softgauss/engine/model/saved_state.hpp"
+#include "softgauss/io/names.hpp"
+#include "softgauss/io/simulation/ground.hpp"
+#include "softgauss/io/simulation/simulation_parts.hpp"
 
 namespace softgauss {
 namespace {

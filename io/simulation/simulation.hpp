@@ -19,8 +19,8 @@
 #include <string_view>
 #include <vector>
 
-#include "io/simulation/scene.hpp"
-#include "io/simulation/simulation_goals.hpp"
+#include "softgauss/io/simulation/scene.hpp"
+#include "softgauss/io/simulation/simulation_goals.hpp"
 
 namespace softgauss {
 

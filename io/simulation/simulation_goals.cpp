@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/simulation/simulation_goals.hpp"
+#include "softgauss/io/simulation/simulation_goals.hpp"
 
-#include "io/names.hpp"
-#include "io/simulation/simulation_parts.hpp"
+#include "softgauss/io/names.hpp"
+#include "softgauss/io/simulation/simulation_parts.hpp"
 
 namespace softgauss {
 
@@ -55,7 +55,7 @@ gdd::Posture& SimulationGoals::posture(double weight) {
   }
   auto& posture = static_cast<gdd::Posture&>(*goals[goals.size() - 2]);
   posture.weight = weight;
-  posture.onlyRegularises = false;
+  posture.isRegulariser = false;
   return posture;
 }
 

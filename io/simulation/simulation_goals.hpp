@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "gdd/gdd.hpp"
+#include "softgauss/gdd/gdd.hpp"
 
 namespace softgauss {
 

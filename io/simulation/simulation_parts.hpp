@@ -3,9 +3,9 @@
 
 /// What Simulation and its goals share.
 
-#include "io/contact_links.hpp"
-#include "io/simulation/simulation.hpp"
-#include "io/simulation/time_grid.hpp"
+#include "softgauss/io/contact_links.hpp"
+#include "softgauss/io/simulation/simulation.hpp"
+#include "softgauss/io/simulation/time_grid.hpp"
 
 namespace softgauss {
 

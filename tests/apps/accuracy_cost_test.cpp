@@ -17,7 +17,7 @@
 namespace softgauss::test {
 namespace {
 
-/// --drift or --parting in the place of a study.
+/// --drift or --divergence in the place of a study.
 std::vector<std::string> instead(const std::string& problem, const std::string& out,
                                  const std::string& what) {
   return {"--scene", problem, "--out", out, "--robots", dataFile("robots"), what};
@@ -134,7 +134,7 @@ TEST(AccuracyCost, MarkersThatAreNotToldAreHollow) {
   for (std::size_t at = svg.find(use); at != std::string::npos; at = svg.find(use, at + 1))
     ++hollow;
   EXPECT_EQ(hollow, untold);
-  EXPECT_NE(svg.find("below (hollow): not told"), std::string::npos);
+  EXPECT_NE(svg.find("below (hollow): not resolved"), std::string::npos);
 }
 
 TEST(AccuracyCost, ErrorsFallWithTheOrder) {
@@ -270,18 +270,18 @@ TEST(AccuracyCost, ColoursAreThoseOfMethods) {
 }
 
 // A push of a damped spring grows by the closed form: x ~ e^(−s t) sin ω t.
-TEST(AccuracyCost, PartingIsThatOfTheMotion) {
+TEST(AccuracyCost, DivergenceIsThatOfTheMotion) {
   const io::TempFolder folder;
   const std::string out = folder.path() / "study";
   const Outcome outcome =
-      runProgram("accuracy_cost", instead("spring_mass_damper", out, "--parting"));
+      runProgram("accuracy_cost", instead("spring_mass_damper", out, "--divergence"));
   ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
   constexpr double kMass = 2.0, kStiffness = 800.0, kDamping = 8.0, kPeriod = 0.032;
   const double s = 0.5 * kDamping / kMass, w = std::sqrt(kStiffness / kMass - s * s);
   const auto x = [&](int k) { return std::exp(-s * k * kPeriod) * std::sin(w * k * kPeriod); };
   double most = 0.0, whole = 0.0;
   for (int k = 1; k <= 62; ++k) most = std::max(most, std::abs(x(k) / x(1)));
-  std::istringstream in(readFile(out + "/parting.csv"));
+  std::istringstream in(readFile(out + "/divergence.csv"));
   for (std::string line; std::getline(in, line);)
     std::sscanf(line.c_str(), "spring_mass_damper,%lf", &whole);
   EXPECT_NEAR(whole, most, 0.01 * most);  // steps of 0.25 ms
@@ -329,9 +329,9 @@ TEST(AccuracyCost, OptionsThatChangeNothingAreRefused) {
        std::vector<std::vector<std::string>>{{"--trial-seconds", "1"},
                                              {"--drift", "--seconds", "10"},
                                              {"--drift", "--repeats", "1"},
-                                             {"--parting", "--most-steps", "32"},
-                                             {"--parting", "--drift"},
-                                             {"--honesty", "--drift"},
+                                             {"--divergence", "--most-steps", "32"},
+                                             {"--divergence", "--drift"},
+                                             {"--verify-accuracy", "--drift"},
                                              {"--nonsense"}}) {
     const Outcome outcome = runProgram("accuracy_cost", arguments);
     EXPECT_EQ(outcome.exitCode, 2) << arguments.back();

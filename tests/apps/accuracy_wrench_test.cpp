@@ -6,7 +6,7 @@
 #include <cmath>
 #include <fstream>
 
-#include "engine/core/types.hpp"
+#include "softgauss/engine/core/types.hpp"
 #include "tests/apps/process.hpp"
 
 namespace softgauss::test {

@@ -7,11 +7,11 @@
 #include <optional>
 
 #include "apps/shared/pose_error.hpp"
-#include "collision/scene_contacts.hpp"
-#include "engine/engine.hpp"
-#include "io/scene.hpp"
-#include "io/torque_table.hpp"
-#include "io/urdf.hpp"
+#include "softgauss/collision/scene_contacts.hpp"
+#include "softgauss/engine/engine.hpp"
+#include "softgauss/io/scene.hpp"
+#include "softgauss/io/torque_table.hpp"
+#include "softgauss/io/urdf.hpp"
 #include "tests/apps/process.hpp"
 
 namespace softgauss::test {
@@ -241,7 +241,7 @@ TEST(ReportError, WithGoalsAddsUpItsSteps) {
                                       "--duration", "0.4", "--integrator", "semi-implicit-euler",
                                       "--timestep", h, "--report-error", "--summary", summary});
     ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
-    EXPECT_NE(outcome.out.find("what the steps err by"), std::string::npos);
+    EXPECT_NE(outcome.out.find("local errors of the steps"), std::string::npos);
     const Json error = Json::parse(readFile(summary))["error"];
     EXPECT_EQ(error["of"], "steps, added up");
     errors[k++] = error["position_m"];

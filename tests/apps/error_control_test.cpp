@@ -120,7 +120,7 @@ TEST(ErrorControl, IsCounted) {
     const bool divides = law.doubled || std::string(law.integrator) == "dormand-prince";
     EXPECT_EQ(rejections > 0, divides) << law.integrator;
     EXPECT_EQ(parts > steps, divides) << law.integrator;
-    const std::string told = std::to_string(rejections) + " more tried and shortened";
+    const std::string told = std::to_string(rejections) + " more tried and rejected";
     EXPECT_NE(outcome.out.find(told), std::string::npos) << outcome.out;
   }
   // A step of one solve has nothing to count.

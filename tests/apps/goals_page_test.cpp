@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <sstream>
 
-#include "io/detail/goal_kinds.hpp"
+#include "softgauss/io/detail/goal_kinds.hpp"
 #include "tests/apps/process.hpp"
 
 namespace softgauss::test {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Mechanisms of the step are counted where they act, in the summary, and can be left out.
 
-#include "engine/model/mechanisms.hpp"
+#include "softgauss/engine/model/mechanisms.hpp"
 
 #include <gtest/gtest.h>
 
@@ -38,16 +38,12 @@ TEST(Mechanisms, ActWhereASceneCallsForThem) {
   const auto hard = [](const std::string& name) {
     return dataFile("scenes/stability/" + name + ".yaml");
   };
-  const std::map<std::string, std::string> scenes = {{"prediction", hard("top_on_tip")},
-                                                     {"parts", hard("top_on_tip")},
-                                                     {"free_trees", hard("tumbling")},
-                                                     {"end_of_step_ties", hard("rope")},
-                                                     {"contact_horizon", hard("coin")},
-                                                     {"contact_turning", hard("sphere")},
-                                                     {"step_bounds", bouncing},
-                                                     {"carried_load", hard("boxes_1000_on_1")},
-                                                     {"sticking", hard("boxes_1000_on_1")},
-                                                     {"swing_damping", hard("rope")}};
+  const std::map<std::string, std::string> scenes = {
+      {"prediction", hard("top_on_tip")},     {"parts", hard("top_on_tip")},
+      {"tree_substepping", hard("tumbling")}, {"implicit_equalities", hard("rope")},
+      {"contact_damping_time", hard("coin")}, {"contact_bias_acceleration", hard("sphere")},
+      {"reference_clamp", bouncing},          {"supported_mass", hard("boxes_1000_on_1")},
+      {"sticking", hard("boxes_1000_on_1")},  {"geometric_stiffness", hard("rope")}};
   for (const MechanismName& mechanism : kMechanismNames) {
     const std::string name(mechanism.name);
     ASSERT_EQ(scenes.count(name), 1u) << name;

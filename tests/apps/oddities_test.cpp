@@ -58,7 +58,7 @@ TEST(Oddities, EnergyOfAPassiveSceneIsTold) {
 ground: {height: 0}
 )",
       ".yaml", {"--duration", "0.3"});
-  run.expectTold("that nothing gives it");
+  run.expectTold("without a source");
 }
 
 TEST(Oddities, NothingIsToldWhereNothingIsOdd) {

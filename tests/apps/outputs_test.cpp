@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "engine/model/model.hpp"
-#include "io/urdf.hpp"
+#include "softgauss/engine/model/model.hpp"
+#include "softgauss/io/urdf.hpp"
 #include "tests/apps/process.hpp"
 
 namespace softgauss::test {

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "apps/accuracy_cost/contestant.hpp"
+#include "apps/accuracy_cost/engine_under_test.hpp"
 #include "tests/apps/process.hpp"
 
 namespace softgauss::test {
@@ -225,7 +225,7 @@ TEST(OwnModel, CommandsOfThePageRun) {
     for (std::string word; words >> word;)
       arguments.push_back(word.starts_with("data/") ? dataFile(word.substr(5)) : word);
     arguments.insert(arguments.end(), {"--out", folder.path() / std::to_string(commands++)});
-    if (line.find("--parting") == std::string::npos)
+    if (line.find("--divergence") == std::string::npos)
       arguments.insert(arguments.end(), {"--repeats", "0", "--most-steps", "4"});
     const Outcome outcome = runProgram("accuracy_cost", arguments);
     EXPECT_EQ(outcome.exitCode, 0) << line << "\n" << outcome.err;

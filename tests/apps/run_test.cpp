@@ -4,7 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "engine/model/model.hpp"
+#include "softgauss/engine/model/model.hpp"
 #include "tests/apps/process.hpp"
 
 namespace softgauss::test {

@@ -37,14 +37,14 @@ TEST(Study, SeesOvershootBetweenPeriods) {
   constexpr double kStep = 0.001;
   const app::Problem problem = stop();
   const app::Method euler{"softgauss", "semi-implicit-euler", ""};
-  const auto contestant = app::makeContestant(problem, euler, kStep);
-  State start(contestant->model());
-  problem.start(contestant->model(), start);
-  contestant->start(start);
+  const auto tested = app::makeEngine(problem, euler, kStep);
+  State start(tested->model());
+  problem.start(tested->model(), start);
+  tested->start(start);
   double most = 0.0, sampled = 0.0;
   for (int i = 1; i <= 64; ++i) {
-    ASSERT_TRUE(contestant->advance(VectorX::Zero(1), 1));
-    const double over = contestant->state().q[0] - 0.005;
+    ASSERT_TRUE(tested->advance(VectorX::Zero(1), 1));
+    const double over = tested->state().q[0] - 0.005;
     most = std::max(most, over);
     if (i % 32 == 0) sampled = std::max(sampled, over);
   }
@@ -61,20 +61,20 @@ TEST(Study, ClosedFormsAreTheMotion) {
   for (const app::Problem& problem : app::allProblems(dataFile("robots"))) {
     if (!problem.exact) continue;
     const app::Method rk4{"softgauss", "runge-kutta-4", ""};
-    const auto contestant = app::makeContestant(problem, rk4, app::kPeriod / 256);
-    const Model& model = contestant->model();
+    const auto tested = app::makeEngine(problem, rk4, app::kPeriod / 256);
+    const Model& model = tested->model();
     State start(model);
     problem.start(model, start);
-    contestant->start(start);
+    tested->start(start);
     app::LinkPoses a(model), b(model);
     for (int k = 1; k <= 62; ++k) {
-      ASSERT_TRUE(contestant->advance(VectorX::Zero(model.nv), 256));
+      ASSERT_TRUE(tested->advance(VectorX::Zero(model.nv), 256));
       State exact(model);
       problem.exact(model, k * app::kPeriod, exact);
       a.set(exact);
-      b.set(contestant->state());
+      b.set(tested->state());
       ASSERT_LT(a.against(b).total, 1e-11) << problem.name << " at period " << k;
-      ASSERT_LT((exact.v - contestant->state().v).norm(), 1e-9 * start.v.norm() + 1e-9)
+      ASSERT_LT((exact.v - tested->state().v).norm(), 1e-9 * start.v.norm() + 1e-9)
           << problem.name << " at period " << k;
     }
     ++checked;
@@ -92,16 +92,16 @@ TEST(Study, SeesTheDeepestOverlapInBothEngines) {
   if (!app::mujocoMethods(ball).empty()) methods.push_back({"mujoco", "Euler", ""});
   double deepest[2] = {};
   for (std::size_t k = 0; k < methods.size(); ++k) {
-    const auto contestant = app::makeContestant(ball, methods[k], 0.001);
-    contestant->start(State(contestant->model()));
+    const auto tested = app::makeEngine(ball, methods[k], 0.001);
+    tested->start(State(tested->model()));
     double lowest = 1.0;
     for (int i = 0; i < 300; ++i) {
-      const double height = contestant->state().q[2];
-      ASSERT_TRUE(contestant->advance({}, 1));
-      deepest[k] = std::max(deepest[k], contestant->deepestOverlap());
+      const double height = tested->state().q[2];
+      ASSERT_TRUE(tested->advance({}, 1));
+      deepest[k] = std::max(deepest[k], tested->deepestOverlap());
       lowest = std::min(lowest, height);
       // Of the step: where it began, the ball of 0.1 m was so deep in the plane.
-      EXPECT_NEAR(contestant->deepestOverlap(), std::max(0.0, 0.1 - height), 1e-12) << i;
+      EXPECT_NEAR(tested->deepestOverlap(), std::max(0.0, 0.1 - height), 1e-12) << i;
     }
     EXPECT_GT(deepest[k], 0.001);
     EXPECT_LT(lowest, 0.1);

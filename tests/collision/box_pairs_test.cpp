@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "collision/box_pairs.hpp"
+#include "softgauss/collision/box_pairs.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Hull or triangles, where nobody said.
-#include "collision/choose_meshes.hpp"
+#include "softgauss/collision/choose_meshes.hpp"
 
 #include <gtest/gtest.h>
 
-#include "engine/model/model_builder.hpp"
+#include "softgauss/engine/model/model_builder.hpp"
 #include "tests/support/sample_models.hpp"
 #include "tests/support/sample_surfaces.hpp"
 
@@ -23,7 +23,7 @@ struct Chosen {
 Chosen choose(const MeshPointer& mesh, bool fixed, bool either = true) {
   ModelBuilder builder = freeBody(boxLink("part", 1.0, {0.1, 0.1, 0.1}));
   GeometrySpec g = geometrySpec(fixed ? "world" : "part", Shape::hull(mesh));
-  g.eitherMesh = either;
+  g.automaticMesh = either;
   builder.geometry(g);
   Model model = builder.build();
   const std::size_t before = model.warnings.size();
@@ -31,7 +31,7 @@ Chosen choose(const MeshPointer& mesh, bool fixed, bool either = true) {
   chooseMeshes(model, meshes);
   Chosen chosen{model.geometries[0].shape.kind, {}};
   for (std::size_t i = before; i < model.warnings.size(); ++i) chosen.warnings += model.warnings[i];
-  EXPECT_FALSE(model.geometries[0].eitherMesh);
+  EXPECT_FALSE(model.geometries[0].automaticMesh);
   return chosen;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Distances of shapes that are apart: proved by points that lie on both and a plane between, and
 // by FCL's unsigned distance of triangles.
-#include "collision/clearance.hpp"
+#include "softgauss/collision/clearance.hpp"
 
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/math/bv/OBBRSS.h>
@@ -10,7 +10,7 @@
 
 #include <map>
 
-#include "collision/support.hpp"
+#include "softgauss/collision/support.hpp"
 #include "tests/collision/random_pairs.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/sample_surfaces.hpp"

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "collision/convex_hull.hpp"
+#include "softgauss/collision/convex_hull.hpp"
 
 #include <gtest/gtest.h>
 
 #include <set>
 
-#include "collision/plane_pairs.hpp"
-#include "engine/core/check.hpp"
+#include "softgauss/collision/plane_pairs.hpp"
+#include "softgauss/engine/core/check.hpp"
 #include "tests/collision/random_pairs.hpp"
 
 using namespace softgauss;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pairs without closed form: their normals, distances and manifolds.
-#include "collision/detail/convex_pairs.hpp"
+#include "softgauss/collision/detail/convex_pairs.hpp"
 
 #include <gtest/gtest.h>
 
 #include <numbers>
 
-#include "collision/box_pairs.hpp"
-#include "engine/core/check.hpp"
+#include "softgauss/collision/box_pairs.hpp"
+#include "softgauss/engine/core/check.hpp"
 #include "tests/collision/random_pairs.hpp"
 
 using namespace softgauss;

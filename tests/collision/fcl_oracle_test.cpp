@@ -16,8 +16,8 @@
 #include <memory>
 #include <sstream>
 
-#include "collision/detail/convex_pairs.hpp"
-#include "collision/primitive_pairs.hpp"
+#include "softgauss/collision/detail/convex_pairs.hpp"
+#include "softgauss/collision/primitive_pairs.hpp"
 #include "tests/collision/random_pairs.hpp"
 #include "tests/support/in_child.hpp"
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "collision/filter.hpp"
+#include "softgauss/collision/filter.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "collision/scene_contacts.hpp"
+#include "softgauss/collision/scene_contacts.hpp"
 #include "tests/support/sample_models.hpp"
 
 using namespace softgauss;

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "collision/scene_contacts.hpp"
+#include "softgauss/collision/scene_contacts.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/scene.hpp"
 

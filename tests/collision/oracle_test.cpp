@@ -10,8 +10,8 @@
 
 #include <memory>
 
-#include "collision/detail/convex_pairs.hpp"
-#include "collision/detail/separating_direction.hpp"
+#include "softgauss/collision/detail/convex_pairs.hpp"
+#include "softgauss/collision/detail/separating_direction.hpp"
 #include "tests/collision/random_pairs.hpp"
 
 using namespace softgauss;

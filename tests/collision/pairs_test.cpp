@@ -4,9 +4,9 @@
 
 #include <string>
 
-#include "collision/box_pairs.hpp"
-#include "collision/support.hpp"
-#include "engine/core/check.hpp"
+#include "softgauss/collision/box_pairs.hpp"
+#include "softgauss/collision/support.hpp"
+#include "softgauss/engine/core/check.hpp"
 #include "tests/collision/random_pairs.hpp"
 
 using namespace softgauss;

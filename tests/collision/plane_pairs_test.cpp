@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "collision/plane_pairs.hpp"
+#include "softgauss/collision/plane_pairs.hpp"
 
 #include <gtest/gtest.h>
 

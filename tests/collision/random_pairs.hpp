@@ -7,8 +7,8 @@
 #include <random>
 #include <vector>
 
-#include "collision/primitive_pairs.hpp"
-#include "engine/core/rotation.hpp"
+#include "softgauss/collision/primitive_pairs.hpp"
+#include "softgauss/engine/core/rotation.hpp"
 
 namespace softgauss::collision {
 

@@ -7,10 +7,10 @@
 #include <cmath>
 #include <sstream>
 
-#include "collision/detail/geometry_set.hpp"
-#include "collision/filter.hpp"
-#include "collision/support.hpp"
-#include "engine/core/index.hpp"
+#include "softgauss/collision/detail/geometry_set.hpp"
+#include "softgauss/collision/filter.hpp"
+#include "softgauss/collision/support.hpp"
+#include "softgauss/engine/core/index.hpp"
 #include "tests/collision/random_pairs.hpp"
 #include "tests/support/in_child.hpp"
 #include "tests/support/sample_models.hpp"

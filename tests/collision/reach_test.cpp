@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "collision/reach.hpp"
+#include "softgauss/collision/reach.hpp"
 
 #include <gtest/gtest.h>
 
-#include "collision/scene_contacts.hpp"
+#include "softgauss/collision/scene_contacts.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/scene.hpp"
 #include "tests/support/tolerance.hpp"
@@ -35,7 +35,7 @@ Model randomArms(Random& random) {
   return builder.build();
 }
 
-// (T.70) is a bound: no configuration comes nearer, and a random search comes close to it.
+// (7.8) is a bound: no configuration comes nearer, and a random search comes close to it.
 TEST(Reach, NoConfigurationComesNearer) {
   double closest = kInfinity;
   for (int seed = 0; seed < 20; ++seed) {
@@ -81,7 +81,7 @@ TEST(Reach, OfOneHingeIsItsOrbit) {
   EXPECT_SMALL(leastDistance(model, bob, a, fixed, b) - (1.0 - 0.4 - 0.2), 1e-15);
   // Such a pair is left out, and then nothing is ever looked for.
   const collision::SceneContacts contacts(model);
-  EXPECT_EQ(contacts.filter().apartPairs, 1);
+  EXPECT_EQ(contacts.filter().unreachablePairs, 1);
   EXPECT_FALSE(contacts.mayTouch());
   // On a slider there is no bound.
   for (Body& body : model.bodies)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "collision/round_pairs.hpp"
+#include "softgauss/collision/round_pairs.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "collision/scene_contacts.hpp"
+#include "softgauss/collision/scene_contacts.hpp"
 
 #include <gtest/gtest.h>
 
-#include "collision/lowest_point.hpp"
-#include "collision/support.hpp"
-#include "engine/model/state.hpp"
-#include "engine/step/step.hpp"
+#include "softgauss/collision/lowest_point.hpp"
+#include "softgauss/collision/support.hpp"
+#include "softgauss/engine/model/state.hpp"
+#include "softgauss/engine/step/step.hpp"
 #include "tests/collision/random_pairs.hpp"
 #include "tests/support/allocation_guard.hpp"
 #include "tests/support/sample_models.hpp"

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Contacts of convex shapes with surfaces: against hulls, closed forms and an inside test.
-#include "collision/detail/surface_contacts.hpp"
+#include "softgauss/collision/detail/surface_contacts.hpp"
 
 #include <gtest/gtest.h>
 
 #include <deque>
 
-#include "collision/scene_contacts.hpp"
+#include "softgauss/collision/scene_contacts.hpp"
 #include "tests/collision/random_pairs.hpp"
 #include "tests/support/allocation_guard.hpp"
 #include "tests/support/matchers.hpp"

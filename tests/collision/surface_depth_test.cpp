@@ -13,9 +13,9 @@
 #include <limits>
 #include <sstream>
 
-#include "collision/detail/fcl_triangle_tree.hpp"
-#include "collision/detail/surface_contacts.hpp"
-#include "collision/detail/surface_pairs.hpp"
+#include "softgauss/collision/detail/fcl_triangle_tree.hpp"
+#include "softgauss/collision/detail/surface_contacts.hpp"
+#include "softgauss/collision/detail/surface_pairs.hpp"
 #include "tests/collision/random_pairs.hpp"
 #include "tests/support/allocation_guard.hpp"
 #include "tests/support/in_child.hpp"

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 /// What a surface knows of itself: normals at faces, edges and corners, inside and outside.
-#include "collision/triangle_mesh.hpp"
+#include "softgauss/collision/triangle_mesh.hpp"
 
 #include <gtest/gtest.h>
 
-#include "collision/detail/fcl_triangle_tree.hpp"
-#include "engine/core/check.hpp"
-#include "engine/model/mass_properties.hpp"
+#include "softgauss/collision/detail/fcl_triangle_tree.hpp"
+#include "softgauss/engine/core/check.hpp"
+#include "softgauss/engine/model/mass_properties.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/sample_surfaces.hpp"
 

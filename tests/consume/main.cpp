@@ -3,10 +3,9 @@
 /// A robot falls for a second: what the smallest program with an installed softgauss looks like.
 
 #include <cstdio>
-
-#include "engine/engine.hpp"
-#include "io/io.hpp"
-#include "io/simulation/simulation.hpp"
+#include <softgauss/engine.hpp>
+#include <softgauss/io.hpp>
+#include <softgauss/simulation.hpp>
 
 int main(int argc, char** argv) {
   if (argc != 2) return 2;

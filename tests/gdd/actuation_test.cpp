@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Actuators of any kind, τ = B u, and any price of force R: against formulae in which neither the
+/// Actuators of any kind, τ = B u, and any control cost R: against formulae in which neither the
 /// coordinates of a box nor a solver occur.
 
 #include <Eigen/Cholesky>
@@ -16,12 +16,12 @@ namespace softgauss::test {
 namespace {
 
 /// B: a column for each open coordinate.
-MatrixX openColumns(const gdd::ControlBox& box) {
-  MatrixX B(box.lower.size(), 0);
-  for (Eigen::Index i = 0; i < box.lower.size(); ++i) {
-    if (box.lower[i] == box.upper[i]) continue;
+MatrixX openColumns(const gdd::ControlLimits& limits) {
+  MatrixX B(limits.lower.size(), 0);
+  for (Eigen::Index i = 0; i < limits.lower.size(); ++i) {
+    if (limits.lower[i] == limits.upper[i]) continue;
     B.conservativeResize(Eigen::NoChange, B.cols() + 1);
-    B.col(B.cols() - 1) = box.transmission->T().col(i);
+    B.col(B.cols() - 1) = limits.transmission->T().col(i);
   }
   return B;
 }
@@ -43,7 +43,7 @@ class Actuation : public testing::Test {
   /// Solves cold.
   VectorX solve(GddScene& s) {
     Solver solver(s.model());
-    s.report = solver.solve(s.model(), s.cost, s.box, s.data(), WarmStart());
+    s.report = solver.solve(s.model(), s.cost, s.limits, s.data(), WarmStart());
     force_ = solver.force();
     return solver.acceleration();
   }
@@ -65,10 +65,10 @@ class Actuation : public testing::Test {
       s.addMetric(random.uniform(0.1, 2.0), random.vector(s.dofs(), 10.0));
       s.addRandomActuators(random, tendons);
       for (Eigen::Index i = 0; i < s.dofs(); ++i)
-        if (s.box.lower[i] < s.box.upper[i])
-          s.box.lower[i] = -kInfinity, s.box.upper[i] = kInfinity;
+        if (s.limits.lower[i] < s.limits.upper[i])
+          s.limits.lower[i] = -kInfinity, s.limits.upper[i] = kInfinity;
       const DenseGdd& d = s.dense;
-      const MatrixX B = openColumns(s.box), S = d.Mhat.llt().solve(B);
+      const MatrixX B = openColumns(s.limits), S = d.Mhat.llt().solve(B);
       const VectorX a0 = -d.Mhat.llt().solve(d.c);
       const MatrixX K = B.transpose() * R * B + S.transpose() * d.goalHessian() * S;
       const VectorX tau = B * K.llt().solve(-S.transpose() * d.goalGradient(a0));
@@ -106,7 +106,7 @@ TYPED_TEST(Actuation, IsTheClosedFormWhereSomeForcesAreOutOfReach) {
 /// Tᵀ(R g + P⁻¹∇ℓ) = β with β ≥ 0 at a lower bound, ≤ 0 at an upper one, 0 between.
 double wrongMultiplier(const GddScene& s, const VectorX& a, int& atBounds) {
   const DenseGdd& d = s.dense;
-  const MatrixX& T = s.box.transmission->T();
+  const MatrixX& T = s.limits.transmission->T();
   const VectorX g = d.g(a), y = d.coordinates(g), effort = d.Minv * g;
   const VectorX wish = d.P(a).llt().solve(d.goalGradient(a));
   const VectorX beta = T.transpose() * (effort + wish);
@@ -114,7 +114,7 @@ double wrongMultiplier(const GddScene& s, const VectorX& a, int& atBounds) {
   double worst = 0.0;
   for (int i = 0; i < d.dofs(); ++i) {
     if (d.lower[i] == d.upper[i]) continue;
-    const double near = 1e-7 * force / s.box.size(i);
+    const double near = 1e-7 * force / s.limits.forcePerUnit(i);
     const double scale =
         T.col(i).cwiseAbs().dot(effort.cwiseAbs() + wish.cwiseAbs()) + 1e-3 * beta.norm();
     double wrong = std::abs(beta[i]);
@@ -133,7 +133,7 @@ TYPED_TEST(Actuation, ConditionsHoldBetweenContactsLimitsAndBounds) {
     Random random(seed + 5);
     s.addRandomActuators(random, true);
     const VectorX a = this->solve(s);
-    certified += s.report.status == gdd::GddStatus::kink;
+    certified += s.report.status == gdd::GddStatus::nonsmoothMinimum;
     if (s.report.status != gdd::GddStatus::converged) continue;
     ++smooth;
     ++certified;
@@ -141,7 +141,7 @@ TYPED_TEST(Actuation, ConditionsHoldBetweenContactsLimitsAndBounds) {
     worstViolation = std::max(worstViolation,
                               s.report.violation / std::max(1.0, s.dense.c.cwiseAbs().maxCoeff()));
   }
-  // As for boxes of single joints (box_test.cpp).
+  // As for boxes of single joints (control_limits_test.cpp).
   EXPECT_SMALL(worst, 1e-6);
   EXPECT_SMALL(worstViolation, penalises<TypeParam> ? 1e-8 : 1e-11);
   EXPECT_GT(smooth, 30);
@@ -159,14 +159,14 @@ TYPED_TEST(Actuation, AGearWithItsBoundsChangesNothing) {
       Random random(seed + 5);
       s.addRandomActuators(random, true);
       if (geared) {
-        std::vector<gdd::Actuator> actuators = s.box.transmission->actuators();
+        std::vector<gdd::Actuator> actuators = s.limits.transmission->actuators();
         for (gdd::Actuator& actuator : actuators) {
           const double gear = random.uniform(0.01, 100.0);
           for (gdd::Actuator::Pull& pull : actuator.pulls) pull.coefficient *= gear;
           actuator.lower /= gear;
           actuator.upper /= gear;
         }
-        s.box = gdd::ControlBox(s.model(), std::move(actuators));
+        s.limits = gdd::ControlLimits(s.model(), std::move(actuators));
         s.matchBox();
       }
       const VectorX a = this->solve(s);
@@ -177,7 +177,7 @@ TYPED_TEST(Actuation, AGearWithItsBoundsChangesNothing) {
     const auto [a, status, count] = solveWith(false);
     const auto [aGeared, statusGeared, countGeared] = solveWith(true);
     EXPECT_EQ(status, statusGeared) << "seed " << seed;
-    if (status != gdd::GddStatus::converged && status != gdd::GddStatus::kink) continue;
+    if (status != gdd::GddStatus::converged && status != gdd::GddStatus::nonsmoothMinimum) continue;
     EXPECT_EQ(count, countGeared) << "seed " << seed;
     ++compared;
     atBounds += count;
@@ -201,8 +201,8 @@ TYPED_TEST(Actuation, ADifferentialWithoutBoundsIsTwoMotors) {
       if (coupled) {
         s.addRandomActuators(random, false);
         for (Eigen::Index i = 0; i < s.dofs(); ++i)
-          if (s.box.lower[i] < s.box.upper[i])
-            s.box.lower[i] = -kInfinity, s.box.upper[i] = kInfinity;
+          if (s.limits.lower[i] < s.limits.upper[i])
+            s.limits.lower[i] = -kInfinity, s.limits.upper[i] = kInfinity;
         s.matchBox();
       }
       return std::pair(this->solve(s), s.report.status);
@@ -210,7 +210,7 @@ TYPED_TEST(Actuation, ADifferentialWithoutBoundsIsTwoMotors) {
     const auto [single, singleStatus] = solveWith(false);
     const auto [coupled, status] = solveWith(true);
     EXPECT_EQ(status, singleStatus) << "seed " << seed;
-    if (status != gdd::GddStatus::converged && status != gdd::GddStatus::kink) continue;
+    if (status != gdd::GddStatus::converged && status != gdd::GddStatus::nonsmoothMinimum) continue;
     ++compared;
     worst = std::max(worst, (single - coupled).norm() / single.norm());
   }
@@ -241,8 +241,8 @@ TYPED_TEST(Actuation, RootForcesVanishAsTheirPriceGrows) {
       addMetricGoals(s, random);
       s.addRandomActuators(random, true, 100.0);
       if (price > 0.0) {
-        s.box.allowRootForces(s.model());
-        gdd::Effort effort = gdd::Effort::rootForces(s.model(), s.box);
+        s.limits.allowRootForces(s.model());
+        gdd::Effort effort = gdd::Effort::rootForces(s.model(), s.limits);
         EXPECT_GE(effort.dofs.size(), 6u);
         tied += static_cast<int>(effort.directions.cols());
         effort.weight = price;
@@ -252,8 +252,8 @@ TYPED_TEST(Actuation, RootForcesVanishAsTheirPriceGrows) {
       result.a = this->solve(s);
       EXPECT_EQ(s.report.status, gdd::GddStatus::converged) << "seed " << seed << ", " << price;
       for (int i = 0; i < s.dofs(); ++i)
-        if (s.box.isRootForce(s.model(), i))
-          result.largest = std::max(result.largest, std::abs(s.box.coordinate(i, this->force_)));
+        if (s.limits.isRootForce(s.model(), i))
+          result.largest = std::max(result.largest, std::abs(s.limits.coordinate(i, this->force_)));
       return result;
     };
     const RootForces none = solveWith(0.0);
@@ -286,9 +286,9 @@ TYPED_TEST(Actuation, TheHumanoidsRootForcesVanishAsTheirPriceGrows) {
       r.addReach("right_hand", Vector3(0.45, -0.25, 1.1));
       if (penalises<TypeParam>) r.controller.solver = gdd::GddSolver::augmentedLagrangian;
       if (price > 0.0) {
-        r.controller.box.allowRootForces(r.model);
+        r.controller.limits.allowRootForces(r.model);
         auto effort =
-            std::make_unique<gdd::Effort>(gdd::Effort::rootForces(r.model, r.controller.box));
+            std::make_unique<gdd::Effort>(gdd::Effort::rootForces(r.model, r.controller.limits));
         effort->weight = price;
         r.controller.goals.push_back(std::move(effort));
       }

@@ -50,8 +50,9 @@ TEST(GddBehaviour, ArmWithDryFrictionClosesMostOfTheDistance) {
   for (int i = 0; i < 1000; ++i) {
     ASSERT_EQ(r.step(), SolveStatus::converged);
     const gdd::GddStatus status = r.controller.report.status;
-    kinks += status == gdd::GddStatus::kink;
-    EXPECT_TRUE(status == gdd::GddStatus::kink || status == gdd::GddStatus::converged) << i;
+    kinks += status == gdd::GddStatus::nonsmoothMinimum;
+    EXPECT_TRUE(status == gdd::GddStatus::nonsmoothMinimum || status == gdd::GddStatus::converged)
+        << i;
     EXPECT_SMALL(r.controller.report.stationarity, 1e-6);
     ASSERT_TRUE(r.controlsAllowed());
   }

@@ -6,7 +6,7 @@
 namespace softgauss::test {
 namespace {
 
-enum class Piece { below, stiff, above };  ///< of the row's knots; at the two ends it is free
+enum class Piece { below, stiff, above };  ///< of the row's breakpoints; at the two ends it is free
 
 class Search {
  public:

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// The least value of a small problem (T.17), cell by cell.
+/// The least value of a small problem (8.1), cell by cell.
 ///
-/// In a cell every row has one piece of its penalty: there P is constant, g affine, and (T.17) is a
+/// In a cell every row has one piece of its penalty: there P is constant, g affine, and (8.1) is a
 /// convex quadratic program over the closed cell. All patterns of pieces are gone through, each
 /// program is solved by itself, and the least of their minima is the minimum of the problem. No
 /// start, no path, no multiplier of the solvers under test enters.
@@ -20,7 +20,7 @@ struct CellMinimum {
   int programs = 0;                                        ///< solved, feasible
 };
 
-/// Patterns of pieces that the rows of `d` have: 2 for one knot, 3 for two, 1 for none.
+/// Patterns of pieces that the rows of `d` have: 2 for one breakpoint, 3 for two, 1 for none.
 double patternCount(const DenseGdd& d);
 
 /// The global minimum.

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Small problems solved outright: every piece of every row, and every side of every box.
 ///
-/// A minimum of (T.17) lies in the relative interior of a face of the piecewise quadratic: each row
-/// stiff, free or at a knot; each control free, at its lower or at its upper bound. On a face it
-/// solves a linear system. All faces are solved, what is not feasible is dropped, and the lowest F
-/// of the rest is the global minimum.
+/// A minimum of (8.1) lies in the relative interior of a face of the piecewise quadratic: each row
+/// stiff, free or at a breakpoint; each control free, at its lower or at its upper bound. On a face
+/// it solves a linear system. All faces are solved, what is not feasible is dropped, and the lowest
+/// F of the rest is the global minimum.
 
 #include <Eigen/LU>
 
@@ -37,21 +37,21 @@ class Enumeration {
   }
 
  private:
-  /// Stiff; free and at the knot of a bound of the force, or of both.
+  /// Stiff; free and at the breakpoint of a bound of the force, or of both.
   int facesOf(int i) const { return std::isfinite(d_.forceUpper[i]) ? 5 : 3; }
 
-  /// P, the affine part of g and the knots of a pattern.
+  /// P, the affine part of g and the breakpoints of a pattern.
   void setRows(long pattern) {
     P_ = d_.Mhat;
     offset_ = d_.c;
-    knots_.clear();
+    breakpoints_.clear();
     for (int i = 0; i < d_.rows(); ++i) {
       const long face = pattern % facesOf(i);
       pattern /= facesOf(i);
       if (face > 0) {
         const bool above = face <= 2;
         offset_ -= (above ? d_.forceLower[i] : d_.forceUpper[i]) * d_.J.row(i).transpose();
-        if (face % 2 == 0) knots_.emplace_back(i, above ? d_.upperKnot(i) : d_.lowerKnot(i));
+        if (face % 2 == 0) breakpoints_.emplace_back(i, above ? d_.upperKnot(i) : d_.lowerKnot(i));
         continue;
       }
       P_ += d_.D[i] * d_.J.row(i).transpose() * d_.J.row(i);
@@ -71,14 +71,14 @@ class Enumeration {
       if (sides % 3 == 2) fixed.emplace_back(i, d_.upper[i]);
       sides /= 3;
     }
-    const int m = static_cast<int>(knots_.size() + fixed.size());
+    const int m = static_cast<int>(breakpoints_.size() + fixed.size());
     if (m > n) return;  // more conditions than unknowns: also on a smaller face
     MatrixX K = MatrixX::Zero(n + m, n + m);
     VectorX b(n + m);
     K.topLeftCorner(n, n) = H_;
     b.head(n) = -slope_;
     int k = n;
-    for (const auto& [i, x] : knots_) {
+    for (const auto& [i, x] : breakpoints_) {
       K.row(k).head(n) = d_.J.row(i);
       b[k++] = d_.aRef[i] + x;
     }
@@ -98,7 +98,7 @@ class Enumeration {
   std::vector<int> states_;  ///< of each dof: 3 where it has a box of some width
   MatrixX P_, H_;
   VectorX offset_, slope_;
-  std::vector<std::pair<int, double>> knots_;  ///< rows, and their x there
+  std::vector<std::pair<int, double>> breakpoints_;  ///< rows, and their x there
 };
 
 /// A fixed chain with frictional contacts at its links and a point goal; its last joint is passive
@@ -127,13 +127,13 @@ GddScene smallScene(std::uint64_t seed, int contacts, bool boxed, double weight,
   scene.input.softFriction = true;
   EXPECT_EQ(scene.stages(), SolveStatus::converged);
   GddScene s(std::move(scene));
-  if (seed % 2 == 0) s.box.lower[3] = s.box.upper[3] = 0.0;
+  if (seed % 2 == 0) s.limits.lower[3] = s.limits.upper[3] = 0.0;
   for (int i = 0; boxed && i < 2; ++i) {
-    s.box.lower[i] = -random.uniform(0.5, 5.0);
-    s.box.upper[i] = random.uniform(0.5, 5.0);
+    s.limits.lower[i] = -random.uniform(0.5, 5.0);
+    s.limits.upper[i] = random.uniform(0.5, 5.0);
   }
-  s.dense.lower = s.box.lower;
-  s.dense.upper = s.box.upper;
+  s.dense.lower = s.limits.lower;
+  s.dense.upper = s.limits.upper;
   const int body = 4;
   s.addPoint(body, s.data().kinematics.X_WB[body].p + random.vector3(0.2), weight,
              random.vector3(20.0));
@@ -148,7 +148,7 @@ struct Tally {
     const double least = Enumeration(s.dense).globalMinimum();
     const VectorX& a = s.solve();
     ++problems;
-    kinks += s.report.status == gdd::GddStatus::kink;
+    kinks += s.report.status == gdd::GddStatus::nonsmoothMinimum;
     unfinished += s.report.status == gdd::GddStatus::iterationLimit;
     const VectorX g = s.dense.g(a);
     // ℓ ≥ 0 has no constant here: F is the sum of two squares, and a gap is a share of it.

@@ -21,8 +21,8 @@ using LinkForces = std::map<std::string, Vector3>;
 LinkForces linkForces(const Model& model, const Data& data) {
   LinkForces sum;
   const PyramidalContact& contacts = data.constraints.contact;
-  for (int i = 0; i < static_cast<int>(contacts.made().size()); ++i) {
-    const Contact& c = data.contacts.contacts[contacts.made()[i].contact];
+  for (int i = 0; i < static_cast<int>(contacts.contactsWithRows().size()); ++i) {
+    const Contact& c = data.contacts.contacts[contacts.contactsWithRows()[i].contact];
     const auto add = [&](int geometry, const Vector3& f) {
       const Geometry& g = model.geometries[geometry];
       const std::string link = g.name.substr(0, g.name.find('/'));
@@ -56,7 +56,7 @@ struct Outcome {
   }
 };
 
-/// A robot at an instant: the same goals, the same price of force, for every controller.
+/// A robot at an instant: the same goals, the same control cost, for every controller.
 class Instant {
  public:
   explicit Instant(RobotScene& r) : r_(r), cost_(r.model.nv) {
@@ -70,18 +70,18 @@ class Instant {
     Outcome out;
     Solver solver(r_.model);
     const gdd::GddReport report =
-        solver.solve(r_.model, cost_, r_.controller.box, r_.data, r_.state.warmstart);
+        solver.solve(r_.model, cost_, r_.controller.limits, r_.data, r_.state.warmstart);
     EXPECT_TRUE(report.status == gdd::GddStatus::converged ||
-                report.status == gdd::GddStatus::kink);
+                report.status == gdd::GddStatus::nonsmoothMinimum);
     VectorX g;
     inverseDynamics(r_.model, solver.acceleration(), r_.data, g);
     out.assumed = linkForces(r_.model, r_.data);
-    apply(r_.controller.box.clamp(solver.force()), out);
+    apply(r_.controller.limits.clamp(solver.force()), out);
     return out;
   }
 
   ConvexControl convexOnly(bool stance) const {
-    return convexControl(r_.data, cost_, r_.controller.box, stance);
+    return convexControl(r_.data, cost_, r_.controller.limits, stance);
   }
 
   Outcome convex(bool stance) {
@@ -213,7 +213,7 @@ TEST(ConvexController, ObeysItsConstraints) {
                             r->data.constraints.denseJacobian().transpose() * c.f;
     EXPECT_SMALL(balance.cwiseAbs().maxCoeff() / kWeight, 1e-9);
     EXPECT_SMALL(std::min(0.0, c.f.minCoeff()) / kWeight, 1e-9);
-    EXPECT_SMALL(r->controller.box.violation(c.u), 1e-9);
+    EXPECT_SMALL(r->controller.limits.violation(c.u), 1e-9);
   }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The price of force about what holds the robot at rest, and about zero as in the paper.
+// The control cost about what holds the robot at rest, and about zero as in the paper.
 
 #include <gtest/gtest.h>
 
@@ -22,8 +22,8 @@ struct FreeArm : RobotScene {
       model.options.effects.insert(effect);
     for (int i = 0; i < model.nq; ++i) state.q[i] = 0.3 + 0.1 * i;
     controller.solver = solver;
-    controller.box.lower.setConstant(-kInfinity);
-    controller.box.upper.setConstant(kInfinity);
+    controller.limits.lower.setConstant(-kInfinity);
+    controller.limits.upper.setConstant(kInfinity);
   }
 };
 

@@ -8,8 +8,8 @@
 
 namespace softgauss::test {
 
-ConvexControl convexControl(const Data& data, const gdd::GoalCost& cost, const gdd::ControlBox& box,
-                            bool stance) {
+ConvexControl convexControl(const Data& data, const gdd::GoalCost& cost,
+                            const gdd::ControlLimits& limits, bool stance) {
   // Small against M⁻¹, which is 0.02 1/kg and more: it picks one of many equivalent f.
   constexpr double kForcePrice = 1e-5;
   constexpr double kStance = 1e5;  // the weight of a goal that must not give way [kg]
@@ -20,7 +20,7 @@ ConvexControl convexControl(const Data& data, const gdd::GoalCost& cost, const g
       throw std::logic_error("a row that is no limit and no contact");
   std::vector<int> actuated;
   for (int i = 0; i < n; ++i)
-    if (box.lower[i] < box.upper[i]) actuated.push_back(i);
+    if (limits.lower[i] < limits.upper[i]) actuated.push_back(i);
   const int m = static_cast<int>(actuated.size()), size = n + m + rows;
   const MatrixX M = data.inertia.M.dense(), Minv = physics.M.llt().solve(MatrixX::Identity(n, n));
 
@@ -36,7 +36,7 @@ ConvexControl convexControl(const Data& data, const gdd::GoalCost& cost, const g
   qp.s.head(n) = atZero;
   for (int i = 0; i < n; ++i) qp.H.col(i).head(n) = slope(VectorX::Unit(n, i)) - atZero;
   if (stance)
-    for (const ContactRows& made : data.constraints.contact.made()) {
+    for (const ContactRows& made : data.constraints.contact.contactsWithRows()) {
       // Twice the mean of opposite edges is the normal; their difference a tangent.
       const int first = rows - data.constraints.contact.rowCount() + made.row;
       const int edges = std::max(1, 2 * made.frictionDim);
@@ -60,9 +60,9 @@ ConvexControl convexControl(const Data& data, const gdd::GoalCost& cost, const g
   qp.C.topRightCorner(rows, rows).setIdentity();
   for (int i = 0; i < m; ++i) {
     qp.C(rows + 2 * i, n + i) = 1.0;
-    qp.b[rows + 2 * i] = std::max(box.lower[actuated[i]], -1e6);
+    qp.b[rows + 2 * i] = std::max(limits.lower[actuated[i]], -1e6);
     qp.C(rows + 2 * i + 1, n + i) = -1.0;
-    qp.b[rows + 2 * i + 1] = -std::min(box.upper[actuated[i]], 1e6);
+    qp.b[rows + 2 * i + 1] = -std::min(limits.upper[actuated[i]], 1e6);
   }
   const std::optional<VectorX> x = qp.solve();
   if (!x) throw std::logic_error("no forces and controls are feasible");

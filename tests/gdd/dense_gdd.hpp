@@ -4,14 +4,14 @@
 /// The problem of goal directed dynamics in dense matrices, coded anew from its formulae: the
 /// oracle for everything in gdd/.
 ///
-///   g(a) = M̂ a + c − Jᵀf,  f = D (a_ref − J a), bounded                                   (T.2)
-///   F(a) = ½ gᵀR g + ℓ(a),  ℓ(a) = ½ Σ w (A a − y)² + ½ m aᵀM a + aᵀM o + ℓ_f          (T.17)
-///   ℓ_f(a) = ½ Σ w_f (B f − y_f)²                                                       (T.53)
-///   Φ(a) = F(a) + Σ ½ ρ (t − clamp t)²,  t = C g + λ/ρ                                (T.18)
+///   g(a) = M̂ a + c − Jᵀf,  f = D (a_ref − J a), bounded                                   (1.2)
+///   F(a) = ½ gᵀR g + ℓ(a),  ℓ(a) = ½ Σ w (A a − y)² + ½ m aᵀM a + aᵀM o + ℓ_f           (8.1)
+///   ℓ_f(a) = ½ Σ w_f (B f − y_f)²                                                       (9.19)
+///   Φ(a) = F(a) + Σ ½ ρ (t − clamp t)²,  t = C g + λ/ρ                                (10.1)
 
 #include <vector>
 
-#include "engine/core/types.hpp"
+#include "softgauss/engine/core/types.hpp"
 
 namespace softgauss::test {
 
@@ -40,10 +40,10 @@ struct DenseGdd {
   VectorX g(const VectorX& a) const;
   /// M̂ + Jᵀ D J over the stiff rows: those with f within its bounds.
   MatrixX P(const VectorX& a) const;
-  /// The knots of a row, ascending, ± ∞ where it has none.
+  /// The breakpoints of a row, ascending, ± ∞ where it has none.
   double lowerKnot(int i) const { return -forceUpper[i] / D[i]; }
   double upperKnot(int i) const { return -forceLower[i] / D[i]; }
-  /// Whether row i is stiff at x, or, within `width` of a knot, just past it along dx.
+  /// Whether row i is stiff at x, or, within `width` of a breakpoint, just past it along dx.
   bool stiff(int i, double x, double dx = 0.0, double width = 0.0) const;
 
   std::vector<bool> stiffRows(const VectorX& a) const;

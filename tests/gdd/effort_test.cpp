@@ -16,7 +16,7 @@ VectorX addRandomPrice(GddScene& s, Random& random) {
   for (int i = 0; i < s.dofs(); ++i) {
     if (random.chance(0.5)) continue;
     price[i] = random.uniform(0.1, 3.0) * s.data().weights.dof[i];
-    s.cost.addForcePrice(i, price[i]);
+    s.cost.addControlCost(i, price[i]);
   }
   s.dense.Minv.diagonal() += price;  // the R of its formulae
   return price;
@@ -24,11 +24,11 @@ VectorX addRandomPrice(GddScene& s, Random& random) {
 
 TEST(Effort, PenaltyHasItsDerivatives) {
   Random random(3);
-  gdd::ControlBox box;
-  box.lower = VectorX::Constant(1, -2.0);
-  box.upper = VectorX::Constant(1, 1.0);
+  gdd::ControlLimits limits;
+  limits.lower = VectorX::Constant(1, -2.0);
+  limits.upper = VectorX::Constant(1, 1.0);
   const VectorX lambda = VectorX::Constant(1, 0.7), rho = VectorX::Constant(1, 5.0);
-  const gdd::BoundPenalty bounds{box, lambda, rho};
+  const gdd::BoundPenalty bounds{limits, lambda, rho};
   for (int i = 0; i < 50; ++i) {
     const double g = random.uniform(-5.0, 5.0), h = 1e-5;
     const Jet here = bounds.at(0, g);
@@ -107,7 +107,7 @@ TEST(Effort, RootForcesVanishAsTheirPriceGrows) {
       Random goals(seed + 9);
       s.addRandomGoals(goals);
       if (weight > 0.0) {
-        s.box.allowRootForces(s.model());
+        s.limits.allowRootForces(s.model());
         const gdd::Effort effort = [&] {
           gdd::Effort e(gdd::Effort::rootDofs(s.model()));
           e.weight = weight;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Goals of contact forces: their cost, the two solvers on it, and what robots do.
 
-#include "io/goals.hpp"
-#include "io/scene.hpp"
+#include "softgauss/io/goals.hpp"
+#include "softgauss/io/scene.hpp"
 #include "tests/gdd/gdd_scene.hpp"
 #include "tests/gdd/robot_scene.hpp"
 #include "tests/gdd/solvers.hpp"
@@ -20,8 +20,8 @@ struct GroundWrench {
   template <class Contacts>
   void add(const Model& model, const Data& data, const Contacts& contacts,
            const std::string& link) {
-    for (int i = 0; i < static_cast<int>(contacts.made().size()); ++i) {
-      const Contact& c = data.contacts.contacts[contacts.made()[i].contact];
+    for (int i = 0; i < static_cast<int>(contacts.contactsWithRows().size()); ++i) {
+      const Contact& c = data.contacts.contacts[contacts.contactsWithRows()[i].contact];
       const Geometry &A = model.geometries[c.geometryA], &B = model.geometries[c.geometryB];
       const bool onB = A.body == 0, onA = B.body == 0;
       if (onA == onB) continue;
@@ -94,7 +94,7 @@ TEST(ForceGoals, GradientAndCurvatureAreDifferencesOfTheContactForces) {
         const Vector3 moment = all.moment - place.cross(all.force);
         return 1.5 * error.squaredNorm() + 100.0 * moment.head<2>().squaredNorm();
       };
-      gdd::ForceTerms terms;
+      gdd::ContactForceTerms terms;
       terms.setCost(cost.forces());
       const auto gradient = [&] {
         VectorX sum = VectorX::Zero(r.model.nv);
@@ -163,7 +163,7 @@ TYPED_TEST(ForceGoalsOfSolver, OneRowHasAClosedForm) {
     goal.weight = w;
     goal.addCost({s.model(), s.scene.state, s.data()}, s.cost);
     TypeParam solver(s.model());
-    const gdd::GddReport report = solver.solve(s.model(), s.cost, s.box, s.data(), {});
+    const gdd::GddReport report = solver.solve(s.model(), s.cost, s.limits, s.data(), {});
     // In contact: f = f*(1 + …): minimise ½ (m a + c − f)²/m + ½ w (f − f*)², a = a_ref − f/D.
     const double slope = -(m / D + 1.0);  // dg/df
     const double free = m * s.dense.aRef[0] + c;
@@ -190,11 +190,11 @@ TEST(ForceGoals, BothSolversFindTheSameOrAnotherMinimum) {
     if (s.cost.forces().empty()) continue;
     s.solve();
     const double one = s.report.objective;
-    const bool finished =
-        s.report.status == gdd::GddStatus::converged || s.report.status == gdd::GddStatus::kink;
+    const bool finished = s.report.status == gdd::GddStatus::converged ||
+                          s.report.status == gdd::GddStatus::nonsmoothMinimum;
     gdd::ActiveSet second(s.model());
     const auto solve = [&](const WarmStart& warm) {
-      const gdd::GddReport report = second.solve(s.model(), s.cost, s.box, s.data(), warm);
+      const gdd::GddReport report = second.solve(s.model(), s.cost, s.limits, s.data(), warm);
       EXPECT_NE(report.status, gdd::GddStatus::notFinite);
       EXPECT_NEAR(report.objective, s.dense.objective(second.acceleration()),
                   1e-9 * (1.0 + std::abs(report.objective)))
@@ -210,7 +210,7 @@ TEST(ForceGoals, BothSolversFindTheSameOrAnotherMinimum) {
     if (!finished) continue;
     WarmStart warm;
     s.solver->keepWarmStart(warm);
-    warm.control = s.box.clamp(s.solver->force());
+    warm.control = s.limits.clamp(s.solver->force());
     EXPECT_LE(solve(warm), one + 1e-6 * scale) << seed;
   }
   // Of 100 problems 76 end at one value, 14 lower with the first, 10 with the second. Without the
@@ -234,7 +234,7 @@ void run(RobotScene& r, double seconds) {
 }
 
 /// Largest difference between the forces that the controller assumed in the last step and those
-/// that its control makes by (T.1) [N].
+/// that its control makes by (1.1) [N].
 double mismatch(RobotScene& r) {
   VectorX g(r.model.nv);
   inverseDynamics(r.model, r.data.forward.a, r.data, g);
@@ -351,7 +351,7 @@ TEST(ForceBehaviour, TheArmPressesATable) {
     ASSERT_NE(controller.step(model, Input{}, state, data, &contacts), SolveStatus::notFinite);
     worst = std::max(worst, std::abs(hand.measured(data).z() - 20.0));
     VectorX g(model.nv);
-    inverseDynamics(model, data.forward.a, data, g);  // of (T.1), not of mid-step
+    inverseDynamics(model, data.forward.a, data, g);  // of (1.1), not of mid-step
     const double acting = hand.measured(data).z();
     inverseDynamics(model, controller.acceleration(), data, g);
     differing = std::max(differing, std::abs(hand.measured(data).z() - acting));

@@ -58,15 +58,15 @@ struct Expanded {
   const Scene& scene;
   gdd::GoalCost cost;
   gdd::AugmentedLagrangian solver;
-  gdd::ExpandedSolve expansion;
+  gdd::SequentialQuadraticSolve expansion;
   gdd::GddReport report;
 
   explicit Expanded(const Scene& s)
       : scene(s), cost(s.model.nv), solver(s.model), expansion(s.model) {}
   const VectorX& solve(const Function& f) {
     cost.addFunction(f);
-    const gdd::ControlBox box(scene.model);
-    report = expansion.solve(solver, scene.model, cost, box, *scene.data, scene.state.warmstart);
+    const gdd::ControlLimits limits(scene.model);
+    report = expansion.solve(solver, scene.model, cost, limits, *scene.data, scene.state.warmstart);
     return expansion.acceleration();
   }
 };
@@ -153,12 +153,12 @@ TEST(FunctionGoal, ConditionsOfFirstOrderHoldWithContactsAndBoxes) {
     for (const Function& f : {softAbsolute(w, t), waves(w, t)}) {
       gdd::GoalCost cost = s.cost;
       cost.addFunction(f);
-      gdd::ExpandedSolve expansion(s.model());
+      gdd::SequentialQuadraticSolve expansion(s.model());
       const gdd::GddReport report =
-          expansion.solve(*s.solver, s.model(), cost, s.box, s.data(), WarmStart());
+          expansion.solve(*s.solver, s.model(), cost, s.limits, s.data(), WarmStart());
       most = std::max(most, expansion.solves());
       solves += expansion.solves();
-      kinks += report.status == gdd::GddStatus::kink;
+      kinks += report.status == gdd::GddStatus::nonsmoothMinimum;
       if (report.status != gdd::GddStatus::converged) continue;
       ++smooth;
       WarmStart end;
@@ -239,9 +239,9 @@ TEST(ValueGoal, WithTheRiccatiValueItIsLqr) {
   });
   Expanded e(scene);
   goal.addCost({scene.model, scene.state, *scene.data}, e.cost);
-  const gdd::ControlBox box(scene.model);
+  const gdd::ControlLimits limits(scene.model);
   const auto report =
-      e.expansion.solve(e.solver, scene.model, e.cost, box, *scene.data, WarmStart());
+      e.expansion.solve(e.solver, scene.model, e.cost, limits, *scene.data, WarmStart());
   EXPECT_EQ(report.status, gdd::GddStatus::converged);
   VectorX x(4);
   x << scene.state.q, scene.state.v;

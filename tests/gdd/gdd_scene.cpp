@@ -32,9 +32,9 @@ GddScene::GddScene(Scene s)
 }
 
 void GddScene::matchBox() {
-  dense.lower = box.lower;
-  dense.upper = box.upper;
-  dense.C = box.transmission ? box.transmission->C() : MatrixX();
+  dense.lower = limits.lower;
+  dense.upper = limits.upper;
+  dense.C = limits.transmission ? limits.transmission->C() : MatrixX();
 }
 
 void GddScene::addPoint(int body, const Vector3& p_WP, double weight, const Vector3& target) {
@@ -57,7 +57,7 @@ void GddScene::addMetric(double weight, const VectorX& target) {
 }
 
 void GddScene::addForce(double weight, const Vector3& target,
-                        const std::vector<std::pair<int, gdd::ForceCost::Map>>& contacts) {
+                        const std::vector<std::pair<int, gdd::ContactForceCost::Map>>& contacts) {
   cost.forces().add(weight, target);
   const Eigen::Index before = dense.B.rows();
   const MatrixX old = dense.B;
@@ -71,7 +71,7 @@ void GddScene::addForce(double weight, const Vector3& target,
   const int first = dense.rows() - made.rowCount();  // the last of the kinds in use
   for (const auto& [i, C] : contacts) {
     cost.forces().addContact(Cone::pyramidal, i, C);
-    const ContactRows& rows = made.made()[i];
+    const ContactRows& rows = made.contactsWithRows()[i];
     // Edge ± of direction k: f along the normal, ± μ_k f along k.
     for (int edge = 0; edge < std::max(1, 2 * rows.frictionDim); ++edge) {
       auto column = dense.B.col(first + rows.row + edge);
@@ -85,13 +85,13 @@ void GddScene::addForce(double weight, const Vector3& target,
 
 void GddScene::addRandomForces(Random& random) {
   constexpr double kWeights[] = {0.01, 0.1, 1.0};
-  const int made = static_cast<int>(data().constraints.contact.made().size());
+  const int made = static_cast<int>(data().constraints.contact.contactsWithRows().size());
   if (made == 0) return;
   for (int goal = 0; goal < 2; ++goal) {
-    std::vector<std::pair<int, gdd::ForceCost::Map>> contacts;
+    std::vector<std::pair<int, gdd::ContactForceCost::Map>> contacts;
     for (int i = 0; i < made; ++i) {
       if (!contacts.empty() && random.chance(0.5)) continue;
-      gdd::ForceCost::Map C;
+      gdd::ContactForceCost::Map C;
       for (int column = 0; column < 6; ++column) C.col(column) = random.vector3(1.0);
       contacts.emplace_back(i, C);
     }
@@ -117,8 +117,8 @@ void GddScene::addRandomGoals(Random& random) {
 void GddScene::addRandomBox(Random& random, double share, double largest) {
   for (int i = 0; i < dofs(); ++i) {
     if (!model().dofs[i].actuated || !random.chance(share)) continue;
-    box.upper[i] = random.uniform(0.1, 1.0) * largest;
-    box.lower[i] = -random.uniform(0.1, 1.0) * largest;
+    limits.upper[i] = random.uniform(0.1, 1.0) * largest;
+    limits.lower[i] = -random.uniform(0.1, 1.0) * largest;
   }
   matchBox();
 }
@@ -126,7 +126,7 @@ void GddScene::addRandomBox(Random& random, double share, double largest) {
 void GddScene::addRandomActuators(Random& random, bool tendons, double largest) {
   std::vector<int> driven;
   for (int i = 0; i < dofs(); ++i)
-    if (box.lower[i] < box.upper[i]) driven.push_back(i);
+    if (limits.lower[i] < limits.upper[i]) driven.push_back(i);
   std::vector<gdd::Actuator> actuators;
   const auto coefficient = [&] {
     return (random.chance(0.5) ? 1.0 : -1.0) * random.uniform(0.3, 3.0);
@@ -154,7 +154,7 @@ void GddScene::addRandomActuators(Random& random, bool tendons, double largest) 
     add({{i, first[0].coefficient * random.uniform(0.5, 2.0)},
          {j, -first[1].coefficient * random.uniform(0.5, 2.0)}});
   }
-  box = gdd::ControlBox(model(), std::move(actuators));
+  limits = gdd::ControlLimits(model(), std::move(actuators));
   matchBox();
 }
 
@@ -163,7 +163,7 @@ void GddScene::randomMultipliers(Random& random, double scale) {
 }
 
 const VectorX& GddScene::solve() {
-  report = solver->solve(model(), cost, box, data(), scene.state.warmstart);
+  report = solver->solve(model(), cost, limits, data(), scene.state.warmstart);
   WarmStart end;
   solver->keepWarmStart(end);
   dense.lambda = end.multipliers;
@@ -186,7 +186,7 @@ GddScene randomGddScene(std::uint64_t seed, int contacts, double boxShare,
   // Between random trees that nothing rests on. With the load of whole forests on each contact the
   // solvers would be tested on other numbers, worse conditioned by a factor of a hundred.
   Scene scene = randomScene(seed, contacts, options);
-  scene.model.options.ownSoftness = false;
+  scene.model.options.constraintModel = ConstraintModel::mujoco;
   scene.stages();
   GddScene s(std::move(scene));
   s.addRandomGoals(random);

@@ -5,7 +5,7 @@
 
 #include <memory>
 
-#include "gdd/gdd.hpp"
+#include "softgauss/gdd/gdd.hpp"
 #include "tests/gdd/dense_gdd.hpp"
 #include "tests/support/scene.hpp"
 
@@ -15,7 +15,7 @@ class GddScene {
  public:
   Scene scene;
   gdd::GoalCost cost;
-  gdd::ControlBox box;
+  gdd::ControlLimits limits;
   std::unique_ptr<gdd::AugmentedLagrangian> solver;
   gdd::GddReport report;
   DenseGdd dense;
@@ -29,7 +29,7 @@ class GddScene {
   void addMetric(double weight, const VectorX& target);
   /// ½ weight |Σ C F − target|² over the frictional contacts of pyramids named, in both forms.
   void addForce(double weight, const Vector3& target,
-                const std::vector<std::pair<int, gdd::ForceCost::Map>>& contacts);
+                const std::vector<std::pair<int, gdd::ContactForceCost::Map>>& contacts);
   /// Two goals of random wrenches of random contacts; none where nothing touches.
   void addRandomForces(Random& random);
   void removeForces();

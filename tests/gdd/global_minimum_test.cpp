@@ -62,9 +62,9 @@ GddScene chainScene(std::uint64_t seed, int contacts) {
   scene.contacts = std::make_shared<FixedContacts>(source);
   scene.stages();
   GddScene s(std::move(scene));
-  if (seed % 2 == 0) s.box.lower[4] = s.box.upper[4] = 0.0;
-  s.dense.lower = s.box.lower;
-  s.dense.upper = s.box.upper;
+  if (seed % 2 == 0) s.limits.lower[4] = s.limits.upper[4] = 0.0;
+  s.dense.lower = s.limits.lower;
+  s.dense.upper = s.limits.upper;
   return s;
 }
 
@@ -103,8 +103,8 @@ void addTo(PatternTally& tally, GddScene& s, const CellMinimum& least) {
   const DenseGdd& d = s.dense;
   Solver solver(s.model());
   const gdd::GddReport report =
-      solver.solve(s.model(), s.cost, s.box, s.data(), s.scene.state.warmstart);
-  setAppliedForce(s.box.clamp(solver.force()), s.data().forces);
+      solver.solve(s.model(), s.cost, s.limits, s.data(), s.scene.state.warmstart);
+  setAppliedForce(s.limits.clamp(solver.force()), s.data().forces);
   ASSERT_EQ(forwardDynamics(s.model(), &solver.acceleration(), s.data()), SolveStatus::converged);
   const VectorX a = s.data().forward.a;
 
@@ -119,9 +119,11 @@ void addTo(PatternTally& tally, GddScene& s, const CellMinimum& least) {
   tally.patterns += least.patterns;
   tally.programs += least.programs;
 
-  if (report.status != gdd::GddStatus::converged && report.status != gdd::GddStatus::kink) return;
+  if (report.status != gdd::GddStatus::converged &&
+      report.status != gdd::GddStatus::nonsmoothMinimum)
+    return;
   ++tally.claimed;
-  tally.kinks += report.status == gdd::GddStatus::kink;
+  tally.kinks += report.status == gdd::GddStatus::nonsmoothMinimum;
   // The ball is so small that another minimum is hardly in it: within 1e-4 of a, two of 1,500
   // minima have a better one beside them. What is less there, over what is gone, is the slope.
   constexpr double kRadius = 1e-6;
@@ -273,8 +275,8 @@ TEST(CellMinimum, NoSampleIsBelow) {
     for (int sample = 0; sample < 300; ++sample) {
       VectorX u(s.dofs());
       for (int i = 0; i < s.dofs(); ++i) {
-        const double lower = std::max(s.box.lower[i], -10.0),
-                     upper = std::min(s.box.upper[i], 10.0);
+        const double lower = std::max(s.limits.lower[i], -10.0),
+                     upper = std::min(s.limits.upper[i], 10.0);
         u[i] = random.uniform(lower, upper);
         if (random.chance(0.2)) u[i] = random.chance(0.5) ? lower : upper;
       }

@@ -2,11 +2,11 @@
 #pragma once
 
 /// What every goal owes: a cost whose gradient and curvature are those of its value, and the
-/// minimum of (T.17) where nothing bounds it.
+/// minimum of (8.1) where nothing bounds it.
 
 #include <Eigen/Cholesky>
 
-#include "gdd/gdd.hpp"
+#include "softgauss/gdd/gdd.hpp"
 #include "tests/support/finite_difference.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/scene.hpp"
@@ -64,9 +64,9 @@ class GoalCheck {
   /// What the solver finds.
   VectorX solved() {
     gdd::AugmentedLagrangian solver(scene_.model);
-    const gdd::ControlBox box(scene_.model);
+    const gdd::ControlLimits limits(scene_.model);
     const gdd::GddReport report =
-        solver.solve(scene_.model, cost_, box, *scene_.data, scene_.state.warmstart);
+        solver.solve(scene_.model, cost_, limits, *scene_.data, scene_.state.warmstart);
     EXPECT_EQ(report.status, gdd::GddStatus::converged);
     return solver.acceleration();
   }
@@ -110,7 +110,7 @@ auto rateAlong(const Scene& scene, const VectorX& a, F&& f) {
                          [&](const State& state) { return f(kinematicsAt(scene.model, state)); });
 }
 
-/// What a law of (T.17) says of one goal, over random scenes: differences, closed form.
+/// What a law of (8.1) says of one goal, over random scenes: differences, closed form.
 /// make(model, random) gives the goal.
 template <class Make>
 void expectLawsOfGoals(Make&& make) {

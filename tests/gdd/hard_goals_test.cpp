@@ -2,7 +2,7 @@
 /// Goals that cannot be met as they are: a joint at its end, torques too small, a place out of
 /// reach, two places at once. The robot does what is left to do, and comes to rest.
 
-#include "io/goals.hpp"
+#include "softgauss/io/goals.hpp"
 #include "tests/gdd/robot_scene.hpp"
 #include "tests/support/tolerance.hpp"
 
@@ -31,8 +31,8 @@ class Course {
     bool pressed = false;
     for (const double f : r_.data.constraints.jointLimit.f) pressed |= f > 0.1;
     timeAtLimit += pressed ? r_.model.options.timestep : 0.0;
-    const VectorX &u = r_.controller.control, &upper = r_.controller.box.upper;
-    ASSERT_EQ(r_.controller.box.violation(u), 0.0);
+    const VectorX &u = r_.controller.control, &upper = r_.controller.limits.upper;
+    ASSERT_EQ(r_.controller.limits.violation(u), 0.0);
     saturation = std::max(saturation, u.cwiseAbs().cwiseQuotient(upper).maxCoeff());
     hand = r_.position("hand");
   }
@@ -69,7 +69,7 @@ TEST(HardGoals, ArmFollowsAMovingPlaceThroughTheEndsOfItsJoints) {
   EXPECT_EQ(r.data.constraints.jointLimit.rowCount(), 0) << "and to leave them";
   // Limits are soft: at 2 rad/s a joint goes 2 · 0.02 s/e past its end, 0.02 s their time constant.
   EXPECT_LT(course.beyond, 0.03);
-  // The price of force leaves 2 mm of a way of 677 mm.
+  // The control cost leaves 2 mm of a way of 677 mm.
   EXPECT_SMALL(worst, 0.003);
 }
 
@@ -78,8 +78,8 @@ TEST(HardGoals, WeakActuatorsDoWhatTheyCan) {
   const Vector3 target(0.5, 0.3, 0.5);
   for (const double strength : {0.3, 0.1, 0.02}) {
     RobotScene r("arm");
-    r.controller.box.lower *= strength;
-    r.controller.box.upper *= strength;
+    r.controller.limits.lower *= strength;
+    r.controller.limits.upper *= strength;
     r.addReach("hand", target).weight = 1e4;
     r.addDamping();
     Course course(r);

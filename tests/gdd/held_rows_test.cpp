@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Rows held at their knots (T.25), and the kinks at which the solver ends.
+/// Rows held at their breakpoints (10.6), and the kinks at which the solver ends.
 
 #include <Eigen/Cholesky>
 
@@ -20,7 +20,7 @@ constexpr int kPyramids = static_cast<int>(RowKind::pyramid);
 
 /// The four edges of each of the first `contacts` frictional contacts.
 void holdContacts(const Constraints& constraints, int contacts, gdd::HeldRows& held) {
-  for (const ContactRows& made : constraints.contact.made()) {
+  for (const ContactRows& made : constraints.contact.contactsWithRows()) {
     if (made.frictionDim == 0) continue;
     if (contacts-- == 0) return;
     for (int i = 0; i < 4; ++i) held.hold({{kPyramids, made.row + i}}, constraints);
@@ -71,8 +71,8 @@ TEST(HeldRows, HoldingTwiceHoldsOnceAndReleaseForgets) {
   EXPECT_EQ(held.size(), 3);
   held.release(1);
   ASSERT_EQ(held.size(), 2);
-  EXPECT_EQ(held[0].knot.row, (RowId{kind, 0}));
-  EXPECT_EQ(held[1].knot.row, (RowId{kind, 2}));
+  EXPECT_EQ(held[0].breakpoint.row, (RowId{kind, 0}));
+  EXPECT_EQ(held[1].breakpoint.row, (RowId{kind, 2}));
   held.clear();
   EXPECT_TRUE(held.empty());
 }
@@ -86,7 +86,7 @@ GddScene kinkScene(std::uint64_t seed) {
   return s;
 }
 
-/// Slope of Φ at a towards d, rows within `width` of their knots being at them.
+/// Slope of Φ at a towards d, rows within `width` of their breakpoints being at them.
 double slopeTowards(const DenseGdd& s, const VectorX& a, const VectorX& d, double width) {
   const VectorX g = s.g(a), w = s.Minv * g + s.penaltySlope(g);
   const VectorX x = s.residual(a), dx = s.J * d;
@@ -108,7 +108,7 @@ TEST(GddKink, ObjectiveFallsInNoDirection) {
     const VectorX a = s.solve();
     unfinished += s.report.status == gdd::GddStatus::iterationLimit;
     smooth += s.report.status == gdd::GddStatus::converged;
-    if (s.report.status != gdd::GddStatus::kink) continue;
+    if (s.report.status != gdd::GddStatus::nonsmoothMinimum) continue;
     ++kinks;
     rounded += s.report.stationarity > 1e-3;
     const DenseGdd& d = s.dense;
@@ -125,7 +125,7 @@ TEST(GddKink, ObjectiveFallsInNoDirection) {
       heldBelow += below <= width;
       directions.push_back(M.solve(d.J.row(i).transpose()));
     }
-    // The jump of the slope at a knot is what a wrong certificate would miss.
+    // The jump of the slope at a breakpoint is what a wrong certificate would miss.
     const VectorX scale = d.M.diagonal().cwiseSqrt();
     const double wish = d.goalGradient(a).cwiseQuotient(scale).cwiseAbs().maxCoeff();
     for (const VectorX& direction : directions) {
@@ -142,7 +142,7 @@ TEST(GddKink, ObjectiveFallsInNoDirection) {
   EXPECT_EQ(rounded, 0);
   EXPECT_GT(kinks, 20);
   EXPECT_GT(held, kinks);
-  EXPECT_GT(heldBelow, 5) << "rows at the lower knot of their friction";
+  EXPECT_GT(heldBelow, 5) << "rows at the lower breakpoint of their friction";
   EXPECT_LE(unfinished, 15);
   RecordProperty("kinks", kinks);
   RecordProperty("smooth", smooth);
@@ -154,7 +154,7 @@ TEST(GddKink, ObjectiveIsLowestNearby) {
   for (int seed = 0; seed < 80; ++seed) {
     GddScene s = kinkScene(seed);
     const VectorX a = s.solve();
-    if (s.report.status != gdd::GddStatus::kink) continue;
+    if (s.report.status != gdd::GddStatus::nonsmoothMinimum) continue;
     ++kinks;
     const double here = s.dense.augmented(a);
     Random random(seed + 77);

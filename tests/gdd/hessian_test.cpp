@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Gradient and Gauss–Newton Hessian of Φ (T.19), (T.20) against dense formulae and differences.
+/// Gradient and Gauss–Newton Hessian of Φ (10.2), (10.4) against dense formulae and differences.
 
 #include <Eigen/Cholesky>
 
@@ -10,7 +10,7 @@ namespace softgauss::test {
 namespace {
 
 /// A random scene at a random acceleration near the unconstrained one, rows evaluated there. Every
-/// third has gears, differentials and tendons, and every sixth another price of force.
+/// third has gears, differentials and tendons, and every sixth another control cost.
 struct AtPoint {
   GddScene s;
   VectorX a;
@@ -44,8 +44,8 @@ struct AtPoint {
     hessian.setCell(s.data());
   }
 
-  gdd::ForceTerms forces() {
-    gdd::ForceTerms terms;
+  gdd::ContactForceTerms forces() {
+    gdd::ContactForceTerms terms;
     terms.setCost(s.cost.forces());
     terms.evaluate(s.data().constraints);
     return terms;
@@ -55,12 +55,12 @@ struct AtPoint {
   VectorX gradient() {
     VectorX g(s.dofs());
     inverseDynamics(s.model(), a, s.data(), g);
-    const gdd::BoundPenalty bounds{s.box, s.dense.lambda, s.dense.rho};
+    const gdd::BoundPenalty bounds{s.limits, s.dense.lambda, s.dense.rho};
     VectorX w(s.dofs()), y(s.dofs()), slope(s.dofs());
-    s.cost.price().multiply(massFactor, g, w);
-    s.box.coordinates(g, y);
+    s.cost.controlCost().multiply(massFactor, g, w);
+    s.limits.coordinates(g, y);
     for (int i = 0; i < s.dofs(); ++i) slope[i] = bounds.at(i, y[i]).slope;
-    s.box.addSlope(slope, w);
+    s.limits.addSlope(slope, w);
     VectorX result(s.dofs()), Ma(s.dofs()), cost(s.dofs());
     hessian.multiplyP(w, result);
     s.data().inertia.M.multiply(a, Ma);
@@ -70,7 +70,7 @@ struct AtPoint {
   }
 };
 
-/// Half the way along ±e_i to the nearest knot of a row or of a bound.
+/// Half the way along ±e_i to the nearest breakpoint of a row or of a bound.
 double safeStep(const DenseGdd& d, const VectorX& a, int i) {
   const VectorX x = d.residual(a), t = d.coordinates(d.g(a)) + d.lambda.cwiseQuotient(d.rho);
   const VectorX rate = d.coordinates(d.P(a).col(i));
@@ -79,7 +79,8 @@ double safeStep(const DenseGdd& d, const VectorX& a, int i) {
     if (speed != 0.0) nearest = std::min(nearest, std::abs(distance / speed));
   };
   for (int r = 0; r < d.rows(); ++r)
-    for (const double knot : {d.lowerKnot(r), d.upperKnot(r)}) meet(x[r] - knot, d.J(r, i));
+    for (const double breakpoint : {d.lowerKnot(r), d.upperKnot(r)})
+      meet(x[r] - breakpoint, d.J(r, i));
   for (int k = 0; k < d.dofs(); ++k) {
     if (d.lower[k] == d.upper[k]) continue;
     meet(t[k] - d.lower[k], rate[k]);
@@ -98,7 +99,7 @@ TEST(GddGradient, IsTheDifferenceOfTheDenseObjective) {
     EXPECT_APPROX(gradient, d.augmentedGradient(at.a), 1e-11) << "seed " << seed;
     for (int i = 0; i < at.s.dofs(); ++i) {
       const double step = safeStep(d, at.a, i);
-      if (step < 1e-5) continue;  // too near to a knot to tell
+      if (step < 1e-5) continue;  // too near to a breakpoint to tell
       VectorX ahead = at.a, behind = at.a;
       ahead[i] += step;
       behind[i] -= step;
@@ -118,7 +119,7 @@ TEST(GddGradient, PenaltyHasTheDenseValueSlopeAndCurvature) {
   for (int seed = 0; seed < 20; ++seed) {
     AtPoint at(seed);
     const DenseGdd& d = at.s.dense;
-    const gdd::BoundPenalty bounds{at.s.box, d.lambda, d.rho};
+    const gdd::BoundPenalty bounds{at.s.limits, d.lambda, d.rho};
     const VectorX g = d.g(at.a), y = d.coordinates(g), curvature = d.penaltyCurvature(g);
     VectorX slope(at.s.dofs()), sum = VectorX::Zero(at.s.dofs());
     for (int i = 0; i < at.s.dofs(); ++i) {
@@ -127,7 +128,7 @@ TEST(GddGradient, PenaltyHasTheDenseValueSlopeAndCurvature) {
       EXPECT_EQ(psi.curvature, curvature[i]);
       EXPECT_NEAR(psi.value, 0.5 * slope[i] * slope[i] / d.rho[i], 1e-12 * psi.value);
     }
-    at.s.box.addSlope(slope, sum);
+    at.s.limits.addSlope(slope, sum);
     EXPECT_APPROX(sum, d.penaltySlope(g), 1e-12);
   }
 }
@@ -139,9 +140,9 @@ TEST(GddHessian, SolveInvertsTheDenseFormula) {
     AtPoint at(seed);
     const DenseGdd& d = at.s.dense;
     const VectorX curvature = d.penaltyCurvature(d.g(at.a));
-    gdd::ForceTerms forces = at.forces();
-    ASSERT_TRUE(
-        at.hessian.factorize(at.s.data(), at.massFactor, curvature, at.s.box, at.s.cost, forces));
+    gdd::ContactForceTerms forces = at.forces();
+    ASSERT_TRUE(at.hessian.factorize(at.s.data(), at.massFactor, curvature, at.s.limits, at.s.cost,
+                                     forces));
     const MatrixX H = d.gaussNewtonHessian(at.a);
     Random random(seed);
     const VectorX b = H * random.vector(at.s.dofs(), 1.0);

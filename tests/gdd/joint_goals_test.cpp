@@ -49,7 +49,7 @@ TEST(Posture, KeepsTheLawsOfCosts) {
   });
 }
 
-// (T.26), ½ w (a − k_p d + k_d v)ᵀ M (a − k_p d + k_d v), counted from a = 0.
+// (9.7), ½ w (a − k_p d + k_d v)ᵀ M (a − k_p d + k_d v), counted from a = 0.
 TEST(Posture, IsItsFormulaWithAFloatingBaseTurnedAway) {
   int floating = 0;
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
@@ -137,7 +137,7 @@ TEST(JointGoals, OneJointIsLedToItsPlace) {
   EXPECT_NEAR(r.state.q[r.model.bodies[body].q], start + 0.3, 0.01);
 }
 
-// (T.24) with either metric is its formula, up to the constant, and its derivatives are its own.
+// (9.6) with either metric is its formula, up to the constant, and its derivatives are its own.
 TEST(VirtualDamping, IsItsFormulaInBothMetrics) {
   Random random(41);
   const Scene scene = looseScene(7);

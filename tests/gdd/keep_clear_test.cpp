@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Keeping clear: the cost, its derivatives, and what an arm does that reaches past an obstacle.
 
-#include "collision/clearance.hpp"
+#include "softgauss/collision/clearance.hpp"
 #include "tests/gdd/goal_check.hpp"
 #include "tests/gdd/robot_scene.hpp"
 #include "tests/support/sample_surfaces.hpp"
@@ -254,8 +254,8 @@ TEST(KeepClearBehaviour, TheArmReachesPastAnObstacleAndKeepsItsDistance) {
     EXPECT_LT(with.least, kDistance + 0.01) << "it makes no wider way than it must";
     EXPECT_SMALL((with.r.position("hand") - kTarget).norm(), 0.01);
     EXPECT_EQ(with.unfinished, 0);
-    std::vector<gdd::GoalFigure> figures;
-    with.measure.figures({with.r.model, with.r.state, with.r.data}, {}, figures);
+    std::vector<gdd::GoalError> figures;
+    with.measure.errors({with.r.model, with.r.state, with.r.data}, {}, figures);
     ASSERT_EQ(figures.size(), 1u);
     EXPECT_LE(figures[0].value, figures[0].met);
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Goals of links: pose, look-at, hold. Their costs against the motion of the links itself.
 
-#include "engine/core/rotation.hpp"
+#include "softgauss/engine/core/rotation.hpp"
 #include "tests/gdd/goal_check.hpp"
 #include "tests/gdd/robot_scene.hpp"
 

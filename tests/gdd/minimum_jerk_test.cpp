@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The minimum-jerk reach (T.23) against the line of Flash and Hogan in closed form.
+/// The minimum-jerk reach (9.3) against the line of Flash and Hogan in closed form.
 
 #include "tests/gdd/robot_scene.hpp"
 #include "tests/support/tolerance.hpp"

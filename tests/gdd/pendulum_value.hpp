@@ -11,7 +11,7 @@
 
 #include <array>
 
-#include "engine/core/types.hpp"
+#include "softgauss/engine/core/types.hpp"
 
 namespace softgauss::test {
 

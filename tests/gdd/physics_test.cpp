@@ -36,11 +36,11 @@ struct Watch {
     violation = std::max(violation, (g - r.data.forces.tau).cwiseAbs().maxCoeff());
     for (int i = 0; i < r.model.nv; ++i)
       saturated +=
-          r.model.dofs[i].actuated && (r.controller.control[i] == r.controller.box.lower[i] ||
-                                       r.controller.control[i] == r.controller.box.upper[i]);
+          r.model.dofs[i].actuated && (r.controller.control[i] == r.controller.limits.lower[i] ||
+                                       r.controller.control[i] == r.controller.limits.upper[i]);
     const gdd::GddStatus status = r.controller.report.status;
     converged += status == gdd::GddStatus::converged;
-    kinks += status == gdd::GddStatus::kink;
+    kinks += status == gdd::GddStatus::nonsmoothMinimum;
     unfinished += status == gdd::GddStatus::iterationLimit;
     if (status == gdd::GddStatus::iterationLimit || r.data.constraints.rowCount() == 0) return;
     const VectorX assumed = rowForces(r.model, r.controller.acceleration(), r.data);
@@ -100,8 +100,8 @@ TEST(GddPhysics, SaturatedControlsStayInTheirBox) {
 TEST(GddPhysics, ChangedBoxIsObeyed) {
   RobotScene r("arm");
   r.addReach("hand", {0.5, 0.3, 0.5});
-  r.controller.box.lower.setConstant(-3.0);
-  r.controller.box.upper.setConstant(2.0);
+  r.controller.limits.lower.setConstant(-3.0);
+  r.controller.limits.upper.setConstant(2.0);
   for (int i = 0; i < 50; ++i) {
     ASSERT_EQ(r.step(), SolveStatus::converged);
     EXPECT_LE(r.controller.control.maxCoeff(), 2.0);
@@ -140,7 +140,8 @@ TEST(GddPhysics, WithoutActuatorsMotionIsPassive) {
     State state = passive.state;
     Data data(passive.model);
     gdd::GoalDirectedController controller(passive.model);
-    if (!byEffect) controller.box.lower = controller.box.upper = VectorX::Zero(passive.model.nv);
+    if (!byEffect)
+      controller.limits.lower = controller.limits.upper = VectorX::Zero(passive.model.nv);
     controller.goals.push_back(std::make_unique<gdd::VirtualDamping>());
     for (int i = 0; i < 20; ++i) {
       ASSERT_EQ(controller.step(passive.model, passive.input, state, data, passive.contacts.get()),

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The program (T.61) against its conditions of Karush, Kuhn and Tucker, which for a convex program
+/// The program (10.8) against its conditions of Karush, Kuhn and Tucker, which for a convex program
 /// are those of the minimum: whoever found it, the guess of the face or the dual method.
 
-#include "gdd/quadratic_program.hpp"
+#include "softgauss/gdd/quadratic_program.hpp"
 
 #include <Eigen/Cholesky>
 

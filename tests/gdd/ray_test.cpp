@@ -10,8 +10,8 @@
 namespace softgauss::test {
 namespace {
 
-/// First local minimum of Φ(a + α d), α ≥ 0: a fine scan between the knots of the rows, where Φ is
-/// convex, then golden section.
+/// First local minimum of Φ(a + α d), α ≥ 0: a fine scan between the breakpoints of the rows, where
+/// Φ is convex, then golden section.
 class BruteForce {
  public:
   BruteForce(const DenseGdd& d, const VectorX& a, const VectorX& direction)
@@ -21,27 +21,28 @@ class BruteForce {
 
   double firstMinimum() const {
     const VectorX x = d_.residual(a_), dx = d_.J * direction_;
-    std::vector<double> knots{0.0};
+    std::vector<double> breakpoints{0.0};
     for (int i = 0; i < d_.rows(); ++i)
-      for (const double knot : {d_.lowerKnot(i), d_.upperKnot(i)}) {
-        const double alpha = (knot - x[i]) / dx[i];
-        if (alpha > 0.0 && std::isfinite(alpha)) knots.push_back(alpha);
+      for (const double breakpoint : {d_.lowerKnot(i), d_.upperKnot(i)}) {
+        const double alpha = (breakpoint - x[i]) / dx[i];
+        if (alpha > 0.0 && std::isfinite(alpha)) breakpoints.push_back(alpha);
       }
-    std::sort(knots.begin(), knots.end());
-    // Knots that fall together (opposite edges of a pyramid) count once.
+    std::sort(breakpoints.begin(), breakpoints.end());
+    // Breakpoints that fall together (opposite edges of a pyramid) count once.
     const auto together = [](double p, double q) { return q - p <= 1e-9 * q; };
-    knots.erase(std::unique(knots.begin(), knots.end(), together), knots.end());
-    for (std::size_t k = 0; k < knots.size(); ++k) {
-      const double from = knots[k];
-      double to = k + 1 < knots.size() ? knots[k + 1] : std::max(1.0, 2.0 * from);
-      // Beyond the last knot Φ rises at last.
-      while (k + 1 == knots.size() && phi(to) <= phi(from + 0.5 * (to - from)))
+    breakpoints.erase(std::unique(breakpoints.begin(), breakpoints.end(), together),
+                      breakpoints.end());
+    for (std::size_t k = 0; k < breakpoints.size(); ++k) {
+      const double from = breakpoints[k];
+      double to = k + 1 < breakpoints.size() ? breakpoints[k + 1] : std::max(1.0, 2.0 * from);
+      // Beyond the last breakpoint Φ rises at last.
+      while (k + 1 == breakpoints.size() && phi(to) <= phi(from + 0.5 * (to - from)))
         to = from + 2.0 * (to - from);
       const double best = convexMinimum(from, to);
       const bool inside = best < to - 1e-7 * (to - from);
-      if (inside || k + 1 == knots.size()) return best;
-      // At the knot: does Φ fall further?
-      const double next = k + 2 < knots.size() ? knots[k + 2] : 2.0 * to;
+      if (inside || k + 1 == breakpoints.size()) return best;
+      // At the breakpoint: does Φ fall further?
+      const double next = k + 2 < breakpoints.size() ? breakpoints[k + 2] : 2.0 * to;
       if (phi(to + 1e-6 * (next - to)) >= phi(to)) return to;
     }
     return 0.0;
@@ -101,13 +102,14 @@ struct RayCase {
     massFactor.compute(s.data().inertia.hat());
     s.data().constraints.setRay(direction);
     s.data().constraints.setForceRate();
-    gdd::ForceTerms forces;
+    gdd::ContactForceTerms forces;
     forces.setCost(s.cost.forces());
     forces.evaluate(s.data().constraints);
     forces.setRate(s.data().constraints);
     gdd::Ray ray(s.model());
-    result = ray.minimize(s.data().constraints, massFactor, {s.box, s.dense.lambda, s.dense.rho}, g,
-                          rate, cost.dot(direction), s.cost.curvatureAlong(direction, Md), forces);
+    result =
+        ray.minimize(s.data().constraints, massFactor, {s.limits, s.dense.lambda, s.dense.rho}, g,
+                     rate, cost.dot(direction), s.cost.curvatureAlong(direction, Md), forces);
   }
 };
 
@@ -144,11 +146,11 @@ TEST(Ray, NeitherSideOfTheMinimumIsLower) {
   }
 }
 
-// A minimum at a knot names the row that is there.
+// A minimum at a breakpoint names the row that is there.
 TEST(Ray, KinkIsTheKnotOfTheRowItNames) {
   int kinks = 0, lowerKnots = 0, upperKnots = 0;  // those of rows with two
   for (int seed = 0; seed < 1500; ++seed) {
-    // Contacts, or rows with two knots.
+    // Contacts, or rows with two breakpoints.
     RandomTreeOptions options;
     options.dryFriction = seed % 2 == 1;
     RayCase ray(seed, randomGddScene(seed, seed % 2 == 0 ? 5 : 0, 0.5, options));
@@ -167,8 +169,8 @@ TEST(Ray, KinkIsTheKnotOfTheRowItNames) {
   EXPECT_GT(upperKnots, 2);
 }
 
-// One joint with dry friction, from far below to a wish far above: the ray passes both knots, and
-// the minimum is that of the piece beyond, where the friction is −f_max.
+// One joint with dry friction, from far below to a wish far above: the ray passes both breakpoints,
+// and the minimum is that of the piece beyond, where the friction is −f_max.
 TEST(Ray, PassesBothKnotsOfDryFriction) {
   const double m = 2.0, limit = 3.0, w = 7.0, wish = 40.0;
   ModelBuilder builder("slide");
@@ -181,7 +183,7 @@ TEST(Ray, PassesBothKnotsOfDryFriction) {
   scene.input.softFriction = true;
   scene.stages();
   const Constraints& constraints = scene.data->constraints;
-  const gdd::ControlBox box(scene.model);
+  const gdd::ControlLimits limits(scene.model);
   const VectorX lambda = VectorX::Zero(1), rho = VectorX::Ones(1);
   TreeFactor massFactor;
   massFactor.compute(scene.data->inertia.M);
@@ -193,9 +195,9 @@ TEST(Ray, PassesBothKnotsOfDryFriction) {
     inverseDynamics(scene.model, a, *scene.data, g);
     EXPECT_EQ(g[0], m * a[0] - limit * direction);
     scene.data->constraints.setRay(d);
-    gdd::ForceTerms none;
+    gdd::ContactForceTerms none;
     const gdd::RayResult result =
-        ray.minimize(constraints, massFactor, {box, lambda, rho}, g, m * d,
+        ray.minimize(constraints, massFactor, {limits, lambda, rho}, g, m * d,
                      w * (a[0] - wish * direction) * d[0], w * d[0] * d[0], none);
     // ½ g²/m + ½ w (a − wish)² with g = m a + f_max.
     const double best = direction * (w * wish - limit) / (m + w);
@@ -207,7 +209,7 @@ TEST(Ray, PassesBothKnotsOfDryFriction) {
 }
 
 // Φ falls at every iteration, with whatever multipliers the iteration has. A step that takes held
-// rows back to the knots from which rounding moved them may raise it, and is rare.
+// rows back to the breakpoints from which rounding moved them may raise it, and is rare.
 TEST(GddSolver, ObjectiveFallsAtEveryIteration) {
   int iterations = 0, rises = 0;
   for (int seed = 0; seed < 60; ++seed) {
@@ -234,7 +236,7 @@ TEST(GddSolver, ReportsTheDenseObjectiveAndViolation) {
     const VectorX& a = s.solve();
     const VectorX g = s.dense.g(a);
     const double scale = 0.5 * g.dot(s.dense.Minv * g) + std::abs(s.dense.goalCost(a));
-    // Held rows count as at their knots, from which rounding has moved the dense residuals.
+    // Held rows count as at their breakpoints, from which rounding has moved the dense residuals.
     const double moved = (s.dense.Minv * g).dot(s.solver->force() - g);
     EXPECT_NEAR(s.report.objective, s.dense.objective(a) + moved, 1e-11 * scale) << "seed " << seed;
     EXPECT_APPROX(s.solver->force(), g, 1e-8);

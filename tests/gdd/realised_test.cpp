@@ -118,7 +118,7 @@ class RealisedGoals : public testing::TestWithParam<Realised> {};
 constexpr double kTimesteps[] = {0.0005, 0.002, 0.01};
 
 // Damping, springs, limits, dry friction, contacts and Coriolis forces are in the solve. The
-// augmented Lagrangian meets torque limits to 1e-8 of the largest force (T.18): its a is off by
+// augmented Lagrangian meets torque limits to 1e-8 of the largest force (10.1): its a is off by
 // what is cut there, up to ten times as much where links are light.
 TEST_P(RealisedGoals, AreWhatWasSolved) {
   for (const gdd::GddSolver solver :

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <memory>
 
-#include "collision/lowest_point.hpp"
-#include "collision/scene_contacts.hpp"
-#include "engine/engine.hpp"
-#include "gdd/gdd.hpp"
-#include "io/urdf.hpp"
+#include "softgauss/collision/lowest_point.hpp"
+#include "softgauss/collision/scene_contacts.hpp"
+#include "softgauss/engine/engine.hpp"
+#include "softgauss/gdd/gdd.hpp"
+#include "softgauss/io/urdf.hpp"
 
 namespace softgauss::test {
 

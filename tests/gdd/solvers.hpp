@@ -5,9 +5,9 @@
 
 #include <gtest/gtest.h>
 
-#include "gdd/active_set.hpp"
-#include "gdd/augmented_lagrangian.hpp"
-#include "gdd/goal_directed_step.hpp"
+#include "softgauss/gdd/active_set.hpp"
+#include "softgauss/gdd/augmented_lagrangian.hpp"
+#include "softgauss/gdd/goal_directed_step.hpp"
 
 namespace softgauss::test {
 

@@ -37,7 +37,7 @@ TEST(GddState, CopiedStateContinuesWithTheSameBits) {
   }
 }
 
-// The knots of a kink, by names that find them again, and when to look for a better minimum.
+// The breakpoints of a kink, by names that find them again, and when to look for a better minimum.
 TEST(GddState, KnotsAndSearchesAreKeptFromStepToStep) {
   auto r = reachingHumanoid(0);
   r->addReach("left_hand", {0.9, 0.5, 1.4}).weight = 3000.0;  // out of reach: it stumbles
@@ -45,13 +45,13 @@ TEST(GddState, KnotsAndSearchesAreKeptFromStepToStep) {
   int kinks = 0, longestWait = 0;
   for (int i = 0; i < 200; ++i) {
     ASSERT_NE(r->step(), SolveStatus::notFinite);
-    ASSERT_EQ(static_cast<int>(warm.knots.size()), r->controller.report.heldRows);
-    for (const KnotName& name : warm.knots) {
-      const auto knot = r->data.constraints.find(name);
-      ASSERT_TRUE(knot.has_value());
-      EXPECT_EQ(r->data.constraints.nameOf(*knot), name);
+    ASSERT_EQ(static_cast<int>(warm.breakpoints.size()), r->controller.report.heldRows);
+    for (const BreakpointKey& name : warm.breakpoints) {
+      const auto breakpoint = r->data.constraints.find(name);
+      ASSERT_TRUE(breakpoint.has_value());
+      EXPECT_EQ(r->data.constraints.nameOf(*breakpoint), name);
     }
-    kinks += warm.knots.empty() ? 0 : 1;
+    kinks += warm.breakpoints.empty() ? 0 : 1;
     longestWait = std::max(longestWait, warm.gddSearchWait);
   }
   EXPECT_GT(kinks, 0);
@@ -126,23 +126,23 @@ TEST(GddState, BoxThatIsNoneIsRefusedAndTheStateKept) {
               hessian.setIdentity();
               return 0.5 * a.squaredNorm();
             }));
-      const gdd::ControlBox good = r->controller.box;
+      const gdd::ControlLimits good = r->controller.limits;
       for (const auto& [lower, upper] : none) {
         for (const int i : {2, 9}) {  // a root force, a joint
-          r->controller.box.lower[i] = lower;
-          r->controller.box.upper[i] = upper;
+          r->controller.limits.lower[i] = lower;
+          r->controller.limits.upper[i] = upper;
           expectRefused(*r);
-          EXPECT_EQ(r->controller.report.status, gdd::GddStatus::badBox);
+          EXPECT_EQ(r->controller.report.status, gdd::GddStatus::badLimits);
           EXPECT_EQ(r->data.stats.badDof, i);
-          r->controller.box = good;
+          r->controller.limits = good;
         }
       }
-      r->controller.box.upper.conservativeResize(3);
+      r->controller.limits.upper.conservativeResize(3);
       expectRefused(*r);
-      EXPECT_EQ(r->controller.report.status, gdd::GddStatus::badBox);
-      r->controller.box = good;
+      EXPECT_EQ(r->controller.report.status, gdd::GddStatus::badLimits);
+      r->controller.limits = good;
       EXPECT_NE(r->step(), SolveStatus::notFinite) << "it goes on after a refusal";
-      EXPECT_NE(r->controller.report.status, gdd::GddStatus::badBox);
+      EXPECT_NE(r->controller.report.status, gdd::GddStatus::badLimits);
     }
   }
 }

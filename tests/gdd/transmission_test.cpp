@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The coordinates of force (T.65), and what is refused when actuators and metrics are set.
+/// The coordinates of force (8.3), and what is refused when actuators and metrics are set.
 
-#include "gdd/transmission.hpp"
+#include "softgauss/gdd/transmission.hpp"
 
-#include "gdd/force_price.hpp"
-#include "gdd/problem.hpp"
+#include "softgauss/gdd/control_cost_term.hpp"
+#include "softgauss/gdd/problem.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/sample_models.hpp"
@@ -139,32 +139,32 @@ TEST(ForceMetric, WhatIsNotPositiveDefiniteIsRefused) {
 }
 
 // A dof that no actuator of the list pulls keeps its own; one that is pulled has theirs alone.
-TEST(ControlBox, UnnamedDofsKeepTheirOwnActuators) {
+TEST(ControlLimits, UnnamedDofsKeepTheirOwnActuators) {
   const Model model = chain(4).build();
-  const gdd::ControlBox plain(model);
-  const gdd::ControlBox box(
+  const gdd::ControlLimits plain(model);
+  const gdd::ControlLimits limits(
       model, {{.name = "tendon", .pulls = {{1, 1.0}, {2, 0.5}}, .lower = -3.0, .upper = 4.0}});
   for (const int i : {0, 3}) {
-    EXPECT_EQ(box.lower[i], plain.lower[i]);
-    EXPECT_EQ(box.upper[i], plain.upper[i]);
-    EXPECT_FALSE(box.isRootForce(model, i));
+    EXPECT_EQ(limits.lower[i], plain.lower[i]);
+    EXPECT_EQ(limits.upper[i], plain.upper[i]);
+    EXPECT_FALSE(limits.isRootForce(model, i));
   }
-  EXPECT_EQ(box.lower[1], -3.0);
-  EXPECT_EQ(box.upper[1], 4.0);
-  EXPECT_TRUE(box.isRootForce(model, 2));
-  EXPECT_EQ(box.lower[2], 0.0);
-  EXPECT_EQ(box.upper[2], 0.0);
+  EXPECT_EQ(limits.lower[1], -3.0);
+  EXPECT_EQ(limits.upper[1], 4.0);
+  EXPECT_TRUE(limits.isRootForce(model, 2));
+  EXPECT_EQ(limits.lower[2], 0.0);
+  EXPECT_EQ(limits.upper[2], 0.0);
   // What is clamped is the force nearest in the tendon's coordinates, and reported as force.
   VectorX tau, y, u;
   const VectorX pull = (VectorX(4) << 7.0, 10.0, 5.0, -2.0).finished();
-  EXPECT_SMALL(box.violation(pull) - 6.0, 1e-14);
-  box.clamp(pull, tau, y);
-  box.commands(y, u);
+  EXPECT_SMALL(limits.violation(pull) - 6.0, 1e-14);
+  limits.clamp(pull, tau, y);
+  limits.commands(y, u);
   EXPECT_EQ(u.size(), 1);
   EXPECT_EQ(u[0], 4.0);
   EXPECT_SMALL((tau - (VectorX(4) << 7.0, 4.0, 2.0, -2.0).finished()).norm(), 1e-14);
   // A force that a tendon cannot make.
-  EXPECT_SMALL(box.violation((VectorX(4) << 0.0, -1.0, 2.0, 0.0).finished()) - 2.0, 1e-14);
+  EXPECT_SMALL(limits.violation((VectorX(4) << 0.0, -1.0, 2.0, 0.0).finished()) - 2.0, 1e-14);
 }
 
 }  // namespace

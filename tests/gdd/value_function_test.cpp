@@ -12,8 +12,8 @@
 #include <numbers>
 #include <type_traits>
 
-#include "gdd/expanded_solve.hpp"
-#include "gdd/goals/functions.hpp"
+#include "softgauss/gdd/goals/functions.hpp"
+#include "softgauss/gdd/sequential_quadratic_solve.hpp"
 #include "tests/gdd/pendulum_value.hpp"
 #include "tests/gdd/solvers.hpp"
 #include "tests/support/matchers.hpp"
@@ -32,14 +32,14 @@ class Greedy {
         solver_(scene.model),
         expansion_(scene.model),
         cost_(scene.model.nv),
-        box_(scene.model) {}
+        limits_(scene.model) {}
 
   VectorX control() {
     EXPECT_EQ(s_.stages(), SolveStatus::converged);
     cost_.clear();
     goal_.addCost({s_.model, s_.state, *s_.data}, cost_);
-    report = expansion_.solve(solver_, s_.model, cost_, box_, *s_.data, s_.state.warmstart);
-    return box_.clamp(expansion_.force());
+    report = expansion_.solve(solver_, s_.model, cost_, limits_, *s_.data, s_.state.warmstart);
+    return limits_.clamp(expansion_.force());
   }
   gdd::GddReport report;
 
@@ -47,9 +47,9 @@ class Greedy {
   Scene &s_;
   gdd::ValueGoal goal_;
   Solver solver_;
-  gdd::ExpandedSolve expansion_;
+  gdd::SequentialQuadraticSolve expansion_;
   gdd::GoalCost cost_;
-  gdd::ControlBox box_;
+  gdd::ControlLimits limits_;
 };
 
 template <class Solver>

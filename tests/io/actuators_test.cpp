@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Actuators of a scene: what drives which joint, and what is refused.
 
-#include "io/actuators.hpp"
+#include "softgauss/io/actuators.hpp"
 
 #include "scene_folder.hpp"
 #include "tests/support/matchers.hpp"
@@ -48,7 +48,7 @@ TEST(SceneActuators, DriveTheJointsTheyName) {
                            kWrist);
   const io::SceneFile scene = folder.read();
   const Model model = scene.builder.build();
-  const gdd::ControlBox box = io::controlBox(model, scene.actuators);
+  const gdd::ControlLimits limits = io::controlLimits(model, scene.actuators);
   const int pan = model.bodies[model.findJoint("r/pan")].v;
   const int tilt = model.bodies[model.findJoint("r/tilt")].v;
   const int slide = model.bodies[model.findJoint("r/slide")].v;
@@ -57,15 +57,15 @@ TEST(SceneActuators, DriveTheJointsTheyName) {
     EXPECT_TRUE(model.dofs[dof].actuated);
     EXPECT_EQ(model.dofs[dof].effortUpper, kInfinity);
   }
-  EXPECT_EQ(box.upper[slide], 7.0);
-  ASSERT_TRUE(box.transmission);
-  ASSERT_EQ(box.transmission->actuators().size(), 2u);
-  const int l = box.transmission->coordinateOf(0), r = box.transmission->coordinateOf(1);
-  EXPECT_EQ(box.lower[l], -4.0);
-  EXPECT_EQ(box.upper[l], 4.0);
-  EXPECT_EQ(box.lower[r], -1.0);
-  EXPECT_EQ(box.upper[r], 6.0);
-  const MatrixX& T = box.transmission->T();
+  EXPECT_EQ(limits.upper[slide], 7.0);
+  ASSERT_TRUE(limits.transmission);
+  ASSERT_EQ(limits.transmission->actuators().size(), 2u);
+  const int l = limits.transmission->coordinateOf(0), r = limits.transmission->coordinateOf(1);
+  EXPECT_EQ(limits.lower[l], -4.0);
+  EXPECT_EQ(limits.upper[l], 4.0);
+  EXPECT_EQ(limits.lower[r], -1.0);
+  EXPECT_EQ(limits.upper[r], 6.0);
+  const MatrixX& T = limits.transmission->T();
   EXPECT_EQ(T(pan, l), 2.0);
   EXPECT_EQ(T(tilt, l), 3.0);
   EXPECT_EQ(T(pan, r), 0.0);
@@ -77,7 +77,7 @@ TEST(SceneActuators, NoneLeavesTheBoxOfTheModel) {
   const io::SceneFile scene = folder.read();
   const Model model = scene.builder.build();
   EXPECT_FALSE(model.dofs[1].actuated);
-  EXPECT_FALSE(io::controlBox(model, scene.actuators).transmission);
+  EXPECT_FALSE(io::controlLimits(model, scene.actuators).transmission);
 }
 
 TEST(SceneActuators, RefusalsNameFileLineAndActuator) {

@@ -5,8 +5,8 @@
 
 #include <sstream>
 
-#include "collision/scene_contacts.hpp"
-#include "io/explain.hpp"
+#include "softgauss/collision/scene_contacts.hpp"
+#include "softgauss/io/explain.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/scene.hpp"
 

@@ -3,11 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/core/rotation.hpp"
-#include "engine/dynamics/energy.hpp"
-#include "gdd/gdd.hpp"
-#include "io/goals.hpp"
 #include "sample_goals.hpp"
+#include "softgauss/engine/core/rotation.hpp"
+#include "softgauss/engine/dynamics/energy.hpp"
+#include "softgauss/gdd/gdd.hpp"
+#include "softgauss/io/goals.hpp"
 #include "temp_folder.hpp"
 
 namespace softgauss::io {

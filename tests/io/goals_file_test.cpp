@@ -5,10 +5,10 @@
 
 #include <algorithm>
 
-#include "engine/core/rotation.hpp"
-#include "gdd/gdd.hpp"
-#include "io/goals.hpp"
 #include "sample_goals.hpp"
+#include "softgauss/engine/core/rotation.hpp"
+#include "softgauss/gdd/gdd.hpp"
+#include "softgauss/io/goals.hpp"
 #include "temp_folder.hpp"
 
 namespace softgauss::io {
@@ -115,7 +115,7 @@ TEST(LinesInFiles, OfTwoInARowTheArmIsLedAlongBoth) {
     const Vector3 place = begin + (end - begin) * s * s * s * (10.0 - 15.0 * s + 6.0 * s * s);
     worst = std::max(worst, (hand() - place).norm());
   }
-  // What the price of force and the step leave of ways of 0.5 m.
+  // What the control cost and the step leave of ways of 0.5 m.
   EXPECT_LT(worst, 3e-3);
 }
 

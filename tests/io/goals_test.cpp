@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/goals.hpp"
+#include "softgauss/io/goals.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <random>
 
 #include "fuzz.hpp"
-#include "gdd/gdd.hpp"
 #include "sample_goals.hpp"
+#include "softgauss/gdd/gdd.hpp"
 #include "temp_folder.hpp"
 
 namespace softgauss::io {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Landscapes of .png and .csv files.
-#include "io/height_field.hpp"
+#include "softgauss/io/height_field.hpp"
 
 #include <zlib.h>
 
 #include <cmath>
 
-#include "engine/model/closed_surface.hpp"
-#include "engine/model/mass_properties.hpp"
 #include "scene_folder.hpp"
+#include "softgauss/engine/model/closed_surface.hpp"
+#include "softgauss/engine/model/mass_properties.hpp"
 
 namespace softgauss::test {
 namespace {
@@ -163,7 +163,7 @@ TEST(HeightField, IsAFixedShapeOfAScene) {
   const Geometry& g = model.geometries[0];
   EXPECT_EQ(g.shape.kind, ShapeKind::triangles);
   EXPECT_EQ(g.body, 0);
-  EXPECT_FALSE(g.eitherMesh);
+  EXPECT_FALSE(g.automaticMesh);
   double highest = -1.0, lowest = 1.0;
   for (const Vector3& v : g.shape.mesh->vertices) {
     highest = std::max(highest, v.z());

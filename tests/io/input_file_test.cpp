@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 /// What is read are regular files of a size that ends.
 
-#include "io/detail/input_file.hpp"
+#include "softgauss/io/detail/input_file.hpp"
 
 #include <sys/stat.h>
 
 #include <fstream>
 
-#include "io/goals.hpp"
-#include "io/inputs.hpp"
-#include "io/torque_table.hpp"
 #include "scene_folder.hpp"
+#include "softgauss/io/goals.hpp"
+#include "softgauss/io/inputs.hpp"
+#include "softgauss/io/torque_table.hpp"
 
 namespace softgauss::test {
 namespace {

@@ -3,11 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/model/shape_distances.hpp"
-#include "gdd/gdd.hpp"
-#include "io/explain.hpp"
-#include "io/goals.hpp"
 #include "sample_goals.hpp"
+#include "softgauss/engine/model/shape_distances.hpp"
+#include "softgauss/gdd/gdd.hpp"
+#include "softgauss/io/explain.hpp"
+#include "softgauss/io/goals.hpp"
 #include "temp_folder.hpp"
 
 namespace softgauss::io {
@@ -99,8 +99,8 @@ TEST(KeepClearInFiles, BadOnesAreRefused) {
   EXPECT_EQ(errorOfItem("keep_clear: {link: far, from: post, distance: -1}"),
             "key 'distance': found '-1', expected a finite number >= 0");
   EXPECT_EQ(errorOfItem("keep_clear: {link: far, from: near, distance: 0.1}"),
-            "key 'from': found 'near', expected what has shapes that move against those of 'far', "
-            "and is not joined to it by a joint");
+            "key 'from': found 'near', expected a link with shapes that move against those of "
+            "'far', and that no joint joins to it");
   EXPECT_EQ(errorOfItem("keep_clear: {link: near, from: world, distance: 0.1}").substr(0, 20),
             "key 'from': found 'w")
       << "its own base";
@@ -109,7 +109,7 @@ TEST(KeepClearInFiles, BadOnesAreRefused) {
   EXPECT_EQ(errorOfItem("keep_clear: {link: far, from: pots, distance: 0.1}").substr(0, 25),
             "key 'from': found 'pots',");
   EXPECT_EQ(errorOfItem("keep_clear: {link: far, from: post, distance: 0.1}", false),
-            "key 'link': found where nobody tells the distances of shapes");
+            "key 'link': found where there is no source of shape distances");
 }
 
 TEST(Explain, TellsHowFarLinksAreApart) {

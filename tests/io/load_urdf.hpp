@@ -3,7 +3,7 @@
 
 /// Models of URDF texts for tests.
 
-#include "io/urdf.hpp"
+#include "softgauss/io/urdf.hpp"
 #include "temp_folder.hpp"
 
 namespace softgauss::io {

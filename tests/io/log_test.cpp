@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/log.hpp"
+#include "softgauss/io/log.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,10 +11,10 @@
 #include <random>
 #include <set>
 
-#include "io/contact_log.hpp"
-#include "io/detail/csv.hpp"
-#include "io/detail/text.hpp"
 #include "sample_log.hpp"
+#include "softgauss/io/contact_log.hpp"
+#include "softgauss/io/detail/csv.hpp"
+#include "softgauss/io/detail/text.hpp"
 #include "temp_folder.hpp"
 
 namespace softgauss::io {

@@ -8,10 +8,10 @@
 
 #include <ctime>
 
-#include "io/detail/child_process.hpp"
-#include "io/mesh.hpp"
 #include "load_urdf.hpp"
 #include "sample_urdf.hpp"
+#include "softgauss/io/detail/child_process.hpp"
+#include "softgauss/io/mesh.hpp"
 
 namespace softgauss::io {
 namespace {

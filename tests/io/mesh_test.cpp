@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/mesh.hpp"
+#include "softgauss/io/mesh.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cctype>
 #include <cstring>
 
-#include "engine/core/check.hpp"
 #include "sample_urdf.hpp"
+#include "softgauss/engine/core/check.hpp"
 #include "temp_folder.hpp"
 
 namespace softgauss::io {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Every number of a file has bounds, within which its square and its products are finite.
 
-#include "io/goals.hpp"
-#include "io/height_field.hpp"
-#include "io/torque_table.hpp"
 #include "scene_folder.hpp"
+#include "softgauss/io/goals.hpp"
+#include "softgauss/io/height_field.hpp"
+#include "softgauss/io/torque_table.hpp"
 
 namespace softgauss::test {
 namespace {
@@ -81,10 +81,10 @@ TEST(NumberBounds, LeaveNumbersWithinThemAlone) {
         number + "}}\n");
     const io::SceneFile scene = folder.read();
     const Model model = scene.builder.build();
-    const gdd::ControlBox box = io::controlBox(model, scene.actuators);
-    ASSERT_TRUE(box.transmission);
-    EXPECT_EQ(box.transmission->T()(6, 6), std::strtod(number, nullptr));
-    EXPECT_NEAR((box.transmission->T() * box.transmission->C())(6, 6), 1.0, 1e-15);
+    const gdd::ControlLimits limits = io::controlLimits(model, scene.actuators);
+    ASSERT_TRUE(limits.transmission);
+    EXPECT_EQ(limits.transmission->T()(6, 6), std::strtod(number, nullptr));
+    EXPECT_NEAR((limits.transmission->T() * limits.transmission->C())(6, 6), 1.0, 1e-15);
   }
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Outputs appear when they are complete, where links lead, and in place on what cannot be renamed.
 
-#include "io/detail/output_file.hpp"
+#include "softgauss/io/detail/output_file.hpp"
 
 #include <sys/stat.h>
 
@@ -10,8 +10,8 @@
 #include <sstream>
 #include <thread>
 
-#include "engine/core/check.hpp"
-#include "io/output.hpp"
+#include "softgauss/engine/core/check.hpp"
+#include "softgauss/io/output.hpp"
 #include "temp_folder.hpp"
 
 namespace softgauss::io {

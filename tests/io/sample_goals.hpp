@@ -6,9 +6,9 @@
 #include <memory>
 #include <vector>
 
-#include "gdd/gdd.hpp"
-#include "io/urdf.hpp"
 #include "sample_urdf.hpp"
+#include "softgauss/gdd/gdd.hpp"
+#include "softgauss/io/urdf.hpp"
 #include "temp_folder.hpp"
 
 namespace softgauss::io {

@@ -8,8 +8,8 @@
 #include <cstdint>
 #include <random>
 
-#include "engine/model/model_builder.hpp"
-#include "io/log.hpp"
+#include "softgauss/engine/model/model_builder.hpp"
+#include "softgauss/io/log.hpp"
 
 namespace softgauss::io {
 

@@ -3,8 +3,8 @@
 
 /// Scenes for tests.
 
-#include "io/scene.hpp"
 #include "sample_urdf.hpp"
+#include "softgauss/io/scene.hpp"
 #include "temp_folder.hpp"
 
 namespace softgauss::test {

@@ -64,15 +64,15 @@ TEST(SceneMesh, CollidesAsTheSceneSays) {
   const auto shapeOf = [](const std::string& keys) {
     return onlyShape(ofMesh(kClosed, keys).builder.build());
   };
-  EXPECT_TRUE(shapeOf("fixed: true").eitherMesh);
-  EXPECT_TRUE(shapeOf("density: 100").eitherMesh);
+  EXPECT_TRUE(shapeOf("fixed: true").automaticMesh);
+  EXPECT_TRUE(shapeOf("density: 100").automaticMesh);
   for (const char* keys : {"fixed: true, collide_as: hull", "collide_as: hull"}) {
     EXPECT_EQ(shapeOf(keys).shape.kind, ShapeKind::mesh);
-    EXPECT_FALSE(shapeOf(keys).eitherMesh);
+    EXPECT_FALSE(shapeOf(keys).automaticMesh);
   }
   for (const char* keys : {"fixed: true, collide_as: triangles", "collide_as: triangles"}) {
     EXPECT_EQ(shapeOf(keys).shape.kind, ShapeKind::triangles);
-    EXPECT_FALSE(shapeOf(keys).eitherMesh);
+    EXPECT_FALSE(shapeOf(keys).automaticMesh);
   }
 }
 
@@ -118,7 +118,7 @@ TEST(SceneMesh, ARobotCollidesAsTheSceneSays) {
             folder.write("s.yaml", "ground: none\nrobots: [{urdf: r.urdf" + keys + "}]\n"), options)
             .builder.build());
   };
-  EXPECT_TRUE(kindOf("", io::MeshUse::automatic).eitherMesh);
+  EXPECT_TRUE(kindOf("", io::MeshUse::automatic).automaticMesh);
   EXPECT_EQ(kindOf("", io::MeshUse::triangles).shape.kind, ShapeKind::triangles);
   EXPECT_EQ(kindOf(", collide_as: hull", io::MeshUse::triangles).shape.kind, ShapeKind::mesh);
   EXPECT_EQ(kindOf(", collide_as: triangles", io::MeshUse::hull).shape.kind, ShapeKind::triangles);

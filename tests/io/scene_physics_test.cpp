@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "engine/constraints/contact.hpp"
-#include "engine/engine.hpp"
 #include "scene_folder.hpp"
+#include "softgauss/engine/constraints/contact.hpp"
+#include "softgauss/engine/engine.hpp"
 #include "tests/support/matchers.hpp"
 
 namespace softgauss::test {
@@ -107,7 +107,7 @@ TEST(SceneFile, OptionsAreThoseOfTheModel) {
   EXPECT_EQ(plain.effects, EffectSet::all());
   EXPECT_EQ(plain.integrator, Integrator::leapfrog);
   EXPECT_TRUE(plain.implicitInSolve);
-  EXPECT_TRUE(plain.ownSoftness);
+  EXPECT_TRUE(plain.constraintModel == ConstraintModel::softgauss);
   EXPECT_EQ(plainScene.gddSolver, std::nullopt);
   const io::SceneFile scene =
       SceneFolder(robot +
@@ -122,7 +122,7 @@ TEST(SceneFile, OptionsAreThoseOfTheModel) {
   EXPECT_EQ(o.maxIterations, 7);
   EXPECT_EQ(o.impedanceRatio, 4.0);
   EXPECT_FALSE(o.implicitInSolve);
-  EXPECT_FALSE(o.ownSoftness);
+  EXPECT_FALSE(o.constraintModel == ConstraintModel::softgauss);
   EXPECT_EQ(o.cone, Cone::elliptic);
   EXPECT_TRUE(o.noSlip);
   EXPECT_TRUE(o.exactDiagonal);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/scene.hpp"
+#include "softgauss/io/scene.hpp"
 
-#include "engine/core/rotation.hpp"
-#include "engine/engine.hpp"
-#include "gdd/goals/reach.hpp"
-#include "io/goals.hpp"
 #include "scene_folder.hpp"
+#include "softgauss/engine/core/rotation.hpp"
+#include "softgauss/engine/engine.hpp"
+#include "softgauss/gdd/goals/reach.hpp"
+#include "softgauss/io/goals.hpp"
 #include "tests/support/matchers.hpp"
 
 namespace softgauss::test {

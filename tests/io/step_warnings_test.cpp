@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/step_warnings.hpp"
+#include "softgauss/io/step_warnings.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "engine/engine.hpp"
+#include "softgauss/engine/engine.hpp"
 #include "tests/support/sample_models.hpp"
 
 namespace softgauss::test {
@@ -77,7 +77,7 @@ TEST(StepWarnings, NameTheBodyThatIsLightForWhatHangsOnIt) {
   builder.connect(tie);
   builder.options.timestep = 0.01;
   const std::vector<std::string> told = io::stepWarnings(builder.build(), {});
-  expectOne(told, "link 'bar' is light", "swings by 10.8 rad in a step of 0.01 s");
+  expectOne(told, "link 'bar' is light", "oscillates by 10.8 rad in a step of 0.01 s");
   EXPECT_NE(told[0].find("try a step below 0.00092 s"), std::string::npos) << told[0];
   builder.options.timestep = 0.0009;
   EXPECT_TRUE(io::stepWarnings(builder.build(), {}).empty());
@@ -144,13 +144,13 @@ TEST(StepWarnings, NameTheSurfaceThatIsFasterThanTheStep) {
     return p;
   };
   const Impedance fast{0.001}, bouncy{0.02, 0.1};
-  expectOne(of(fast), "surface of '", "counts as 0.004 s");
-  expectOne(of(bouncy), "counts as 0.2 with", "try a step of 0.001 s");
+  expectOne(of(fast), "surface of '", "is clamped to 0.004 s");
+  expectOne(of(bouncy), "is clamped to 0.2 with", "try a step of 0.001 s");
   expectOne(of(direct(2e6, 100.0)), "surface of '",
-            "counts as 62500/s² and 100/s in steps of 0.002 s");
+            "is clamped to 62500/s² and 100/s in steps of 0.002 s");
   EXPECT_TRUE(of(direct(62499.0, 0.0)).empty());
   EXPECT_TRUE(of(direct(249e3, 499.0)).empty());
-  model.options.ownSoftness = false;
+  model.options.constraintModel = ConstraintModel::mujoco;
   EXPECT_TRUE(of(bouncy).empty());
   expectOne(of(Impedance{0.02, 0.04}), "surface of '", "grows in steps of 0.002 s");
   expectOne(of(direct(2e6, 100.0)), "surface of '", "grows in steps of 0.002 s");

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/summary.hpp"
+#include "softgauss/io/summary.hpp"
 
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 #include <regex>
 
-#include "io/explain.hpp"
-#include "io/figure_text.hpp"
 #include "sample_goals.hpp"
+#include "softgauss/io/explain.hpp"
+#include "softgauss/io/figure_text.hpp"
 
 namespace softgauss::io {
 namespace {
@@ -192,7 +192,7 @@ TEST(SummaryTable, TellsTheSolverInDetailsAlone) {
   const Summary summary = sampleSummary(sampleModel());
   EXPECT_EQ(summary.table().find("constraint rows"), std::string::npos);
   EXPECT_NE(summary.table(true).find("constraint rows"), std::string::npos);
-  EXPECT_NE(summary.table().find("80 % of its box, shoulder"), std::string::npos);
+  EXPECT_NE(summary.table().find("80 % of its limit, shoulder"), std::string::npos);
 }
 
 TEST(FigureText, LengthsFromAMetreOnAreInMetres) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/torque_table.hpp"
+#include "softgauss/io/torque_table.hpp"
 
 #include <gtest/gtest.h>
 

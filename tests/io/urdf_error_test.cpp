@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include "io/urdf.hpp"
 #include "sample_urdf.hpp"
+#include "softgauss/io/urdf.hpp"
 #include "temp_folder.hpp"
 
 namespace softgauss::io {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "fuzz.hpp"
-#include "io/urdf.hpp"
 #include "sample_urdf.hpp"
+#include "softgauss/io/urdf.hpp"
 #include "temp_folder.hpp"
 
 namespace softgauss::io {

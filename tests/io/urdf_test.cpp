@@ -4,9 +4,9 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "engine/core/rotation.hpp"
 #include "load_urdf.hpp"
 #include "sample_urdf.hpp"
+#include "softgauss/engine/core/rotation.hpp"
 
 namespace softgauss::io {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 /// What URDF 1.1 and 1.2 add to 1.0.
 
-#include "engine/core/rotation.hpp"
 #include "load_urdf.hpp"
 #include "sample_urdf.hpp"
+#include "softgauss/engine/core/rotation.hpp"
 #include "tests/support/random.hpp"
 
 namespace softgauss::io {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/warning_list.hpp"
+#include "softgauss/io/warning_list.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,8 +3,8 @@
 
 /// Scenes of many units.
 
-#include "collision/unit_contacts.hpp"
-#include "engine/engine.hpp"
+#include "softgauss/collision/unit_contacts.hpp"
+#include "softgauss/engine/engine.hpp"
 #include "tests/support/sample_models.hpp"
 
 namespace softgauss::test {

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <optional>
 
-#include "gdd/gdd.hpp"
+#include "softgauss/gdd/gdd.hpp"
 #include "tests/islands/crowd.hpp"
 
 namespace softgauss::test {

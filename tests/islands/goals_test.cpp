@@ -2,7 +2,7 @@
 
 /// Goals act on islands as they act on the scene.
 
-#include "collision/scene_contacts.hpp"
+#include "softgauss/collision/scene_contacts.hpp"
 #include "tests/islands/goal_crowd.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/random.hpp"
@@ -187,7 +187,7 @@ TEST(GoalsOfIslands, KeepActuatorsAndPriceOfForce) {
       geared.pulls = {{first, 20.0}};
       geared.lower = -0.5, geared.upper = 0.5;
       pair.pulls = {{first + 1, 1.0}, {first + 2, -1.0}};
-      crowd.controller.box = gdd::ControlBox(crowd.model, {pair, geared});
+      crowd.controller.limits = gdd::ControlLimits(crowd.model, {pair, geared});
       VectorX diagonal = VectorX::Ones(nv);
       diagonal.tail(9) = VectorX::LinSpaced(9, 3.0, 4.0);
       MatrixX whole = diagonal.asDiagonal();
@@ -234,7 +234,7 @@ TEST(GoalsOfIslands, RefuseWhatTiesThem) {
       [&](auto& c) {
         gdd::Actuator tendon{.name = "tendon"};
         tendon.pulls = {{6, 1.0}, {9 + 6, 1.0}};
-        c.box = gdd::ControlBox(model, {tendon});
+        c.limits = gdd::ControlLimits(model, {tendon});
       },
       "tendon"));
   EXPECT_TRUE(refused(
@@ -243,7 +243,7 @@ TEST(GoalsOfIslands, RefuseWhatTiesThem) {
         R(6, 15) = R(15, 6) = 0.1;
         c.forceMetric = gdd::ForceMetric::dense(R);
       },
-      "price of force"));
+      "control cost"));
 }
 
 }  // namespace

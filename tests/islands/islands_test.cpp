@@ -2,9 +2,9 @@
 
 /// Islands are solved apart, and nobody can tell.
 
-#include "engine/islands/islands.hpp"
+#include "softgauss/engine/islands/islands.hpp"
 
-#include "collision/scene_contacts.hpp"
+#include "softgauss/collision/scene_contacts.hpp"
 #include "tests/islands/crowd.hpp"
 #include "tests/support/allocation_guard.hpp"
 #include "tests/support/matchers.hpp"
@@ -23,7 +23,7 @@ TEST(Islands, AgreeWithTheJointSolve) {
   for (const Cone cone : {Cone::pyramidal, Cone::elliptic}) {
     ModelBuilder builder = heap(24, 1);
     builder.options.cone = cone;
-    builder.options.partAngle = kInfinity;  // else each island goes in parts of its own
+    builder.options.substepAngle = kInfinity;  // else each island goes in parts of its own
     Crowd crowd(builder.build());
     collision::SceneContacts jointContacts(crowd.model);
     Data data(crowd.model);
@@ -56,8 +56,8 @@ TEST(Islands, SumTheirFallbacks) {
   int rounded = 0, ended = 0;
   for (int i = 0; i < 400; ++i) {
     ASSERT_NE(crowd.islands.step({}), SolveStatus::notFinite);
-    rounded = std::max(rounded, crowd.islands.stats().roundedSolves);
-    ended = std::max(ended, crowd.islands.stats().shortSolves);
+    rounded = std::max(rounded, crowd.islands.stats().roundingLimitedSolves);
+    ended = std::max(ended, crowd.islands.stats().unconvergedSolves);
   }
   EXPECT_GT(rounded, 1);  // of several islands in one step
   EXPECT_GT(ended, 0);

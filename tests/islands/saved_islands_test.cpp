@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/core/bytes.hpp"
-#include "engine/model/saved_state.hpp"
+#include "softgauss/engine/core/bytes.hpp"
+#include "softgauss/engine/model/saved_state.hpp"
 #include "tests/islands/crowd.hpp"
 
 namespace softgauss::test {

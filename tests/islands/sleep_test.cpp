@@ -2,7 +2,7 @@
 
 /// What is at rest sleeps, and wakes when it is touched.
 
-#include "engine/islands/islands.hpp"
+#include "softgauss/engine/islands/islands.hpp"
 #include "tests/islands/crowd.hpp"
 #include "tests/support/matchers.hpp"
 

@@ -70,7 +70,7 @@ TEST(Power, EqualsRateOfEnergyWithContactsAndLimits) {
     const Kinematics& k = s.data->kinematics;
     // Contact forces act on both bodies, at the velocity with which their points approach.
     double power = appliedPower(s);
-    const auto& made = rows.contact.made();
+    const auto& made = rows.contact.contactsWithRows();
     for (int i = 0; i < static_cast<int>(made.size()); ++i) {
       const Contact& c = s.data->contacts.contacts[made[i].contact];
       power += rows.contact.force(i).dot(pointVelocity(s.model, k, c.bodyB, c.p_WC) -

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-/// J̇ v of contacts (T.121) against differences along the motion, with contacts found anew.
+/// J̇ v of contacts (4.10) against differences along the motion, with contacts found anew.
 
-#include "engine/constraints/contact_motion.hpp"
+#include "softgauss/engine/constraints/contact_motion.hpp"
 
-#include "collision/scene_contacts.hpp"
-#include "engine/engine.hpp"
+#include "softgauss/collision/scene_contacts.hpp"
+#include "softgauss/engine/engine.hpp"
 #include "tests/support/finite_difference.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/random.hpp"
@@ -150,7 +150,7 @@ TEST_P(ContactMotion, IsTheRateOfTheVelocityThatIsCompared) {
       const std::optional<ContactBias> bias = contactBias(model, bodies.k, c);
       if (!bias || c.distance > -kDeep) continue;
       // The place on a rim that lies deeper than that runs far within the differences.
-      if (pair.other.kind == ShapeKind::cylinder && bias->deep < -c.distance) continue;
+      if (pair.other.kind == ShapeKind::cylinder && bias->biasDepth < -c.distance) continue;
       ++compared;
       const auto motion = [&](const VectorX& q) { return bodies.motionAt(q, s.v, c.p_WC); };
       const Matrix3 R_WF = bodies.k.X_WB[bodies.flat].R;

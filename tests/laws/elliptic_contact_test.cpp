@@ -21,9 +21,10 @@ Scene ellipticScene(std::uint64_t seed, int contacts) {
 std::vector<ConeZone> zonesOf(const Scene& s) {
   std::vector<ConeZone> zones;
   const EllipticContact& contact = s.data->constraints.ellipticContact;
-  for (std::size_t i = 0; i < contact.made().size(); ++i)
-    zones.push_back(
-        contact.cone(static_cast<int>(i)).point(contact.x.data() + contact.made()[i].row).zone());
+  for (std::size_t i = 0; i < contact.contactsWithRows().size(); ++i)
+    zones.push_back(contact.cone(static_cast<int>(i))
+                        .point(contact.x.data() + contact.contactsWithRows()[i].row)
+                        .zone());
   return zones;
 }
 
@@ -95,8 +96,8 @@ TEST(EllipticForward, IsComplementary) {
     s.forward();
     const EllipticContact& contact = s.data->constraints.ellipticContact;
     for (const ConeZone zone : zonesOf(s)) ++zones[static_cast<int>(zone)];
-    for (std::size_t i = 0; i < contact.made().size(); ++i) {
-      const ContactRows& made = contact.made()[i];
+    for (std::size_t i = 0; i < contact.contactsWithRows().size(); ++i) {
+      const ContactRows& made = contact.contactsWithRows()[i];
       const auto row = static_cast<std::size_t>(made.row);
       const double R = 1.0 / contact.cone(static_cast<int>(i)).D;
       const double mu = made.friction[0], ratio = s.model.options.impedanceRatio;
@@ -131,7 +132,7 @@ TEST(EllipticContact, ForceActsAtItsPointOnBothBodies) {
     const EllipticContact& contact = s.data->constraints.ellipticContact;
     VectorX actual = VectorX::Zero(s.model.nv);
     contact.addTransposed(contact.f, actual);
-    for (int i = 0; i < static_cast<int>(contact.made().size()); ++i)
+    for (int i = 0; i < static_cast<int>(contact.contactsWithRows().size()); ++i)
       moments += contact.moment(i).norm() > 0.0;
     EXPECT_APPROX(actual, forceOfContacts(s, contact), 1e-12) << "seed " << seed;
   }
@@ -184,8 +185,8 @@ TEST(EllipticContact, CrossingsAreWhereZonesChangeAlongARay) {
       constraints.advance(alpha - at);
       at = alpha;
       const EllipticContact& contact = constraints.ellipticContact;
-      for (std::size_t i = 0; i < contact.made().size(); ++i)
-        if (contact.made()[i].row == row)
+      for (std::size_t i = 0; i < contact.contactsWithRows().size(); ++i)
+        if (contact.contactsWithRows()[i].row == row)
           return static_cast<int>(
               contact.cone(static_cast<int>(i)).point(contact.x.data() + row).zone());
       return -1;
@@ -194,10 +195,10 @@ TEST(EllipticContact, CrossingsAreWhereZonesChangeAlongARay) {
       if (c.alpha > 5.0) continue;
       ++found;
       const double step = 1e-7 * (1.0 + c.alpha);
-      const int before = zoneAt(c.alpha - step, c.knot.row.row);
-      const int after = zoneAt(c.alpha + step, c.knot.row.row);
-      EXPECT_EQ(std::min(before, after), c.knot.index) << "seed " << seed;
-      EXPECT_EQ(std::max(before, after), c.knot.index + 1) << "seed " << seed;
+      const int before = zoneAt(c.alpha - step, c.breakpoint.row.row);
+      const int after = zoneAt(c.alpha + step, c.breakpoint.row.row);
+      EXPECT_EQ(std::min(before, after), c.breakpoint.index) << "seed " << seed;
+      EXPECT_EQ(std::max(before, after), c.breakpoint.index + 1) << "seed " << seed;
       EXPECT_EQ(after > before, c.rate > 0.0);
       EXPECT_EQ(c.curvatureJump<0.0, c.rate> 0.0);
     }

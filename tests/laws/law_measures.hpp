@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
-#include "engine/dynamics/jacobian.hpp"
-#include "engine/step/inverse.hpp"
+#include "softgauss/engine/dynamics/jacobian.hpp"
+#include "softgauss/engine/step/inverse.hpp"
 #include "tests/support/scene.hpp"
 
 namespace softgauss::test {
@@ -46,8 +46,8 @@ template <class ContactEffect>
 VectorX forceOfContacts(const Scene& s, const ContactEffect& contact) {
   VectorX force = VectorX::Zero(s.model.nv);
   Eigen::Matrix<double, 3, Eigen::Dynamic> J(3, s.model.nv);
-  for (int i = 0; i < static_cast<int>(contact.made().size()); ++i) {
-    const Contact& c = s.data->contacts.contacts[contact.made()[i].contact];
+  for (int i = 0; i < static_cast<int>(contact.contactsWithRows().size()); ++i) {
+    const Contact& c = s.data->contacts.contacts[contact.contactsWithRows()[i].contact];
     pointJacobian(s.model, s.data->kinematics, c.bodyB, c.p_WC, J);
     force += J.transpose() * contact.force(i);
     pointJacobian(s.model, s.data->kinematics, c.bodyA, c.p_WC, J);

@@ -11,8 +11,8 @@
 #include <ostream>
 #include <string>
 
-#include "collision/scene_contacts.hpp"
-#include "engine/engine.hpp"
+#include "softgauss/collision/scene_contacts.hpp"
+#include "softgauss/engine/engine.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/sample_models.hpp"
 
@@ -65,7 +65,7 @@ Model finished(ModelBuilder builder, double timestep) {
   builder.options.gravity.setZero();
   builder.options.timestep = timestep;
   builder.options.integrator = Integrator::leapfrog;
-  builder.options.partAngle = kInfinity;  // parts of a step keep the rows' law of the start
+  builder.options.substepAngle = kInfinity;  // parts of a step keep the rows' law of the start
   return builder.build();
 }
 

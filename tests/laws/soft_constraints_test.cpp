@@ -187,8 +187,8 @@ TEST(Friction, StaysInPyramid) {
     Scene s = lawScene(seed, 8);
     s.forward();
     const PyramidalContact& contact = s.data->constraints.contact;
-    for (int i = 0; i < static_cast<int>(contact.made().size()); ++i) {
-      const ContactRows& made = contact.made()[i];
+    for (int i = 0; i < static_cast<int>(contact.contactsWithRows().size()); ++i) {
+      const ContactRows& made = contact.contactsWithRows()[i];
       const Vector3 f = made.R_WC.transpose() * contact.force(i);
       const Vector3 m = made.R_WC.transpose() * contact.moment(i);
       EXPECT_GE(f[0], 0.0);
@@ -227,7 +227,7 @@ TEST(Contact, ForceActsAtItsPointOnBothBodies) {
     const PyramidalContact& contact = s.data->constraints.contact;
     VectorX actual = VectorX::Zero(s.model.nv);
     contact.addTransposed(contact.f, actual);
-    for (int i = 0; i < static_cast<int>(contact.made().size()); ++i)
+    for (int i = 0; i < static_cast<int>(contact.contactsWithRows().size()); ++i)
       moments += contact.moment(i).norm() > 0.0;
     EXPECT_APPROX(actual, forceOfContacts(s, contact), 1e-12) << "seed " << seed;
   }

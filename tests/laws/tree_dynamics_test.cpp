@@ -3,7 +3,7 @@
 
 #include <Eigen/Cholesky>
 
-#include "engine/dynamics/aba.hpp"
+#include "softgauss/engine/dynamics/aba.hpp"
 #include "tests/laws/law_measures.hpp"
 #include "tests/support/finite_difference.hpp"
 #include "tests/support/matchers.hpp"

@@ -7,7 +7,7 @@
 
 #include <fstream>
 
-#include "io/urdf.hpp"
+#include "softgauss/io/urdf.hpp"
 #include "tests/io/temp_folder.hpp"
 
 namespace softgauss::live {

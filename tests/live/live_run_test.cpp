@@ -5,7 +5,7 @@
 
 #include <fstream>
 
-#include "io/replay/page.hpp"
+#include "softgauss/io/replay/page.hpp"
 #include "tests/apps/process.hpp"
 #include "tests/io/temp_folder.hpp"
 #include "tests/live/live_process.hpp"

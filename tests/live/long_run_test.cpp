@@ -7,10 +7,10 @@
 
 #include "apps/live/rewind.hpp"
 #include "apps/live/status.hpp"
-#include "io/replay/frames.hpp"
-#include "io/replay/series.hpp"
-#include "io/summary.hpp"
-#include "io/urdf.hpp"
+#include "softgauss/io/replay/frames.hpp"
+#include "softgauss/io/replay/series.hpp"
+#include "softgauss/io/summary.hpp"
+#include "softgauss/io/urdf.hpp"
 
 namespace softgauss {
 namespace {

@@ -6,7 +6,7 @@
 #include <random>
 
 #include "apps/live/messages.hpp"
-#include "io/urdf.hpp"
+#include "softgauss/io/urdf.hpp"
 
 namespace softgauss::live {
 namespace {

@@ -9,7 +9,7 @@
 #include <boost/asio/write.hpp>
 #include <random>
 
-#include "io/urdf.hpp"
+#include "softgauss/io/urdf.hpp"
 #include "tests/live/live_process.hpp"
 
 namespace softgauss::live {

@@ -76,9 +76,9 @@ std::vector<Row> rowsOf(const Model& model, const Data& data) {
   });
   // A cone's rows are as stiff as where it sticks.
   const EllipticContact& cones = data.constraints.ellipticContact;
-  for (std::size_t i = 0; i < cones.made().size(); ++i) {
+  for (std::size_t i = 0; i < cones.contactsWithRows().size(); ++i) {
     const EllipticCone& cone = cones.cone(static_cast<int>(i));
-    const int first = cones.made()[i].row;
+    const int first = cones.contactsWithRows()[i].row;
     add(cones, first, cone.D, false);
     for (std::size_t k = 0; k + 1 < static_cast<std::size_t>(cone.dim); ++k) {
       const double share = cone.friction[k] / cone.mu;

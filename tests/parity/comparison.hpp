@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/step/data.hpp"
+#include "softgauss/engine/step/data.hpp"
 #include "tests/parity/reference_log.hpp"
 
 namespace softgauss::test {

@@ -14,10 +14,10 @@
 #include <string>
 #include <vector>
 
-#include "collision/scene_contacts.hpp"
-#include "engine/engine.hpp"
-#include "gdd/gdd.hpp"
-#include "io/urdf.hpp"
+#include "softgauss/collision/scene_contacts.hpp"
+#include "softgauss/engine/engine.hpp"
+#include "softgauss/gdd/gdd.hpp"
+#include "softgauss/io/urdf.hpp"
 #include "tests/parity/comparison.hpp"
 #include "tests/parity/json_vector.hpp"
 #include "tests/parity/reference_log.hpp"
@@ -88,12 +88,12 @@ TEST(GddReferee, MujocoMovesAsGddFound) {
   int states = 0, kinks = 0;
   for (const Trial& trial : trials()) {
     ASSERT_EQ(trial.recorded.size(), trial.judged.size());
-    const gdd::ControlBox box(trial.model);
+    const gdd::ControlLimits limits(trial.model);
     for (std::size_t i = 0; i < trial.recorded.size(); ++i) {
       const Json& state = trial.recorded[i];
       EXPECT_GT(state.at("contacts"), 0);
       EXPECT_EQ(state.at("contacts"), trial.judged[i].at("contacts"));
-      EXPECT_EQ(box.violation(vectorOf(state.at("control"))), 0.0);
+      EXPECT_EQ(limits.violation(vectorOf(state.at("control"))), 0.0);
       EXPECT_SMALL(
           relativeDifference(vectorOf(state.at("acceleration")),
                              vectorOf(trial.judged[i].at("acceleration")), kSmallAcceleration),
@@ -138,7 +138,7 @@ TYPED_TEST(GddFound, StaysWhatItWas) {
     collision::SceneContacts contacts(model);
     TypeParam solver(model);
     gdd::GoalCost cost(model.nv);
-    const gdd::ControlBox box(model);
+    const gdd::ControlLimits limits(model);
     for (std::size_t i = 0; i < trial.recorded.size(); ++i) {
       const Json& recorded = trial.recorded[i];
       if (recorded.at("status") == "iterationLimit") continue;
@@ -157,11 +157,11 @@ TYPED_TEST(GddFound, StaysWhatItWas) {
       warm.control = vectorOf(recorded.at("control"));
       warm.gddSearchWait = 2;  // not in this solve
       warm.gddValid = true;
-      const gdd::GddStatus status = solver.solve(model, cost, box, data, warm).status;
-      EXPECT_TRUE(status == gdd::GddStatus::converged || status == gdd::GddStatus::kink)
+      const gdd::GddStatus status = solver.solve(model, cost, limits, data, warm).status;
+      EXPECT_TRUE(status == gdd::GddStatus::converged || status == gdd::GddStatus::nonsmoothMinimum)
           << trial.name << ", state " << i;
-      EXPECT_SMALL(relativeDifference(box.clamp(solver.force()), vectorOf(recorded.at("control")),
-                                      kSmallForce),
+      EXPECT_SMALL(relativeDifference(limits.clamp(solver.force()),
+                                      vectorOf(recorded.at("control")), kSmallForce),
                    kStays)
           << trial.name << ", state " << i;
     }

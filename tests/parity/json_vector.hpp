@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "engine/core/types.hpp"
+#include "softgauss/engine/core/types.hpp"
 
 namespace softgauss::test {
 

@@ -15,9 +15,9 @@
 #include <string>
 #include <vector>
 
-#include "collision/scene_contacts.hpp"
-#include "engine/dynamics/energy.hpp"
-#include "engine/step/inverse.hpp"
+#include "softgauss/collision/scene_contacts.hpp"
+#include "softgauss/engine/dynamics/energy.hpp"
+#include "softgauss/engine/step/inverse.hpp"
 #include "tests/parity/comparison.hpp"
 #include "tests/parity/reference_log.hpp"
 #include "tests/support/scene.hpp"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/model/state.hpp"
+#include "softgauss/engine/model/state.hpp"
 
 namespace softgauss::test {
 

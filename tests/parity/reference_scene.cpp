@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "engine/model/model_builder.hpp"
+#include "softgauss/engine/model/model_builder.hpp"
 
 namespace softgauss::test {
 namespace {

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <limits>
 
-#include "collision/scene_contacts.hpp"
-#include "collision/unit_contacts.hpp"
-#include "engine/islands/islands.hpp"
+#include "softgauss/collision/scene_contacts.hpp"
+#include "softgauss/collision/unit_contacts.hpp"
+#include "softgauss/engine/islands/islands.hpp"
 #include "tests/parity/comparison.hpp"
 #include "tests/parity/reference_log.hpp"
 #include "tests/support/tolerance.hpp"

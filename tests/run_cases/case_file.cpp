@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
-#include "io/detail/text.hpp"
-#include "io/detail/yaml.hpp"
+#include "softgauss/io/detail/text.hpp"
+#include "softgauss/io/detail/yaml.hpp"
 
 namespace softgauss::cases {
 namespace {

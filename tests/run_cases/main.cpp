@@ -9,7 +9,7 @@
 #include <cstdio>
 #include <exception>
 
-#include "engine/core/check.hpp"
+#include "softgauss/engine/core/check.hpp"
 #include "tests/run_cases/case_file.hpp"
 #include "tests/run_cases/outcome.hpp"
 

@@ -13,8 +13,8 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "io/detail/csv.hpp"
-#include "io/detail/text.hpp"
+#include "softgauss/io/detail/csv.hpp"
+#include "softgauss/io/detail/text.hpp"
 
 namespace softgauss::cases {
 namespace {

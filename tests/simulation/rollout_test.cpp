@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/simulation/rollout.hpp"
+#include "softgauss/io/simulation/rollout.hpp"
 
 #include <gtest/gtest.h>
 

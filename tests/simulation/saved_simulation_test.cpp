@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/model/state.hpp"
-#include "io/simulation/simulation.hpp"
+#include "softgauss/engine/model/state.hpp"
+#include "softgauss/io/simulation/simulation.hpp"
 #include "tests/simulation/data_file.hpp"
 
 namespace softgauss::test {

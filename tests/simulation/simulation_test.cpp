@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 /// A Simulation is what simulate_gdd runs: here against the engine put together by hand; the
 /// programs' own bits are compared in tests/apps.
-#include "io/simulation/simulation.hpp"
+#include "softgauss/io/simulation/simulation.hpp"
 
 #include <gtest/gtest.h>
 
-#include "engine/engine.hpp"
+#include "softgauss/engine/engine.hpp"
 #include "tests/simulation/data_file.hpp"
 
 namespace softgauss::test {

@@ -5,8 +5,8 @@
 #include <thread>
 #include <vector>
 
-#include "engine/engine.hpp"
-#include "io/simulation/simulation.hpp"
+#include "softgauss/engine/engine.hpp"
+#include "softgauss/io/simulation/simulation.hpp"
 #include "tests/simulation/data_file.hpp"
 
 namespace softgauss::test {

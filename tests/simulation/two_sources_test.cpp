@@ -9,8 +9,8 @@
 #include <map>
 
 #include "apps/shared/cpu_time.hpp"
-#include "engine/engine.hpp"
-#include "io/simulation/simulation.hpp"
+#include "softgauss/engine/engine.hpp"
+#include "softgauss/io/simulation/simulation.hpp"
 #include "tests/simulation/data_file.hpp"
 
 namespace softgauss::test {

@@ -186,7 +186,7 @@ TEST(Chains, TreesThatWhipUnderATinyTorqueGainNothing) {
       for (const double h : {0.002, 0.005}) whipsThroughItsLimits(seed, h, 10.0, 0.01, torque);
 }
 // Of 320 such trees three gain 1.6 to 1.9 % with steps of 0.5 ms, none more than 0.5 % with longer
-// ones; before slides were looked at, 279 gained 390 %, and by (T.93) without energies 71 gained
+// ones; before slides were looked at, 279 gained 390 %, and by (6.4) without energies 71 gained
 // 40 % at 2 ms and 103 180 % at 0.5 ms.
 TEST(Chains, TreesThatWhipForTenSecondsGainNothingLong) {
   for (const double h : {0.0005, 0.002, 0.005, 0.01}) {

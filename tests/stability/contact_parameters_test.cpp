@@ -105,7 +105,7 @@ TEST(ContactParameters, ImpedancesUpToOne) {
 }
 
 // Down to next to nothing: what rests on four corners or carries a heap takes a velocity more often
-// than once where the reference is made for a row by itself (T.126). Boxes dropped, and stacked
+// than once where the reference is made for a row by itself (3.6). Boxes dropped, and stacked
 // with masses as given.
 TEST(ContactParameters, ImpedancesFromNextToNothing) {
   const std::vector<std::vector<double>> stacks = {{1}, {1, 1000}, {1000, 1}, {1, 1, 1, 1, 1}};
@@ -182,9 +182,9 @@ TEST(ContactParameters, SlopeAtTheEdgeOfTheConeForAMinuteLong) {
 
 // With pyramids friction lifts as it creeps. Of a contact's four edges, κ = −k r and s = b μ v, one
 // bears D (κ + s), two D κ and one nothing, so that f_t/(μ f_n) = (κ + s)/(3 κ + s) = 0.99 asks for
-// s = 197 κ: v = 0.985 f_n R/(b μ), at a two hundredth of the depth of rest. So near to leaving,
-// the box chatters (docs/stability_limits.md): it is borne in every other step, at twice that
-// speed, and falls downhill in the others.
+// s = 197 κ: v = 0.985 f_n R/(b μ), at a two hundredth of the penetration at rest. So near to
+// leaving, the box chatters (docs/stability_limits.md): it is borne in every other step, at twice
+// that speed, and falls downhill in the others.
 TEST(ContactParameters, SlopeAtTheEdgeOfThePyramid) {
   constexpr double kMu = 0.8, kWeight = 9.81, kSoftness = (1.0 - 0.9) / 0.9,
                    kB = 2.0 / (0.95 * 0.02);

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/constraints/tie_softness.hpp"
-#include "engine/step/integrators/tree_motion.hpp"
+#include "softgauss/engine/constraints/equality_softness.hpp"
+#include "softgauss/engine/step/integrators/tree_motion.hpp"
 
 namespace softgauss::test {
 namespace {
@@ -19,13 +19,15 @@ void forEachSoft(const Model& model, const State& state, const Data& data, F&& f
   const Assembly in{
       model, state, data.kinematics, data.contacts, data.weights, data.inertia.sparsity, true};
   rows.visitContacts([&](const auto& c) {
-    for (std::size_t i = 0; i < c.made().size(); ++i) {
-      const int end = i + 1 < c.made().size() ? c.made()[i + 1].row : c.rowCount();
-      f(c, c.made()[i].row, end - c.made()[i].row, touchAt(in, c.made()[i].contact)->softness);
+    for (std::size_t i = 0; i < c.contactsWithRows().size(); ++i) {
+      const int end =
+          i + 1 < c.contactsWithRows().size() ? c.contactsWithRows()[i + 1].row : c.rowCount();
+      f(c, c.contactsWithRows()[i].row, end - c.contactsWithRows()[i].row,
+        touchAt(in, c.contactsWithRows()[i].contact)->softness);
     }
   });
   const auto softness = [&](const Impedance& p) { return softnessAt(p, 0.0, 1.0, model.options); };
-  const auto tie = [&](const Impedance& p) { return tieSoftness(p, 0.0, 1.0, model.options); };
+  const auto tie = [&](const Impedance& p) { return equalitySoftness(p, 0.0, 1.0, model.options); };
   for (int i = 0; i < rows.jointLimit.rowCount(); ++i)
     for (const JointRange& range : model.ranges)
       if (model.bodies[range.body].v == rows.jointLimit.dof(i))
@@ -38,8 +40,10 @@ void forEachSoft(const Model& model, const State& state, const Data& data, F&& f
     f(rows.weld, i, 3, tie(model.welds[i / 6].impedance));
 }
 
-/// (T.93) of what is not followed: of (T.136), 4 √(2 turn) ≤ partAngle in a part of a step.
-double leastTurn(const Options& options) { return 0.5 * std::pow(0.25 * options.partAngle, 2.0); }
+/// (6.4) of what is not followed: of (6.3), 4 √(2 turn) ≤ substepAngle in a part of a step.
+double leastTurn(const Options& options) {
+  return 0.5 * std::pow(0.25 * options.substepAngle, 2.0);
+}
 
 /// √(2 K) by its largest part, as sub-steps have it: max_i (|v_i| + h |a_i|) √M_ii.
 double speed(const Model& model, const State& state, const Data& data) {
@@ -72,7 +76,7 @@ double EnergyWatch::energy(const State& state) {
 void EnergyWatch::forceAt(const VectorX& q, const Input& input, VectorX& force) {
   back_.q = q;
   back_.v.setZero();
-  back_.aIsKnown = false;
+  back_.hasAcceleration = false;
   computeStages(model_, input, back_, data_, nullptr);
   force = data_.forces.net;
   for (const Tree& tree : model_.trees)
@@ -119,10 +123,10 @@ double EnergyWatch::offset(const State& state, const Input& input) {
 
 double EnergyWatch::stored(const State& state, const Input& input) {
   Input soft = input;
-  soft.softFriction = true;  // (T.97) scales k d by the speed
+  soft.softFriction = true;  // (5.7) scales k d by the speed
   State still = state;
   still.v.setZero();
-  still.aIsKnown = false;
+  still.hasAcceleration = false;
   computeStages(model_, soft, still, data_, &contacts_);
   forwardDynamics(model_, nullptr, data_);
   std::vector<const void*> kinds;
@@ -151,8 +155,8 @@ double EnergyWatch::begun(const Data& data) {
   now_.clear();
   double sum = 0.0;
   data.constraints.visitContacts([&](const auto& c) {
-    for (std::size_t i = 0; i < c.made().size(); ++i) {
-      const ContactRows& made = c.made()[i];
+    for (std::size_t i = 0; i < c.contactsWithRows().size(); ++i) {
+      const ContactRows& made = c.contactsWithRows()[i];
       now_.push_back(c.name(made.row));
       if (std::find(before_.begin(), before_.end(), now_.back()) == before_.end())
         sum += c.frameForce(static_cast<int>(i))[0] *

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// The law of energy of a passive scene, at every step and against every step before:
+/// The passivity bound of a passive scene, at every step and against every step before:
 ///
 ///   E(t) − W(t) ≤ E(s) − W(s) + S(s) + Δ(s) + Δ(t) + Σ ε + Σ f |r|     for all s ≤ t
 ///                                                   steps   contacts that begin after s
@@ -35,8 +35,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "collision/scene_contacts.hpp"
-#include "engine/engine.hpp"
+#include "softgauss/collision/scene_contacts.hpp"
+#include "softgauss/engine/engine.hpp"
 
 namespace softgauss::test {
 
@@ -76,7 +76,7 @@ class EnergyWatch {
   double least_ = kInfinity;  ///< E − W so far
   double limit_ = kInfinity;  ///< of E − W: the least of the right side, but for Δ(t)
   int steps_ = 0;
-  std::vector<RowName> now_, before_;  ///< contacts
+  std::vector<RowKey> now_, before_;  ///< contacts
 };
 
 }  // namespace softgauss::test

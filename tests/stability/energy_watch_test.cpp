@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The law of energy that every trial is asked for can be broken, and by how little.
+/// The passivity bound that every trial is asked for can be broken, and by how little.
 
 #include "tests/stability/energy_watch.hpp"
 

@@ -11,7 +11,7 @@
 #include <optional>
 #include <string>
 
-#include "gdd/gdd.hpp"
+#include "softgauss/gdd/gdd.hpp"
 #include "tests/gdd/solvers.hpp"
 #include "tests/stability/energy_watch.hpp"
 #include "tests/stability/scenes.hpp"
@@ -112,18 +112,18 @@ class Course {
     if (!state.q.allFinite() || !state.v.allFinite()) return breaks("a state that is not finite");
     for (int i = 0; i < model.nv; ++i) {
       const double u = controller.control[i];
-      if (!(controller.box.lower[i] <= u && u <= controller.box.upper[i]))
-        return breaks("a control out of its box");
+      if (!(controller.limits.lower[i] <= u && u <= controller.limits.upper[i]))
+        return breaks("a control out of its limits");
     }
     const gdd::GddReport& report = controller.report;
     const StepStats& stats = data.stats;
-    refused += stats.refusedGuesses;
-    if (!mayRefuse && stats.refusedGuesses > 0) return breaks("a guess refused");
+    refused += stats.invalidWarmStarts;
+    if (!mayRefuse && stats.invalidWarmStarts > 0) return breaks("a guess refused");
     if (report.restarts > 0) return breaks("a solve begun again");
-    if (stats.keptSlips + stats.abandonedTrees + stats.jumps > 0)
+    if (stats.noSlipFallbacks + stats.abandonedTrees + stats.minimumStepsAccepted > 0)
       return breaks("something done in place of what was asked");
-    uncertified +=
-        report.status != gdd::GddStatus::converged && report.status != gdd::GddStatus::kink;
+    uncertified += report.status != gdd::GddStatus::converged &&
+                   report.status != gdd::GddStatus::nonsmoothMinimum;
     worstViolation = std::max(worstViolation, report.violation);
     fastest = std::max(fastest, state.v.cwiseAbs().maxCoeff());
     work += 0.5 * model.options.timestep * (controller.control + input.tau).dot(before_ + state.v);
@@ -251,7 +251,7 @@ TEST(Goals, AllActuatorsSaturated) {
                  with(standing ? humanoid() : arm(), timestep).build(), solver);
         for (int i = 0; i < c.model.nv; ++i)
           if (c.model.dofs[i].actuated)
-            c.controller.box.lower[i] = -1e-3, c.controller.box.upper[i] = 1e-3;
+            c.controller.limits.lower[i] = -1e-3, c.controller.limits.upper[i] = 1e-3;
         c.mayGain = 1e-6;  // as of a Trial: these controls do less
         c.reach(standing ? "right_forearm" : "hand", Vector3(0.3, 0.2, standing ? 1.5 : 0.5), 1e4);
         c.posture(1e3);
@@ -276,8 +276,8 @@ TEST(Goals, NoActuators) {
   for (const gdd::GddSolver solver : kSolvers)
     for (const double timestep : {0.002, 0.01}) {
       Course c("humanoid without actuators", with(humanoid(), timestep).build(), solver);
-      c.controller.box.lower.setZero();
-      c.controller.box.upper.setZero();
+      c.controller.limits.lower.setZero();
+      c.controller.limits.upper.setZero();
       c.mayGain = 1e-6;
       c.reach("right_forearm", Vector3(0.3, 0.2, 1.5), 1e4);
       c.posture(1e3);
@@ -368,8 +368,9 @@ TEST(Goals, WarmStartsAreGuesses) {
               *parts[k] = size * random.vector(c.model.nv, 1.0);
           const int part = (i / 20) % 5, unread = c.isDefault() ? 1 : 2;  // multipliers, control
           wrong += std::isnan(size) && part != unread && part != 3;
-          for (KnotName& knot : warm.knots)
-            if (random.chance(0.5)) knot.row.first = random.index(40), knot.index = random.index(3);
+          for (BreakpointKey& breakpoint : warm.breakpoints)
+            if (random.chance(0.5))
+              breakpoint.row.first = random.index(40), breakpoint.index = random.index(3);
         }
         if (!c.step()) break;
       }

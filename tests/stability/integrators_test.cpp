@@ -64,8 +64,8 @@ Verdict run(const Scene& scene, const Method& method, double h, Cone cone) {
   for (int i = static_cast<int>(std::round(scene.seconds / h)); i > 0 && !refused; --i) {
     const SolveStatus status = step(model, {}, state, data, &contacts);
     const StepStats& s = data.stats;
-    told += status != SolveStatus::converged || s.jumps + s.abandonedTrees > 0;
-    refused = status == SolveStatus::notFinite || status == SolveStatus::notClosed;
+    told += status != SolveStatus::converged || s.minimumStepsAccepted + s.abandonedTrees > 0;
+    refused = status == SolveStatus::notFinite || status == SolveStatus::integratorDiverged;
     gained = std::max(gained, energy() - E0);
   }
   const double figure = refused ? kInfinity : std::abs(scene.figure(model, state, data));

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <string>
 
-#include "engine/core/rotation.hpp"
+#include "softgauss/engine/core/rotation.hpp"
 #include "tests/stability/scenes.hpp"
 
 namespace softgauss::test {
@@ -107,8 +107,8 @@ void jams(double friction, double timestep, Cone cone) {
   Vector3 sum = Vector3::Zero();
   double pressing = 0.0;
   const auto add = [&](const auto& rows) {
-    for (int i = 0; i < static_cast<int>(rows.made().size()); ++i) {
-      const Contact& c = t.data->contacts.contacts[rows.made()[i].contact];
+    for (int i = 0; i < static_cast<int>(rows.contactsWithRows().size()); ++i) {
+      const Contact& c = t.data->contacts.contacts[rows.contactsWithRows()[i].contact];
       if (c.bodyA != 0 && c.bodyB != 0) continue;
       const Vector3 force = c.bodyA == 0 ? rows.force(i) : Vector3(-rows.force(i));
       sum += force;

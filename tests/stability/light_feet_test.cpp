@@ -180,7 +180,7 @@ ModelBuilder anyRobot(Random& random, bool round) {
   return builder;
 }
 
-// Contacts that come and go change how much of a robot each bears, and what it stores (T.131).
+// Contacts that come and go change how much of a robot each bears, and what it stores (5.3).
 TEST(LightFeet, RobotsThatAreThrownGainNothing) {
   for (int seed = 0; seed < 40; ++seed)
     for (const double timestep : {0.0005, 0.002, 0.005, 0.01}) {

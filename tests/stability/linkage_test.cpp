@@ -109,9 +109,9 @@ void walks(double timestep, double seconds) {
     wrong = std::max(wrong, (foot - inSpace(Places(t.state.q[0]).foot)).norm());
     if (t.state.time > 1.0) slowest = std::min(slowest, t.state.v[0]);
   });
-  // A tie of the default softness gives way by a t_c² (1 − d)/d where its place would go with the
-  // acceleration a, of the weight and of a bar at the crank's rate to and fro; and by the chord of
-  // its turn in a step. The linkage takes the foot up to five times as far.
+  // An equality constraint of the default softness gives way by a t_c² (1 − d)/d where its place
+  // would go with the acceleration a, of the weight and of a bar at the crank's rate to and fro;
+  // and by the chord of its turn in a step. The linkage takes the foot up to five times as far.
   const double a = 9.81 + 4.0 * kRate * kRate * kH, turn = timestep * 2.0 * kRate;
   const double gives = a * 4e-4 * 0.1 / 0.9 + 0.5 * turn * turn * kH;
   t.expect("ties are off", off, gives, "m");
@@ -128,8 +128,8 @@ TEST(Linkage, JansensWalksForAHundredSecondsLong) {
 }
 
 // Two cubes that turn about hinges of their own, the second by ½ q² of the first: nothing drives
-// them, and the row has to answer what the curvature of its cam makes, p″ v² (T.30). Without, the
-// law of energy breaks by 2.6 %, and 12 % are lost.
+// them, and the row has to answer what the curvature of its cam makes, p″ v² (4.6). Without, the
+// passivity bound breaks by 2.6 %, and 12 % are lost.
 TEST(Linkage, CamsNeitherGainNorBrake) {
   for (const double timestep : {0.0005, 0.002, 0.005, 0.01}) {
     ModelBuilder builder = with(ModelBuilder("cam"), timestep);
@@ -164,7 +164,7 @@ void crank(int seed, double timestep) {
   t.run(2.0);
 }
 
-// The rod turns by up to 0.6 rad in a step, and what holds it comes and goes with its load (T.128).
+// The rod turns by up to 0.6 rad in a step, and what holds it comes and goes with its load (6.9).
 // As a string's δ = 0.1 that gave a quarter of these up to twice their energy.
 TEST(Linkage, RodsOfFlywheels) {
   for (int seed = 0; seed < 50; ++seed) crank(seed, 0.01);

@@ -88,7 +88,7 @@ ModelBuilder stopped(bool slide, double light, double heavy) {
   return builder;
 }
 
-// A range feels the link that it stops, and bears what slides or turns on it (T.133): 100 kg on a
+// A range feels the link that it stops, and bears what slides or turns on it (5.4): 100 kg on a
 // stage of 1 kg came to lie 20 mm below both stops, and fell on through one of 10 g.
 TEST(MassRatio, RangesBearWhatMovesOnThem) {
   for (const bool slide : {true, false})

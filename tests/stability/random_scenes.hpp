@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// Scenes drawn at random, to search for those that break the law of energy. Nothing drives them.
+/// Scenes drawn at random, to search for those that break the passivity bound. Nothing drives them.
 /// The seed decides the scene, the same for every step; every second one has elliptic cones.
 
 #include "tests/stability/scenes.hpp"
@@ -24,10 +24,10 @@ RandomScene randomRobot(int seed, double timestep);
 RandomScene randomWeb(int seed, double timestep);
 
 /// Two cubes of 0.2 m, tied side by side, that tumble onto the floor: the one of 1 kg, the other of
-/// up to `ratio`, with `turn` [rad/s] about each axis at most. The tie has an impedance of 10⁻⁴ to
-/// 0.9.
+/// up to `ratio`, with `turn` [rad/s] about each axis at most. The equality constraint has an
+/// impedance of 10⁻⁴ to 0.9.
 RandomScene randomPair(int seed, double timestep, double ratio, double turn);
-/// Makes its contacts as soft as the tie, for every second two seeds.
+/// Makes its contacts as soft as the equality constraint, for every second two seeds.
 void softenContacts(Model& pair, int seed);
 
 /// A slider-crank without gravity: a flywheel of 0.1 to 20 kg and a slider of 0.02 to 2 kg on

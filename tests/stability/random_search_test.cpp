@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Searches at random for scenes that break the law of energy (energy_watch.hpp). The long test
+/// Searches at random for scenes that break the passivity bound (energy_watch.hpp). The long test
 /// prints a row of the table for every family, and the seeds of what it finds:
 ///
 ///   stability_tests --gtest_filter='*RandomSearchLong*'
@@ -57,7 +57,7 @@ constexpr Family kFamilies[] = {
 struct Course {
   double breaks = 0.0, gains = 0.0;       ///< the law against any earlier step; against its start
   double brokenAt = 0.0, gainedAt = 0.0;  ///< [s]
-  int shortSolves = 0;                    ///< that ended short of their tolerance
+  int unconvergedSolves = 0;              ///< that ended short of their tolerance
 };
 
 /// A step that is refused breaks the law without measure.
@@ -79,7 +79,7 @@ Course follow(RandomScene& scene) {
       course.brokenAt = course.gainedAt = scene.state.time;
       return course;
     }
-    course.shortSolves += status != SolveStatus::converged;
+    course.unconvergedSolves += status != SolveStatus::converged;
     computeKinematics(model, scene.state, data.kinematics);
     const Energy energy = computeEnergy(model, data.kinematics, scene.state.q, scene.state.v);
     motion = std::max(motion, energy.kinetic);
@@ -96,7 +96,7 @@ void tell(const Family& family, int seed, double timestep, const Course& c) {
   std::printf("    %s %d at %g ms: breaks the law by %.2g %% at %g s, gains %.2g %% at %g s",
               family.name, seed, 1e3 * timestep, 100.0 * c.breaks, c.brokenAt, 100.0 * c.gains,
               c.gainedAt);
-  if (c.shortSolves > 0) std::printf("; %d steps end short", c.shortSolves);
+  if (c.unconvergedSolves > 0) std::printf("; %d steps end short", c.unconvergedSolves);
   std::printf("\n");
 }
 
@@ -115,7 +115,7 @@ Found search(const Family& family, double timestep, int from, int to, bool tellA
     if (tellAll || c.breaks > kFound || c.gains > kFound) tell(family, seed, timestep, c);
     found.lawless += c.breaks > kFound;
     found.gaining += c.gains > kFound;
-    found.endingShort += c.shortSolves > 0;
+    found.endingShort += c.unconvergedSolves > 0;
     found.worst = std::max(found.worst, c.breaks);
     found.worstGain = std::max(found.worstGain, c.gains);
   }

@@ -75,7 +75,8 @@ void loopHolds(int ties, double timestep, double seconds) {
   // Down, across, up: a square that hangs.
   t.state.q = Vector3(0.5 * M_PI, -0.5 * M_PI, -0.5 * M_PI);
   t.state.v = Vector3(2.0, -2.0, 2.0);
-  t.mayGain = 0.05 * 9.0;  // 5 % of the motion's energy: the tie stores and gives back
+  t.mayGain =
+      0.05 * 9.0;  // 5 % of the motion's energy: the equality constraint stores and gives back
   double off = 0.0;
   t.run(seconds, [&] {
     off = std::max(

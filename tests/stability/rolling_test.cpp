@@ -75,7 +75,7 @@ TEST_P(RollingWheel, OnlyLoses) {
       t.expect("energy at the end", left, begun, "J");
       if (timestep == kRollingSteps[0]) ofShortSteps = left;
       // Where the wheel falls over is chance, and so is what is left of it; a contact that carries
-      // a tied ball may stick (T.97), at some steps and not at others.
+      // a tied ball may stick (5.7), at some steps and not at others.
       if (w.lean < 1.0 && hub != Hub::tiedBall && timestep <= 0.005)
         t.expect("off what short steps leave", left - ofShortSteps, 0.1 * begun, "J");
     }

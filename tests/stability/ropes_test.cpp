@@ -9,7 +9,7 @@
 #include <numbers>
 #include <sstream>
 
-#include "engine/core/rotation.hpp"
+#include "softgauss/engine/core/rotation.hpp"
 #include "tests/stability/energy_watch.hpp"
 #include "tests/stability/scenes.hpp"
 
@@ -107,16 +107,16 @@ void stretch(Trial& t, const Vector3& along, double centre = 0.5 * kLength) {
   }
 }
 
-/// h ω of a bar between ties that bear three times the load: beyond 2 no step follows it, and the
-/// load warning tells (io/step_warnings.hpp). (T.128) holds it.
+/// h ω of a bar between equality constraints that bear three times the load: beyond 2 no step
+/// follows it, and the load warning tells (io/step_warnings.hpp). (6.9) holds it.
 constexpr double kHeld = 30.0;
 double swing(double load, double timestep) {
   const double inertia = 0.1 * (kLength * kLength + 0.02 * 0.02) / 12.0;
   return timestep * std::sqrt(3.0 * (load + 1.0) * 9.81 * kLength / inertia);
 }
 
-// A tie of the default softness gives way by g t_c² (1 − d)/d, 0.4 mm, under what it is made for;
-// asked is twice that, each. The bars' lengths add nothing.
+// An equality constraint of the default softness gives way by g t_c² (1 − d)/d, 0.4 mm, under what
+// it is made for; asked is twice that, each. The bars' lengths add nothing.
 TEST(Ropes, HoldWhateverHangsOnThem) {
   for (const int bars : {1, 10})
     for (const double load : {1.0, 100.0, 1e4, 1e6})
@@ -145,7 +145,7 @@ TEST(Ropes, HoldWhatSwings) {
         int held = 0, parts = 1;
         t.run(1.0, [&] {
           off = std::max(off, widestTie(t));
-          held += t.data->stats.swings;
+          held += t.data->stats.stabilisedBodies;
           parts = std::max(parts, t.data->stats.parts);
         });
         if (swing(load, timestep / parts) > 2.0) {
@@ -245,7 +245,7 @@ void swingsDown(const std::string& name, const Rope& rope, double timestep) {
   t.expect("ties are off", off, 5.0 * 0.8e-3, "m");
 }
 
-// A bead says nothing of how the string turns: each bar is held against the next one (T.128). Held
+// A bead says nothing of how the string turns: each bar is held against the next one (6.9). Held
 // against the bead alone, strings of five with 1000 kg parted at 2 ms and gained 38 times what
 // falls.
 TEST(Ropes, HoldBeads) {

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <string>
 
-#include "engine/core/rotation.hpp"
+#include "softgauss/engine/core/rotation.hpp"
 #include "tests/stability/scenes.hpp"
 #include "tests/support/random.hpp"
 
@@ -28,12 +28,13 @@ ModelBuilder stretched(double beyond) {
   return builder;
 }
 
-// Straight, and pulled along itself by a tie that it cannot reach: no acceleration answers it, and
-// none comes. Begun bent, it comes to be straight.
+// Straight, and pulled along itself by an equality constraint that it cannot reach: no acceleration
+// answers it, and none comes. Begun bent, it comes to be straight.
 TEST(Singular, ArmPulledBeyondItsFullStretch) {
   for (const double beyond : {0.0, 1e-9, 1e-3, 1e-2})
     for (const double timestep : kSteps) {
-      // The pull makes the arm swing across the line, the faster the farther away the tie is.
+      // The pull makes the arm swing across the line, the faster the farther away the equality
+      // constraint is.
       if (beyond > 5e-3 && timestep > 0.005) continue;  // docs/stability_limits.md
       Trial straight("straight arm, tie at " + std::to_string(beyond),
                      with(stretched(beyond), timestep));
@@ -42,7 +43,8 @@ TEST(Singular, ArmPulledBeyondItsFullStretch) {
 
       Trial bent("bent arm, tie at " + std::to_string(beyond), with(stretched(beyond), timestep));
       bent.state.q = Vector3(0.1, -0.2, 0.15);
-      // All three links as fast as the end that the tie takes home within a time constant.
+      // All three links as fast as the end that the equality constraint takes home within a time
+      // constant.
       bent.mayGain = 0.5 * 3.0 * std::pow((0.05 + beyond) / 0.02, 2.0);
       bent.run(5.0);
       // The speed of the way that is left, within a time constant.
@@ -54,11 +56,11 @@ TEST(Singular, ArmPulledBeyondItsFullStretch) {
 }
 
 // However far away, and however far the links turn in a step: they swing on, and gain no more than
-// the tie gives. With 0.1 m at 10 ms they turn by 1.3 rad in a step, with 1 m by a turn and more;
-// there they swing wider than they should (docs/stability_limits.md), and nothing is given up. With
-// 1 m from 5 ms on even the law of energy is broken, by up to one start in seven: of eight, 1e-9
-// rad apart, by three at most, and by no more than what the tie gives, of which `energy` is the
-// scale.
+// the equality constraint gives. With 0.1 m at 10 ms they turn by 1.3 rad in a step, with 1 m by a
+// turn and more; there they swing wider than they should (docs/stability_limits.md), and nothing is
+// given up. With 1 m from 5 ms on even the passivity bound is broken, by up to one start in seven:
+// of eight, 1e-9 rad apart, by three at most, and by no more than what the equality constraint
+// gives, of which `energy` is the scale.
 TEST(Singular, ArmPulledFarBeyondItsStretch) {
   for (const double beyond : {1e-2, 1e-1, 1.0})
     for (const double timestep : kSteps) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What slides is not lifted, keeps its line, and stops where Coulomb's law says (T.135), (T.139).
+/// What slides is not lifted, keeps its line, and stops where Coulomb's law says (5.8), (5.9).
 
 #include <fmt/format.h>
 

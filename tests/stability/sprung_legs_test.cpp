@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Family 5: what lands on a spring. The light foot of a sprung leg comes in alone, and the spring
 /// presses on it when it is in already; a reference would push it out under that load, whatever it
-/// has come to (T.132). With the mass of a reference the hopper of 40 kg below came 33 cm above its
+/// has come to (3.7). With the mass of a reference the hopper of 40 kg below came 33 cm above its
 /// start at 2 ms, as with MuJoCo's softness.
 
 #include <gtest/gtest.h>

@@ -164,7 +164,7 @@ double creepsInAHeap(double timestep, Cone cone, bool soft) {
   const Vector3 begun = t.origin("box1");
   t.run(10.0);
   const double creep = (t.origin("box1") - begun).norm();
-  // By the least ρ of (T.97), 10⁻⁵, but for what is left of the landing.
+  // By the least ρ of (5.7), 10⁻⁵, but for what is left of the landing.
   if (!soft)
     t.expect("against soft friction", creep / creepsInAHeap(timestep, cone, true), 2e-5, "");
   return creep;

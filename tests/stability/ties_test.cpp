@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Family 1: light bodies that carry heavy ones by welds, and pairs that spin on a tie.
+/// Family 1: light bodies that carry heavy ones by welds, and pairs that spin on an equality
+/// constraint.
 
 #include <gtest/gtest.h>
 
@@ -7,7 +8,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "engine/core/rotation.hpp"
+#include "softgauss/engine/core/rotation.hpp"
 #include "tests/stability/scenes.hpp"
 
 namespace softgauss::test {
@@ -67,8 +68,8 @@ void hangsOnAHinge(bool weld, int links, double mass, double load, double timest
   t.expect("speed at rest", t.state.v.cwiseAbs().maxCoeff(), 1e-6, "m/s");
 }
 
-// A tie bears its share of the tree (T.129), not the light link that it holds: 100 kg on a hook of
-// 10 g sank by 550 mm, as MuJoCo's does.
+// An equality constraint bears its share of the tree (5.2), not the light link that it holds: 100
+// kg on a hook of 10 g sank by 550 mm, as MuJoCo's does.
 TEST(Ties, BearTheWholeTree) {
   for (const bool weld : {false, true})
     for (const int links : {1, 10})
@@ -131,8 +132,9 @@ void spinsTogether(bool weld, double massA, double massB, double h, double turn,
   t.state.q[7] = 0.2;
   t.state.v << velocity(Vector3::Zero()), omega, velocity(Vector3(0.2, 0, 0)), omega;
   const double E0 = t.energy().total();
-  t.mayGain = 2.0 * turn * turn * E0;  // of ties that are slack at the start
-  // At either instant what the tie itself does in half a step, ⅛ h² FᵀM⁻¹F with F = m ω² r.
+  t.mayGain = 2.0 * turn * turn * E0;  // of equality constraints that are slack at the start
+  // At either instant what the equality constraint itself does in half a step, ⅛ h² FᵀM⁻¹F with F =
+  // m ω² r.
   t.mayRise = 0.5 * turn * turn * E0;
   t.run(seconds);
   t.expect("energy gained, relative", std::max(0.0, t.energy().total() / E0 - 1.0), 1e-6, "");
@@ -143,7 +145,7 @@ TEST(Ties, WhatSpinsTogetherGainsNothing) {
     for (const double massB : {1.0, 10.0, 100.0})
       for (const double timestep : kSteps)
         for (const double turn : {0.01, 0.04, 0.08, 0.12, 0.4}) {
-          // Above ω t_c = 1 the tie gives way by as much as the cubes are wide
+          // Above ω t_c = 1 the equality constraint gives way by as much as the cubes are wide
           // (docs/stability_limits.md).
           if (turn / timestep > 50.0 && timestep < 0.002) continue;
           spinsTogether(weld, 1.0, massB, timestep, turn, 5.0);

@@ -28,8 +28,8 @@
 #include <memory>
 #include <string>
 
-#include "collision/scene_contacts.hpp"
-#include "engine/engine.hpp"
+#include "softgauss/collision/scene_contacts.hpp"
+#include "softgauss/engine/engine.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/sample_models.hpp"
 
@@ -65,7 +65,7 @@ class Trial {
 
   // Measured over all steps so far.
   double gained = -kInfinity;  ///< most energy above that of the start and of the work [J]
-  double rises = -kInfinity;   ///< most that the law of energy is broken by, without mayRise [J]
+  double rises = -kInfinity;   ///< most that the passivity bound is broken by, without mayRise [J]
   double work = 0.0;           ///< of `input.tau` [J]
   double deepest = 0.0;        ///< deepest overlap of any two shapes [m]
   double fastest = 0.0;        ///< largest |v_i| [m/s or rad/s]

@@ -122,7 +122,7 @@ TEST(Violent, PainlevesRod) {
 }
 
 // A cylinder lands leaning and spinning, and wobbles on its rim. Where the place that touches goes
-// round far in a step its rows do not know how (T.121), and friction may push along: 0.5 % of the
+// round far in a step its rows do not know how (4.10), and friction may push along: 0.5 % of the
 // start, and never above it.
 TEST(Violent, LeaningCylinderLands) {
   for (const double spin : {0.0, 30.0, 60.0})

@@ -13,7 +13,7 @@
 #include <limits>
 #include <optional>
 
-#include "engine/core/types.hpp"
+#include "softgauss/engine/core/types.hpp"
 
 namespace softgauss::test {
 

@@ -3,7 +3,7 @@
 
 /// Central differences, in vector spaces and on the configuration manifold.
 
-#include "engine/model/state.hpp"
+#include "softgauss/engine/model/state.hpp"
 
 namespace softgauss::test {
 

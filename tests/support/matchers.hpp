@@ -3,7 +3,7 @@
 
 /// Comparisons of vectors and matrices that tell the worst entry.
 
-#include "engine/core/types.hpp"
+#include "softgauss/engine/core/types.hpp"
 #include "tests/support/tolerance.hpp"
 
 namespace softgauss::test {

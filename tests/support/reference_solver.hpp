@@ -9,7 +9,7 @@
 /// found by Gauss–Seidel sweeps, one row after another. The bounds tell the penalties apart: (0, ∞)
 /// for a half quadratic, (−∞, ∞) for a quadratic, ± limit for Huber's.
 
-#include "engine/core/types.hpp"
+#include "softgauss/engine/core/types.hpp"
 
 namespace softgauss::test {
 

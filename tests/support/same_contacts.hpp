@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "engine/constraints/contact_set.hpp"
+#include "softgauss/engine/constraints/contact_set.hpp"
 
 namespace softgauss::test {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/support/sample_contacts.hpp"
 
-#include "engine/constraints/contact.hpp"
+#include "softgauss/engine/constraints/contact.hpp"
 
 namespace softgauss::test {
 namespace {

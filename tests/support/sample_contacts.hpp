@@ -3,7 +3,7 @@
 
 /// Contacts without a collision library.
 
-#include "engine/step/contact_source.hpp"
+#include "softgauss/engine/step/contact_source.hpp"
 #include "tests/support/random.hpp"
 
 namespace softgauss::test {

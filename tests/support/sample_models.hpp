@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/model/model_builder.hpp"
+#include "softgauss/engine/model/model_builder.hpp"
 #include "tests/support/random.hpp"
 
 namespace softgauss::test {

@@ -8,8 +8,8 @@
 #include <memory>
 #include <vector>
 
-#include "engine/core/spatial.hpp"
-#include "engine/model/shape.hpp"
+#include "softgauss/engine/core/spatial.hpp"
+#include "softgauss/engine/model/shape.hpp"
 #include "tests/support/random.hpp"
 
 namespace softgauss::test {

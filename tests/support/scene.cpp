@@ -4,7 +4,7 @@
 #include <tuple>
 #include <utility>
 
-#include "engine/core/rotation.hpp"
+#include "softgauss/engine/core/rotation.hpp"
 #include "tests/support/reference_solver.hpp"
 
 namespace softgauss::test {

@@ -5,7 +5,7 @@
 
 #include <memory>
 
-#include "engine/engine.hpp"
+#include "softgauss/engine/engine.hpp"
 #include "tests/support/sample_contacts.hpp"
 #include "tests/support/sample_models.hpp"
 

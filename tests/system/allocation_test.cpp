@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "collision/clearance.hpp"
+#include "softgauss/collision/clearance.hpp"
 #include "tests/gdd/robot_scene.hpp"
 #include "tests/support/allocation_guard.hpp"
 #include "tests/support/scene.hpp"
@@ -210,14 +210,14 @@ TEST(Allocation, NoneInTheGoalDirectedStepWithCoupledActuators) {
     addEveryQuadraticGoal(r);
     const std::vector<int> driven = gdd::Effort::actuatedDofs(r.model);
     r.controller.solver = solver;
-    r.controller.box = gdd::ControlBox(
+    r.controller.limits = gdd::ControlLimits(
         r.model,
         {{.name = "left", .pulls = {{driven[0], 30.0}, {driven[1], 30.0}}, .lower = -3, .upper = 3},
          {.name = "right", .pulls = {{driven[0], 30.0}, {driven[1], -30.0}}},
          {.name = "gear", .pulls = {{driven[2], 50.0}}, .lower = -2, .upper = 2},
          {.name = "tendon", .pulls = {{driven[3], 1.0}, {driven[4], 0.5}}}});
     r.controller.goals.push_back(
-        std::make_unique<gdd::Effort>(gdd::Effort::rootForces(r.model, r.controller.box)));
+        std::make_unique<gdd::Effort>(gdd::Effort::rootForces(r.model, r.controller.limits)));
     const State start = r.state;
     const auto run = [&] {
       for (int i = 0; i < 100; ++i) EXPECT_NE(r.step(), SolveStatus::notFinite);

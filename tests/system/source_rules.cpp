@@ -70,11 +70,15 @@ std::string layerOf(const std::string& path) {
   return path.substr(0, end == std::string::npos ? top.size() : end);
 }
 
-// Paths begin at the root; only a test may name a header beside it by its bare name.
+// Headers of libraries are softgauss/…, as users name them, those of programs and tests are named
+// from the root; only a test may name a header beside it by its bare name.
 bool mayInclude(const std::string& from, const std::string& header) {
   const bool isSibling = header.find('/') == std::string::npos;
   if (isSibling) return from == "tests";
-  const std::string to = layerOf(header);
+  const std::string prefix = "softgauss/";
+  const bool isPublic = startsWith(header, prefix);
+  const std::string to = layerOf(isPublic ? header.substr(prefix.size()) : header);
+  if (isPublic == (to == "apps" || to == "tests")) return false;
   if (from == to) return true;
   const auto allowed = kMayInclude.find(from);
   if (allowed == kMayInclude.end()) return false;

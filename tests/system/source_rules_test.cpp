@@ -60,24 +60,25 @@ TEST(SourceRules, LayersIncludeDownwards) {
   const auto ours = [](const std::string& path, const std::string& header) {
     return count(checkIncludes, path, "#include \"" + header + "\"");
   };
-  EXPECT_EQ(ours("engine/step/step.cpp", "engine/solver/newton.hpp"), 0u);
-  EXPECT_EQ(ours("engine/model/detail/a.cpp", "engine/model/model.hpp"), 0u);
-  EXPECT_EQ(ours("engine/engine.hpp", "engine/step/step.hpp"), 0u);
-  EXPECT_EQ(ours("io/goals.cpp", "gdd/goal.hpp"), 0u);
-  EXPECT_EQ(ours("apps/simulate_gdd.cpp", "io/urdf.hpp"), 0u);
+  EXPECT_EQ(ours("engine/step/step.cpp", "softgauss/engine/solver/newton.hpp"), 0u);
+  EXPECT_EQ(ours("engine/model/detail/a.cpp", "softgauss/engine/model/model.hpp"), 0u);
+  EXPECT_EQ(ours("engine/engine.hpp", "softgauss/engine/step/step.hpp"), 0u);
+  EXPECT_EQ(ours("io/goals.cpp", "softgauss/gdd/goal.hpp"), 0u);
+  EXPECT_EQ(ours("apps/simulate_gdd.cpp", "softgauss/io/urdf.hpp"), 0u);
 
-  EXPECT_EQ(ours("engine/core/types.hpp", "engine/model/model.hpp"), 1u);
-  EXPECT_EQ(ours("engine/solver/newton.cpp", "engine/model/model.hpp"), 1u);
-  EXPECT_EQ(ours("engine/forces/spring.cpp", "engine/constraints/rows.hpp"), 1u);
-  EXPECT_EQ(ours("engine/model/model.hpp", "engine/engine.hpp"), 1u);
-  EXPECT_EQ(ours("engine/step/step.cpp", "gdd/goal.hpp"), 1u);
-  EXPECT_EQ(ours("collision/manifold.cpp", "io/urdf.hpp"), 1u);
-  EXPECT_EQ(ours("io/urdf.cpp", "collision/manifold.hpp"), 1u);
-  EXPECT_EQ(ours("io/urdf.cpp", "io/simulation/scene.hpp"), 1u);
-  EXPECT_EQ(ours("io/simulation/scene.cpp", "collision/manifold.hpp"), 0u);
-  EXPECT_EQ(ours("io/simulation/scene.cpp", "io/urdf.hpp"), 0u);
+  EXPECT_EQ(ours("engine/core/types.hpp", "softgauss/engine/model/model.hpp"), 1u);
+  EXPECT_EQ(ours("engine/solver/newton.cpp", "softgauss/engine/model/model.hpp"), 1u);
+  EXPECT_EQ(ours("engine/forces/spring.cpp", "softgauss/engine/constraints/rows.hpp"), 1u);
+  EXPECT_EQ(ours("engine/model/model.hpp", "softgauss/engine/engine.hpp"), 1u);
+  EXPECT_EQ(ours("engine/step/step.cpp", "softgauss/gdd/goal.hpp"), 1u);
+  EXPECT_EQ(ours("collision/manifold.cpp", "softgauss/io/urdf.hpp"), 1u);
+  EXPECT_EQ(ours("io/urdf.cpp", "softgauss/collision/manifold.hpp"), 1u);
+  EXPECT_EQ(ours("io/urdf.cpp", "softgauss/io/simulation/scene.hpp"), 1u);
+  EXPECT_EQ(ours("io/simulation/scene.cpp", "softgauss/collision/manifold.hpp"), 0u);
+  EXPECT_EQ(ours("io/simulation/scene.cpp", "softgauss/io/urdf.hpp"), 0u);
   EXPECT_EQ(ours("io/simulation/scene.cpp", "apps/shared/ground.hpp"), 1u);
   EXPECT_EQ(ours("io/urdf.cpp", "urdf.hpp"), 1u);
+  EXPECT_EQ(ours("io/urdf.cpp", std::string("io/") + "scene.hpp"), 1u);  // without softgauss/
   EXPECT_EQ(ours("tests/io/urdf_test.cpp", "sample_urdf.hpp"), 0u);
 }
 

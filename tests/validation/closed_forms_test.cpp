@@ -41,7 +41,7 @@ TEST(FreeFall, OfATreeMovesItsCenterOfMassLikeAStone) {
   const auto error = [&](double h) {
     Scene copy(s.model);
     copy.model.options.timestep = h;
-    copy.model.options.partAngle = kInfinity;
+    copy.model.options.substepAngle = kInfinity;
     copy.state = s.state;
     const int n = static_cast<int>(std::lround(0.2 / h));
     copy.steps(n);
@@ -168,7 +168,7 @@ Drift tumblingDrift(double h, Integrator integrator) {
   builder.options.gravity.setZero();
   builder.options.timestep = h;
   builder.options.integrator = integrator;
-  builder.options.partAngle = kInfinity;
+  builder.options.substepAngle = kInfinity;
   Scene s(builder.build());
   s.state.v << 0, 0, 0, 4.0, 7.0, 5.0;
   s.stages();
@@ -251,7 +251,7 @@ TEST(JointDamping, IsImplicitInEveryTree) {
     for (const Integrator integrator : {Integrator::leapfrog, Integrator::semiImplicitEuler}) {
       Scene s = randomScene(seed, seed % 2 == 0 ? 0 : 4);
       s.model.options.integrator = integrator;
-      s.model.options.partAngle = kInfinity;
+      s.model.options.substepAngle = kInfinity;
       const double h = s.model.options.timestep;
       const VectorX before = s.state.v;
       s.step();

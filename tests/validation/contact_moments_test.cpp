@@ -2,7 +2,7 @@
 /// Torsional and rolling friction (condim 4 and 6) with physical answers: creep, rest, spin,
 /// rolling.
 
-#include "engine/constraints/impedance.hpp"
+#include "softgauss/engine/constraints/impedance.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/scene.hpp"
 #include "tests/validation/shared.hpp"
@@ -13,7 +13,7 @@ namespace {
 constexpr double kMass = 2.0;
 constexpr double kInertia = 0.4 * kMass * kRadius * kRadius;
 
-/// A ball on the ground at its depth of rest; impedance that does not depend on depth.
+/// A ball on the ground at its penetration at rest; impedance that does not depend on depth.
 Scene ball(int condim, double friction, double torsional, double rolling) {
   Model model = sphereOnPlane(kRadius, kMass, friction).build();
   for (Geometry& g : model.geometries) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Contact and friction with physical answers: rest, load, creep, sliding, rolling.
 
-#include "engine/constraints/impedance.hpp"
+#include "softgauss/engine/constraints/impedance.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/scene.hpp"
 #include "tests/validation/shared.hpp"
@@ -31,7 +31,7 @@ Matrix3 slope(double theta) {
 // One contact with 4 edges carries f = 4 D k d r, so
 //   r = g (1 − d)/(K d²) · μ²(1 + μ²)/(2 impratio),   K = 1/(d tc)²,
 // the elliptic depth times the pyramid's factor; frictionless the elliptic depth itself. Above μ =
-// 1 the factor is that of 1 (T.96), unless contacts do not know their load.
+// 1 the factor is that of 1 (4.9), unless contacts do not know their load.
 TEST(RestDepth, IsThePredictedOne) {
   const double d = 0.9, K = 1 / std::pow(d * 0.02, 2);
   const double elliptic = kGravity * (1 - d) / (K * d * d);
@@ -41,7 +41,8 @@ TEST(RestDepth, IsThePredictedOne) {
          {std::pair{1.0, true}, {10.0, true}, {1.0, false}, {10.0, false}}) {
       ModelBuilder builder = sphereOnPlane(0.1, 3.0, mu);
       builder.options.impedanceRatio = ratio;
-      builder.options.ownSoftness = carried;
+      builder.options.constraintModel =
+          carried ? ConstraintModel::softgauss : ConstraintModel::mujoco;
       Scene s = onPlane(builder);
       s.steps(3000);
       const double soft = carried ? std::min(mu, 1.0) : mu;
@@ -71,7 +72,7 @@ TEST(StaticLoad, IsSharedByNContacts) {
     Scene s = onPlane(builder);
     s.steps(3000);
     const PyramidalContact& contact = s.data->constraints.contact;
-    ASSERT_EQ(contact.made().size(), static_cast<std::size_t>(n));
+    ASSERT_EQ(contact.contactsWithRows().size(), static_cast<std::size_t>(n));
     for (int i = 0; i < n; ++i)
       EXPECT_APPROX(contact.force(i), Vector3(0, 0, 2.0 * kGravity / n), 1e-9);
     const double depth = -s.state.q[0];

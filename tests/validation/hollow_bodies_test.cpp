@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Bodies with hollows: what their hulls could not do.
 
-#include "collision/scene_contacts.hpp"
+#include "softgauss/collision/scene_contacts.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/sample_surfaces.hpp"
 #include "tests/support/scene.hpp"
@@ -20,8 +20,9 @@ Scene withContacts(const ModelBuilder& builder) {
 Vector3 carried(const Scene& s) {
   Vector3 sum = Vector3::Zero();
   const PyramidalContact& contact = s.data->constraints.contact;
-  for (int i = 0; i < static_cast<int>(contact.made().size()); ++i)
-    sum += (contact.made()[static_cast<std::size_t>(i)].bodyA == 0 ? 1.0 : -1.0) * contact.force(i);
+  for (int i = 0; i < static_cast<int>(contact.contactsWithRows().size()); ++i)
+    sum += (contact.contactsWithRows()[static_cast<std::size_t>(i)].bodyA == 0 ? 1.0 : -1.0) *
+           contact.force(i);
   return sum;
 }
 

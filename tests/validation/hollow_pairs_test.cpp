@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Two meshes of triangles, both hollow, of which neither may count as its hull.
 
-#include "collision/scene_contacts.hpp"
+#include "softgauss/collision/scene_contacts.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/sample_surfaces.hpp"
 #include "tests/support/scene.hpp"
@@ -38,8 +38,8 @@ struct Hollow : Scene {
   double carried() const {
     double sum = 0.0;
     const PyramidalContact& contact = data->constraints.contact;
-    for (int i = 0; i < static_cast<int>(contact.made().size()); ++i) {
-      const ContactRows& made = contact.made()[static_cast<std::size_t>(i)];
+    for (int i = 0; i < static_cast<int>(contact.contactsWithRows().size()); ++i) {
+      const ContactRows& made = contact.contactsWithRows()[static_cast<std::size_t>(i)];
       sum += (made.bodyA == 0 ? 1.0 : made.bodyB == 0 ? -1.0 : 0.0) * contact.force(i).z();
     }
     return sum;
@@ -78,7 +78,7 @@ TEST(HollowPairs, LinksOfAChainHang) {
                    {i % 2 == 0 ? across : lying(), Vector3(0, 0, -(i + 1) * pitch + 0.002)}),
         "link" + std::to_string(i));
   // Of a step in parts the forces are those of its last part.
-  builder.options.partAngle = kInfinity;
+  builder.options.substepAngle = kInfinity;
   Hollow s(builder);
   s.steps(2000);
   const auto momentum = [&] {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Friction without creep: what Options::noSlip gains, what it keeps and what it costs.
 
-#include "engine/step/inverse.hpp"
-#include "engine/step/snapshot.hpp"
+#include "softgauss/engine/step/inverse.hpp"
+#include "softgauss/engine/step/snapshot.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/scene.hpp"
 #include "tests/validation/shared.hpp"
@@ -46,7 +46,7 @@ TEST(NoSlip, BoundsTheCreepOfALoad) {
         stiff.steps(2000);
         const double creep = speedDownhill(soft, theta);
         EXPECT_GT(creep, 1e-5);
-        const double ratio = speedDownhill(stiff, theta) * StickingFriction::kStiffer / creep;
+        const double ratio = speedDownhill(stiff, theta) * NoSlipFriction::kStiffer / creep;
         if (share < 0.5 || cone == Cone::elliptic) {
           EXPECT_SMALL(ratio - 1.0, 1e-2) << "friction " << mu << ", share " << share;
         } else {
@@ -88,12 +88,12 @@ double boundOf(const Scene& s, int i) {
   const PyramidalContact& pyramids = s.data->constraints.contact;
   const EllipticContact& cones = s.data->constraints.ellipticContact;
   std::vector<std::pair<int, int>> order;
-  for (const ContactRows& made : pyramids.made())
+  for (const ContactRows& made : pyramids.contactsWithRows())
     order.emplace_back(made.contact, static_cast<int>(order.size()));
-  for (const ContactRows& made : cones.made())
+  for (const ContactRows& made : cones.contactsWithRows())
     order.emplace_back(made.contact, static_cast<int>(order.size()));
   std::sort(order.begin(), order.end());
-  return s.data->sticking.bound(order[static_cast<std::size_t>(i)].second);
+  return s.data->noSlipFriction.bound(order[static_cast<std::size_t>(i)].second);
 }
 
 TEST(NoSlip, ForcesStayInTheFrictionCone) {
@@ -111,7 +111,7 @@ TEST(NoSlip, ForcesStayInTheFrictionCone) {
         const Snapshot::ContactForce& c = contacts[i];
         const double mu = pairMaterial(s.model, c.geometryA, c.geometryB).slidingFriction;
         EXPECT_GE(c.normalForce(), -1e-12);
-        if (s.data->sticking.rowCount() == 0) {
+        if (s.data->noSlipFriction.rowCount() == 0) {
           ++creeping;
           break;
         }
@@ -136,12 +136,12 @@ TEST(NoSlip, ForcesGiveTheAcceleration) {
       s.model.options.noSlip = true;
       s.stages();
       s.forward();
-      if (s.data->sticking.rowCount() == 0) continue;
+      if (s.data->noSlipFriction.rowCount() == 0) continue;
       ++solved;
       const VectorX Ma = s.data->inertia.hat().dense() * s.data->forward.a;
       VectorX force = s.data->forces.net;
       s.data->constraints.visitAllButContacts([&](const auto& c) { c.addTransposed(c.f, force); });
-      s.data->sticking.addForce(force);
+      s.data->noSlipFriction.addForce(force);
       const VectorX unit = s.data->inertia.hat().dense().diagonal().cwiseSqrt();
       const double scale = 1.0 + Ma.cwiseQuotient(unit).cwiseAbs().maxCoeff();
       EXPECT_SMALL((Ma - force).cwiseQuotient(unit).cwiseAbs().maxCoeff() / scale, 1e-8)

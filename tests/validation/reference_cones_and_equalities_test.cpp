@@ -21,7 +21,7 @@ Scene slidingSphere(double impedanceRatio, const Material& material = {}) {
   builder.options.tolerance = 1e-15;
   builder.options.cone = Cone::elliptic;
   builder.options.impedanceRatio = impedanceRatio;
-  builder.options.ownSoftness = false;  // without J̇ v of contacts
+  builder.options.constraintModel = ConstraintModel::mujoco;  // without J̇ v of contacts
   builder.options.integrator = Integrator::semiImplicitEuler;
   Model model = builder.build();
   for (Geometry& g : model.geometries) g.material = material;
@@ -86,7 +86,7 @@ TEST(SlidingSphereOnCone, WithRollingFrictionToo) {
 Scene tiedBox(const std::function<void(ModelBuilder&)>& tie) {
   ModelBuilder builder = freeBody(boxLink("box", 2.0, {0.1, 0.2, 0.3}));
   builder.options.tolerance = 1e-15;
-  builder.options.integrator = Integrator::semiImplicitEuler;  // ties of (T.10) as they are
+  builder.options.integrator = Integrator::semiImplicitEuler;  // ties of (3.1) as they are
   tie(builder);
   Scene s(builder.build());
   s.state.v << 0.1, 0.2, 0.3, 0.4, 0.5, 0.6;
@@ -178,7 +178,7 @@ TEST(CoupledHinges, AreThoseOfTheReference) {
   spec.leader = "a_joint";
   spec.polynomial = {0.1, -2.0, 0.3, 0.0, 0.0};
   builder.couple(spec);
-  builder.options.ownSoftness = false;  // without p″
+  builder.options.constraintModel = ConstraintModel::mujoco;  // without p″
   Scene s(builder.build());
   s.state.q << 0.2, -0.25;
   s.state.v << 1, -1;

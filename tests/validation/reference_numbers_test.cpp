@@ -16,7 +16,7 @@ namespace {
 Scene slidingSphere() {
   ModelBuilder builder = sphereOnPlane(0.1, 1.0, 1.0);
   builder.options.tolerance = 1e-15;
-  builder.options.ownSoftness = false;  // without J̇ v of contacts
+  builder.options.constraintModel = ConstraintModel::mujoco;  // without J̇ v of contacts
   builder.options.integrator = Integrator::semiImplicitEuler;
   Scene s(builder.build(), std::make_shared<SampleContacts>());
   s.state.q << 0, 0, 0.0995, 1, 0, 0, 0;

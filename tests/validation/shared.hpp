@@ -3,7 +3,7 @@
 
 /// Numbers that several validations share.
 
-#include "engine/model/model.hpp"
+#include "softgauss/engine/model/model.hpp"
 
 namespace softgauss::test {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "engine/constraints/contact_softness.hpp"
+#include "softgauss/engine/constraints/contact_softness.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/scene.hpp"
 #include "tests/validation/shared.hpp"
@@ -229,7 +229,7 @@ TEST(Softness, BouncesByTheRecipe) {
   EXPECT_SMALL(restitution(0.1222) - 0.7, 1e-3);
 }
 
-// A reference that is less than half damped is that spring, by the recipe (T.117).
+// A reference that is less than half damped is that spring, by the recipe (3.11).
 TEST(Softness, AReferenceBouncesAsItsSpring) {
   const double omega = 50.0;
   for (const Cone cone : kCones)

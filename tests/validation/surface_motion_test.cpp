@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// What moves on surfaces of triangles, with physical answers.
 
-#include "collision/scene_contacts.hpp"
-#include "io/height_field.hpp"
+#include "softgauss/collision/scene_contacts.hpp"
+#include "softgauss/io/height_field.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/sample_surfaces.hpp"
 #include "tests/support/scene.hpp"
@@ -84,7 +84,7 @@ TEST(SurfaceMotion, BoxSlidesOnTrianglesAsOnAPlane) {
     const State onTriangles = slide(Shape::surface(gridMesh(n, m, cell, 0.3)));
     EXPECT_SMALL((onTriangles.q - onHull.q).cwiseAbs().maxCoeff(), 1e-6) << "cell " << cell;
   }
-  // How a corner moves (T.121) counts on a plane and not on a mesh, so that the box hops at other
+  // How a corner moves (4.10) counts on a plane and not on a mesh, so that the box hops at other
   // instants: 0.1 mm of 0.23 m, in the median of its directions.
   std::vector<double> apart;
   for (int i = 0; i < 24; ++i) {
@@ -135,12 +135,12 @@ TEST(SurfaceMotion, CubeInAGrooveRestsByStatics) {
     EXPECT_SMALL(s.state.v.cwiseAbs().maxCoeff(), 1e-9);
     const PyramidalContact& contact = s.data->constraints.contact;
     Vector3 left = Vector3::Zero(), right = Vector3::Zero();
-    for (int i = 0; i < static_cast<int>(contact.made().size()); ++i) {
+    for (int i = 0; i < static_cast<int>(contact.contactsWithRows().size()); ++i) {
       const Vector3 f = contact.force(i);
       (f.x() > 0.0 ? left : right) += f;
     }
     const double load = 3.0 * kGravity / 2;
-    EXPECT_EQ(contact.made().size(), 8u) << "cell " << cell;
+    EXPECT_EQ(contact.contactsWithRows().size(), 8u) << "cell " << cell;
     EXPECT_SMALL(left.norm() / (std::sqrt(2.0) * load) - 1.0, 1e-6);
     EXPECT_SMALL(right.norm() / (std::sqrt(2.0) * load) - 1.0, 1e-6);
     EXPECT_SMALL((left + right).cwiseAbs().head<2>().maxCoeff(), 1e-6);
@@ -224,8 +224,8 @@ TEST(SurfaceMotion, FourFeetStandOnALandscape) {
     EXPECT_GT(s.state.q[2], 0.25);
     Vector3 carried = Vector3::Zero();
     const PyramidalContact& contact = s.data->constraints.contact;
-    for (int i = 0; i < static_cast<int>(contact.made().size()); ++i) {
-      const ContactRows& made = contact.made()[static_cast<std::size_t>(i)];
+    for (int i = 0; i < static_cast<int>(contact.contactsWithRows().size()); ++i) {
+      const ContactRows& made = contact.contactsWithRows()[static_cast<std::size_t>(i)];
       carried += (made.bodyA == 0 ? 1.0 : -1.0) * contact.force(i);
     }
     EXPECT_SMALL((carried - Vector3(0, 0, 8.0 * kGravity)).norm() / (8.0 * kGravity), 1e-3);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/model/detail/contact_pairs.hpp"
+#include "softgauss/engine/model/detail/contact_pairs.hpp"
 
 #include <algorithm>
 #include <set>
@@ -8,7 +8,7 @@
 #include <unordered_map>
 #include <utility>
 
-#include "engine/model/detail/spec_checks.hpp"
+#include "softgauss/engine/model/detail/spec_checks.hpp"
 
 namespace softgauss::detail {
 namespace {

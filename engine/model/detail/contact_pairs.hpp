@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "engine/model/model_builder.hpp"
+#include "softgauss/engine/model/model_builder.hpp"
 
 namespace softgauss::detail {
 

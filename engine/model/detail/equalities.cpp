@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/model/detail/equalities.hpp"
+#include "softgauss/engine/model/detail/equalities.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <string_view>
 #include <unordered_map>
 
-#include "engine/model/detail/spec_checks.hpp"
+#include "softgauss/engine/model/detail/spec_checks.hpp"
 
 namespace softgauss::detail {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/model/detail/follower_ranges.hpp"
+#include "softgauss/engine/model/detail/follower_ranges.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <sstream>
 
-#include "engine/core/index.hpp"
-#include "engine/model/followers.hpp"
+#include "softgauss/engine/core/index.hpp"
+#include "softgauss/engine/model/followers.hpp"
 
 namespace softgauss::detail {
 namespace {
@@ -60,8 +60,8 @@ std::string text(const Span& span) {
 
 }  // namespace
 
-void letRangesYield(Model& model) {
-  if (model.couplings.empty() || !model.options.ownSoftness) return;
+void relaxFollowerRanges(Model& model) {
+  if (model.couplings.empty() || model.options.constraintModel == ConstraintModel::mujoco) return;
   std::vector<Span> spans(model.bodies.size());
   std::vector<const JointRange*> rangeOf(model.bodies.size(), nullptr);
   for (const JointRange& range : model.ranges) {

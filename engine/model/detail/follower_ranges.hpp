@@ -3,7 +3,7 @@
 
 /// Ranges of joints that follow others, against what their leaders ask for.
 
-#include "engine/model/model.hpp"
+#include "softgauss/engine/model/model.hpp"
 
 namespace softgauss::detail {
 
@@ -12,6 +12,6 @@ namespace softgauss::detail {
 /// taken from the model, and a warning names the joints with both ranges. A leader that has no
 /// range asks for nothing in particular: it goes as far as its followers let it. MuJoCo's model
 /// keeps all ranges. Couplings, ranges and q0 are complete.
-void letRangesYield(Model& model);
+void relaxFollowerRanges(Model& model);
 
 }  // namespace softgauss::detail

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/model/detail/kinematic_tree.hpp"
+#include "softgauss/engine/model/detail/kinematic_tree.hpp"
 
-#include "engine/core/index.hpp"
+#include "softgauss/engine/core/index.hpp"
 
 namespace softgauss::detail {
 namespace {

@@ -7,7 +7,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "engine/model/model_builder.hpp"
+#include "softgauss/engine/model/model_builder.hpp"
 
 namespace softgauss::detail {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/model/detail/leader_inertia.hpp"
+#include "softgauss/engine/model/detail/leader_inertia.hpp"
 
 #include <cstdio>
 
-#include "engine/core/index.hpp"
+#include "softgauss/engine/core/index.hpp"
 
 namespace softgauss::detail {
 namespace {
@@ -47,7 +47,7 @@ double reflected(const Model& model, int leader) {
 
 }  // namespace
 
-void giveLeadersInertia(Model& model) {
+void addLeaderArmature(Model& model) {
   std::string told;
   for (int b = 1; b < model.bodyCount() && !model.couplings.empty(); ++b) {
     const Body& body = model.bodies[idx(b)];

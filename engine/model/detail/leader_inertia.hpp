@@ -7,7 +7,7 @@
 /// the joint has an inertia, alone it has none, and M⁻¹ is of each joint alone. Such a joint gets
 /// an armature of a hundredth of what its followers put on it, Σ p′² M_ff at zero, and a warning.
 
-#include "engine/model/model.hpp"
+#include "softgauss/engine/model/model.hpp"
 
 namespace softgauss::detail {
 
@@ -15,6 +15,6 @@ namespace softgauss::detail {
 inline constexpr double kLeaderShare = 0.01;
 
 /// Bodies, subtrees and couplings are complete.
-void giveLeadersInertia(Model& model);
+void addLeaderArmature(Model& model);
 
 }  // namespace softgauss::detail

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/model/detail/spec_checks.hpp"
+#include "softgauss/engine/model/detail/spec_checks.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
-#include "engine/core/index.hpp"
+#include "softgauss/engine/core/index.hpp"
 
 namespace softgauss::detail {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/step/integrators/implicit_forces.hpp"
+#include "softgauss/engine/step/integrators/implicit_forces.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -20,7 +20,7 @@ bool anyStiffSpring(const Model& model, const Data& data) {
 }
 
 bool implicitFollows(const Model& model, const Data& data) {
-  return !data.plan.inSolve && (data.plan.damped() || anyStiffSpring(model, data));
+  return !data.plan.inSolve && (data.plan.hasDamping() || anyStiffSpring(model, data));
 }
 
 void addImplicitForces(const Model& model, const State& state, Data& data) {
@@ -35,7 +35,7 @@ void addImplicitForces(const Model& model, const State& state, Data& data) {
 void addImplicitInertia(const Model& model, Data& data) {
   const double h = model.options.timestep;
   MassMatrix& inertia = data.inertia;
-  if (data.plan.damped()) inertia.added += h * data.plan.damping;
+  if (data.plan.hasDamping()) inertia.added += h * data.plan.damping;
   for (const Plan::Spring& spring : data.plan.springs)
     if (isStiffSpring(model, data, spring)) inertia.added[spring.dof] += h * h * spring.stiffness;
   inertia.anyAdded = (inertia.added.array() != 0.0).any();
@@ -51,7 +51,7 @@ void addImplicitInertia(const Model& model, Data& data) {
 void setImplicitForces(const Model& model, const State& state, Data& data, VectorX& net) {
   const double h = model.options.timestep;
   VectorX& Md = data.forward.Md;
-  if (data.plan.damped())
+  if (data.plan.hasDamping())
     Md = h * data.plan.damping;
   else
     Md.setZero();

@@ -6,13 +6,13 @@
 ///
 ///   D v⁺ + K (q + h v⁺ − q_s)  =  D v + K (q − q_s) + h K v  +  (h D + h² K) a
 ///
-/// so M̂ = M + h D + h² K in place of M, with h K v more in c, makes them part of the solve: (T.1)
+/// so M̂ = M + h D + h² K in place of M, with h K v more in c, makes them part of the solve: (1.1)
 /// stays what it is, convex and with an explicit inverse [Anitescu and Potra 2002, of stiff
 /// springs]. M itself stays that of the bodies, for whoever weighs and prices by it. A spring is
-/// stiff where it swings by more than a radian in a step, h² k w_i > 1 (T.95); slower ones keep
+/// stiff where it swings by more than a radian in a step, h² k w_i > 1 (6.1); slower ones keep
 /// their energy and stay as they are.
 
-#include "engine/step/data.hpp"
+#include "softgauss/engine/step/data.hpp"
 
 namespace softgauss {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/step/integrators/implicit_midpoint.hpp"
+#include "softgauss/engine/step/integrators/implicit_midpoint.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "engine/dynamics/energy.hpp"
-#include "engine/step/forward.hpp"
-#include "engine/step/integrators/stages.hpp"
-#include "engine/step/integrators/velocity_derivative.hpp"
-#include "engine/step/step.hpp"
+#include "softgauss/engine/dynamics/energy.hpp"
+#include "softgauss/engine/step/forward.hpp"
+#include "softgauss/engine/step/integrators/stages.hpp"
+#include "softgauss/engine/step/integrators/velocity_derivative.hpp"
+#include "softgauss/engine/step/step.hpp"
 
 namespace softgauss {
 namespace {
@@ -125,10 +125,10 @@ class Part {
   /// phi ← (M + ½h(D + C) + ¼h²K)⁻¹ M phi.
   void newtonSweep() {
     const Plan& plan = s_.data.plan;
-    const bool diagonal = plan.damped() || plan.sprung();
+    const bool diagonal = plan.hasDamping() || plan.hasSprings();
     if (!diagonal && !plan.coriolis) return;
     VectorX& Md = s_.data.forward.Md;
-    if (plan.damped())
+    if (plan.hasDamping())
       Md = 0.5 * h_ * plan.damping;
     else
       Md.setZero(model_.nv);
@@ -173,14 +173,14 @@ SolveStatus implicitMidpoint(const Model& model, const Input& input, ContactSour
     const bool taken = outcome == Outcome::closed || (outcome == Outcome::jump && shortest);
     if (!taken) {
       if (shortest && outcome == Outcome::notFinite) return SolveStatus::notFinite;
-      if (shortest) return SolveStatus::notClosed;
+      if (shortest) return SolveStatus::integratorDiverged;
       ++stats.rejections;
       stats.maxPenetration = deepest;  // what was tried has not happened
       length = std::max(0.5 * length, kShortest * h);
       guess = data.forward.a;
       continue;
     }
-    stats.jumps += outcome == Outcome::jump;
+    stats.minimumStepsAccepted += outcome == Outcome::jump;
     ++stats.substeps;
     done = closes ? h : done + length;
     length *= 2.0;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/step/integrators/implicit_velocity.hpp"
+#include "softgauss/engine/step/integrators/implicit_velocity.hpp"
 
-#include "engine/step/forward.hpp"
-#include "engine/step/integrators/implicit_forces.hpp"
-#include "engine/step/integrators/velocity_derivative.hpp"
+#include "softgauss/engine/step/forward.hpp"
+#include "softgauss/engine/step/integrators/implicit_forces.hpp"
+#include "softgauss/engine/step/integrators/velocity_derivative.hpp"
 
 namespace softgauss {
 
@@ -15,7 +15,7 @@ bool implicitVelocity(const Model& model, Data& data, State& state) {
     net = s.Ma;
   else
     data.inertia.hat().multiply(s.a, net);
-  const bool diagonal = data.plan.damped() || anyStiffSpring(model, data);
+  const bool diagonal = data.plan.hasDamping() || anyStiffSpring(model, data);
   if (diagonal) setImplicitForces(model, state, data, net);
   const VectorX* added = diagonal ? &s.Md : nullptr;
   if (data.plan.coriolis && data.derivative->factorize(model, data, h, added))

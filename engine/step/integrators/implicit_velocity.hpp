@@ -3,15 +3,15 @@
 
 /// Implicit in velocity, the Coriolis derivative included:
 ///
-///   (M + h D + h² K_s + h C) a' = M a − h K_s v,   v⁺ = v + h a',   q⁺ = q ⊕ h v⁺     (T.112)
+///   (M + h D + h² K_s + h C) a' = M a − h K_s v,   v⁺ = v + h a',   q⁺ = q ⊕ h v⁺       (7.2)
 ///
-/// a is the continuous-time acceleration (T.1), C = ∂b/∂v (T.111), K_s the stiff springs of
-/// (T.95): all smooth forces are taken at v⁺, to first order in what v changes by. Order 1. The
+/// a is the continuous-time acceleration (1.1), C = ∂b/∂v (2.9), K_s the stiff springs of
+/// (6.1): all smooth forces are taken at v⁺, to first order in what v changes by. Order 1. The
 /// matrix is not symmetric. Bodies that spin fast lose energy where the Coriolis forces of mid-step
 /// keep it. It is what MuJoCo calls `implicit`. Where the derivative outweighs the mass matrix (h ω
 /// far above 1) it is left out of that step.
 
-#include "engine/step/data.hpp"
+#include "softgauss/engine/step/data.hpp"
 
 namespace softgauss {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/step/integrators/kick.hpp"
+#include "softgauss/engine/step/integrators/kick.hpp"
 
 #include <algorithm>
 
-#include "engine/step/forward.hpp"
+#include "softgauss/engine/step/forward.hpp"
 
 namespace softgauss {
 
@@ -16,10 +16,10 @@ bool tooFast(const Model& model, const VectorX& v) {
   });
 }
 
-bool holdSwings(const Model& model, Data& data, const State& state) {
-  data.stats.swings = data.constraints.holdSwings(
+bool addGeometricStiffness(const Model& model, Data& data, const State& state) {
+  data.stats.stabilisedBodies = data.constraints.addGeometricStiffness(
       {model, state, data.kinematics, data.contacts, data.weights, data.inertia.sparsity});
-  if (data.stats.swings == 0) return true;
+  if (data.stats.stabilisedBodies == 0) return true;
   data.acceleration = data.forward.a;
   forwardDynamics(model, &data.acceleration, data);
   return data.stats.count(data.forward.report);

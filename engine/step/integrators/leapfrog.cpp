@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/step/integrators/leapfrog.hpp"
+#include "softgauss/engine/step/integrators/leapfrog.hpp"
 
 #include <cmath>
 
-#include "engine/step/integrators/implicit_forces.hpp"
-#include "engine/step/integrators/kick.hpp"
+#include "softgauss/engine/step/integrators/implicit_forces.hpp"
+#include "softgauss/engine/step/integrators/kick.hpp"
 
 namespace softgauss {
 namespace {
@@ -39,39 +39,40 @@ void driftBefore(const Model& model, Data& data, State& state) {
   integratePosition(model, v, 0.5 * model.options.timestep, state.q);
 }
 
-bool predictsTurning(const Model& model, const State& state) {
-  return state.aIsKnown && model.options.uses(Mechanism::prediction);
+bool predictsMidstepVelocity(const Model& model, const State& state) {
+  return state.hasAcceleration && model.options.uses(Mechanism::midpointVelocity);
 }
 
-void predictTurning(const Model& model, const State& state, Data& data) {
-  if (!predictsTurning(model, state)) return;
-  data.turning = state.v + 0.5 * model.options.timestep * state.a;
-  setTurning(model, data.turning, data.kinematics);
+void predictMidstepVelocity(const Model& model, const State& state, Data& data) {
+  if (!predictsMidstepVelocity(model, state)) return;
+  data.midstepVelocity = state.v + 0.5 * model.options.timestep * state.a;
+  setMidstepVelocity(model, data.midstepVelocity, data.kinematics);
 }
 
-bool forgetsPredicted(const Model& model, const Resolution& resolution, const Data& data,
-                      State& state) {
-  if (!data.plan.coriolis || !model.options.uses(Mechanism::prediction)) return false;
+bool predictionFailed(const Model& model, const SubstepSelection& substepSelection,
+                      const Data& data, State& state) {
+  if (!data.plan.coriolis || !model.options.uses(Mechanism::midpointVelocity)) return false;
   const double h = model.options.timestep;
   const VectorX& a = data.forward.a;
   bool any = false;
   for (std::size_t t = 0; t < model.trees.size(); ++t) {
     const Tree& tree = model.trees[t];
     // A joint alone has nothing to turn against.
-    if (resolution.free[t] || tree.dofEnd - tree.firstDof == 1) continue;
+    if (substepSelection.free[t] || tree.dofEnd - tree.firstDof == 1) continue;
     const double off = 0.5 * h * h * worstTurn(model, tree, a, state.a);
-    if (state.aIsKnown && !(off > kForgets)) continue;
+    if (state.hasAcceleration && !(off > kForgets)) continue;
     const int first = tree.firstDof, dofs = tree.dofEnd - first;
     state.a.segment(first, dofs) = a.segment(first, dofs);
     any = true;
   }
-  state.aIsKnown = state.aIsKnown || any;
+  state.hasAcceleration = state.hasAcceleration || any;
   return any;
 }
 
 bool kickAndDrift(const Model& model, Data& data, State& state) {
   const double h = model.options.timestep;
-  if (data.plan.rows.has(RowKind::swing) && !holdSwings(model, data, state)) return false;
+  if (data.plan.rows.has(RowKind::geometricStiffness) && !addGeometricStiffness(model, data, state))
+    return false;
   VectorX& v = data.forward.start;
   data.acceleration = data.forward.a;
   v = state.v + h * data.acceleration;
@@ -80,7 +81,7 @@ bool kickAndDrift(const Model& model, Data& data, State& state) {
   scaleStiff(model, data, 2.0, v);
   integratePosition(model, v, 0.5 * h, state.q);
   state.a = data.acceleration;
-  state.aIsKnown = true;
+  state.hasAcceleration = true;
   state.time += h;
   return true;
 }

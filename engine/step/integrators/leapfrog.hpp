@@ -4,9 +4,9 @@
 /// Drift, solve, drift: the leapfrog, of order 2, with one solve.
 ///
 ///   q_m = q ⊕ ½ h v
-///   a   = (T.1) at q_m, with rows and damping of v, and with Coriolis forces and J̇ v of
+///   a   = (1.1) at q_m, with rows and damping of v, and with Coriolis forces and J̇ v of
 ///         v′ = v + ½ h a₋,   a₋ that of the last step
-///   v⁺  = v + h a,   q⁺ = q_m ⊕ ½ h v⁺                                                (T.138)
+///   v⁺  = v + h a,   q⁺ = q_m ⊕ ½ h v⁺                                                  (6.2)
 ///
 /// Nothing follows the solve, so (v⁺ − v)/h is what was solved, goals included. Forces of position
 /// are those of mid-step, and so are Coriolis forces to the order that counts: v and q are of one
@@ -16,8 +16,8 @@
 /// has changed so much that a tree ends elsewhere, ½ h² |a − a₋| > kForgets, the solve is repeated
 /// with a in its place.
 
-#include "engine/step/data.hpp"
-#include "engine/step/resolution.hpp"
+#include "softgauss/engine/step/data.hpp"
+#include "softgauss/engine/step/substep_selection.hpp"
 
 namespace softgauss {
 
@@ -25,14 +25,14 @@ namespace softgauss {
 void driftBefore(const Model& model, Data& data, State& state);
 
 /// Whether v′ is known: there was a step before.
-bool predictsTurning(const Model& model, const State& state);
-/// The velocity of turning v′ (T.138), and what depends on it, into data.kinematics.
-void predictTurning(const Model& model, const State& state, Data& data);
+bool predictsMidstepVelocity(const Model& model, const State& state);
+/// The velocity of turning v′ (6.2), and what depends on it, into data.kinematics.
+void predictMidstepVelocity(const Model& model, const State& state, Data& data);
 
 /// Where a tree that is not free ends elsewhere than a₋ has it, or a₋ is not known: state.a ← a,
 /// and true.
-bool forgetsPredicted(const Model& model, const Resolution& resolution, const Data& data,
-                      State& state);
+bool predictionFailed(const Model& model, const SubstepSelection& substepSelection,
+                      const Data& data, State& state);
 
 /// v⁺ and q⁺ of a state at q_m; writes data.acceleration and the state. Returns false, with the
 /// state untouched, when the result is not finite.

@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/step/integrators/runge_kutta.hpp"
+#include "softgauss/engine/step/integrators/runge_kutta.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "engine/core/rotation.hpp"
-#include "engine/step/forward.hpp"
-#include "engine/step/integrators/sight.hpp"
-#include "engine/step/integrators/stages.hpp"
-#include "engine/step/step.hpp"
+#include "softgauss/engine/core/rotation.hpp"
+#include "softgauss/engine/step/forward.hpp"
+#include "softgauss/engine/step/integrators/stages.hpp"
+#include "softgauss/engine/step/integrators/tunnelling.hpp"
+#include "softgauss/engine/step/step.hpp"
 
 namespace softgauss {
 namespace {
 
-/// φ̇ of (T.101), or v itself where a method is to be as MuJoCo's.
+/// φ̇ of (7.5), or v itself where a method is to be as MuJoCo's.
 void displacementRate(const Tableau& t, const Model& model, const VectorX& phi, const VectorX& v,
                       VectorX& rate) {
   rate = v;
-  if (!t.embedded && !model.options.ownSoftness) return;
+  if (!t.embedded && model.options.constraintModel == ConstraintModel::mujoco) return;
   for (const Tree& tree : model.trees) {
     const Body& root = model.bodies[tree.rootBody];
     if (root.joint != JointKind::floating) continue;
@@ -86,11 +86,11 @@ bool rungeKutta(const Tableau& t, const Model& model, const Input& input, Contac
   ++stats.evaluations;
 
   double done = 0.0, length = h;
-  double sight = lengthInSight(model, data, data.kinematics, contacts, h);
+  double sight = tunnellingLengthBound(model, data, data.kinematics, contacts, h);
   while (done < h) {
     length = std::min(length, h - done);
     if (t.embedded && length > sight * (1.0 + 1e-9) && !isShortest(length, kShortest * h)) {
-      ++stats.glances;
+      ++stats.tunnellingSplits;
       length = std::max(sight, kShortest * h);
     }
     const bool closes = done + length >= h * (1.0 - 1e-12);
@@ -104,8 +104,8 @@ bool rungeKutta(const Tableau& t, const Model& model, const Input& input, Contac
     // Looking back from its end: what has grown fast within the part.
     const double seen = shortest || error > 1.0
                             ? length
-                            : lengthInSight(model, data, s.data.kinematics, contacts, length,
-                                            ContactSource::Way::back);
+                            : tunnellingLengthBound(model, data, s.data.kinematics, contacts,
+                                                    length, ContactSource::TimeDirection::backward);
     if ((error > 1.0 || seen < length) && !shortest) {
       ++stats.rejections;
       stats.maxPenetration = deepest;  // what was tried has not happened
@@ -113,15 +113,15 @@ bool rungeKutta(const Tableau& t, const Model& model, const Input& input, Contac
           std::max(error > 1.0 ? length * factor : std::min(seen, 0.7 * length), kShortest * h);
       continue;
     }
-    stats.jumps += error > 1.0;
-    stats.unseen += length > sight * (1.0 + 1e-9);
+    stats.minimumStepsAccepted += error > 1.0;
+    stats.possibleTunnelling += length > sight * (1.0 + 1e-9);
     ++stats.substeps;
     done = closes ? h : done + length;
     length = std::max(length * factor, kShortest * h);
     s.from.q = s.state.q;
     s.from.v = s.state.v;
     if (done == h) break;
-    sight = lengthInSight(model, data, s.data.kinematics, contacts, h - done);
+    sight = tunnellingLengthBound(model, data, s.data.kinematics, contacts, h - done);
     // The next part's first k: the last one of this, with φ counted from the new origin.
     s.acceleration[0] = s.acceleration[t.stages - 1];
     s.phi.setZero();

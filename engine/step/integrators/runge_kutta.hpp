@@ -3,11 +3,11 @@
 
 /// Explicit Runge–Kutta steps of the continuous-time dynamics, on the manifold of configurations.
 ///
-///   q = q₀ ⊕ φ,   φ̇ = dexp⁻¹_φ(v),   v̇ = a(q, v)                                      (T.101)
+///   q = q₀ ⊕ φ,   φ̇ = dexp⁻¹_φ(v),   v̇ = a(q, v)                                        (7.5)
 ///
-/// a is forward dynamics (T.1) with all its rows, solved anew in every stage; φ is a displacement
+/// a is forward dynamics (1.1) with all its rows, solved anew in every stage; φ is a displacement
 /// from where the step began, and dexp⁻¹ is the identity but for the rotation of floating joints
-/// (T.92) [Munthe-Kaas 1999]. It keeps the order in orientation. Without Options::ownSoftness,
+/// (6.6) [Munthe-Kaas 1999]. It keeps the order in orientation. With ConstraintModel::mujoco,
 /// as under `--compatibility mujoco`, the classical method takes φ̇ = v: MuJoCo's averaged rate, of
 /// order 2 in orientation. Joint damping is explicit: h d must stay well below M_ii. The applied
 /// force is held over the step.
@@ -19,13 +19,13 @@
 /// force jumps, and a part of h/512 is taken whatever it estimates: the jump then lies within it.
 ///
 /// What begins and ends between two stages no estimate tells, so that the parts are no longer than
-/// what is in sight (sight.hpp), from their start and, where speeds have grown, back from their
-/// end: StepStats::glances. A step that is not divided, or a part of h/512, that is longer than
-/// that is counted in StepStats::unseen.
+/// what is in sight (tunnelling.hpp), from their start and, where speeds have grown, back from
+/// their end: StepStats::tunnellingSplits. A step that is not divided, or a part of h/512, that is
+/// longer than that is counted in StepStats::possibleTunnelling.
 
-#include "engine/step/contact_source.hpp"
-#include "engine/step/data.hpp"
-#include "engine/step/integrators/tableau.hpp"
+#include "softgauss/engine/step/contact_source.hpp"
+#include "softgauss/engine/step/data.hpp"
+#include "softgauss/engine/step/integrators/tableau.hpp"
 
 namespace softgauss {
 

@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/step/integrators/semi_implicit_euler.hpp"
+#include "softgauss/engine/step/integrators/semi_implicit_euler.hpp"
 
-#include "engine/step/forward.hpp"
-#include "engine/step/integrators/implicit_forces.hpp"
-#include "engine/step/integrators/kick.hpp"
+#include "softgauss/engine/step/forward.hpp"
+#include "softgauss/engine/step/integrators/implicit_forces.hpp"
+#include "softgauss/engine/step/integrators/kick.hpp"
 
 namespace softgauss {
 
 bool semiImplicitEuler(const Model& model, Data& data, State& state) {
   const double h = model.options.timestep;
   ForwardSolution& s = data.forward;
-  if (data.plan.rows.has(RowKind::swing) && !holdSwings(model, data, state)) return false;
+  if (data.plan.rows.has(RowKind::geometricStiffness) && !addGeometricStiffness(model, data, state))
+    return false;
   data.acceleration = s.a;
   if (implicitFollows(model, data)) {
     VectorX& net = data.acceleration;  // M a

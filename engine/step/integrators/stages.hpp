@@ -8,15 +8,15 @@
 #include <optional>
 #include <vector>
 
-#include "engine/step/data.hpp"
-#include "engine/step/integrators/tableau.hpp"
+#include "softgauss/engine/step/data.hpp"
+#include "softgauss/engine/step/integrators/tableau.hpp"
 
 namespace softgauss {
 
 struct IntegratorStages {
   explicit IntegratorStages(const Model& model)
       : data(model, Data::Evaluation{}), state(model), from(model), end(model) {
-    if (model.options.stepDoubling && model.options.solvesOnce()) part = model;
+    if (model.options.stepDoubling && model.options.isSingleSolve()) part = model;
     phi = VectorX::Zero(model.nv);
     const Integrator integrator = model.options.integrator;
     const int stages = integrator == Integrator::rungeKutta4     ? kRungeKutta4.stages

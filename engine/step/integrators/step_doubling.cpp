@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/step/integrators/step_doubling.hpp"
+#include "softgauss/engine/step/integrators/step_doubling.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "engine/step/forward.hpp"
-#include "engine/step/integrators/sight.hpp"
-#include "engine/step/integrators/single_solve.hpp"
-#include "engine/step/integrators/stages.hpp"
-#include "engine/step/step.hpp"
+#include "softgauss/engine/step/forward.hpp"
+#include "softgauss/engine/step/integrators/single_solve.hpp"
+#include "softgauss/engine/step/integrators/stages.hpp"
+#include "softgauss/engine/step/integrators/tunnelling.hpp"
+#include "softgauss/engine/step/step.hpp"
 
 namespace softgauss {
 namespace {
@@ -38,17 +38,17 @@ bool stepDoubling(const Model& model, const Input& input, ContactSource* contact
   StepStats& stats = data.stats;
   s.begin(input, start);
   s.from.a = state.a;
-  s.from.aIsKnown = state.aIsKnown;
+  s.from.hasAcceleration = state.hasAcceleration;
   const int order = data.plan.drifts ? 2 : 1;
   ++stats.evaluations;
 
   double done = 0.0, length = h;
   bool first = true;  // its solve is the step's own
-  double sight = lengthInSight(model, data, data.kinematics, contacts, h);
+  double sight = tunnellingLengthBound(model, data, data.kinematics, contacts, h);
   while (done < h) {
     length = std::min(length, h - done);
     if (length > sight * (1.0 + 1e-9) && !isShortest(length, kShortest * h)) {
-      ++stats.glances;
+      ++stats.tunnellingSplits;
       length = std::max(sight, kShortest * h);
       first = first && length == h;
     }
@@ -77,22 +77,22 @@ bool stepDoubling(const Model& model, const Input& input, ContactSource* contact
       length = std::max(length * factor, kShortest * h);
       continue;
     }
-    stats.jumps += ratio > 1.0;
-    stats.unseen += length > sight * (1.0 + 1e-9);
+    stats.minimumStepsAccepted += ratio > 1.0;
+    stats.possibleTunnelling += length > sight * (1.0 + 1e-9);
     ++stats.substeps;
     done = closes ? h : done + length;
     length = std::max(length * factor, kShortest * h);
     s.from = s.state;
     if (done < h && looksForContacts(data, contacts)) {
       computeKinematics(model, s.from, s.kinematics);
-      sight = lengthInSight(model, data, s.kinematics, contacts, h - done);
+      sight = tunnellingLengthBound(model, data, s.kinematics, contacts, h - done);
     }
   }
   data.acceleration = (s.from.v - start.v) / h;
   state.q = s.from.q;
   state.v = s.from.v;
   state.a = s.from.a;
-  state.aIsKnown = s.from.aIsKnown;
+  state.hasAcceleration = s.from.hasAcceleration;
   state.time += h;
   return true;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// Coefficients of explicit Runge–Kutta methods (T.100):
+/// Coefficients of explicit Runge–Kutta methods (7.4):
 ///
 ///   k_i = f(t + c_i h, y + h Σ_{j<i} a_ij k_j),   y⁺ = y + h Σ_i b_i k_i,   e = h Σ_i e_i k_i
 ///

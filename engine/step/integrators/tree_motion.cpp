@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/step/integrators/tree_motion.hpp"
+#include "softgauss/engine/step/integrators/tree_motion.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
-#include "engine/core/memory.hpp"
-#include "engine/core/rotation.hpp"
-#include "engine/core/spatial_matrix.hpp"
-#include "engine/step/integrators/tableau.hpp"
+#include "softgauss/engine/core/memory.hpp"
+#include "softgauss/engine/core/rotation.hpp"
+#include "softgauss/engine/core/spatial_matrix.hpp"
+#include "softgauss/engine/step/integrators/tableau.hpp"
 
 namespace softgauss {
 namespace {
@@ -115,7 +115,7 @@ void TreeMotion::derivative(const Model& model, const Plan& plan, const Tree& tr
       n.pA.setZero();
   }
   for (int i = tree.firstDof; i < tree.dofEnd; ++i) dv_[i] = (*held_)[i];
-  if (plan.damped())
+  if (plan.hasDamping())
     for (int i = tree.firstDof; i < tree.dofEnd; ++i) dv_[i] -= plan.damping[i] * w_[i];
   for (const Plan::Spring& s : plan.springs)
     if (s.dof >= tree.firstDof && s.dof < tree.dofEnd)

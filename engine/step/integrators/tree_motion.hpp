@@ -3,20 +3,20 @@
 
 /// Motion of one kinematic tree under forces that are held, followed within a step.
 ///
-///   q̇ = v,   v̇ = M(q)⁻¹ (Q − b(q, v) − D v − K (q − q_s))                              (T.91)
+///   q̇ = v,   v̇ = M(q)⁻¹ (Q − b(q, v) − D v − K (q − q_s))                               (6.5)
 ///
 /// b: gravity, Coriolis and gyroscopic forces; D: joint damping; K: joint springs; Q: all other
 /// generalised forces.
 /// The tree's accelerations come from the articulated-body algorithm [Featherstone 2008, section
 /// 7.3] in O(n), in world axes about the tree's root body. Orientation is followed by the rotation
-/// vector φ from where the sub-step began, R = R₀ exp(φ), φ̇ = dexp⁻¹(ω) (T.92).
+/// vector φ from where the sub-step began, R = R₀ exp(φ), φ̇ = dexp⁻¹(ω) (6.6).
 
 #include <array>
 #include <cstdint>
 #include <vector>
 
-#include "engine/model/plan.hpp"
-#include "engine/model/state.hpp"
+#include "softgauss/engine/model/plan.hpp"
+#include "softgauss/engine/model/state.hpp"
 
 namespace softgauss {
 
@@ -51,7 +51,7 @@ class TreeMotion {
   int substeps() const { return substeps_; }
   std::size_t bytes() const;
 
-  /// v̇ of (T.91) at (q, v) for the whole tree; for tests. `vdot` (nv).
+  /// v̇ of (6.5) at (q, v) for the whole tree; for tests. `vdot` (nv).
   void acceleration(const Model& model, const Plan& plan, const Tree& tree, const State& at,
                     const VectorX& held, VectorX& vdot);
 

@@ -3,8 +3,8 @@
 
 /// M + h ∂(smooth forces)/∂v, factored; memory of the implicit integrators.
 
-#include "engine/dynamics/tree_lu.hpp"
-#include "engine/step/data.hpp"
+#include "softgauss/engine/dynamics/tree_lu.hpp"
+#include "softgauss/engine/step/data.hpp"
 
 namespace softgauss {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/replay/detail/payload.hpp"
+#include "softgauss/io/replay/detail/payload.hpp"
 
 namespace softgauss::io::detail {
 namespace {

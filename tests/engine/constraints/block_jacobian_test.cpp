@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/constraints/block_jacobian.hpp"
+#include "softgauss/engine/constraints/block_jacobian.hpp"
 
-#include "engine/dynamics/jacobian.hpp"
+#include "softgauss/engine/dynamics/jacobian.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/scene.hpp"
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/constraints/contact_softness.hpp"
+#include "softgauss/engine/constraints/contact_softness.hpp"
 
 #include <cmath>
 #include <complex>
 #include <utility>
 
-#include "engine/step/inverse.hpp"
-#include "engine/step/snapshot.hpp"
+#include "softgauss/engine/step/inverse.hpp"
+#include "softgauss/engine/step/snapshot.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/scene.hpp"
 #include "tests/support/tolerance.hpp"
@@ -41,7 +41,7 @@ Material sprung(double stiffness, double damping, double friction = 1.0, int con
   return m;
 }
 
-// (T.36) is the implicit Euler step of a spring and a damper: the force is that of the state in
+// (3.8) is the implicit Euler step of a spring and a damper: the force is that of the state in
 // which the step ends, pressing only. K and B appear here as such, not as D and a_ref.
 TEST(ContactSpring, ForceIsThatOfTheStepsEnd) {
   const double K = 2e4, B = 30.0;
@@ -154,7 +154,7 @@ TEST(ContactSpring, MixesAsTwoSurfacesThatBothGiveWay) {
   EXPECT_EQ(pairMaterial(model, 1, 0).spring, own.spring);
 }
 
-// What is at most half damped is a spring of the pair's own mass, by the recipe (T.117); what is
+// What is at most half damped is a spring of the pair's own mass, by the recipe (3.11); what is
 // damped more stays a reference, and so do all in --compatibility mujoco.
 TEST(ContactSpring, WhatBouncesIsASpringOfItsOwnMass) {
   Options options;
@@ -165,30 +165,30 @@ TEST(ContactSpring, WhatBouncesIsASpringOfItsOwnMass) {
     pair.impedance.dampingRatio = ratio;
     pair.impedance.timeConstant = timeConstant;
     const double K = std::pow(timeConstant * ratio, -2.0), B = 2.0 / timeConstant;
-    const Material m = inForce(pair, mass, options);
+    const Material m = effectiveMaterial(pair, mass, options);
     ASSERT_TRUE(m.spring);
     EXPECT_SMALL(m.spring->stiffness / (mass * K) - 1.0, 1e-12);
     // Half a step of the spring damps as well.
     EXPECT_SMALL(m.spring->damping / (mass * (B - 0.001 * K)) - 1.0, 1e-12);
     Material given = pair;
     given.impedance.direct = {K, B};
-    const Material same = inForce(given, mass, options);
+    const Material same = effectiveMaterial(given, mass, options);
     EXPECT_SMALL(same.spring->stiffness / m.spring->stiffness - 1.0, 1e-12);
     EXPECT_SMALL(same.spring->damping / m.spring->damping - 1.0, 1e-12);
     Options mujoco = options;
-    mujoco.ownSoftness = false;
-    EXPECT_EQ(inForce(pair, mass, mujoco), pair);
+    mujoco.constraintModel = ConstraintModel::mujoco;
+    EXPECT_EQ(effectiveMaterial(pair, mass, mujoco), pair);
   }
-  // Faster than a step follows: K as in (T.115).
+  // Faster than a step follows: K as in (3.5).
   pair.impedance.dampingRatio = 0.05, pair.impedance.timeConstant = 0.02;
-  const Material fast = inForce(pair, mass, options);
+  const Material fast = effectiveMaterial(pair, mass, options);
   ASSERT_TRUE(fast.spring);
   EXPECT_SMALL(fast.spring->stiffness / mass * std::pow(2.0 * 0.002, 2.0) - 1.0, 1e-12);
   EXPECT_SMALL(fast.spring->damping / (mass * (100.0 - 0.001 * 62500.0)) - 1.0, 1e-12);
   pair.impedance.dampingRatio = 0.51, pair.impedance.timeConstant = 0.1;
-  EXPECT_EQ(inForce(pair, mass, options), pair);
+  EXPECT_EQ(effectiveMaterial(pair, mass, options), pair);
   pair = sprung(4e4, 200.0);
-  EXPECT_EQ(inForce(pair, mass, options), pair);
+  EXPECT_EQ(effectiveMaterial(pair, mass, options), pair);
 }
 
 TEST(ContactSpring, TheLighterTreeRests) {
@@ -233,11 +233,11 @@ TEST(ContactAtRest, EquivalentImpedanceMakesTheSameRows) {
     }
 }
 
-// (T.132): the same spring and damper, and the mass of a step, for what has a spring on a joint.
+// (3.7): the same spring and damper, and the mass of a step, for what has a spring on a joint.
 TEST(LeastMass, OfSprungTreesHasLittleMass) {
   for (const double timestep : {0.0005, 0.002, 0.01, 0.02})
     for (const double damping : {0.0, 20.0, 100.0}) {
-      const Softness s{0.3, 0.1, 2500.0, damping}, least = withLeastMass(s, timestep);
+      const Softness s{0.3, 0.1, 2500.0, damping}, least = withoutVirtualMass(s, timestep);
       EXPECT_SMALL(least.stiffness / least.R / (s.stiffness / s.R) - 1.0, kRounding);
       EXPECT_SMALL(least.damping * s.R - s.damping * least.R, kRounding * s.damping * least.R);
       const double share = std::min(1.0, timestep * std::max(damping, timestep * s.stiffness));

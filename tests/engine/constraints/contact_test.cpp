@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/constraints/contact.hpp"
+#include "softgauss/engine/constraints/contact.hpp"
 
-#include "engine/constraints/impedance.hpp"
-#include "engine/core/rotation.hpp"
-#include "engine/dynamics/jacobian.hpp"
+#include "softgauss/engine/constraints/impedance.hpp"
+#include "softgauss/engine/core/rotation.hpp"
+#include "softgauss/engine/dynamics/jacobian.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/reference_solver.hpp"
 #include "tests/support/scene.hpp"
@@ -73,7 +73,7 @@ TEST(MixMaterials, HigherPriorityDecidesOnAllButTheMargin) {
 Scene oneContact(std::uint64_t seed, const std::function<void(Model&, Contact&)>& change) {
   Random random(seed);
   Scene s(randomForest(seed).build());
-  s.model.options.ownSoftness = false;  // that is of carried_load_test.cpp
+  s.model.options.constraintModel = ConstraintModel::mujoco;  // that is of supported_mass_test.cpp
   s.model.ranges.clear();
   s.state = randomState(s.model, random);
   computeKinematics(s.model, s.state, s.data->kinematics);
@@ -101,7 +101,7 @@ TEST(Contact, RowsAreTheEdgesOfThePyramid) {
     Eigen::Matrix<double, 3, Eigen::Dynamic> Ja(3, s.model.nv), Jb(3, s.model.nv);
     pointJacobian(s.model, s.data->kinematics, c.bodyA, c.p_WC, Ja);
     pointJacobian(s.model, s.data->kinematics, c.bodyB, c.p_WC, Jb);
-    const Matrix3 R_WC = rows.made()[0].R_WC;
+    const Matrix3 R_WC = rows.contactsWithRows()[0].R_WC;
     const MatrixX J = R_WC.transpose() * (Jb - Ja);
     EXPECT_EQ(R_WC.col(0), c.n_W);
     EXPECT_APPROX(R_WC.transpose() * R_WC, Matrix3::Identity(), 1e-14);
@@ -138,7 +138,7 @@ TEST(Contact, RowsOfTorsionalAndRollingFrictionAreEdgesOfTheRotation) {
     const PyramidalContact& rows = s.data->constraints.contact;
     ASSERT_EQ(rows.rowCount(), 2 * (condim - 1));
     Eigen::Matrix<double, 3, Eigen::Dynamic> Ja(3, s.model.nv), Jb(3, s.model.nv);
-    const Matrix3 R_CW = rows.made()[0].R_WC.transpose();
+    const Matrix3 R_CW = rows.contactsWithRows()[0].R_WC.transpose();
     MatrixX J(6, s.model.nv);
     pointJacobian(s.model, s.data->kinematics, c.bodyA, c.p_WC, Ja);
     pointJacobian(s.model, s.data->kinematics, c.bodyB, c.p_WC, Jb);
@@ -202,8 +202,8 @@ TEST(Contact, OfAPairWithASurfaceOfItsOwnFollowsThat) {
     });
     const PyramidalContact& rows = s.data->constraints.contact;
     ASSERT_EQ(rows.rowCount(), 6);
-    EXPECT_EQ(rows.made()[0].friction[0], 0.2);
-    EXPECT_EQ(rows.made()[0].friction[2], 0.07);
+    EXPECT_EQ(rows.contactsWithRows()[0].friction[0], 0.2);
+    EXPECT_EQ(rows.contactsWithRows()[0].friction[2], 0.07);
     const Contact& c = s.data->contacts.contacts[0];
     const auto& w = s.data->weights.translation;
     const Softness soft =
@@ -248,16 +248,16 @@ TEST(Contact, BetweenBodiesThatCannotMoveMakesNoRows) {
 TEST(Contact, FollowsTheWishedTangent) {
   const Vector3 wish(0.3, -0.4, 0.7);
   const Scene s = oneContact(5, [&](Model&, Contact& c) { c.tangent_W = wish; });
-  const Matrix3 R = s.data->constraints.contact.made()[0].R_WC;
+  const Matrix3 R = s.data->constraints.contact.contactsWithRows()[0].R_WC;
   const Vector3 n = R.col(0);
   EXPECT_APPROX(R.col(1), (wish - n * n.dot(wish)).normalized(), 1e-14);
   EXPECT_APPROX(R.col(2), n.cross(R.col(1)), 1e-14);
   // A wish near the normal is followed too, as by a capsule that stands on its end.
   const Scene steep = oneContact(5, [&](Model&, Contact& c) { c.tangent_W = c.n_W + 1e-3 * wish; });
-  EXPECT_APPROX(steep.data->constraints.contact.made()[0].R_WC.col(1), R.col(1), 1e-12);
+  EXPECT_APPROX(steep.data->constraints.contact.contactsWithRows()[0].R_WC.col(1), R.col(1), 1e-12);
   // A wish along the normal cannot be.
   const Scene along = oneContact(5, [&](Model&, Contact& c) { c.tangent_W = c.n_W; });
-  EXPECT_EQ(along.data->constraints.contact.made()[0].R_WC,
+  EXPECT_EQ(along.data->constraints.contact.contactsWithRows()[0].R_WC,
             frameFromNormal(along.data->contacts.contacts[0].n_W));
 }
 

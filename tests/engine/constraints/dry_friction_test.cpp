@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/constraints/dry_friction.hpp"
+#include "softgauss/engine/constraints/dry_friction.hpp"
 
 #include <algorithm>
 
-#include "engine/constraints/impedance.hpp"
+#include "softgauss/engine/constraints/impedance.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/scene.hpp"
 
@@ -66,7 +66,7 @@ TEST(DryFriction, HoldsALoadBelowItsLimitAndSlidesAboveIt) {
   EXPECT_SMALL(held.data->constraints.dryFriction.f[0] + 2.0, 1e-9);
 
   Scene soft = slide(0.0, 2.0);
-  soft.model.options.ownSoftness = false;
+  soft.model.options.constraintModel = ConstraintModel::mujoco;
   soft.steps(500);
   EXPECT_SMALL(soft.state.v[0] / (R * 2.0 / b) - 1.0, 1e-9);
   EXPECT_SMALL(soft.data->constraints.dryFriction.f[0] + 2.0, 1e-9);
@@ -76,7 +76,7 @@ TEST(DryFriction, HoldsALoadBelowItsLimitAndSlidesAboveIt) {
   EXPECT_SMALL(slides.data->forward.a[0] - 0.5, 1e-12);
 }
 
-// (T.94): R falls with the speed below twice the creep of the limit, down to 10⁻⁹; goals may have
+// (5.6): R falls with the speed below twice the creep of the limit, down to 10⁻⁹; goals may have
 // it soft again.
 TEST(DryFriction, HardensAsItComesToRest) {
   const double R = 0.1 / 0.9 * 0.5, b = 2.0 / (0.95 * 0.02), slow = 2.0 * 3.0 * R / b;

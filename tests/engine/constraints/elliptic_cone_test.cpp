@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/constraints/elliptic_cone.hpp"
+#include "softgauss/engine/constraints/elliptic_cone.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
-#include "engine/core/check.hpp"
-#include "engine/core/types.hpp"
+#include "softgauss/engine/core/check.hpp"
+#include "softgauss/engine/core/types.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/random.hpp"
 
@@ -152,21 +152,21 @@ TEST(EllipticCone, ZonesJoinWithoutAJumpOfTheForce) {
       VectorX x = random.vector(dim, 1.0);
       for (int k = 1; k < dim; ++k) x[k] /= cone.friction[k - 1];
       const double T = cone.point(x.data()).T;
-      for (const int knot : {0, 1}) {
-        x[0] = (knot == 0 ? -T / cone.mu : cone.mu * T) / cone.mu;
+      for (const int breakpoint : {0, 1}) {
+        x[0] = (breakpoint == 0 ? -T / cone.mu : cone.mu * T) / cone.mu;
         const EllipticCone::Point z = cone.point(x.data());
-        EXPECT_SMALL(EllipticCone::aboveKnot(z, knot), 1e-14 * (1.0 + 1.0 / cone.mu));
+        EXPECT_SMALL(EllipticCone::aboveBreakpoint(z, breakpoint), 1e-14 * (1.0 + 1.0 / cone.mu));
         using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
         VectorX below(dim), above(dim), gradient(dim);
         Square Hbelow(dim, dim), Habove(dim, dim);
         const double scale = cone.D * (1.0 + 1.0 / (cone.mu * cone.mu));
         const double costBelow =
-            cone.at(z, static_cast<ConeZone>(knot), below.data(), Hbelow.data());
+            cone.at(z, static_cast<ConeZone>(breakpoint), below.data(), Hbelow.data());
         const double costAbove =
-            cone.at(z, static_cast<ConeZone>(knot + 1), above.data(), Habove.data());
+            cone.at(z, static_cast<ConeZone>(breakpoint + 1), above.data(), Habove.data());
         EXPECT_SMALL((costBelow - costAbove) / scale, 1e-13);
         EXPECT_SMALL((below - above).cwiseAbs().maxCoeff() / scale, 1e-13);
-        cone.knotGradient(z, knot, gradient.data());
+        cone.breakpointGradient(z, breakpoint, gradient.data());
         const MatrixX jump = cone.stiffness() * gradient * gradient.transpose();
         EXPECT_SMALL((Hbelow - Habove - jump).cwiseAbs().maxCoeff() / scale, 1e-13);
       }

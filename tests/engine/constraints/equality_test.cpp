@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Connections, welds and joint couplings: distances, their Jacobians and accelerations.
 
-#include "engine/constraints/impedance.hpp"
-#include "engine/core/rotation.hpp"
+#include "softgauss/engine/constraints/impedance.hpp"
+#include "softgauss/engine/core/rotation.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/reference_solver.hpp"
 #include "tests/support/scene.hpp"
@@ -72,7 +72,8 @@ TEST(Equality, JacobianIsTheDerivativeOfTheDistance) {
   double worst = 0.0;
   for (int seed = 0; seed < 40; ++seed) {
     Scene s = equalities(seed);
-    s.model.options.ownSoftness = false;  // at two places; at one it is that seen from between
+    s.model.options.constraintModel =
+        ConstraintModel::mujoco;  // at two places; at one it is that seen from between
     s.stages();
     const MatrixX J = denseProblem(*s.data).J;
     if (!turns(s)) continue;
@@ -90,12 +91,12 @@ TEST(Equality, JacobianIsTheDerivativeOfTheDistance) {
   EXPECT_SMALL(worst, 1e-9);
 }
 
-/// Of a row, less J̇ v, by (T.10) and (T.11); loads of (T.80) apart.
+/// Of a row, less J̇ v, by (3.1) and (3.2); loads of (5.1) apart.
 TEST(Equality, ReferenceIsASpringDamperOfTheDistance) {
   for (int seed = 0; seed < 40; ++seed) {
     Scene s = equalities(seed);
     if (!turns(s)) continue;
-    s.model.options.ownSoftness = false;
+    s.model.options.constraintModel = ConstraintModel::mujoco;
     s.model.options.integrator = Integrator::semiImplicitEuler;
     s.stages();
     const Model& m = s.model;
@@ -132,10 +133,12 @@ TEST(Equality, BiasIsTheAccelerationOfTheDistanceAtZeroAcceleration) {
   for (int seed = 0; seed < 40; ++seed) {
     Scene s = equalities(seed);
     if (!turns(s)) continue;
-    s.model.options.integrator = Integrator::semiImplicitEuler;  // rows of (T.10) as they are
+    s.model.options.integrator = Integrator::semiImplicitEuler;  // rows of (3.1) as they are
     const bool places =
-        seed % 2 == 0;  // MuJoCo's ties act at two places, and its couplings are straight
-    s.model.options.ownSoftness = !places;
+        seed % 2 ==
+        0;  // MuJoCo's equality constraints act at two places, and its couplings are straight
+    s.model.options.constraintModel =
+        !places ? ConstraintModel::softgauss : ConstraintModel::mujoco;
     s.stages();
     const Model& m = s.model;
     const VectorX v = s.state.v;
@@ -171,8 +174,8 @@ TEST(Equality, BiasIsTheAccelerationOfTheDistanceAtZeroAcceleration) {
   EXPECT_GT(largest, 1.0);
 }
 
-// However stretched and however turned, a tie makes no moment: its force acts at one place. Two
-// bodies in weightlessness keep their angular momentum, and their momentum.
+// However stretched and however turned, an equality constraint makes no moment: its force acts at
+// one place. Two bodies in weightlessness keep their angular momentum, and their momentum.
 TEST(Equality, KeepsMomentumHoweverStretched) {
   for (int seed = 0; seed < 20; ++seed) {
     Random random(static_cast<std::uint64_t>(seed));
@@ -204,8 +207,8 @@ TEST(Equality, KeepsMomentumHoweverStretched) {
   }
 }
 
-// (T.137): the force of a tie is that of a spring and a damper in the state in which the step ends.
-// K and B appear here as such, not as D and a_ref.
+// (3.14): the force of an equality constraint is that of a spring and a damper in the state in
+// which the step ends. K and B appear here as such, not as D and a_ref.
 TEST(Equality, ForceIsThatOfTheStepsEnd) {
   for (const double h : {0.0005, 0.002, 0.01})
     for (const double speed : {-1.0, 0.0, 0.3}) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/constraints/exact_diagonal.hpp"
+#include "softgauss/engine/constraints/exact_diagonal.hpp"
 
 #include <Eigen/Cholesky>
 
@@ -47,7 +47,7 @@ TEST(ExactDiagonal, OfAContactIsThatOfItsFirstRow) {
       const Constraints& constraints = both.exact.data->constraints;
       int first = 0;
       constraints.visitAllButContacts([&](const auto& c) { first += c.rowCount(); });
-      for (const ContactRows& made : constraints.contact.made()) {
+      for (const ContactRows& made : constraints.contact.contactsWithRows()) {
         const double A = both.A(first + made.row, first + made.row);
         for (int i = 0; i < std::max(1, 2 * made.frictionDim); ++i, ++compared) {
           const int row = made.row + i;
@@ -58,8 +58,8 @@ TEST(ExactDiagonal, OfAContactIsThatOfItsFirstRow) {
       }
       first += constraints.contact.rowCount();
       const EllipticContact& cones = constraints.ellipticContact;
-      for (int i = 0; i < static_cast<int>(cones.made().size()); ++i, ++compared) {
-        const int row = first + cones.made()[i].row;
+      for (int i = 0; i < static_cast<int>(cones.contactsWithRows().size()); ++i, ++compared) {
+        const int row = first + cones.contactsWithRows()[i].row;
         EXPECT_SMALL(1.0 / (cones.cone(i).D * cones.perInertia(i) * both.A(row, row)) - 1.0, 1e-9);
       }
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/constraints/impedance.hpp"
+#include "softgauss/engine/constraints/impedance.hpp"
 
 #include "tests/support/matchers.hpp"
 #include "tests/support/tolerance.hpp"
@@ -133,7 +133,7 @@ double fastestReturn(const Impedance& p, double h) {
   return fastest;
 }
 
-// (T.115), over both forms of a reference.
+// (3.5), over both forms of a reference.
 TEST(Softness, AStepReturnsNothingFasterThanItCame) {
   const double h = 0.002;
   Impedance p;
@@ -168,17 +168,17 @@ TEST(Softness, WhatAStepFollowsStaysAsItIs) {
 }
 
 /// The row that a step of 2 ms takes, of d = `impedance` everywhere.
-Softness taken(double impedance, double timeConstant, bool ownSoftness) {
+Softness taken(double impedance, double timeConstant, bool own) {
   Impedance p;
   p.dMin = p.dMax = impedance;
   p.timeConstant = timeConstant;
   Options options;
   options.timestep = 0.002;
-  options.ownSoftness = ownSoftness;
+  options.constraintModel = own ? ConstraintModel::softgauss : ConstraintModel::mujoco;
   return softnessAt(p, -1.0, 3.0, options);
 }
 
-// (T.126): the spring and the damper that were asked for, in N/m and N s/m; MuJoCo's row where that
+// (3.6): the spring and the damper that were asked for, in N/m and N s/m; MuJoCo's row where that
 // takes a velocity at most 1.1 times in a step.
 TEST(Softness, TakesAVelocityAtMostOnceAStep) {
   const double h = 0.002;
@@ -197,7 +197,7 @@ TEST(Softness, TakesAVelocityAtMostOnceAStep) {
     }
 }
 
-// (T.126): however much more than its own A the row moves, x̂ = A′/(A′ + R) a_ref, no motion grows.
+// (3.6): however much more than its own A the row moves, x̂ = A′/(A′ + R) a_ref, no motion grows.
 TEST(Softness, IsStableWhateverItMoves) {
   const double h = 0.002;
   for (const double d : {1e-4, 0.01, 0.1, 0.5, 0.95})

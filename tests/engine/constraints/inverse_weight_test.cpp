@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/constraints/inverse_weight.hpp"
+#include "softgauss/engine/constraints/inverse_weight.hpp"
 
 #include <Eigen/LU>
 
-#include "engine/dynamics/inertia.hpp"
-#include "engine/dynamics/jacobian.hpp"
+#include "softgauss/engine/dynamics/inertia.hpp"
+#include "softgauss/engine/dynamics/jacobian.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/scene.hpp"
 

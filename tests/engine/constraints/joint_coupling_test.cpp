@@ -2,12 +2,12 @@
 /// Couplings: screws, gears, fingers and chains of them, against statics and against a model in
 /// which the follower is substituted.
 
-#include "engine/constraints/joint_coupling.hpp"
+#include "softgauss/engine/constraints/joint_coupling.hpp"
 
 #include <cmath>
 #include <sstream>
 
-#include "engine/constraints/impedance.hpp"
+#include "softgauss/engine/constraints/impedance.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/scene.hpp"
 

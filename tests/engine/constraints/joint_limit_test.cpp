@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/constraints/joint_limit.hpp"
+#include "softgauss/engine/constraints/joint_limit.hpp"
 
-#include "engine/constraints/impedance.hpp"
+#include "softgauss/engine/constraints/impedance.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/scene.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/constraints/penalty.hpp"
+#include "softgauss/engine/constraints/penalty.hpp"
 
-#include "engine/constraints/rows.hpp"
+#include "softgauss/engine/constraints/rows.hpp"
 #include "tests/support/matchers.hpp"
 
 namespace softgauss::test {
@@ -14,7 +14,7 @@ TYPED_TEST_SUITE(PenaltyLaws, Penalties);
 
 constexpr double kStiffness[] = {0.2, 1.0, 350.0};
 
-/// Huber's knots are at ∓ 2.
+/// Huber's breakpoints are at ∓ 2.
 template <class Penalty>
 Penalty make(double D) {
   if constexpr (Penalty::kLimited)
@@ -23,7 +23,7 @@ Penalty make(double D) {
     return {D};
 }
 
-// Every piece, and points near the knots on either side.
+// Every piece, and points near the breakpoints on either side.
 constexpr double kPoints[] = {-30.0, -2.001, -1.999, -1.0, -1e-3, 1e-3, 0.5, 1.999, 2.001, 20.0};
 
 TYPED_TEST(PenaltyLaws, SlopeIsGradientOfValue) {
@@ -50,8 +50,8 @@ TYPED_TEST(PenaltyLaws, CurvatureIsGradientOfSlope) {
 TYPED_TEST(PenaltyLaws, ValueAndSlopeAreContinuousAtTheKnots) {
   for (const double D : kStiffness) {
     const TypeParam s = make<TypeParam>(D);
-    for (int k = 0; k < TypeParam::kKnots; ++k) {
-      const double x = s.knot(k);
+    for (int k = 0; k < TypeParam::kBreakpoints; ++k) {
+      const double x = s.breakpoint(k);
       const Jet below = s.at(x - 1e-12), at = s.at(x), above = s.at(x + 1e-12);
       EXPECT_LE(std::abs(below.value - above.value), 1e-11 * D);
       EXPECT_LE(std::abs(below.slope - above.slope), 3e-12 * D);
@@ -82,14 +82,14 @@ TYPED_TEST(PenaltyLaws, PiecesMeetAtTheKnotsWhereTheCurvatureJumps) {
   const TypeParam s = make<TypeParam>(3.0);
   int piece = s.piece(-1e6);
   EXPECT_EQ(piece, 0);
-  for (int k = 0; k < TypeParam::kKnots; ++k) {
-    const double x = s.knot(k);
+  for (int k = 0; k < TypeParam::kBreakpoints; ++k) {
+    const double x = s.breakpoint(k);
     EXPECT_EQ(s.piece(x - 1e-9), k);
     EXPECT_EQ(s.piece(x + 1e-9), k + 1);
     EXPECT_EQ(s.at(x + 1e-9).curvature - s.at(x - 1e-9).curvature, s.curvatureJump(k));
-    EXPECT_EQ(s.at(s.knot(k)).curvature, 0.0);
+    EXPECT_EQ(s.at(s.breakpoint(k)).curvature, 0.0);
   }
-  EXPECT_EQ(s.piece(1e6), TypeParam::kKnots);
+  EXPECT_EQ(s.piece(1e6), TypeParam::kBreakpoints);
 }
 
 // The crossings found on a ray are the places where the curvature changes along it, in their order.
@@ -111,15 +111,15 @@ TYPED_TEST(PenaltyLaws, CrossingsAreWhereTheCurvatureJumpsAlongTheRay) {
         ++found;
         EXPECT_GE(c.alpha, last);
         EXPECT_EQ(c.rate, dx);
-        EXPECT_EQ(c.knot.row, (RowId{4, 0}));
-        EXPECT_SMALL(x + c.alpha * dx - s.knot(c.knot.index), 1e-12);
+        EXPECT_EQ(c.breakpoint.row, (RowId{4, 0}));
+        EXPECT_SMALL(x + c.alpha * dx - s.breakpoint(c.breakpoint.index), 1e-12);
         curvature += c.curvatureJump;
         EXPECT_EQ(s.at(x + (c.alpha + 1e-6) * dx).curvature, curvature);
         last = c.alpha;
       }
       EXPECT_EQ(s.at(x + 1e6 * dx).curvature, curvature);
     }
-  EXPECT_EQ(found > 0, TypeParam::kKnots > 0);
+  EXPECT_EQ(found > 0, TypeParam::kBreakpoints > 0);
 }
 
 TYPED_TEST(PenaltyLaws, RowsArePlacedAtTheirKnotsOnEitherSide) {
@@ -127,12 +127,12 @@ TYPED_TEST(PenaltyLaws, RowsArePlacedAtTheirKnotsOnEitherSide) {
   if (TypeParam::kLimited) rows.limit = {7.0};
   rows.resizeRows(1);
   rows.D = {0.3};
-  for (int k = 0; k < TypeParam::kKnots; ++k)
+  for (int k = 0; k < TypeParam::kBreakpoints; ++k)
     for (const bool stiff : {false, true}) {
-      rows.placeAtKnot(0, k, stiff);
+      rows.placeAtBreakpoint(0, k, stiff);
       const TypeParam s = rows.penalty(0);
       EXPECT_EQ(s.at(rows.x[0]).curvature, stiff ? 0.3 : 0.0);
-      EXPECT_LE(std::abs(rows.aboveKnot(0, k)), 1e-15 * std::abs(s.knot(k)) + 1e-300);
+      EXPECT_LE(std::abs(rows.aboveBreakpoint(0, k)), 1e-15 * std::abs(s.breakpoint(k)) + 1e-300);
     }
 }
 
@@ -187,7 +187,7 @@ TEST(Rows, EvaluateTellsWhetherACellWasLeft) {
   rows.advance(0.1);
   rows.evaluate(changed);
   EXPECT_FALSE(changed);
-  rows.advance(1.0);  // the second row crosses its knot
+  rows.advance(1.0);  // the second row crosses its breakpoint
   rows.evaluate(changed);
   EXPECT_TRUE(changed);
 }

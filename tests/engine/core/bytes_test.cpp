@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/core/bytes.hpp"
+#include "softgauss/engine/core/bytes.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <limits>
 #include <tuple>
 
-#include "engine/core/sealed.hpp"
+#include "softgauss/engine/core/sealed.hpp"
 #include "tests/support/random.hpp"
 
 namespace softgauss::test {

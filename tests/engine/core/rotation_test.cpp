@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/core/rotation.hpp"
+#include "softgauss/engine/core/rotation.hpp"
 
 #include "tests/support/matchers.hpp"
 #include "tests/support/random.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/core/spatial.hpp"
+#include "softgauss/engine/core/spatial.hpp"
 
-#include "engine/core/rotation.hpp"
+#include "softgauss/engine/core/rotation.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/tolerance.hpp"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/dynamics/coriolis_derivative.hpp"
+#include "softgauss/engine/dynamics/coriolis_derivative.hpp"
 
 #include <Eigen/LU>
 
-#include "engine/dynamics/tree_lu.hpp"
+#include "softgauss/engine/dynamics/tree_lu.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/scene.hpp"
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/dynamics/coupled_mass.hpp"
+#include "softgauss/engine/dynamics/coupled_mass.hpp"
 
 #include <cmath>
 
-#include "engine/dynamics/regular_mass.hpp"
+#include "softgauss/engine/dynamics/regular_mass.hpp"
 #include "tests/support/sample_models.hpp"
 
 namespace softgauss::test {
@@ -30,7 +30,7 @@ TEST(CoupledMass, IsSteadiedWhereItsCouplingsMakeItRegular) {
   Model m = finger(true);
   ASSERT_TRUE(findSingularMass(m, m.q0));
   const Model before = m;
-  steadyCoupledJoints(m, m.q0);
+  regulariseCoupledJoints(m, m.q0);
   EXPECT_FALSE(findSingularMass(m, m.q0));
   ASSERT_EQ(m.warnings.size(), before.warnings.size() + 1);
   EXPECT_NE(m.warnings.back().find(": j1 j2"), std::string::npos) << m.warnings.back();
@@ -45,7 +45,7 @@ TEST(CoupledMass, IsLeftAloneElsewhere) {
   for (const bool follows : {false, true}) {
     Model m = finger(follows);
     const Vector3 bent(0.0, follows ? 0.5 : 0.0, follows ? 0.4 : 0.0);
-    steadyCoupledJoints(m, bent);
+    regulariseCoupledJoints(m, bent);
     for (const Dof& dof : m.dofs) EXPECT_EQ(dof.armature, 0.0) << follows;
     EXPECT_TRUE(m.warnings.empty());
   }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/dynamics/kinematics.hpp"
+#include "softgauss/engine/dynamics/kinematics.hpp"
 
-#include "engine/core/rotation.hpp"
-#include "engine/dynamics/jacobian.hpp"
+#include "softgauss/engine/core/rotation.hpp"
+#include "softgauss/engine/dynamics/jacobian.hpp"
 #include "tests/support/finite_difference.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/scene.hpp"

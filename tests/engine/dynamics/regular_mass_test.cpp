@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/dynamics/regular_mass.hpp"
+#include "softgauss/engine/dynamics/regular_mass.hpp"
 
 #include <cmath>
 
-#include "engine/constraints/inverse_weight.hpp"
+#include "softgauss/engine/constraints/inverse_weight.hpp"
 #include "tests/support/sample_models.hpp"
 
 namespace softgauss::test {

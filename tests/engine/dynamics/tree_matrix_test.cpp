@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/dynamics/tree_matrix.hpp"
+#include "softgauss/engine/dynamics/tree_matrix.hpp"
 
 #include <Eigen/Cholesky>
 

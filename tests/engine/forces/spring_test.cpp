@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/forces/spring.hpp"
+#include "softgauss/engine/forces/spring.hpp"
 
 #include "tests/support/matchers.hpp"
 #include "tests/support/scene.hpp"

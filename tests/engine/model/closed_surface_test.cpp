@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/model/closed_surface.hpp"
+#include "softgauss/engine/model/closed_surface.hpp"
 
 #include <algorithm>
 
-#include "engine/model/mass_properties.hpp"
+#include "softgauss/engine/model/mass_properties.hpp"
 #include "tests/support/matchers.hpp"
 
 namespace softgauss::test {

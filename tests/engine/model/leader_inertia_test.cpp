@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/model/detail/leader_inertia.hpp"
+#include "softgauss/engine/model/detail/leader_inertia.hpp"
 
-#include "engine/dynamics/regular_mass.hpp"
+#include "softgauss/engine/dynamics/regular_mass.hpp"
 #include "tests/support/sample_models.hpp"
 
 namespace softgauss::test {

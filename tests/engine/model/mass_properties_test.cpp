@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Closed forms of solids against their meshes, and against scaling laws.
 
-#include "engine/model/mass_properties.hpp"
+#include "softgauss/engine/model/mass_properties.hpp"
 
 #include "tests/support/matchers.hpp"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/model/model_builder.hpp"
+#include "softgauss/engine/model/model_builder.hpp"
 
-#include "engine/core/rotation.hpp"
-#include "engine/dynamics/kinematics.hpp"
+#include "softgauss/engine/core/rotation.hpp"
+#include "softgauss/engine/dynamics/kinematics.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/sample_models.hpp"
 #include "tests/support/scene.hpp"

@@ -4,8 +4,8 @@
 
 #include <functional>
 
-#include "engine/constraints/inverse_weight.hpp"
-#include "engine/model/model_builder.hpp"
+#include "softgauss/engine/constraints/inverse_weight.hpp"
+#include "softgauss/engine/model/model_builder.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/sample_models.hpp"
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 /// A state goes to bytes and back, to the same bits, and to no other model.
-#include "engine/model/saved_state.hpp"
+#include "softgauss/engine/model/saved_state.hpp"
 
 #include <gtest/gtest.h>
 
-#include "engine/core/bytes.hpp"
-#include "engine/core/sealed.hpp"
-#include "engine/model/model_hash.hpp"
+#include "softgauss/engine/core/bytes.hpp"
+#include "softgauss/engine/core/sealed.hpp"
+#include "softgauss/engine/model/model_hash.hpp"
 #include "tests/support/scene.hpp"
 
 namespace softgauss::test {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/model/state.hpp"
+#include "softgauss/engine/model/state.hpp"
 
 #include "tests/support/matchers.hpp"
 #include "tests/support/scene.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/solver/line_search.hpp"
+#include "softgauss/engine/solver/line_search.hpp"
 
-#include "engine/constraints/rows.hpp"
+#include "softgauss/engine/constraints/rows.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/random.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/solver/newton.hpp"
+#include "softgauss/engine/solver/newton.hpp"
 
 #include <Eigen/Cholesky>
 

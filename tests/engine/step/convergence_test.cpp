@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "engine/core/rotation.hpp"
-#include "engine/engine.hpp"
+#include "softgauss/engine/core/rotation.hpp"
+#include "softgauss/engine/engine.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/sample_models.hpp"
 
@@ -84,7 +84,7 @@ Difference orders(const ModelBuilder& builder, Integrator integrator,
   const Model model = builder.build();
   const State start = tumblingStart(model);
   ModelBuilder ours = builder;
-  ours.options.ownSoftness = true;
+  ours.options.constraintModel = ConstraintModel::softgauss;
   const std::vector<State> exact = run(ours, start, Integrator::rungeKutta4, kDuration, 8192);
   std::vector<double> h, position, orientation;
   for (const int count : steps) {
@@ -115,8 +115,9 @@ TEST_P(Convergence, OrderIsAsSaid) {
   const Case& c = GetParam();
   ModelBuilder builder = tumblingTree();
   builder.options.integrationTolerance = 1e3;  // no step is divided
-  builder.options.partAngle = kInfinity;
-  builder.options.ownSoftness = !c.likeMujoco;
+  builder.options.substepAngle = kInfinity;
+  builder.options.constraintModel =
+      !c.likeMujoco ? ConstraintModel::softgauss : ConstraintModel::mujoco;
   const Difference order = orders(builder, c.integrator, c.steps);
   EXPECT_NEAR(order.position, c.order, 0.2);
   EXPECT_NEAR(order.orientation, c.order, 0.2);

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "collision/scene_contacts.hpp"
+#include "softgauss/collision/scene_contacts.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/scene.hpp"
 
@@ -26,12 +26,12 @@ struct Sliding : Scene {
 };
 
 void expectNone(const StepStats& stats) {
-  EXPECT_EQ(stats.shortSolves, 0);
-  EXPECT_EQ(stats.roundedSolves, 0);
-  EXPECT_EQ(stats.refusedGuesses, 0);
-  EXPECT_EQ(stats.keptSlips, 0);
+  EXPECT_EQ(stats.unconvergedSolves, 0);
+  EXPECT_EQ(stats.roundingLimitedSolves, 0);
+  EXPECT_EQ(stats.invalidWarmStarts, 0);
+  EXPECT_EQ(stats.noSlipFallbacks, 0);
   EXPECT_EQ(stats.abandonedTrees, 0);
-  EXPECT_EQ(stats.jumps, 0);
+  EXPECT_EQ(stats.minimumStepsAccepted, 0);
 }
 
 TEST(Fallbacks, AreNoneInAPlainStep) {
@@ -54,7 +54,7 @@ TEST(Fallbacks, ASolveThatEndsShortIsCountedWithItsResidual) {
   options.maxIterations = 1;
   Sliding s(options);
   EXPECT_EQ(s.step(), SolveStatus::iterationLimit);
-  EXPECT_EQ(s.data->stats.shortSolves, 1);
+  EXPECT_EQ(s.data->stats.unconvergedSolves, 1);
   EXPECT_GT(s.data->stats.residual, options.tolerance);
   // The gradient itself, scaled: what it says is what is left.
   EXPECT_SMALL(
@@ -70,9 +70,9 @@ TEST(Fallbacks, ASolveThatRoundingEndsIsCounted) {
   int rounded = 0;
   for (int i = 0; i < 20; ++i) {
     ASSERT_EQ(s.step(), SolveStatus::converged);
-    rounded += s.data->stats.roundedSolves;
+    rounded += s.data->stats.roundingLimitedSolves;
     EXPECT_LE(s.data->stats.residual, 1e3 * options.tolerance);
-    EXPECT_EQ(s.data->stats.roundedSolves > 0, s.data->stats.residual > options.tolerance);
+    EXPECT_EQ(s.data->stats.roundingLimitedSolves > 0, s.data->stats.residual > options.tolerance);
   }
   EXPECT_GT(rounded, 0);
 }
@@ -82,7 +82,7 @@ TEST(Fallbacks, AGuessThatIsNotFiniteIsCounted) {
   s.steps(2);
   s.state.warmstart.a[3] = std::numeric_limits<double>::quiet_NaN();
   ASSERT_EQ(s.step(), SolveStatus::converged);
-  EXPECT_EQ(s.data->stats.refusedGuesses, 1);
+  EXPECT_EQ(s.data->stats.invalidWarmStarts, 1);
   ASSERT_EQ(s.step(), SolveStatus::converged);
   expectNone(s.data->stats);
 }
@@ -101,7 +101,7 @@ TEST(Fallbacks, PartsThatAreTakenInSpiteOfTheirEstimateAreCounted) {
     int jumps = 0, rejections = 0;
     for (int i = 0; i < 20; ++i) {
       ASSERT_FALSE(isRefused(s.step()));
-      jumps += s.data->stats.jumps;
+      jumps += s.data->stats.minimumStepsAccepted;
       rejections += s.data->stats.rejections;
     }
     EXPECT_GT(jumps, 0) << doubling;
@@ -124,7 +124,7 @@ TEST(Fallbacks, SweepsThatDoNotCloseAreCounted) {
     s.state.v[0] = speed;
     for (int i = 0; i < 150; ++i) {
       ASSERT_FALSE(isRefused(s.step()));
-      jumps += s.data->stats.jumps;
+      jumps += s.data->stats.minimumStepsAccepted;
     }
   }
   EXPECT_GE(jumps, 2);
@@ -145,8 +145,8 @@ TEST(Fallbacks, AFrictionThatIsKeptSoftIsCounted) {
     s.stages();
     if (s.forward() != SolveStatus::converged) continue;
     const bool same = (s.data->forward.a - soft).norm() <= 1e-12 * soft.norm();
-    EXPECT_EQ(s.data->stats.keptSlips, same ? 1 : 0) << "seed " << seed;
-    kept += s.data->stats.keptSlips;
+    EXPECT_EQ(s.data->stats.noSlipFallbacks, same ? 1 : 0) << "seed " << seed;
+    kept += s.data->stats.noSlipFallbacks;
   }
   EXPECT_GT(kept, 0);
 }

@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "collision/scene_contacts.hpp"
-#include "engine/engine.hpp"
-#include "engine/step/step_parts.hpp"
+#include "softgauss/collision/scene_contacts.hpp"
+#include "softgauss/engine/engine.hpp"
+#include "softgauss/engine/step/substep_workspace.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/sample_models.hpp"
 #include "tests/support/scene.hpp"
@@ -72,7 +72,7 @@ TEST(Leapfrog, MovesAsWasSolved) {
     options.springs = true;
     Model model = randomForest(static_cast<std::uint64_t>(seed), options).build();
     model.options.integrator = Integrator::leapfrog;
-    model.options.partAngle = kInfinity;
+    model.options.substepAngle = kInfinity;
     Random random(static_cast<std::uint64_t>(seed));
     State state = randomState(model, random, 2.0);
     Data data(model);
@@ -96,20 +96,20 @@ TEST(Leapfrog, DividesWhatTurnsFar) {
   Data data(model);
   step(model, {}, state, data, nullptr);
   EXPECT_EQ(data.stats.parts, 1);
-  EXPECT_EQ(data.stats.followedTrees, 0);
+  EXPECT_EQ(data.stats.substeppedTrees, 0);
   EXPECT_EQ(data.stats.repeats, 1);  // the first: its acceleration is not known
 
   state.v << 10.0, -20.0, 30.0;
   step(model, {}, state, data, nullptr);
   step(model, {}, state, data, nullptr);
   EXPECT_EQ(data.stats.parts, 1);
-  EXPECT_EQ(data.stats.followedTrees, 1);
+  EXPECT_EQ(data.stats.substeppedTrees, 1);
 
   Input driven;
   driven.tau = VectorX::Constant(model.nv, 5.0);
   step(model, driven, state, data, nullptr);
   EXPECT_GT(data.stats.parts, 5);
-  EXPECT_EQ(data.stats.followedTrees, 0);
+  EXPECT_EQ(data.stats.substeppedTrees, 0);
   EXPECT_NEAR(state.time, 0.04, 1e-15);
 }
 
@@ -151,7 +151,8 @@ State turning(const Model& model, double rate) {
   return state;
 }
 
-// However far the body turns in a step, the tie gives it no energy, and keeps hold of it.
+// However far the body turns in a step, the equality constraint gives it no energy, and keeps hold
+// of it.
 TEST(Leapfrog, ATieGivesNoEnergyHoweverFarTheBodyTurns) {
   for (const double h : {0.002, 0.01})
     for (const double turn : {0.1, 0.5, 1.5, 4.0}) {
@@ -165,11 +166,11 @@ TEST(Leapfrog, ATieGivesNoEnergyHoweverFarTheBodyTurns) {
         parts = std::max(parts, data.stats.parts);
         ASSERT_LE(energyAt(model, state), begun * (1.0 + 1e-6)) << h << ", " << turn << ", " << i;
       }
-      EXPECT_GE(parts, 4.0 * 0.9 * turn / model.options.partAngle) << turn;
+      EXPECT_GE(parts, 4.0 * 0.9 * turn / model.options.substepAngle) << turn;
     }
 }
 
-// Slow or fast, the tie takes as much as in short steps.
+// Slow or fast, the equality constraint takes as much as in short steps.
 TEST(Leapfrog, ATieTakesWhatItShould) {
   constexpr int kShorter = 16;
   for (const double h : {0.002, 0.01})
@@ -189,8 +190,8 @@ TEST(Leapfrog, ATieTakesWhatItShould) {
 }
 
 // Two cubes that are tied in the face that they share turn about their common centre of mass. What
-// the tie holds at the step's end is where the bodies are then, so that nothing is gained: r and J̇
-// v of mid-step alone would gain (h ω)²/16.
+// the equality constraint holds at the step's end is where the bodies are then, so that nothing is
+// gained: r and J̇ v of mid-step alone would gain (h ω)²/16.
 TEST(Leapfrog, WhatSpinsTogetherGainsNothing) {
   for (const double h : {0.002, 0.01})
     for (const double turn : {0.01, 0.08, 0.4}) {
@@ -219,8 +220,9 @@ TEST(Leapfrog, WhatSpinsTogetherGainsNothing) {
 }
 
 // A part that comes to turn farther than it was made for has the step begin again in shorter ones:
-// an arm that a tie pulls from a metre beyond its reach is never faster than the tie takes its end
-// home, 1.15 m in a time constant of 0.02 s, at a lever of a link.
+// an arm that an equality constraint pulls from a metre beyond its reach is never faster than the
+// equality constraint takes its end home, 1.15 m in a time constant of 0.02 s, at a lever of a
+// link.
 TEST(Leapfrog, BeginsAgainInShorterParts) {
   ModelBuilder builder = links(3, 0.01);
   ConnectSpec tie;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 /// What no element calls for is neither called nor given memory, and what is idle makes no rows.
 
-#include "engine/model/plan.hpp"
+#include "softgauss/engine/model/plan.hpp"
 
 #include <gtest/gtest.h>
 
 #include <functional>
 
-#include "collision/scene_contacts.hpp"
+#include "softgauss/collision/scene_contacts.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/scene.hpp"
 

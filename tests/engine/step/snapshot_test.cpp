@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// What a viewer is told is what acted: forces against momentum, velocities against poses.
 
-#include "engine/step/snapshot.hpp"
+#include "softgauss/engine/step/snapshot.hpp"
 
 #include "tests/support/matchers.hpp"
 #include "tests/support/scene.hpp"

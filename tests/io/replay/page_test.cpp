@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 /// The payload of a page is the run; the page is the template with the payload.
 
-#include "io/replay/page.hpp"
+#include "softgauss/io/replay/page.hpp"
 
-#include "engine/core/check.hpp"
-#include "io/detail/text.hpp"
+#include "softgauss/engine/core/check.hpp"
+#include "softgauss/io/detail/text.hpp"
 #include "tests/io/replay/payload_reader.hpp"
 #include "tests/io/replay/recorded_run.hpp"
 #include "tests/io/temp_folder.hpp"

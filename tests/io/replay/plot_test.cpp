@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/replay/plot.hpp"
+#include "softgauss/io/replay/plot.hpp"
 
 #include <cstdio>
 #include <sstream>
 
-#include "engine/core/check.hpp"
-#include "io/detail/text.hpp"
+#include "softgauss/engine/core/check.hpp"
+#include "softgauss/io/detail/text.hpp"
 #include "tests/io/replay/recorded_run.hpp"
 #include "tests/io/temp_folder.hpp"
 

@@ -3,8 +3,8 @@
 
 /// A run recorded as simulate_gdd does it.
 
-#include "gdd/gdd.hpp"
-#include "io/replay/page.hpp"
+#include "softgauss/gdd/gdd.hpp"
+#include "softgauss/io/replay/page.hpp"
 #include "tests/support/scene.hpp"
 
 namespace softgauss::test {

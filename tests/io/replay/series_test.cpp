@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/replay/series.hpp"
+#include "softgauss/io/replay/series.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// How far a tree turns in a step, by the two parts of (6.4).
+
+#include "softgauss/engine/step/data.hpp"
+
+namespace softgauss {
+
+/// A tree whose energy nothing but weight and springs changes much: of several bodies, not tied,
+/// not driven, and with no damping that stops a joint within the step. The second part of (6.4) is
+/// of such trees.
+bool isPassive(const Tree& tree, bool tied, const Data& data, const VectorX& v, const VectorX& a,
+               double h);
+
+/// The first part of (6.4), without the factor h; `change` = M⁻¹Δb (nv). Of joints that turn and
+/// of those that slide, what changes by less than rounding of the tree's motion tells nothing: a
+/// ball that does not spin is at 0/0.
+double coriolisChangeRate(const Model& model, const Tree& tree, const Data& data, const VectorX& v,
+                          const VectorX& a, const VectorX& change);
+/// What Δb does to the energy of motion, against what there is: the second part of (6.4), without
+/// the factor h. Both arguments are squares.
+double energyRate(double change, double motion);
+
+/// Damping stops a joint of the tree within the step: no sub-steps follow that.
+bool dampingStops(const Tree& tree, const Data& data, double h);
+/// √(2 × kinetic energy) of a tree by its largest part: max_i (|v_i| + h |a_i|) √M_ii.
+double treeSpeed(const Tree& tree, const Data& data, const VectorX& v, const VectorX& a, double h);
+/// Applied forces change the tree's motion by more than a thousandth in the step.
+bool drives(const Tree& tree, const Data& data, const VectorX& v, const VectorX& a, double h);
+/// A body turns by more than 0.003 rad in the step, or a joint does by the velocity v + h a that it
+/// ends with, or slides with as much energy, v_i √M_ii, as the joint of its tree that turns most
+/// easily would have so. Below that (6.4) need not be worked out.
+bool mayRotateFar(const Model& model, const Data& data, const VectorX& v, const VectorX& a);
+
+}  // namespace softgauss

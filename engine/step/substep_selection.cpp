@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "softgauss/engine/step/substep_selection.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "softgauss/engine/constraints/contact_rotation.hpp"
+#include "softgauss/engine/core/memory.hpp"
+#include "softgauss/engine/step/forward.hpp"
+#include "softgauss/engine/step/integrators/tree_rotation.hpp"
+
+namespace softgauss {
+
+const double SubstepSelection::kTreeSubstepThreshold = 1e-4;
+
+namespace {
+
+double contactRate(const Model& model, const Data& data) {
+  double rate = 0.0;
+  for (const Contact& c : data.contacts.contacts)
+    rate = std::max(rate, contactRotationRate(model, data.kinematics, c));
+  return rate;
+}
+
+/// Of the direction (1, −p′) in which a coupling holds its two joints.
+double couplingRate(const Model& model, const State& state, const JointCoupling& c) {
+  if (c.leader == 0) return 0.0;
+  const Body& leader = model.bodies[c.leader];
+  const double q = state.q[leader.q], slope = c.slope(q);
+  return std::abs(c.curvature(q) * state.v[leader.v]) / (1.0 + slope * slope);
+}
+
+double tieRate(const Model& model, const State& state, const Data& data) {
+  double fastest = 0.0;
+  const auto add = [&](int body) {
+    fastest = std::max(fastest, data.kinematics.midstepVelocities()[body].angular.norm());
+  };
+  for (const Connection& c : model.connections) add(c.bodyA), add(c.bodyB);
+  for (const Weld& w : model.welds) add(w.bodyA), add(w.bodyB);
+  for (const JointCoupling& c : model.couplings)
+    fastest = std::max(fastest, couplingRate(model, state, c));
+  return 4.0 * fastest;
+}
+
+}  // namespace
+
+SubstepSelection::SubstepSelection(const Model& model)
+    : coriolisChange(model.trees.size(), 0.0),
+      free(model.trees.size(), 0),
+      hasEquality_(model.trees.size(), 0),
+      touched_(model.trees.size(), 0),
+      change_(VectorX::Zero(model.nv)),
+      velocity_(change_),
+      bias_(change_),
+      alone_(change_),
+      Mx_(change_) {
+  const auto tie = [&](int body) {
+    if (model.bodies[body].tree >= 0) hasEquality_[model.bodies[body].tree] = 1;
+  };
+  for (const Connection& c : model.connections) tie(c.bodyA), tie(c.bodyB);
+  for (const Weld& w : model.welds) tie(w.bodyA), tie(w.bodyB);
+}
+
+std::size_t SubstepSelection::bytes() const {
+  return bytesOfAll(coriolisChange, free, hasEquality_, touched_, change_, velocity_, bias_, alone_,
+                    Mx_);
+}
+
+void SubstepSelection::findTouched(const Model& model, const Data& data) {
+  touched_ = hasEquality_;
+  for (const Contact& c : data.contacts.contacts)
+    for (const int body : {c.bodyA, c.bodyB})
+      if (model.bodies[body].tree >= 0) touched_[model.bodies[body].tree] = 1;
+  velocity_.setZero();
+  data.constraints.visitAllButContacts([&](const auto& c) {
+    // Weights that differ, lest two rows of a joint cancel.
+    for (int i = 0; i < c.rowCount(); ++i) c.addRow(i, 1.0 + i, velocity_);
+  });
+  for (std::size_t t = 0; t < model.trees.size(); ++t) {
+    const Tree& tree = model.trees[t];
+    const auto rows = velocity_.segment(tree.firstDof, tree.dofEnd - tree.firstDof);
+    if ((rows.array() != 0.0).any()) touched_[t] = 1;
+  }
+}
+
+/// How far tree t turns in a step by Δb, `change_` being M⁻¹Δb and `a` the acceleration that made
+/// it: (6.4).
+double SubstepSelection::coriolisChangeBy(const Model& model, int t, const State& state,
+                                          const VectorX& a, const Data& data) {
+  const double h = model.options.timestep;
+  const Tree& tree = model.trees[t];
+  const double turned = h * coriolisChangeRate(model, tree, data, state.v, a, change_);
+  if (!isPassive(tree, hasEquality_[t], data, state.v, state.a, h)) return turned;
+  const auto square = [&](const VectorX& x) {
+    data.inertia.M.multiply(x, Mx_);
+    const int first = tree.firstDof, dofs = tree.dofEnd - first;
+    return x.segment(first, dofs).dot(Mx_.segment(first, dofs));
+  };
+  const double moving = square(state.v) + h * h * square(a);
+  return std::max(turned, h * energyRate(square(change_), moving));
+}
+
+/// turn of every tree, of Δb = b(q, v′) − b(q, v) with v′ the velocity of turning.
+void SubstepSelection::findCoriolisChanges(const Model& model, const State& state, Data& data) {
+  computeBiasAt(model, data.kinematics, data.inertia, state.v, data.forces.work, bias_);
+  ++data.forces.calls.coriolis;
+  change_ = data.forces.bias - bias_;
+  if (!solveMass(data, nullptr, change_)) return;  // the solve will say so
+  for (int t = 0; t < static_cast<int>(model.trees.size()); ++t)
+    coriolisChange[t] = coriolisChangeBy(model, t, state, state.a, data);
+}
+
+/// change_ ← M⁻¹Δb of v″ = v′ + ½ h alone_, alone_ = −M⁻¹c with the Coriolis forces c(q, v′).
+bool SubstepSelection::findAlone(const Model& model, Data& data) {
+  const auto bias = [&](const VectorX& v, VectorX& b) {
+    computeBiasAt(model, data.kinematics, data.inertia, v, data.forces.work, b);
+    ++data.forces.calls.coriolis;
+  };
+  alone_.setZero();
+  bias(alone_, change_);
+  alone_ = change_ - data.forces.bias;
+  if (!solveMass(data, nullptr, alone_)) return false;
+  Mx_ = data.midstepVelocity + 0.5 * model.options.timestep * alone_;
+  bias(Mx_, change_);
+  change_ -= data.forces.bias;
+  return solveMass(data, nullptr, change_);
+}
+
+/// A control acts on the tree, or applied forces that change its motion by more than a thousandth.
+bool SubstepSelection::driven(const Model& model, const Data& data, const State& state, int t,
+                              bool controlled) const {
+  const Tree& tree = model.trees[t];
+  if (controlled)
+    for (int i = tree.firstDof; i < tree.dofEnd; ++i)
+      if (model.dofs[i].actuated) return true;
+  return drives(tree, data, state.v, state.a, model.options.timestep);
+}
+
+void SubstepSelection::find(const Model& model, const State& state, bool controlled, Data& data) {
+  parts = 1;
+  anyFree = false;
+  std::fill(free.begin(), free.end(), 0);
+  std::fill(coriolisChange.begin(), coriolisChange.end(), 0.0);
+  if (!data.plan.coriolis || model.options.substepAngle == kInfinity ||
+      !mayRotateFar(model, data, state.v, state.a))
+    return;
+  const double h = model.options.timestep;
+  if (state.hasAcceleration) findCoriolisChanges(model, state, data);
+  double rate = std::max(contactRate(model, data), tieRate(model, state, data));
+  const auto rateOf = [&](std::size_t t) { return 4.0 * std::sqrt(2.0 * coriolisChange[t]) / h; };
+  bool touchedKnown = false, alone = false;
+  for (std::size_t t = 0; t < model.trees.size(); ++t) {
+    if (!(coriolisChange[t] > kTreeSubstepThreshold)) continue;
+    if (!touchedKnown) findTouched(model, data), touchedKnown = true;
+    const int tree = static_cast<int>(t);
+    double ofTree = rateOf(t);
+    const bool mayFollow = model.options.uses(Mechanism::treeSubstepping) && !touched_[t] &&
+                           !dampingStops(model.trees[t], data, h);
+    const bool tooMany = !(h * ofTree <= kMaxDivisions * model.options.substepAngle);
+    if (mayFollow && (tooMany || !driven(model, data, state, tree, controlled))) {
+      free[t] = 1, anyFree = true;
+      continue;
+    }
+    if (h * ofTree > model.options.substepAngle) {
+      if (!alone) alone = findAlone(model, data);
+      if (alone)
+        coriolisChange[t] =
+            std::min(coriolisChange[t], coriolisChangeBy(model, tree, state, state.a, data));
+      ofTree = rateOf(t);
+    }
+    rate = std::max(rate, ofTree);
+  }
+  if (!model.options.uses(Mechanism::substepping)) return;
+  const double needed = std::ceil(h * rate / model.options.substepAngle - 1e-9);
+  parts = needed < kMaxDivisions ? std::max(1, static_cast<int>(needed)) : kMaxDivisions;
+}
+
+}  // namespace softgauss

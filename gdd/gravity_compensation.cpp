@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "softgauss/gdd/gravity_compensation.hpp"
+
+namespace softgauss::gdd {
+
+/// force ← c(q, 0).
+void GravityCompensation::setStatics(const Model& model, const State& state, const Data& data) {
+  const SmoothForces& smooth = data.forces;
+  force_ = smooth.c - smooth.bias;
+  if (data.plan.hasDamping()) force_ -= data.plan.damping.cwiseProduct(state.v);
+  if (!data.plan.gravity) return;
+  const Motion up{Vector3::Zero(), -model.options.gravity};
+  for (int i = 0; i < model.nv; ++i)
+    force_[i] += dot(data.kinematics.S[i], data.inertia.composite[model.dofs[i].body] * up);
+}
+
+/// Whether there is a z.
+bool GravityCompensation::findFree(const Model& model, const ControlLimits& limits) {
+  free_.resize(static_cast<std::size_t>(force_.size()));
+  bool any = false;
+  for (int i = 0; i < force_.size(); ++i) {
+    const bool pulled = limits.transmission && limits.transmission->pulls(i);
+    free_[i] = !pulled && (!model.dofs[i].actuated || limits.lower[i] == limits.upper[i]);
+    any |= free_[i] != 0;
+  }
+  return any;
+}
+
+/// x ← the free fall of what floats, joints at rest.
+void GravityCompensation::setFall(const Model& model, const Data& data) {
+  x_.setZero(force_.size());
+  if (!data.plan.gravity) return;
+  for (const Body& body : model.bodies) {
+    if (body.joint != JointKind::floating) continue;
+    for (int i = body.v; i < body.v + 3; ++i)
+      if (free_[i]) x_[i] = data.kinematics.S[i].linear.dot(model.options.gravity);
+  }
+}
+
+/// force ← force + P x, x the acceleration of z.
+void GravityCompensation::stand(const Model& model, const ControlLimits& limits, Data& data) {
+  constexpr double kStiffer = 1e4;  // κ: rows at rest have carried the weight that this leaves over
+  Constraints& rows = data.constraints;
+  P_.resize(rows.sparsity());
+  P_.setZero();
+  if (rows.rowCount() > 0) {
+    bool changed = false;
+    setFall(model, data);
+    rows.setResidual(x_);
+    rows.evaluate(changed);
+    rows.addCurvature(P_);
+    P_.add(P_, kStiffer - 1.0);
+  }
+  P_.add(data.inertia.hat());
+
+  masked_.resize(rows.sparsity());
+  masked_.assign(P_);
+  for (int i = 0; i < masked_.size(); ++i) {
+    double* row = masked_.row(i);
+    for (const Segment* s = rows.sparsity().begin(i); s != rows.sparsity().end(i); ++s)
+      for (int j = s->begin; j < s->end; ++j)
+        if (!free_[i] || !free_[j]) row[j] = i == j ? 1.0 : 0.0;
+  }
+  x_.setZero(force_.size());
+  for (int i = 0; i < x_.size(); ++i)
+    if (free_[i]) x_[i] = (limits.lower[i] == limits.upper[i] ? limits.lower[i] : 0.0) - force_[i];
+  if (!factor_.compute(masked_)) return;  // not finite: the solver will say so
+  factor_.solve(x_);
+  Px_.resize(x_.size());
+  P_.multiply(x_, Px_);
+  force_ += Px_;
+}
+
+const VectorX& GravityCompensation::compute(const Model& model, const State& state,
+                                            const ControlLimits& limits, Data& data) {
+  setStatics(model, state, data);
+  if (findFree(model, limits)) stand(model, limits, data);
+  return force_;
+}
+
+}  // namespace softgauss::gdd
