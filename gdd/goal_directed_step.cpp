@@ -6,7 +6,7 @@
 namespace softgauss::gdd {
 
 GoalDirectedController::GoalDirectedController(const Model& model)
-    : box(model),
+    : limits(model),
       augmentedLagrangian(model),
       activeSet(model),
       expansion(model),

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-#include "apps/simulate_batch/goal_errors.hpp"
+#include "apps/simulate_batch/figures.hpp"
 #include "softgauss/engine/dynamics/energy.hpp"
 
 namespace softgauss::app {

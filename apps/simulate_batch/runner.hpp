@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/simulate_batch/goal_errors.hpp"
+#include "apps/simulate_batch/figures.hpp"
 #include "apps/simulate_batch/run_table.hpp"
 #include "apps/simulate_batch/sweep.hpp"
 

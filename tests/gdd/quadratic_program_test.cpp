@@ -130,10 +130,10 @@ TEST(QuadraticProgram, PromiseIsThatOfTheGradientLeft) {
     ASSERT_TRUE(solver.minimize(program.q, program.lower, program.upper, program.N,
                                 program.distance, rows));
     const VectorX slope = program.K * solver.solution() + program.q;
-    EXPECT_SMALL(solver.promise(slope), 1e-18);
+    EXPECT_SMALL(solver.predictedDecrease(slope), 1e-18);
     const VectorX rho = random.vector(n, 1.0);
     const double expected = 0.5 * rho.dot(program.K.llt().solve(rho));
-    EXPECT_SMALL(solver.promise(slope + rho) / expected - 1.0, 1e-7);
+    EXPECT_SMALL(solver.predictedDecrease(slope + rho) / expected - 1.0, 1e-7);
   }
 }
 
