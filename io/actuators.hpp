@@ -2,7 +2,8 @@
 #pragma once
 
 /// Actuators that drive joints through gears and couplings, as scene files list them
-/// (docs/scenes.md): force on a joint = coefficient · u, summed over the actuators (T.64).
+/// (docs/reference/scenes.md): force on a joint = coefficient · u, summed over the actuators
+/// (T.64).
 
 #include <string>
 #include <utility>
