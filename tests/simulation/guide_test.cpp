@@ -3,9 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <memory>
+#include <thread>
 
 #include "engine/engine.hpp"
 #include "io/io.hpp"
@@ -95,6 +98,18 @@ TEST_F(Guide, OptionsGoalsControlAndRollouts) {
   const softgauss::ControlSolution answer = arm.solve();
   if (!softgauss::isRefused(answer.status)) send(answer.tau);  // (nv) [N m or N]
   EXPECT_EQ(sent.size(), arm.model().nv);
+
+  const auto measure = [](VectorX&, VectorX&) {};  // the model is the robot
+  auto next = std::chrono::steady_clock::now();
+  for (int cycle = 0; cycle < 100; ++cycle) {
+    measure(arm.state().q, arm.state().v);  // your sensors
+    softgauss::VectorX torques = softgauss::VectorX::Zero(arm.model().nv);
+    if (!softgauss::isRefused(arm.step())) torques = arm.controller().control;
+    send(torques);  // your motors
+    next += std::chrono::milliseconds(1);
+    std::this_thread::sleep_until(next);
+  }
+  EXPECT_GT(sent.norm(), 0.0) << "gravity is held";
 
   softgauss::Rollout rollout(arm.scene(), options);
   const std::vector<double> frictions = {0.3, 0.6, 1.0};
