@@ -151,7 +151,7 @@ std::string softnessText(const Model& model, const ExplainContext& context) {
     out +=
         "  With the exact diagonal, softness by an impedance follows the configuration;\n"
         "  these figures are those of the constant inverse weights.\n";
-  return fmt::format("softness of contacts, {} (docs/softness.md)\n",
+  return fmt::format("softness of contacts, {} (docs/guide/contact.md)\n",
                      model.options.cone == Cone::elliptic ? "elliptic cones" : "pyramidal cones") +
          out;
 }

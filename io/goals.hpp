@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// Reads goals from YAML files; the schema, with an example of every kind, is docs/goals.md.
+/// Reads goals from YAML files; the schema, with an example of every kind, is
+/// docs/reference/goals.md.
 ///
 /// Strict: a key that is unknown or written twice, a value of another type or count than expected,
 /// a number that is not finite, beyond 10¹² or out of range, a link or joint that the model lacks

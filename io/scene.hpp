@@ -2,7 +2,7 @@
 #pragma once
 
 /// Reads scene files: robots and objects, where they stand, what they are made of, how they start.
-/// The schema, with examples, is docs/scenes.md.
+/// The schema, with examples, is docs/reference/scenes.md.
 ///
 /// Strict, as goals are: an unknown key, a value of another type than expected, a number out of
 /// range, a file or name that does not exist end in a ModelError `file:line: robot 2 'left': key

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// External wrenches that act for some time, as scene files list them (docs/scenes.md).
+/// External wrenches that act for some time, as scene files list them (docs/reference/scenes.md).
 ///
 /// A force f and a moment m, both in world axes, act at a point P that moves with its link. About
 /// the origin of the body B that this is

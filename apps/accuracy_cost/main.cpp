@@ -127,10 +127,11 @@ int main(int argc, char** argv) {
   Arguments arguments;
   CLI::App app("What accuracy costs in time: error against CPU time per simulated second.");
   app.set_version_flag("--version", SOFTGAUSS_VERSION);
-  CLI::Option* const own = app.add_option(
-      "MODEL", arguments.own.file,
-      "a .urdf file or a .yaml scene (docs/scenes.md): it is the problem, passive, in the place\n"
-      "of the built-in ones; begins anew where it was interrupted");
+  CLI::Option* const own =
+      app.add_option("MODEL", arguments.own.file,
+                     "a .urdf file or a .yaml scene (docs/reference/scenes.md): it is the problem, "
+                     "passive, in the place\n"
+                     "of the built-in ones; begins anew where it was interrupted");
   std::string base;
   app.add_option("--base", base,
                  "of a URDF: fixed or floating; default: floating, or fixed when the root link is "

@@ -63,7 +63,8 @@ void addOptions(CLI::App& parser, BenchmarkOptions& options) {
       ->needs(states);
   parser
       .add_option("--kink", options.kink,
-                  "draw the sharpest kink of the run to this .svg file with gnuplot (docs/gdd.md) "
+                  "draw the sharpest kink of the run to this .svg file with gnuplot "
+                  "(docs/benchmarks/gdd_evidence.md) "
                   "and replay nothing; of one model and one weight")
       ->excludes("--json");
   parser.add_option("--robots", options.robots, "folder of humanoid.urdf and hand.urdf")

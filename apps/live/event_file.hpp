@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// Events in a file: what --record writes and --play runs again (docs/live.md).
+/// Events in a file: what --record writes and --play runs again (docs/reference/live.md).
 
 #include <filesystem>
 #include <vector>

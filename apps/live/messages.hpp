@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// What pages and the run say to each other, docs/live.md: events as JSON from the page, frames in
-/// binary and answers and the state of affairs as JSON to it.
+/// What pages and the run say to each other, docs/reference/live.md: events as JSON from the page,
+/// frames in binary and answers and the state of affairs as JSON to it.
 
 #include <string>
 #include <variant>
@@ -35,7 +35,7 @@ std::variant<Asked, Refused> readMessage(const std::string& text, const Names& n
 /// `{"re": 7, "done": true}`, or with the reason in "refused".
 std::string answer(long id, const std::string& refused);
 
-/// One instant, as docs/live.md has it. `frames` holds that one.
+/// One instant, as docs/reference/live.md has it. `frames` holds that one.
 std::string frameMessage(const io::FrameTrack& frames, long steps, bool paused);
 
 }  // namespace softgauss::live

@@ -14,7 +14,7 @@ std::optional<BatchOptions> parseBatchCommandLine(int argc, char** argv) {
       "on\n"
       "all cores, or on many machines under mpirun. The results are the same bits either way.");
   app.set_version_flag("--version", std::string("softgauss ") + SOFTGAUSS_VERSION);
-  app.add_option("SWEEP", options.sweep, "a .yaml sweep, see docs/batch.md")->required();
+  app.add_option("SWEEP", options.sweep, "a .yaml sweep, see docs/reference/batch.md")->required();
   app.add_option("--threads", options.threads,
                  "threads of each process; default: as many as the machine has, 1 under mpirun")
       ->check(CLI::Range(1, 4096));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// simulate_batch: many runs of a scene. Options and exit codes: simulate_batch --help and
-/// docs/batch.md.
+/// docs/reference/batch.md.
 
 #include <fmt/format.h>
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// A sweep file: a scene or URDF, and what differs from run to run. The schema is docs/batch.md.
+/// A sweep file: a scene or URDF, and what differs from run to run. The schema is
+/// docs/reference/batch.md.
 
 #include <cstdint>
 #include <filesystem>

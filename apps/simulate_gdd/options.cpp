@@ -52,9 +52,10 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
     options.commandLine +=
         i == 0 ? std::filesystem::path(argv[0]).filename().string() : fmt::format(" {}", argv[i]);
 
-  app.add_option("MODEL", options.model,
-                 "a .urdf file, or a .yaml scene (docs/scenes.md); - reads either from standard "
-                 "input")
+  app.add_option(
+         "MODEL", options.model,
+         "a .urdf file, or a .yaml scene (docs/reference/scenes.md); - reads either from standard "
+         "input")
       ->required();
   const char* const scene = "Scene";
   app.add_option("--base", base,
@@ -126,7 +127,7 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
              "all joints and the base seek the initial posture; --posture=WEIGHT [-], default "
              "1000")
           ->group(goals);
-  app.add_option("--goals", options.goals, "a .yaml file of goals, see docs/goals.md")
+  app.add_option("--goals", options.goals, "a .yaml file of goals, see docs/reference/goals.md")
       ->group(goals);
   app.add_option("--torques", options.torques,
                  "a .csv file of controls (columns time_s, u:<joint>) instead of goals")

@@ -4,7 +4,7 @@
 /// The kinds of goal that a file may hold: for each its keys and what reads them.
 ///
 /// To add a kind: write its function in one of the goal_*.cpp, name it and its keys in
-/// goal_kinds.cpp, and show it in docs/goals.md.
+/// goal_kinds.cpp, and show it in docs/reference/goals.md.
 
 #include <array>
 #include <memory>

@@ -4,7 +4,7 @@
 /// The replay page: one HTML file that shows a run in any browser, offline.
 ///
 /// A template made from io/replay/page/ with the run put in: a JSON header and typed arrays,
-/// compressed by zlib, in base64. The layout is that of docs/replay.md.
+/// compressed by zlib, in base64. The layout is that of docs/reference/replay.md.
 
 #include <filesystem>
 #include <string>
@@ -18,7 +18,8 @@ namespace softgauss::io {
 std::string replayPayload(const Recording& recording, const std::string& generator);
 
 /// The page as a server gives it that shows a run as it goes: it begins with the recording's frames
-/// and may talk to that server. `live`: JSON, the header's member of that name (docs/live.md).
+/// and may talk to that server. `live`: JSON, the header's member of that name
+/// (docs/reference/live.md).
 std::string livePage(const Recording& recording, const std::string& generator,
                      const std::string& live);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Every example of docs/goals.md, run with the robot that the page names before it.
+/// Every example of docs/reference/goals.md, run with the robot that the page names before it.
 
 #include <algorithm>
 #include <sstream>
@@ -51,7 +51,7 @@ std::vector<Example> examplesOf(const std::string& page) {
 }
 
 std::vector<Example> examplesOfThePage() {
-  return examplesOf(readFile(std::string(SOFTGAUSS_SOURCE_DIR) + "/docs/goals.md"));
+  return examplesOf(readFile(std::string(SOFTGAUSS_SOURCE_DIR) + "/docs/reference/goals.md"));
 }
 
 TEST(GoalsPage, ExamplesAreFoundWithTheirRobots) {
@@ -79,7 +79,7 @@ TEST(GoalsPage, HasAnExampleOfEveryKind) {
 // Each runs to its end and reaches the places that its goals name; the humanoid still stands then.
 TEST(GoalsPage, ExamplesDoWhatThePageSays) {
   for (const Example& example : examplesOfThePage()) {
-    SCOPED_TRACE("docs/goals.md:" + std::to_string(example.line));
+    SCOPED_TRACE("docs/reference/goals.md:" + std::to_string(example.line));
     ASSERT_FALSE(example.arguments.empty()) << "names no robot";
     const io::TempFolder folder;
     const std::string log = folder.path() / "log.csv";

@@ -275,7 +275,8 @@ TYPED_TEST(Actuation, RootForcesVanishAsTheirPriceGrows) {
 }
 
 // The same on its feet: what the humanoid would take from the sky to keep its posture, and how
-// little of that is left as it gets dear. With SOFTGAUSS_TABLES it prints what docs/gdd.md shows.
+// little of that is left as it gets dear. With SOFTGAUSS_TABLES it prints what
+// docs/benchmarks/gdd_evidence.md shows.
 TYPED_TEST(Actuation, TheHumanoidsRootForcesVanishAsTheirPriceGrows) {
   // Both soles in the ground; at 0 those corners touch that rounding of their angles lowers.
   for (const double depth : {1e-4, 0.0}) {

@@ -129,7 +129,7 @@ TEST(HardGoals, APlaceOutOfReachIsPointedAt) {
     // controls go from one local minimum to another. Seen over a second: 0.2, 0.5 and 2.9 mm for
     // the three weights, with solver 1 0.04 mm. It is no motion of the arm: a thousandth of its
     // stretch. With the largest weight it is three; that bound was set after 2.9 mm had been seen,
-    // and follows from nothing (docs/stability_limits.md).
+    // and follows from nothing (docs/limits.md).
     double least = left, most = left;
     for (int i = 0; i < 500; ++i) {
       course.run(0.002);

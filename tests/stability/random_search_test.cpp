@@ -122,7 +122,7 @@ Found search(const Family& family, double timestep, int from, int to, bool tellA
   return found;
 }
 
-/// One line of docs/stability_limits.md; `figure` of a column.
+/// One line of docs/limits.md; `figure` of a column.
 template <class Figure>
 void printRow(const std::string& first, const std::string& second,
               const std::array<Found, kSearched.size()>& columns, Figure&& figure) {

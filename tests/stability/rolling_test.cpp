@@ -60,7 +60,7 @@ TEST_P(RollingWheel, OnlyLoses) {
     double ofShortSteps = 0.0;
     for (const double timestep : kRollingSteps) {
       const double spin = w.speed / w.R;
-      // What is tied and turns farther is not asked (docs/stability_limits.md).
+      // What is tied and turns farther is not asked (docs/limits.md).
       if (hub == Hub::tiedBall && spin * timestep > 0.09) continue;
       Trial t("wheel of " + std::to_string(w.R) + " m",
               with(wheelOnGround(w, hub), timestep, cone));
@@ -123,7 +123,7 @@ TEST(Rolling, TopsKeepTheirEnergy) {
 // ground: it runs along the rim as the coin falls, and the coin rolls on in a circle or round and
 // round. Where rows leave out J̇ v, it sinks in by 17 mm and gains a quarter of its energy. At 5 ms
 // it is free for its first step, lands, and is pushed out by the load of its turning
-// (docs/stability_limits.md).
+// (docs/limits.md).
 TEST(Rolling, CoinsThatTurnWhereTheyStandStayOnTop) {
   const double R = 0.05, thickness = 0.005;
   for (const Cone cone : kCones)

@@ -201,7 +201,7 @@ Shaken shaken(double torque, double timestep, Integrator integrator) {
 }
 
 // Either it goes on, or the step says that it cannot and leaves the state as it was. (Momentum is
-// not kept: docs/stability_limits.md.)
+// not kept: docs/limits.md.)
 TEST(Violent, ForcesWithoutMeasure) {
   int taken = 0, lost = 0;
   for (const double torque : {1e4, 1e6, 1e7})

@@ -19,6 +19,7 @@ const Names kLongFiles = {};
 
 const Names kFolders = {"engine", "gdd", "collision", "io", "apps", "tests", "data", "docs"};
 const Names kRootFiles = {"CMakeLists.txt",    "README.md",     "LICENSE",
+                          "CHANGELOG.md",      "CITATION.cff",  "CONTRIBUTING.md",
                           "CMakePresets.json", ".clang-format", ".clang-tidy",
                           ".gitignore",        ".ci",           "dev"};
 // Not part of the project: git's, the build's and the editor's own, and what .gitignore names.

@@ -205,8 +205,9 @@ double bounce(const Material& surface, double omega, double timestep, double pha
   return s.state.v[2];
 }
 
-// The recipe of docs/softness.md: the damping ratio of the wish, less what the step itself damps,
-// ¼ ω h. With fine steps it is exact; at 2 ms, where the contact lasts 30 steps, good to 0.025.
+// The recipe of docs/guide/contact.md: the damping ratio of the wish, less what the step itself
+// damps, ¼ ω h. With fine steps it is exact; at 2 ms, where the contact lasts 30 steps, good to
+// 0.025.
 TEST(Softness, BouncesByTheRecipe) {
   const double omega = 50.0;
   for (const Cone cone : kCones)

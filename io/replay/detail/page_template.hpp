@@ -5,7 +5,7 @@
 
 namespace softgauss::io::detail {
 
-/// The replay page with places for a title and a run (docs/replay.md).
+/// The replay page with places for a title and a run (docs/reference/replay.md).
 std::string_view pageTemplate();
 
 }  // namespace softgauss::io::detail

@@ -42,7 +42,7 @@ export function makeApi({
       const { connected, writes, status } = connection;
       return { connected, writes, status, steps: run.steps, paused: run.paused };
     },
-    /** Asks a live run for something, as docs/live.md has it; a promise. */
+    /** Asks a live run for something, as docs/reference/live.md has it; a promise. */
     ask: (what) => connection.ask(what),
     /** From the start of navigation to the first picture [ms]. */
     get firstFrameMs() {

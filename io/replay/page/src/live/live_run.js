@@ -15,7 +15,7 @@ export class LiveRun extends Run {
     this.typicalForce = this.live.weight;
   }
 
-  /** Takes a message of the server, in the layout of docs/live.md. False: it is none. */
+  /** Takes a message of the server, in the layout of docs/reference/live.md. False: it is none. */
   take(buffer) {
     const magic = new TextDecoder().decode(new Uint8Array(buffer, 0, 8));
     if (magic !== 'SGFRAME1') return false;

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// The pictures of docs/guide/recipes.md, from the pages that its commands have written; and the moving
+// picture of the README, an animated PNG of one of them.
+//
+//   node recipes.mjs FOLDER CHROMIUM PICTURES
+//
+// FOLDER holds the pages, recipe_….html, and playwright-core; pictures go to PICTURES.
+
+import { writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { animatedPng } from './animated_png.mjs';
+import { Browser } from './pages.mjs';
+
+const [folder, chromium, pictures] = process.argv.slice(2);
+const shots = [
+  { name: 'stand', time: 1 },
+  { name: 'reach', time: 2 },
+  { name: 'push', time: 4, view: { preset: 'side' } },
+  { name: 'pick', time: 3.7, view: { forces: false } },
+  { name: 'grip', time: 2, view: { forces: false } },
+  { name: 'steps', time: 3.88, view: { preset: 'front' } },
+  { name: 'balance', time: 0.75, view: { preset: 'side' } },
+];
+const MOVING = { name: 'reach', from: 0, to: 1.2, frames: 12, width: 360 };
+
+const browser = await Browser.launch(folder, chromium);
+
+async function view(name, settings = {}, width = 520) {
+  const page = await browser.open(`recipe_${name}`, { width, height: 460, scheme: 'light' });
+  await page.evaluate(
+    (more) => window.softgauss.setView({ links: false, plots: false, preset: 'home', ...more }),
+    settings,
+  );
+  const clip = await page.evaluate(() => {
+    document.querySelector('#toolbar').style.display = 'none';
+    const { x, y, width, height } = document.querySelector('canvas').getBoundingClientRect();
+    return { x, y, width, height };
+  });
+  const picture = async (time) => {
+    await page.evaluate((t) => window.softgauss.seek(t), time);
+    await page.waitForTimeout(300);
+    return page.screenshot({ clip, timeout: 600000 });
+  };
+  await picture(0);
+  await page.waitForTimeout(1000);
+  return { page, picture };
+}
+
+for (const { name, time, view: settings } of shots) {
+  const { page, picture } = await view(name, settings);
+  writeFileSync(join(pictures, `recipe_${name}.png`), await picture(time));
+  await page.context().close();
+}
+
+const { page, picture } = await view(MOVING.name, {}, MOVING.width);
+const frames = [];
+for (let i = 0; i < MOVING.frames; ++i)
+  frames.push(await picture(MOVING.from + ((MOVING.to - MOVING.from) * i) / (MOVING.frames - 1)));
+await page.context().close();
+const step = ((MOVING.to - MOVING.from) / (MOVING.frames - 1)) * 1000;
+writeFileSync(join(pictures, 'moving.png'), animatedPng(frames, step, 1500));
+
+await browser.close();
+if (browser.complaints.length) throw new Error(browser.complaints.join('\n'));
