@@ -10,7 +10,7 @@ namespace softgauss::test {
 GddScene::GddScene(Scene s)
     : scene(std::move(s)),
       cost(scene.model.nv),
-      box(scene.model),
+      limits(scene.model),
       solver(std::make_unique<gdd::AugmentedLagrangian>(scene.model)) {
   const int n = scene.model.nv;
   const ConvexProblem physics = denseProblem(data());

@@ -10,10 +10,10 @@
 #include <memory>
 #include <thread>
 
-#include "engine/engine.hpp"
-#include "io/io.hpp"
-#include "io/simulation/rollout.hpp"
-#include "io/simulation/simulation.hpp"
+#include "softgauss/engine/engine.hpp"
+#include "softgauss/io/io.hpp"
+#include "softgauss/io/simulation/rollout.hpp"
+#include "softgauss/io/simulation/simulation.hpp"
 #include "tests/simulation/data_file.hpp"
 
 namespace softgauss::test {
