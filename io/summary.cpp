@@ -187,6 +187,7 @@ std::string Summary::json() const {
   ordered_json ratioList = ordered_json::object();
   for (const ControlRatio& r : ratios) ratioList[r.name] = r.ratio;
   ordered_json summary = {
+      {"format", 1},
       {"version", version},
       {"origin", toJson(origin)},
       {"model",
