@@ -161,7 +161,9 @@ TEST(SummaryFile, HasTheKeysOfTheInterfaceAndNoOthers) {
   ASSERT_EQ(run.outcome.exitCode, 0) << run.outcome.err;
   const Json j = run.json();
   using Keys = std::set<std::string>;
-  EXPECT_EQ(keysOf(j), (Keys{"version",
+  EXPECT_EQ(keysOf(j), (Keys{"format",
+                             "version",
+                             "mechanisms",
                              "origin",
                              "verdict",
                              "bases",

@@ -62,7 +62,8 @@ TEST(Summary, OptionsAreThoseOfTheModel) {
 TEST(Summary, HasTheKeysOfTheInterfaceInOrder) {
   const ordered_json json = ordered_json::parse(sampleSummary(sampleModel()).json());
   using Keys = std::vector<std::string>;
-  EXPECT_EQ(keysOf(json), (Keys{"version",
+  EXPECT_EQ(keysOf(json), (Keys{"format",
+                                "version",
                                 "origin",
                                 "model",
                                 "options",
@@ -90,7 +91,8 @@ TEST(Summary, HasTheKeysOfTheInterfaceInOrder) {
                                 "max_penetration_m",
                                 "max_control_ratio",
                                 "control_ratios",
-                                "warnings"}));
+                                "warnings",
+                                "mechanisms"}));
   EXPECT_EQ(keysOf(json["model"]), (Keys{"name", "links", "dof", "actuated", "mass_kg"}));
   EXPECT_EQ(keysOf(json["options"]), (Keys{"timestep_s", "integrator", "step_doubling", "tolerance",
                                            "cone", "impedance_ratio", "exact_diagonal", "no_slip",
