@@ -38,12 +38,16 @@ TEST(Mechanisms, ActWhereASceneCallsForThem) {
   const auto hard = [](const std::string& name) {
     return dataFile("scenes/stability/" + name + ".yaml");
   };
-  const std::map<std::string, std::string> scenes = {
-      {"prediction", hard("top_on_tip")},     {"parts", hard("top_on_tip")},
-      {"tree_substepping", hard("tumbling")}, {"implicit_equalities", hard("rope")},
-      {"contact_damping_time", hard("coin")}, {"contact_bias_acceleration", hard("sphere")},
-      {"reference_clamp", bouncing},          {"supported_mass", hard("boxes_1000_on_1")},
-      {"sticking", hard("boxes_1000_on_1")},  {"geometric_stiffness", hard("rope")}};
+  const std::map<std::string, std::string> scenes = {{"midpoint_velocity", hard("top_on_tip")},
+                                                     {"substepping", hard("top_on_tip")},
+                                                     {"tree_substepping", hard("tumbling")},
+                                                     {"implicit_equalities", hard("rope")},
+                                                     {"contact_damping_time", hard("coin")},
+                                                     {"contact_bias_acceleration", hard("sphere")},
+                                                     {"reference_clamp", bouncing},
+                                                     {"supported_mass", hard("boxes_1000_on_1")},
+                                                     {"stiction", hard("boxes_1000_on_1")},
+                                                     {"geometric_stiffness", hard("rope")}};
   for (const MechanismName& mechanism : kMechanismNames) {
     const std::string name(mechanism.name);
     ASSERT_EQ(scenes.count(name), 1u) << name;

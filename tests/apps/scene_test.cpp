@@ -272,7 +272,7 @@ TEST(SceneRun, IslandsAreSolvedApartAndSleep) {
     EXPECT_NEAR(logs[0].number(last - 1, column), logs[1].number(last - 1, column), 1e-6) << column;
     EXPECT_NEAR(logs[0].number(last - 1, column), logs[2].number(last - 1, column), 1e-3) << column;
   }
-  EXPECT_NE(simulate({scene, "--explain"}).out.find("5 units"), std::string::npos);
+  EXPECT_NE(simulate({scene, "--explain"}).out.find("5 groups of trees"), std::string::npos);
   const Outcome refused = simulate({scene, "--islands", "apart", "--integrator", "runge-kutta-4"});
   EXPECT_EQ(refused.exitCode, 2);
   EXPECT_NE(refused.err.find("semi-implicit-euler"), std::string::npos) << refused.err;

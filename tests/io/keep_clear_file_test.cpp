@@ -109,7 +109,7 @@ TEST(KeepClearInFiles, BadOnesAreRefused) {
   EXPECT_EQ(errorOfItem("keep_clear: {link: far, from: pots, distance: 0.1}").substr(0, 25),
             "key 'from': found 'pots',");
   EXPECT_EQ(errorOfItem("keep_clear: {link: far, from: post, distance: 0.1}", false),
-            "key 'link': found where there is no source of shape distances");
+            "key 'link': found without a source of shape distances");
 }
 
 TEST(Explain, TellsHowFarLinksAreApart) {

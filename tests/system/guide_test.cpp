@@ -112,26 +112,26 @@ TEST(Glossary, KnowsTheSummary) {
 
 /// Words of headings that are plain English.
 const NameSet kPlainWords = {
-    "a",          "accuracy",   "an",         "and",     "ask",      "asked",      "at",
-    "balance",    "believe",    "between",    "body",    "bounce",   "but",        "c",
-    "can",        "choosing",   "code",       "comes",   "command",  "commands",   "configuration",
-    "controller", "cost",       "did",        "differ",  "do",       "does",       "down",
-    "drift",      "errors",     "examples",   "exit",    "explodes", "falls",      "fast",
-    "feet",       "file",       "finite",     "first",   "fixed",    "floating",   "for",
-    "four",       "from",       "goes",       "grip",    "guide",    "hand",       "how",
-    "hums",       "i",          "in",         "initial", "install",  "integrator", "is",
-    "it",         "joints",     "known",      "large",   "lies",     "line",       "link",
-    "looks",      "many",       "minutes",    "much",    "mujoco",   "my",         "never",
-    "next",       "no",         "non",        "not",     "of",       "on",         "once",
-    "or",         "over",       "overshoots", "own",     "parts",    "passes",     "pick",
-    "place",      "program",    "pushes",     "reach",   "reached",  "reaches",    "reading",
-    "refuses",    "repeat",     "rest",       "results", "run",      "runs",       "say",
-    "shakes",     "simulation", "sinks",      "slide",   "slow",     "slowly",     "small",
-    "solver",     "something",  "stand",      "state",   "summary",  "surfaces",   "swing",
-    "take",       "ten",        "that",       "the",     "through",  "time",       "to",
-    "too",        "try",        "two",        "under",   "uses",     "walk",       "wall",
-    "warnings",   "ways",       "what",       "when",    "where",    "which",      "without",
-    "wrong",      "your"};
+    "a",          "accuracy", "an",         "and",        "ask",      "asked",    "at",
+    "balance",    "believe",  "between",    "body",       "bounce",   "but",      "c",
+    "can",        "choosing", "code",       "comes",      "command",  "commands", "configuration",
+    "controller", "cost",     "did",        "differ",     "do",       "does",     "down",
+    "drift",      "errors",   "examples",   "exit",       "explodes", "falls",    "fast",
+    "feet",       "file",     "finite",     "first",      "fixed",    "floating", "for",
+    "more",       "four",     "from",       "goes",       "grip",     "guide",    "hand",
+    "how",        "hums",     "i",          "in",         "initial",  "install",  "integrator",
+    "is",         "it",       "joints",     "known",      "large",    "lies",     "line",
+    "link",       "looks",    "many",       "minutes",    "much",     "mujoco",   "my",
+    "never",      "next",     "no",         "non",        "not",      "of",       "on",
+    "once",       "or",       "over",       "overshoots", "own",      "parts",    "passes",
+    "pick",       "place",    "program",    "pushes",     "reach",    "reached",  "reaches",
+    "reading",    "refuses",  "repeat",     "rest",       "results",  "run",      "runs",
+    "say",        "shakes",   "simulation", "sinks",      "slide",    "slow",     "slowly",
+    "small",      "solver",   "something",  "stand",      "state",    "summary",  "surfaces",
+    "swing",      "take",     "ten",        "that",       "the",      "through",  "time",
+    "to",         "too",      "try",        "two",        "under",    "uses",     "walk",
+    "wall",       "warnings", "ways",       "what",       "when",     "where",    "which",
+    "without",    "wrong",    "your"};
 
 NameSet headingWords(const SourceFile& page) {
   static const std::regex heading("#+ (.*)");
