@@ -22,7 +22,8 @@ int main(int argc, char** argv) {
     sim.goals.posture();
     const softgauss::Vector3 start = sim.pose("right_hand").p;
     const softgauss::Vector3 target = start + softgauss::Vector3(0.15, 0.0, 0.2);
-    sim.goals.reach("right_hand", target);
+    // The posture holds the arm back: the reach gets the larger weight [kg].
+    sim.goals.reach("right_hand", target, softgauss::Vector3::Zero(), 1e4);
 
     while (sim.time() < 2.0) {
       sim.run(0.5);  // steps of sim.model().options.timestep; throws where one fails
