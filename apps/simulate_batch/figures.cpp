@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "apps/simulate_batch/figures.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "apps/simulate_batch/figures.hpp"
 #include "softgauss/engine/dynamics/energy.hpp"
 
 namespace softgauss::app {
