@@ -2,7 +2,7 @@
 #pragma once
 
 /// Actuators that drive joints through gears and couplings, as scene files list them
-/// (docs/scenes.md): force on a joint = coefficient · u, summed over the actuators (8.2).
+/// (docs/reference/scenes.md): force on a joint = coefficient · u, summed over the actuators (8.2).
 
 #include <string>
 #include <utility>

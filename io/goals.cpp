@@ -86,14 +86,19 @@ void GoalFile::giveTo(gdd::GoalDirectedController& controller) && {
 
 GoalFile readGoalFile(const std::filesystem::path& file, const Model& model, const State& initial,
                       const DistancesMaker& distances) {
-  SOFTGAUSS_ASSERT(initial.q.size() == model.nq);
   const std::string path = file.string();
-  const std::string text = detail::readInput(path, "a YAML file of goals");
-  const YamlValue root = detail::parseYaml(detail::inputName(path), text, "goals: [...]");
+  return parseGoals(detail::readInput(path, "a YAML file of goals"), detail::inputName(path), model,
+                    initial, distances);
+}
+
+GoalFile parseGoals(const std::string& text, const std::string& name, const Model& model,
+                    const State& initial, const DistancesMaker& distances) {
+  SOFTGAUSS_ASSERT(initial.q.size() == model.nq);
+  const YamlValue root = detail::parseYaml(name, text, "goals: [...]");
   if (root.kind != YamlValue::Kind::map)
-    throw ModelError({detail::inputName(path), root.line}, "file",
+    throw ModelError({name, root.line}, "file",
                      fmt::format("found {}, expected goals: [...]", root.described()));
-  const YamlMap top(detail::inputName(path), "", "", root);
+  const YamlMap top(name, "", "", root);
   // A scene file may hold goals too.
   const bool isScene = top.find("robots") || top.find("objects");
   top.expectOnly(isScene ? detail::kSceneKeys : std::vector<std::string>{"goals", "control_cost"});

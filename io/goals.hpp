@@ -37,6 +37,10 @@ using DistancesMaker = std::function<std::shared_ptr<ShapeDistances>(const Model
 GoalFile readGoalFile(const std::filesystem::path& file, const Model& model, const State& initial,
                       const DistancesMaker& distances = nullptr);
 
+/// The same from the text of such a file; messages call it `name`.
+GoalFile parseGoals(const std::string& text, const std::string& name, const Model& model,
+                    const State& initial, const DistancesMaker& distances = nullptr);
+
 /// The goals alone.
 std::vector<std::unique_ptr<gdd::Goal>> readGoals(const std::filesystem::path& file,
                                                   const Model& model, const State& initial,

@@ -15,7 +15,33 @@ void Drag::begin(const Model& model, const std::string& link, const Vector3& p_F
                  const Vector3& p_WTarget, double weight) {
   reach = gdd::Reach(model, link, p_WTarget, p_FP);
   reach.weight = weight;
+  line.reset();
   startTime = -kInfinity;
+}
+
+void Drag::followLine(const Vector3& p_W, double time, double duration) {
+  line = BegunLine{};
+  line->p_start = p_W;
+  line->p_target = reach.p_WTarget;
+  line->startTime = time;
+  line->duration = duration;
+}
+
+void Drag::moveTo(const Vector3& p_WTarget, double time) {
+  reach.p_WTarget = p_WTarget;
+  if (line) line->turnTo(p_WTarget, time);
+}
+
+/// As a reach does it along its line.
+void Drag::addCost(const gdd::GoalContext& context, gdd::GoalCost& cost) const {
+  if (!line) return reach.addCost(context, cost);
+  const Kinematics& k = context.data.kinematics;
+  const int body = context.model.frames[reach.frame].body;
+  const BegunLine::Point on = line->at(context.state.time);
+  const Vector3 p = reach.position(context), v = pointVelocity(context.model, k, body, p);
+  const Vector3 wished = on.a + reach.stiffness * (on.p - p) + reach.damping * (on.v - v);
+  cost.addPoint(context.model, k, context.data.inertia.sparsity, body, p, reach.weight,
+                wished - pointBiasAcceleration(context.model, k, body, p));
 }
 
 }  // namespace softgauss::live

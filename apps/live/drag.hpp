@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// A spatial goal that begins when somebody takes hold of a point, equation (11) of the paper by a
-/// virtual spring-damper, and ends when it is let go.
+/// A spatial goal that begins when somebody takes hold of a point, equation (11) of the paper, and
+/// ends when it is let go. The point comes by a virtual spring-damper, or along a minimum-jerk
+/// line, which goes on without a jump, from where it is, whenever the place moves.
 
+#include <optional>
+
+#include "apps/live/begun_line.hpp"
 #include "softgauss/gdd/goals/reach.hpp"
 
 namespace softgauss::live {
@@ -15,14 +19,16 @@ class Drag final : public gdd::Goal {
   /// From now on the point of the link seeks `p_WTarget`. The link exists.
   void begin(const Model& model, const std::string& link, const Vector3& p_FP,
              const Vector3& p_WTarget, double weight);
+  /// Lets it come along a line in `duration` [s] from p_W, at rest, at `time` [s].
+  void followLine(const Vector3& p_W, double time, double duration);
+  /// From `time` on [s] the point seeks another place.
+  void moveTo(const Vector3& p_WTarget, double time);
   void end() { startTime = kInfinity; }
   bool held() const { return startTime < kInfinity; }
 
   std::string name() const override { return name_; }
   bool steadyAt(double) const override { return false; }
-  void addCost(const gdd::GoalContext& context, gdd::GoalCost& cost) const override {
-    reach.addCost(context, cost);
-  }
+  void addCost(const gdd::GoalContext& context, gdd::GoalCost& cost) const override;
   std::optional<gdd::GoalMark> mark(const gdd::GoalContext& context) const override {
     return reach.mark(context);
   }
@@ -33,7 +39,8 @@ class Drag final : public gdd::Goal {
   }
   bool hasLaterErrors() const override { return true; }
 
-  gdd::Reach reach;  ///< what it asks for while it is held
+  gdd::Reach reach;               ///< what it asks for while it is held
+  std::optional<BegunLine> line;  ///< by which it comes; absent: spring-damper
 
  private:
   std::string name_;

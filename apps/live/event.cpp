@@ -9,10 +9,11 @@
 namespace softgauss::live {
 namespace {
 
-constexpr double kFarthest = 1e6;      // [m]
-constexpr double kStrongest = 1e6;     // [N or N m]
-constexpr double kHeaviest = 1e12;     // weights, stiffness
-constexpr double kLongestBack = 3600;  // [s]
+constexpr double kFarthest = 1e6;                           // [m]
+constexpr double kStrongest = 1e6;                          // [N or N m]
+constexpr double kHeaviest = 1e12;                          // weights, stiffness
+constexpr double kLongestBack = 3600;                       // [s]
+constexpr double kShortestLine = 0.01, kLongestLine = 100;  // of minimum jerk [s]
 
 constexpr Field name(const char* field, FieldKind kind) {
   return {field, kind, true, 0.0, 0.0, ""};
@@ -43,8 +44,13 @@ std::vector<EventType> makeTypes() {
       {EventKind::grab,
        "grab",
        "a point of a link gets a spatial goal",
-       {name("link", K::link), place("point"), place("target"), option("weight", "kg"),
-        option("stiffness", "1/s²"), option("damping", "1/s")}},
+       {name("link", K::link),
+        place("point"),
+        place("target"),
+        option("weight", "kg"),
+        option("stiffness", "1/s²"),
+        option("damping", "1/s"),
+        {"duration", K::number, false, kShortestLine, kLongestLine, "s"}}},
       {EventKind::move, "move", "the grabbed point's goal moves", {place("target")}},
       {EventKind::release, "release", "the grabbed point's goal ends", {}},
       {EventKind::pin, "pin", "the grabbed point is let go and its goal stays", {}},

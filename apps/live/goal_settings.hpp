@@ -10,6 +10,7 @@ namespace softgauss::live {
 /// Where a goal keeps them; null what its kind does not have.
 struct GoalSettings {
   double* weight = nullptr;
+  const char* weightUnit = "";
   double* stiffness = nullptr;  ///< [1/s²]
   double* damping = nullptr;    ///< [1/s]
   double* rate = nullptr;       ///< [1/s]

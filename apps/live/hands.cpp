@@ -42,7 +42,7 @@ std::string Hands::apply(const Event& event) {
       return grab(event);
     case EventKind::move:
       if (!drag) return "nothing is held that could be moved";
-      drag->reach.p_WTarget = event.vector("target");
+      drag->moveTo(event.vector("target"), run_.state.time);
       return "";
     case EventKind::release:
       if (drag) drag->end();
@@ -123,8 +123,17 @@ std::string Hands::grab(const Event& event) {
              event.maybeNumber("weight").value_or(dragWeight(link)));
   drag.reach.stiffness = event.maybeNumber("stiffness").value_or(drag.reach.stiffness);
   drag.reach.damping = event.maybeNumber("damping").value_or(drag.reach.damping);
+  if (const std::optional<double> duration = event.maybeNumber("duration"))
+    drag.followLine(placeOf(drag.reach), run_.state.time, *duration);
   holding_ = drag.name();
   return "";
+}
+
+/// Where the point of a goal is now.
+Vector3 Hands::placeOf(const gdd::Reach& reach) const {
+  Kinematics kinematics(run_.model);
+  computeKinematics(run_.model, run_.state, kinematics);
+  return framePose(run_.model, kinematics, reach.frame) * reach.p_FP;
 }
 
 std::string Hands::push(const Event& event) {
@@ -209,12 +218,17 @@ std::vector<Hands::GoalView> Hands::goals() const {
     view.stiffness = valueAt(s.stiffness);
     view.damping = valueAt(s.damping);
     view.rate = valueAt(s.rate);
+    view.weightUnit = s.weightUnit;
     const auto* drag = dynamic_cast<const Drag*>(&goal);
     view.canBegin = drag && !drag->held();
     if (const auto* reach = drag ? &drag->reach : dynamic_cast<const gdd::Reach*>(&goal)) {
       view.link = reach->link;
       view.point = reach->p_FP;
       view.target = reach->p_WTarget;
+      if (drag && drag->line)
+        view.duration = drag->line->duration;
+      else if (reach->minimumJerk)
+        view.duration = reach->minimumJerk->duration;
     }
     views.push_back(std::move(view));
   }

@@ -54,6 +54,8 @@ class Hands {
     bool on = false;
     bool canBegin = false;  ///< a drag that nobody holds
     std::optional<double> weight, stiffness, damping, rate;
+    std::optional<double> duration;  ///< of the minimum-jerk line by which it comes [s]
+    const char* weightUnit = "";
     std::optional<Vector3> point, target;  ///< of a goal that is a place
   };
   std::vector<GoalView> goals() const;
@@ -69,6 +71,7 @@ class Hands {
   void setEffect(const Event& event);
   void goTo(const Rewind::Place& place);
   double dragWeight(const std::string& link) const;
+  Vector3 placeOf(const gdd::Reach& reach) const;
   Drag* held() const;
 
   struct Push {

@@ -17,10 +17,11 @@ ordered_json toJson(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
 ordered_json toJson(const Hands::GoalView& goal) {
   ordered_json json = {{"name", goal.name}, {"on", goal.on}};
   if (!goal.link.empty()) json["link"] = goal.link;
-  if (goal.weight) json["weight"] = *goal.weight;
+  if (goal.weight) json["weight"] = *goal.weight, json["weight_unit"] = goal.weightUnit;
   if (goal.stiffness) json["stiffness"] = *goal.stiffness;
   if (goal.damping) json["damping"] = *goal.damping;
   if (goal.rate) json["rate"] = *goal.rate;
+  if (goal.duration) json["duration"] = *goal.duration;
   if (goal.point) json["point"] = toJson(*goal.point);
   if (goal.target) json["target"] = toJson(*goal.target);
   return json;
@@ -40,6 +41,9 @@ std::string statusMessage(const Status& status, const Hands& hands) {
   ordered_json goals = ordered_json::array();
   for (const Hands::GoalView& goal : hands.goals())
     if (!goal.canBegin) goals.push_back(toJson(goal));
+  ordered_json errors = ordered_json::array();
+  for (const GoalError& e : status.errors)
+    errors.push_back({{"name", e.name}, {"unit", e.unit}, {"value", e.value}});
   const io::StepRecord& r = status.record;
   const ordered_json json = {
       {"status",
@@ -64,6 +68,8 @@ std::string statusMessage(const Status& status, const Hands& hands) {
         {"told", status.told},
         {"fallen", status.fallen},
         {"saturated", status.saturated},
+        {"at_limits", status.atLimits},
+        {"errors", errors},
         {"joints", status.joints},
         {"pages", status.pages},
         {"holding", hands.holding()},

@@ -31,6 +31,12 @@ class StepTimes {
   std::size_t next_ = 0, count_ = 0;
 };
 
+/// How far a goal in force is from what it wants.
+struct GoalError {
+  std::string name, unit;
+  double value;
+};
+
 struct Status {
   double time = 0.0;  ///< of the state [s]
   long steps = 0;     ///< taken
@@ -45,7 +51,9 @@ struct Status {
   std::vector<std::string> told;       ///< the last few messages
   std::vector<std::string> fallen;     ///< robots that lie where they stood
   std::vector<std::string> saturated;  ///< controls at their bounds
-  std::vector<double> joints;          ///< positions, in the order of Names::joints
+  std::vector<std::string> atLimits;   ///< joints at an end of their range
+  std::vector<GoalError> errors;
+  std::vector<double> joints;  ///< positions, in the order of Names::joints
   int pages = 0;
 };
 

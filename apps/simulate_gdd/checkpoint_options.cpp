@@ -16,7 +16,7 @@ constexpr const char* kFree[] = {"--duration", "--checkpoint", "--checkpoint-eve
                                  "--quiet",    "--details",    "--summary"};
 /// Files: what is in inputs is looked at elsewhere, and an output may have moved.
 constexpr const char* kFiles[] = {"MODEL",      "--goals", "--torques", "--log",
-                                  "--contacts", "--view",  "--plot"};
+                                  "--contacts", "--view",  "--plot",    "--view-with"};
 
 template <std::size_t N>
 bool isAmong(const char* const (&names)[N], const std::string& name) {

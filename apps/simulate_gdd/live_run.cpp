@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <thread>
 
 #include "apps/live/messages.hpp"
@@ -63,6 +64,7 @@ LiveRun::LiveRun(const SimulateOptions& options, const Scene& scene, live::Hands
     record_.emplace(options.record, model_.name, model_.options.timestep);
   scene_.command = options.commandLine;
   scene_.hulls = collidingHulls(scene);
+  scene_.images = visualImages(model_, options, status_.told);
   takeInitial(start, scene_);
   if (!live::isLoopback(options.liveAddress)) token_ = live::makeToken();
   live::ServerOptions server;
@@ -71,7 +73,8 @@ LiveRun::LiveRun(const SimulateOptions& options, const Scene& scene, live::Hands
   server.access = {token_.empty(), token_};
   server.page = io::livePage(
       scene_, std::string("softgauss ") + SOFTGAUSS_VERSION,
-      live::liveHeader(hands.names(), token_, controller.goals.empty(), weightOf(model_)));
+      live::liveHeader(hands.names(), token_, controller.goals.empty(), weightOf(model_)),
+      runBeside(options));
   try {
     server_ = std::make_unique<live::Server>(std::move(server), hands.names());
   } catch (const std::runtime_error& error) {
@@ -141,7 +144,19 @@ void LiveRun::after(const SeenStep& step, const Verdict& verdict) {
   status_.record = step.record;
   status_.fallen = verdict.lying(step.data.kinematics, step.record.time);
   status_.saturated = verdict.saturatedNow();
+  status_.atLimits = verdict.atLimitsNow();
+  showErrors(verdict.goals());
   showFrame(step.data, step.contacts, step.record.time);
+}
+
+void LiveRun::showErrors(const GoalRecord& goals) {
+  status_.errors.clear();
+  for (std::size_t i = 0; i < goals.tracks().size(); ++i) {
+    const GoalRecord::Track& track = goals.tracks()[i];
+    const double error = goals.errors()[static_cast<Eigen::Index>(i)];
+    if (track.acts && std::isfinite(error))
+      status_.errors.push_back({track.outcome.name, track.outcome.unit, error});
+  }
 }
 
 /// Where the robot is now that no step brought it there.

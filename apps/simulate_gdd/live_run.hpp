@@ -36,6 +36,7 @@ class LiveRun final : public Companion {
 
  private:
   bool takeEvents();
+  void showErrors(const GoalRecord& goals);
   void showState();
   void showFrame(const Data& data, const std::vector<Snapshot::ContactForce>& contacts,
                  double time);

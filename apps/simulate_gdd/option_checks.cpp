@@ -19,11 +19,8 @@ constexpr double kMostStepsOfARun = 1e9;
 
 void checkOutputs(const SimulateOptions& options, const std::vector<std::filesystem::path>& read) {
   std::vector<std::pair<std::string, std::filesystem::path>> files = {
-      {"MODEL", options.model},
-      {"--goals", options.goals},
-      {"--torques", options.torques},
-      {"--play", options.play},
-      {"--resume", options.resume}};
+      {"MODEL", options.model}, {"--goals", options.goals},   {"--torques", options.torques},
+      {"--play", options.play}, {"--resume", options.resume}, {"--view-with", options.viewWith}};
   for (const std::filesystem::path& file : read) files.emplace_back(file.string(), file);
   // Standard input is no output.
   std::erase_if(files, [](const auto& file) { return file.second == io::kStandardInput; });

@@ -230,6 +230,10 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
   app.add_option("--summary", options.summary, "write the summary to a .json file")->group(output);
   app.add_option("--view", options.view, "write a page that replays the run in any browser (.html)")
       ->group(output);
+  app.add_option(
+         "--view-with", options.viewWith,
+         "show in that page, or the live one, also the run of another such page, translucent")
+      ->group(output);
   app.add_option("--plot", options.plot,
                  "draw the run's curves with gnuplot: an .svg file, or a folder for one file each")
       ->group(output);
@@ -310,10 +314,14 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
                             parseNumber(text.substr(equals + 1), "--q0"));
   }
   int fromStandardInput = 0;
-  for (const auto* file : {&options.model, &options.goals, &options.torques, &options.play})
+  for (const auto* file :
+       {&options.model, &options.goals, &options.torques, &options.play, &options.viewWith})
     fromStandardInput += *file == io::kStandardInput ? 1 : 0;
   if (fromStandardInput > 1)
-    throw UsageError("standard input (-) can be only one of MODEL, --goals, --torques and --play");
+    throw UsageError(
+        "standard input (-) can be only one of MODEL, --goals, --torques, --play and --view-with");
+  if (!options.viewWith.empty() && options.view.empty() && !options.live)
+    throw UsageError("--view-with is for a page, expected --view or --live too");
   finishLiveOptions(app, options);
   finishCheckpointOptions(app, options);
   checkOutputs(options, {});

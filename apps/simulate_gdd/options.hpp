@@ -45,6 +45,7 @@ struct SimulateOptions : SimulationOptions {
   bool details = false;  ///< what the solver did, in the table at the end
   long logEvery = 1;     ///< steps from one row of the log to the next
   std::filesystem::path log, contacts, summary, view, plot;
+  std::filesystem::path viewWith;      ///< a page whose run the page shows too
   std::optional<unsigned short> live;  ///< port; 0: any that is free
   std::string liveAddress = "127.0.0.1";
   std::filesystem::path record, play;  ///< what is done to a live run, to a file and from one

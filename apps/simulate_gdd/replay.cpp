@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <map>
@@ -34,17 +35,39 @@ std::vector<std::shared_ptr<const Mesh>> collidingHulls(const Scene& scene) {
   return hulls;
 }
 
+std::map<const Mesh*, io::MeshImages> visualImages(const Model& model,
+                                                   const SimulateOptions& options,
+                                                   std::vector<std::string>& warnings) {
+  std::map<const Mesh*, io::MeshImages> all;
+  const auto largest = static_cast<std::uintmax_t>(options.largestMesh * (1 << 20));
+  for (const Visual& visual : model.visuals) {
+    const Mesh* mesh = visual.shape.mesh.get();
+    if (!mesh || all.contains(mesh)) continue;
+    io::MeshImages& images = all[mesh] = io::imagesOf(*mesh, largest);
+    for (const std::string& text : images.notShown)
+      if (std::find(warnings.begin(), warnings.end(), "not shown: " + text) == warnings.end())
+        warnings.push_back("not shown: " + text);
+  }
+  return all;
+}
+
+std::string runBeside(const SimulateOptions& options) {
+  return options.viewWith.empty() ? std::string() : io::runInPage(options.viewWith);
+}
+
 Replay::Replay(const SimulateOptions& options, const Scene& scene,
                const std::vector<std::unique_ptr<gdd::Goal>>& goals, const gdd::GoalContext& start)
     : view_(options.view), drawing_(options.plot) {
-  if (!options.view.empty()) page_.emplace(options.view);
+  if (!options.view.empty()) page_.emplace(options.view, runBeside(options));
   if (!options.plot.empty()) plot_.emplace(options.plot);
   if (!page_ && !plot_) return;
   recording_.emplace(scene.model, goals, start);
   recording_->command = options.commandLine;
   const double duration = std::isfinite(options.duration) ? options.duration : kUnknownDuration;
   recording_->reserve(static_cast<std::size_t>(duration / scene.model.options.timestep), duration);
-  if (page_) recording_->hulls = collidingHulls(scene);
+  if (!page_) return;
+  recording_->hulls = collidingHulls(scene);
+  recording_->images = visualImages(scene.model, options, warnings_);
 }
 
 std::vector<std::string> Replay::finish(const io::StepRecord& last, const Data& data,

@@ -3,6 +3,7 @@
 
 /// --view and --plot: the run, recorded as it goes, written as a page and as drawings at its end.
 
+#include <map>
 #include <optional>
 
 #include "apps/simulate_gdd/scene.hpp"
@@ -15,6 +16,14 @@ namespace softgauss::app {
 /// A mesh collides as its convex hull, so that is what is shown: by geometry, null where the shape
 /// itself collides.
 std::vector<std::shared_ptr<const Mesh>> collidingHulls(const Scene& scene);
+
+/// Images that cover visual meshes of the model. `warnings`: those that cannot be shown, and why.
+std::map<const Mesh*, io::MeshImages> visualImages(const Model& model,
+                                                   const SimulateOptions& options,
+                                                   std::vector<std::string>& warnings);
+
+/// The run of --view-with, or nothing. Throws ModelError.
+std::string runBeside(const SimulateOptions& options);
 
 class Replay {
  public:
@@ -42,6 +51,8 @@ class Replay {
   /// what could not be written.
   std::vector<std::string> finish(const io::StepRecord& last, const Data& data,
                                   const io::Summary& summary, const std::string& message);
+  /// What cannot be shown, and why.
+  const std::vector<std::string>& warnings() const { return warnings_; }
   /// What finish() has written and how long that took, a line each.
   const std::string& written() const { return written_; }
 
@@ -50,6 +61,7 @@ class Replay {
   std::optional<io::ReplayPage> page_;
   std::optional<io::Plot> plot_;
   std::filesystem::path view_, drawing_;
+  std::vector<std::string> warnings_;
   std::string written_;
 };
 

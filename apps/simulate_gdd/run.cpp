@@ -68,6 +68,8 @@ class Runner {
     const gdd::GoalContext start{model_, state_, data_};
     verdict_.emplace(controller_, start, passive, scene.baseOrigin);
     replay_.emplace(options, scene, controller_.goals, start);
+    summary_.warnings.insert(summary_.warnings.end(), replay_->warnings().begin(),
+                             replay_->warnings().end());
     company_->join(scene, start);
     checkpoints_.emplace(options, model_, summary_.origin);
     if (checkpoints_->restore(*this)) computeStages(model_, input_, state_, data_, &contacts_);

@@ -84,6 +84,10 @@ std::vector<std::string> Verdict::saturatedNow() const {
   return joints_.saturatedNow(std::vector<char>(static_cast<std::size_t>(model_.nv), 1));
 }
 
+std::vector<std::string> Verdict::atLimitsNow() const {
+  return joints_.atRangeEnd(std::vector<char>(static_cast<std::size_t>(model_.nv), 1));
+}
+
 bool Verdict::fell() const {
   return std::any_of(stood_.begin(), stood_.end(), [](const StandingOutcome& o) { return o.fell; });
 }

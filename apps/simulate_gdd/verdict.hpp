@@ -48,8 +48,9 @@ class Verdict {
   bool fell() const;
   /// Root links of robots that lie where they stood, at these kinematics.
   std::vector<std::string> lying(const Kinematics& kinematics, double time) const;
-  /// Controls that are at their bounds.
+  /// Controls that are at their bounds, joints that are at an end of their range.
   std::vector<std::string> saturatedNow() const;
+  std::vector<std::string> atLimitsNow() const;
   /// After finish(): goals and verdict. `ending` says why a run ended early, or is empty.
   void tell(const std::string& ending, const std::vector<std::string>& baseWarnings,
             io::Summary& summary);

@@ -29,6 +29,20 @@ void archive(Archive& a, MeshPart& part) {
   a(firstTriangle, triangles, rgba);
 }
 
+namespace io {
+
+template <class Archive>
+void archive(Archive& a, MeshImages::Image& image) {
+  a(image.file);
+}
+
+template <class Archive>
+void archive(Archive& a, MeshImages& images) {
+  a(images.images, images.ofPart, images.places);
+}
+
+}  // namespace io
+
 }  // namespace softgauss
 
 namespace softgauss::io::detail {
@@ -45,7 +59,9 @@ struct CornerHash {
 /// Gathers the triangles of a scene in one mesh, in the coordinates of the file.
 class Collector {
  public:
-  Collector(const aiScene& scene, Mesh& mesh) : scene_(scene), mesh_(mesh) {}
+  /// `images`: null where nobody looks.
+  Collector(const aiScene& scene, Mesh& mesh, MeshImages* images)
+      : scene_(scene), mesh_(mesh), images_(images) {}
 
   void add(const aiNode& node, const aiMatrix4x4& X_FileParent) {
     const aiMatrix4x4 X_FileNode = X_FileParent * node.mTransformation;
@@ -64,11 +80,33 @@ class Collector {
       for (unsigned k = 0; k < 3; ++k)
         triangle[k] = vertex(X_FileNode * part.mVertices[face.mIndices[k]]);
       mesh_.triangles.push_back(triangle);
+      for (unsigned k = 0; images_ && k < 3; ++k)
+        images_->places.push_back(place(part, face.mIndices[k]));
     }
-    const std::optional<Eigen::Vector4d> rgba = colour(*scene_.mMaterials[part.mMaterialIndex]);
-    if (rgba && mesh_.triangles.size() > first)
-      mesh_.parts.push_back(
-          {static_cast<int>(first), static_cast<int>(mesh_.triangles.size() - first), *rgba});
+    const aiMaterial& material = *scene_.mMaterials[part.mMaterialIndex];
+    const std::optional<Eigen::Vector4d> rgba = colour(material);
+    if (!rgba || mesh_.triangles.size() == first) return;
+    mesh_.parts.push_back(
+        {static_cast<int>(first), static_cast<int>(mesh_.triangles.size() - first), *rgba});
+    if (images_) images_->ofPart.push_back(part.HasTextureCoords(0) ? image(material) : -1);
+  }
+
+  static std::array<float, 2> place(const aiMesh& part, unsigned corner) {
+    if (!part.HasTextureCoords(0)) return {0.0f, 0.0f};
+    const aiVector3D& uv = part.mTextureCoords[0][corner];
+    return {uv.x, uv.y};
+  }
+
+  /// The index of the material's image, −1 without one.
+  int image(const aiMaterial& material) {
+    aiString file;
+    if (material.GetTexture(aiTextureType_DIFFUSE, 0, &file) != AI_SUCCESS) return -1;
+    std::vector<MeshImages::Image>& all = images_->images;
+    const auto found = std::find_if(all.begin(), all.end(),
+                                    [&](const auto& image) { return image.file == file.C_Str(); });
+    const auto index = static_cast<int>(found - all.begin());
+    if (found == all.end()) all.push_back({file.C_Str(), {}});
+    return index;
   }
 
   /// The diffuse colour that the file gives; nothing where assimp made the material up.
@@ -96,6 +134,7 @@ class Collector {
 
   const aiScene& scene_;
   Mesh& mesh_;
+  MeshImages* images_;
   std::unordered_map<std::array<double, 3>, int, CornerHash> index_;
 };
 
@@ -159,7 +198,8 @@ class Files : public Assimp::IOSystem {
 };
 
 /// Why the file cannot be read, or nothing.
-std::string import(const MeshFile& file, std::uintmax_t largest, Mesh& mesh) {
+std::string import(const MeshFile& file, std::uintmax_t largest, Mesh& mesh,
+                   MeshImages* images = nullptr) {
   Assimp::Importer importer;
   importer.SetIOHandler(new Files(file, largest));  // which it deletes
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
@@ -169,7 +209,7 @@ std::string import(const MeshFile& file, std::uintmax_t largest, Mesh& mesh) {
       importer.ReadFile(file.path.string(), aiProcess_Triangulate | aiProcess_SortByPType);
   if (!scene || !scene->mRootNode)
     return fmt::format("cannot be read: {}", importer.GetErrorString());
-  Collector(*scene, mesh).add(*scene->mRootNode, aiMatrix4x4());
+  Collector(*scene, mesh, images).add(*scene->mRootNode, aiMatrix4x4());
   return {};
 }
 
@@ -192,29 +232,34 @@ bool fits(const Mesh& mesh) {
   return true;
 }
 
-std::string bytesOf(const MeshFile& file, std::uintmax_t largest) {
+bool fits(const Mesh& mesh, const MeshImages& images) {
+  const auto count = static_cast<int>(images.images.size());
+  return images.ofPart.size() == mesh.parts.size() &&
+         images.places.size() == 3 * mesh.triangles.size() &&
+         std::all_of(images.ofPart.begin(), images.ofPart.end(),
+                     [&](int image) { return image >= -1 && image < count; });
+}
+
+std::string bytesOf(const MeshFile& file, std::uintmax_t largest, bool withImages) {
   Mesh mesh;
-  const std::string problem = import(file, largest, mesh);
+  MeshImages images;
+  const std::string problem = import(file, largest, mesh, withImages ? &images : nullptr);
   ByteWriter bytes;
-  bytes(problem, mesh.vertices, mesh.triangles, mesh.parts);
+  bytes(problem, mesh.vertices, mesh.triangles, mesh.parts, images);
   return bytes.bytes();
 }
 
-}  // namespace
-
-Mesh importMesh(const MeshFile& file, std::uintmax_t largest) {
+/// By a child of this process. Throws ModelError.
+std::pair<Mesh, MeshImages> importInChild(const MeshFile& file, std::uintmax_t largest,
+                                          bool withImages) {
   Mesh mesh;
-  if (file.format == ".stl") {
-    if (const std::string problem = import(file, largest, mesh); !problem.empty())
-      failMesh(file.path, problem);
-    return mesh;
-  }
-  const ChildResult child = runInChild([&] { return bytesOf(file, largest); }, {});
+  MeshImages images;
+  const ChildResult child = runInChild([&] { return bytesOf(file, largest, withImages); }, {});
   std::string problem, failure = child.failure;
   try {
     ByteReader bytes(child.bytes);
-    if (failure.empty()) bytes(problem, mesh.vertices, mesh.triangles, mesh.parts);
-    bytes.expect(fits(mesh));
+    if (failure.empty()) bytes(problem, mesh.vertices, mesh.triangles, mesh.parts, images);
+    bytes.expect(fits(mesh) && (!withImages || !problem.empty() || fits(mesh, images)));
   } catch (const BytesError&) {
     failure = "loses its way";
   }
@@ -224,7 +269,23 @@ Mesh importMesh(const MeshFile& file, std::uintmax_t largest) {
                          "writes the file anew",
                          failure));
   if (!problem.empty()) failMesh(file.path, problem);
-  return mesh;
+  return {std::move(mesh), std::move(images)};
+}
+
+}  // namespace
+
+Mesh importMesh(const MeshFile& file, std::uintmax_t largest) {
+  if (file.format == ".stl") {
+    Mesh mesh;
+    if (const std::string problem = import(file, largest, mesh); !problem.empty())
+      failMesh(file.path, problem);
+    return mesh;
+  }
+  return importInChild(file, largest, false).first;
+}
+
+std::pair<Mesh, MeshImages> importWithImages(const MeshFile& file, std::uintmax_t largest) {
+  return importInChild(file, largest, true);
 }
 
 }  // namespace softgauss::io::detail

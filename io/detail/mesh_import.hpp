@@ -8,11 +8,15 @@
 
 #include "softgauss/engine/model/shape.hpp"
 #include "softgauss/io/detail/mesh_file.hpp"
+#include "softgauss/io/mesh_images.hpp"
 
 namespace softgauss::io::detail {
 
 /// In the coordinates of the file. Material files beside it are read if they are no larger than
 /// `largest` bytes. Throws ModelError.
 Mesh importMesh(const MeshFile& file, std::uintmax_t largest);
+
+/// The same with the images that cover its parts, as the file names them and without their bytes.
+std::pair<Mesh, MeshImages> importWithImages(const MeshFile& file, std::uintmax_t largest);
 
 }  // namespace softgauss::io::detail

@@ -45,8 +45,9 @@ const char* nameOf(JointKind kind) {
 /// Writes every mesh once, however many shapes are made of it.
 class MeshWriter {
  public:
-  MeshWriter(Json& header, Payload& payload) : header_(header), payload_(payload) {
-    header["meshes"] = Json::array();
+  MeshWriter(const Recording& recording, Json& header, Payload& payload)
+      : recording_(recording), header_(header), payload_(payload) {
+    header["meshes"] = header["images"] = Json::array();
   }
 
   int place(const std::shared_ptr<const Mesh>& mesh) {
@@ -70,13 +71,41 @@ class MeshWriter {
       parts.push_back({{"first", part.firstTriangle},
                        {"count", part.triangles},
                        {"rgba", {part.rgba[0], part.rgba[1], part.rgba[2], part.rgba[3]}}});
-    header_["meshes"].push_back(
-        {{"vertices", name + ".vertices"}, {"triangles", name + ".triangles"}, {"parts", parts}});
+    Json json = {
+        {"vertices", name + ".vertices"}, {"triangles", name + ".triangles"}, {"parts", parts}};
+    if (const auto found = recording_.images.find(&mesh);
+        found != recording_.images.end() && !found->second.places.empty())
+      addImages(found->second, name + ".uv", json);
+    header_["meshes"].push_back(json);
   }
 
+  void addImages(const MeshImages& images, const std::string& name, Json& mesh) {
+    std::vector<float> uv;
+    for (const std::array<float, 2>& place : images.places)
+      uv.insert(uv.end(), place.begin(), place.end());
+    payload_.array(name, uv);
+    mesh["uv"] = name;
+    for (std::size_t part = 0; part < images.ofPart.size(); ++part)
+      if (const int image = images.ofPart[part]; image >= 0)
+        mesh["parts"][part]["image"] = placeImage(images.images[static_cast<std::size_t>(image)]);
+  }
+
+  /// Every image once, however many meshes it covers.
+  int placeImage(const MeshImages::Image& image) {
+    const auto [it, isNew] = images_.try_emplace(image.file, static_cast<int>(images_.size()));
+    if (isNew) {
+      const std::string name = fmt::format("image{}", it->second);
+      payload_.array(name, std::vector<std::uint8_t>(image.bytes.begin(), image.bytes.end()));
+      header_["images"].push_back({{"bytes", name}, {"type", imageType(image.bytes)}});
+    }
+    return it->second;
+  }
+
+  const Recording& recording_;
   Json& header_;
   Payload& payload_;
   std::map<const Mesh*, int> places_;
+  std::map<std::string, int> images_;  ///< by file
 };
 
 Json toJson(const Shape& shape, MeshWriter& meshes) {
@@ -100,7 +129,7 @@ Json toJson(const Shape& shape, MeshWriter& meshes) {
 
 void writeScene(const Recording& recording, Json& header, Payload& payload) {
   const Model& model = recording.model();
-  MeshWriter meshes(header, payload);
+  MeshWriter meshes(recording, header, payload);
   for (const char* list : {"bodies", "links", "geometries", "visuals", "goals"})
     header[list] = Json::array();
   for (std::size_t b = 0; b < model.bodies.size(); ++b)
@@ -245,13 +274,15 @@ std::string payloadOf(const Recording& recording, const std::string& generator,
 
 /// The template's text with the parts put in, piece by piece.
 template <class Write>
-void writePage(const Recording& recording, const std::string& payload, Write&& write) {
+void writePage(const Recording& recording, const std::string& payload, const std::string& beside,
+               Write&& write) {
   const std::string run = base64(deflated(payload));
   std::string_view rest = detail::pageTemplate();
   for (const auto& [place, text] :
        {std::pair<std::string_view, std::string>{
             "@@SOFTGAUSS_TITLE@@", escapedHtml(detail::validUtf8(recording.model().name))},
-        {"@@SOFTGAUSS_RUN@@", run}}) {
+        {"@@SOFTGAUSS_RUN@@", run},
+        {"@@SOFTGAUSS_OTHER_RUN@@", beside}}) {
     const std::size_t at = rest.find(place);
     SOFTGAUSS_ASSERT(at != std::string_view::npos);
     write(rest.substr(0, at));
@@ -268,21 +299,22 @@ std::string replayPayload(const Recording& recording, const std::string& generat
 }
 
 std::string livePage(const Recording& recording, const std::string& generator,
-                     const std::string& live) {
+                     const std::string& live, const std::string& beside) {
   // A page in a file may ask nothing of any network; this one talks to where it came from.
   constexpr std::string_view kNothing = "default-src 'none'";
   std::string page;
-  writePage(recording, payloadOf(recording, generator, live),
+  writePage(recording, payloadOf(recording, generator, live), beside,
             [&](std::string_view text) { page += text; });
   const std::size_t at = page.find(kNothing);
   SOFTGAUSS_ASSERT(at != std::string::npos);
   return page.insert(at + kNothing.size(), "; connect-src 'self'");
 }
 
-ReplayPage::ReplayPage(const std::filesystem::path& file) : file_(file, "replay page") {}
+ReplayPage::ReplayPage(const std::filesystem::path& file, std::string beside)
+    : file_(file, "replay page"), beside_(std::move(beside)) {}
 
 void ReplayPage::write(const Recording& recording, const std::string& generator) {
-  writePage(recording, replayPayload(recording, generator),
+  writePage(recording, replayPayload(recording, generator), beside_,
             [&](std::string_view text) { file_.write(text); });
   file_.commit();
 }

@@ -18,22 +18,28 @@ namespace softgauss::io {
 std::string replayPayload(const Recording& recording, const std::string& generator);
 
 /// The page as a server gives it that shows a run as it goes: it begins with the recording's frames
-/// and may talk to that server. `live`: JSON, the header's member of that name
-/// (docs/reference/live.md).
+/// and may talk to that server. `live`: JSON, the header's member of that name (docs/reference/live.md).
+/// `beside`: a run of runInPage(), or empty.
 std::string livePage(const Recording& recording, const std::string& generator,
-                     const std::string& live);
+                     const std::string& live, const std::string& beside = {});
+
+/// The run that a replay page holds, as it stands there, to be shown beside another. Throws
+/// ModelError where the file is no such page, its run is damaged or of another format.
+std::string runInPage(const std::filesystem::path& file);
 
 class ReplayPage {
  public:
   /// Makes sure that the file can be written, before a run is begun whose page could not. A page
-  /// that is there stays until the new one is complete. Throws ModelError.
-  explicit ReplayPage(const std::filesystem::path& file);
+  /// that is there stays until the new one is complete. `beside`: a run of runInPage() that the
+  /// page shows too, translucent, or empty. Throws ModelError.
+  explicit ReplayPage(const std::filesystem::path& file, std::string beside = {});
 
   /// Throws std::runtime_error if the disk is full or gone.
   void write(const Recording& recording, const std::string& generator);
 
  private:
   detail::OutputFile file_;
+  std::string beside_;
 };
 
 }  // namespace softgauss::io

@@ -6,6 +6,7 @@
 /// The recorder turns steps into frames (poses, contacts, goals) and series (curves over time). It
 /// reads the engine's Snapshot and the goals' marks; engine and gdd know nothing of it.
 
+#include <map>
 #include <memory>
 #include <string>
 #include <utility>
@@ -13,6 +14,7 @@
 #include "softgauss/engine/model/state.hpp"
 #include "softgauss/engine/step/saved_contacts.hpp"
 #include "softgauss/io/log.hpp"
+#include "softgauss/io/mesh_images.hpp"
 #include "softgauss/io/replay/frames.hpp"
 #include "softgauss/io/replay/series.hpp"
 
@@ -110,6 +112,7 @@ class Recording {
   std::vector<std::string> warnings;
   /// What collides in place of a mesh, by geometry; null where the shape itself does.
   std::vector<std::shared_ptr<const Mesh>> hulls;
+  std::map<const Mesh*, MeshImages> images;  ///< that cover visual meshes, of those that have any
 
  private:
   CurveGroup& addGroup(std::string name, std::string unit, bool logarithmic = false);

@@ -32,13 +32,24 @@ void setJointPositions(const Model& model, const std::vector<std::pair<std::stri
   placeFollowers(model, placed, state.q);
 }
 
+namespace {
+
+/// Distances of the scene's shapes, the same for all goals that ask.
+io::DistancesMaker distancesOf(const Scene& scene) {
+  return [&scene, made = std::make_shared<std::shared_ptr<ShapeDistances>>()](const Model& model) {
+    if (!*made) *made = std::make_shared<collision::Clearance>(model, scene.contacts->meshes());
+    return *made;
+  };
+}
+
+}  // namespace
+
 io::GoalFile readGoalFile(const std::filesystem::path& file, const Scene& scene) {
-  std::shared_ptr<ShapeDistances> distances;  // one for all goals of a controller
-  return io::readGoalFile(file, scene.model, scene.initial, [&](const Model& model) {
-    if (!distances)
-      distances = std::make_shared<collision::Clearance>(model, scene.contacts->meshes());
-    return distances;
-  });
+  return io::readGoalFile(file, scene.model, scene.initial, distancesOf(scene));
+}
+
+io::GoalFile parseGoals(const std::string& text, const std::string& name, const Scene& scene) {
+  return io::parseGoals(text, name, scene.model, scene.initial, distancesOf(scene));
 }
 
 void addGoals(const std::filesystem::path& file, const Scene& scene,

@@ -76,6 +76,9 @@ void setUpControl(const Scene& scene, const SimulationOptions& options,
 /// The goals of a file. They refer to the scene's model. Throws ModelError.
 io::GoalFile readGoalFile(const std::filesystem::path& file, const Scene& scene);
 
+/// The same from the text of such a file; messages call it `name`.
+io::GoalFile parseGoals(const std::string& text, const std::string& name, const Scene& scene);
+
 /// The goals of a file, beside those that the controller has. Throws ModelError.
 void addGoals(const std::filesystem::path& file, const Scene& scene,
               gdd::GoalDirectedController& controller);

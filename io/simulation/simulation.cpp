@@ -127,7 +127,8 @@ void Simulation::restore(std::string_view bytes) {
   } catch (const BytesError& error) {
     throw ModelError({scene().file.string(), 0}, "saved simulation", error.what());
   }
-  state() = softgauss::restore(model(), saved);
+  const State restored = softgauss::restore(model(), saved);
+  state() = restored;  // copied: its vectors stay where they are
   parts_->grid = grid;
 }
 

@@ -86,7 +86,7 @@ class Simulation {
   // The parts.
   const Model& model() const;
   const Scene& scene() const;
-  State& state();
+  State& state();  ///< the memory of q and v stays where it is as long as the simulation
   const State& state() const;
   const Data& data() const;  ///< stages of the last step, at its start
   Data& data();

@@ -59,11 +59,21 @@ gdd::Posture& SimulationGoals::posture(double weight) {
   return posture;
 }
 
-void SimulationGoals::read(const std::filesystem::path& file) {
-  io::GoalFile asked = readGoalFile(file, *parts_->scene);
+std::vector<gdd::Goal*> SimulationGoals::read(const std::filesystem::path& file) {
+  return addAll(readGoalFile(file, *parts_->scene));
+}
+
+std::vector<gdd::Goal*> SimulationGoals::readText(const std::string& text,
+                                                  const std::string& name) {
+  return addAll(parseGoals(text, name, *parts_->scene));
+}
+
+std::vector<gdd::Goal*> SimulationGoals::addAll(io::GoalFile asked) {
   if (asked.controlCost && !parts_->options.controlCost)
     parts_->controller->controlCost = *asked.controlCost;
-  for (auto& goal : asked.goals) add(std::move(goal));
+  std::vector<gdd::Goal*> added;
+  for (auto& goal : asked.goals) added.push_back(&add(std::move(goal)));
+  return added;
 }
 
 void SimulationGoals::clear() {

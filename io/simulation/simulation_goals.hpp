@@ -10,8 +10,10 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "softgauss/gdd/gdd.hpp"
+#include "softgauss/io/goals.hpp"
 
 namespace softgauss {
 
@@ -41,8 +43,10 @@ class SimulationGoals {
   gdd::Hold& hold(const std::string& link);
   /// All joints and floating bases seek the configuration at which the simulation started.
   gdd::Posture& posture(double weight = gdd::Posture::kDefaultWeight);
-  /// Those of a YAML file. Throws ModelError.
-  void read(const std::filesystem::path& file);
+  /// Those of a YAML file, in its order; nothing comes with them. Throws ModelError.
+  std::vector<gdd::Goal*> read(const std::filesystem::path& file);
+  /// The same from the text of such a file; messages call it `name`.
+  std::vector<gdd::Goal*> readText(const std::string& text, const std::string& name = "goals");
   /// Any other goal; nothing comes with it.
   gdd::Goal& add(std::unique_ptr<gdd::Goal> goal);
   void clear();
@@ -52,6 +56,7 @@ class SimulationGoals {
   gdd::Goal& operator[](std::size_t i);
 
  private:
+  std::vector<gdd::Goal*> addAll(io::GoalFile asked);
   gdd::Goal& addOwn(std::unique_ptr<gdd::Goal> goal);
   void expectLink(const std::string& goal, const std::string& link) const;
 

@@ -116,6 +116,30 @@ TEST(View, UsersGnuplotSettingsDoNotReachThePlots) {
       0.2);
 }
 
+TEST(View, ShowsARunBesideAnother) {
+  const io::TempFolder folder;
+  const std::string arm = dataFile("robots/arm.urdf"), first = folder.path() / "first.html",
+                    second = folder.path() / "second.html";
+  const auto view = [&](const std::string& page, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {arm,      "--passive", "--duration", "0.05",
+                                          "--view", page,        "--quiet"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return simulate(arguments);
+  };
+  ASSERT_EQ(view(first, {}).exitCode, 0);
+  const std::string before = readFile(first);
+  ASSERT_EQ(view(second, {"--view-with", first}).exitCode, 0);
+  EXPECT_GT(readFile(second).size(), before.size());
+  // Told before the run: what is no page, what is not there, itself.
+  EXPECT_NE(view(second, {"--view-with", arm}).err.find("expected a page"), std::string::npos);
+  EXPECT_EQ(view(second, {"--view-with", folder.path() / "nowhere.html"}).exitCode, 2);
+  EXPECT_NE(view(first, {"--view-with", first}).err.find("overwrite"), std::string::npos);
+  EXPECT_EQ(readFile(first), before);
+  const Outcome alone = simulate({arm, "--passive", "--view-with", first});
+  EXPECT_EQ(alone.exitCode, 2);
+  EXPECT_NE(alone.err.find("--view"), std::string::npos);
+}
+
 TEST(View, OutputsNeverReplaceWhatWasReadOrWhatIsThere) {
   const io::TempFolder folder;
   const std::string urdf = readFile(dataFile("robots/arm.urdf"));

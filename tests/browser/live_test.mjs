@@ -153,6 +153,63 @@ async function testHumanoid() {
   assert.equal(JSON.parse(readFileSync(again, 'utf8')).state_hash, summary.state_hash);
 }
 
+/** A dragged point that comes by minimum jerk; the panel's figures; what the page has seen, saved. */
+async function testArm() {
+  const run = await LiveProcess.start(simulator, folder, 'live_saved_run', [join(data, 'robots/arm.urdf')]);
+  const page = await browser.visit(run.address, { width: 1000, height: 700 });
+  await page.getByLabel('A dragged point comes by').selectOption('jerk');
+  await page.getByLabel('Duration of a minimum-jerk line in s').fill('0.4');
+  await page.getByLabel('Duration of a minimum-jerk line in s').blur();
+  await press(page, 'hand', 50, 30);
+  await until(page, () => window.softgauss.live.status.holding === 'drag 1');
+  await stepsMore(page, 500);
+  const { goals, errors } = await status(page);
+  const drag = goals.find(({ name }) => name === 'drag 1');
+  assert.equal(drag.duration, 0.4);
+  assert.equal(drag.weight_unit, 'kg');
+  const error = errors.find(({ name }) => name === 'drag 1');
+  assert.ok(error.unit === 'm' && error.value < 0.02, `${error.value} m`);
+  assert.match(await page.locator('[data-goal="drag 1"]').innerText(), /drag 1: hand, in 0\.4 s/);
+  await page.mouse.up();
+
+  // Figures have names, curves and units.
+  const figures = page.locator('.live-figures');
+  assert.match(await figures.last().innerText(), /Step, median\s+\d+ µs/);
+  const lines = figures.locator('canvas');
+  assert.ok((await lines.count()) >= 12, 'a curve a figure');
+  const median = figures.locator('dt[title="Step, median"] + canvas');
+  assert.match(await median.getAttribute('title'), /… .* µs in the last minute/);
+  await browser.screenshot(page, 'live_figures');
+
+  await page.locator('#canvas').focus();
+  await page.keyboard.press('Space');
+  await until(page, () => window.softgauss.live.status.paused && !window.softgauss.playing);
+  const expected = await page.evaluate(() => window.softgauss.linkPose('hand'));
+  const [file] = await Promise.all([
+    page.waitForEvent('download'),
+    page.getByRole('button', { name: 'Save replay page' }).click(),
+  ]);
+  assert.equal(file.suggestedFilename(), 'arm.html');
+  await file.saveAs(join(folder, 'live_saved.html'));
+  await page.close();
+  assert.equal(await run.stop(), 130);
+
+  // It needs no server, and shows what was seen.
+  const saved = await browser.open('live_saved');
+  const { frames, live, series } = await saved.evaluate(() => window.softgauss.header);
+  assert.equal(live, undefined);
+  assert.ok(frames.count > 20, `${frames.count} frames`);
+  assert.ok(series.groups.some(({ name }) => name === 'Goal errors'));
+  await saved.evaluate(() => window.softgauss.seek(1e9));
+  const seen = await saved.evaluate(() => window.softgauss.linkPose('hand'));
+  assert.ok(distance(seen.position, expected.position) < 1e-6, `${seen.position}`);
+  const marks = () => saved.evaluate(() => window.softgauss.drawn().goals.filter(({ target }) => target).length);
+  await saved.waitForTimeout(100);
+  assert.equal(await marks(), 0, 'the goal has ended');
+  await browser.screenshot(saved, 'live_saved');
+  await saved.close();
+}
+
 async function testLooks() {
   const args = [join(data, 'robots/arm.urdf')];
   const run = await LiveProcess.start(simulator, folder, 'live_arm', args);
@@ -173,6 +230,7 @@ async function testLooks() {
 
 try {
   await testHumanoid();
+  await testArm();
   await testLooks();
 } catch (error) {
   LiveProcess.killAll();

@@ -302,11 +302,8 @@ await test('help opens and closes', async () => {
 });
 
 await test('every button has a name, and none is outside the window or over another', async () => {
-  for (const [width, height] of [
-    [1280, 800],
-    [1920, 1080],
-    [800, 600],
-  ]) {
+  const sizes = [[1280, 800], [1920, 1080], [800, 600], [390, 800]];
+  for (const [width, height] of sizes) {
     await page.setViewportSize({ width, height });
     await settle(page);
     const found = await page.evaluate(misplacedButtons);

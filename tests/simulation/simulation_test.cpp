@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "softgauss/engine/engine.hpp"
+#include "tests/io/temp_folder.hpp"
 #include "tests/simulation/data_file.hpp"
 
 namespace softgauss::test {
@@ -141,6 +142,30 @@ TEST(Simulation, SolvingLeavesTheStateAlone) {
   inverseDynamics(sim.model(), answer.a, sim.data(), tau);
   EXPECT_LT((tau - answer.tau).cwiseAbs().maxCoeff(), 1e-6);
   EXPECT_FALSE(answer.contacts.empty());
+}
+
+TEST(Simulation, GoalsOfATextAreThoseOfAFile) {
+  const io::TempFolder folder;
+  const std::string text =
+      "goals:\n  - reach: {link: hand, target: [0.5, 0.2, 0.4]}\n  - damping: {}\n";
+  Simulation sim = Simulation::load(robot("arm")), other = Simulation::load(robot("arm"));
+  const auto read = sim.goals.read(folder.write("goals.yaml", text));
+  const auto given = other.goals.readText(text);
+  ASSERT_EQ(read.size(), 2u);
+  ASSERT_EQ(given.size(), 2u);
+  EXPECT_EQ(given[0], &other.goals[0]);
+  EXPECT_EQ(given[1]->name(), read[1]->name());
+  sim.run(0.1);
+  other.run(0.1);
+  EXPECT_EQ(hash(sim.state()), hash(other.state()));
+  try {
+    other.goals.readText("goals:\n  - reach: {link: hnd, target: [0, 0, 0]}\n", "wishes");
+    ADD_FAILURE() << "a link that does not exist was taken";
+  } catch (const ModelError& error) {
+    EXPECT_EQ(std::string(error.what()).rfind("wishes:2: goal 1 'reach': key 'link': ", 0), 0u)
+        << error.what();
+  }
+  EXPECT_EQ(other.goals.size(), 2u);
 }
 
 TEST(Simulation, ASceneBringsItsGoalsAndWrenches) {

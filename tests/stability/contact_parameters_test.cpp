@@ -95,7 +95,7 @@ TEST(ContactParameters, ImpedancesUpToOne) {
         t.state.q[2] += 0.05;
         t.mayGain = 1e-9;
         t.run(2.0);
-        // One contact: g (1 − d)/(k d²) d_max² with k = 1/tc², as docs/softness.md has it for μ =
+        // One contact: g (1 − d)/(k d²) d_max² with k = 1/tc², as docs/guide/contact.md has it for μ =
         // 1; the box has four.
         const double e = std::min(d, 0.9999), tc = std::max(0.02, 2.0 * timestep);
         t.expect("penetration at rest", t.data->stats.maxPenetration,
@@ -183,7 +183,7 @@ TEST(ContactParameters, SlopeAtTheEdgeOfTheConeForAMinuteLong) {
 // With pyramids friction lifts as it creeps. Of a contact's four edges, κ = −k r and s = b μ v, one
 // bears D (κ + s), two D κ and one nothing, so that f_t/(μ f_n) = (κ + s)/(3 κ + s) = 0.99 asks for
 // s = 197 κ: v = 0.985 f_n R/(b μ), at a two hundredth of the penetration at rest. So near to
-// leaving, the box chatters (docs/stability_limits.md): it is borne in every other step, at twice
+// leaving, the box chatters (docs/limits.md): it is borne in every other step, at twice
 // that speed, and falls downhill in the others.
 TEST(ContactParameters, SlopeAtTheEdgeOfThePyramid) {
   constexpr double kMu = 0.8, kWeight = 9.81, kSoftness = (1.0 - 0.9) / 0.9,

@@ -35,7 +35,7 @@ TEST(Singular, ArmPulledBeyondItsFullStretch) {
     for (const double timestep : kSteps) {
       // The pull makes the arm swing across the line, the faster the farther away the equality
       // constraint is.
-      if (beyond > 5e-3 && timestep > 0.005) continue;  // docs/stability_limits.md
+      if (beyond > 5e-3 && timestep > 0.005) continue;  // docs/limits.md
       Trial straight("straight arm, tie at " + std::to_string(beyond),
                      with(stretched(beyond), timestep));
       straight.run(1.0);
@@ -57,7 +57,7 @@ TEST(Singular, ArmPulledBeyondItsFullStretch) {
 
 // However far away, and however far the links turn in a step: they swing on, and gain no more than
 // the equality constraint gives. With 0.1 m at 10 ms they turn by 1.3 rad in a step, with 1 m by a
-// turn and more; there they swing wider than they should (docs/stability_limits.md), and nothing is
+// turn and more; there they swing wider than they should (docs/limits.md), and nothing is
 // given up. With 1 m from 5 ms on even the passivity bound is broken, by up to one start in seven:
 // of eight, 1e-9 rad apart, by three at most, and by no more than what the equality constraint
 // gives, of which `energy` is the scale.

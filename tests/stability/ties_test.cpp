@@ -146,7 +146,7 @@ TEST(Ties, WhatSpinsTogetherGainsNothing) {
       for (const double timestep : kSteps)
         for (const double turn : {0.01, 0.04, 0.08, 0.12, 0.4}) {
           // Above ω t_c = 1 the equality constraint gives way by as much as the cubes are wide
-          // (docs/stability_limits.md).
+          // (docs/limits.md).
           if (turn / timestep > 50.0 && timestep < 0.002) continue;
           spinsTogether(weld, 1.0, massB, timestep, turn, 5.0);
         }

@@ -4,8 +4,6 @@
 namespace softgauss::io::detail {
 namespace {
 
-constexpr std::uint32_t kVersion = 1;
-
 void appendWord(std::string& out, std::uint32_t word) {
   char bytes[sizeof word];
   std::memcpy(bytes, &word, sizeof word);
@@ -16,8 +14,8 @@ void appendWord(std::string& out, std::uint32_t word) {
 
 std::string Payload::pack(std::string header) const {
   header.resize((header.size() + 7) / 8 * 8, ' ');
-  std::string out = "SGREPLAY";
-  appendWord(out, kVersion);
+  std::string out(kPayloadMagic);
+  appendWord(out, kPayloadVersion);
   appendWord(out, static_cast<std::uint32_t>(header.size()));
   return out + header + binary_;
 }

@@ -7,10 +7,15 @@
 #include <cstdint>
 #include <cstring>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <vector>
 
 namespace softgauss::io::detail {
+
+inline constexpr std::string_view kPayloadMagic = "SGREPLAY";
+inline constexpr std::uint32_t kPayloadVersion = 1;
+inline constexpr std::size_t kPayloadStart = 16;  ///< [bytes] magic, version, length of the header
 
 /// Gathers arrays, each on a multiple of 8 bytes.
 class Payload {
@@ -28,6 +33,7 @@ class Payload {
     constexpr const char* kType = std::is_same_v<T, double>          ? "f64"
                                   : std::is_same_v<T, float>         ? "f32"
                                   : std::is_same_v<T, std::uint32_t> ? "u32"
+                                  : std::is_same_v<T, std::uint8_t>  ? "u8"
                                                                      : nullptr;
     static_assert(kType != nullptr);
     const std::size_t start = binary_.size(), bytes = values.size() * sizeof(T);

@@ -82,6 +82,7 @@ const parts = {
     .join('\n\n\n'),
   TITLE: '@@SOFTGAUSS_TITLE@@',
   RUN: '@@SOFTGAUSS_RUN@@',
+  OTHER_RUN: '@@SOFTGAUSS_OTHER_RUN@@',
 };
 const body = readFileSync(join(here, 'index.html'), 'utf8').replace(/@(\w+)@/g, (whole, name) => {
   if (parts[name] === undefined) throw new Error(`index.html: there is no part ${whole}`);
@@ -101,7 +102,7 @@ SHA-256 of the sources: ${sourceHash()}
 SHA-256 of what follows this line: ${sha256(rest)}
 ${rest}`;
 
-for (const place of [parts.TITLE, parts.RUN])
+for (const place of [parts.TITLE, parts.RUN, parts.OTHER_RUN])
   if (page.split(place).length !== 2) throw new Error(`the page must hold ${place} exactly once`);
 if (parts.LICENCES.includes('--')) throw new Error('a licence ends the comment that it is in');
 writeFileSync(output, page);

@@ -3,9 +3,11 @@
 
 import { makeApi } from './app/api.js';
 import { Clock } from './app/clock.js';
+import { BesideRun } from './app/beside_run.js';
 import { byId, icon } from './app/dom.js';
 import { listenToKeys } from './app/keys.js';
 import { Layout } from './app/layout.js';
+import { ownText } from './app/own_text.js';
 import { Selection } from './app/selection.js';
 import { MARKS, Settings } from './app/settings.js';
 import { readPayload } from './data/payload.js';
@@ -47,7 +49,7 @@ function makeStage(run) {
 
 function showHeader(run) {
   const { header } = run;
-  byId('model').textContent = header.model;
+  byId('model').textContent = byId('model').title = header.model;
   byId('summary').textContent = header.facts[0]?.[1] ?? '';
   const { kind, message } = header.outcome;
   const reason = message || `the run ended early: ${kind}`;
@@ -56,18 +58,18 @@ function showHeader(run) {
 }
 
 /** What shows the curves of a recorded run, or the panel of a live one. */
-function makeSide(run, link, clock, settings, selection) {
+function makeSide(run, link, clock, settings, selection, pageText) {
   if (!link) {
     transport(byId('transport'), run, clock);
     return new Plots(byId('plots'), run, clock, settings, selection);
   }
   liveTransport(byId('transport'), link, clock, settings);
-  livePanel(byId('plots'), link, run);
+  livePanel(byId('plots'), link, run, settings, pageText);
   document.documentElement.dataset.live = '';
   return null;
 }
 
-function start(run, begun) {
+function start(run, begun, pageText) {
   const link = run.live ? new Link(run) : null;
   const settings = new Settings(run);
   const theme = () => (document.documentElement.dataset.theme = settings.get('theme'));
@@ -86,7 +88,7 @@ function start(run, begun) {
   const inspector = new Inspector(byId('inspector'), run, selection);
   const contacts = run.mostContacts() > 0 ? new ContactTable(byId('contact-table'), run, stage) : null;
   if (stage) toolbar(byId('toolbar'), run, stage, settings, selection);
-  const plots = makeSide(run, link, clock, settings, selection);
+  const plots = makeSide(run, link, clock, settings, selection, pageText);
   const inspect = () => {
     inspector.update(clock.time, poses);
     contacts?.update(clock.time, poses);
@@ -113,18 +115,22 @@ function start(run, begun) {
   if (stage) {
     connectStage(stage, settings, selection);
     bookmarkCamera(stage, run.header.origin);
+    new BesideRun(byId('beside'), stage);
   }
   const handle = stage && link ? new Handle(run, link, stage, selection, settings) : null;
   listenToKeys({ clock, settings, selection, layout, plots, stage, run });
 
   let firstFrame = null;
+  let hasImages = false;
+  const images = stage?.showImages() ?? Promise.resolve();
+  images.catch((error) => console.error(error)).finally(() => (hasImages = true));
   let last = 0;
   const tick = (now) => {
     if (clock.playing) stage?.pacing(now - last);
     last = now;
     clock.tick(now);
     stage?.draw();
-    if (firstFrame === null && (stage === null || stage.pictures > 0)) {
+    if (firstFrame === null && hasImages && (stage === null || stage.pictures > 0)) {
       firstFrame = performance.now();
       begun();
       if (!link && !window.matchMedia('(prefers-reduced-motion: reduce)').matches) clock.play();
@@ -177,16 +183,22 @@ function connectStage(stage, settings, selection) {
     });
   stage.setTheme(settings.get('theme'));
   stage.setMode(settings.get('mode'));
-  new ResizeObserver(() => stage.resize()).observe(byId('view'));
+  const bar = byId('toolbar');
+  const fit = new ResizeObserver(() => {
+    stage.covered = bar.offsetTop + bar.offsetHeight;
+    stage.resize();
+  });
+  for (const part of [byId('view'), bar]) fit.observe(part);
 }
 
 let begun;
 const ready = new Promise((resolve) => (begun = resolve));
 readPayload(byId('softgauss-run').textContent.trim())
   .then((payload) => {
+    const pageText = payload.header.live ? ownText(byId('softgauss-run')) : null;
     byId('softgauss-run').textContent = '';
     const run = payload.header.live ? new LiveRun(payload) : new Run(payload);
-    window.softgauss = makeApi({ ...start(run, begun), ready });
+    window.softgauss = makeApi({ ...start(run, begun, pageText), ready });
   })
   .catch((error) => {
     complain('banner', error.message);

@@ -6,7 +6,10 @@
 
 import { Box3, Color, Matrix4, Vector3 } from 'three';
 
-/** {plots, shapes, arrows, metresPerNewton, com, cop, goals}; without a view only the plots. */
+/**
+ * {plots, shapes, beside, grids, arrows, metresPerNewton, com, cop, goals}; without a view only the
+ * plots.
+ */
 export function drawn(stage, plots, origin) {
   const curves = plots?.drawn() ?? [];
   if (!stage) return { plots: curves };
@@ -18,6 +21,8 @@ export function drawn(stage, plots, origin) {
   return {
     plots: curves,
     shapes: robot.layers.flatMap((layer) => shapesOf(layer, offset)),
+    beside: stage.beside?.robot.layers.flatMap((layer) => shapesOf(layer, offset)) ?? null,
+    grids: stage.grounds.length,
     arrows: arrowsOf(contacts.forces, offset),
     metresPerNewton: contacts.metresPerNewton,
     com: place(marks.comBall),

@@ -29,6 +29,7 @@ export class Settings extends Emitter {
       forceScale: 1,
       limits: false,
       action: 'drag',
+      jerkTime: 0, // of a minimum-jerk line that a dragged point follows [s]; 0: a spring-damper
       pins: false,
       ...Object.fromEntries(MARKS.map(([key]) => [key, true])),
     };

@@ -6,8 +6,9 @@ import { numberField, section, switchField } from './fields.js';
 import { goalsText } from './goals_text.js';
 import { save } from '../app/save.js';
 
+// Keys of a goal, with units; a weight's is of the goal's kind.
 const NUMBERS = [
-  ['weight', ''],
+  ['weight', null],
   ['stiffness', '1/s²'],
   ['damping', '1/s'],
   ['rate', '1/s'],
@@ -15,10 +16,12 @@ const NUMBERS = [
 
 function row(link, goal) {
   const set = (fields) => link.tell({ goal: { goal: goal.name, ...fields } });
-  const toggle = switchField(goal.link ? `${goal.name}: ${goal.link}` : goal.name, (on) => set({ on }));
+  const law = goal.duration ? `, in ${goal.duration} s` : '';
+  const title = goal.link ? `${goal.name}: ${goal.link}${law}` : goal.name;
+  const toggle = switchField(title, (on) => set({ on }));
   const fields = NUMBERS.filter(([key]) => key in goal).map(([key, unit]) => [
     key,
-    numberField(key, unit, (value) => set({ [key]: value })),
+    numberField(key, unit ?? goal.weight_unit, (value) => set({ [key]: value })),
   ]);
   return {
     node: element(
@@ -34,13 +37,41 @@ function row(link, goal) {
   };
 }
 
-export function goalList(link, run) {
+/** By which law a point that is dragged comes to the mouse. */
+function dragLaw(settings) {
+  const seconds = element('input', {
+    type: 'number',
+    min: 0.01,
+    max: 100,
+    step: 0.1,
+    value: 0.5,
+    'aria-label': 'Duration of a minimum-jerk line in s',
+  });
+  const law = element(
+    'select',
+    { 'aria-label': 'A dragged point comes by' },
+    element('option', { value: 'spring' }, 'spring-damper'),
+    element('option', { value: 'jerk' }, 'minimum jerk'),
+  );
+  const time = element('span', { class: 'jerk-time' }, ' in ', seconds, ' s');
+  const set = () => {
+    time.hidden = law.value !== 'jerk';
+    const duration = Math.min(100, Math.max(0.01, seconds.valueAsNumber || 0.5));
+    settings.set('jerkTime', time.hidden ? 0 : duration);
+  };
+  law.addEventListener('change', set);
+  seconds.addEventListener('change', set);
+  set();
+  return element('div', { class: 'drag-law' }, 'A dragged point comes by ', law, time);
+}
+
+export function goalList(link, run, settings) {
   const list = element('div');
   const none = element('p', { class: 'quiet' }, run.live.passive ? 'Nothing drives this run: links can be pushed.' : '');
   let rows = new Map();
   let shape = '';
   link.on('status', ({ goals }) => {
-    const next = JSON.stringify(goals.map((goal) => [goal.name, goal.link]));
+    const next = JSON.stringify(goals.map((goal) => [goal.name, goal.link, goal.duration]));
     if (next !== shape) {
       shape = next;
       rows = new Map(goals.map((goal) => [goal.name, row(link, goal)]));
@@ -52,6 +83,7 @@ export function goalList(link, run) {
     'Goals',
     true,
     none,
+    run.live.passive ? null : dragLaw(settings),
     list,
     element(
       'button',

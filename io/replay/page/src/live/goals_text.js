@@ -13,6 +13,7 @@ function keysOf(goal) {
         `point: ${list(goal.point)}`,
         `target: ${list(goal.target)}`,
         ...numbers,
+        ...(goal.duration ? [`minimum_jerk: {duration: ${goal.duration}}`] : []),
       ]
     : numbers;
 }

@@ -96,7 +96,15 @@ export class Handle {
 
   #grab() {
     const { link, point, target } = this.held;
-    this.link.tell({ grab: { link: link.name, point, target: this.#inWorld(target) } });
+    const duration = this.settings.get('jerkTime');
+    this.link.tell({
+      grab: {
+        link: link.name,
+        point,
+        target: this.#inWorld(target),
+        ...(duration > 0 ? { duration } : {}),
+      },
+    });
   }
 
   /** Where the held point is now. */

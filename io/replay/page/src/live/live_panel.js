@@ -2,9 +2,13 @@
 // What a live run has in place of plots: figures, goals, the world, and joints of a paused run.
 
 import { element } from '../app/dom.js';
+import { withRun } from '../app/own_text.js';
+import { save } from '../app/save.js';
+import { packRun } from '../data/pack.js';
 import { numberField, section, switchField } from './fields.js';
 import { figures } from './figures.js';
 import { goalList } from './goal_list.js';
+import { Recorder } from './recorder.js';
 
 function world(link, run) {
   const axes = ['x', 'y', 'z'];
@@ -58,7 +62,31 @@ function joints(link, run) {
   return section('Joints', false, hint, ...rows.map(({ node }) => node));
 }
 
-export function livePanel(host, link, run) {
+/** What this page has seen, as a page that replays it. */
+function saveReplay(run, recorder, pageText) {
+  const button = element(
+    'button',
+    {
+      type: 'button',
+      class: 'wide',
+      disabled: true,
+      title: 'What this page has seen of the run, as a page that replays it',
+      onclick: async () => {
+        button.disabled = true;
+        const { header, arrays } = recorder.contents();
+        const page = withRun(pageText, await packRun(header, arrays));
+        save(`${run.header.model || 'run'}.html`, new Blob([page], { type: 'text/html' }));
+        button.disabled = false;
+      },
+    },
+    'Save replay page',
+  );
+  recorder.onFirst(() => (button.disabled = false));
+  return button;
+}
+
+/** `pageText`: this page without a run. */
+export function livePanel(host, link, run, settings, pageText) {
   const state = element('p', { class: 'live-state', role: 'status', id: 'live-state' });
   const write = element(
     'button',
@@ -89,7 +117,8 @@ export function livePanel(host, link, run) {
       { class: 'scroll live-panel' },
       state,
       write,
-      goalList(link, run),
+      goalList(link, run, settings),
+      saveReplay(run, new Recorder(run, link), pageText),
       figures(link),
       world(link, run),
       joints(link, run),

@@ -44,9 +44,11 @@ export class Inspector {
     const { position, quaternion } = this.run.linkPose(link, poses);
     const { linear, angular } = this.run.linkVelocity(link, time, poses);
     const show = (key, text) => {
-      if (this.cells[key].textContent !== text) this.cells[key].textContent = text;
+      if (this.cells[key].textContent === text) return;
+      this.cells[key].textContent = text;
+      if (key === 'body' || key === 'joint') this.cells[key].title = text;
     };
-    this.title.textContent = link.name;
+    this.title.textContent = this.title.title = link.name;
     show('body', body.name === link.name ? 'itself' : body.name);
     show('joint', body.joint ? `${body.joint}, ${body.kind}` : 'fixed to the world');
     show('position', triple(position, 4));

@@ -138,12 +138,13 @@ function marksMenu(host, run, stage, settings) {
     'div',
     { class: 'menu', hidden: true, id: 'marks' },
     ...rows,
-    element(
-      'p',
-      { class: 'quiet' },
-      `Grid: ${number(stage.cell)} m and ${number(10 * stage.cell)} m` +
-        (stage.planes.length > 0 ? '' : '. The run has no ground: the grid is for the eye.'),
-    ),
+    stage.planes.length > 0
+      ? element(
+          'p',
+          { class: 'quiet' },
+          `Grid: ${number(stage.cell)} m and ${number(10 * stage.cell)} m`,
+        )
+      : null,
   );
   const button = element(
     'button',

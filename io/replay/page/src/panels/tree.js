@@ -82,8 +82,8 @@ export class Tree {
       'span',
       { class: 'row' },
       twist,
-      element('span', { class: 'name' }, node.name),
-      joint && joint !== node.name ? element('span', { class: 'joint' }, short) : null,
+      element('span', { class: 'name', title: node.name }, node.name),
+      joint && joint !== node.name ? element('span', { class: 'joint', title: joint }, short) : null,
     );
     const item = element(
       'li',

@@ -22,7 +22,7 @@ export function bookmarkCamera(stage, origin) {
     camera.chosen = true;
     stage.changed = true;
   }
-  camera.controls.addEventListener('end', () => {
+  const write = () => {
     const numbers = [...camera.camera.position.toArray(), ...camera.controls.target.toArray()]
       .map((x, i) => (x + origin[i % 3]).toFixed(3))
       .join(',');
@@ -31,5 +31,15 @@ export function bookmarkCamera(stage, origin) {
     } catch {
       // Some browsers keep the address of a file as it is.
     }
+  };
+  // After it was let go it glides on for a while.
+  let touched = false;
+  let timer = null;
+  camera.controls.addEventListener('start', () => (touched = true));
+  camera.controls.addEventListener('end', write);
+  camera.controls.addEventListener('change', () => {
+    if (!touched) return;
+    clearTimeout(timer);
+    timer = setTimeout(write, 150);
   });
 }

@@ -12,8 +12,6 @@ export const PRESETS = {
   top: [0, -0.0015, 1],
 };
 
-const TOOLBAR = 46; // height of what lies over the view [pixels]
-
 export class Camera {
   constructor(canvas, size) {
     this.camera = new PerspectiveCamera(35, 1, 0.01, 100);
@@ -34,10 +32,10 @@ export class Camera {
   }
 
   /** The upper edge is under the toolbar, so the middle of the view is a little lower. */
-  resize(width, height) {
+  resize(width, height, covered) {
     this.camera.aspect = width / height;
-    this.clear = Math.max(0.5, 1 - TOOLBAR / height);
-    this.camera.setViewOffset(width, height, 0, -TOOLBAR / 2, width, height);
+    this.clear = Math.max(0.5, 1 - covered / height);
+    this.camera.setViewOffset(width, height, 0, -0.5 * (1 - this.clear) * height, width, height);
   }
 
   /** Looks at a sphere so that it fills the view, from a preset or from where the camera is. */

@@ -26,6 +26,21 @@ export const visualGhost = () =>
 export const collisionGhost = () =>
   withRim(new MeshLambertMaterial({ ...seeThrough, color: '#3aa9d8', opacity: 0.16 }), 0.85, 2.5);
 
+/** Of a run beside another: behind it where both are in the same place. */
+export const fadedGhost = () =>
+  withRim(
+    new MeshLambertMaterial({
+      ...seeThrough,
+      vertexColors: true,
+      opacity: 0.3,
+      polygonOffset: true,
+      polygonOffsetFactor: 2,
+      polygonOffsetUnits: 2,
+    }),
+    0.6,
+    2,
+  );
+
 /** Laid over the shapes of the selected link, seen through what is before them. */
 export const highlight = () =>
   withRim(

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // What has a shape: visual shapes, collision shapes, and the highlight of the selected link.
 //
-// Three layers: opaque visuals, translucent visuals, collision shapes. `visual` shows collision
-// shapes of links that have no visual; `both` makes ghosts of the visuals.
+// Layers: opaque visuals, translucent visuals, collision shapes, and those with an image, a layer
+// each. `visual` shows collision shapes of links that have no visual; `both` makes ghosts of the
+// visuals.
 
 import {
   Box3,
@@ -15,8 +16,9 @@ import {
   Sphere,
   Vector3,
 } from 'three';
+import { showImage } from './images.js';
 import { BodyMatrices, Layer } from './layer.js';
-import { collisionGhost, highlight, visualGhost } from './materials.js';
+import { collisionGhost, fadedGhost, highlight, visualGhost } from './materials.js';
 import { localMatrix, Shapes, surfaceColor } from './shapes.js';
 
 const MOVING = ['#7f97ad', '#93a9bc', '#6d8aa5', '#a4b4c2'];
@@ -60,16 +62,26 @@ export class Robot {
     this.collisionSolid = standard({ roughness: 0.75, metalness: 0 });
     this.collisionGhost = collisionGhost();
 
-    this.opaque = new Layer(
-      visuals.filter((item) => item.opaque),
+    const plain = visuals.filter((item) => item.image === null);
+    const layerOf = (items, material) => Object.assign(new Layer(items, material), { material });
+    this.opaque = layerOf(
+      plain.filter((item) => item.opaque),
       this.solid,
     );
-    this.translucent = new Layer(
-      visuals.filter((item) => !item.opaque),
+    this.translucent = layerOf(
+      plain.filter((item) => !item.opaque),
       this.clear,
     );
+    this.imaged = (run.header.images ?? []).flatMap((_, image) =>
+      [true, false].map((opaque) => {
+        const items = visuals.filter((item) => item.image === image && item.opaque === opaque);
+        const material = standard(opaque ? {} : { transparent: true, opacity: 0.45, depthWrite: false });
+        return Object.assign(layerOf(items, material), { image });
+      }),
+    );
+    this.visual = [this.opaque, this.translucent, ...this.imaged];
     this.collision = new Layer(collisions, this.collisionSolid);
-    this.layers = [this.opaque, this.translucent, this.collision];
+    this.layers = [...this.visual, this.collision];
     this.group.add(...this.layers.map((layer) => layer.mesh));
 
     this.highlight = new Group();
@@ -88,23 +100,41 @@ export class Robot {
       link: source.link,
       color: color(piece),
       opaque: piece.opaque,
+      image: piece.image,
     }));
   }
 
   setMode(mode) {
     this.mode = mode;
     const ghosts = mode === 'both';
-    this.opaque.mesh.material = ghosts ? this.visualGhost : this.solid;
-    this.translucent.mesh.material = ghosts ? this.visualGhost : this.clear;
+    for (const layer of this.visual) {
+      layer.mesh.material = ghosts ? this.visualGhost : layer.material;
+      layer.filter(() => mode !== 'collision');
+    }
     this.collision.mesh.material = ghosts ? this.collisionGhost : this.collisionSolid;
-    this.opaque.filter(() => mode !== 'collision');
-    this.translucent.filter(() => mode !== 'collision');
     this.collision.filter((item) => mode !== 'visual' || !this.withVisual.has(item.link));
-    for (const layer of [this.opaque, this.collision]) {
-      layer.mesh.castShadow = layer === this.opaque || !ghosts;
+    for (const layer of this.layers.filter(({ mesh }) => mesh !== this.translucent.mesh)) {
+      layer.mesh.castShadow = layer !== this.collision || !ghosts;
       layer.mesh.receiveShadow = !ghosts;
     }
     this.select(this.selected);
+  }
+
+  /** Puts the images on; a promise. */
+  showImages() {
+    return Promise.all(
+      this.imaged.map(({ image, material }) => showImage(this.run, image, material)),
+    );
+  }
+
+  /** From here on translucent, without shadows: as a run beside another is drawn. */
+  fade() {
+    const material = fadedGhost();
+    for (const { mesh } of this.layers) {
+      mesh.material = material;
+      mesh.castShadow = mesh.receiveShadow = false;
+      mesh.renderOrder = 1;
+    }
   }
 
   place(poses) {

@@ -31,9 +31,12 @@ export function surfaceColor([r, g, b]) {
   return new Color().setRGB(lift(r), lift(g), lift(b), SRGBColorSpace);
 }
 
-/** A BatchedMesh wants the same attributes everywhere: position, normal, colour and an index. */
-function complete(geometry) {
-  geometry.deleteAttribute('uv');
+/**
+ * A BatchedMesh wants the same attributes everywhere: position, normal, colour and an index; and uv
+ * where an image is drawn.
+ */
+function complete(geometry, hasImage = false) {
+  if (!hasImage) geometry.deleteAttribute('uv');
   const count = geometry.getAttribute('position').count;
   if (!geometry.getAttribute('color'))
     geometry.setAttribute('color', new BufferAttribute(new Float32Array(3 * count).fill(1), 3));
@@ -60,8 +63,9 @@ export class Shapes {
   }
 
   /**
-   * Of a shape: [{geometry, scale, opaque, coloured}]. A mesh of which parts are translucent gives
-   * two; `opaque` is null where who uses the shape says. Empty for planes, which have no size.
+   * Of a shape: [{geometry, scale, opaque, coloured, image}]. A mesh of which parts are translucent,
+   * or have an image, gives several; `opaque` is null where who uses the shape says, `image` where
+   * there is none. Empty for planes, which have no size.
    */
   pieces(shape) {
     switch (shape.kind) {
@@ -73,7 +77,7 @@ export class Shapes {
         return [this.#primitive('box', shape.halfExtents)];
       case 'capsule':
         return [
-          { geometry: this.#capsule(shape), scale: [1, 1, 1], opaque: null, coloured: false },
+          { geometry: this.#capsule(shape), scale: [1, 1, 1], opaque: null, coloured: false, image: null },
         ];
       case 'mesh':
         return this.#once(`mesh ${shape.mesh}`, () => this.#mesh(shape.mesh));
@@ -84,7 +88,8 @@ export class Shapes {
 
   #primitive(kind, scale) {
     const geometry = this.#once(kind, () => complete(PRIMITIVES[kind]()));
-    return { geometry, scale: scale.map((x) => Math.max(x, 1e-6)), opaque: null, coloured: false };
+    const positive = scale.map((x) => Math.max(x, 1e-6));
+    return { geometry, scale: positive, opaque: null, coloured: false, image: null };
   }
 
   #capsule({ radius, halfLength }) {
@@ -98,36 +103,44 @@ export class Shapes {
     const vertices = this.run.array(mesh.vertices);
     const triangles = this.run.array(mesh.triangles);
     const { position, normal } = withNormals(vertices, triangles);
-    if (mesh.parts.length === 0) return [this.#piece(position, normal, null, null)];
+    if (mesh.parts.length === 0) return [this.#piece({ position, normal }, null)];
+    const uv = mesh.uv ? this.run.array(mesh.uv) : null;
     const color = new Float32Array(position.length);
-    const pieces = [];
-    for (const opaque of [true, false]) {
-      const parts = mesh.parts.filter((part) => part.rgba[3] >= 1 === opaque);
-      if (parts.length === 0) continue;
-      const corners = [];
-      for (const part of parts) {
-        const { r, g, b } = surfaceColor(part.rgba);
-        for (let c = 3 * part.first; c < 3 * (part.first + part.count); ++c) {
-          corners.push(c);
-          color.set([r, g, b], 3 * c);
-        }
+    const kinds = new Map(); // of parts, and their corners
+    for (const part of mesh.parts) {
+      const image = uv ? (part.image ?? null) : null;
+      const opaque = part.rgba[3] >= 1;
+      const key = `${image} ${opaque}`;
+      if (!kinds.has(key)) kinds.set(key, { image, opaque, corners: [] });
+      const { r, g, b } = image === null ? surfaceColor(part.rgba) : { r: 1, g: 1, b: 1 };
+      for (let c = 3 * part.first; c < 3 * (part.first + part.count); ++c) {
+        kinds.get(key).corners.push(c);
+        color.set([r, g, b], 3 * c);
       }
-      const take = (from) =>
-        Float32Array.from(
-          { length: 3 * corners.length },
-          (_, i) => from[3 * corners[Math.floor(i / 3)] + (i % 3)],
-        );
-      pieces.push(this.#piece(take(position), take(normal), take(color), opaque));
     }
-    return pieces;
+    return [...kinds.values()].map(({ image, opaque, corners }) => {
+      const take = (from, size) =>
+        Float32Array.from(
+          { length: size * corners.length },
+          (_, i) => from[size * corners[Math.floor(i / size)] + (i % size)],
+        );
+      const attributes = { position: take(position, 3), normal: take(normal, 3), color: take(color, 3) };
+      if (image !== null) attributes.uv = take(uv, 2);
+      return this.#piece(attributes, opaque, image);
+    });
   }
 
-  #piece(position, normal, color, opaque) {
+  #piece(attributes, opaque, image = null) {
     const geometry = new BufferGeometry();
-    geometry.setAttribute('position', new BufferAttribute(position, 3));
-    geometry.setAttribute('normal', new BufferAttribute(normal, 3));
-    if (color) geometry.setAttribute('color', new BufferAttribute(color, 3));
-    return { geometry: complete(geometry), scale: [1, 1, 1], opaque, coloured: color !== null };
+    for (const [name, array] of Object.entries(attributes))
+      geometry.setAttribute(name, new BufferAttribute(array, name === 'uv' ? 2 : 3));
+    return {
+      geometry: complete(geometry, image !== null),
+      scale: [1, 1, 1],
+      opaque,
+      coloured: 'color' in attributes,
+      image,
+    };
   }
 }
 

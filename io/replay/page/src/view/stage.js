@@ -18,6 +18,7 @@ import {
 } from 'three';
 import { Emitter } from '../app/emitter.js';
 import { placed } from '../data/transform.js';
+import { Beside } from './beside.js';
 import { Camera } from './camera.js';
 import { Contacts } from './contacts.js';
 import { Ground, gridCell } from './ground.js';
@@ -64,10 +65,8 @@ export class Stage extends Emitter {
     this.size = 2 * radius;
     this.planes = planesOf(run);
     this.cell = gridCell(this.size);
-    // Without a ground a grid under the robot tells up from down.
-    this.grounds = (this.planes.length > 0 ? this.planes : [this.#orientation()]).map(
-      (plane) => new Ground(plane, this.cell),
-    );
+    this.grounds = this.planes.map((plane) => new Ground(plane, this.cell));
+    this.beside = null;
     this.contacts = new Contacts(run, this.size);
     this.marks = new Marks(run, this.size, this.planes);
     for (const part of [
@@ -82,18 +81,13 @@ export class Stage extends Emitter {
     this.raycaster = new Raycaster();
     this.following = null;
     this.pictures = 0;
-    [this.width, this.height] = [0, 0];
+    this.fitted = []; // width, height and what is covered, as the camera has them
+    this.covered = 0; // of the view, at its top, by what lies over it [pixels]
     this.coarse = false;
     this.pace = 0;
     this.changed = true;
     this.#listen();
     this.moveTo(run.start);
-  }
-
-  #orientation() {
-    const lowest = this.robot.bounds().min.z;
-    const [x, y, z] = this.poses;
-    return { body: 0, p: [-x, -y, lowest - z], q: [1, 0, 0, 0] };
   }
 
   #addLights() {
@@ -167,6 +161,7 @@ export class Stage extends Emitter {
     this.time = time;
     this.run.posesAt(time, this.poses);
     this.robot.place(this.poses);
+    this.beside?.moveTo(time);
     this.contacts.update(time, this.poses);
     this.camera?.carry(this.#followedPoint());
     this.changed = true;
@@ -180,6 +175,28 @@ export class Stage extends Emitter {
     }
     const link = this.run.linkByName.get(this.following);
     return new Vector3(...placed(this.poses, link.body, link).p);
+  }
+
+  /** Puts the run's images on its surfaces; a promise. */
+  async showImages() {
+    await this.robot.showImages();
+    this.changed = true;
+  }
+
+  /** Draws another run beside this one, or none. */
+  showBeside(run) {
+    if (this.beside) {
+      this.scene.remove(this.beside.group);
+      this.beside.dispose();
+    }
+    this.beside = run ? new Beside(run, this.run.header.origin) : null;
+    if (!run) {
+      this.changed = true;
+      return;
+    }
+    this.scene.add(this.beside.group);
+    this.moveTo(this.time);
+    if (!this.camera.chosen) this.frameAll();
   }
 
   /** `what`: 'com', the name of a link, or null. */
@@ -197,6 +214,7 @@ export class Stage extends Emitter {
 
   frameAll(preset = null) {
     const box = this.robot.bounds();
+    if (this.beside) box.union(this.beside.bounds());
     for (const target of this.marks.targets(this.time)) box.expandByPoint(target);
     this.camera.frame(box.getBoundingSphere(new Sphere()), preset);
     this.camera.chosen = false;
@@ -221,11 +239,12 @@ export class Stage extends Emitter {
   resize() {
     const { clientWidth: width, clientHeight: height } = this.canvas.parentElement;
     if (width === 0 || height === 0) return;
-    const isOther = width !== this.width || height !== this.height;
-    [this.width, this.height] = [width, height];
+    const size = [width, height, this.covered];
+    const isOther = size.some((pixels, i) => pixels !== this.fitted[i]);
+    this.fitted = size;
     this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio) * (this.coarse ? 0.5 : 1));
     this.renderer.setSize(width, height, false);
-    this.camera.resize(width, height);
+    this.camera.resize(width, height, this.covered);
     if (isOther && !this.camera.chosen) this.frameAll();
     // The resized canvas is empty, and is shown before the next turn of the clock.
     this.changed = true;
