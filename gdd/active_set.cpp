@@ -67,6 +67,14 @@ const VectorX& ActiveSet::costSlope(Data& data) {
   return costSlope_;
 }
 
+/// Whether enterCell() has met all rows that are at their breakpoints: a path may bring another one
+/// there.
+bool ActiveSet::knowsRowsAtKnots() const {
+  std::size_t known = 0;
+  for (const int i : constrained_) known += path_.held[i].atBreakpoint;
+  return known == static_cast<std::size_t>(path_.held.atBreakpoints());
+}
+
 /// q = Bᵀ(R (B u − ĝ) + P⁻¹∇ℓ); false when not finite.
 bool ActiveSet::computeGradient(Data& data) {
   cell_.multiplyTransposed(costSlope(data), gradient_);
@@ -253,6 +261,8 @@ std::optional<GddStatus> ActiveSet::descend(const GoalCost& cost, double wanted,
       } else {
         stationary = !moved && path.crossings == 0 && held.atBreakpoints() <= heldBefore;
       }
+      // The program must have had a say about every row that is at its breakpoint.
+      stationary = stationary && knowsRowsAtKnots();
     }
     if (!stationary) continue;
     report_.stationarity = predicted / std::max(merit_, 1e-300);

@@ -80,6 +80,7 @@ class ActiveSet {
   double objective() const { return effort() + path_.value + forces_.value(); }  ///< F
   void computeResidual(const Data& data);
   bool enterCell(const GoalCost& cost, Data& data);
+  bool knowsRowsAtKnots() const;
   void evaluateCost(const GoalCost& cost, const Data& data);
   void evaluateForces(Data& data);
   const VectorX& costSlope(Data& data);
