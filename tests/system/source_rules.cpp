@@ -18,10 +18,19 @@ constexpr std::size_t kMaxLines = 400;
 const Names kLongFiles = {};
 
 const Names kFolders = {"engine", "gdd", "collision", "io", "apps", "tests", "data", "docs"};
-const Names kRootFiles = {"CMakeLists.txt",    "README.md",     "LICENSE",
-                          "CHANGELOG.md",      "CITATION.cff",  "CONTRIBUTING.md",
-                          "CMakePresets.json", ".clang-format", ".clang-tidy",
-                          ".gitignore",        ".ci",           "dev"};
+const Names kRootFiles = {"CMakeLists.txt",
+                          "README.md",
+                          "LICENSE",
+                          "CHANGELOG.md",
+                          "CITATION.cff",
+                          "CONTRIBUTING.md",
+                          "pyproject.toml",
+                          "CMakePresets.json",
+                          ".clang-format",
+                          ".clang-tidy",
+                          ".gitignore",
+                          ".ci",
+                          "dev"};
 // Not part of the project: git's, the build's and the editor's own, and what .gitignore names.
 const Names kLocal = {
     ".git",    "build", "compile_commands.json", "CMakeUserPresets.json", ".cache",
@@ -99,13 +108,14 @@ bool mayUse(const SourceFile& file, const std::string& layer, const std::string&
 }  // namespace
 
 bool SourceFile::isCpp() const { return path.ends_with(".cpp") || path.ends_with(".hpp"); }
+bool SourceFile::isPython() const { return path.ends_with(".py") || path.ends_with(".pyi"); }
 bool SourceFile::isCode() const {
-  return isCpp() || path.ends_with(".mjs") || path.ends_with(".js");
+  return isCpp() || isPython() || path.ends_with(".mjs") || path.ends_with(".js");
 }
 
 std::vector<SourceFile> readTree(const std::string& root) {
-  const Names kinds = {".cpp",   ".hpp", ".mjs",  ".js",   ".sh",   ".css", ".txt",
-                       ".cmake", ".in",  ".json", ".yaml", ".urdf", ".md"};
+  const Names kinds = {".cpp", ".hpp",  ".mjs",  ".js",   ".sh", ".css", ".txt", ".cmake",
+                       ".in",  ".json", ".yaml", ".urdf", ".md", ".py",  ".pyi", ".toml"};
   std::vector<SourceFile> files;
   const auto read = [&](const fs::path& path) {
     SourceFile& file = files.emplace_back();
@@ -176,8 +186,8 @@ Complaints checkLength(const SourceFile& file) {
 Complaints checkLicence(const SourceFile& file) {
   const bool isCMake = file.path.ends_with("CMakeLists.txt") || file.path.ends_with(".cmake");
   if (!file.isCode() && !isCMake) return {};
-  const std::string licence =
-      std::string(file.isCode() ? "//" : "#") + " SPDX-License-Identifier: Apache-2.0";
+  const std::string licence = std::string(file.isCode() && !file.isPython() ? "//" : "#") +
+                              " SPDX-License-Identifier: Apache-2.0";
   if (!file.lines.empty() && file.lines.front() == licence) return {};
   return {complaint(file, 0, "the first line must be " + licence)};
 }

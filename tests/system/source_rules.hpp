@@ -18,8 +18,9 @@ struct SourceFile {
   std::string path;
   std::vector<std::string> lines;
 
-  bool isCpp() const;   ///< .cpp or .hpp
-  bool isCode() const;  ///< C++ or JavaScript
+  bool isCpp() const;     ///< .cpp or .hpp
+  bool isPython() const;  ///< .py or .pyi
+  bool isCode() const;    ///< C++, Python or JavaScript
 };
 
 using Complaints = std::vector<std::string>;  ///< `path:line: what is wrong`
@@ -41,7 +42,7 @@ Complaints checkFcl(const SourceFile& file);
 /// At most 400 lines, for what fits into one head is one file.
 Complaints checkLength(const SourceFile& file);
 
-/// First line of C++, JavaScript and CMake files: the licence.
+/// First line of C++, Python, JavaScript and CMake files: the licence.
 Complaints checkLicence(const SourceFile& file);
 
 /// No path of somebody's machine, and no note of work left over.

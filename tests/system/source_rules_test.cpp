@@ -114,6 +114,7 @@ TEST(SourceRules, FilesThatGoOnAndOnAreFound) {
   EXPECT_TRUE(checkLength({"engine/a.cpp", std::vector<std::string>(400)}).empty());
   EXPECT_FALSE(checkLength({"engine/a.cpp", std::vector<std::string>(401)}).empty());
   EXPECT_FALSE(checkLength({"tests/a/a.mjs", std::vector<std::string>(401)}).empty());
+  EXPECT_FALSE(checkLength({"tests/a/a.py", std::vector<std::string>(401)}).empty());
 }
 
 TEST(SourceRules, MissingLicencesAreFound) {
@@ -122,6 +123,8 @@ TEST(SourceRules, MissingLicencesAreFound) {
   EXPECT_EQ(count(checkLicence, "gdd/CMakeLists.txt", "project(x)"), 1u);
   EXPECT_EQ(count(checkLicence, "tests/a/a.mjs", "import x;"), 1u);
   EXPECT_EQ(count(checkLicence, "io/a/a.js", "import x;"), 1u);
+  EXPECT_EQ(count(checkLicence, "tests/a/a.py", "# SPDX-License-Identifier: Apache-2.0"), 0u);
+  EXPECT_EQ(count(checkLicence, "tests/a/a.py", "import x"), 1u);
   EXPECT_FALSE(checkLicence({"gdd/goal.hpp", {}}).empty());
 }
 

@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/python/goals.hpp"
+
+#include <algorithm>
+
+#include "apps/python/arrays.hpp"
+
+namespace softgauss::python {
+namespace {
+
+using Targets = std::vector<double*>;
+
+template <class Vector>
+Targets entriesOf(Vector& x) {
+  Targets out;
+  for (Eigen::Index i = 0; i < x.size(); ++i) out.push_back(&x[i]);
+  return out;
+}
+
+Targets valuesOf(std::vector<gdd::JointTarget>& joints) {
+  Targets out;
+  for (gdd::JointTarget& joint : joints) out.push_back(&joint.value);
+  return out;
+}
+
+Targets both(Vector3& first, Vector3& second) {
+  Targets out = entriesOf(first);
+  for (double* x : entriesOf(second)) out.push_back(x);
+  return out;
+}
+
+// ---- What each kind seeks, and how much it weighs
+
+Targets targetOfKind(gdd::Reach& g) { return entriesOf(g.p_WTarget); }
+Targets targetOfKind(gdd::LookAt& g) { return entriesOf(g.p_WTarget); }
+Targets targetOfKind(gdd::CenterOfMass& g) { return entriesOf(g.p_WTarget); }
+Targets targetOfKind(gdd::CapturePoint& g) { return entriesOf(g.p_WTarget); }
+Targets targetOfKind(gdd::CenterOfPressure& g) { return entriesOf(g.p_WTarget); }
+Targets targetOfKind(gdd::ContactForce& g) { return entriesOf(g.force); }
+Targets targetOfKind(gdd::MomentumGoal& g) { return both(g.linear, g.angular); }
+Targets targetOfKind(gdd::LinkAcceleration& g) {
+  return g.angular ? both(g.linear, *g.angular) : entriesOf(g.linear);
+}
+Targets targetOfKind(gdd::JointAcceleration& g) { return valuesOf(g.targets); }
+Targets targetOfKind(gdd::JointPosture& g) { return valuesOf(g.targets); }
+Targets targetOfKind(gdd::Posture& g) { return entriesOf(g.q); }
+Targets targetOfKind(gdd::KeepClear& g) { return {&g.distance}; }
+Targets targetOfKind(gdd::Hold&) { return {}; }
+Targets targetOfKind(gdd::VirtualDamping&) { return {}; }
+Targets targetOfKind(gdd::Effort&) { return {}; }
+
+template <class Kind>
+double* weightOfKind(Kind& g) {
+  return &g.weight;
+}
+double* weightOfKind(gdd::MomentumGoal& g) { return &g.linearWeight; }
+
+template <class Kind, class F>
+bool callAs(gdd::Goal& goal, F&& f) {
+  auto* kind = dynamic_cast<Kind*>(&goal);
+  if (kind) f(*kind);
+  return kind != nullptr;
+}
+
+template <class... Kinds, class F>
+void callAsAny(gdd::Goal& goal, F&& f) {
+  static_cast<void>((callAs<Kinds>(goal, f) || ...));
+}
+
+template <class F>
+void visitKind(gdd::Goal& goal, F&& f) {
+  using namespace gdd;
+  callAsAny<Reach, JointAcceleration, JointPosture, Posture, LinkAcceleration, LookAt, Hold,
+            VirtualDamping, CenterOfMass, CapturePoint, CenterOfPressure, ContactForce,
+            MomentumGoal, KeepClear, Effort>(goal, f);
+}
+
+/// A goal as Python holds it: it looks whether the goal is there still.
+class Handle {
+ public:
+  Handle(Held& held, gdd::Goal& goal) : held_(held), goal_(&goal) {}
+
+  gdd::Goal& get() const {
+    const auto& goals = held_.sim().controller().goals;
+    for (const auto& goal : goals)
+      if (goal.get() == goal_) return *goal_;
+    throw std::runtime_error("this goal is gone: the goals of its simulation were cleared");
+  }
+
+  VectorX target() const {
+    const Targets numbers = targets();
+    VectorX x(static_cast<Eigen::Index>(numbers.size()));
+    for (Eigen::Index i = 0; i < x.size(); ++i) x[i] = *numbers[static_cast<std::size_t>(i)];
+    return x;
+  }
+
+  void setTarget(const py::object& given) const {
+    const Targets numbers = targets();
+    const VectorX x = vectorOf(given, "target", static_cast<Eigen::Index>(numbers.size()),
+                               "numbers of goal '" + get().name() + "'");
+    if (!x.allFinite()) throw py::value_error("target: found NaN or ∞, expected finite numbers");
+    for (Eigen::Index i = 0; i < x.size(); ++i) *numbers[static_cast<std::size_t>(i)] = x[i];
+  }
+
+  double& weight() const {
+    double* weight = nullptr;
+    visitKind(get(), [&](auto& kind) { weight = weightOfKind(kind); });
+    if (!weight) throw py::type_error("goal '" + get().name() + "' has no weight");
+    return *weight;
+  }
+
+  void setWeight(double weight) const {
+    if (!(weight >= 0.0 && weight < kInfinity))
+      throw py::value_error("weight: found " + std::to_string(weight) + ", expected 0 or more");
+    this->weight() = weight;
+  }
+
+ private:
+  Targets targets() const {
+    Targets numbers = targetOf(get());
+    if (numbers.empty()) throw py::type_error("goal '" + get().name() + "' has no target");
+    return numbers;
+  }
+
+  Held& held_;
+  gdd::Goal* goal_;
+};
+
+std::vector<Handle> handlesOf(GoalList& list, const std::vector<gdd::Goal*>& goals) {
+  std::vector<Handle> handles;
+  for (gdd::Goal* goal : goals) handles.emplace_back(list.held, *goal);
+  return handles;
+}
+
+/// A list whose handles keep the simulation.
+py::list kept(const py::object& self, const std::vector<gdd::Goal*>& goals) {
+  py::list out;
+  for (const Handle& handle : handlesOf(self.cast<GoalList&>(), goals)) {
+    py::object object = py::cast(handle);
+    py::detail::keep_alive_impl(object, self);
+    out.append(object);
+  }
+  return out;
+}
+
+void bindHandle(py::module_& m) {
+  py::class_<Handle>(m, "Goal", "A goal of a simulation, until its goals are cleared.")
+      .def_property_readonly(
+          "name", [](Handle& h) { return h.get().name(); },
+          "As in the summary: 'reach right_hand'.")
+      .def_property(
+          "target", &Handle::target, &Handle::setTarget,
+          "What it seeks: a place (3,) [m], a force (3,) [N], accelerations or positions\n"
+          "of its joints in their order, a configuration (nq,). TypeError where it seeks\n"
+          "none.")
+      .def_property("weight", &Handle::weight, &Handle::setWeight, "In the unit of its kind, ≥ 0.")
+      .def_property(
+          "start", [](Handle& h) { return h.get().startTime; },
+          [](Handle& h, double t) { h.get().startTime = t; }, "It acts from here on [s].")
+      .def_property(
+          "end", [](Handle& h) { return h.get().endTime; },
+          [](Handle& h, double t) { h.get().endTime = t; }, "And before this [s].")
+      .def("__repr__", [](Handle& h) { return "<softgauss.Goal '" + h.get().name() + "'>"; });
+}
+
+gdd::Goal& goalAt(GoalList& list, long i) {
+  SimulationGoals& goals = list.held.sim().goals;
+  const auto size = static_cast<long>(goals.size());
+  if (i < -size || i >= size)
+    throw py::index_error("goals: found " + std::to_string(i) + ", there are " +
+                          std::to_string(size));
+  return goals[static_cast<std::size_t>(i < 0 ? i + size : i)];
+}
+
+Handle reach(GoalList& list, const std::string& link, const py::object& target,
+             const py::object& point, std::optional<double> weight) {
+  return {list.held, list.held.sim().goals.reach(link, vector3Of(target, "target"),
+                                                 vector3Of(point, "point"), weight)};
+}
+
+}  // namespace
+
+std::vector<double*> targetOf(gdd::Goal& goal) {
+  Targets out;
+  visitKind(goal, [&](auto& kind) { out = targetOfKind(kind); });
+  return out;
+}
+
+std::string goalText(const py::object& goals) {
+  if (py::isinstance<py::str>(goals)) return goals.cast<std::string>();
+  py::object all = goals;
+  if (!py::isinstance<py::dict>(goals) || !goals.contains("goals")) {
+    py::dict whole;
+    whole["goals"] = py::isinstance<py::dict>(goals) ? py::object(py::cast(std::vector{goals}))
+                                                     : py::object(py::list(goals));
+    all = whole;
+  }
+  const auto arrays = py::cpp_function([](const py::object& x) { return x.attr("tolist")(); });
+  return py::module_::import("json")
+      .attr("dumps")(all, py::arg("default") = arrays, py::arg("ensure_ascii") = false)
+      .cast<std::string>();
+}
+
+void bindGoals(py::module_& m) {
+  bindHandle(m);
+  const py::tuple zero = py::make_tuple(0.0, 0.0, 0.0);
+  py::class_<GoalList>(
+      m, "Goals", "The goals of a simulation. Reach, hold and posture come with virtual damping.")
+      .def(
+          "reach", reach, py::arg("link"), py::arg("target"), py::arg("point") = zero,
+          py::arg("weight") = py::none(), py::keep_alive<0, 1>(),
+          "A point (3,) of the link [m] seeks a place (3,) in the world [m]. Called again for the\n"
+          "same point it moves the place. weight [kg]: 2.5 times the robot's mass. UnknownName.")
+      .def(
+          "hold",
+          [](GoalList& g, const std::string& link) {
+            return Handle(g.held, g.held.sim().goals.hold(link));
+          },
+          py::arg("link"), py::keep_alive<0, 1>(), "The link stays where and as it is.")
+      .def(
+          "posture",
+          [](GoalList& g, double weight) {
+            return Handle(g.held, g.held.sim().goals.posture(weight));
+          },
+          py::arg("weight") = gdd::Posture::kDefaultWeight, py::keep_alive<0, 1>(),
+          "All joints and bases seek the configuration of the start.")
+      .def(
+          "add",
+          [](const py::object& self, const py::object& goals) {
+            return kept(self, self.cast<GoalList&>().held.sim().goals.readText(goalText(goals)));
+          },
+          py::arg("goals"),
+          "Any goals of docs/reference/goals.md: the text of such a file, a dict {kind: {key: "
+          "value}} or a\n"
+          "list of them. Nothing comes with them. Returns a list of Goal. Raises ModelError.")
+      .def(
+          "read",
+          [](const py::object& self, const std::filesystem::path& file) {
+            return kept(self, self.cast<GoalList&>().held.sim().goals.read(file));
+          },
+          py::arg("file"), "The same from a YAML file.")
+      .def(
+          "clear", [](GoalList& g) { g.held.sim().goals.clear(); }, "No goals: robots are passive.")
+      .def("__len__", [](GoalList& g) { return g.held.sim().goals.size(); })
+      .def(
+          "__getitem__", [](GoalList& g, long i) { return Handle(g.held, goalAt(g, i)); },
+          py::arg("i"), py::keep_alive<0, 1>());
+}
+
+}  // namespace softgauss::python

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// A Simulation as Python holds it.
+
+#include <atomic>
+
+#include "apps/python/module.hpp"
+#include "apps/python/pushes.hpp"
+#include "softgauss/io/simulation/simulation.hpp"
+
+namespace softgauss::python {
+
+/// One thread at a time, from here on until it goes. Throws std::runtime_error where another is at
+/// work.
+class Turn {
+ public:
+  Turn(std::atomic<bool>& busy, const char* what);
+  ~Turn() { busy_.store(false, std::memory_order_release); }
+  Turn(const Turn&) = delete;
+  Turn& operator=(const Turn&) = delete;
+
+ private:
+  std::atomic<bool>& busy_;
+};
+
+/// Raises KeyboardInterrupt, or what else a signal asks for. Takes the interpreter's lock.
+void seeSignals();
+
+class Held {
+ public:
+  explicit Held(Simulation loaded) : sim_(std::move(loaded)) {}
+
+  /// For who keeps the interpreter's lock. Throws std::runtime_error while another thread steps.
+  Simulation& sim();
+  /// n steps without the interpreter's lock. Throws StepError where one is refused.
+  void step(long n);
+  void run(double seconds);
+  Pushes& pushes() { return pushes_; }
+
+  template <class F>
+  auto alone(F&& f) {
+    const Turn turn(busy_, "simulation");
+    return f(sim_);
+  }
+
+ private:
+  Simulation sim_;
+  Pushes pushes_;
+  std::atomic<bool> busy_ = false;
+};
+
+}  // namespace softgauss::python

@@ -1,0 +1,294 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Soft-constraint rigid-body physics with goal directed dynamics.
+
+SI units and radians; world axes with z up; quaternions are w first. The velocity of a floating base
+is the world velocity of its origin, then its angular velocity in its own axes.
+"""
+
+import os
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from softgauss_env import Box as Box
+from softgauss_env import Env as Env
+from softgauss_env import VectorEnv as VectorEnv
+
+Array = NDArray[np.float64]
+Path = str | os.PathLike[str]
+GoalDict = Mapping[str, Mapping[str, Any]]
+Goals_ = str | GoalDict | Sequence[GoalDict]
+
+__version__: str
+
+class ModelError(ValueError):
+    """A model, scene or goal that cannot be simulated."""
+
+class OptionError(ValueError):
+    """An option that does not fit what is loaded."""
+
+class UnknownName(LookupError):
+    """A link, joint or parameter that the model lacks, with the nearest that it has."""
+
+class StepError(ArithmeticError):
+    """A step that was refused: the time, the joint, the deepest contact."""
+
+class Goal:
+    """A goal of a simulation, until its goals are cleared."""
+
+    target: Array
+    weight: float
+    start: float
+    end: float
+    @property
+    def name(self) -> str: ...
+
+class Goals:
+    """The goals of a simulation. Reach, hold and posture come with virtual damping."""
+
+    def reach(
+        self,
+        link: str,
+        target: ArrayLike,
+        point: ArrayLike = (0, 0, 0),
+        weight: float | None = None,
+    ) -> Goal:
+        """A point (3,) of the link [m] seeks a place (3,) in the world [m]; again: another."""
+    def hold(self, link: str) -> Goal:
+        """The link stays where and as it is."""
+    def posture(self, weight: float = 1000.0) -> Goal:
+        """All joints and bases seek the configuration of the start."""
+    def add(self, goals: Goals_) -> list[Goal]:
+        """Any goals of docs/reference/goals.md: YAML text, a dict {kind: {key: value}} or a list of them."""
+    def read(self, file: Path) -> list[Goal]:
+        """The same from a YAML file."""
+    def clear(self) -> None: ...
+    def __len__(self) -> int: ...
+    def __getitem__(self, i: int) -> Goal: ...
+
+class Contacts:
+    """Contacts, one a row, world axes."""
+
+    @property
+    def links(self) -> list[tuple[str, str]]: ...
+    @property
+    def point(self) -> Array:
+        """(n, 3) [m]"""
+    @property
+    def normal(self) -> Array:
+        """(n, 3) unit, from the first link to the second"""
+    @property
+    def force(self) -> Array:
+        """(n, 3) on the second link [N]"""
+    def __len__(self) -> int: ...
+
+class Solution:
+    """What the controller answers to a state."""
+
+    @property
+    def tau(self) -> Array:
+        """(nv,) [N m or N]"""
+    @property
+    def a(self) -> Array:
+        """(nv,) [rad/s² or m/s²]"""
+    @property
+    def contacts(self) -> Contacts: ...
+    @property
+    def certified(self) -> bool: ...
+    @property
+    def status(self) -> str: ...
+    @property
+    def stationarity(self) -> float: ...
+    @property
+    def violation(self) -> float: ...
+    @property
+    def objective(self) -> float: ...
+    @property
+    def iterations(self) -> int: ...
+
+class Simulation:
+    """A URDF or a scene that is ready to run, with its goals and the defaults of simulate_gdd."""
+
+    q: Array  # (nq,) a view [rad or m; a base: x y z qw qx qy qz]
+    v: Array  # (nv,) a view [rad/s or m/s]
+    tau: Array  # (nv,) a view: force besides the controller [N m or N]
+
+    def __init__(
+        self,
+        file: Path,
+        *,
+        base: Literal["fixed", "floating"] = ...,
+        base_height: float = ...,
+        ground: float | None = ...,
+        timestep: float = ...,
+        q0: Mapping[str, float] = ...,
+        integrator: str = ...,
+        integration_tolerance: float = ...,
+        cone: Literal["pyramidal", "elliptic"] = ...,
+        gdd_solver: Literal["active-set", "augmented-lagrangian"] = ...,
+        control_cost: Literal["about-gravity", "total"] = ...,
+        meshes: Literal["auto", "hull", "triangles"] = ...,
+        collision: Literal["own", "fcl"] = ...,
+        compatibility: Literal["none", "mujoco"] = ...,
+        no_slip: bool = ...,
+        package_paths: Sequence[Path] = ...,
+        without_goals: bool = ...,
+    ) -> None: ...
+    @property
+    def goals(self) -> Goals: ...
+    def step(self, n: int = 1) -> None: ...
+    def run(self, seconds: float) -> None: ...
+    def reset(self) -> None: ...
+    def save(self) -> bytes: ...
+    def restore(self, saved: bytes) -> None: ...
+    def stand_on_ground(self) -> None: ...
+    @property
+    def time(self) -> float: ...
+    @property
+    def a(self) -> Array:
+        """(nv,) of the last step [rad/s² or m/s²]"""
+    def position(self, joint: str) -> float: ...
+    def velocity(self, joint: str) -> float: ...
+    def set_position(self, joint: str, q: float) -> None: ...
+    def set_velocity(self, joint: str, v: float) -> None: ...
+    def pose(self, link: str) -> Array:
+        """(4, 4) in the world, now"""
+    def torque(self, joint: str) -> float:
+        """Of the last step [N m or N]."""
+    def contact_force(self, link: str) -> Array:
+        """(3,) on the link in the last step, world [N]"""
+    def push(
+        self,
+        link: str,
+        force: ArrayLike,
+        moment: ArrayLike = (0, 0, 0),
+        point: ArrayLike = (0, 0, 0),
+    ) -> None:
+        """Force (3,) [N] and moment (3,) [N m] in every step from now on; zero: nothing."""
+    @property
+    def contacts(self) -> Contacts: ...
+    def solve(self, q: ArrayLike | None = None, v: ArrayLike | None = None) -> Solution:
+        """The controller without a step, at q (nq,) and v (nv,) or at the present ones."""
+    def forward_dynamics(
+        self, tau: ArrayLike | None = None, q: ArrayLike | None = None, v: ArrayLike | None = None
+    ) -> Array:
+        """(nv,) acceleration under tau (nv,)"""
+    def inverse_dynamics(
+        self, a: ArrayLike, q: ArrayLike | None = None, v: ArrayLike | None = None
+    ) -> Array:
+        """(nv,) force under which the acceleration is a (nv,)"""
+    def inverse_dynamics_jacobian(
+        self, a: ArrayLike, q: ArrayLike | None = None, v: ArrayLike | None = None
+    ) -> Array:
+        """(nv, nv) P = ∂τ/∂a"""
+    def mass_matrix(self, q: ArrayLike | None = None) -> Array:
+        """(nv, nv)"""
+    def jacobian(
+        self, link: str, point: ArrayLike = (0, 0, 0), q: ArrayLike | None = None
+    ) -> Array:
+        """(6, nv): velocity of the point, then angular velocity, world axes"""
+    @property
+    def name(self) -> str: ...
+    @property
+    def nq(self) -> int: ...
+    @property
+    def nv(self) -> int: ...
+    @property
+    def timestep(self) -> float: ...
+    @property
+    def mass(self) -> float: ...
+    @property
+    def links(self) -> list[str]: ...
+    @property
+    def joints(self) -> list[str]: ...
+    @property
+    def q_names(self) -> list[str]: ...
+    @property
+    def v_names(self) -> list[str]: ...
+    @property
+    def actuated(self) -> list[bool]: ...
+    @property
+    def effort(self) -> Array:
+        """(nv, 2) [N m or N]"""
+    @property
+    def range(self) -> Array:
+        """(nv, 2) [rad or m]"""
+    @property
+    def warnings(self) -> list[str]: ...
+
+class States:
+    """Many states of one simulation's scene, for runs that go on."""
+
+    def __init__(self, sim: Simulation, n: int) -> None: ...
+    def reset(
+        self, rows: ArrayLike | None = None, q: ArrayLike | None = None, v: ArrayLike | None = None
+    ) -> None: ...
+    @property
+    def q(self) -> Array:
+        """(n, nq) a copy"""
+    @property
+    def v(self) -> Array:
+        """(n, nv) a copy"""
+    @property
+    def time(self) -> Array:
+        """(n,) [s]"""
+    @property
+    def nbytes(self) -> int: ...
+    def __len__(self) -> int: ...
+
+class Runs:
+    """What a rollout gave. What comes after a failed step is NaN."""
+
+    @property
+    def q(self) -> Array:
+        """(runs, rows, nq)"""
+    @property
+    def v(self) -> Array:
+        """(runs, rows, nv)"""
+    @property
+    def a(self) -> Array:
+        """(runs, rows, nv)"""
+    @property
+    def tau(self) -> Array:
+        """(runs, rows, nv)"""
+    @property
+    def contact_forces(self) -> Array:
+        """(runs, rows, links, 3)"""
+    @property
+    def status(self) -> list[str]: ...
+    @property
+    def failure(self) -> list[str]: ...
+    @property
+    def steps(self) -> NDArray[np.int64]: ...
+
+class Rollout:
+    """Runs a simulation's scene many times on all cores."""
+
+    def __init__(self, sim: Simulation, threads: int = 0) -> None: ...
+    def run(
+        self,
+        steps: int,
+        *,
+        runs: int | None = None,
+        q0: ArrayLike | None = None,
+        v0: ArrayLike | None = None,
+        tau: ArrayLike | None = None,
+        parameters: Mapping[str, ArrayLike] | None = None,
+        goals: Goals_ | None = None,
+        targets: ArrayLike | None = None,
+        pushes: Mapping[str, ArrayLike] | None = None,
+        states: States | None = None,
+        outputs: Sequence[str] = ("q", "v"),
+        every: int = 1,
+        progress: Callable[[int, int], None] | None = None,
+    ) -> Runs: ...
+    @property
+    def threads(self) -> int: ...
+    @property
+    def contact_links(self) -> list[str]: ...
+    @property
+    def bytes_per_run(self) -> int: ...
+    @property
+    def bytes_per_thread(self) -> int: ...

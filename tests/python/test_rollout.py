@@ -1,0 +1,198 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Many runs: the bits of single ones, whatever the threads; errors; interrupts."""
+
+import subprocess
+import sys
+import threading
+import time
+
+import numpy as np
+import pytest
+from conftest import ROBOTS
+
+import softgauss
+
+HUMANOID, ARM = ROBOTS / "humanoid.urdf", ROBOTS / "arm.urdf"
+REACH = [{"reach": {"link": "hand", "target": [0.5, 0.2, 0.5]}}, {"damping": {}}]
+
+
+def some_runs(threads, runs=6):
+    sim = softgauss.Simulation(HUMANOID)
+    random = np.random.default_rng(1)
+    q0 = np.tile(sim.q, (runs, 1))
+    q0[:, 2] += 0.01 * np.arange(runs)
+    outputs = ("q", "v", "a", "tau", "contact_forces")
+    return (
+        softgauss.Rollout(sim, threads).run(
+            40,
+            q0=q0,
+            parameters={"friction:*": random.uniform(0.2, 1, runs), "damping:right_knee": 0.5},
+            goals={"posture": {}},
+            pushes={"pelvis": random.normal(scale=30, size=(runs, 3))},
+            outputs=outputs,
+            every=10,
+        ),
+        sim,
+    )
+
+
+def test_the_bits_are_the_same_for_any_number_of_threads():
+    one, sim = some_runs(1)
+    assert one.status == ["completed"] * 6 and one.steps.tolist() == [40] * 6
+    assert one.q.shape == (6, 4, sim.nq) and one.v.shape == (6, 4, sim.nv)
+    links = softgauss.Rollout(sim).contact_links
+    assert one.contact_forces.shape == (6, 4, len(links), 3)
+    for threads in (2, 7):
+        other, _ = some_runs(threads)
+        for name in ("q", "v", "a", "tau", "contact_forces"):
+            assert np.array_equal(getattr(one, name), getattr(other, name)), (name, threads)
+    assert not np.array_equal(one.q[0], one.q[1])
+
+
+def test_a_run_is_what_a_simulation_does():
+    sim = softgauss.Simulation(HUMANOID)
+    sim.goals.add({"posture": {}})
+    sim.push("pelvis", [20.0, 5.0, 0.0])
+    sim.step(30)
+    runs = softgauss.Rollout(softgauss.Simulation(HUMANOID)).run(
+        30, runs=2, goals={"posture": {}}, pushes={"pelvis": [[20.0, 5.0, 0.0]] * 2}, every=30
+    )
+    for run in range(2):
+        assert np.array_equal(runs.q[run, 0], sim.q) and np.array_equal(runs.v[run, 0], sim.v)
+
+
+def test_forces_of_every_step_or_held():
+    sim = softgauss.Simulation(ARM)
+    tau = np.random.default_rng(2).normal(scale=5, size=(3, sim.nv))
+    rollout = softgauss.Rollout(sim)
+    held = rollout.run(20, tau=tau, every=20)
+    each = rollout.run(20, tau=np.repeat(tau[:, None], 20, axis=1), every=20)
+    assert np.array_equal(held.q, each.q)
+    sim.tau = tau[1]
+    sim.step(20)
+    assert np.array_equal(held.q[1, 0], sim.q)
+
+
+def test_targets_are_those_of_the_first_goals():
+    sim = softgauss.Simulation(ARM)
+    targets = np.array([[0.5, 0.2, 0.5], [0.4, -0.2, 0.4]])
+    runs = softgauss.Rollout(sim).run(30, targets=targets, goals=REACH, every=30)
+    assert not np.array_equal(runs.q[0], runs.q[1])
+    sim.goals.add(REACH)[0].target = targets[1]
+    sim.step(30)
+    assert np.array_equal(runs.q[1, 0], sim.q)
+    assert np.array_equal(
+        runs.q,
+        softgauss.Rollout(sim)
+        .run(
+            30,
+            parameters={f"reach:hand.{axis}": targets[:, i] for i, axis in enumerate("xyz")},
+            goals=REACH,
+            every=30,
+        )
+        .q,
+    )
+
+
+def test_runs_go_on_from_states_to_the_same_bits():
+    sim = softgauss.Simulation(HUMANOID)
+    sim.goals.posture()
+    rollout, goals = softgauss.Rollout(sim), {"posture": {}}
+    pushes = {"pelvis": np.array([[10.0, 0, 0], [0, 40.0, 0], [0, 0, 0]])}
+    whole = rollout.run(60, runs=3, goals=goals, pushes=pushes, every=60)
+    states = softgauss.States(softgauss.Simulation(HUMANOID), 3)
+    with pytest.raises(ValueError, match="another simulation"):
+        rollout.run(1, states=states)
+    states = softgauss.States(sim, 3)
+    for steps in (1, 19, 40):
+        rollout.run(steps, states=states, goals=goals, pushes=pushes, outputs=())
+    assert np.array_equal(whole.q[:, 0], states.q) and np.array_equal(whole.v[:, 0], states.v)
+    assert states.time.tolist() == [60 * sim.timestep] * 3
+    assert states.nbytes / 3 < 10000  # a hundred thousand humanoids fit into 1 GB
+
+    states.reset([1], sim.q[None])
+    assert states.time.tolist() == [60 * sim.timestep, 0.0, 60 * sim.timestep]
+    assert np.array_equal(states.q[1], sim.q) and not states.v[1].any()
+
+
+def test_states_begin_where_the_simulation_is():
+    sim = softgauss.Simulation(HUMANOID)
+    sim.goals.add({"posture": {}})
+    sim.step(25)
+    states = softgauss.States(sim, 2)
+    softgauss.Rollout(sim).run(10, states=states, goals={"posture": {}})
+    sim.step(10)
+    assert np.array_equal(states.q[0], sim.q) and np.array_equal(states.q[1], sim.q)
+    assert states.time[0] == sim.time
+
+
+def test_a_failing_run_costs_only_itself_and_tells_why():
+    sim = softgauss.Simulation(ARM)
+    tau = np.zeros((3, 10, sim.nv))
+    tau[1, 4, 0] = np.nan
+    runs = softgauss.Rollout(sim).run(10, tau=tau)
+    assert runs.status == ["completed", "failed", "completed"]
+    assert runs.steps.tolist() == [10, 4, 10] and sim.joints[0] in runs.failure[1]
+    assert np.isfinite(runs.q[1, :4]).all() and np.isnan(runs.q[1, 4:]).all()
+    assert np.array_equal(runs.q[0], runs.q[2])
+
+
+def test_wrong_arguments_are_told():
+    sim = softgauss.Simulation(ARM)
+    rollout = softgauss.Rollout(sim)
+    with pytest.raises(
+        ValueError, match=r"q0: found shape \(2, 3\), expected \(runs, nq\) = \(2, 7\)"
+    ):
+        rollout.run(1, q0=np.zeros((2, 3)))
+    with pytest.raises(softgauss.UnknownName, match="did you mean 'elbow_pitch'"):
+        rollout.run(1, runs=2, parameters={"damping:elbow_pich": 1.0})
+    with pytest.raises(softgauss.UnknownName, match="push: found 'hnd'"):
+        rollout.run(1, pushes={"hnd": np.zeros((2, 3))})
+    with pytest.raises(softgauss.ModelError, match="unknown kind"):
+        rollout.run(1, runs=1, goals={"raech": {}})
+    with pytest.raises(ValueError, match=r"targets: found shape \(2, 4\), expected .* \(2, 3\)"):
+        rollout.run(1, goals=REACH, targets=np.zeros((2, 4)))
+    with pytest.raises(ValueError, match="output 'x', expected some of q, v"):
+        rollout.run(1, runs=1, outputs=["x"])
+    with pytest.raises(TypeError, match="how many runs"):
+        rollout.run(1)
+    with pytest.raises(ValueError, match="none below"):
+        rollout.run(1, runs=1, every=0)
+    runs = rollout.run(1, parameters={"mass:hand": [1.0, -1.0]})
+    assert runs.status == ["completed", "failed"] and "mass:hand" in runs.failure[1]
+
+
+def test_the_interpreter_s_lock_is_released():
+    rollout = softgauss.Rollout(softgauss.Simulation(HUMANOID), 1)
+    work = threading.Thread(target=rollout.run, args=(1000,), kwargs={"runs": 8})
+    work.start()
+    turns = 0
+    while work.is_alive():
+        turns += 1
+        time.sleep(0.001)
+    assert turns > 20
+
+
+def test_progress_is_told_and_may_end_it():
+    rollout = softgauss.Rollout(softgauss.Simulation(ARM), 1)
+    told = []
+    rollout.run(100, runs=4, progress=lambda done, runs: told.append((done, runs)))
+    assert told[-1] == (4, 4)
+
+    def enough(done, runs):
+        raise StopIteration("enough")
+
+    with pytest.raises(StopIteration, match="enough"):
+        rollout.run(10**7, runs=4, outputs=(), progress=enough)
+    assert rollout.run(2, runs=1).status == ["completed"]  # it can be used again
+
+
+def test_control_c_ends_a_rollout():
+    script = (
+        "import _thread, sys, threading, softgauss\n"
+        "rollout = softgauss.Rollout(softgauss.Simulation(sys.argv[1]))\n"
+        "threading.Timer(0.3, _thread.interrupt_main).start()\n"
+        "try:\n    rollout.run(10**8, runs=2, outputs=())\n"
+        "except KeyboardInterrupt:\n    sys.exit(0)\nsys.exit(2)"
+    )
+    assert subprocess.run([sys.executable, "-c", script, ARM], timeout=60).returncode == 0
