@@ -14,6 +14,7 @@
 #include <limits>
 #include <mutex>
 #include <optional>
+#include <stdexcept>
 #include <thread>
 
 #include "tests/stability/energy_watch.hpp"
@@ -25,10 +26,21 @@ namespace {
 
 constexpr int kNoBroadphase = std::numeric_limits<int>::max();
 
+/// The model without the mechanism that SOFTGAUSS_WITHOUT names, if it is set.
+Model asAsked(Model model) {
+  const char* name = std::getenv("SOFTGAUSS_WITHOUT");
+  if (!name) return model;
+  const std::optional<Mechanism> mechanism = mechanismFromName(name);
+  if (!mechanism)
+    throw std::invalid_argument("SOFTGAUSS_WITHOUT: there is no mechanism " + std::string(name));
+  model.options.mechanisms.remove(*mechanism);
+  return model;
+}
+
 }  // namespace
 
 Trial::Trial(std::string name, Model m)
-    : model(std::move(m)),
+    : model(asAsked(std::move(m))),
       state(model),
       contacts(std::make_unique<collision::SceneContacts>(model)),
       unpruned(std::make_unique<collision::SceneContacts>(model, kNoBroadphase, false)),
