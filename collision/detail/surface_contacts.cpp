@@ -23,6 +23,21 @@ bool isLessDeep(const NearTriangle& x, const NearTriangle& y) {
   return x.low > y.low || (x.low == y.low && x.t < y.t);
 }
 
+/// Whether a ball about c is clearly off the triangle: beyond its plane or, within that, an edge.
+bool isClearOf(const Triangle& triangle, const Vector3& c, double radius) {
+  constexpr double kRounding = 1.0 + 1e-6;  // of the normal of a sliver too
+  const Vector3& n = triangle.normal;
+  const double height = n.dot(c - triangle.corners[0]);
+  const double within = kRounding * (radius * radius - height * height);
+  if (within < 0.0) return true;
+  for (int i = 0; i < 3; ++i) {
+    const Vector3 edge = triangle.corners[(i + 1) % 3] - triangle.corners[i];
+    const double out = edge.cross(n).dot(c - triangle.corners[i]);
+    if (out > 0.0 && out * out > within * edge.squaredNorm()) return true;
+  }
+  return false;
+}
+
 /// From c to the nearest point of the triangle; `onFace` where that is inside it.
 Vector3 toNearest(const Triangle& triangle, const Vector3& c, bool& onFace) {
   Simplex simplex;
@@ -126,6 +141,7 @@ bool SurfaceContacts::meetBall(const Query& q) {
   std::size_t touched = 0;
   for (const NearTriangle near : near_) {
     const Triangle triangle = q.surface.triangle(near.t);
+    if (isClearOf(triangle, q.X_GA.p, radius + std::max(q.margin, 0.0))) continue;
     bool onFace = false;
     const Vector3 v = toNearest(triangle, q.X_GA.p, onFace);
     const double length = v.norm();
