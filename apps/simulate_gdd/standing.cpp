@@ -104,9 +104,9 @@ std::vector<StandingOutcome> Standing::outcomes(const Kinematics& end, double ti
       o.onGround.push_back(name);
       o.since = std::min(o.since.value_or(link.since), link.since);
     }
-    const bool down = o.tilt > (robot.stoodOnRoot ? kTippedTilt : kFallenTilt) ||
-                      o.cameDown > kFallenShare * robot.height;
-    o.fell = (down && !o.onGround.empty()) || (o.tilt > kLiesTilt && baseTouches);
+    const bool lower = o.cameDown > kFallenShare * robot.height;
+    const bool down = lower || o.tilt > (robot.stoodOnRoot ? kTippedTilt : kFallenTilt);
+    o.fell = (down && !o.onGround.empty()) || (o.tilt > kLiesTilt && (baseTouches || lower));
     std::stable_sort(o.slides.begin(), o.slides.end(),
                      [](const auto& a, const auto& b) { return a.way > b.way; });
     outcomes.push_back(std::move(o));

@@ -98,8 +98,14 @@ std::vector<char> Verdict::dofsOf(const GoalRecord::Track& track) const {
   std::vector<char> counts(static_cast<std::size_t>(model_.nv), 0);
   const gdd::GoalError& figure = track.last;
   if (figure.frame >= 0) {
-    for (int b = model_.frames[figure.frame].body; b > 0; b = model_.bodies[b].parent)
-      if (model_.bodies[b].dofs == 1) counts[model_.bodies[b].v] = 1;
+    const int body = model_.frames[figure.frame].body;
+    bool any = false;
+    for (int b = body; b > 0; b = model_.bodies[b].parent)
+      if (model_.bodies[b].dofs == 1) counts[model_.bodies[b].v] = 1, any = true;
+    // A base that floats is moved by all joints of its robot.
+    for (int i = 0; i < model_.nv && !any; ++i)
+      counts[i] = model_.bodies[model_.dofs[i].body].tree == model_.bodies[body].tree &&
+                  model_.bodies[model_.dofs[i].body].dofs == 1;
   } else if (figure.dof >= 0) {
     counts[figure.dof] = 1;
   } else {
@@ -245,7 +251,9 @@ void Verdict::tellControls(io::Summary& summary) const {
   };
   std::vector<std::string> full, slid, chattered;
   for (const WatchedControl& c : joints_.saturated())
-    full.push_back(fmt::format("{} in {:.2g} % of the steps", c.name, 100.0 * c.amount));
+    full.push_back(c.amount < 0.0995
+                       ? fmt::format("{} in {:.2g} % of the steps", c.name, 100.0 * c.amount)
+                       : fmt::format("{} in {:.0f} % of the steps", c.name, 100.0 * c.amount));
   for (const StandingOutcome& o : stood_)
     for (const StandingOutcome::Slide& s : o.slides)
       if (!o.fell) slid.push_back(fmt::format("{} {}", s.link, lengthText(s.way)));

@@ -84,6 +84,34 @@ TEST(Verdict, AHumanoidThatLiesOnTheGroundFell) {
   EXPECT_EQ(run.outcome.out.find("completed"), std::string::npos) << run.outcome.out;
 }
 
+// Pushed twice as hard as in the scene it ends bent over, 0.77 m lower, on nothing but its feet.
+TEST(Verdict, AHumanoidThatIsFoldedOverItsFeetFell) {
+  const io::TempFolder folder;
+  std::string scene = readFile(dataFile("scenes/humanoid_pushed.yaml"));
+  const auto replaceAll = [&](const std::string& from, const std::string& to) {
+    for (std::size_t at = 0; (at = scene.find(from, at)) != std::string::npos; at += to.size())
+      scene.replace(at, from.size(), to);
+  };
+  replaceAll("60", "120");
+  replaceAll("../", dataFile("scenes/../"));
+  const Told run({folder.write("pushed.yaml", scene), "--duration", "4"});
+  EXPECT_EQ(run.json["outcome"], "fell") << run.json["verdict"];
+  EXPECT_FALSE(run.says("stood", "base pelvis")) << run.json["verdict"];
+}
+
+TEST(Verdict, APlaceForABaseThatFloatsIsAJobOfAllJoints) {
+  const Told run(
+      {dataFile("robots/humanoid.urdf"), "--reach", "pelvis=0,0,2", "--duration", "0.1"});
+  EXPECT_TRUE(run.says("not reached", "reach pelvis")) << run.json["verdict"];
+  EXPECT_EQ(run.line("not reached").find("actuated"), std::string::npos) << run.json["verdict"];
+}
+
+TEST(Verdict, SharesOfStepsAreWholePercents) {
+  const Told run({dataFile("scenes/weak_arm.yaml"), "--duration", "1"});
+  EXPECT_TRUE(std::regex_search(run.line("saturated"), std::regex(" in [0-9]+ % of the steps")))
+      << run.json["verdict"];
+}
+
 TEST(Verdict, AHumanoidThatHoldsItsPostureStood) {
   const Told run({dataFile("robots/humanoid.urdf"), "--posture", "--duration", "1"});
   EXPECT_EQ(run.json["outcome"], "completed");
