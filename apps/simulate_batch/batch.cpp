@@ -101,6 +101,8 @@ ExitCode runOne(const Sweep& sweep, const BatchOptions& options) {
   }
   for (const auto& [parameter, value] : parameters)
     parameter.apply(value, scene->model, scene->initial);
+  if (const std::string problem = Parameter::problemOf(scene->model); !problem.empty())
+    throw UsageError(fmt::format("--only {}: {}", *options.only, problem));
   one.changeGoals = [&](gdd::GoalDirectedController& controller) {
     for (const auto& [parameter, value] : parameters) parameter.apply(value, controller);
   };
@@ -137,7 +139,11 @@ ExitCode runBatch(const BatchOptions& options, Ranks& ranks) {
     return stop ? kInterrupted : kDone;
   }
 
-  std::filesystem::create_directories(options.out);
+  std::error_code error;
+  std::filesystem::create_directories(options.out, error);
+  if (!std::filesystem::is_directory(options.out))
+    throw OutputError(fmt::format("--out {}: cannot be made: {}", options.out.string(),
+                                  error ? error.message() : "there is a file of that name"));
   RunTable table(runner.header(), runner.runs().count);
   const std::filesystem::path checkpoint = options.out / "checkpoint.txt";
   if (options.checkpoint) table.keepIn(checkpoint, runner.origin());
@@ -158,7 +164,8 @@ ExitCode runBatch(const BatchOptions& options, Ranks& ranks) {
   if (stop) times.outcome = "interrupted";
   writeOutputs(sweep, table, options, times);
   std::error_code ignored;
-  if (table.done() == table.runs()) std::filesystem::remove(checkpoint, ignored);
+  if (options.checkpoint && table.done() == table.runs())
+    std::filesystem::remove(checkpoint, ignored);
   if (!options.quiet) {
     print(stdout, summaryText(sweep, table, times));
     print(stdout, fmt::format("written to {}\n", options.out.string()));

@@ -4,7 +4,9 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
 #include <exception>
+#include <thread>
 
 #include "apps/shared/standard_streams.hpp"
 #include "apps/simulate_batch/batch.hpp"
@@ -13,9 +15,11 @@ namespace softgauss::app {
 namespace {
 
 int runProgram(int argc, char** argv, Ranks& ranks) {
-  // All ranks find the same mistake; one tells it.
+  // All ranks find the same mistake: the first tells it, and ends the others while they wait.
   const auto fail = [&](const std::string& message, ExitCode code) {
-    if (ranks.rank() == 0) tell(message);
+    if (ranks.rank() > 0) std::this_thread::sleep_for(std::chrono::seconds(1));
+    tell(message);
+    ranks.abort(code);
     return code;
   };
   try {
@@ -28,13 +32,9 @@ int runProgram(int argc, char** argv, Ranks& ranks) {
   } catch (const OutputError& error) {
     return fail(fmt::format("simulate_batch: {}", error.what()), kBadInput);
   } catch (const ModelError& error) {
-    const int code = fail(error.what(), kBadInput);
-    ranks.abort(code);
-    return code;
+    return fail(error.what(), kBadInput);
   } catch (const std::exception& error) {
-    const int code = fail(fmt::format("simulate_batch: {}", error.what()), kInternalError);
-    ranks.abort(code);
-    return code;
+    return fail(fmt::format("simulate_batch: {}", error.what()), kInternalError);
   }
 }
 

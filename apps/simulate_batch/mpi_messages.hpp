@@ -13,7 +13,13 @@
 
 namespace softgauss::app::mpi {
 
-enum class Kind : int { ask = 1, runs, row };
+enum class Kind : int {
+  ask = 1,  ///< of rank 0, for runs
+  runs,     ///< to do; none: it is over
+  row,
+  enough,  ///< what you do is done already
+  end      ///< of all; with the text "lost" where a rank cannot take part in it
+};
 
 struct Message {
   int rank;

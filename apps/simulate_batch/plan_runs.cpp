@@ -46,7 +46,14 @@ std::vector<Parameter> parametersOf(const Sweep& sweep, const Model& model) {
   std::vector<Parameter> parameters;
   for (const Sweep::Varied& varied : sweep.varied) {
     try {
-      parameters.emplace_back(model, varied.name);
+      Parameter parameter(model, varied.name);
+      for (const Parameter& other : parameters)
+        if (parameter.isOfTheSame(other))
+          throw NameError(
+              fmt::format("parameter '{}': sets the same mass as '{}', for the two "
+                          "links are fixed to each other; expected one of them",
+                          varied.name, other.name()));
+      parameters.push_back(std::move(parameter));
     } catch (const NameError& error) {
       throw ModelError(varied.where, "key 'vary'", error.what());
     }

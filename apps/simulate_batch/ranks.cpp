@@ -90,7 +90,10 @@ void Ranks::lead(RunTable& table, const DoRuns& doRuns, const std::function<void
   for (long seen = -1; told < size_ - 1;) {
     if (stop || handOut.isDone() || own.isOver()) {
       enough = true;
-      if (over == Clock::time_point::max()) over = Clock::now();
+      if (over == Clock::time_point::max()) {
+        over = Clock::now();
+        for (int rank = 1; rank < size_; ++rank) mpi::send(rank, mpi::Kind::enough, "");
+      }
       if (Clock::now() - over > kPatience) lost_ = true;
       if (lost_) break;
     }
@@ -113,15 +116,23 @@ void Ranks::lead(RunTable& table, const DoRuns& doRuns, const std::function<void
   }
   own.finish();
   added();
+  for (int rank = 1; rank < size_; ++rank) mpi::send(rank, mpi::Kind::end, lost_ ? "lost" : "");
+}
+
+std::string Ranks::awaited(mpi::Kind kind) {
+  while (true) {
+    const std::optional<mpi::Message> message = mpi::receive();
+    if (message && message->kind == kind) return message->text;
+    if (!message) std::this_thread::sleep_for(kPause);
+  }
 }
 
 void Ranks::follow(const DoRuns& doRuns, std::atomic<bool>& stop, int threads) {
+  std::atomic<bool> enough = false;  // interrupted, or the others were faster
   while (true) {
     mpi::send(0, mpi::Kind::ask, std::to_string(threads));
-    std::optional<mpi::Message> answer;
-    while (!(answer = mpi::receive())) std::this_thread::sleep_for(kPause);
-    const std::vector<long> runs = mpi::runsOf(answer->text);
-    if (runs.empty()) return;
+    const std::vector<long> runs = mpi::runsOf(awaited(mpi::Kind::runs));
+    if (runs.empty()) break;
     // Rows go out from this thread alone, as MPI wants it.
     std::mutex mutex;
     std::vector<RunRow> rows;
@@ -132,7 +143,7 @@ void Ranks::follow(const DoRuns& doRuns, std::atomic<bool>& stop, int threads) {
             const std::lock_guard lock(mutex);
             rows.push_back(std::move(row));
           },
-          stop);
+          enough);
     });
     for (bool over = false; !over;) {
       over = work.isOver();
@@ -142,10 +153,13 @@ void Ranks::follow(const DoRuns& doRuns, std::atomic<bool>& stop, int threads) {
         ready.swap(rows);
       }
       for (const RunRow& row : ready) mpi::send(0, mpi::Kind::row, mpi::textOf(row));
+      const std::optional<mpi::Message> message = mpi::receive();
+      if (stop || (message && message->kind == mpi::Kind::enough)) enough = true;
       if (!over) std::this_thread::sleep_for(kPause);
     }
     work.finish();
   }
+  lost_ = awaited(mpi::Kind::end) == "lost";
 }
 
 }  // namespace softgauss::app

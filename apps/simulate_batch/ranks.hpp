@@ -11,8 +11,10 @@
 
 #include <atomic>
 #include <functional>
+#include <string>
 #include <vector>
 
+#include "apps/simulate_batch/mpi_messages.hpp"
 #include "apps/simulate_batch/run_table.hpp"
 
 namespace softgauss::app {
@@ -42,9 +44,11 @@ class Ranks {
   void abort(int code);
 
  private:
+  static std::string awaited(mpi::Kind kind);
+
   int rank_ = 0, size_ = 1;
   bool started_ = false;
-  bool lost_ = false;  ///< a rank has not answered
+  bool lost_ = false;  ///< a rank has not answered, and none can wait for it
 };
 
 }  // namespace softgauss::app

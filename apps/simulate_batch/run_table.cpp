@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/simulate_batch/run_table.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -45,6 +47,16 @@ RunTable::~RunTable() {
 
 void RunTable::keepIn(const std::filesystem::path& checkpoint, const std::string& origin) {
   checkpointName_ = checkpoint.string();
+  const auto fail = [&](const std::string& problem) {
+    throw ModelError({checkpointName_, 0}, "checkpoint", problem);
+  };
+  // Of the process: another one that writes here would mix its lines with ours.
+  const int file = open(checkpointName_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  if (file >= 0 && flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+    close(file);
+    fail("is in use by another simulate_batch; wait for it, or give another --out");
+  }
+  checkpoint_ = file >= 0 ? fdopen(file, "r+b") : nullptr;
   const std::string first = kFormat + origin + "\n";
   const std::string text = io::detail::readFile(checkpointName_).value_or("");
   const std::size_t head = text.find('\n');
@@ -55,22 +67,29 @@ void RunTable::keepIn(const std::filesystem::path& checkpoint, const std::string
   const std::size_t end = text.rfind('\n') == std::string::npos ? 0 : text.rfind('\n') + 1;
   for (std::size_t at = head + 1; head != std::string::npos && at < end;) {
     const std::size_t stop = text.find('\n', at);
-    if (auto row = rowOf(text.substr(at, stop - at), runs())) add(std::move(*row));
+    if (auto row = rowOf(text.substr(at, stop - at), runs()); row && isWhole(*row))
+      place(std::move(*row));
     at = stop + 1;
   }
-  checkpoint_ = std::fopen(checkpointName_.c_str(), end > 0 ? "r+b" : "wb");
   const bool opened =
       checkpoint_ && std::fseek(checkpoint_, static_cast<long>(end), SEEK_SET) == 0 &&
       ftruncate(fileno(checkpoint_), static_cast<off_t>(end)) == 0 &&
       (end > 0 || std::fputs(first.c_str(), checkpoint_) >= 0) && std::fflush(checkpoint_) == 0;
-  if (!opened)
-    throw ModelError({checkpointName_, 0}, "checkpoint",
-                     fmt::format("cannot be written: {}", std::strerror(errno)));
+  if (!opened) fail(fmt::format("cannot be written: {}", std::strerror(errno)));
+}
+
+bool RunTable::isWhole(const RunRow& row) const {
+  const std::vector<std::string> fields = fieldsOf(row.text);
+  return fields.size() == fieldsOf(header_).size() && fields.front() == std::to_string(row.run);
+}
+
+void RunTable::place(RunRow row) {
+  RunRow& own = rows_.at(static_cast<std::size_t>(row.run));
+  if (own.run < 0) own = std::move(row), ++done_;
 }
 
 void RunTable::add(RunRow row) {
-  RunRow& place = rows_.at(static_cast<std::size_t>(row.run));
-  if (place.run >= 0) return;
+  if (has(row.run)) return;
   if (checkpoint_) {
     const std::string line = lineOf(row);
     if (std::fwrite(line.data(), 1, line.size(), checkpoint_) != line.size() ||
@@ -78,8 +97,7 @@ void RunTable::add(RunRow row) {
       throw std::runtime_error(
           fmt::format("{}: cannot be written: {}", checkpointName_, std::strerror(errno)));
   }
-  place = std::move(row);
-  ++done_;
+  place(std::move(row));
 }
 
 std::vector<long> RunTable::missing() const {
@@ -98,18 +116,26 @@ void RunTable::write(const std::filesystem::path& csv) const {
 }
 
 std::vector<std::string> fieldsOf(const std::string& row) {
-  std::vector<std::string> fields;
-  for (std::size_t at = 0; at <= row.size();) {
-    const bool quoted = at < row.size() && row[at] == '"';
-    const std::size_t comma = quoted ? std::string::npos : row.find(',', at);
-    if (comma == std::string::npos) {
-      fields.push_back(quoted ? row.substr(at + 1, row.size() - at - 2) : row.substr(at));
-      break;
-    }
-    fields.push_back(row.substr(at, comma - at));
-    at = comma + 1;
+  std::vector<std::string> fields(1);
+  bool quoted = false;
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    if (row[i] == '"' && quoted && i + 1 < row.size() && row[i + 1] == '"')
+      fields.back() += row[i++];
+    else if (row[i] == '"')
+      quoted = !quoted;
+    else if (row[i] == ',' && !quoted)
+      fields.emplace_back();
+    else
+      fields.back() += row[i];
   }
   return fields;
+}
+
+std::string csvField(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string field = "\"";
+  for (const char c : text) field += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return field + "\"";
 }
 
 }  // namespace softgauss::app

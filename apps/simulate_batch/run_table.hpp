@@ -42,6 +42,9 @@ class RunTable {
   const std::string& header() const { return header_; }
 
  private:
+  bool isWhole(const RunRow& row) const;
+  void place(RunRow row);
+
   std::string header_;
   std::vector<RunRow> rows_;
   long done_ = 0;
@@ -49,7 +52,9 @@ class RunTable {
   std::string checkpointName_;
 };
 
-/// Fields of a row; the last one may be in quotes.
+/// A field as it stands in a row: in quotes where it has to be.
+std::string csvField(const std::string& text);
+/// Fields of a row, without their quotes.
 std::vector<std::string> fieldsOf(const std::string& row);
 
 }  // namespace softgauss::app

@@ -51,9 +51,9 @@ SweepRunner::SweepRunner(const Sweep& sweep, int threads)
 
 std::string SweepRunner::header() const {
   std::string text = "run,seed";
-  for (const std::string& name : runs_.parameters) text += "," + name;
+  for (const std::string& name : runs_.parameters) text += "," + csvField(name);
   text += ",outcome,simulated_s";
-  for (const std::string& name : columns_) text += "," + name;
+  for (const std::string& name : columns_) text += "," + csvField(name);
   return text + ",failure";
 }
 

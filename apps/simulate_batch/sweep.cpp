@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <string_view>
 
 #include "softgauss/io/detail/input_file.hpp"
 #include "softgauss/io/detail/text.hpp"
@@ -19,6 +21,18 @@ using io::detail::YamlMap;
 using io::detail::YamlValue;
 
 const std::vector<std::string> kAxes = {"x", "y", "z"};
+
+/// As a shell reads it back.
+std::string shellWord(const std::string& text) {
+  const bool isPlain = std::all_of(text.begin(), text.end(), [](unsigned char c) {
+    return std::isalnum(c) != 0 ||
+           std::string_view("/._-+:,@%=").find(static_cast<char>(c)) != std::string_view::npos;
+  });
+  if (isPlain && !text.empty()) return text;
+  std::string word = "'";
+  for (const char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return word + "'";
+}
 
 /// A whole number from `least` on.
 long wholeNumber(const YamlMap& map, const YamlMap::Entry& entry, double least) {
@@ -143,6 +157,8 @@ class SweepReader {
   }
 
   void readList(const YamlMap::Entry& entry) {
+    if (top_.list(entry).empty())
+      top_.fail(entry, "is empty, expected a list of {parameter: value, …}");
     for (const YamlValue& item : top_.list(entry)) {
       if (item.kind != YamlValue::Kind::map)
         throw ModelError({top_.file(), item.line}, "key 'list'",
@@ -201,7 +217,8 @@ class SweepReader {
 }  // namespace
 
 std::string Sweep::repeatCommand(long run) const {
-  return fmt::format("simulate_batch {} --only {} --view run_{}.html", file.string(), run, run);
+  return fmt::format("simulate_batch {} --only {} --view run_{}.html", shellWord(file.string()),
+                     run, run);
 }
 
 Sweep readSweep(const std::filesystem::path& file) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "softgauss/engine/model/followers.hpp"
 #include "softgauss/gdd/goals/reach.hpp"
 #include "softgauss/io/detail/text.hpp"
 #include "softgauss/io/names.hpp"
@@ -191,7 +192,8 @@ void Parameter::findCoordinate(const Model& model, const std::string& target) {
     return;
   }
   if (const std::string problem = io::jointProblem(model, target); !problem.empty()) fail(problem);
-  const Body& body = model.bodies[model.findJoint(target)];
+  body_ = model.findJoint(target);
+  const Body& body = model.bodies[body_];
   indices_ = {ofVelocity ? body.v : body.q};
 }
 
@@ -249,6 +251,7 @@ void Parameter::apply(double value, Model& model, State& initial) const {
         break;
       case Kind::q:
         initial.q[i] = value;
+        if (body_ > 0) placeFollowers(model, {body_}, initial.q);
         break;
       case Kind::v:
         initial.v[i] = value;
@@ -258,6 +261,19 @@ void Parameter::apply(double value, Model& model, State& initial) const {
         break;
     }
   }
+}
+
+bool Parameter::isOfTheSame(const Parameter& other) const {
+  return kind_ == Kind::mass && other.kind_ == Kind::mass && indices_ == other.indices_;
+}
+
+std::string Parameter::problemOf(const Model& model) {
+  for (const JointRange& range : model.ranges)
+    if (range.lower > range.upper)
+      return fmt::format("joint '{}' ranges from {} to {}, expected the smaller one first",
+                         model.jointNames[static_cast<std::size_t>(range.body)], range.lower,
+                         range.upper);
+  return {};
 }
 
 void Parameter::apply(double value, gdd::GoalDirectedController& controller) const {

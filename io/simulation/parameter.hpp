@@ -5,20 +5,17 @@
 ///
 /// | name | value |
 /// |---|---|
-/// | `mass:LINK` | mass of the body that carries the link [kg], > 0; its inertia goes with it |
-/// | `inertia:LINK` | factor on the central inertia of that body [-], > 0 |
-/// | `friction:LINK`, `friction:SHAPE` | coefficient of sliding friction of its shapes [-], ≥ 0 |
-/// | `damping:JOINT` | [N m s/rad or N s/m], ≥ 0 |
-/// | `armature:JOINT` | [kg m² or kg], ≥ 0 |
-/// | `dry_friction:JOINT` | largest force [N m or N], ≥ 0 |
-/// | `effort:JOINT` | bound of the control either way [N m or N], > 0, of an actuated joint |
-/// | `lower:JOINT`, `upper:JOINT` | an end of its range [rad or m], of a joint that has one |
-/// | `gravity:x`, `:y`, `:z` | [m/s²], world |
-/// | `timestep` | [s], > 0 |
-/// | `q:JOINT`, `v:JOINT` | where and how fast it starts [rad or m, and per s] |
-/// | `q:BASE.x`, `.y`, `.z` | where a floating base starts [m]; BASE is its joint, as in the log |
-/// | `v:BASE.vx`, …, `v:BASE.wz` | how fast [m/s, rad/s], as in the log |
-/// | `reach:LINK.x`, `.y`, `.z` | the place that the reach goal of that link seeks [m], world |
+/// | `mass:LINK` | mass of the link and all that is fixed to it [kg], > 0; their inertia goes with
+/// it | | `inertia:LINK` | factor on the central inertia of that body [-], > 0 | | `friction:LINK`,
+/// `friction:SHAPE` | coefficient of sliding friction of its shapes [-], ≥ 0 | | `damping:JOINT` |
+/// [N m s/rad or N s/m], ≥ 0 | | `armature:JOINT` | [kg m² or kg], ≥ 0 | | `dry_friction:JOINT` |
+/// largest force [N m or N], ≥ 0 | | `effort:JOINT` | bound of the control either way [N m or N], >
+/// 0, of an actuated joint | | `lower:JOINT`, `upper:JOINT` | an end of its range [rad or m], of a
+/// joint that has one | | `gravity:x`, `:y`, `:z` | [m/s²], world | | `timestep` | [s], > 0 | |
+/// `q:JOINT`, `v:JOINT` | where and how fast it starts [rad or m, and per s]; joints that follow it
+/// start where it has them | | `q:BASE.x`, `.y`, `.z` | where a floating base starts [m]; BASE is
+/// its joint, as in the log | | `v:BASE.vx`, …, `v:BASE.wz` | how fast [m/s, rad/s], as in the log
+/// | | `reach:LINK.x`, `.y`, `.z` | the place that the reach goal of that link seeks [m], world |
 ///
 /// `*` stands for all: `friction:*` is every shape and every pair with a surface of its own,
 /// `damping:*` every joint of one degree of freedom.
@@ -45,6 +42,11 @@ class Parameter {
   void apply(double value, Model& model, State& initial) const;
   /// Sets it in the goals. Throws NameError where there is no reach goal of that link.
   void apply(double value, gdd::GoalDirectedController& controller) const;
+
+  /// Whether both set the mass of one body, by links that are fixed to each other.
+  bool isOfTheSame(const Parameter& other) const;
+  /// Why a model with its parameters set cannot run; empty where it can.
+  static std::string problemOf(const Model& model);
 
   enum class Kind {
     mass,
@@ -74,6 +76,7 @@ class Parameter {
   std::string name_;
   Kind kind_ = Kind::mass;
   std::vector<int> indices_;  ///< bodies, geometries, dofs, ranges or one coordinate
+  int body_ = 0;              ///< that the joint of a coordinate carries; 0 for a base
   std::vector<int> pairs_;    ///< of contacts with a surface of their own
   std::string link_;          ///< of a reach goal
 };

@@ -118,6 +118,8 @@ void Rollout::Worker::begin(Task& task, RolloutRun& run) {
       throw NameError(fmt::format("parameter '{}': {}", parameter.name(), problem));
     parameter.apply(run.values[p], scene.model, scene.initial);
   }
+  if (const std::string problem = Parameter::problemOf(scene.model); !problem.empty())
+    throw NameError(problem);
   parts.restart(otherModel);
   if (task.hooks.begin) task.hooks.begin(run);
   for (std::size_t p = 0; p < task.parameters.size(); ++p)

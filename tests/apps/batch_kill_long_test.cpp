@@ -78,5 +78,28 @@ TEST_F(KilledSweepLong, RanksThatAreLostCostNothingButTheirTime) {
   RecordProperty("interrupted", interrupted);
 }
 
+// The last run of one rank is begun by the other, which is far from its end when it is done.
+TEST_F(KilledSweepLong, ARankLeavesWhatAnotherHasDone) {
+  if (shell("command -v mpirun").exitCode != 0) GTEST_SKIP() << "no mpirun here";
+  folder.write("late.yaml", "model: " + dataFile("robots/humanoid.urdf") +
+                                "\npassive: true\nduration: 800\n"
+                                "list: [{timestep: 0.001}, {timestep: 0.0025}]\n");
+  const Outcome outcome = shell(
+      "mpirun --allow-run-as-root --oversubscribe -n 2 simulate_batch late.yaml --quiet --out "
+      "late");
+  EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+}
+
+TEST_F(KilledSweepLong, ALauncherThatCarriesOnComesToAnEnd) {
+  if (shell("command -v mpirun").exitCode != 0) GTEST_SKIP() << "no mpirun here";
+  const Outcome outcome = shell(
+      "mpirun --enable-recovery --allow-run-as-root --oversubscribe -n 3 simulate_batch sweep.yaml "
+      "--quiet --out left & launcher=$!\nsleep 3\nkill -9 $(pgrep -n -P $launcher)\n"
+      "for i in $(seq 90); do kill -0 $launcher 2>/dev/null || exit 0; sleep 1; done\n"
+      "pkill -9 -P $launcher; kill -9 $launcher; exit 124");
+  EXPECT_NE(outcome.exitCode, 124) << "it did not end";
+  EXPECT_EQ(table("left"), table("whole"));
+}
+
 }  // namespace
 }  // namespace softgauss::test

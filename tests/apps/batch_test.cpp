@@ -188,6 +188,107 @@ TEST(Batch, RanksGiveTheTableOfOneThread) {
   EXPECT_EQ(batch.table("ranks"), batch.table("one"));
 }
 
+TEST(Batch, ACheckpointInUseIsRefused) {
+  const Batch batch(armSweep("", "30"));
+  const Outcome outcome =
+      runShell(batch.folder.path(),
+               "simulate_batch sweep.yaml --quiet --threads 1 --checkpoint --out out & first=$!\n"
+               "until [ -s out/checkpoint.txt ]; do :; done\n"
+               "simulate_batch sweep.yaml --quiet --checkpoint --out out; code=$?\n"
+               "kill -9 $first; wait $first\n exit $code");
+  EXPECT_EQ(outcome.exitCode, 2);
+  EXPECT_NE(outcome.err.find("in use by another simulate_batch"), std::string::npos) << outcome.err;
+}
+
+TEST(Batch, LinesOfACheckpointThatAreNotWholeAreDoneAgain) {
+  const Batch batch(armSweep());
+  ASSERT_EQ(batch.run("whole", {"--checkpoint"}).exitCode, 0);
+  ASSERT_EQ(
+      runShell(batch.folder.path(),
+               "simulate_batch sweep.yaml --quiet --checkpoint --out out & pid=$!\n"
+               "until [ -s out/checkpoint.txt ]; do :; done; kill -9 $pid; wait $pid\n"
+               "head -n 1 out/checkpoint.txt >first\n"
+               "{ cat first; printf '3\\t0.1\\t3,17,0.5\\n5\\t0.1\\t4,1\\n'; } >out/checkpoint.txt")
+          .exitCode,
+      0);
+  ASSERT_EQ(batch.run("out", {"--checkpoint"}).exitCode, 0);
+  EXPECT_EQ(batch.table("out"), batch.table("whole"));
+}
+
+TEST(Batch, AnotherSweepsCheckpointStays) {
+  const Batch batch(armSweep());
+  std::filesystem::create_directories(batch.out("out"));
+  batch.folder.write("out/checkpoint.txt", "softgauss simulate_batch checkpoint 1 other\n");
+  ASSERT_EQ(batch.run("out").exitCode, 0);
+  EXPECT_TRUE(std::filesystem::exists(batch.out("out") + "/checkpoint.txt"));
+}
+
+TEST(Batch, NamesWithCommasAndBlanksAreQuoted) {
+  const io::TempFolder folder;
+  const std::string robot = folder.write("a robot.urdf", R"(<robot name="r"><link name="world"/>
+    <link name="a, b"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0"
+    iyz="0"/></inertial></link><joint name="j" type="continuous"><parent link="world"/>
+    <child link="a, b"/></joint></robot>)");
+  const std::string sweep = folder.write(
+      "a sweep.yaml", "model: " + robot +
+                          "\npassive: true\nduration: 0.01\n"
+                          "integrator: rk4\nvary: {\"mass:a, b\": [1, 2], v:j: [1e11]}\n"
+                          "measure: [\"a, b.z\"]\n");
+  const std::string out = (folder.path() / "out").string();
+  ASSERT_EQ(runProgram("simulate_batch", {sweep, "--quiet", "--out", out}).exitCode, 0);
+  EXPECT_NE(readFile(out + "/runs.csv").find("\"mass:a, b\",v:j,"), std::string::npos);
+  const Json summary = Json::parse(readFile(out + "/summary.json"));
+  EXPECT_TRUE(summary["figures"].contains("a, b.z_m")) << summary["figures"];
+}
+
+TEST(Batch, TheCommandThatRepeatsARunIsOneForTheShell) {
+  const io::TempFolder folder;
+  const std::string sweep = folder.write(
+      "it's one.yaml", "model: " + dataFile("robots/arm.urdf") +
+                           "\npassive: true\nduration: 0.1\nintegrator: rk4\n"
+                           "vary: {\"gravity:z\": [-1e12], \"v:elbow_pitch\": [1e11]}\n");
+  const std::string out = (folder.path() / "out").string();
+  ASSERT_EQ(runProgram("simulate_batch", {sweep, "--quiet", "--out", out}).exitCode, 0);
+  const Json summary = Json::parse(readFile(out + "/summary.json"));
+  ASSERT_EQ(summary["failed"], 1);
+  const Outcome again = runShell(folder.path(), summary["failures"][0]["command"]);
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "run_0.html")) << again.err;
+}
+
+TEST(Batch, RangesThatAreInvertedFailTheirRun) {
+  const Batch batch("model: " + dataFile("robots/arm.urdf") +
+                    "\npassive: true\nduration: 0.01\nvary: {lower:elbow_pitch: [-1, 1], "
+                    "upper:elbow_pitch: [0.5]}\n");
+  ASSERT_EQ(batch.run("out").exitCode, 0);
+  const Csv csv(batch.table("out"));
+  EXPECT_EQ(csv.rows[0][csv.find("outcome")], "completed");
+  EXPECT_EQ(csv.rows[1][csv.find("outcome")], "failed");
+  EXPECT_NE(batch.table("out").find("ranges from 1 to 0.5"), std::string::npos);
+}
+
+TEST(Batch, WhatFollowsAJointStartsWhereItHasIt) {
+  const io::TempFolder folder;
+  const std::string link = R"(<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0"
+    ixz="0" iyz="0"/></inertial></link>)";
+  const std::string robot = folder.write(
+      "pair.urdf",
+      R"(<robot name="r"><link name="world"/><link name="a">)" + link + R"(<link name="b">)" +
+          link +
+          R"(<joint name="lead" type="prismatic"><parent link="world"/><child link="a"/>
+    <axis xyz="0 0 1"/><limit lower="-2" upper="2" effort="1" velocity="1"/></joint>
+    <joint name="follow" type="prismatic"><parent link="world"/><child link="b"/><axis xyz="0 0 1"/>
+    <limit lower="-2" upper="2" effort="1" velocity="1"/><mimic joint="lead"/></joint></robot>)");
+  const std::string sweep = folder.write(
+      "sweep.yaml", "model: " + robot +
+                        "\npassive: true\nduration: 0.1\n"
+                        "vary: {\"gravity:z\": [0], q:lead: [1]}\nmeasure: [a.z, b.z]\n");
+  const std::string out = (folder.path() / "out").string();
+  ASSERT_EQ(runProgram("simulate_batch", {sweep, "--quiet", "--out", out}).exitCode, 0);
+  const Csv csv(readFile(out + "/runs.csv"));
+  EXPECT_NEAR(csv.number(0, "a.z_m"), 1.0, 1e-9);
+  EXPECT_NEAR(csv.number(0, "b.z_m"), 1.0, 1e-9);
+}
+
 TEST(Batch, AListTakesThePlaceOfAGrid) {
   const Batch batch("model: " + dataFile("robots/arm.urdf") +
                     "\npassive: true\nduration: 0.01\nlist:\n"
