@@ -109,11 +109,16 @@ void Clearance::Scene::underPlane(int a, const Transform& X_WA, int b, const Tra
   const Vector3 n = X_WA.R.col(2);
   double lowest = kInfinity;
   if (const TriangleMesh* surface = set.surface[j].get()) {
-    for (int v = 0; v < surface->vertices(); ++v)
-      lowest = std::min(lowest, n.dot(X_WB * surface->vertex(v) - X_WA.p));
-  } else {
-    lowest = n.dot(supportPoint(set.colliders[j].convex, X_WB, -n) - X_WA.p);
+    Vector3 point = Vector3::Zero();
+    for (int v = 0; v < surface->vertices(); ++v) {
+      const Vector3 x = X_WB * surface->vertex(v);
+      if (const double height = n.dot(x - X_WA.p); height < lowest) lowest = height, point = x;
+    }
+    if (std::isfinite(lowest))
+      add({point - 0.5 * lowest * n, n, lowest}, across(n), NearPoints().alongB);
+    return;
   }
+  lowest = n.dot(supportPoint(set.colliders[j].convex, X_WB, -n) - X_WA.p);
   if (std::isfinite(lowest)) addContacts(a, X_WA, b, X_WB, lowest + kBand * set.radius[j]);
 }
 

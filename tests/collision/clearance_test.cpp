@@ -158,6 +158,17 @@ TEST(Clearance, OfThePlaneIsThatOfTheLowestPoint) {
       EXPECT_NEAR(points.front().distance, n.dot(supportPoint(convex, X_WA, -n) - X_WB.p), 1e-12);
       EXPECT_APPROX(points.front().n_W, Vector3(-n), 1e-14) << "from the shape to the plane";
     }
+  for (const MeshPointer& mesh : surfaces())
+    for (int i = 0; i < 20; ++i) {
+      TwoShapes two(Shape::surface(mesh), Shape::plane());
+      const Transform X_WA = random.pose(1.0), X_WB = random.pose(1.0);
+      const Vector3 n = X_WB.R.col(2);
+      double lowest = kInfinity;
+      for (const Vector3& x : mesh->vertices) lowest = std::min(lowest, n.dot(X_WA * x - X_WB.p));
+      const auto points = two.at(X_WA, X_WB);
+      ASSERT_FALSE(points.empty());
+      EXPECT_NEAR(points.front().distance, lowest, 1e-12);
+    }
   TwoShapes planes(Shape::plane(), Shape::plane());
   EXPECT_TRUE(planes.at({}, {}).empty());
 }

@@ -17,8 +17,11 @@ struct Realised {
   const char* link;
   Vector3 target;
   bool balances;
+  bool isSprung = false;  ///< its joints have springs and dry friction, which its URDF lacks
 };
-void PrintTo(const Realised& r, std::ostream* out) { *out << r.robot; }
+void PrintTo(const Realised& r, std::ostream* out) {
+  *out << r.robot << (r.isSprung ? " with springs" : "");
+}
 
 /// What the steps of a second are off by, of their largest acceleration.
 struct Off {
@@ -83,6 +86,14 @@ Off offOver(const Realised& run, const Method& method) {
   r.model.options.integrator = method.integrator;
   if (!method.coriolis) r.model.options.effects.remove(Effect::coriolis);
   r.controller.solver = method.solver;
+  if (run.isSprung)
+    for (int i = 0; i < r.model.nv; ++i) {
+      const Body& body = r.model.bodies[r.model.dofs[i].body];
+      if (body.dofs != 1) continue;
+      r.model.dofs[i].stiffness = 20.0;
+      r.model.dofs[i].springReference = r.state.q[body.q] + 0.1;
+      r.model.dofs[i].dryFriction = 0.2;
+    }
   if (run.balances)
     r.addPosture();
   else
@@ -142,6 +153,8 @@ INSTANTIATE_TEST_SUITE_P(
     Robots, RealisedGoals,
     testing::Values(Realised{"humanoid", "right_hand", {0.45, -0.25, 1.1}, true},
                     Realised{"arm", "hand", {0.5, 0.3, 0.5}, false},
+                    Realised{"arm", "hand", {0.5, 0.3, 0.5}, false, true},
+                    Realised{"humanoid", "right_hand", {0.45, -0.25, 1.1}, true, true},
                     Realised{"hand", "index_tip", {0.05, 0.03, 0.12}, false}));
 
 }  // namespace

@@ -250,6 +250,7 @@ Kind dryFriction() {
 
 INSTANTIATE_TEST_SUITE_P(OfRows, Passivity,
                          testing::Values(limit(), contact(Cone::pyramidal, 0.0),
+                                         contact(Cone::pyramidal, 0.7),
                                          contact(Cone::elliptic, 0.0), contact(Cone::elliptic, 0.7),
                                          connection(), weld(), coupling(), dryFriction()),
                          [](const auto& kind) { return kind.param.name; });
