@@ -72,6 +72,8 @@ void chooseMeshes(Model& model, PreparedMeshes& meshes) {
   std::map<const Mesh*, MeshFacts> known;
   Told filled, openHulls, openSurfaces, turned;
   for (Geometry& g : model.geometries) {
+    if (g.shape.kind == ShapeKind::triangles && meshes.surface(g.shape.mesh)->isConvex())
+      g.shape.kind = ShapeKind::mesh;
     if (!g.automaticMesh) continue;
     g.automaticMesh = false;
     const auto [at, isNew] = known.try_emplace(g.shape.mesh.get());

@@ -10,6 +10,9 @@
 ///   its triangles  else, where it is fixed to the world;
 ///   its hull       else, with a warning that names link, file and both volumes.
 ///
+/// What is to collide as its triangles and is closed and convex is its hull too, and collides as
+/// that: the same solid, with the same contacts.
+///
 /// A mesh that is not closed has no volume: fixed to the world it collides as its triangles, and
 /// what moves as its hull, both with a warning. A mesh whose triangles face mixed sides collides as
 /// its hull, with a warning.

@@ -55,6 +55,22 @@ TEST(ChooseMeshes, AConvexMeshIsItsHull) {
   }
 }
 
+// As triangles too, so that both move alike to the bit.
+TEST(ChooseMeshes, TrianglesThatEncloseAConvexSolidAreItsHull) {
+  const auto kindOf = [](const MeshPointer& mesh) {
+    ModelBuilder builder = freeBody(boxLink("part", 1.0, {0.1, 0.1, 0.1}));
+    builder.geometry(geometrySpec("part", Shape::surface(mesh)));
+    Model model = builder.build();
+    PreparedMeshes meshes;
+    chooseMeshes(model, meshes);
+    return model.geometries[0].shape.kind;
+  };
+  EXPECT_EQ(kindOf(boxSurface({0.1, 0.2, 0.3}, 3)), ShapeKind::mesh);
+  EXPECT_EQ(kindOf(ballSurface(0.5, 9, 12)), ShapeKind::mesh);
+  EXPECT_EQ(kindOf(ringSurface(0.5, 0.1, 24, 12)), ShapeKind::triangles);
+  EXPECT_EQ(kindOf(bowlMesh(0.5, 4, 8)), ShapeKind::triangles);
+}
+
 TEST(ChooseMeshes, WhatIsHollowIsItsTrianglesWhereItIsFixed) {
   const Chosen chosen = choose(ringSurface(0.5, 0.1, 24, 12), true);
   EXPECT_EQ(chosen.kind, ShapeKind::triangles);
