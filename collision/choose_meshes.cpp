@@ -44,6 +44,16 @@ std::string fileName(const std::string& path) {
   return slash == std::string::npos ? path : path.substr(slash + 1);
 }
 
+/// How many edges are open, and where the first is, as the shape has it.
+std::string rimsOf(const Mesh& mesh, const SurfaceDefects& defects) {
+  const Vector3 x = 0.5 * (mesh.vertices[static_cast<std::size_t>(defects.openEdge[0])] +
+                           mesh.vertices[static_cast<std::size_t>(defects.openEdge[1])]);
+  char text[128];
+  std::snprintf(text, sizeof text, ", %d open edges, the first at %.4g, %.4g, %.4g m",
+                defects.openEdges, x.x(), x.y(), x.z());
+  return text;
+}
+
 /// Links of one kind, told in one warning.
 class Told {
  public:
@@ -70,10 +80,15 @@ class Told {
 
 void chooseMeshes(Model& model, PreparedMeshes& meshes) {
   std::map<const Mesh*, MeshFacts> known;
-  Told filled, openHulls, openSurfaces, turned;
+  Told filled, openHulls, openSurfaces, turned, rooms;
   for (Geometry& g : model.geometries) {
-    if (g.shape.kind == ShapeKind::triangles && meshes.surface(g.shape.mesh)->isConvex())
-      g.shape.kind = ShapeKind::mesh;
+    if (g.shape.kind == ShapeKind::triangles) {
+      if (meshes.surface(g.shape.mesh)->isConvex())
+        g.shape.kind = ShapeKind::mesh;
+      else if (const SurfaceDefects defects = surfaceDefects(*g.shape.mesh);
+               defects.insideOutShells > 0 && defects.openEdges == 0)
+        rooms.add(g, "");
+    }
     if (!g.automaticMesh) continue;
     g.automaticMesh = false;
     const auto [at, isNew] = known.try_emplace(g.shape.mesh.get());
@@ -86,7 +101,7 @@ void chooseMeshes(Model& model, PreparedMeshes& meshes) {
       turned.add(g, facts.defects.turnedEdges > 0 ? "" : ", which faces inwards");
       continue;
     }
-    const std::string rims = ", " + std::to_string(facts.defects.openEdges) + " open edges";
+    const std::string rims = isOpen ? rimsOf(*g.shape.mesh, facts.defects) : "";
     if (!isFixed) {
       if (isOpen)
         openHulls.add(g, rims);
@@ -108,6 +123,9 @@ void chooseMeshes(Model& model, PreparedMeshes& meshes) {
   openHulls.appendTo(model.warnings, "collide as their convex hull, the mesh is not closed: ", "");
   openSurfaces.appendTo(model.warnings,
                         "collide from the side that their triangles face, not closed: ", "");
+  rooms.appendTo(model.warnings,
+                 "collide as the walls of a room, for their triangles face inwards: ",
+                 "; try a mesh tool that orients faces, if it is a solid");
   turned.appendTo(model.warnings,
                   "collide as their convex hull, the triangles do not all face outwards: ",
                   "; try a mesh tool that orients faces");

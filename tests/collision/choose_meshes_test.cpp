@@ -71,6 +71,19 @@ TEST(ChooseMeshes, TrianglesThatEncloseAConvexSolidAreItsHull) {
   EXPECT_EQ(kindOf(bowlMesh(0.5, 4, 8)), ShapeKind::triangles);
 }
 
+TEST(ChooseMeshes, TrianglesThatFaceInwardsAreToldToBeARoom) {
+  auto inwards = std::make_shared<Mesh>(*boxSurface({0.1, 0.2, 0.3}, 3));
+  for (auto& triangle : inwards->triangles) std::swap(triangle[0], triangle[1]);
+  ModelBuilder builder = freeBody(boxLink("part", 1.0, {0.1, 0.1, 0.1}));
+  builder.geometry(geometrySpec("world", Shape::surface(inwards)));
+  Model model = builder.build();
+  PreparedMeshes meshes;
+  chooseMeshes(model, meshes);
+  ASSERT_FALSE(model.warnings.empty());
+  EXPECT_NE(model.warnings.back().find("walls of a room"), std::string::npos)
+      << model.warnings.back();
+}
+
 TEST(ChooseMeshes, WhatIsHollowIsItsTrianglesWhereItIsFixed) {
   const Chosen chosen = choose(ringSurface(0.5, 0.1, 24, 12), true);
   EXPECT_EQ(chosen.kind, ShapeKind::triangles);
