@@ -78,13 +78,14 @@ void visitKind(gdd::Goal& goal, F&& f) {
 /// A goal as Python holds it: it looks whether the goal is there still.
 class Handle {
  public:
-  Handle(Held& held, gdd::Goal& goal) : held_(held), goal_(&goal) {}
+  Handle(Held& held, gdd::Goal& goal)
+      : held_(held), goal_(&goal), goalsCleared_(held.goalsCleared()) {}
 
   gdd::Goal& get() const {
-    const auto& goals = held_.sim().controller().goals;
-    for (const auto& goal : goals)
-      if (goal.get() == goal_) return *goal_;
-    throw std::runtime_error("this goal is gone: the goals of its simulation were cleared");
+    static_cast<void>(held_.sim());  // throws where another thread steps
+    if (held_.goalsCleared() != goalsCleared_)
+      throw std::runtime_error("this goal is gone: the goals of its simulation were cleared");
+    return *goal_;
   }
 
   VectorX target() const {
@@ -123,7 +124,8 @@ class Handle {
   }
 
   Held& held_;
-  gdd::Goal* goal_;
+  gdd::Goal* goal_;  ///< dangles once goals were cleared since
+  unsigned long goalsCleared_;
 };
 
 std::vector<Handle> handlesOf(GoalList& list, const std::vector<gdd::Goal*>& goals) {
@@ -240,7 +242,7 @@ void bindGoals(py::module_& m) {
           },
           py::arg("file"), "The same from a YAML file.")
       .def(
-          "clear", [](GoalList& g) { g.held.sim().goals.clear(); }, "No goals: robots are passive.")
+          "clear", [](GoalList& g) { g.held.clearGoals(); }, "No goals: robots are passive.")
       .def("__len__", [](GoalList& g) { return g.held.sim().goals.size(); })
       .def(
           "__getitem__", [](GoalList& g, long i) { return Handle(g.held, goalAt(g, i)); },

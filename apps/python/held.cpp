@@ -7,10 +7,20 @@
 
 namespace softgauss::python {
 
+namespace {
+
+[[noreturn]] void refuseSecond(const char* what) {
+  throw std::runtime_error(std::string("another thread uses ") + what + ", expected one at a time");
+}
+
+}  // namespace
+
+void expectIdle(const std::atomic<bool>& busy, const char* what) {
+  if (busy.load(std::memory_order_acquire)) refuseSecond(what);
+}
+
 Turn::Turn(std::atomic<bool>& busy, const char* what) : busy_(busy) {
-  if (busy_.exchange(true, std::memory_order_acquire))
-    throw std::runtime_error(std::string("another thread uses this ") + what +
-                             ", expected one at a time");
+  if (busy_.exchange(true, std::memory_order_acquire)) refuseSecond(what);
 }
 
 void seeSignals() {
@@ -19,16 +29,20 @@ void seeSignals() {
 }
 
 Simulation& Held::sim() {
-  if (busy_.load(std::memory_order_acquire))
-    throw std::runtime_error("another thread uses this simulation, expected one at a time");
+  expectIdle(busy_, "this simulation");
   return sim_;
+}
+
+void Held::clearGoals() {
+  sim().goals.clear();
+  ++goalsCleared_;
 }
 
 void Held::step(long n) {
   if (n < 0)
     throw py::value_error("step: found " + std::to_string(n) + " steps, expected 0 or more");
   constexpr long kLook = 64;  // steps between two looks for Ctrl-C
-  const Turn turn(busy_, "simulation");
+  const Turn turn(busy_, "this simulation");
   const py::gil_scoped_release release;
   for (long i = 1; i <= n; ++i) {
     if (!pushes_.empty()) pushes_.act(sim_);

@@ -11,6 +11,10 @@
 
 namespace softgauss::python {
 
+/// Throws std::runtime_error "another thread uses this simulation, …" where one is at work. For who
+/// keeps the interpreter's lock.
+void expectIdle(const std::atomic<bool>& busy, const char* what);
+
 /// One thread at a time, from here on until it goes. Throws std::runtime_error where another is at
 /// work.
 class Turn {
@@ -37,16 +41,21 @@ class Held {
   void step(long n);
   void run(double seconds);
   Pushes& pushes() { return pushes_; }
+  /// Goals leave by this alone.
+  void clearGoals();
+  /// How often goals were cleared: a goal is there as long as this is what it was at its coming.
+  unsigned long goalsCleared() const { return goalsCleared_; }
 
   template <class F>
   auto alone(F&& f) {
-    const Turn turn(busy_, "simulation");
+    const Turn turn(busy_, "this simulation");
     return f(sim_);
   }
 
  private:
   Simulation sim_;
   Pushes pushes_;
+  unsigned long goalsCleared_ = 0;
   std::atomic<bool> busy_ = false;
 };
 

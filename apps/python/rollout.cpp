@@ -3,6 +3,8 @@
 
 #include "softgauss/io/simulation/rollout.hpp"
 
+#include <optional>
+
 #include "apps/python/rollout_call.hpp"
 #include "softgauss/io/simulation/simulation_parts.hpp"
 
@@ -16,7 +18,9 @@ class HeldRollout {
       : held_(held), rollout_(held.sim().scene(), held.sim().parts().options, threads) {}
 
   Runs run(long steps, const RolloutArguments& arguments) {
-    const Turn turn(busy_, "rollout");
+    const Turn turn(busy_, "this rollout");
+    std::optional<Turn> ofStates;
+    if (arguments.states) ofStates.emplace(arguments.states->busy(), States::kName);
     return RolloutCall(held_.sim(), rollout_, steps, arguments).run(rollout_);
   }
   const Rollout& rollout() const { return rollout_; }
@@ -65,7 +69,9 @@ void bindRuns(py::module_& m) {
 }
 
 void bindStates(py::module_& m) {
-  py::class_<States>(m, "States", "Many states of one simulation's scene, for runs that go on.")
+  py::class_<States>(m, "States",
+                     "Many states of one simulation's scene, for runs that go on. They belong to\n"
+                     "one thread at a time: RuntimeError while a rollout has them.")
       .def(py::init<Held&, long>(), py::arg("sim"), py::arg("n"), py::keep_alive<1, 2>(),
            "The present state of the simulation, n times.")
       .def("reset", &States::reset, py::arg("rows") = py::none(), py::arg("q") = py::none(),

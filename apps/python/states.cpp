@@ -27,6 +27,7 @@ std::vector<long> States::rowsOf(const py::object& rows) const {
 }
 
 void States::reset(const py::object& rows, const py::object& q, const py::object& v) {
+  const Turn turn(busy_, kName);
   const std::vector<long> chosen = rowsOf(rows);
   const auto n = static_cast<py::ssize_t>(chosen.size());
   Numbers newQ, newV;
@@ -42,24 +43,28 @@ void States::reset(const py::object& rows, const py::object& q, const py::object
 }
 
 RowMajorMatrixX States::q() const {
+  expectIdle(busy_, kName);
   RowMajorMatrixX all(size(), model().nq);
   for (long i = 0; i < size(); ++i) all.row(i) = states_[static_cast<std::size_t>(i)].q;
   return all;
 }
 
 RowMajorMatrixX States::v() const {
+  expectIdle(busy_, kName);
   RowMajorMatrixX all(size(), model().nv);
   for (long i = 0; i < size(); ++i) all.row(i) = states_[static_cast<std::size_t>(i)].v;
   return all;
 }
 
 VectorX States::time() const {
+  expectIdle(busy_, kName);
   VectorX all(size());
   for (long i = 0; i < size(); ++i) all[i] = states_[static_cast<std::size_t>(i)].time;
   return all;
 }
 
 std::size_t States::bytes() const {
+  expectIdle(busy_, kName);
   std::size_t sum = bytesOf(states_) + bytesOf(grids_);
   for (const State& s : states_) {
     const WarmStart& w = s.warmstart;

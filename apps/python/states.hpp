@@ -3,6 +3,7 @@
 
 /// Many states of one scene, from which runs go on.
 
+#include <atomic>
 #include <vector>
 
 #include "apps/python/arrays.hpp"
@@ -11,8 +12,11 @@
 
 namespace softgauss::python {
 
+/// What Python calls throws std::runtime_error while a rollout has them.
 class States {
  public:
+  static constexpr const char* kName = "these states";
+
   /// The simulation's present state, n times.
   States(Held& held, long n);
 
@@ -28,6 +32,7 @@ class States {
   void giveTo(SimulationParts& parts, long i) const;
   void takeFrom(const SimulationParts& parts, long i);
   const Model& model() const { return scene_.model; }
+  std::atomic<bool>& busy() { return busy_; }
 
  private:
   std::vector<long> rowsOf(const py::object& rows) const;
@@ -35,6 +40,7 @@ class States {
   const Scene& scene_;
   std::vector<State> states_;
   std::vector<TimeGrid> grids_;
+  std::atomic<bool> busy_ = false;
 };
 
 }  // namespace softgauss::python

@@ -196,3 +196,33 @@ def test_control_c_ends_a_rollout():
         "except KeyboardInterrupt:\n    sys.exit(0)\nsys.exit(2)"
     )
     assert subprocess.run([sys.executable, "-c", script, ARM], timeout=60).returncode == 0
+
+
+def test_states_belong_to_one_thread_at_a_time():
+    """A second rollout and every look at the states are refused while a first one has them."""
+    sim = softgauss.Simulation(HUMANOID)
+    states = softgauss.States(sim, 4)
+    first, second = softgauss.Rollout(sim, 1), softgauss.Rollout(sim, 1)
+    refused = []
+
+    def meanwhile(done, runs):
+        for use in (
+            lambda: second.run(1, states=states),
+            lambda: states.q,
+            lambda: states.v,
+            lambda: states.time,
+            lambda: states.nbytes,
+            states.reset,
+        ):
+            try:
+                use()
+            except RuntimeError as error:
+                refused.append("another thread uses these states" in str(error))
+        raise StopIteration
+
+    with pytest.raises(StopIteration):
+        first.run(10**7, states=states, outputs=(), progress=meanwhile)
+    assert refused == [True] * 6
+    states.reset()
+    assert second.run(2, states=states).status == ["completed"] * 4  # it is free again
+    assert states.time.tolist() == [2 * sim.timestep] * 4
