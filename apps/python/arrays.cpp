@@ -15,6 +15,18 @@ std::string shapeText(const std::vector<py::ssize_t>& shape) {
 
 }  // namespace
 
+std::vector<std::pair<std::string, py::object>> namedOf(const py::handle& given,
+                                                        const std::string& name) {
+  if (!py::hasattr(given, "keys"))
+    throw py::type_error(name + ": found " + py::repr(given).cast<std::string>() +
+                         ", expected a dict {name: numbers}");
+  std::vector<std::pair<std::string, py::object>> named;
+  for (const auto& [key, value] : py::dict(py::reinterpret_borrow<py::object>(given)))
+    named.emplace_back(valueOf<std::string>(key, name, "a name, a string, as key"),
+                       py::reinterpret_borrow<py::object>(value));
+  return named;
+}
+
 Numbers numbersOf(const py::handle& given, const std::string& name,
                   const std::vector<py::ssize_t>& shape, const std::string& shapeInWords) {
   const Numbers array = Numbers::ensure(given);

@@ -4,6 +4,7 @@
 /// Numbers that come from Python, checked, and views that go there.
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "apps/python/module.hpp"
@@ -12,6 +13,21 @@
 namespace softgauss::python {
 
 using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+/// A value of this type. Throws TypeError "runs: found 3.0, expected a whole number".
+template <class T>
+T valueOf(const py::handle& given, const std::string& name, const char* expected) {
+  try {
+    return given.cast<T>();
+  } catch (const py::cast_error&) {
+    throw py::type_error(name + ": found " + py::repr(given).cast<std::string>() + ", expected " +
+                         expected);
+  }
+}
+
+/// What a mapping from names holds, in its order. Throws TypeError.
+std::vector<std::pair<std::string, py::object>> namedOf(const py::handle& given,
+                                                        const std::string& name);
 
 /// An array of this shape, without a copy where it is one of doubles in rows. Throws TypeError
 /// where these are no numbers, ValueError "q0: found shape (3, 7), expected (runs, nq) = (10, 7)".

@@ -4,21 +4,44 @@
 /// A simulation that is asked about another state than its own.
 
 #include <optional>
+#include <string>
 
 #include "apps/python/arrays.hpp"
 #include "softgauss/io/simulation/simulation.hpp"
 
 namespace softgauss::python {
 
+/// Throws StepError where these are no configuration: NaN, ∞, or a quaternion of length 0, as the
+/// step refuses them.
+inline void expectConfiguration(const Model& model, const VectorX& q) {
+  const auto refuse = [&](int body, const char* found) {
+    throw StepError("q: found " + std::string(found) + " at joint '" +
+                    model.jointNames[static_cast<std::size_t>(body)] +
+                    "', expected a configuration");
+  };
+  for (int b = 1; b < model.bodyCount(); ++b) {
+    const Body& body = model.bodies[static_cast<std::size_t>(b)];
+    const bool floats = body.joint == JointKind::floating;
+    const int numbers = floats ? 7 : body.dofs;
+    if (!q.segment(body.q, numbers).allFinite()) refuse(b, "NaN or ∞");
+    if (floats && !(q.segment<4>(body.q + 3).squaredNorm() > 0.0))
+      refuse(b, "the quaternion (0, 0, 0, 0)");
+  }
+}
+
 /// The simulation is at q (nq) and v (nv), where they are given, as long as this lives, without
-/// what earlier steps have left.
+/// what earlier steps have left. Throws StepError where it is no configuration.
 class AtState {
  public:
   AtState(Simulation& sim, const py::object& q, const py::object& v) : state_(sim.state()) {
-    if (q.is_none() && v.is_none()) return;
+    if (q.is_none() && v.is_none()) {
+      expectConfiguration(sim.model(), state_.q);
+      return;
+    }
     State at = state_;
     if (!q.is_none()) at.q = vectorOf(q, "q", sim.model().nq, "nq");
     if (!v.is_none()) at.v = vectorOf(v, "v", sim.model().nv, "nv");
+    expectConfiguration(sim.model(), at.q);
     at.hasAcceleration = false;
     at.warmstart = {};
     own_ = state_;

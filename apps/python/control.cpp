@@ -59,6 +59,15 @@ struct Solution {
   }
 };
 
+}  // namespace
+}  // namespace softgauss::python
+
+SOFTGAUSS_MADE_ONLY(softgauss::python::Contacts)
+SOFTGAUSS_MADE_ONLY(softgauss::python::Solution)
+
+namespace softgauss::python {
+namespace {
+
 Solution solve(Held& held, const py::object& q, const py::object& v) {
   return held.alone([&](Simulation& sim) {
     const AtState at(sim, q, v);

@@ -97,7 +97,7 @@ void bindDynamics(HeldClass& sim) {
       },
       py::arg("a"), q, v,
       "(nv,) generalised force [N m or N] under which the acceleration is a (nv,), contacts and\n"
-      "limits included: of forward_dynamics() the inverse, without an iteration.");
+      "limits included: of forward_dynamics() the inverse, without an iteration. StepError.");
   sim.def(
       "inverse_dynamics_jacobian",
       [](Held& h, const py::object& a, const py::object& q_, const py::object& v_) {
@@ -109,11 +109,13 @@ void bindDynamics(HeldClass& sim) {
       },
       py::arg("a"), q, v,
       "(nv, nv) P = ∂τ/∂a of inverse_dynamics() at a (nv,), symmetric and positive definite.");
-  sim.def("mass_matrix", massMatrix, q, "(nv, nv) inertia, rotors included [kg m², kg m, kg].");
+  sim.def("mass_matrix", massMatrix, q,
+          "(nv, nv) inertia, rotors included [kg m², kg m, kg]. Raises StepError where q is no\n"
+          "configuration: NaN, ∞, a quaternion of length 0.");
   sim.def("jacobian", jacobian, py::arg("link"), py::arg("point") = py::make_tuple(0.0, 0.0, 0.0),
           q,
           "(6, nv) of a point (3,) of the link [m], world axes: J @ v is its velocity [m/s], then\n"
-          "the link's angular velocity [rad/s]. UnknownName.");
+          "the link's angular velocity [rad/s]. UnknownName, StepError.");
 }
 
 }  // namespace softgauss::python

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/python/goals.hpp"
 
-#include <algorithm>
+#include <cmath>
 
 #include "apps/python/arrays.hpp"
 
@@ -75,6 +75,32 @@ void visitKind(gdd::Goal& goal, F&& f) {
             MomentumGoal, KeepClear, Effort>(goal, f);
 }
 
+// ---- Numbers that a goal of a file may have too, and no others
+
+std::string numberText(double x) { return py::repr(py::float_(x)).cast<std::string>(); }
+
+double checkedWeight(double weight) {
+  if (!(weight >= 0.0 && weight < kInfinity))
+    throw py::value_error("weight: found " + numberText(weight) +
+                          ", expected a finite number >= 0");
+  return weight;
+}
+
+/// ±∞: always.
+double checkedTime(double time, const char* name) {
+  if (std::isnan(time))
+    throw py::value_error(std::string(name) + ": found " + numberText(time) +
+                          ", expected a time [s]");
+  return time;
+}
+
+Vector3 finiteVector3Of(const py::object& given, const char* name) {
+  const Vector3 x = vector3Of(given, name);
+  if (!x.allFinite())
+    throw py::value_error(std::string(name) + ": found NaN or ∞, expected finite numbers");
+  return x;
+}
+
 /// A goal as Python holds it: it looks whether the goal is there still.
 class Handle {
  public:
@@ -110,11 +136,7 @@ class Handle {
     return *weight;
   }
 
-  void setWeight(double weight) const {
-    if (!(weight >= 0.0 && weight < kInfinity))
-      throw py::value_error("weight: found " + std::to_string(weight) + ", expected 0 or more");
-    this->weight() = weight;
-  }
+  void setWeight(double weight) const { this->weight() = checkedWeight(weight); }
 
  private:
   Targets targets() const {
@@ -127,6 +149,14 @@ class Handle {
   gdd::Goal* goal_;  ///< dangles once goals were cleared since
   unsigned long goalsCleared_;
 };
+
+}  // namespace
+}  // namespace softgauss::python
+
+SOFTGAUSS_MADE_ONLY(softgauss::python::Handle)
+
+namespace softgauss::python {
+namespace {
 
 std::vector<Handle> handlesOf(GoalList& list, const std::vector<gdd::Goal*>& goals) {
   std::vector<Handle> handles;
@@ -158,10 +188,12 @@ void bindHandle(py::module_& m) {
       .def_property("weight", &Handle::weight, &Handle::setWeight, "In the unit of its kind, ≥ 0.")
       .def_property(
           "start", [](Handle& h) { return h.get().startTime; },
-          [](Handle& h, double t) { h.get().startTime = t; }, "It acts from here on [s].")
+          [](Handle& h, double t) { h.get().startTime = checkedTime(t, "start"); },
+          "It acts from here on [s].")
       .def_property(
           "end", [](Handle& h) { return h.get().endTime; },
-          [](Handle& h, double t) { h.get().endTime = t; }, "And before this [s].")
+          [](Handle& h, double t) { h.get().endTime = checkedTime(t, "end"); },
+          "And before this [s].")
       .def("__repr__", [](Handle& h) { return "<softgauss.Goal '" + h.get().name() + "'>"; });
 }
 
@@ -176,8 +208,9 @@ gdd::Goal& goalAt(GoalList& list, long i) {
 
 Handle reach(GoalList& list, const std::string& link, const py::object& target,
              const py::object& point, std::optional<double> weight) {
-  return {list.held, list.held.sim().goals.reach(link, vector3Of(target, "target"),
-                                                 vector3Of(point, "point"), weight)};
+  if (weight) checkedWeight(*weight);
+  return {list.held, list.held.sim().goals.reach(link, finiteVector3Of(target, "target"),
+                                                 finiteVector3Of(point, "point"), weight)};
 }
 
 }  // namespace
@@ -222,7 +255,7 @@ void bindGoals(py::module_& m) {
       .def(
           "posture",
           [](GoalList& g, double weight) {
-            return Handle(g.held, g.held.sim().goals.posture(weight));
+            return Handle(g.held, g.held.sim().goals.posture(checkedWeight(weight)));
           },
           py::arg("weight") = gdd::Posture::kDefaultWeight, py::keep_alive<0, 1>(),
           "All joints and bases seek the configuration of the start.")

@@ -24,3 +24,5 @@ std::string goalText(const py::object& goals);
 std::vector<double*> targetOf(gdd::Goal& goal);
 
 }  // namespace softgauss::python
+
+SOFTGAUSS_MADE_ONLY(softgauss::python::GoalList)

@@ -5,7 +5,7 @@
 
 #include <atomic>
 
-#include "apps/python/module.hpp"
+#include "apps/python/made.hpp"
 #include "apps/python/pushes.hpp"
 #include "softgauss/io/simulation/simulation.hpp"
 
@@ -60,3 +60,5 @@ class Held {
 };
 
 }  // namespace softgauss::python
+
+SOFTGAUSS_MADE_ONLY(softgauss::python::Held)

@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 
+#include "apps/python/arrays.hpp"
 #include "softgauss/io/names.hpp"
 
 namespace softgauss::python {
@@ -12,30 +13,15 @@ namespace {
 using O = SimulationOptions;
 using Setter = std::function<void(O&, const std::string& key, const py::handle&)>;
 
-[[noreturn]] void refuse(const std::string& key, const py::handle& value,
-                         const std::string& expected) {
-  throw py::type_error(key + ": found " + py::repr(value).cast<std::string>() + ", expected " +
-                       expected);
-}
-
-template <class T>
-T read(const std::string& key, const py::handle& value, const char* expected) {
-  try {
-    return value.cast<T>();
-  } catch (const py::cast_error&) {
-    refuse(key, value, expected);
-  }
-}
-
 Setter number(std::optional<double> O::*member) {
   return [member](O& o, const std::string& key, const py::handle& value) {
-    o.*member = read<double>(key, value, "a number");
+    o.*member = valueOf<double>(value, key, "a number");
   };
 }
 
 Setter flag(bool O::*member) {
   return [member](O& o, const std::string& key, const py::handle& value) {
-    o.*member = read<bool>(key, value, "True or False");
+    o.*member = valueOf<bool>(value, key, "True or False");
   };
 }
 
@@ -43,7 +29,7 @@ Setter flag(bool O::*member) {
 template <class T>
 Setter choice(std::vector<std::pair<std::string, T>> choices, std::function<void(O&, T)> set) {
   return [=](O& o, const std::string& key, const py::handle& value) {
-    const auto word = read<std::string>(key, value, "a word");
+    const auto word = valueOf<std::string>(value, key, "a word");
     std::string known;
     for (const auto& [name, meaning] : choices) {
       if (name == word) return set(o, meaning);
@@ -56,17 +42,17 @@ Setter choice(std::vector<std::pair<std::string, T>> choices, std::function<void
 void setGround(O& o, const std::string& key, const py::handle& value) {
   o.groundIsDefault = false;
   o.ground.reset();
-  if (!value.is_none()) o.ground = read<double>(key, value, "a height [m] or None");
+  if (!value.is_none()) o.ground = valueOf<double>(value, key, "a height [m] or None");
 }
 
 void setStart(O& o, const std::string& key, const py::handle& value) {
   for (const auto& [name, q] :
-       read<std::map<std::string, double>>(key, value, "a dict of joints and positions"))
+       valueOf<std::map<std::string, double>>(value, key, "a dict of joints and positions"))
     o.q0.emplace_back(name, q);
 }
 
 void setPackagePaths(O& o, const std::string& key, const py::handle& value) {
-  o.packagePaths = read<std::vector<std::filesystem::path>>(key, value, "a list of folders");
+  o.packagePaths = valueOf<std::vector<std::filesystem::path>>(value, key, "a list of folders");
 }
 
 Setter integrators() {

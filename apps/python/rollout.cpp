@@ -31,6 +31,14 @@ class HeldRollout {
   std::atomic<bool> busy_ = false;
 };
 
+}  // namespace
+}  // namespace softgauss::python
+
+SOFTGAUSS_MADE_ONLY(softgauss::python::HeldRollout)
+
+namespace softgauss::python {
+namespace {
+
 constexpr const char* kRunDoc =
     "Runs of `steps` steps on all cores, without the interpreter's lock. A run depends on its own\n"
     "rows alone: the bits are the same for any number of threads.\n\n"
@@ -76,7 +84,9 @@ void bindStates(py::module_& m) {
            "The present state of the simulation, n times.")
       .def("reset", &States::reset, py::arg("rows") = py::none(), py::arg("q") = py::none(),
            py::arg("v") = py::none(),
-           "Puts these rows, or all, where the scene starts, at q (rows, nq) and v (rows, nv).")
+           "Puts these rows, or all, where the scene starts, at q (rows, nq) and v (rows, nv). "
+           "rows:\n"
+           "indices, or a mask (n,) of True and False. Raises TypeError, IndexError, ValueError.")
       .def_property_readonly("q", &States::q, "(n, nq) a copy")
       .def_property_readonly("v", &States::v, "(n, nv) a copy")
       .def_property_readonly("time", &States::time, "(n,) [s]")

@@ -22,13 +22,13 @@ Eigen::Map<const VectorX> rowOf(const Numbers& array, long run) {
 
 /// How many runs are meant: as many as are said, or as the first array has rows.
 long runsOf(const RolloutArguments& a) {
-  if (!a.runs.is_none()) return a.runs.cast<long>();
+  if (!a.runs.is_none()) return valueOf<long>(a.runs, "runs", "a whole number");
   if (a.states) return a.states->size();
   for (const py::object& array : {a.q0, a.v0, a.tau, a.targets})
     if (!array.is_none()) return py::len(array);
-  for (const py::object& arrays : {a.parameters, a.pushes})
+  for (const auto& [what, arrays] : {std::pair("parameters", a.parameters), {"pushes", a.pushes}})
     if (!arrays.is_none())
-      for (const auto& [name, array] : arrays.cast<py::dict>())
+      for (const auto& [name, array] : namedOf(arrays, what))
         if (py::hasattr(array, "__len__")) return static_cast<long>(py::len(array));
   throw py::type_error("rollout: how many runs? expected runs=N, or an array with a row a run");
 }
@@ -55,9 +55,9 @@ RolloutCall::RolloutCall(const Simulation& sim, const Rollout& rollout, long ste
     throw py::value_error("rollout: states: found " + std::to_string(states_->size()) +
                           ", expected a state a run, " + std::to_string(runs_));
   readInputs(a);
-  if (!a.parameters.is_none()) readParameters(a.parameters.cast<py::dict>());
+  if (!a.parameters.is_none()) readParameters(a.parameters);
   readGoals(a.goals, a.targets);
-  if (!a.pushes.is_none()) readPushes(sim, a.pushes.cast<py::dict>());
+  if (!a.pushes.is_none()) readPushes(sim, a.pushes);
   makeOutputs(rollout, a);
 }
 
@@ -74,10 +74,9 @@ void RolloutCall::readInputs(const RolloutArguments& a) {
     tau_ = numbersOf(a.tau, "tau", {runs_, steps_, model_.nv}, "(runs, steps, nv)");
 }
 
-void RolloutCall::readParameters(const py::dict& parameters) {
+void RolloutCall::readParameters(const py::object& parameters) {
   std::vector<Numbers> columns;
-  for (const auto& [key, array] : parameters) {
-    const auto name = key.cast<std::string>();
+  for (const auto& [name, array] : namedOf(parameters, "parameters")) {
     if (states_ && (name.starts_with("q:") || name.starts_with("v:")))
       throw py::value_error("rollout: parameter '" + name +
                             "': says where a run starts, and it goes on from states");
@@ -111,9 +110,8 @@ void RolloutCall::readGoals(const py::object& goals, const py::object& targets) 
   targetCount_ = known;
 }
 
-void RolloutCall::readPushes(const Simulation& sim, const py::dict& pushes) {
-  for (const auto& [key, array] : pushes) {
-    const auto link = key.cast<std::string>();
+void RolloutCall::readPushes(const Simulation& sim, const py::object& pushes) {
+  for (const auto& [link, array] : namedOf(pushes, "pushes")) {
     pushes_.push_back({link, numbersOf(array, "push on '" + link + "'", {runs_, 3}, "(runs, 3)")});
     Pushes().set(sim, link, Vector3::Zero());  // throws where there is no such link
   }

@@ -45,9 +45,9 @@ class RolloutCall {
   };
 
   void readInputs(const RolloutArguments& arguments);
-  void readParameters(const py::dict& parameters);
+  void readParameters(const py::object& parameters);
   void readGoals(const py::object& goals, const py::object& targets);
-  void readPushes(const Simulation& sim, const py::dict& pushes);
+  void readPushes(const Simulation& sim, const py::object& pushes);
   void makeOutputs(const Rollout& rollout, const RolloutArguments& arguments);
   void begin(RolloutRun& run);
   void end(RolloutRun& run);
@@ -69,3 +69,5 @@ class RolloutCall {
 };
 
 }  // namespace softgauss::python
+
+SOFTGAUSS_MADE_ONLY(softgauss::python::Runs)

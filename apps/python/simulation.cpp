@@ -3,7 +3,7 @@
 
 #include "softgauss/io/simulation/simulation.hpp"
 
-#include "apps/python/arrays.hpp"
+#include "apps/python/at_state.hpp"
 #include "apps/python/goals.hpp"
 #include "apps/python/held.hpp"
 #include "apps/python/options.hpp"
@@ -13,7 +13,9 @@ namespace {
 
 /// A 4 × 4 matrix: rotation, then position.
 RowMajorMatrixX poseOf(Held& held, const std::string& link) {
-  const Transform X = held.sim().pose(link);
+  Simulation& sim = held.sim();
+  expectConfiguration(sim.model(), sim.state().q);
+  const Transform X = sim.pose(link);
   RowMajorMatrixX pose = RowMajorMatrixX::Identity(4, 4);
   pose.topLeftCorner<3, 3>() = X.R;
   pose.topRightCorner<3, 1>() = X.p;
@@ -95,8 +97,10 @@ void bindByName(HeldClass& sim) {
   sim.def(
       "set_velocity", [](Held& h, const std::string& j, double v) { h.sim().setVelocity(j, v); },
       py::arg("joint"), py::arg("v"), "[rad/s or m/s]");
-  sim.def("pose", poseOf, py::arg("link"),
-          "(4, 4) pose of the link's frame in the world, now: rotation and position [m].");
+  sim.def(
+      "pose", poseOf, py::arg("link"),
+      "(4, 4) pose of the link's frame in the world, now: rotation and position [m]. StepError\n"
+      "where q is no configuration.");
   sim.def(
       "torque", [](Held& h, const std::string& j) { return h.sim().torque(j); }, py::arg("joint"),
       "What acted on the joint in the last step from its actuator and from `tau` [N m or N].");

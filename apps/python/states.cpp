@@ -13,12 +13,36 @@ States::States(Held& held, long n) : scene_(held.sim().scene()) {
   grids_.assign(static_cast<std::size_t>(n), parts.grid);
 }
 
+std::vector<long> States::indicesOf(const py::object& rows) const {
+  const auto refuse = [&] {
+    throw py::type_error("rows: found " + py::repr(rows).cast<std::string>() +
+                         ", expected indices or a mask of True and False, (n,) = (" +
+                         std::to_string(size()) + ",)");
+  };
+  const py::array given = py::array::ensure(rows);
+  if (!given) PyErr_Clear();
+  if (!given || given.ndim() != 1) refuse();
+  const char kind = given.dtype().kind();
+  std::vector<long> chosen;
+  if (kind == 'b') {
+    if (given.size() != size()) refuse();
+    const auto mask = py::array_t<bool>(given);
+    for (long i = 0; i < size(); ++i)
+      if (mask.at(i)) chosen.push_back(i);
+  } else if (kind == 'i' || kind == 'u') {
+    chosen = given.cast<std::vector<long>>();
+  } else if (given.size() > 0) {
+    refuse();
+  }
+  return chosen;
+}
+
 std::vector<long> States::rowsOf(const py::object& rows) const {
   std::vector<long> chosen;
   if (rows.is_none())
     for (long i = 0; i < size(); ++i) chosen.push_back(i);
   else
-    chosen = rows.cast<std::vector<long>>();
+    chosen = indicesOf(rows);
   for (const long i : chosen)
     if (i < 0 || i >= size())
       throw py::index_error("states: found row " + std::to_string(i) + ", there are " +

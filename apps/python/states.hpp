@@ -35,6 +35,7 @@ class States {
   std::atomic<bool>& busy() { return busy_; }
 
  private:
+  std::vector<long> indicesOf(const py::object& rows) const;  ///< from indices or a mask
   std::vector<long> rowsOf(const py::object& rows) const;
 
   const Scene& scene_;
@@ -44,3 +45,5 @@ class States {
 };
 
 }  // namespace softgauss::python
+
+SOFTGAUSS_MADE_ONLY(softgauss::python::States)

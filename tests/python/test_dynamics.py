@@ -144,3 +144,30 @@ def test_wrong_shapes_are_told(arm):
         arm.jacobian("nothing")
     with pytest.raises(softgauss.StepError):
         arm.forward_dynamics(q=[np.nan] * 7)
+
+
+@pytest.mark.parametrize("found, said", [(0.0, r"quaternion \(0, 0, 0, 0\)"), (np.nan, "NaN")])
+def test_what_is_no_configuration_is_refused_as_the_step_does(humanoid, found, said):
+    good = humanoid.q.copy()
+    bad = good.copy()
+    bad[3:7] = found
+    zero = np.zeros(humanoid.nv)
+    asked = [
+        lambda **at: humanoid.forward_dynamics(zero, **at),
+        lambda **at: humanoid.inverse_dynamics(zero, **at),
+        lambda **at: humanoid.inverse_dynamics_jacobian(zero, **at),
+        lambda **at: humanoid.solve(**at),
+        lambda **at: humanoid.mass_matrix(**at),
+        lambda **at: humanoid.jacobian("torso", **at),
+    ]
+    for ask in asked:
+        with pytest.raises(softgauss.StepError, match=said + ".* at joint 'pelvis'"):
+            ask(q=bad)
+        assert np.array_equal(humanoid.q, good)
+        ask(q=3.0 * good)  # of any other length it is a rotation
+    humanoid.q = bad
+    for ask in [*asked, lambda: humanoid.pose("torso"), humanoid.step]:
+        with pytest.raises(softgauss.StepError):
+            ask()
+    humanoid.q = good
+    humanoid.step()

@@ -162,6 +162,48 @@ def test_wrong_arguments_are_told():
     assert runs.status == ["completed", "failed"] and "mass:hand" in runs.failure[1]
 
 
+@pytest.mark.parametrize(
+    "given, said",
+    [
+        ({"runs": 3.0}, "runs: found 3.0, expected a whole number"),
+        ({"runs": "3"}, "runs: found '3', expected a whole number"),
+        ({"runs": 10**30}, "runs: found 1000.*, expected a whole number"),
+        ({"parameters": {3: [1.0]}}, "parameters: found 3, expected a name"),
+        ({"runs": 1, "parameters": {None: 1.0}}, "parameters: found None, expected a name"),
+        ({"runs": 1, "parameters": [1.0]}, r"parameters: found \[1.0\], expected a dict"),
+        ({"pushes": {("hand", 0): [[0, 0, 1]]}}, r"pushes: found \('hand', 0\), expected a name"),
+        ({"runs": 1, "pushes": 7}, "pushes: found 7, expected a dict"),
+    ],
+)
+def test_values_of_another_type_are_told_in_words(given, said):
+    with pytest.raises(TypeError, match=said):
+        softgauss.Rollout(softgauss.Simulation(ARM)).run(1, **given)
+
+
+def test_rows_are_indices_or_a_mask():
+    sim = softgauss.Simulation(ARM)
+    for rows, chosen in (
+        ([2, 0], [2, 0]),
+        (np.array([3]), [3]),
+        ([], []),
+        ([False, False, True, False], [2]),
+        (np.array([True, False, False, True]), [0, 3]),
+        (np.zeros(4, bool), []),
+        (None, [0, 1, 2, 3]),
+    ):
+        states = softgauss.States(sim, 4)
+        states.reset(rows, q=np.arange(1, len(chosen) + 1)[:, None] * np.full(7, 0.1))
+        expected = np.tile(sim.q, (4, 1))
+        for k, row in enumerate(chosen):
+            expected[row] = 0.1 * (k + 1)
+        assert np.allclose(states.q, expected, rtol=0, atol=1e-15), rows
+    for wrong in ([True, False], [1.0, 2.0], [[0, 1]], 1, "01", [None]):
+        with pytest.raises(TypeError, match="rows: found .*, expected indices or a mask"):
+            states.reset(wrong)
+    with pytest.raises(IndexError, match="found row 4, there are 4"):
+        states.reset([4])
+
+
 def test_the_interpreter_s_lock_is_released():
     rollout = softgauss.Rollout(softgauss.Simulation(HUMANOID), 1)
     work = threading.Thread(target=rollout.run, args=(1000,), kwargs={"runs": 8})

@@ -252,56 +252,6 @@ def test_what_seeks_nothing_has_no_target(arm, goal):
     assert (added.start, added.end, added.weight) == (0.5, 1.0, 2.0)
 
 
-# ---- Errors
-
-
-def test_errors_say_what_the_program_says(tmp_path):
-    with pytest.raises(softgauss.ModelError, match="nothing.urdf"):
-        softgauss.Simulation(tmp_path / "nothing.urdf")
-    bad = tmp_path / "bad.urdf"
-    bad.write_text("<robot name='r'><link name='a'/><link name='b'/></robot>")
-    with pytest.raises(ValueError, match=r"bad\.urdf"):
-        softgauss.Simulation(bad)
-
-
-def test_wrong_arguments_are_told(arm):
-    with pytest.raises(softgauss.UnknownName, match="did you mean 'hand'"):
-        arm.goals.reach("hnd", [0, 0, 0])
-    with pytest.raises(softgauss.UnknownName, match="did you mean 'elbow_pitch'"):
-        arm.position("elbow_pich")
-    with pytest.raises(softgauss.ModelError, match="goals:1: goal 1 'reach': key 'weight'"):
-        arm.goals.add({"reach": {"link": "hand", "target": [0, 0, 0], "weight": -1}})
-    with pytest.raises(softgauss.ModelError, match="unknown kind"):
-        arm.goals.add({"raech": {}})
-    with pytest.raises(ValueError, match=r"q: found shape \(3,\), expected \(nq,\) = \(7,\)"):
-        arm.q = [1, 2, 3]
-    with pytest.raises(TypeError, match="expected numbers"):
-        arm.v = ["a"] * 7
-    with pytest.raises(TypeError, match="expected one of base, "):
-        softgauss.Simulation(ROBOTS / "arm.urdf", timestp=0.001)
-    with pytest.raises(
-        ValueError, match="cone: found 'round', expected one of pyramidal, elliptic"
-    ):
-        softgauss.Simulation(ROBOTS / "arm.urdf", cone="round")
-    with pytest.raises(TypeError, match="timestep: found 'fast', expected a number"):
-        softgauss.Simulation(ROBOTS / "arm.urdf", timestep="fast")
-    with pytest.raises(softgauss.OptionError, match="q0"):
-        softgauss.Simulation(ROBOTS / "arm.urdf", q0={"elbow_pitch": 99.0})
-    with pytest.raises(ValueError, match="0 or more"):
-        arm.step(-1)
-    with pytest.raises(AttributeError, match="nothing"):
-        softgauss.nothing
-
-
-def test_a_refused_step_leaves_the_state_and_tells_why(arm):
-    arm.step(5)
-    before, time = arm.q.copy(), arm.time
-    arm.tau[2] = np.nan
-    with pytest.raises(softgauss.StepError, match=arm.joints[2]):
-        arm.step()
-    assert np.array_equal(before, arm.q) and arm.time == time
-
-
 # ---- Threads and interrupts
 
 
