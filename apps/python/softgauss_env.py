@@ -103,10 +103,17 @@ class _Task:
         size = sum(size for _, size in self.seeking)
         return np.full(size, -bound), np.full(size, bound)
 
-    def clipped(self, action, rows):
-        """(rows, k), within the bounds."""
-        action = np.asarray(action, float).reshape((rows,) + self.action_space.shape)
-        return np.clip(action, self.action_space.low, self.action_space.high)
+    def clipped(self, action, space):
+        """(rows, k), within the bounds. Raises ValueError where its shape is not that of the space,
+        and where a goal is to seek NaN or ∞; a torque of NaN is for the step to refuse."""
+        action = np.asarray(action, float)
+        if action.shape != space.shape:
+            raise ValueError(f"action: found shape {action.shape}, expected {space.shape}")
+        action = np.clip(action, space.low, space.high).reshape((-1,) + self.action_space.shape)
+        bad = np.flatnonzero(~np.isfinite(action).all(axis=1))
+        if len(bad) and not self.torques:
+            raise ValueError(f"action: found NaN or ∞ in row {bad[0]}, expected finite numbers")
+        return action
 
     def forces(self, action):
         """(rows, nv) generalised forces of torques (rows, k)."""
@@ -168,8 +175,9 @@ class Env(gymnasium.Env if gymnasium else object):
 
     def step(self, action):
         """One frame. Returns observation, reward, terminated, truncated and a dict, which holds
-        `failure` where a step was refused."""
-        action = self._task.clipped(action, 1)
+        `failure` where a step was refused. Raises ValueError where the action is not (k,), or where a
+        goal is to seek NaN."""
+        action = self._task.clipped(action, self.action_space)
         if self._task.torques:
             self.sim.tau = self._task.forces(action)[0]
         next_target = 0
@@ -241,8 +249,9 @@ class VectorEnv(gymnasium.vector.VectorEnv if gymnasium else object):
 
     def step(self, actions):
         """One frame of all. Returns observations (num_envs, m), rewards, terminated and truncated
-        (num_envs,) and a dict, which holds `failure` [num_envs] where a step was refused."""
-        actions = self._task.clipped(actions, self.num_envs)
+        (num_envs,) and a dict, which holds `failure` [num_envs] where a step was refused. Raises
+        ValueError where actions are not (num_envs, k), or where a goal is to seek NaN."""
+        actions = self._task.clipped(actions, self.action_space)
         runs = self._advance(actions)
         failed = np.array([status == "failed" for status in runs.status])
         self._frame += 1

@@ -116,6 +116,55 @@ def test_spaces_are_of_the_robot():
         softgauss.Env(ARM, action="speed", reward=upright)
 
 
+def both_environments(action):
+    task = {"action": action, "reward": lambda q, v, a: np.ones(len(q))}
+    one, many = softgauss.Env(ARM, **task), softgauss.VectorEnv(ARM, 3, **task)
+    for env in (one, many):
+        env.reset()
+    return one, many
+
+
+@pytest.mark.parametrize("action", ["acceleration", "torque"])
+def test_actions_of_another_shape_are_refused(action):
+    one, many = both_environments(action)
+    for env, shapes in (
+        (one, [(1, 7), (6,), (7, 1), ()]),
+        (many, [(7, 3), (21,), (7,), (1, 7), (3, 7, 1), (3, 6), ()]),
+    ):
+        before = env.sim.time, many.states.time.tolist()
+        for shape in shapes:
+            with pytest.raises(ValueError) as error:
+                env.step(np.zeros(shape))
+            assert f"found shape {shape}, expected {env.action_space.shape}" in str(error.value)
+        assert (env.sim.time, many.states.time.tolist()) == before
+        env.step(np.zeros(env.action_space.shape))
+
+
+def test_a_goal_that_is_to_seek_nan_is_refused_alike():
+    one, many = both_environments("acceleration")
+    action = np.zeros((3, 7))
+    action[1, 4] = np.nan
+    with pytest.raises(ValueError, match="action: found NaN or ∞ in row 1, expected finite"):
+        many.step(action)
+    with pytest.raises(ValueError, match="action: found NaN or ∞ in row 0, expected finite"):
+        one.step(action[1])
+    assert one.sim.time == 0.0 and not many.states.time.any()
+    action[1, 4] = np.inf  # the bound is meant
+    many.step(action)
+    one.step(action[1])
+    assert np.array_equal(one.sim.q, many.states.q[1])
+
+
+def test_a_torque_of_nan_fails_alike():
+    one, many = both_environments("torque")
+    action = np.zeros((3, 7))
+    action[1, 4] = np.nan
+    _, _, over, _, info = many.step(action)
+    alone = one.step(action[1])
+    assert over.tolist() == [False, True, False] and alone[2]
+    assert info["failure"][1] and alone[4]["failure"]
+
+
 def test_a_refused_step_ends_the_episode():
     many = softgauss.VectorEnv(
         ARM, 2, action="torque", reward=lambda q, v, a: np.ones(len(q)), bounds=(-np.inf, np.inf)
