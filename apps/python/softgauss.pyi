@@ -219,12 +219,13 @@ class Simulation:
     def warnings(self) -> list[str]: ...
 
 class States:
-    """Many states of one simulation's scene, for runs that go on."""
+    """Many states of one simulation's scene, for runs that go on. One thread at a time."""
 
     def __init__(self, sim: Simulation, n: int) -> None: ...
     def reset(
         self, rows: ArrayLike | None = None, q: ArrayLike | None = None, v: ArrayLike | None = None
-    ) -> None: ...
+    ) -> None:
+        """rows: indices or a mask (n,); all where they are not said."""
     @property
     def q(self) -> Array:
         """(n, nq) a copy"""

@@ -62,6 +62,15 @@ def test_a_hand_holds_what_is_rough_and_light():
     assert abs(fallen[1, 0]) < 0.01
 
 
+def test_the_picture_of_the_sweep_shows_where_the_hand_loses_the_ball():
+    """At the ends of its axes all is held, or nothing."""
+    from sweep_grasp import FRICTIONS, MASSES, sweep
+
+    held, fallen = sweep(SCENES / "hand_and_ball.yaml", FRICTIONS, MASSES, 0.6)
+    assert held[:, 0].all() and not held[:, 1].any()
+    assert np.abs(fallen[:, 0]).max() < 0.01 and fallen[:, 1].min() > 0.1
+
+
 @pytest.mark.parametrize("joint, truth", [("elbow_pitch", 1.7), ("shoulder_yaw", 0.4)])
 def test_identify_damping(tmp_path, joint, truth):
     said = run("identify_damping.py", ARM, joint, "--truth", truth, "--noise", 1e-4, cwd=tmp_path)
@@ -87,6 +96,65 @@ def test_identify_damping_reads_a_log_of_simulate_gdd(tmp_path):
         write.writerows(rows)
     for one, other in zip(read_log(tmp_path / "a.csv", sim), read_log(tmp_path / "b.csv", sim)):
         assert np.array_equal(one, other)
+
+
+def a_log(file, change=lambda rows: rows, **options):
+    """Of an arm whose elbow has a damping of 1; `change` makes other rows of it."""
+    from identify_damping import make_log
+
+    make_log(file, softgauss.Simulation(ARM, **options), "elbow_pitch", 1.0, 0.0)
+    with open(file, newline="") as text:
+        rows = change(list(csv.DictReader(text)))
+    with open(file, "w", newline="") as out:
+        write = csv.DictWriter(out, rows[0].keys())
+        write.writeheader()
+        write.writerows(rows)
+
+
+@pytest.mark.parametrize("timestep", [0.0005, 0.003, 0.004])
+def test_identify_damping_takes_the_step_from_the_log(tmp_path, timestep):
+    a_log(tmp_path / "log.csv", timestep=timestep)
+    said = run("identify_damping.py", ARM, "elbow_pitch", "--log", "log.csv", cwd=tmp_path)
+    found = float(re.search(r"damping of \w+: ([\d.e+-]+) N m s/rad", said).group(1))
+    assert found == pytest.approx(1.0, rel=1e-3)  # four digits are printed
+
+
+def without(column):
+    return lambda rows: [{k: x for k, x in row.items() if k != column} for row in rows]
+
+
+def with_value(column, row, value):
+    return lambda rows: [x if i != row else {**x, column: value} for i, x in enumerate(rows)]
+
+
+@pytest.mark.parametrize(
+    "change, said",
+    [
+        (lambda rows: rows[:40] + rows[41:], r"log.csv:42: column 'time_s': found a row 0.004 s"),
+        (lambda rows: rows[::-1], "column 'time_s'"),
+        (lambda rows: rows[:2], "found 2 rows, expected 3 or more"),
+        (without("time_s"), "found no column 'time_s'"),
+        (without("u:wrist_pitch"), "found no column 'u:wrist_pitch'"),
+        (with_value("u:elbow_pitch", 7, ""), "log.csv:9: column 'u:elbow_pitch': found ''"),
+        (with_value("q:elbow_pitch", 7, "nan"), "log.csv:9: column 'q:elbow_pitch': found 'nan'"),
+        (with_value("time_s", 7, "x"), "log.csv:9: column 'time_s': found 'x', expected a number"),
+        (lambda rows: rows[::2], "no damping from 0.001 to 100 fits"),
+        (lambda rows: rows[::5], "no damping from 0.001 to 100 fits"),
+        (lambda rows: rows[::100], "no damping from 0.001 to 100 fits"),
+        (lambda rows: [{**row, "time_s": 2 * float(row["time_s"])} for row in rows], "fits"),
+    ],
+)
+def test_identify_damping_refuses_what_it_cannot_use(tmp_path, change, said):
+    a_log(tmp_path / "log.csv", change)
+    done = subprocess.run(
+        [sys.executable, EXAMPLES / "identify_damping.py", ARM, "elbow_pitch", "--log", "log.csv"],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        timeout=300,
+    )
+    assert done.returncode == 1 and re.search(said, done.stderr), (done.stdout, done.stderr)
+    assert "Traceback" not in done.stderr and done.stdout == ""
 
 
 @pytest.mark.parametrize("action", ["acceleration", "torque"])

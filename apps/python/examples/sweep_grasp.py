@@ -2,7 +2,8 @@
 """How slippery and how heavy may a ball be that a hand holds? A sweep on all cores, and a picture.
 
 The hand closes on the ball once. From there it goes on many times, with other friction and another
-mass of the ball each time. It has the ball at the end where the ball has not fallen.
+mass of the ball each time. It has the ball at the end where the ball has not fallen. The fingers lie
+below the ball, so that it is its weight that opens them; friction helps a little.
 
     python3 sweep_grasp.py hand_and_ball.yaml --out grasp.svg
 """
@@ -13,6 +14,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import softgauss
+
+FRICTIONS, MASSES = (0.02, 1.0), (2.0, 20.0)  # between these the hand begins to lose the ball [kg]
 
 
 def sweep(scene, frictions, masses, seconds, progress=None):
@@ -41,21 +44,24 @@ def sweep(scene, frictions, masses, seconds, progress=None):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("scene")
-    parser.add_argument("--points", type=int, default=12, help="along each axis")
+    parser.add_argument("--points", type=int, default=16, help="along each axis")
     parser.add_argument("--seconds", type=float, default=1.0)
     parser.add_argument("--out", default="grasp.svg")
     args = parser.parse_args()
 
-    frictions = np.geomspace(0.05, 1.0, args.points)
-    masses = np.geomspace(0.02, 5.0, args.points)
+    frictions = np.geomspace(*FRICTIONS, args.points)
+    masses = np.geomspace(*MASSES, args.points)
     held, _ = sweep(args.scene, frictions, masses, args.seconds)
     figure, axes = plt.subplots(figsize=(6, 5))
     axes.pcolormesh(frictions, masses, held.T, shading="nearest", cmap="RdYlGn", vmin=0, vmax=1)
     axes.set_xscale("log")
     axes.set_yscale("log")
+    axes.set_xticks(frictions[::5], [f"{x:.2g}" for x in frictions[::5]])
+    axes.set_yticks(masses[::5], [f"{x:.2g}" for x in masses[::5]])
+    axes.minorticks_off()
     axes.set_xlabel("friction of everything")
     axes.set_ylabel("mass of the ball [kg]")
-    axes.set_title("green: the hand holds the ball")
+    axes.set_title("green: the hand holds the ball; red: it falls")
     figure.savefig(args.out)
     print(f"{held.sum()} of {held.size} balls are held; picture: {args.out}")
 
