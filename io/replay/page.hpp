@@ -18,8 +18,8 @@ namespace softgauss::io {
 std::string replayPayload(const Recording& recording, const std::string& generator);
 
 /// The page as a server gives it that shows a run as it goes: it begins with the recording's frames
-/// and may talk to that server. `live`: JSON, the header's member of that name (docs/reference/live.md).
-/// `beside`: a run of runInPage(), or empty.
+/// and may talk to that server. `live`: JSON, the header's member of that name
+/// (docs/reference/live.md). `beside`: a run of runInPage(), or empty.
 std::string livePage(const Recording& recording, const std::string& generator,
                      const std::string& live, const std::string& beside = {});
 

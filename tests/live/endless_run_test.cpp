@@ -18,7 +18,8 @@ namespace {
 TEST(EndlessRun, SeriesKeepABoundedShareAndTheMaximum) {
   io::Series series;
   constexpr long kCount = 3 * static_cast<long>(io::Series::kMost) + 12345;
-  constexpr long kSpike = 2 * static_cast<long>(io::Series::kMost) + 7;  // after samples are left out
+  constexpr long kSpike =
+      2 * static_cast<long>(io::Series::kMost) + 7;  // after samples are left out
   for (long i = 1; i <= kCount; ++i) series.add(i == kSpike ? 1e9 : static_cast<double>(i));
   EXPECT_LT(series.values.size(), io::Series::kMost);
   EXPECT_EQ(static_cast<long>(series.values.size()) + series.dropped, kCount);

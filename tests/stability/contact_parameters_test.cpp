@@ -95,8 +95,8 @@ TEST(ContactParameters, ImpedancesUpToOne) {
         t.state.q[2] += 0.05;
         t.mayGain = 1e-9;
         t.run(2.0);
-        // One contact: g (1 − d)/(k d²) d_max² with k = 1/tc², as docs/guide/contact.md has it for μ =
-        // 1; the box has four.
+        // One contact: g (1 − d)/(k d²) d_max² with k = 1/tc², as docs/guide/contact.md has it for
+        // μ = 1; the box has four.
         const double e = std::min(d, 0.9999), tc = std::max(0.02, 2.0 * timestep);
         t.expect("penetration at rest", t.data->stats.maxPenetration,
                  9.81 * (1.0 - e) / e * tc * tc, "m");
