@@ -60,6 +60,7 @@ class Hands {
   };
   std::vector<GoalView> goals() const;
   const std::string& holding() const { return holding_; }  ///< name of the drag, or empty
+  bool pushes() const { return push_.has_value(); }
 
   static constexpr int kDrags = 8;
 

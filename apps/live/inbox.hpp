@@ -11,7 +11,8 @@
 
 namespace softgauss::live {
 
-/// Who sent an event, and the number that its answer repeats.
+/// Who sent an event, and the number that its answer repeats. Client 0 is nobody: the event follows
+/// from the end of a page.
 struct Sender {
   long client = 0, id = 0;
 };
@@ -32,6 +33,16 @@ class Inbox {
     if (waiting_.size() >= kMost) return false;
     waiting_.emplace_back(sender, std::move(event));
     return true;
+  }
+
+  /// The page that wrote is gone: what it holds by the mouse is let go, after all that it has sent.
+  void letGo() {
+    const std::lock_guard lock(mutex_);
+    if (!waiting_.empty() && waiting_.back().first.client == 0) return;
+    for (const EventKind kind : {EventKind::release, EventKind::letGo}) {
+      waiting_.emplace_back(Sender{}, Event{});
+      waiting_.back().second.kind = kind;
+    }
   }
 
   /// All that wait, in their order.

@@ -45,7 +45,9 @@ Session::Session(Server::Shared& shared, Tcp::socket socket)
 
 Session::~Session() {
   if (open_) --shared_.pages;
-  if (shared_.writer == client_) shared_.writer = 0;
+  if (shared_.writer != client_) return;
+  shared_.writer = 0;
+  if (acted_) shared_.inbox.letGo();
 }
 
 void Session::close() {
@@ -174,6 +176,7 @@ std::string Session::handle(const std::string& text) {
   if (shared_.writer != client_) return answer(asked.id, "this page only watches");
   if (!shared_.inbox.put({client_, asked.id}, asked.event))
     return answer(asked.id, "too much is waiting");
+  acted_ = true;
   return "";
 }
 

@@ -86,6 +86,7 @@ class Session : public std::enable_shared_from_this<Session> {
   Message frame_, status_;     ///< the newest that wait
   Message sending_;
   bool open_ = false;
+  bool acted_ = false;  ///< something that it asked for reached the inbox
 };
 
 }  // namespace softgauss::live

@@ -125,10 +125,13 @@ bool LiveRun::before(long taken) {
 bool LiveRun::takeEvents() {
   server_->inbox().take(asked_);
   for (auto& [sender, event] : asked_) {
+    const bool holds =
+        event.kind == live::EventKind::release ? !hands_.holding().empty() : hands_.pushes();
+    if (sender.client == 0 && !holds) continue;
     event.step = taken_;
     const std::string refused = hands_.apply(event);
     if (refused.empty() && record_) record_->write(event);
-    server_->answer(sender, live::answer(sender.id, refused));
+    if (sender.client != 0) server_->answer(sender, live::answer(sender.id, refused));
   }
   return !asked_.empty();
 }

@@ -89,6 +89,8 @@ class Runner {
   }
 
   ExitCode run() {
+    // Before anything is told, for who reads it may interrupt at once.
+    catchInterrupts();
     RunProgress progress(options_.duration, options_.quiet || options_.acted());
     progress_ = &progress;
     const double wallBefore = summary_.wallSeconds;
@@ -96,7 +98,6 @@ class Runner {
     print(told(), company_->announcement());
     std::fflush(told());
     ExitCode code = kDone;
-    catchInterrupts();
     const Clock::time_point start = Clock::now();
     while (code == kDone) {
       const Company::Next next = company_->next([&](double time) { replay_->rewind(time); });

@@ -79,6 +79,51 @@ TEST(LiveRun, IsDraggedAndPlayedAgainToTheSameBits) {
   EXPECT_EQ(played["steps"], live["steps"]);
 }
 
+TEST(LiveRun, LetsGoWhatAPageHoldsThatIsGone) {
+  // A drag and a push end with the page that held them; a pinned point stays. All of it is
+  // recorded.
+  const io::TempFolder folder;
+  const auto file = [&](const char* name) { return (folder.path() / name).string(); };
+  LiveProcess process({kArm, "--record", file("held.yaml"), "--summary", file("live.json")});
+  {
+    Client page(process.port());
+    const std::string place = "\"point\": [0, 0, 0], \"target\": [0.3, 0.3, 0.5]}";
+    EXPECT_EQ(page.ask("\"grab\": {\"link\": \"forearm\", " + place), "");
+    EXPECT_EQ(page.ask("\"pin\": {}"), "");
+    EXPECT_EQ(page.ask("\"grab\": {\"link\": \"hand\", " + place), "");
+    EXPECT_EQ(
+        page.ask("\"push\": {\"link\": \"hand\", \"point\": [0, 0, 0], \"force\": [3, 0, 0]}"), "");
+    page.until([](const json& s) { return s["holding"] == "drag 2"; });
+  }
+  Client next(process.port());
+  const json status = next.until([](const json& s) { return s["holding"] == ""; });
+  const auto isOn = [&](const std::string& name) {
+    for (const json& goal : status["goals"])
+      if (goal["name"] == name) return goal["on"].get<bool>();
+    return false;
+  };
+  EXPECT_TRUE(isOn("drag 1"));
+  EXPECT_FALSE(isOn("drag 2"));
+  next.until([&](const json& s) { return s["steps"] > status["steps"].get<long>() + 50; });
+  EXPECT_EQ(process.stop(), 130);
+  const std::string record = readFile(file("held.yaml"));
+  EXPECT_NE(record.find("release: {}"), std::string::npos);
+  EXPECT_NE(record.find("let_go: {}"), std::string::npos);
+  const Outcome again =
+      simulate({kArm, "--play", file("held.yaml"), "--summary", file("again.json"), "--quiet"});
+  EXPECT_EQ(again.exitCode, 0) << again.err;
+  EXPECT_EQ(summaryOf(file("again.json"))["state_hash"],
+            summaryOf(file("live.json"))["state_hash"]);
+}
+
+TEST(LiveRun, EndsInOrderWhenItIsInterruptedAtOnce) {
+  // As soon as the address is told; several times, for it is a race.
+  for (int i = 0; i < 5; ++i) {
+    LiveProcess process({kArm});
+    EXPECT_EQ(process.stop(), 130);
+  }
+}
+
 TEST(LiveRun, DraggedPointsComeByMinimumJerk) {
   const io::TempFolder folder;
   const auto file = [&](const char* name) { return (folder.path() / name).string(); };
