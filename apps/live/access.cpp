@@ -38,8 +38,9 @@ std::string_view tokenOf(std::string_view target) {
 
 std::string refusal(const Access& access, const Request& request) {
   const std::string_view name = nameOf(request.host);
-  if (access.loopback && name != "localhost" && name != "127.0.0.1" && name != "[::1]")
-    return "this host is not served";
+  const bool known =
+      name == "localhost" || name == "127.0.0.1" || name == "[::1]" || name == access.host;
+  if (access.loopback && (name.empty() || !known)) return "this host is not served";
   if (request.hasOrigin && request.origin != fmt::format("http://{}", request.host))
     return "pages of other origins are not served";
   if (!access.token.empty() && !same(tokenOf(request.target), access.token))
@@ -54,6 +55,11 @@ std::string makeToken() {
   std::string token;
   for (int i = 0; i < 4; ++i) token += fmt::format("{:08x}", random());
   return token;
+}
+
+std::string hostOf(const std::string& address) {
+  if (address == "localhost") return "127.0.0.1";
+  return address.find(':') == std::string::npos ? address : "[" + address + "]";
 }
 
 bool isLoopback(const std::string& address) {

@@ -14,6 +14,7 @@ namespace softgauss::live {
 struct Access {
   bool loopback = true;  ///< listens on this machine alone
   std::string token;     ///< that every request must bring; empty: none
+  std::string host;      ///< a name of a loopback address beside the usual ones, "[::1]"
 };
 
 /// What a request says. A header that is missing is empty.
@@ -31,6 +32,9 @@ std::string_view pathOf(std::string_view target);
 
 /// 128 random bits in hexadecimal. Throws std::runtime_error where the system has none.
 std::string makeToken();
+
+/// The address as a URL has it: "[::1]" of "::1", "127.0.0.1" of "localhost".
+std::string hostOf(const std::string& address);
 
 /// Whether the address is one that only this machine reaches.
 bool isLoopback(const std::string& address);

@@ -26,7 +26,7 @@ struct ServerOptions {
   int mostConnections = 16;
   double messagesPerSecond = 240.0;  ///< of one connection; more are read later
   std::size_t bytesPerSecond = 1 << 17;
-  double requestSeconds = 10.0;  ///< in which a request must be complete
+  double requestSeconds = 10.0;  ///< for a whole request, and for any part of what it gives
 };
 
 /// A text or bytes on their way to several pages.

@@ -15,7 +15,7 @@ namespace {
 using std::chrono::steady_clock;
 
 constexpr std::uint32_t kLongestHeader = 8192;  // [bytes]
-constexpr std::size_t kMostAnswers = 64;        // that a page has not read yet
+constexpr std::size_t kMostAnswers = 64;        // that wait while messages are read
 constexpr double kBurst = 0.5;                  // [s] of messages may come at once
 constexpr std::chrono::seconds kSilence{60};    // after which a page is asked whether it is there
 
@@ -100,8 +100,15 @@ void Session::respond(http::status status, const std::string& type, const std::s
   response_.body() = body;
   response_.keep_alive(false);
   response_.prepare_payload();
+  serializer_.emplace(response_);
+  writeSome();
+}
+
+/// A large page takes its time on a slow line; only a reader that stops is given up.
+void Session::writeSome() {
   stream_->expires_after(seconds(shared_.options.requestSeconds));
-  http::async_write(*stream_, response_, guarded(shared_from_this(), [this](std::size_t) {
+  http::async_write_some(*stream_, *serializer_, guarded(shared_from_this(), [this](std::size_t) {
+    if (!serializer_->is_done()) return writeSome();
     error_code ignored;
     stream_->socket().shutdown(Tcp::socket::shutdown_send, ignored);
   }));
@@ -133,7 +140,11 @@ void Session::greet() {
   readNext();
 }
 
+/// Who asks and does not read the answers is not read either. The inbox bounds those that the
+/// simulation still gives.
 void Session::readNext() {
+  waits_ = texts_.size() >= kMostAnswers;
+  if (waits_) return;
   const auto now = steady_clock::now();
   const double rate = shared_.options.messagesPerSecond;
   allowance_ = std::min(
@@ -191,8 +202,6 @@ void Session::sendStatus(const Message& status) {
 }
 
 void Session::sendText(std::string text) {
-  // Who asks and does not read the answers gets no more of them.
-  if (texts_.size() >= kMostAnswers) return close();
   texts_.push_back(std::make_shared<const std::string>(std::move(text)));
   send();
 }
@@ -212,6 +221,7 @@ void Session::send() {
   socket_->async_write(asio::buffer(*sending_), guarded(shared_from_this(), [this](std::size_t) {
                          sending_.reset();
                          send();
+                         if (waits_) readNext();
                        }));
 }
 

@@ -65,6 +65,7 @@ class Session : public std::enable_shared_from_this<Session> {
  private:
   void answerRequest();
   void respond(http::status status, const std::string& type, const std::string& body);
+  void writeSome();
   void upgrade();
   void greet();
   void readNext();
@@ -78,6 +79,7 @@ class Session : public std::enable_shared_from_this<Session> {
   std::optional<websocket::stream<Stream>> socket_;
   std::optional<http::request_parser<http::empty_body>> parser_;
   http::response<http::string_body> response_;
+  std::optional<http::response_serializer<http::string_body>> serializer_;
   beast::flat_buffer buffer_;
   asio::steady_timer timer_;
   double allowance_;  ///< messages that may be read at once
@@ -87,6 +89,7 @@ class Session : public std::enable_shared_from_this<Session> {
   Message sending_;
   bool open_ = false;
   bool acted_ = false;  ///< something that it asked for reached the inbox
+  bool waits_ = false;  ///< reads on when answers have left
 };
 
 }  // namespace softgauss::live

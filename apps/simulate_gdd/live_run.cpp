@@ -70,7 +70,7 @@ LiveRun::LiveRun(const SimulateOptions& options, const Scene& scene, live::Hands
   live::ServerOptions server;
   server.address = options.liveAddress;
   server.port = *options.live;
-  server.access = {token_.empty(), token_};
+  server.access = {token_.empty(), token_, live::hostOf(options.liveAddress)};
   server.page = io::livePage(
       scene_, std::string("softgauss ") + SOFTGAUSS_VERSION,
       live::liveHeader(hands.names(), token_, controller.goals.empty(), weightOf(model_)),
@@ -88,18 +88,20 @@ LiveRun::~LiveRun() = default;
 
 std::string LiveRun::announcement() const {
   const bool loopback = token_.empty();
-  const std::string host = loopback ? "127.0.0.1" : options_.liveAddress;
-  const std::string address = fmt::format(
-      "live: http://{}:{}/{}\n", host.find(':') == std::string::npos ? host : "[" + host + "]",
-      server_->port(), loopback ? "" : "?token=" + token_);
-  return address + (loopback ? fmt::format("  Open it in a browser here; from elsewhere: ssh -L "
-                                           "{0}:localhost:{0} THIS_MACHINE. ctrl-c ends the run.\n",
-                                           server_->port())
-                             : "  Whoever knows this address may move the robot; it goes over the "
-                               "network unencrypted. ctrl-c ends the run.\n");
+  const std::string host = live::hostOf(options_.liveAddress);
+  const std::string address = fmt::format("live: http://{}:{}/{}\n", host, server_->port(),
+                                          loopback ? "" : "?token=" + token_);
+  return address + (loopback
+                        ? fmt::format("  Open it in a browser here; from elsewhere: ssh -L "
+                                      "{0}:{1}:{0} THIS_MACHINE. ctrl-c ends the run.\n",
+                                      server_->port(), host == "127.0.0.1" ? "localhost" : host)
+                        : "  Whoever knows this address may move the robot; it goes over the "
+                          "network unencrypted. ctrl-c ends the run.\n");
 }
 
 bool LiveRun::before(long taken) {
+  // The state is that before the step: whoever looks on may go back, or let go what asks for it.
+  if (taken == begun_) pause();
   taken_ = taken;
   for (;;) {
     const bool changed = takeEvents();
@@ -116,9 +118,23 @@ bool LiveRun::before(long taken) {
     }
     const Clock::time_point due =
         hands_.paused() ? now + kNap : pace_.due(state_.time, hands_.factor());
-    if (!hands_.paused() && due <= now) return true;
+    if (!hands_.paused() && due <= now) {
+      begun_ = taken;
+      return true;
+    }
     std::this_thread::sleep_until(std::min(due, now + kNap));
   }
+}
+
+/// As if a page had asked for it.
+void LiveRun::pause() {
+  live::Event event;
+  event.kind = live::EventKind::pause;
+  event.step = taken_;
+  event.fields.emplace_back("on", true);
+  hands_.apply(event);
+  if (record_) record_->write(event);
+  nextStatus_ = {};
 }
 
 /// Does what pages have asked since the last look; whether something was asked.

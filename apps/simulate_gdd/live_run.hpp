@@ -29,6 +29,7 @@ class LiveRun final : public Companion {
   /// Where the page is, a line or two for a person; the first is "live: ADDRESS".
   std::string announcement() const override;
 
+  /// Where the step that it let go last was refused, the run pauses.
   bool before(long taken) override;
   void after(const SeenStep& step, const Verdict& verdict) override;
   void tell(const std::string& message) override;
@@ -36,6 +37,7 @@ class LiveRun final : public Companion {
 
  private:
   bool takeEvents();
+  void pause();
   void showErrors(const GoalRecord& goals);
   void showState();
   void showFrame(const Data& data, const std::vector<Snapshot::ContactForce>& contacts,
@@ -61,6 +63,7 @@ class LiveRun final : public Companion {
   std::string token_;
   std::unique_ptr<live::Server> server_;
   long taken_ = 0;
+  long begun_ = -1;  ///< steps before the one that was let go last
   live::Pace::Clock::time_point nextFrame_{}, nextStatus_{};
 };
 

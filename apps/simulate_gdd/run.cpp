@@ -29,6 +29,8 @@
 namespace softgauss::app {
 namespace {
 
+constexpr std::size_t kMostRefusals = 20;  // of steps of a live run that the summary tells
+
 /// Largest |g(q, v, a) − (u, 0)|: recomputed by inverse dynamics, not taken from the solver.
 double physicsViolation(const Model& model, Data& data, VectorX& scratch) {
   inverseDynamics(model, data.forward.a, data, scratch);
@@ -103,23 +105,31 @@ class Runner {
       const Company::Next next = company_->next([&](double time) { replay_->rewind(time); });
       if (next == Company::Next::interrupted) code = kInterrupted;
       if (next != Company::Next::step) break;
+      bool refused = false;
       const auto takeStep = [&] {
         if (interrupted()) {
           code = kInterrupted;
         } else if (!step()) {
-          code = kCannotContinue;
+          refused = true;
         } else {
           record();
           progress.show(state_.time, secondsSince(start));
           if (!outputErrors_.none()) code = kBadInput;
         }
-        return code == kDone;
+        return code == kDone && !refused;
       };
+      if (options_.live) whole_ = state_;
       // An accuracy was found with steps that end where outside input changes.
       if (options_.accuracy)
         outside_.inParts(model_, state_, takeStep);
       else
         takeStep();
+      if (refused && options_.live) {
+        state_ = whole_;
+        tellRefused();
+        continue;
+      }
+      if (refused) code = kCannotContinue;
       if (code != kDone) break;
       company_->countStep();
       isWhole_ = true;
@@ -233,6 +243,15 @@ class Runner {
     record.energy = energy.total();
     record.kineticEnergy = energy.kinetic;
     if (tables_.hasLog()) io::measureWhole(model_, kinematics, record);
+  }
+
+  /// A live run goes no further by itself: who looks on finds it paused before the step.
+  void tellRefused() {
+    isWhole_ = true;
+    const std::string message = failureText(model_, state_, data_) +
+                                "; the run is paused: go back, or let go what asks for it";
+    tellNow(message);
+    if (summary_.warnings.size() < kMostRefusals) summary_.warnings.push_back(message);
   }
 
   /// A line on stderr while the run goes on, not below a progress bar.
@@ -352,6 +371,7 @@ class Runner {
   OutputErrors outputErrors_;
   RunTables tables_;
   std::optional<Checkpoints> checkpoints_;
+  State whole_;          ///< before the step, of a live run
   bool isWhole_ = true;  ///< the state is one between whole steps, as a checkpoint has it
   io::ContactLinks contactLinks_;
   std::vector<Snapshot::ContactForce> touching_;  ///< contacts of the last step

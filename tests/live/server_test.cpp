@@ -77,8 +77,19 @@ TEST_F(LiveServer, RefusesForeignHostsAndOrigins) {
             std::string::npos);
 }
 
+TEST_F(LiveServer, IsNamedByTheAddressWhereItListens) {
+  options.access.host = hostOf("127.0.0.2");
+  start();
+  EXPECT_NE(get("/", "Host: 127.0.0.2:80\r\n").find("200 OK"), std::string::npos);
+  EXPECT_NE(get("/", host()).find("200 OK"), std::string::npos);
+  EXPECT_NE(get("/", "Host: 127.0.0.3\r\n").find("403"), std::string::npos);
+  EXPECT_EQ(hostOf("::1"), "[::1]");
+  EXPECT_EQ(hostOf("localhost"), "127.0.0.1");
+  EXPECT_EQ(hostOf("0.0.0.0"), "0.0.0.0");
+}
+
 TEST_F(LiveServer, DemandsItsToken) {
-  options.access = {false, "0123abcd"};
+  options.access = {false, "0123abcd", ""};
   start();
   EXPECT_NE(get("/", "Host: robot.example\r\n").find("403"), std::string::npos);
   EXPECT_NE(get("/?token=0123abce", host()).find("403"), std::string::npos);
@@ -145,6 +156,57 @@ TEST_F(LiveServer, EndsHalfARequestInTime) {
   EXPECT_LT(std::chrono::steady_clock::now() - begun, std::chrono::seconds(10));
   EXPECT_EQ(exchange(server->port(), "GET /" + std::string(100000, 'a')).find("200"),
             std::string::npos);
+  EXPECT_TRUE(lives());
+}
+
+TEST_F(LiveServer, GivesALargePageOnASlowLine) {
+  // It takes several times what a request may; who reads nothing for that long is given up.
+  options.requestSeconds = 0.3;
+  options.page = std::string(std::size_t{24} << 20, 'x');
+  start();
+  boost::asio::io_context context;
+  test::Tcp::socket slow(context), stopped(context);
+  const std::string request = "GET / HTTP/1.1\r\n" + host() + "\r\n";
+  for (test::Tcp::socket* socket : {&slow, &stopped}) {
+    socket->open(test::Tcp::v4());
+    socket->set_option(boost::asio::socket_base::receive_buffer_size(1 << 16));
+    socket->connect({boost::asio::ip::address_v4::loopback(), server->port()});
+    boost::asio::write(*socket, boost::asio::buffer(request));
+  }
+  const auto readAll = [](test::Tcp::socket& socket, std::chrono::milliseconds pause) {
+    std::string bytes(1 << 18, ' ');
+    boost::system::error_code error;
+    std::size_t read = 0;
+    while (!error) {
+      read += socket.read_some(boost::asio::buffer(bytes), error);
+      std::this_thread::sleep_for(pause);
+    }
+    return read;
+  };
+  const auto begun = std::chrono::steady_clock::now();
+  EXPECT_GT(readAll(slow, std::chrono::milliseconds(5)), options.page.size());
+  // The test is one of a line that is slower than the limit.
+  EXPECT_GT(std::chrono::steady_clock::now() - begun, std::chrono::milliseconds(600));
+  EXPECT_LT(readAll(stopped, std::chrono::milliseconds(0)), options.page.size());
+}
+
+TEST_F(LiveServer, AnswersAWholeBurst) {
+  // As many as its allowance at once, before the first answer is read; and who goes on asking
+  // without reading is not closed, but not read either.
+  start();
+  Client client(server->port());
+  for (int i = 0; i < 120; ++i) client.send("{\"id\": " + std::to_string(i + 1) + "}");
+  for (int i = 0; i < 120; ++i) EXPECT_EQ(client.next("re")["re"], i + 1);
+  for (int i = 0; i < 110; ++i)
+    client.send("{\"id\": " + std::to_string(i + 1) + ", \"release\": {}}");
+  std::vector<std::pair<Sender, Event>> events;
+  for (int taken = 0; taken < 110; taken += static_cast<int>(events.size())) {
+    server->inbox().take(events);
+    for (const auto& [sender, event] : events)
+      server->answer(sender, "{\"re\": " + std::to_string(sender.id) + "}");
+    if (events.empty()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  for (int i = 0; i < 110; ++i) EXPECT_EQ(client.next("re")["re"], i + 1);
   EXPECT_TRUE(lives());
 }
 
