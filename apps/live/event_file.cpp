@@ -124,6 +124,10 @@ EventFile readEvents(const std::filesystem::path& file, const Names& names, doub
                      fmt::format("found {}, expected {}", root.described(), expected));
   const YamlMap map(path, "", "", root);
   map.expectOnly({"model", "timestep", "steps", "events"});
+  if (const YamlMap::Entry* model = map.find("model"))
+    if (const std::string name = map.name(*model); name != names.modelName)
+      map.fail(*model, fmt::format("found {}, but this run is of {}", io::detail::quotedText(name),
+                                   io::detail::quotedText(names.modelName)));
   const YamlMap::Entry& h = map.required("timestep", "the time step of the run [s]");
   if (map.number(h) != timestep)
     map.fail(

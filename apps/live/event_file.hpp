@@ -18,7 +18,7 @@ struct EventFile {
 };
 
 /// Strict: an unknown key, a value of another type, a number out of range, a name that the run does
-/// not have, events out of order, another time step end in a ModelError
+/// not have, events out of order, another model or time step end in a ModelError
 /// `file:line: event 3: key 'grab.link': found …, expected …`.
 EventFile readEvents(const std::filesystem::path& file, const Names& names, double timestep);
 

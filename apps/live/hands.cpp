@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "apps/live/goal_settings.hpp"
 #include "softgauss/engine/model/followers.hpp"
@@ -214,6 +215,9 @@ std::vector<Hands::GoalView> Hands::goals() const {
     GoalView view;
     view.name = names_->goals[i];
     view.on = !isOff(goal);
+    view.acts = goal.actsAt(run_.state.time);
+    if (std::isfinite(starts_[i])) view.start = starts_[i];
+    if (std::isfinite(goal.endTime)) view.end = goal.endTime;
     view.weight = valueAt(s.weight);
     view.stiffness = valueAt(s.stiffness);
     view.damping = valueAt(s.damping);
@@ -225,6 +229,12 @@ std::vector<Hands::GoalView> Hands::goals() const {
       view.link = reach->link;
       view.point = reach->p_FP;
       view.target = reach->p_WTarget;
+      if (reach->minimumJerk) view.jerkStart = reach->minimumJerk->startTime;
+      view.consistent = reach->metric == gdd::LinkMetric::consistent;
+      if (reach->R_WTarget) {
+        view.orientation = Eigen::Quaterniond(*reach->R_WTarget);
+        view.rotationWeight = reach->rotationWeight;
+      }
       if (drag && drag->line)
         view.duration = drag->line->duration;
       else if (reach->minimumJerk)

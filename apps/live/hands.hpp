@@ -51,12 +51,18 @@ class Hands {
 
   struct GoalView {
     std::string name, link;
-    bool on = false;
-    bool canBegin = false;  ///< a drag that nobody holds
+    bool on = false;                   ///< not switched off
+    bool acts = false;                 ///< at this time
+    std::optional<double> start, end;  ///< [s]; absent: always
+    bool canBegin = false;             ///< a drag that nobody holds
     std::optional<double> weight, stiffness, damping, rate;
     std::optional<double> duration;  ///< of the minimum-jerk line by which it comes [s]
     const char* weightUnit = "";
     std::optional<Vector3> point, target;  ///< of a goal that is a place
+    std::optional<Eigen::Quaterniond> orientation;
+    std::optional<double> rotationWeight;  ///< of that
+    std::optional<double> jerkStart;       ///< when the line of `duration` began [s]
+    bool consistent = false;               ///< metric
   };
   std::vector<GoalView> goals() const;
   const std::string& holding() const { return holding_; }  ///< name of the drag, or empty

@@ -71,8 +71,9 @@ Event readEvent(const EventType& type, const json& fields) {
   }
   for (const auto& [key, value] : fields.items())
     if (!event.find(key))
-      refuse(fmt::format("{}: found the unknown field {}, expected one of: {}", type.name,
-                         io::detail::quotedText(key), io::detail::listed(namesOf(type.fields))));
+      refuse(fmt::format(
+          "{}: found the unknown field {}, expected {}", type.name, io::detail::quotedText(key),
+          type.fields.empty() ? "{}" : "one of: " + io::detail::listed(namesOf(type.fields))));
   return event;
 }
 
@@ -91,6 +92,8 @@ Asked readObject(const json& message, const Names& names, long& id) {
     if (key == "id") continue;
     if (type || asked.toWrite) refuse("expected one thing to do in a message");
     if (key == "write") {
+      if (!value.is_boolean() || !value.get<bool>())
+        refuse("'write': expected true; who writes leaves it to others by closing the page");
       asked.toWrite = true;
       continue;
     }

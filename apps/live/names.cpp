@@ -41,7 +41,7 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
 }  // namespace
 
 Names::Names(const Model& model, const std::vector<std::unique_ptr<gdd::Goal>>& all)
-    : goals(distinct(all)), effects(switchable(model)) {
+    : modelName(model.name), goals(distinct(all)), effects(switchable(model)) {
   for (const Frame& frame : model.frames)
     if (frame.body != 0) links.push_back(frame.name);
   for (int b = 1; b < model.bodyCount(); ++b) {

@@ -25,6 +25,7 @@ class Names {
  public:
   Names(const Model& model, const std::vector<std::unique_ptr<gdd::Goal>>& goals);
 
+  std::string modelName;
   std::vector<std::string> links, goals, effects;  ///< goals: distinct, in the controller's order
   std::vector<JointName> joints;
 

@@ -15,7 +15,9 @@ using nlohmann::ordered_json;
 ordered_json toJson(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
 
 ordered_json toJson(const Hands::GoalView& goal) {
-  ordered_json json = {{"name", goal.name}, {"on", goal.on}};
+  ordered_json json = {{"name", goal.name}, {"on", goal.on}, {"acts", goal.acts}};
+  if (goal.start) json["start"] = *goal.start;
+  if (goal.end) json["end"] = *goal.end;
   if (!goal.link.empty()) json["link"] = goal.link;
   if (goal.weight) json["weight"] = *goal.weight, json["weight_unit"] = goal.weightUnit;
   if (goal.stiffness) json["stiffness"] = *goal.stiffness;
@@ -24,6 +26,10 @@ ordered_json toJson(const Hands::GoalView& goal) {
   if (goal.duration) json["duration"] = *goal.duration;
   if (goal.point) json["point"] = toJson(*goal.point);
   if (goal.target) json["target"] = toJson(*goal.target);
+  if (const auto& q = goal.orientation) json["quaternion"] = {q->w(), q->x(), q->y(), q->z()};
+  if (goal.rotationWeight) json["rotation_weight"] = *goal.rotationWeight;
+  if (goal.jerkStart) json["jerk_start"] = *goal.jerkStart;
+  if (goal.consistent) json["metric"] = "consistent";
   return json;
 }
 

@@ -82,7 +82,8 @@ TEST_F(LiveEventFile, GivesBackEveryKindBitForBit) {
     if (type.kind != EventKind::goal) written.push_back(e);  // the arm has none here
   }
   const std::string file = (folder.path() / "drag.yaml").string();
-  EventWriter writer(file, "it's an arm: #1", 0.002);
+  names.modelName = "it's an arm: #1";
+  EventWriter writer(file, names.modelName, 0.002);
   for (const Event& e : written) writer.write(e);
   writer.finish(777);
 
@@ -98,7 +99,7 @@ TEST_F(LiveEventFile, GivesBackEveryKindBitForBit) {
 
 TEST_F(LiveEventFile, WithoutEventsIsOne) {
   const std::string file = (folder.path() / "drag.yaml").string();
-  EventWriter writer(file, "arm", 0.002);
+  EventWriter writer(file, names.modelName, 0.002);
   writer.finish(5);
   const EventFile read = readEvents(file, names, 0.002);
   EXPECT_EQ(read.steps, 5);
@@ -111,6 +112,8 @@ TEST_F(LiveEventFile, NamesLineAndKeyOfWhatIsWrong) {
       {"", {"is empty"}},
       {"- 1\n", {"expected steps"}},
       {"steps: 1\nevents: []\n", {"timestep"}},
+      {"model: humanoid\ntimestep: 0.002\nsteps: 1\nevents: []\n",
+       {":1:", "'model'", "humanoid", "'" + names.modelName + "'"}},
       {"timestep: 0.001\nsteps: 1\nevents: []\n", {":1:", "0.001", "0.002"}},
       {head + "  - {step: 3, fly: {}}\n", {":4:", "event 1", "fly"}},
       {head + "  - {step: 3}\n", {":4:", "event 1", "one"}},

@@ -116,6 +116,67 @@ TEST(LiveRun, LetsGoWhatAPageHoldsThatIsGone) {
             summaryOf(file("live.json"))["state_hash"]);
 }
 
+TEST(LiveRun, PausesBeforeAStepThatIsRefused) {
+  // Whatever is asked for: the state stays, and the run goes on from it or from before.
+  const std::string hard[] = {
+      "\"push\": {\"link\": \"hand\", \"point\": [0, 0, 0], \"force\": [1e6, 0, 0]}",
+      "\"push\": {\"link\": \"hand\", \"point\": [1e6, 1e6, 1e6], \"force\": [1e6, 1e6, -1e6]}",
+      "\"push\": {\"link\": \"hand\", \"point\": [0, 0, 0], \"torque\": [1e6, 1e6, 1e6]}"};
+  const io::TempFolder folder;
+  const auto file = [&](const char* name) { return (folder.path() / name).string(); };
+  LiveProcess process({kArm, "--record", file("hard.yaml"), "--summary", file("live.json")});
+  Client page(process.port());
+  for (const std::string& push : hard) {
+    const long steps = page.until([](const json& s) { return !s["paused"]; })["steps"];
+    page.until([&](const json& s) { return s["steps"] > steps + 60; });
+    EXPECT_EQ(page.ask(push), "");
+    const json paused = page.until([](const json& s) { return s["paused"].get<bool>(); });
+    EXPECT_NE(paused["told"].dump().find("the run is paused"), std::string::npos);
+    // The same again is refused again, and changes nothing.
+    EXPECT_EQ(page.ask("\"pause\": {\"on\": false}"), "");
+    const json again = page.until([](const json& s) { return s["paused"].get<bool>(); });
+    EXPECT_EQ(again["steps"], paused["steps"]);
+    EXPECT_EQ(page.ask("\"let_go\": {}"), "");
+    EXPECT_EQ(page.ask("\"reset\": {}"), "");
+    EXPECT_EQ(page.ask("\"pause\": {\"on\": false}"), "");
+  }
+  const long steps = page.until([](const json& s) { return !s["paused"]; })["steps"];
+  page.until([&](const json& s) { return s["steps"] > steps + 60; });
+  EXPECT_EQ(process.stop(), 130);
+  const Outcome again =
+      simulate({kArm, "--play", file("hard.yaml"), "--summary", file("again.json"), "--quiet"});
+  EXPECT_EQ(again.exitCode, 0) << again.err;
+  EXPECT_EQ(summaryOf(file("again.json"))["state_hash"],
+            summaryOf(file("live.json"))["state_hash"]);
+}
+
+TEST(LiveRun, PlaysTheEventsOfItsModelAlone) {
+  const io::TempFolder folder;
+  const std::string file = (folder.path() / "other.yaml").string();
+  std::ofstream(file) << "model: 'humanoid'\ntimestep: 0.002\nevents: []\nsteps: 10\n";
+  const Outcome outcome = simulate({kArm, "--play", file});
+  EXPECT_EQ(outcome.exitCode, 2);
+  EXPECT_NE(outcome.err.find("'humanoid'"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("'arm'"), std::string::npos) << outcome.err;
+}
+
+TEST(LiveRun, TellsWhichGoalsAreInForce) {
+  // At 2 s of a task: the goals of other times are told as such, with their times and orientation.
+  LiveProcess process({SOFTGAUSS_SOURCE_DIR "/data/scenes/arm_picks.yaml"});
+  Client page(process.port());
+  const json now = page.until([](const json& s) { return s["time"] > 1.1; });
+  int acting = 0;
+  for (const json& goal : now["goals"]) {
+    const double start = goal.value("start", -1.0), end = goal.value("end", 1e9);
+    EXPECT_EQ(goal["acts"], start <= now["time"] && now["time"] < end) << goal;
+    if (goal["acts"]) ++acting;
+    EXPECT_EQ(goal.contains("target"), goal.contains("quaternion")) << goal;
+  }
+  EXPECT_GT(acting, 1);
+  EXPECT_LT(acting, static_cast<int>(now["goals"].size()));
+  EXPECT_EQ(process.stop(), 130);
+}
+
 TEST(LiveRun, EndsInOrderWhenItIsInterruptedAtOnce) {
   // As soon as the address is told; several times, for it is a race.
   for (int i = 0; i < 5; ++i) {
@@ -213,6 +274,7 @@ TEST(LiveRun, RefusesOptionsThatDoNotGoTogether) {
       {{kArm, "--live", "0", "--play", "x.yaml"}, "one of"},
       {{kArm, "--live", "0", "--islands", "apart", "--passive"}, "--islands"},
       {{kArm, "--live", "0", "--live-address", "moon", "--passive"}, "moon"},
+      {{kArm, "--live", "0", "--live-address", "127.evil", "--passive"}, "127.evil"},
       {{kArm, "--play", "/nowhere.yaml"}, "nowhere.yaml"},
   };
   for (const auto& [arguments, why] : cases) {
