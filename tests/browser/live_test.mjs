@@ -210,6 +210,36 @@ async function testArm() {
   await saved.close();
 }
 
+/** Goals of a task that act one after the other: the panel and the file have those in force. */
+async function testGoals() {
+  const run = await LiveProcess.start(simulator, folder, 'live_goals', [join(data, 'scenes/arm_picks.yaml')]);
+  const page = await browser.visit(run.address, { width: 1000, height: 700 });
+  await until(page, () => window.softgauss.live.status.time > 1.1);
+  await page.locator('#canvas').focus();
+  await page.keyboard.press('Space');
+  await until(page, () => window.softgauss.live.status.paused);
+  await page.waitForTimeout(300);
+  const { goals } = await status(page);
+  for (const goal of goals) {
+    const box = page.locator(`[data-goal="${goal.name}"] input[type="checkbox"]`);
+    assert.equal(await box.isChecked(), goal.acts, goal.name);
+  }
+  const [file] = await Promise.all([
+    page.waitForEvent('download'),
+    page.getByRole('button', { name: 'Save as goals.yaml' }).click(),
+  ]);
+  const path = join(folder, 'live_task_goals.yaml');
+  await file.saveAs(path);
+  const lines = readFileSync(path, 'utf8').split('\n').filter((line) => line.startsWith('  - '));
+  const kept = goals.filter(({ name, acts }) => acts && /^(reach|damping)/.test(name));
+  assert.equal(lines.length, kept.length, lines.join('\n'));
+  assert.match(lines[0], /quaternion: .*(start|end): /);
+  const read = spawnSync(simulator, [join(data, 'robots/picker.urdf'), '--goals', path, '--duration', '0.01', '--quiet']);
+  assert.equal(read.status, 0, read.stderr.toString());
+  await page.close();
+  assert.equal(await run.stop(), 130);
+}
+
 async function testLooks() {
   const args = [join(data, 'robots/arm.urdf')];
   const run = await LiveProcess.start(simulator, folder, 'live_arm', args);
@@ -231,6 +261,7 @@ async function testLooks() {
 try {
   await testHumanoid();
   await testArm();
+  await testGoals();
   await testLooks();
 } catch (error) {
   LiveProcess.killAll();

@@ -61,9 +61,11 @@ export class Video {
       videoBitsPerSecond: 8e6,
     });
     this.recorder.addEventListener('dataavailable', ({ data }) => parts.push(data));
-    this.recorder.addEventListener('stop', () =>
-      save(`${this.name}.webm`, new Blob(parts, { type: 'video/webm' })),
-    );
+    this.recorder.addEventListener('stop', () => {
+      const blob = new Blob(parts, { type: 'video/webm' });
+      if (blob.size > 0) save(`${this.name}.webm`, blob);
+      else window.alert('The browser recorded no pictures: no video was saved.');
+    });
     this.recorder.start(1000);
     const frame = () => {
       if (!this.recorder) return;

@@ -6,6 +6,22 @@
 
 import { add, cross, interpolate, placed, rotate, rotationOf } from './transform.js';
 
+/**
+ * The contacts of a frame by names that follow them from frame to frame: who touches whom, and which
+ * of the contacts of that pair it is.
+ */
+export function contactNames(run, frame) {
+  const counts = new Map();
+  const names = [];
+  for (let c = run.contactStart[frame]; c < run.contactStart[frame + 1]; ++c) {
+    const pair = `${run.contactGeometry[2 * c]} ${run.contactGeometry[2 * c + 1]}`;
+    const nth = counts.get(pair) ?? 0;
+    counts.set(pair, nth + 1);
+    names.push(`${pair} ${nth}`);
+  }
+  return names;
+}
+
 export class Run {
   constructor({ header, array }) {
     this.header = header;

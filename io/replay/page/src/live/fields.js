@@ -31,7 +31,10 @@ export function switchField(name, change) {
   const box = element('input', { type: 'checkbox', onchange: () => change(box.checked) });
   return {
     node: element('label', { class: 'switch' }, box, name),
-    show: (on) => (box.checked = on),
+    show: (on, isFixed = false) => {
+      box.checked = on;
+      box.disabled = isFixed;
+    },
   };
 }
 

@@ -3,7 +3,7 @@
 
 import { element } from '../app/dom.js';
 import { numberField, section, switchField } from './fields.js';
-import { goalsText } from './goals_text.js';
+import { goalsText, whyNot } from './goals_text.js';
 import { save } from '../app/save.js';
 
 // Keys of a goal, with units; a weight's is of the goal's kind.
@@ -19,6 +19,8 @@ function row(link, goal) {
   const law = goal.duration ? `, in ${goal.duration} s` : '';
   const title = goal.link ? `${goal.name}: ${goal.link}${law}` : goal.name;
   const toggle = switchField(title, (on) => set({ on }));
+  const why = element('span', { class: 'quiet' });
+  toggle.node.append(why);
   const fields = NUMBERS.filter(([key]) => key in goal).map(([key, unit]) => [
     key,
     numberField(key, unit ?? goal.weight_unit, (value) => set({ [key]: value })),
@@ -30,8 +32,10 @@ function row(link, goal) {
       toggle.node,
       element('div', { class: 'fields' }, ...fields.map(([, field]) => field.node)),
     ),
-    show: (now) => {
-      toggle.show(now.on);
+    show: (now, time) => {
+      // One that has ended or is still to come is not in force, and no switch makes it so.
+      toggle.show(now.acts, now.on && !now.acts);
+      why.textContent = now.on && !now.acts ? `, ${whyNot(now, time)}` : '';
       for (const [key, field] of fields) field.show(now[key]);
     },
   };
@@ -70,14 +74,14 @@ export function goalList(link, run, settings) {
   const none = element('p', { class: 'quiet' }, run.live.passive ? 'Nothing drives this run: links can be pushed.' : '');
   let rows = new Map();
   let shape = '';
-  link.on('status', ({ goals }) => {
+  link.on('status', ({ goals, time }) => {
     const next = JSON.stringify(goals.map((goal) => [goal.name, goal.link, goal.duration]));
     if (next !== shape) {
       shape = next;
       rows = new Map(goals.map((goal) => [goal.name, row(link, goal)]));
       list.replaceChildren(...[...rows.values()].map(({ node }) => node));
     }
-    for (const goal of goals) rows.get(goal.name).show(goal);
+    for (const goal of goals) rows.get(goal.name).show(goal, time);
   });
   return section(
     'Goals',

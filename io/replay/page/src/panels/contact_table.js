@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The contacts of the time shown: who touches whom, where, how hard, and how fast it slips. A click
-// on a row marks the contact in the view.
+// on a row marks the contact in the view, and its row as long as the pair touches.
 
 import { element } from '../app/dom.js';
+import { contactNames } from '../data/run.js';
 import { cross, norm, positionOf, subtract } from '../data/transform.js';
 
 const MOST_ROWS = 40;
@@ -72,6 +73,7 @@ export class ContactTable {
     const first = run.contactStart[frame];
     const count = run.contactStart[frame + 1] - first;
     this.title.textContent = `Contacts (${count})`;
+    this.names = contactNames(run, frame);
     const shown = Math.min(count, MOST_ROWS);
     while (this.rows.length < shown) this.#addRow();
     this.rows.forEach(({ row, cells }, i) => {
@@ -87,7 +89,7 @@ export class ContactTable {
       ];
       texts.forEach((text, k) => (cells[k].textContent = text));
       row.title = pair;
-      row.setAttribute('aria-selected', this.stage?.contacts.marked === i);
+      row.setAttribute('aria-selected', this.stage?.contacts.marked === this.names[i]);
     });
   }
 
@@ -110,7 +112,8 @@ export class ContactTable {
   #mark(index) {
     const { stage } = this;
     if (stage) {
-      stage.contacts.marked = stage.contacts.marked === index ? null : index;
+      const name = this.names[index];
+      stage.contacts.marked = stage.contacts.marked === name ? null : name;
       stage.moveTo(stage.time);
     }
     this.update(this.time, this.poses);

@@ -5,6 +5,7 @@
 // Between frames a contact moves with its body.
 
 import { Group } from 'three';
+import { contactNames } from '../data/run.js';
 import {
   add,
   conjugate,
@@ -29,7 +30,7 @@ export class Contacts {
     this.pressed = new Dots(most, CONTACT_COLOR, 0.013 * size);
     this.margin = new Dots(most, MARGIN_COLOR, 0.009 * size);
     this.mark = new Dots(1, MARKED_COLOR, 0.022 * size);
-    this.marked = null; // the contact of the frame that is marked
+    this.marked = null; // the name of the contact that is marked
     this.points = new Group();
     this.points.add(this.pressed.group, this.margin.group, this.mark.group);
     this.group = new Group();
@@ -70,6 +71,8 @@ export class Contacts {
     const size = 7 * run.bodies.length;
     const then = run.pose.subarray(frame * size, (frame + 1) * size);
     const k = this.metresPerNewton;
+    const marked =
+      this.marked === null ? -1 : contactNames(run, frame).indexOf(this.marked);
     for (const set of [this.forces, this.pressed, this.margin, this.mark]) set.begin();
     for (let c = run.contactStart[frame]; c < run.contactStart[frame + 1]; ++c) {
       const bodyA = body[run.contactGeometry[2 * c]];
@@ -85,7 +88,7 @@ export class Contacts {
         );
       }
       const [x, y, z] = point;
-      if (c - run.contactStart[frame] === this.marked) this.mark.add(x, y, z);
+      if (c - run.contactStart[frame] === marked) this.mark.add(x, y, z);
       const isPressed = Math.hypot(...force) > 0;
       (isPressed ? this.pressed : this.margin).add(x, y, z);
       if (!isPressed) continue;
