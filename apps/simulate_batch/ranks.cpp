@@ -119,20 +119,26 @@ void Ranks::lead(RunTable& table, const DoRuns& doRuns, const std::function<void
   for (int rank = 1; rank < size_; ++rank) mpi::send(rank, mpi::Kind::end, lost_ ? "lost" : "");
 }
 
-std::string Ranks::awaited(mpi::Kind kind) {
+std::vector<long> Ranks::awaitRuns() {
   while (true) {
     const std::optional<mpi::Message> message = mpi::receive();
-    if (message && message->kind == kind) return message->text;
-    if (!message) std::this_thread::sleep_for(kPause);
+    if (!message) {
+      std::this_thread::sleep_for(kPause);
+    } else if (message->kind == mpi::Kind::end) {
+      lost_ = message->text == "lost";
+      return {};
+    } else if (message->kind == mpi::Kind::runs) {
+      if (const std::vector<long> runs = mpi::runsOf(message->text); !runs.empty()) return runs;
+    }
   }
 }
 
 void Ranks::follow(const DoRuns& doRuns, std::atomic<bool>& stop, int threads) {
   std::atomic<bool> enough = false;  // interrupted, or the others were faster
-  while (true) {
+  for (bool ended = false; !ended;) {
     mpi::send(0, mpi::Kind::ask, std::to_string(threads));
-    const std::vector<long> runs = mpi::runsOf(awaited(mpi::Kind::runs));
-    if (runs.empty()) break;
+    const std::vector<long> runs = awaitRuns();
+    if (runs.empty()) return;
     // Rows go out from this thread alone, as MPI wants it.
     std::mutex mutex;
     std::vector<RunRow> rows;
@@ -154,12 +160,13 @@ void Ranks::follow(const DoRuns& doRuns, std::atomic<bool>& stop, int threads) {
       }
       for (const RunRow& row : ready) mpi::send(0, mpi::Kind::row, mpi::textOf(row));
       const std::optional<mpi::Message> message = mpi::receive();
-      if (stop || (message && message->kind == mpi::Kind::enough)) enough = true;
+      // Rank 0 may have given up on this one.
+      if (message && message->kind == mpi::Kind::end) ended = lost_ = true;
+      if (stop || message) enough = true;
       if (!over) std::this_thread::sleep_for(kPause);
     }
     work.finish();
   }
-  lost_ = awaited(mpi::Kind::end) == "lost";
 }
 
 }  // namespace softgauss::app

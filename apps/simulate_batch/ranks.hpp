@@ -44,7 +44,8 @@ class Ranks {
   void abort(int code);
 
  private:
-  static std::string awaited(mpi::Kind kind);
+  /// The runs that rank 0 gives; none when it is over.
+  std::vector<long> awaitRuns();
 
   int rank_ = 0, size_ = 1;
   bool started_ = false;

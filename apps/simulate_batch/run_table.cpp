@@ -64,6 +64,11 @@ void RunTable::keepIn(const std::filesystem::path& checkpoint, const std::string
     throw ModelError({checkpointName_, 1}, "checkpoint",
                      "is of another sweep, or its files have changed; remove it, or give another "
                      "--out");
+  const std::size_t columns = fieldsOf(header_).size();
+  const auto isWhole = [&](const RunRow& row) {
+    const std::vector<std::string> fields = fieldsOf(row.text);
+    return fields.size() == columns && fields.front() == std::to_string(row.run);
+  };
   const std::size_t end = text.rfind('\n') == std::string::npos ? 0 : text.rfind('\n') + 1;
   for (std::size_t at = head + 1; head != std::string::npos && at < end;) {
     const std::size_t stop = text.find('\n', at);
@@ -76,11 +81,6 @@ void RunTable::keepIn(const std::filesystem::path& checkpoint, const std::string
       ftruncate(fileno(checkpoint_), static_cast<off_t>(end)) == 0 &&
       (end > 0 || std::fputs(first.c_str(), checkpoint_) >= 0) && std::fflush(checkpoint_) == 0;
   if (!opened) fail(fmt::format("cannot be written: {}", std::strerror(errno)));
-}
-
-bool RunTable::isWhole(const RunRow& row) const {
-  const std::vector<std::string> fields = fieldsOf(row.text);
-  return fields.size() == fieldsOf(header_).size() && fields.front() == std::to_string(row.run);
 }
 
 void RunTable::place(RunRow row) {

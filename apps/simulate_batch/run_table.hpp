@@ -42,7 +42,6 @@ class RunTable {
   const std::string& header() const { return header_; }
 
  private:
-  bool isWhole(const RunRow& row) const;
   void place(RunRow row);
 
   std::string header_;

@@ -25,7 +25,8 @@ bool isLessDeep(const NearTriangle& x, const NearTriangle& y) {
 
 /// Whether a ball about c is clearly off the triangle: beyond its plane or, within that, an edge.
 bool isClearOf(const Triangle& triangle, const Vector3& c, double radius) {
-  constexpr double kRounding = 1.0 + 1e-6;  // of the normal of a sliver too
+  // For rounding, of the normal of a sliver too. More costs time and changes no contact.
+  constexpr double kRounding = 1.0 + 1e-6;
   const Vector3& n = triangle.normal;
   const double height = n.dot(c - triangle.corners[0]);
   const double within = kRounding * (radius * radius - height * height);

@@ -5,17 +5,21 @@
 ///
 /// | name | value |
 /// |---|---|
-/// | `mass:LINK` | mass of the link and all that is fixed to it [kg], > 0; their inertia goes with
-/// it | | `inertia:LINK` | factor on the central inertia of that body [-], > 0 | | `friction:LINK`,
-/// `friction:SHAPE` | coefficient of sliding friction of its shapes [-], ≥ 0 | | `damping:JOINT` |
-/// [N m s/rad or N s/m], ≥ 0 | | `armature:JOINT` | [kg m² or kg], ≥ 0 | | `dry_friction:JOINT` |
-/// largest force [N m or N], ≥ 0 | | `effort:JOINT` | bound of the control either way [N m or N], >
-/// 0, of an actuated joint | | `lower:JOINT`, `upper:JOINT` | an end of its range [rad or m], of a
-/// joint that has one | | `gravity:x`, `:y`, `:z` | [m/s²], world | | `timestep` | [s], > 0 | |
-/// `q:JOINT`, `v:JOINT` | where and how fast it starts [rad or m, and per s]; joints that follow it
-/// start where it has them | | `q:BASE.x`, `.y`, `.z` | where a floating base starts [m]; BASE is
-/// its joint, as in the log | | `v:BASE.vx`, …, `v:BASE.wz` | how fast [m/s, rad/s], as in the log
-/// | | `reach:LINK.x`, `.y`, `.z` | the place that the reach goal of that link seeks [m], world |
+/// | `mass:LINK` | of the link and all that is fixed to it [kg], > 0, with their inertia |
+/// | `inertia:LINK` | factor on the central inertia of that body [-], > 0 |
+/// | `friction:LINK`, `friction:SHAPE` | coefficient of sliding friction of its shapes [-], ≥ 0 |
+/// | `damping:JOINT` | [N m s/rad or N s/m], ≥ 0 |
+/// | `armature:JOINT` | [kg m² or kg], ≥ 0 |
+/// | `dry_friction:JOINT` | largest force [N m or N], ≥ 0 |
+/// | `effort:JOINT` | bound of the control either way [N m or N], > 0, of an actuated joint |
+/// | `lower:JOINT`, `upper:JOINT` | an end of its range [rad or m], of a joint that has one |
+/// | `gravity:x`, `:y`, `:z` | [m/s²], world |
+/// | `timestep` | [s], > 0 |
+/// | `q:JOINT` | where it, and what follows it, starts [rad or m] |
+/// | `v:JOINT` | how fast it starts [rad/s or m/s] |
+/// | `q:BASE.x`, `.y`, `.z` | where a floating base starts [m]; BASE is its joint, as in the log |
+/// | `v:BASE.vx`, …, `v:BASE.wz` | how fast [m/s, rad/s], as in the log |
+/// | `reach:LINK.x`, `.y`, `.z` | the place that the reach goal of that link seeks [m], world |
 ///
 /// `*` stands for all: `friction:*` is every shape and every pair with a surface of its own,
 /// `damping:*` every joint of one degree of freedom.
