@@ -3,7 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <cstring>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "softgauss/io/detail/text.hpp"
@@ -90,7 +93,14 @@ Asked readObject(const json& message, const Names& names, long& id) {
   }
   for (const auto& [key, value] : message.items()) {
     if (key == "id") continue;
-    if (type || asked.toWrite) refuse("expected one thing to do in a message");
+    if (type || asked.toWrite || asked.seen) refuse("expected one thing to do in a message");
+    if (key == "seen") {
+      if (!value.is_number_unsigned()) refuse("'seen': expected the number of messages received");
+      asked.seen = static_cast<long>(
+          std::min<std::uint64_t>(value.get<std::uint64_t>(),
+                                  static_cast<std::uint64_t>(std::numeric_limits<long>::max())));
+      continue;
+    }
     if (key == "write") {
       if (!value.is_boolean() || !value.get<bool>())
         refuse("'write': expected true; who writes leaves it to others by closing the page");
@@ -101,7 +111,7 @@ Asked readObject(const json& message, const Names& names, long& id) {
     if (!type) refuse("found " + io::detail::quotedText(key) + ", expected something to do");
     asked.event = readEvent(*type, value);
   }
-  if (!type && !asked.toWrite) refuse("expected something to do");
+  if (!type && !asked.toWrite && !asked.seen) refuse("expected something to do");
   if (type)
     if (const std::string problem = problemOf(asked.event, names); !problem.empty())
       refuse(problem);

@@ -4,6 +4,7 @@
 /// What pages and the run say to each other, docs/reference/live.md: events as JSON from the page,
 /// frames in binary and answers and the state of affairs as JSON to it.
 
+#include <optional>
 #include <string>
 #include <variant>
 
@@ -17,6 +18,8 @@ namespace softgauss::live {
 struct Asked {
   long id = 0;           ///< that the answer repeats
   bool toWrite = false;  ///< to be the one who writes; else
+  /// that it has had so many frames and statuses; else
+  std::optional<long> seen;
   Event event;
 };
 
@@ -28,7 +31,8 @@ struct Refused {
 
 inline constexpr std::size_t kLongestMessage = 4096;  ///< [bytes]
 
-/// Reads a message: one JSON object, `{"id": 7, "grab": {"link": "hand", …}}` or `{"write": true}`.
+/// Reads a message: one JSON object, `{"id": 7, "grab": {"link": "hand", …}}`, `{"write": true}` or
+/// `{"seen": 12}`.
 /// Whatever the text holds, it is answered by one of the two and nothing is thrown.
 std::variant<Asked, Refused> readMessage(const std::string& text, const Names& names) noexcept;
 

@@ -17,6 +17,7 @@ using std::chrono::steady_clock;
 constexpr std::uint32_t kLongestHeader = 8192;  // [bytes]
 constexpr std::size_t kMostAnswers = 64;        // that wait while messages are read
 constexpr double kBurst = 0.5;                  // [s] of messages may come at once
+constexpr long kAhead = 6;                      // frames and statuses on their way to a page
 constexpr std::chrono::seconds kSilence{60};    // after which a page is asked whether it is there
 
 template <class F>
@@ -177,6 +178,7 @@ std::string Session::handle(const std::string& text) {
   if (const auto* refused = std::get_if<Refused>(&read))
     return answer(refused->id, refused->reason);
   const Asked& asked = std::get<Asked>(read);
+  if (asked.seen) return countSeen(*asked.seen);
   if (asked.toWrite) {
     if (shared_.writer != 0 && shared_.writer != client_)
       return answer(asked.id, "another page writes");
@@ -188,6 +190,14 @@ std::string Session::handle(const std::string& text) {
   if (!shared_.inbox.put({client_, asked.id}, asked.event))
     return answer(asked.id, "too much is waiting");
   acted_ = true;
+  return "";
+}
+
+std::string Session::countSeen(long seen) {
+  if (seen < seen_ || seen > sent_)
+    return answer(0, fmt::format("'seen': found {}, expected {} to {}", seen, seen_, sent_));
+  seen_ = seen;
+  send();
   return "";
 }
 
@@ -206,15 +216,17 @@ void Session::sendText(std::string text) {
   send();
 }
 
-/// Answers first, then the newest of the others.
+/// Answers first, then the newest of the others. What has left can get no newer, and buffers on the
+/// way hold minutes of it: little is on its way to who has not said that the last has come.
 void Session::send() {
   if (sending_ || !open_) return;
   const bool isFrame = texts_.empty() && !status_ && frame_;
   if (!texts_.empty()) {
     sending_ = texts_.front();
     texts_.pop_front();
-  } else {
+  } else if (sent_ - seen_ < kAhead) {
     sending_ = std::exchange(status_ ? status_ : frame_, nullptr);
+    if (sending_) ++sent_;
   }
   if (!sending_) return;
   socket_->binary(isFrame);

@@ -72,6 +72,7 @@ class Session : public std::enable_shared_from_this<Session> {
   void took(std::size_t bytes);
   void send();
   std::string handle(const std::string& text);
+  std::string countSeen(long seen);
 
   Server::Shared& shared_;
   long client_;
@@ -87,6 +88,7 @@ class Session : public std::enable_shared_from_this<Session> {
   std::deque<Message> texts_;  ///< answers that wait; few
   Message frame_, status_;     ///< the newest that wait
   Message sending_;
+  long sent_ = 0, seen_ = 0;  ///< frames and statuses that left, and that the page says it has had
   bool open_ = false;
   bool acted_ = false;  ///< something that it asked for reached the inbox
   bool waits_ = false;  ///< reads on when answers have left

@@ -15,8 +15,16 @@ const [folder, chromium, simulator, data] = process.argv.slice(2);
 const browser = await Browser.launch(folder, chromium);
 
 const status = (page) => page.evaluate(() => window.softgauss.live.status);
-const until = (page, condition, argument) =>
-  page.waitForFunction(condition, argument, { timeout: 60000, polling: 50 });
+/** Waits for it; what the run was at is said where it does not come. */
+const until = async (page, condition, argument) => {
+  try {
+    await page.waitForFunction(condition, argument, { polling: 50 });
+  } catch (error) {
+    console.error(`waited for ${condition} with ${argument}; the run: ${JSON.stringify(await status(page))}`);
+    await browser.screenshot(page, 'live_waited').catch(() => {});
+    throw error;
+  }
+};
 const distance = (a, b) => Math.hypot(...a.map((x, i) => x - b[i]));
 const stepsMore = async (page, count) => {
   const { steps } = await status(page);

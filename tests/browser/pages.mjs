@@ -10,6 +10,9 @@ import { deflateSync, inflateSync } from 'node:zlib';
 // WebGL in software, the same on every machine.
 const SOFTWARE = ['--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'];
 
+/** For anything to come [ms]: pictures in software beside other tests take their time. */
+export const PATIENCE = 120000;
+
 export class Browser {
   static async launch(folder, executablePath, args = SOFTWARE) {
     const { chromium } = createRequire(import.meta.url)(resolve(folder, 'package'));
@@ -39,7 +42,6 @@ export class Browser {
     const page = await this.#newPage(origin, new RegExp(`^(${origin}|data:|blob:)`), options);
     await page.goto(address);
     await page.waitForFunction(() => window.softgauss?.live.status, null, {
-      timeout: 120000,
       polling: 100,
     });
     await page.evaluate(() => window.softgauss.ready);
@@ -56,6 +58,7 @@ export class Browser {
       hasTouch: touch,
       acceptDownloads: true,
     });
+    context.setDefaultTimeout(PATIENCE);
     const page = await context.newPage();
     page.on('console', (message) => {
       if (message.type() === 'error') this.complaints.push(`${name}: console: ${message.text()}`);

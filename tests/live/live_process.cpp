@@ -91,11 +91,17 @@ nlohmann::json Client::next(const std::string& member) {
     if (socket_.got_binary()) {
       ++frames_;
       frame_ = std::move(bytes);
+      acknowledge();
       continue;
     }
     const nlohmann::json message = nlohmann::json::parse(bytes);
+    if (message.contains("status")) acknowledge();
     if (message.contains(member)) return member == "status" ? message[member] : message;
   }
+}
+
+void Client::acknowledge() {
+  if (acknowledges) send("{\"seen\": " + std::to_string(++seen_) + "}");
 }
 
 std::string Client::ask(const std::string& what) {

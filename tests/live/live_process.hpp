@@ -62,11 +62,16 @@ class Client {
   const std::string& frame() const { return frame_; }
   boost::beast::websocket::stream<Tcp::socket>& socket() { return socket_; }
 
+  bool acknowledges = true;  ///< frames and statuses, as a page does
+
  private:
+  void acknowledge();
+
   boost::asio::io_context context_;
   boost::beast::websocket::stream<Tcp::socket> socket_;
   boost::beast::flat_buffer buffer_;
   int frames_ = 0, id_ = 0;
+  long seen_ = 0;
   std::string frame_;
 };
 

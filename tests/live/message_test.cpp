@@ -38,6 +38,7 @@ TEST_F(LiveMessages, AreTaken) {
   EXPECT_EQ(refused("{'id': 3, 'pause': {'on': true}}"), "");
   EXPECT_EQ(refused("{'write': true}"), "");
   EXPECT_EQ(refused("{'release': {}}"), "");
+  EXPECT_EQ(refused("{'seen': 18446744073709551615}"), "");
   const std::string link = names.links.back();
   EXPECT_EQ(
       refused("{'grab': {'link': '" + link + "', 'point': [0, 0, 0.1], 'target': [1, 2, 3]}}"), "");
@@ -62,6 +63,9 @@ TEST_F(LiveMessages, AreRefusedWithTheReason) {
       {"{'write': false}", "expected true"},
       {"{'write': 0}", "expected true"},
       {"{'write': {}}", "expected true"},
+      {"{'seen': -1}", "number of messages"},
+      {"{'seen': 1.5}", "number of messages"},
+      {"{'seen': 1, 'reset': {}}", "one thing"},
       {"{'reset': {'x': 1}}", "expected {}"},
       {"{'pause': {}}", "missing"},
       {"{'pause': {'on': 1}}", "true or false"},

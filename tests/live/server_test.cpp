@@ -3,6 +3,7 @@
 
 #include "apps/live/server.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 
@@ -278,6 +279,36 @@ TEST_F(LiveServer, GivesASlowReaderTheNewestAlone) {
   EXPECT_LT(test::residentMemory(getpid()) - before, 60l << 20);
   slow.next("status");
   EXPECT_LT(slow.frames(), 1000);
+}
+
+TEST_F(LiveServer, HasLittleOnItsWayToWhoHasNotSaidThatItCame) {
+  start();
+  Client page(server->port());
+  page.acknowledges = false;
+  page.next("writes");
+  const auto publish = [&](int first, int last) {
+    for (int i = first; i <= last; ++i) {
+      server->publishFrame(std::make_shared<const std::string>(fmt::format("{:04}", i)));
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+  };
+  publish(1, 200);
+  EXPECT_NE(page.ask("\"fly\": {}"), "") << "answers come all the same";
+  EXPECT_EQ(page.frames(), 6);
+  EXPECT_EQ(page.frame(), "0006");
+  // Then the newest comes, not the one that was next.
+  page.send("{\"seen\": 6}");
+  while (page.frames() < 7) page.ask("\"fly\": {}");
+  EXPECT_EQ(page.frame(), "0200");
+  // A page that says more than it can know, or less than it said, is told so, and nothing changes.
+  for (const char* wrong : {"{\"seen\": 8}", "{\"seen\": 5}"}) {
+    page.send(wrong);
+    EXPECT_NE(page.next("refused")["refused"].get<std::string>().find("expected 6 to 7"),
+              std::string::npos);
+  }
+  publish(201, 300);
+  page.ask("\"fly\": {}");
+  EXPECT_EQ(page.frames(), 12);
 }
 
 TEST_F(LiveServer, ReadsNoFasterThanItSays) {

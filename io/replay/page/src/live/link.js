@@ -26,6 +26,7 @@ export class Link extends Emitter {
     const scheme = window.location.protocol === 'https:' ? 'wss' : 'ws';
     this.socket = new WebSocket(`${scheme}://${window.location.host}${this.run.live.path}`);
     this.socket.binaryType = 'arraybuffer';
+    this.seen = 0; // frames and statuses of this connection
     this.socket.addEventListener('open', () => this.#setConnected(true));
     this.socket.addEventListener('message', ({ data }) => this.#take(data));
     this.socket.addEventListener('close', () => {
@@ -52,11 +53,13 @@ export class Link extends Emitter {
   #take(data) {
     if (typeof data !== 'string') {
       this.newest = data;
+      this.#acknowledge();
       return;
     }
     const message = JSON.parse(data);
     if (message.status) {
       this.status = message.status;
+      this.#acknowledge();
       this.emit('status', message.status);
     } else if ('writes' in message) {
       this.#setWrites(message.writes);
@@ -66,6 +69,12 @@ export class Link extends Emitter {
       if (message.refused) reject(new Error(message.refused));
       else resolve();
     }
+  }
+
+  /** The server keeps little on its way to who has not said that the last has come. */
+  #acknowledge() {
+    this.seen += 1;
+    this.#send({ seen: this.seen });
   }
 
   /** To be called before every picture. */
