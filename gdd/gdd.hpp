@@ -23,3 +23,4 @@
 #include "softgauss/gdd/goals/posture.hpp"
 #include "softgauss/gdd/goals/reach.hpp"
 #include "softgauss/gdd/goals/virtual_damping.hpp"
+#include "softgauss/gdd/motion_limits.hpp"

@@ -90,6 +90,7 @@ class GoalDirectedIslands::Control final : public IslandControl {
     if (!part_) part_ = std::make_unique<GoalDirectedController>(island_.model);
     part_->goals = std::move(goals);
     part_->limits = std::move(limits);
+    part_->motionLimits = from.motionLimits;
     part_->forceMetric = metricWithin(from.forceMetric, whole, island_);
     part_->controlCost = from.controlCost;
     part_->solver = from.solver;

@@ -38,6 +38,7 @@ const VectorX* GoalDirectedController::solve(Solver& used, const Model& model, c
     cost_.setFreeControl(holding_.compute(model, state, limits, data));
   for (const auto& goal : goals)
     if (goal->actsAt(state.time)) goal->addCost({model, state, data}, cost_);
+  if (motionLimits) motionLimits->addCost({model, state, data}, limits, cost_);
   data.stats.invalidWarmStarts += refuses(used, state.warmstart);
   report = solveOneSided(expansion, used, model, cost_, limits, data, state.warmstart, between_);
   const GddReport solved = report;

@@ -8,6 +8,7 @@
 /// on the physics: it clamps nothing, and forward dynamics has nothing left to do.
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "softgauss/engine/step/step.hpp"
@@ -15,6 +16,7 @@
 #include "softgauss/gdd/augmented_lagrangian.hpp"
 #include "softgauss/gdd/goal.hpp"
 #include "softgauss/gdd/gravity_compensation.hpp"
+#include "softgauss/gdd/motion_limits.hpp"
 #include "softgauss/gdd/one_sided_solve.hpp"
 #include "softgauss/gdd/sequential_quadratic_solve.hpp"
 
@@ -38,6 +40,8 @@ class GoalDirectedController final : public StepControl {
 
   std::vector<std::unique_ptr<Goal>> goals;
   ControlLimits limits;  ///< what the actuators can do; change it, or give them gears and couplings
+  /// Keeps velocity limits and slows down ahead of range ends; absent, goals alone decide.
+  std::optional<MotionLimits> motionLimits;
   ForceMetric forceMetric;  ///< R, M⁻¹ unless set
   ControlCost controlCost = ControlCost::aboutGravity;
   GddSolver solver = GddSolver::activeSet;

@@ -90,6 +90,7 @@ const std::map<std::string, Setter>& setters() {
       {"compatibility", choice<bool>({{"none", false}, {"mujoco", true}},
                                      [](O& o, bool mujoco) { o.likeMujoco = mujoco; })},
       {"no_slip", flag(&O::noSlip)},
+      {"ignore_velocity_limits", flag(&O::ignoreVelocityLimits)},
       {"package_paths", setPackagePaths},
       {"without_goals", flag(&O::withoutGoals)},
   };

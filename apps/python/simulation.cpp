@@ -119,14 +119,15 @@ void bindByName(HeldClass& sim) {
 }  // namespace
 
 void bindSimulation(py::module_&, HeldClass& sim) {
-  sim.def(py::init([](const std::filesystem::path& file, const py::kwargs& options) {
-            return std::make_unique<Held>(Simulation::load(file, optionsFrom(options)));
-          }),
-          py::arg("file"),
-          "A .urdf file, or a .yaml scene with its own goals. Options are those of simulate_gdd:\n"
-          "base, base_height, ground, timestep, q0, integrator, integration_tolerance, cone,\n"
-          "gdd_solver, control_cost, meshes, collision, compatibility, no_slip, package_paths,\n"
-          "without_goals. Raises ModelError and OptionError.");
+  sim.def(
+      py::init([](const std::filesystem::path& file, const py::kwargs& options) {
+        return std::make_unique<Held>(Simulation::load(file, optionsFrom(options)));
+      }),
+      py::arg("file"),
+      "A .urdf file, or a .yaml scene with its own goals. Options are those of simulate_gdd:\n"
+      "base, base_height, ground, timestep, q0, integrator, integration_tolerance, cone,\n"
+      "gdd_solver, control_cost, meshes, collision, compatibility, no_slip,\n"
+      "ignore_velocity_limits, package_paths, without_goals. Raises ModelError and OptionError.");
   sim.def_property_readonly(
       "goals", py::cpp_function([](Held& h) { return GoalList{h}; }, py::keep_alive<0, 1>()),
       "What the controller seeks; without goals robots are passive.");

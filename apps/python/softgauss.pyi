@@ -133,6 +133,7 @@ class Simulation:
         collision: Literal["own", "fcl"] = ...,
         compatibility: Literal["none", "mujoco"] = ...,
         no_slip: bool = ...,
+        ignore_velocity_limits: bool = ...,
         package_paths: Sequence[Path] = ...,
         without_goals: bool = ...,
     ) -> None: ...

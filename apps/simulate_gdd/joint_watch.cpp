@@ -11,6 +11,8 @@ constexpr double kMemory = 0.5;         // [s]
 constexpr double kOftenNow = 0.2;       // share of the recent steps
 constexpr double kOften = 0.05;         // share of all steps
 constexpr double kAtEnd = 0.01;         // [rad or m] nearer is at the end of the range
+constexpr double kAtSpeed = 0.95;       // of the velocity limit
+constexpr double kTooFast = 1.05;       // of it: joints that are held to it stay below
 constexpr double kChatterShare = 0.05;  // of the bound
 constexpr double kLeastChatter = 0.01;  // [N m or N]
 
@@ -22,7 +24,8 @@ std::vector<WatchedControl> worstFirst(std::vector<WatchedControl> list) {
 
 }  // namespace
 
-JointWatch::JointWatch(const Model& model, const gdd::ControlLimits& limits) : model_(model) {
+JointWatch::JointWatch(const Model& model, const gdd::ControlLimits& limits)
+    : model_(model), fastest_(VectorX::Zero(model.nv)), fast_(VectorX::Zero(model.nv)) {
   for (int i = 0; i < model.nv; ++i) {
     const Dof& dof = model.dofs[i];
     if (!dof.actuated) continue;
@@ -67,6 +70,12 @@ void JointWatch::observe(const VectorX& tau, const VectorX& commands, const Stat
     see(controls_[joints + k], commands[static_cast<Eigen::Index>(k)], forget);
   v_ = state.v;
   q_ = state.q;
+  for (int i = 0; i < model_.nv; ++i) {
+    const double speed = std::abs(v_[i]);
+    fastest_[i] = std::max(fastest_[i], speed);
+    const bool atLimit = speed > kAtSpeed * model_.dofs[i].velocityLimit;
+    fast_[i] = forget * fast_[i] + (1.0 - forget) * (atLimit ? 1.0 : 0.0);
+  }
   ++steps_;
 }
 
@@ -79,6 +88,13 @@ std::vector<std::string> JointWatch::saturatedNow(const std::vector<char>& count
   std::vector<std::string> names;
   for (const Control& control : controls_)
     if (concerns(control, counts) && control.recent > kOftenNow) names.push_back(control.name);
+  return names;
+}
+
+std::vector<std::string> JointWatch::atVelocityLimit(const std::vector<char>& counts) const {
+  std::vector<std::string> names;
+  for (int i = 0; i < model_.nv; ++i)
+    if (counts[i] && fast_[i] > kOftenNow) names.push_back(model_.jointNames[model_.dofs[i].body]);
   return names;
 }
 
@@ -118,6 +134,21 @@ std::vector<WatchedControl> JointWatch::chattering() const {
       list.push_back({control.name, control.jumps, control.unit});
   }
   return worstFirst(std::move(list));
+}
+
+std::vector<FastJoint> JointWatch::tooFast() const {
+  std::vector<FastJoint> list;
+  for (int i = 0; i < model_.nv; ++i) {
+    const double limit = model_.dofs[i].velocityLimit;
+    if (!(fastest_[i] > kTooFast * limit)) continue;
+    const int body = model_.dofs[i].body;
+    const bool slides = model_.bodies[body].joint == JointKind::prismatic;
+    list.push_back({model_.jointNames[body], fastest_[i], limit, slides ? "m/s" : "rad/s"});
+  }
+  std::stable_sort(list.begin(), list.end(), [](const FastJoint& a, const FastJoint& b) {
+    return a.speed * b.limit > b.speed * a.limit;
+  });
+  return list;
 }
 
 }  // namespace softgauss::app

@@ -22,6 +22,13 @@ struct WatchedControl {
   std::string unit = {};
 };
 
+/// A joint that was faster than its velocity limit.
+struct FastJoint {
+  std::string name;
+  double speed = 0.0, limit = 0.0;  ///< [rad/s or m/s]
+  std::string unit;
+};
+
 class JointWatch {
  public:
   JointWatch(const Model& model, const gdd::ControlLimits& limits);
@@ -33,14 +40,17 @@ class JointWatch {
   template <class Archive>
   void archive(Archive& a) {
     a.sized(controls_);
-    a(steps_, v_, q_);
+    a(steps_, v_, q_, fastest_, fast_);
     if constexpr (Archive::kReads)
-      a.expect(steps_ == 0 || (steps_ > 0 && v_.size() == model_.nv && q_.size() == model_.nq));
+      a.expect(fastest_.size() == model_.nv && fast_.size() == model_.nv &&
+               (steps_ == 0 || (steps_ > 0 && v_.size() == model_.nv && q_.size() == model_.nq)));
   }
 
   /// Those of the dofs for which `counts` (nv) is set that were at their bound in a fifth of the
   /// last half second.
   std::vector<std::string> saturatedNow(const std::vector<char>& counts) const;
+  /// The same of joints that moved at their velocity limit in a fifth of the last half second.
+  std::vector<std::string> atVelocityLimit(const std::vector<char>& counts) const;
   /// The same of joints that are at an end of their range now.
   std::vector<std::string> atRangeEnd(const std::vector<char>& counts) const;
   /// The fastest speed of these dofs [rad/s or m/s].
@@ -50,6 +60,8 @@ class JointWatch {
   std::vector<WatchedControl> saturated() const;
   /// At the end of the run, the worst first.
   std::vector<WatchedControl> chattering() const;
+  /// Over the whole run: those that were more than 5 % faster than their limit, the worst first.
+  std::vector<FastJoint> tooFast() const;
 
  private:
   struct Control {
@@ -74,6 +86,8 @@ class JointWatch {
   std::size_t actuators_ = 0;      ///< how many of the latter
   long steps_ = 0;
   VectorX v_, q_;
+  VectorX fastest_;  ///< (nv) largest |v| so far
+  VectorX fast_;     ///< (nv) share of recent steps at the velocity limit, exponentially weighted
 };
 
 }  // namespace softgauss::app

@@ -81,6 +81,9 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
                  "meaning of effort=\"0\": passive (not actuated) or unlimited")
       ->check(CLI::IsMember({"passive", "unlimited"}))
       ->group(scene);
+  app.add_flag("--ignore-velocity-limits", options.ignoreVelocityLimits,
+               "goals alone decide how fast joints move and arrive at an end of their range")
+      ->group(scene);
   app.add_option(
          "--meshes", meshes,
          "collision shape of meshes where a scene names none. hull: the convex hull;\ntriangles: "

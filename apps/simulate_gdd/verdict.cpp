@@ -168,6 +168,8 @@ std::string Verdict::reasonOf(const GoalRecord::Track& track, const SeenStep& st
                                              : "no joint of it is actuated");
     if (const auto weak = joints_.saturatedNow(counts); !weak.empty())
       parts.push_back("torque limits of " + listed(weak));
+    if (const auto fast = joints_.atVelocityLimit(counts); !fast.empty())
+      parts.push_back("velocity limits of " + listed(fast));
     if (const auto ended = joints_.atRangeEnd(counts); !ended.empty())
       parts.push_back("ranges of " + listed(ended));
     parts.push_back(contactReason(track, step));
@@ -249,11 +251,13 @@ void Verdict::tellControls(io::Summary& summary) const {
   const auto add = [&](const char* word, const std::vector<std::string>& parts) {
     if (!parts.empty()) summary.verdict.emplace_back(word, listed(parts));
   };
-  std::vector<std::string> full, slid, chattered;
+  std::vector<std::string> full, fast, slid, chattered;
   for (const WatchedControl& c : joints_.saturated())
     full.push_back(c.amount < 0.0995
                        ? fmt::format("{} in {:.2g} % of the steps", c.name, 100.0 * c.amount)
                        : fmt::format("{} in {:.0f} % of the steps", c.name, 100.0 * c.amount));
+  for (const FastJoint& j : joints_.tooFast())
+    fast.push_back(fmt::format("{} at {:.3g} {}, limit {:.3g}", j.name, j.speed, j.unit, j.limit));
   for (const StandingOutcome& o : stood_)
     for (const StandingOutcome::Slide& s : o.slides)
       if (!o.fell) slid.push_back(fmt::format("{} {}", s.link, lengthText(s.way)));
@@ -261,6 +265,7 @@ void Verdict::tellControls(io::Summary& summary) const {
     chattered.push_back(fmt::format("{} by {:.2g}{}{} from step to step", c.name, c.amount,
                                     c.unit.empty() ? "" : " ", c.unit));
   add("saturated", full);
+  add("too fast", fast);
   add("slid", slid);
   add("chattered", chattered);
   const io::GddOutcomes& g = summary.gdd;

@@ -72,7 +72,7 @@ struct Dof {
   bool actuated = false;            ///< has a control u
   double effortLower = -kInfinity;  ///< control limits [N m or N]
   double effortUpper = kInfinity;
-  double velocityLimit = kInfinity;  ///< [rad/s or m/s], read, not enforced
+  double velocityLimit = kInfinity;  ///< [rad/s or m/s], for controllers
 };
 
 /// A range q_min ≤ q ≤ q_max of a scalar joint.

@@ -63,6 +63,8 @@ void setUpControl(const Scene& scene, const SimulationOptions& options,
                   gdd::GoalDirectedController& controller) {
   controller.solver = scene.gddSolver;
   controller.limits = io::controlLimits(scene.model, scene.actuators);
+  controller.motionLimits.reset();
+  if (!options.ignoreVelocityLimits) controller.motionLimits.emplace();
   controller.goals.clear();
   if (scene.hasGoals && !options.withoutGoals) addGoals(scene.file, scene, controller);
   if (options.controlCost) controller.controlCost = *options.controlCost;

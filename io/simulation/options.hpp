@@ -28,6 +28,7 @@ struct SimulationOptions {
   std::optional<MechanismSet> mechanisms;          ///< absent: the file's own, or all
   std::optional<EffectSet> effects;                ///< absent: the file's own, or all
   bool zeroEffortIsUnlimited = false;
+  bool ignoreVelocityLimits = false;  ///< goals alone decide how fast joints move
   int mostDofs = 2000;                ///< more take minutes to load and gigabytes to hold
   std::optional<io::MeshUse> meshes;  ///< absent: automatic, or hull as MuJoCo has it
   bool noSlip = false, levelSlip = false;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// What a person reads at the end of a run: did it stand, what was reached, what was not and why.
 
+#include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
 #include <regex>
 
@@ -197,6 +199,33 @@ TEST(Verdict, GoalsThatAreNoPlacesHaveTheirOwnFigures) {
   EXPECT_LT(force["final_error"].get<double>(), 1.0) << force;
   EXPECT_EQ(turn["unit"], "rad");
   EXPECT_LT(turn["final_error"].get<double>(), 0.05) << turn;
+}
+
+/// A reach of the two arms within a second, the joints at most so fast [rad/s].
+Told reachAtSpeed(const char* speed, const std::vector<std::string>& more = {}) {
+  const io::TempFolder folder;
+  const std::string urdf = std::regex_replace(kTwoArms, std::regex("velocity=\"10\""),
+                                              fmt::format("velocity=\"{}\"", speed));
+  std::vector<std::string> arguments = {folder.write("arms.urdf", urdf), "--reach", "hand=0,0,-0.5",
+                                        "--duration", "1"};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return Told(arguments);
+}
+
+// At 0.2 rad/s the shoulder turns by 0.2 rad of the 1.6 that the reach takes.
+TEST(Verdict, NamesTheJointsWhoseVelocityLimitsKeepAGoalOff) {
+  const Told slow = reachAtSpeed("0.2");
+  EXPECT_TRUE(slow.says("not reached", "velocity limits of shoulder")) << slow.json["verdict"];
+  EXPECT_TRUE(slow.line("too fast").find("shoulder") == std::string::npos) << slow.line("too fast");
+  const Told fast = reachAtSpeed("10");
+  EXPECT_FALSE(fast.says("not reached", "velocity limits")) << fast.json["verdict"];
+}
+
+TEST(Verdict, NamesTheJointsThatAreTooFast) {
+  const Told run = reachAtSpeed("0.2", {"--ignore-velocity-limits"});
+  EXPECT_TRUE(
+      std::regex_search(run.line("too fast"), std::regex("shoulder at [0-9.]+ rad/s, limit 0.2")))
+      << run.json["verdict"];
 }
 
 TEST(Base, TheConventionIsALineOfEveryRun) {

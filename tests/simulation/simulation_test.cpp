@@ -34,6 +34,7 @@ TEST(Simulation, IsTheEngineUnderTheSameGoals) {
   Data data(model);
   State state(model);
   gdd::GoalDirectedController controller(model);
+  controller.motionLimits.emplace();
   controller.goals.push_back(std::make_unique<gdd::Reach>(model, "hand", target));
   for (auto& goal : regularisers(state.q, std::nullopt))
     controller.goals.push_back(std::move(goal));

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "softgauss/gdd/motion_limits.hpp"
+
+#include <algorithm>
+
+namespace softgauss::gdd {
+namespace {
+
+constexpr double kBegins = 0.5;  // of the speed that is allowed
+
+bool isDriven(const Model& model, const ControlLimits& limits, int dof) {
+  return model.dofs[dof].actuated || (limits.transmission && limits.transmission->pulls(dof));
+}
+
+}  // namespace
+
+void MotionLimits::addCost(const GoalContext& context, const ControlLimits& limits,
+                           GoalCost& cost) const {
+  const Model& model = context.model;
+  VectorX& row = cost.workspace().dofs;
+  row.setZero();
+  // sign 1: upwards, with `room` [rad or m] to the upper end of the range; −1: downwards.
+  const auto bound = [&](int dof, double sign, double room) {
+    const double allowed =
+        std::min(model.dofs[dof].velocityLimit, std::max(arrivalSpeed, room / approachTime));
+    const double speed = sign * context.state.v[dof];
+    if (!(speed > kBegins * allowed)) return;
+    row[dof] = -sign;
+    cost.addOneSided(row, weight * context.data.inertia.M.row(dof)[dof],
+                     (speed - allowed) / brakingTime);
+    row[dof] = 0.0;
+  };
+  auto range = model.ranges.begin();
+  for (int dof = 0; dof < model.nv; ++dof) {
+    const int body = model.dofs[dof].body;
+    if (model.bodies[body].dofs != 1 || !isDriven(model, limits, dof)) continue;
+    while (range != model.ranges.end() && range->body < body) ++range;
+    const bool ranged = range != model.ranges.end() && range->body == body;
+    const double q = context.state.q[model.bodies[body].q];
+    bound(dof, 1.0, ranged ? range->upper - q : kInfinity);
+    bound(dof, -1.0, ranged ? q - range->lower : kInfinity);
+  }
+}
+
+}  // namespace softgauss::gdd
