@@ -15,6 +15,7 @@ constexpr double kStillTouches = 0.1;  // [s] without contact: it bounces or rol
 constexpr double kFallenShare = 0.25;  // of the base's height
 constexpr double kFallenTilt = M_PI / 9.0;
 constexpr double kTippedTilt = M_PI / 36.0;  // of what stood flat on its root
+constexpr double kFallSpeed = 0.2;  // [m/s]
 constexpr double kLiesTilt = M_PI / 3.0;
 constexpr double kToldSlide = 1e-3;  // [m]
 
@@ -107,6 +108,7 @@ std::vector<StandingOutcome> Standing::outcomes(const Kinematics& end, double ti
     const bool lower = o.cameDown > kFallenShare * robot.height;
     const bool down = lower || o.tilt > (robot.stoodOnRoot ? kTippedTilt : kFallenTilt);
     o.fell = (down && !o.onGround.empty()) || (o.tilt > kLiesTilt && (baseTouches || lower));
+    o.falling = down && !o.fell && !o.inAir && o.speed > kFallSpeed;
     std::stable_sort(o.slides.begin(), o.slides.end(),
                      [](const auto& a, const auto& b) { return a.way > b.way; });
     outcomes.push_back(std::move(o));

@@ -6,8 +6,9 @@
 /// A robot stands on the links that touch the ground within 0.1 s of its first contact. It has
 /// fallen where at the end links lie on the ground that did not stand there, and its base has come
 /// down by a quarter of its height over the lowest point or has tilted by 20°, by 5° where it stood
-/// on its root; or where the base has tilted by 60° and touches the ground itself. Ground is all
-/// that is fixed to the world.
+/// on its root; or where the base has tilted by 60° and touches the ground itself. It is falling
+/// where the base has come down or tilted so far and comes down at 0.2 m/s. Ground is all that is
+/// fixed to the world.
 ///
 /// What slides is the material of a link at its contacts with the ground: with v_t the mean
 /// tangential velocity there, weighted by normal force, it slides by |∫ v_t dt|. A wheel that rolls
@@ -25,6 +26,7 @@ namespace softgauss::app {
 struct StandingOutcome {
   std::string base;       ///< the root link
   bool fell = false;      ///< at the end
+  bool falling = false;   ///< at the end, on its way down
   bool inAir = false;     ///< it touches nothing at the end
   double cameDown = 0.0;  ///< of the base over the robot's lowest point [m]; negative: it rose
   double tilt = 0.0;      ///< of the base, against the start [rad]

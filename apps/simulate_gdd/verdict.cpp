@@ -210,7 +210,8 @@ void Verdict::tellStanding(io::Summary& summary) const {
               : fmt::format("{} {} than at the start", lengthText(std::abs(o.cameDown)),
                             o.cameDown > 0.0 ? "lower" : "higher");
       summary.verdict.emplace_back(
-          "stood", fmt::format("base {}: {}", o.base, joined({height, tilt, ground})));
+          o.falling ? "falling" : "stood",
+          fmt::format("base {}: {}", o.base, joined({height, tilt, ground})));
     }
   }
 }

@@ -114,6 +114,13 @@ TEST(Verdict, SharesOfStepsAreWholePercents) {
       << run.json["verdict"];
 }
 
+// Nothing holds it: its feet are on the ground, and the pelvis on its way.
+TEST(Verdict, AHumanoidOnItsWayDownIsFalling) {
+  const Told run({dataFile("robots/humanoid.urdf"), "--passive", "--duration", "1.2"});
+  EXPECT_NE(run.line("falling"), "") << run.json["verdict"];
+  EXPECT_EQ(run.line("stood"), "");
+}
+
 TEST(Verdict, AHumanoidThatHoldsItsPostureStood) {
   const Told run({dataFile("robots/humanoid.urdf"), "--posture", "--duration", "1"});
   EXPECT_EQ(run.json["outcome"], "completed");
