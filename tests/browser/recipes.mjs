@@ -10,6 +10,7 @@ import { writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { animatedPng } from './animated_png.mjs';
 import { Browser } from './pages.mjs';
+import { still } from './stills.mjs';
 
 const [folder, chromium, pictures] = process.argv.slice(2);
 const shots = [
@@ -25,34 +26,13 @@ const MOVING = { name: 'reach', from: 0, to: 1.2, frames: 12, width: 360 };
 
 const browser = await Browser.launch(folder, chromium);
 
-async function view(name, settings = {}, width = 520) {
-  const page = await browser.open(`recipe_${name}`, { width, height: 460, scheme: 'light' });
-  await page.evaluate(
-    (more) => window.softgauss.setView({ links: false, plots: false, preset: 'home', ...more }),
-    settings,
-  );
-  const clip = await page.evaluate(() => {
-    document.querySelector('#toolbar').style.display = 'none';
-    const { x, y, width, height } = document.querySelector('canvas').getBoundingClientRect();
-    return { x, y, width, height };
-  });
-  const picture = async (time) => {
-    await page.evaluate((t) => window.softgauss.seek(t), time);
-    await page.waitForTimeout(300);
-    return page.screenshot({ clip, timeout: 600000 });
-  };
-  await picture(0);
-  await page.waitForTimeout(1000);
-  return { page, picture };
-}
-
 for (const { name, time, view: settings } of shots) {
-  const { page, picture } = await view(name, settings);
+  const { page, picture } = await still(browser, `recipe_${name}`, settings);
   writeFileSync(join(pictures, `recipe_${name}.png`), await picture(time));
   await page.context().close();
 }
 
-const { page, picture } = await view(MOVING.name, {}, MOVING.width);
+const { page, picture } = await still(browser, `recipe_${MOVING.name}`, {}, MOVING.width);
 const frames = [];
 for (let i = 0; i < MOVING.frames; ++i)
   frames.push(await picture(MOVING.from + ((MOVING.to - MOVING.from) * i) / (MOVING.frames - 1)));
