@@ -4,13 +4,13 @@
 /// The log of a run: comma-separated values, a header, then one row a step.
 ///
 /// Columns: time_s; q:, v:, a:, u: of every joint [rad, m, N m, N and rates]; a floating joint as
-/// q:<joint>.x .y .z .qw .qx .qy .qz and v:, a:<joint>.vx .vy .vz .wx .wy .wz, without u:, or
-/// q:<joint>(floating).x … where a planar joint of that name has the others; then
+/// `q:<joint>.x` .y .z .qw .qx .qy .qz and v:, `a:<joint>.vx` .vy .vz .wx .wy .wz, without u:, or
+/// `q:<joint>(floating).x` … where a planar joint of that name has the others; then
 /// contacts, constraints, iterations, dual_updates, physics_violation, gdd_violation, stationarity,
-/// forward_us, gdd_us, step_us, energy_J, max_penetration_m; then error:<goal> [unit] of every
+/// forward_us, gdd_us, step_us, energy_J, max_penetration_m; then `error:<goal> [unit]` of every
 /// goal; com.x .y .z, cop.x .y .z [m], momentum.x .y .z [kg m/s], angular_momentum.x .y .z [kg
-/// m²/s] about the centre of mass; and f:<link>.x .y .z of every link that moves and can touch: the
-/// sum of the contact forces on it [N]. All in world axes.
+/// m²/s] about the centre of mass; and `f:<link>.x` .y .z of every link that moves and can touch:
+/// the sum of the contact forces on it [N]. All in world axes.
 ///
 /// A field is empty where there is no value: in the last row, the state at the end, all that a step
 /// gives; the centre of pressure where the world carries nothing; a goal that asks for nothing.

@@ -6,8 +6,9 @@
 /// Triangles only: polygons are triangulated, lines and points are left out. Corners with exactly
 /// the same coordinates become one vertex. Transforms of the file's nodes are applied.
 /// Colours are those of the file's materials, diffuse, without textures.
-/// DAE as ROS tools read it: <unit> scales to metres, <up_axis> is ignored (RViz and Gazebo ignore
-/// it, and robots are drawn to look right there). STL and OBJ have no unit: the URDF's scale says.
+/// DAE as ROS tools read it: `<unit>` scales to metres, `<up_axis>` is ignored (RViz and Gazebo
+/// ignore it, and robots are drawn to look right there). STL and OBJ have no unit: the URDF's scale
+/// says.
 
 #include <array>
 #include <cstdint>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// Recorded controls for open-loop simulation: the columns time_s and u:<joint> of a CSV file.
+/// Recorded controls for open-loop simulation: the columns time_s and `u:<joint>` of a CSV file.
 ///
 /// A log (io/log.hpp) is such a file. Other columns are left alone; a joint without a column has
 /// control 0. Held between rows (zero-order hold): at time t the last row with time_s ≤ t is in
