@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "softgauss/engine/constraints/constraints.hpp"
+#include "softgauss/engine/core/index.hpp"
 
 namespace softgauss::gdd {
 
@@ -29,8 +30,8 @@ struct HeldBreakpoint {
 class HeldBreakpoints {
  public:
   int size() const { return count_; }
-  HeldBreakpoint& operator[](int i) { return breakpoints_[i]; }
-  const HeldBreakpoint& operator[](int i) const { return breakpoints_[i]; }
+  HeldBreakpoint& operator[](int i) { return breakpoints_[idx(i)]; }
+  const HeldBreakpoint& operator[](int i) const { return breakpoints_[idx(i)]; }
   HeldBreakpoint* begin() { return breakpoints_.data(); }
   HeldBreakpoint* end() { return breakpoints_.data() + count_; }
   const HeldBreakpoint* begin() const { return breakpoints_.data(); }
@@ -41,7 +42,7 @@ class HeldBreakpoints {
     for (HeldBreakpoint& held : *this)
       if (held.breakpoint == breakpoint) return held;
     if (count_ == static_cast<int>(breakpoints_.size())) breakpoints_.emplace_back();
-    HeldBreakpoint& fresh = breakpoints_[count_++];
+    HeldBreakpoint& fresh = breakpoints_[idx(count_++)];
     fresh.breakpoint = breakpoint;
     fresh.atBreakpoint = false;
     fresh.paths = 0;

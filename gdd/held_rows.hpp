@@ -15,6 +15,7 @@
 
 #include <vector>
 
+#include "softgauss/engine/core/index.hpp"
 #include "softgauss/gdd/contact_force_cost.hpp"
 
 namespace softgauss::gdd {
@@ -35,7 +36,7 @@ class HeldRows {
 
   bool empty() const { return count_ == 0; }
   int size() const { return count_; }
-  const Row& operator[](int i) const { return rows_[i]; }
+  const Row& operator[](int i) const { return rows_[idx(i)]; }
   void clear() { count_ = 0; }
   void hold(Breakpoint breakpoint, const Constraints& constraints);
   void release(int i);
@@ -49,7 +50,7 @@ class HeldRows {
   template <class Solve>
   void project(VectorX& d, Solve&& solve) {
     for (int i = 0; i < count_; ++i) {
-      rows_[i].HinvJ = rows_[i].J;
+      rows_[idx(i)].HinvJ = rows_[idx(i)].J;
       solve(rows_[i].HinvJ);
     }
     projectPrepared(d);

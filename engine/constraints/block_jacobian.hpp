@@ -12,6 +12,7 @@
 
 #include <vector>
 
+#include "softgauss/engine/core/index.hpp"
 #include "softgauss/engine/core/memory.hpp"
 #include "softgauss/engine/dynamics/kinematics.hpp"
 #include "softgauss/engine/dynamics/tree_matrix.hpp"
@@ -47,7 +48,7 @@ class BlockJacobian {
            const RelativeMotion& motion);
 
   int size() const { return static_cast<int>(blocks_.size()); }
-  const JacobianBlock& block(int i) const { return blocks_[i]; }
+  const JacobianBlock& block(int i) const { return blocks_[idx(i)]; }
 
   /// y ← J_i a.
   void multiply(int i, const VectorX& a, double* y) const;

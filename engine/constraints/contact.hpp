@@ -19,6 +19,7 @@
 #include "softgauss/engine/constraints/block_jacobian.hpp"
 #include "softgauss/engine/constraints/impedance.hpp"
 #include "softgauss/engine/constraints/rows.hpp"
+#include "softgauss/engine/core/index.hpp"
 
 namespace softgauss {
 
@@ -78,7 +79,7 @@ class ContactBlocks {
  public:
   /// Of row i of these contacts.
   RowKey name(int row) const {
-    const ContactRows& m = contactsWithRows_[contactOfRow_[row]];
+    const ContactRows& m = contactsWithRows_[idx(contactOfRow_[idx(row)])];
     return {m.geometryA, m.geometryB, m.place, row - m.row};
   }
   /// Contacts with rows; contact i starts at row contactsWithRows()[i].row.
@@ -93,13 +94,13 @@ class ContactBlocks {
   const BlockJacobian& jacobian() const { return jacobian_; }
   /// The first three of a frame's six numbers in world axes, and the last three.
   Vector3 linearInWorld(int i, const FrameVector& y) const {
-    return contactsWithRows_[i].R_WC * Vector3(y[0], y[1], y[2]);
+    return contactsWithRows_[idx(i)].R_WC * Vector3(y[0], y[1], y[2]);
   }
   Vector3 angularInWorld(int i, const FrameVector& y) const {
-    return contactsWithRows_[i].R_WC * Vector3(y[3], y[4], y[5]);
+    return contactsWithRows_[idx(i)].R_WC * Vector3(y[3], y[4], y[5]);
   }
   /// Place in contactsWithRows() of the contact that has this row.
-  int contactOfRow(int row) const { return contactOfRow_[row]; }
+  int contactOfRow(int row) const { return contactOfRow_[idx(row)]; }
 
   std::size_t bytes() const {
     return jacobian_.bytes() + bytesOfAll(contactsWithRows_, contactOfRow_);

@@ -14,6 +14,7 @@
 
 #include "softgauss/engine/constraints/assembly.hpp"
 #include "softgauss/engine/constraints/rows.hpp"
+#include "softgauss/engine/core/index.hpp"
 
 namespace softgauss {
 
@@ -30,10 +31,10 @@ class DryFriction : public ScalarRows<Huber> {
     for (std::size_t i = 0; i < dof_.size(); ++i) P.row(dof_[i])[dof_[i]] += h[i];
   }
   /// y ← y + scale · (row i of J)ᵀ.
-  void addRow(int i, double scale, VectorX& y) const { y[dof_[i]] += scale; }
+  void addRow(int i, double scale, VectorX& y) const { y[dof_[idx(i)]] += scale; }
   std::size_t bytes() const { return ScalarRows::bytes() + bytesOf(dof_); }
-  int dof(int row) const { return dof_[row]; }
-  RowKey name(int row) const { return {.first = dof_[row]}; }
+  int dof(int row) const { return dof_[idx(row)]; }
+  RowKey name(int row) const { return {.first = dof_[idx(row)]}; }
 
  private:
   std::vector<int> dof_;

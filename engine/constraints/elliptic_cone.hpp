@@ -21,6 +21,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "softgauss/engine/core/index.hpp"
+
 namespace softgauss {
 
 enum class ConeZone : std::int8_t { bottom, middle, top };
@@ -49,15 +51,15 @@ struct EllipticCone {
     Point z;
     double squares = 0.0;
     for (int k = 0; k + 1 < dim; ++k) {
-      z.u[k] = friction[k] * x[k + 1];
-      squares += z.u[k] * z.u[k];
+      z.u[idx(k)] = friction[idx(k)] * x[k + 1];
+      squares += z.u[idx(k)] * z.u[idx(k)];
     }
     z.N = mu * x[0];
     z.T = std::sqrt(squares);
     z.phi = z.N - mu * z.T;
     z.chi = mu * z.N + z.T;
     if (z.T != 0.0)
-      for (int k = 0; k + 1 < dim; ++k) z.u[k] /= z.T;
+      for (int k = 0; k + 1 < dim; ++k) z.u[idx(k)] /= z.T;
     return z;
   }
 
@@ -75,23 +77,24 @@ struct EllipticCone {
       f[0] = -scale * mu * z.N;
       if (H) H[0] = D;
       for (int k = 0; k + 1 < dim; ++k) {
-        f[k + 1] = -scale * friction[k] * z.T * z.u[k];
-        if (H) H[(k + 1) * (dim + 1)] = scale * friction[k] * friction[k];
+        f[k + 1] = -scale * friction[idx(k)] * z.T * z.u[idx(k)];
+        if (H) H[(k + 1) * (dim + 1)] = scale * friction[idx(k)] * friction[idx(k)];
       }
       return 0.5 * scale * (z.N * z.N + z.T * z.T);
     }
     const double c = stiffness();
     f[0] = -c * z.phi * mu;
-    for (int k = 0; k + 1 < dim; ++k) f[k + 1] = c * z.phi * mu * z.u[k] * friction[k];
+    for (int k = 0; k + 1 < dim; ++k) f[k + 1] = c * z.phi * mu * z.u[idx(k)] * friction[idx(k)];
     if (H) {
       // c (∇φ ∇φᵀ + φ ∇²φ),  ∇φ = (1, −μ̂ u),  ∇²φ = −(μ̂/T)(1 − u uᵀ)
       const double bend = z.T > 0.0 ? -z.phi * mu / z.T : 0.0;
       H[0] = c * mu * mu;
       for (int k = 0; k + 1 < dim; ++k) {
-        H[k + 1] = H[(k + 1) * dim] = -c * mu * mu * z.u[k] * friction[k];
+        H[k + 1] = H[(k + 1) * dim] = -c * mu * mu * z.u[idx(k)] * friction[idx(k)];
         for (int l = 0; l + 1 < dim; ++l)
-          H[(k + 1) * dim + l + 1] = c * friction[k] * friction[l] *
-                                     ((mu * mu - bend) * z.u[k] * z.u[l] + (k == l ? bend : 0.0));
+          H[(k + 1) * dim + l + 1] =
+              c * friction[idx(k)] * friction[idx(l)] *
+              ((mu * mu - bend) * z.u[idx(k)] * z.u[idx(l)] + (k == l ? bend : 0.0));
       }
     }
     return 0.5 * c * z.phi * z.phi;
@@ -102,7 +105,8 @@ struct EllipticCone {
   /// Gradient in x of what vanishes at breakpoint k (dim).
   void breakpointGradient(const Point& z, int k, double* gradient) const {
     gradient[0] = k == 0 ? mu * mu : mu;
-    for (int i = 0; i + 1 < dim; ++i) gradient[i + 1] = (k == 0 ? 1.0 : -mu) * z.u[i] * friction[i];
+    for (int i = 0; i + 1 < dim; ++i)
+      gradient[i + 1] = (k == 0 ? 1.0 : -mu) * z.u[idx(i)] * friction[idx(i)];
   }
 };
 

@@ -11,6 +11,7 @@
 #include "softgauss/engine/constraints/contact.hpp"
 #include "softgauss/engine/constraints/elliptic_cone.hpp"
 #include "softgauss/engine/constraints/rows.hpp"
+#include "softgauss/engine/core/index.hpp"
 
 namespace softgauss {
 
@@ -48,10 +49,10 @@ class EllipticContact : public ContactBlocks {
   void clearBreakpointPlacement() { placed_.assign(placed_.size(), false); }
   void holdOnRay(int) {}
 
-  const EllipticCone& cone(int i) const { return cones_[i]; }
+  const EllipticCone& cone(int i) const { return cones_[idx(i)]; }
   /// Softness::perInertia of contact i, and D of its normal row, which scales its other rows too.
-  double perInertia(int i) const { return perInertia_[i]; }
-  void setNormalStiffness(int i, double D) { cones_[i].D = D; }
+  double perInertia(int i) const { return perInertia_[idx(i)]; }
+  void setNormalStiffness(int i, double D) { cones_[idx(i)].D = D; }
   /// Force on body B at contact i, world [N]; body A feels the opposite.
   Vector3 force(int i) const { return linearInWorld(i, frameForce(i)); }
   /// Moment on body B at contact i, of torsional and rolling friction, world [N m]; body A feels

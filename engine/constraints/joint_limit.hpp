@@ -11,6 +11,7 @@
 
 #include "softgauss/engine/constraints/assembly.hpp"
 #include "softgauss/engine/constraints/rows.hpp"
+#include "softgauss/engine/core/index.hpp"
 
 namespace softgauss {
 
@@ -27,11 +28,13 @@ class JointLimit : public ScalarRows<HalfQuadratic> {
     for (std::size_t i = 0; i < dof_.size(); ++i) P.row(dof_[i])[dof_[i]] += h[i];
   }
   /// y ← y + scale · (row i of J)ᵀ.
-  void addRow(int i, double scale, VectorX& y) const { y[dof_[i]] += sign_[i] * scale; }
+  void addRow(int i, double scale, VectorX& y) const { y[dof_[idx(i)]] += sign_[idx(i)] * scale; }
   std::size_t bytes() const { return ScalarRows::bytes() + bytesOfAll(dof_, sign_); }
-  int dof(int row) const { return dof_[row]; }
-  RowKey name(int row) const { return {.first = dof_[row], .second = sign_[row] > 0.0 ? 0 : 1}; }
-  double sign(int row) const { return sign_[row]; }
+  int dof(int row) const { return dof_[idx(row)]; }
+  RowKey name(int row) const {
+    return {.first = dof_[idx(row)], .second = sign_[idx(row)] > 0.0 ? 0 : 1};
+  }
+  double sign(int row) const { return sign_[idx(row)]; }
 
  private:
   std::vector<int> dof_;

@@ -43,6 +43,7 @@
 
 #include "softgauss/engine/constraints/contact_set.hpp"
 #include "softgauss/engine/constraints/inverse_weight.hpp"
+#include "softgauss/engine/core/index.hpp"
 #include "softgauss/engine/dynamics/kinematics.hpp"
 
 namespace softgauss {
@@ -108,7 +109,7 @@ class SupportedMass {
   template <class F>
   double mostOf(const Supported& supported, F&& size) const;
   int root(int tree);
-  double massOf(int tree) const { return tree < 0 ? 0.0 : self_[tree].mass; }
+  double massOf(int tree) const { return tree < 0 ? 0.0 : self_[idx(tree)].mass; }
   void weigh(const Model& model, const Kinematics& kinematics, const ContactSet& contacts,
              const InverseWeights& weights);
   void findLayers();

@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "softgauss/engine/core/index.hpp"
 #include "softgauss/engine/model/model.hpp"
 
 namespace softgauss {
@@ -35,15 +36,19 @@ class TreeSparsity {
   static TreeSparsity dense(int size);
 
   int size() const { return static_cast<int>(rowBegin_.size()) - 1; }
-  const Segment* begin(int row) const { return segments_.data() + rowBegin_[row]; }
-  const Segment* end(int row) const { return segments_.data() + rowBegin_[row + 1]; }
+  const Segment* begin(int row) const { return segments_.data() + rowBegin_[idx(row)]; }
+  const Segment* end(int row) const { return segments_.data() + rowBegin_[idx(row + 1)]; }
   /// Rows below `column` that have it in their pattern (in a tree its descendants), as ranges of
   /// rows that begin at the same column.
-  const Segment* columnBegin(int column) const { return columns_.data() + columnBegin_[column]; }
-  const Segment* columnEnd(int column) const { return columns_.data() + columnBegin_[column + 1]; }
+  const Segment* columnBegin(int column) const {
+    return columns_.data() + columnBegin_[idx(column)];
+  }
+  const Segment* columnEnd(int column) const {
+    return columns_.data() + columnBegin_[idx(column + 1)];
+  }
   int first(int row) const { return begin(row)->begin; }
   /// Position of entry (row, 0) in the value array; entries exist for columns in the segments.
-  std::ptrdiff_t offset(int row) const { return offset_[row]; }
+  std::ptrdiff_t offset(int row) const { return offset_[idx(row)]; }
   std::size_t storage() const { return storage_; }
 
   /// This pattern plus all products of the given dof sets, closed under elimination. `couplings`
@@ -110,7 +115,7 @@ class TreeFactor {
   void solveTransposed(VectorX& x) const;
   /// x ← L⁻¹ x, the last half.
   void solveLower(VectorX& x) const;
-  double inversePivot(int k) const { return inversePivot_[k]; }
+  double inversePivot(int k) const { return inversePivot_[idx(k)]; }
   /// Row k of L, entries left of the diagonal, on the sparsity of A.
   const double* lowerRow(int k) const { return LD_.row(k); }
   const TreeSparsity& sparsity() const { return LD_.sparsity(); }

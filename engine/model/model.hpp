@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "softgauss/engine/core/check.hpp"
+#include "softgauss/engine/core/index.hpp"
 #include "softgauss/engine/core/spatial.hpp"
 #include "softgauss/engine/model/effects.hpp"
 #include "softgauss/engine/model/equality.hpp"
@@ -223,14 +224,15 @@ struct Model {
 
   int bodyCount() const { return static_cast<int>(bodies.size()); }
   /// The last dof that moves a body, −1 for the world.
-  int lastDof(int body) const { return bodies[body].v + bodies[body].dofs - 1; }
+  int lastDof(int body) const { return bodies[idx(body)].v + bodies[idx(body)].dofs - 1; }
   /// A body that floats and carries no other.
   bool isFree(int body) const {
-    return bodies[body].joint == JointKind::floating && bodies[body].subtreeEnd == body + 1;
+    return bodies[idx(body)].joint == JointKind::floating &&
+           bodies[idx(body)].subtreeEnd == body + 1;
   }
   /// Whether a tree, −1 for the world, stands on no base: its first joint lets it go everywhere.
   bool floats(int tree) const {
-    return tree >= 0 && bodies[trees[tree].rootBody].joint == JointKind::floating;
+    return tree >= 0 && bodies[idx(trees[idx(tree)].rootBody)].joint == JointKind::floating;
   }
   double totalMass() const;                      ///< of all moving bodies [kg]
   int findFrame(const std::string& name) const;  ///< index or −1

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "softgauss/engine/core/index.hpp"
 #include "softgauss/gdd/goal.hpp"
 
 namespace softgauss::gdd {
@@ -18,8 +19,8 @@ struct ContactSelection {
   /// 1 where the contact's force on its body B is meant, −1 where that on body A is, else 0.
   double sign(const Contact& c) const { return sign(c.geometryA, c.geometryB); }
   double sign(int geometryA, int geometryB) const {
-    if (on[geometryB] && by[geometryA]) return 1.0;
-    return on[geometryA] && by[geometryB] ? -1.0 : 0.0;
+    if (on[idx(geometryB)] && by[idx(geometryA)]) return 1.0;
+    return on[idx(geometryA)] && by[idx(geometryB)] ? -1.0 : 0.0;
   }
 
   /// Calls f(contacts, i, contact, sign) for every contact meant: contacts of either cone, place in
