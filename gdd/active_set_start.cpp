@@ -16,7 +16,7 @@ double ActiveSet::moveTo(const Model& model, const GoalCost& cost, const VectorX
   u_ = u_.cwiseMax(lower_).cwiseMin(upper_);
   cell_.force(u_, force_);
   setAppliedForce(force_, data.forces);
-  if (minimizeGauss(model, guess, data) == SolveStatus::notFinite) {
+  if (isRefused(minimizeGauss(model, guess, data))) {
     badDof_ = data.stats.badDof;
     return kInfinity;
   }

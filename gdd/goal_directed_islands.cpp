@@ -125,7 +125,7 @@ class GoalDirectedIslands::Control final : public IslandControl {
     GoalDirectedController& all = owner_.controller_;
     all.report.add(part_->report);
     all.solveTime += part_->solveTime;
-    if (status == SolveStatus::notFinite) return status;
+    if (isRefused(status)) return status;
     island_.scatter(owner_.model_, part_->control, all.control);
     for (std::size_t k = 0; k < actuators_.size(); ++k)
       all.commands[actuators_[k]] = part_->commands[static_cast<Eigen::Index>(k)];

@@ -46,6 +46,10 @@ const VectorX* GoalDirectedController::solve(Solver& used, const Model& model, c
   earlier_.addCounts(solved);
   solveTime += std::chrono::duration<double>(Clock::now() - start).count();
   if (isRefused(report.status)) {
+    if (report.status == GddStatus::badLimits) {
+      data.stats.refuse(model, limits.badInput(model.nv));
+      return nullptr;
+    }
     data.stats.status = SolveStatus::notFinite;
     data.stats.badDof = used.badDof();
     return nullptr;
@@ -73,6 +77,7 @@ void GoalDirectedController::keep(WarmStart& warmstart) noexcept {
 
 SolveStatus GoalDirectedController::step(const Model& model, const Input& input, State& state,
                                          Data& data, ContactSource* contacts, bool posed) noexcept {
+  if (data.stats.refuse(model, findBadInput(model, input, state))) return data.stats.status;
   held_ = input;
   // Where there is nothing to choose, nobody has to know what friction answers.
   held_.softFriction = input.softFriction || limits.open();

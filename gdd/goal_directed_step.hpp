@@ -54,9 +54,9 @@ class GoalDirectedController final : public StepControl {
   GddReport report;  ///< of the last step; of a step in parts the worst of them, counts are sums
   double solveTime = 0.0;  ///< wall time of the last step's GDD solves [s]
 
-  /// One step. `input` acts besides the control (disturbances). On SolveStatus::notFinite, also
-  /// where the box is none (GddStatus::badLimits), the state is left as it was. `posed` as of
-  /// softgauss::step().
+  /// One step. `input` acts besides the control (disturbances). Where isRefused() the
+  /// state is left as it was; limits that are none (GddStatus::badLimits) are badInput. `posed` as
+  /// of softgauss::step().
   SolveStatus step(const Model& model, const Input& input, State& state, Data& data,
                    ContactSource* contacts, bool posed = false) noexcept;
 

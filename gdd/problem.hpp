@@ -14,6 +14,7 @@
 #include <memory>
 
 #include "softgauss/engine/model/model.hpp"
+#include "softgauss/engine/step/bad_input.hpp"
 #include "softgauss/gdd/transmission.hpp"
 
 namespace softgauss::gdd {
@@ -45,6 +46,15 @@ struct ControlLimits {
     for (int i = 0; i < dofs; ++i)
       if (!(lower[i] <= upper[i] && lower[i] < kInfinity && upper[i] > -kInfinity)) return i;
     return -1;
+  }
+  /// firstBad() as a step tells it.
+  BadInput badInput(int dofs) const {
+    for (const VectorX* x : {&lower, &upper})
+      if (x->size() != dofs)
+        return {BadInputKind::controlLimitsSize, -1, static_cast<double>(x->size()),
+                static_cast<double>(dofs)};
+    const int bad = firstBad(dofs);
+    return bad < 0 ? BadInput{} : BadInput{BadInputKind::controlLimits, bad, 0.0, 0.0};
   }
   /// Whether the box leaves anything to choose.
   bool open() const { return (lower.array() != 0.0).any() || (upper.array() != 0.0).any(); }

@@ -223,7 +223,7 @@ class Comparison {
     Duel::time(step_.mujoco, [&] { mujoco_.step(); });
     theirWarmStart_ = mujoco_.acceleration();
     Duel::time(step_.ours, [&] {
-      if (step(model_, input_, state, data_, &contacts_) == SolveStatus::notFinite)
+      if (isRefused(step(model_, input_, state, data_, &contacts_)))
         throw app::NotFinite(fmt::format(
             "our simulation became non-finite at t = {:.6g} s; try a smaller --timestep",
             state.time));

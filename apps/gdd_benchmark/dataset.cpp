@@ -119,7 +119,7 @@ Dataset recordRun(const Robot& robot, SolverUnderTest& recorder, int records, do
   while (dataset.records.size() < wanted && !interrupted()) {
     progress.show(static_cast<long>(dataset.records.size()), records);
     recording.begin();
-    if (step(model, {}, state, data, robot.contacts.get(), &recording) == SolveStatus::notFinite)
+    if (isRefused(step(model, {}, state, data, robot.contacts.get(), &recording)))
       throw std::runtime_error(
           fmt::format("{}, goal weight {:g} kg: the recording became non-finite at t = {:.6g} s",
                       robot.name, dataset.weight, state.time));

@@ -143,7 +143,7 @@ class Replayer {
   }
 
   void checkFinite(SolveStatus status, const Record& record) const {
-    if (status == SolveStatus::notFinite)
+    if (isRefused(status))
       throw std::runtime_error(fmt::format("{}: the replay became non-finite at t = {:.6g} s",
                                            robot_.name, record.state.time));
   }

@@ -14,19 +14,16 @@ namespace softgauss::python {
 /// Throws StepError where these are no configuration: NaN, ∞, or a quaternion of length 0, as the
 /// step refuses them.
 inline void expectConfiguration(const Model& model, const VectorX& q) {
-  const auto refuse = [&](int body, const char* found) {
-    throw StepError("q: found " + std::string(found) + " at joint '" +
-                    model.jointNames[static_cast<std::size_t>(body)] +
-                    "', expected a configuration");
-  };
   for (int b = 1; b < model.bodyCount(); ++b) {
     const Body& body = model.bodies[static_cast<std::size_t>(b)];
     const bool floats = body.joint == JointKind::floating;
     const int numbers = floats ? 7 : body.dofs;
-    if (!q.segment(body.q, numbers).allFinite()) refuse(b, "NaN or ∞");
-    if (floats && !(q.segment<4>(body.q + 3).squaredNorm() > 0.0))
-      refuse(b, "the quaternion (0, 0, 0, 0)");
+    if (!q.segment(body.q, numbers).allFinite())
+      throw StepError("q: found NaN or ∞ at joint '" +
+                      model.jointNames[static_cast<std::size_t>(b)] +
+                      "', expected a configuration");
   }
+  if (const BadInput bad = findBadQuaternion(model, q)) throw StepError(describe(model, bad));
 }
 
 /// The simulation is at q (nq) and v (nv), where they are given, as long as this lives, without

@@ -30,7 +30,7 @@ IslandRun::IslandRun(const Model& model, const State& initial, const Sleep& slee
 void IslandRun::take(const Input& input, State& state, Data& data) {
   data.stats = islands_.stats();
   collectContacts(data.contacts.contacts);
-  if (data.stats.status == SolveStatus::notFinite) return;
+  if (isRefused(data.stats.status)) return;
   data.forward.a = data.acceleration = islands_.acceleration();
   if (controls_)
     data.forces.tau = controller_.control;

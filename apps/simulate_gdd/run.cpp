@@ -142,8 +142,9 @@ class Runner {
     if (isWhole_ && checkpoints_->asked() && outputErrors_.none()) writeCheckpoint();
     std::string reason;
     if (code == kCannotContinue) {
-      reason = failureText(model_, state_, data_) +
-               ". Try a smaller --timestep, more joint damping, or goals that ask for less";
+      reason = failureText(model_, state_, data_);
+      if (data_.stats.status != SolveStatus::badInput)
+        reason += ". Try a smaller --timestep, more joint damping, or goals that ask for less";
       tell("simulate_gdd: " + reason);
       summary_.outcome = "non-finite";
     } else if (code == kInterrupted) {

@@ -64,7 +64,7 @@ std::map<std::string, io::EffectCost> tryEffects(const Scene& scene) {
       cost.rows = std::max(cost.rows, use[static_cast<std::size_t>(effect)].rows);
       cost.bytes = use[static_cast<std::size_t>(effect)].bytes;
     }
-    if (all.data.stats.status == SolveStatus::notFinite) break;
+    if (isRefused(all.data.stats.status)) break;
     state = all.after;
   }
   for (auto& [effect, list] : differences)

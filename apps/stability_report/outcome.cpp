@@ -56,7 +56,7 @@ Outcome runOurs(const std::filesystem::path& scenes, const HardCase& hard, doubl
   Data data(stage.model);
   const Input input;
   return runCase(stage, hard, [&] {
-    return step(stage.model, input, stage.state, data, &contacts) != SolveStatus::notFinite;
+    return !isRefused(step(stage.model, input, stage.state, data, &contacts));
   });
 }
 

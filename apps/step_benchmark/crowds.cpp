@@ -38,8 +38,7 @@ struct Crowd {
         controller(model),
         islands(model, &contacts, Sleep{.enabled = sleeps}, follow(goals)) {}
   void step() {
-    if (islands.step({}) == SolveStatus::notFinite)
-      throw std::runtime_error("the scene became non-finite");
+    if (isRefused(islands.step({}))) throw std::runtime_error("the scene became non-finite");
   }
   void steps(int count) {
     for (int i = 0; i < count; ++i) step();

@@ -31,7 +31,7 @@ struct Scene {
                                : controller
                                    ? controller->step(model, {}, state, *data, contacts.get())
                                    : softgauss::step(model, {}, state, *data, contacts.get());
-    if (status == SolveStatus::notFinite) throw std::runtime_error("the scene became non-finite");
+    if (isRefused(status)) throw std::runtime_error("the scene became non-finite");
   }
   const State& now() const { return islands ? islands->state() : state; }
   void restore(const State& saved) {

@@ -237,14 +237,14 @@ SolveStatus Islands::take(Island& island, const Input& input) {
   if (island.controlled) {
     const SolveStatus status =
         island.control->step(part, state, island.data, island.contacts.get());
-    if (status == SolveStatus::notFinite) return status;
+    if (isRefused(status)) return status;
     computeKinematics(model, state, island.data.kinematics);
     return status;
   }
   if (island.control) island.control->release();
   const SolveStatus status =
       softgauss::step(model, part, state, island.data, island.contacts.get(), nullptr, true);
-  if (status == SolveStatus::notFinite) return status;
+  if (isRefused(status)) return status;
   if (controls_) {  // a control that comes to act starts from there
     state.warmstart.gddA = state.warmstart.a;
     state.warmstart.multipliers.setZero();
@@ -258,12 +258,7 @@ SolveStatus Islands::take(Island& island, const Input& input) {
 SolveStatus Islands::step(const Input& input) noexcept {
   stats_ = {};
   islandStats_ = {};
-  const bool fits =
-      (input.tau.size() == 0 || input.tau.size() == model_.nv) &&
-      std::all_of(input.wrenches.begin(), input.wrenches.end(), [&](const ExternalWrench& w) {
-        return w.body >= 0 && w.body < model_.bodyCount();
-      });
-  if (!fits) return stats_.status = SolveStatus::notFinite;
+  if (stats_.refuse(model_, findBadInput(model_, input, state_))) return stats_.status;
 
   wakeWhatIsPushed(input);
   wakeWhatIsControlled();
@@ -272,7 +267,7 @@ SolveStatus Islands::step(const Input& input) noexcept {
   part();
   join();
   for (Island* island : awake_)
-    if (take(*island, input) == SolveStatus::notFinite) return fail(*island);
+    if (isRefused(take(*island, input))) return fail(*island);
 
   // All went well: what the islands have found becomes the state.
   ++clock_;
@@ -305,7 +300,7 @@ SolveStatus Islands::fail(const Island& island) {
     other->part.gather(model_, state_, other->state);
     other->posed = false;
   }
-  return stats_.status = SolveStatus::notFinite;
+  return stats_.status;
 }
 
 /// Whether the island is slow, and goes on as it was when it began to rest. Speeds below a

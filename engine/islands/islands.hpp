@@ -89,8 +89,8 @@ class Islands {
   void wake(int body);
   bool asleep(int body) const;
 
-  /// One step of all islands that are awake. On SolveStatus::notFinite the whole state is left as
-  /// it was; stats().badDof tells the dof.
+  /// One step of all islands that are awake. Where isRefused() the whole state is left as it was;
+  /// stats() tells the dof, or what does not fit the model.
   SolveStatus step(const Input& input) noexcept;
 
   /// Sums over the awake islands; status and residual are the worst.

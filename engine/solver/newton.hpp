@@ -19,16 +19,18 @@
 namespace softgauss {
 
 enum class SolveStatus {
-  converged,          ///< the gradient is within tolerance
-  stalled,            ///< no further decrease was possible; residual says how far off
-  iterationLimit,     ///< residual says how far off
-  notFinite,          ///< the input or the result has a NaN or an infinity
-  integratorDiverged  ///< of a step: the iteration of its integrator has not closed
+  converged,           ///< the gradient is within tolerance
+  stalled,             ///< no further decrease was possible; residual says how far off
+  iterationLimit,      ///< residual says how far off
+  notFinite,           ///< the input or the result has a NaN or an infinity
+  integratorDiverged,  ///< of a step: the iteration of its integrator has not closed
+  badInput  ///< of a step: its input does not fit the model; StepStats::badInput says which
 };
 
 /// A step with this status leaves the state as it was.
 inline bool isRefused(SolveStatus status) {
-  return status == SolveStatus::notFinite || status == SolveStatus::integratorDiverged;
+  return status == SolveStatus::notFinite || status == SolveStatus::integratorDiverged ||
+         status == SolveStatus::badInput;
 }
 
 inline const char* statusName(SolveStatus status) {
@@ -43,6 +45,8 @@ inline const char* statusName(SolveStatus status) {
       return "not finite";
     case SolveStatus::integratorDiverged:
       return "integrator diverged";
+    case SolveStatus::badInput:
+      return "bad input";
   }
   return "unknown";
 }

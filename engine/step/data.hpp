@@ -14,6 +14,7 @@
 #include "softgauss/engine/constraints/no_slip_friction.hpp"
 #include "softgauss/engine/forces/forces.hpp"
 #include "softgauss/engine/solver/newton.hpp"
+#include "softgauss/engine/step/bad_input.hpp"
 
 namespace softgauss {
 
@@ -72,6 +73,7 @@ struct StepStats {
   int noSlipFallbacks = 0;        ///< Options::noSlip: the second solve failed, the first stands
   int possibleTunnelling = 0;  ///< parts in which shapes may have passed through each other unseen
   int badDof = -1;             ///< with SolveStatus::notFinite: the first dof that is not finite
+  BadInput badInput;           ///< with SolveStatus::badInput: what does not fit the model
   StepTimes times;
 
   /// Counts another solve within the step, and how it ended; false where it has no result.
@@ -83,6 +85,8 @@ struct StepStats {
     if (solve.status != SolveStatus::converged) status = solve.status;
     return true;
   }
+  /// The step's input does not fit the model: nothing was done. False where it fits.
+  bool refuse(const Model& model, const BadInput& bad);
   /// Adds those of another island, or of the next part of a step: counts and times are sums, the
   /// rest is the worst.
   void add(const StepStats& other);

@@ -65,6 +65,11 @@ SolveStatus minimizeGauss(const Model& model, const VectorX* guess, Data& data) 
   s.cellFactored = false;
   data.stats.invalidWarmStarts += guess && !guess->allFinite();
   if (model.nv == 0) return SolveStatus::converged;
+  if (guess && guess->size() != model.nv) {
+    data.stats.refuse(model, {BadInputKind::warmStart, -1, static_cast<double>(guess->size()),
+                              static_cast<double>(model.nv)});
+    return s.report.status = data.stats.status;
+  }
   const auto notFinite = [&] {
     data.stats.badDof = firstNotFinite(data.forces.net);
     s.report.status = SolveStatus::notFinite;
@@ -114,7 +119,7 @@ SolveStatus minimizeGauss(const Model& model, const VectorX* guess, Data& data) 
 
 SolveStatus forwardDynamics(const Model& model, const VectorX* guess, Data& data) noexcept {
   const SolveStatus status = minimizeGauss(model, guess, data);
-  if (!model.options.noSlip || status == SolveStatus::notFinite) return status;
+  if (!model.options.noSlip || isRefused(status)) return status;
   removeSlip(model, data);
   if (data.forward.report.status == SolveStatus::notFinite)
     data.stats.badDof = firstNotFinite(data.forward.a);

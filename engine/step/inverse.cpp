@@ -3,7 +3,13 @@
 
 namespace softgauss {
 
-void inverseDynamics(const Model&, const VectorX& a, Data& data, VectorX& tau) {
+SolveStatus inverseDynamics(const Model& model, const VectorX& a, Data& data, VectorX& tau) {
+  if (a.size() != model.nv) {
+    data.stats.refuse(
+        model, {BadInputKind::a, -1, static_cast<double>(a.size()), static_cast<double>(model.nv)});
+    return data.stats.status;
+  }
+  if (!a.allFinite()) return data.stats.status = SolveStatus::notFinite;
   bool changed = false;
   data.constraints.setResidual(a);
   data.constraints.evaluate(changed);
@@ -13,6 +19,7 @@ void inverseDynamics(const Model&, const VectorX& a, Data& data, VectorX& tau) {
   tau = -Ma - data.forces.c;
   data.constraints.addForce(tau);
   tau = -tau;
+  return SolveStatus::converged;
 }
 
 void inverseDynamicsJacobian(Data& data, TreeMatrix& P) {

@@ -11,8 +11,9 @@
 namespace softgauss {
 
 /// tau ← g(a) at the state of the stages in `data` (kinematics … constraints). Leaves the rows
-/// evaluated at a.
-void inverseDynamics(const Model& model, const VectorX& a, Data& data, VectorX& tau);
+/// evaluated at a. Returns badInput where a has another size than (nv), data.stats.badInput tells
+/// it, and notFinite where a is not finite; tau is then as it was.
+SolveStatus inverseDynamics(const Model& model, const VectorX& a, Data& data, VectorX& tau);
 
 /// P ← curvature of the cell that the rows were last evaluated in.
 void inverseDynamicsJacobian(Data& data, TreeMatrix& P);

@@ -29,13 +29,10 @@ double lap(Clock::time_point& last) {
   return seconds;
 }
 
-bool finite(const Model& model, const Input& input, const State& state) {
-  if (state.q.size() != model.nq || state.v.size() != model.nv) return false;
-  if (input.tau.size() != 0 && input.tau.size() != model.nv) return false;
+bool finite(const Input& input, const State& state) {
   if (!state.q.allFinite() || !state.v.allFinite() || !input.tau.allFinite()) return false;
   return std::all_of(input.wrenches.begin(), input.wrenches.end(), [&](const ExternalWrench& w) {
-    return w.body >= 0 && w.body < model.bodyCount() && w.F_Bo_W.force.allFinite() &&
-           w.F_Bo_W.moment.allFinite();
+    return w.F_Bo_W.force.allFinite() && w.F_Bo_W.moment.allFinite();
   });
 }
 
@@ -44,8 +41,8 @@ int firstBadDof(const Model& model, const Input& input, const State& state) {
   for (const Body& body : model.bodies) {
     const int coordinates = body.dofs == 6 ? 7 : body.dofs;
     const bool bad =
-        (state.q.size() == model.nq && !state.q.segment(body.q, coordinates).allFinite()) ||
-        (state.v.size() == model.nv && !state.v.segment(body.v, body.dofs).allFinite()) ||
+        !state.q.segment(body.q, coordinates).allFinite() ||
+        !state.v.segment(body.v, body.dofs).allFinite() ||
         (input.tau.size() == model.nv && !input.tau.segment(body.v, body.dofs).allFinite());
     if (bad) return body.v;
   }
@@ -94,6 +91,16 @@ Data::Data(const Model& model, Evaluation)
   constraints.assemble({model, State(model), kinematics, contacts, weights, inertia.sparsity});
 }
 
+bool StepStats::refuse(const Model& model, const BadInput& bad) {
+  if (!bad) return false;
+  *this = {};
+  status = SolveStatus::badInput;
+  badInput = bad;
+  if (bad.kind == BadInputKind::quaternion) badDof = model.bodies[bad.index].v;
+  if (bad.kind == BadInputKind::controlLimits) badDof = bad.index;
+  return true;
+}
+
 void StepStats::add(const StepStats& other) {
   status = std::max(status, other.status);
   residual = std::max(residual, other.residual);
@@ -111,6 +118,7 @@ void StepStats::add(const StepStats& other) {
     this->*count += other.*count;
   acted.add(other.acted);
   badDof = std::max(badDof, other.badDof);
+  if (other.badInput) badInput = other.badInput;
   for (double StepTimes::*time : {&StepTimes::kinematics, &StepTimes::collision, &StepTimes::rows,
                                   &StepTimes::solve, &StepTimes::integrate})
     times.*time += other.times.*time;
@@ -161,7 +169,7 @@ SolveStatus computeStages(const Model& model, const Input& input, const State& s
                           bool posed = false) noexcept {
   SOFTGAUSS_ASSERT(data.plan.fits(model));
   data.stats = {};
-  if (!finite(model, input, state)) {
+  if (!finite(input, state)) {
     data.stats.status = SolveStatus::notFinite;
     data.stats.badDof = firstBadDof(model, input, state);
     return data.stats.status;
@@ -346,6 +354,7 @@ Tried stepInParts(const Model& model, const Given& given, int parts, State& stat
 
 SolveStatus computeStages(const Model& model, const Input& input, const State& state, Data& data,
                           ContactSource* contacts) noexcept {
+  if (data.stats.refuse(model, findBadInput(model, input, state))) return data.stats.status;
   Clock::time_point clock;
   return computeStages(model, input, state, data, contacts, clock);
 }
@@ -360,6 +369,7 @@ void poseForStep(const Model& model, const State& state, Data& data) {
 
 SolveStatus step(const Model& model, const Input& input, State& state, Data& data,
                  ContactSource* contacts, StepControl* control, bool posed) noexcept {
+  if (data.stats.refuse(model, findBadInput(model, input, state))) return data.stats.status;
   constexpr int kAny = SubstepSelection::kMaxDivisions;
   const Given given{input, contacts, control};
   if (!data.plan.drifts) {

@@ -10,7 +10,7 @@ namespace softgauss {
 
 /// Everything that a solve needs at (q, v): kinematics, M, smooth forces, contacts, rows; in the
 /// leapfrog with the velocity of turning that State::a predicts. Returns notFinite when the state
-/// or the input is not finite, or does not fit the model.
+/// or the input is not finite, badInput when it does not fit the model.
 SolveStatus computeStages(const Model& model, const Input& input, const State& state, Data& data,
                           ContactSource* contacts) noexcept;
 
@@ -18,9 +18,9 @@ SolveStatus computeStages(const Model& model, const Input& input, const State& s
 /// dynamics the acceleration (13); the integrator moves the state on by options.timestep (23).
 /// `contacts` may be null: nothing collides. `input` acts besides the control. `posed`:
 /// data.kinematics is what poseForStep() has made of this state.
-/// On SolveStatus::notFinite and integratorDiverged (isRefused()) the state is left as it was,
-/// data.stats tells the dof. Other statuses advance the state; data.stats.residual tells how
-/// accurate the solve was.
+/// On SolveStatus::notFinite, integratorDiverged and badInput (isRefused()) the state is left as it
+/// was; data.stats tells the dof, or what does not fit the model. Other statuses advance the state;
+/// data.stats.residual tells how accurate the solve was.
 SolveStatus step(const Model& model, const Input& input, State& state, Data& data,
                  ContactSource* contacts, StepControl* control = nullptr,
                  bool posed = false) noexcept;

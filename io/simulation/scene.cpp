@@ -200,6 +200,9 @@ std::unique_ptr<Scene> copyOf(const Scene& scene) {
 }
 
 std::string failureText(const Model& model, const State& state, const Data& data) {
+  if (data.stats.status == SolveStatus::badInput)
+    return fmt::format("the step at t = {:.6g} s was refused: {}", state.time,
+                       describe(model, data.stats.badInput));
   std::string where = "the state";
   if (data.stats.badDof >= 0)
     where = fmt::format("joint '{}'", model.jointNames[model.dofs[data.stats.badDof].body]);

@@ -88,7 +88,8 @@ void addGoals(const std::filesystem::path& file, const Scene& scene,
 std::vector<std::unique_ptr<gdd::Goal>> regularisers(const VectorX& q,
                                                      std::optional<double> postureWeight);
 
-/// What became non-finite, when, and what touches deepest.
+/// Why the last step was refused: what does not fit the model, or what became non-finite, when, and
+/// what touches deepest.
 std::string failureText(const Model& model, const State& state, const Data& data);
 
 }  // namespace softgauss

@@ -60,10 +60,10 @@ TEST(GddState, KnotsAndSearchesAreKeptFromStepToStep) {
 }
 
 /// The step refuses, and leaves the state as it was.
-void expectRefused(RobotScene& r) {
+void expectRefused(RobotScene& r, SolveStatus status = SolveStatus::notFinite) {
   const State before = r.state;
-  EXPECT_EQ(r.step(), SolveStatus::notFinite);
-  EXPECT_EQ(r.data.stats.status, SolveStatus::notFinite);
+  EXPECT_EQ(r.step(), status);
+  EXPECT_EQ(r.data.stats.status, status);
   EXPECT_EQ(hash(r.state), hash(before));
 }
 
@@ -131,14 +131,14 @@ TEST(GddState, BoxThatIsNoneIsRefusedAndTheStateKept) {
         for (const int i : {2, 9}) {  // a root force, a joint
           r->controller.limits.lower[i] = lower;
           r->controller.limits.upper[i] = upper;
-          expectRefused(*r);
+          expectRefused(*r, SolveStatus::badInput);
           EXPECT_EQ(r->controller.report.status, gdd::GddStatus::badLimits);
           EXPECT_EQ(r->data.stats.badDof, i);
           r->controller.limits = good;
         }
       }
       r->controller.limits.upper.conservativeResize(3);
-      expectRefused(*r);
+      expectRefused(*r, SolveStatus::badInput);
       EXPECT_EQ(r->controller.report.status, gdd::GddStatus::badLimits);
       r->controller.limits = good;
       EXPECT_NE(r->step(), SolveStatus::notFinite) << "it goes on after a refusal";

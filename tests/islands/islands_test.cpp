@@ -139,7 +139,13 @@ TEST(Islands, LeaveTheStateWhereTheInputIsNotFinite) {
   EXPECT_EQ(crowd.islands.stats().badDof, 6);  // the first of the second cube
   EXPECT_EQ(hash(crowd.islands.state()), before);
   bad.tau.resize(3);
-  EXPECT_EQ(crowd.islands.step(bad), SolveStatus::notFinite);
+  EXPECT_EQ(crowd.islands.step(bad), SolveStatus::badInput);
+  EXPECT_EQ(crowd.islands.stats().badInput.kind, BadInputKind::tau);
+  bad.tau.resize(0);
+  bad.wrenches = {{crowd.model.bodyCount(), {Vector3::Zero(), Vector3::Zero()}}};
+  EXPECT_EQ(crowd.islands.step(bad), SolveStatus::badInput);
+  EXPECT_EQ(crowd.islands.stats().badInput.kind, BadInputKind::wrench);
+  EXPECT_EQ(hash(crowd.islands.state()), before);
 
   Crowd same(builder.build());
   ASSERT_TRUE(same.steps(20) && crowd.steps(10));

@@ -46,6 +46,31 @@ TEST(Simulation, IsTheEngineUnderTheSameGoals) {
   EXPECT_EQ(hash(sim.state()), hash(state));
 }
 
+// failure() tells what does not fit, under goals and without.
+TEST(Simulation, TellsWhatOfItsInputIsBad) {
+  for (const bool controlled : {false, true}) {
+    Simulation sim = Simulation::load(robot("humanoid"));
+    if (controlled) sim.goals.reach("right_hand", {0.4, -0.2, 1.1});
+    const State good = sim.state();
+    sim.state().q.segment<4>(3).setZero();
+    EXPECT_EQ(sim.step(), SolveStatus::badInput);
+    EXPECT_EQ(
+        sim.failure(),
+        "the step at t = 0 s was refused: State::q: found the quaternion (0, 0, 0, 0) at joint "
+        "'pelvis', expected length 1");
+    EXPECT_EQ(sim.solve().status, SolveStatus::badInput);
+    sim.state() = good;
+    sim.input().tau = VectorX::Zero(2);
+    EXPECT_EQ(sim.step(), SolveStatus::badInput);
+    EXPECT_EQ(sim.failure(),
+              "the step at t = 0 s was refused: Input::tau: found 2 numbers, expected " +
+                  std::to_string(sim.model().nv));
+    EXPECT_EQ(sim.solve().status, SolveStatus::badInput);
+    sim.input().tau.resize(0);
+    EXPECT_FALSE(isRefused(sim.step()));
+  }
+}
+
 TEST(Simulation, WithoutGoalsItIsLeftToItself) {
   Simulation sim = Simulation::load(robot("arm"));
   EXPECT_EQ(sim.model().options.integrator, Integrator::leapfrog);

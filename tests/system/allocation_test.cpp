@@ -201,6 +201,25 @@ TEST(Allocation, NoneInTheGoalDirectedStepWithEveryQuadraticGoal) {
   EXPECT_EQ(guard.count(), 0);
 }
 
+// Nor in one that is refused for vectors of another size.
+TEST(Allocation, NoneInAStepThatIsRefused) {
+  SKIP_WITHOUT_HOOK();
+  RobotScene r("humanoid");
+  addEveryQuadraticGoal(r);
+  ASSERT_FALSE(isRefused(r.step()));
+  State small = r.state, none = r.state;
+  small.q.conservativeResize(3);
+  none.q.segment<4>(3).setZero();
+  Input bad;
+  bad.tau.setZero(r.model.nv + 20);
+  const AllocationGuard guard;
+  for (State* state : {&small, &none, &r.state}) {
+    EXPECT_EQ(r.controller.step(r.model, bad, *state, r.data, &r.contacts), SolveStatus::badInput);
+    EXPECT_EQ(step(r.model, bad, *state, r.data, &r.contacts), SolveStatus::badInput);
+  }
+  EXPECT_EQ(guard.count(), 0);
+}
+
 // Gears, differentials and a tendon in the place of the joints' own motors, and another price.
 TEST(Allocation, NoneInTheGoalDirectedStepWithCoupledActuators) {
   SKIP_WITHOUT_HOOK();

@@ -85,8 +85,7 @@ class Part {
     s_.state.q = s_.from.q;
     integratePosition(model_, s_.state.v, 0.5 * h_, s_.state.q);
     if (!s_.state.q.allFinite() || !s_.state.v.allFinite()) return false;
-    if (computeStages(model_, s_.input, s_.state, s_.data, contacts_) == SolveStatus::notFinite)
-      return false;
+    if (isRefused(computeStages(model_, s_.input, s_.state, s_.data, contacts_))) return false;
     forwardDynamics(model_, &s_.acceleration[0], s_.data);
     if (!countEvaluation(s_.data, stats_)) return false;
     s_.acceleration[0] = s_.data.forward.a;

@@ -201,6 +201,7 @@ TEST(SolveStatus, HasANameForEach) {
   EXPECT_STREQ(statusName(SolveStatus::stalled), "stalled");
   EXPECT_STREQ(statusName(SolveStatus::iterationLimit), "iteration limit");
   EXPECT_STREQ(statusName(SolveStatus::notFinite), "not finite");
+  EXPECT_STREQ(statusName(SolveStatus::badInput), "bad input");
 }
 
 }  // namespace

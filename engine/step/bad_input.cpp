@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "softgauss/engine/step/bad_input.hpp"
+
+#include <cstdio>
+
+namespace softgauss {
+namespace {
+
+BadInput checkSize(BadInputKind kind, const VectorX& x, int size) {
+  if (x.size() == size) return {};
+  return {kind, -1, static_cast<double>(x.size()), static_cast<double>(size)};
+}
+
+std::string shortText(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", x);
+  return text;
+}
+
+const char* nameOf(BadInputKind kind) {
+  switch (kind) {
+    case BadInputKind::none:
+      break;
+    case BadInputKind::q:
+      return "State::q";
+    case BadInputKind::v:
+      return "State::v";
+    case BadInputKind::a:
+      return "the acceleration a";
+    case BadInputKind::warmStart:
+      return "the warm start";
+    case BadInputKind::tau:
+      return "Input::tau";
+    case BadInputKind::wrench:
+      return "Input::wrenches";
+    case BadInputKind::quaternion:
+      return "State::q";
+    case BadInputKind::controlLimitsSize:
+    case BadInputKind::controlLimits:
+      return "ControlLimits";
+  }
+  return "nothing";
+}
+
+}  // namespace
+
+BadInput findBadInput(const Model& model, const Input& input) noexcept {
+  if (input.tau.size() != 0)
+    if (const BadInput bad = checkSize(BadInputKind::tau, input.tau, model.nv)) return bad;
+  int index = 0;
+  for (const ExternalWrench& w : input.wrenches) {
+    if (w.body < 0 || w.body >= model.bodyCount())
+      return {BadInputKind::wrench, index, static_cast<double>(w.body),
+              static_cast<double>(model.bodyCount())};
+    ++index;
+  }
+  return {};
+}
+
+BadInput findBadInput(const Model& model, const Input& input, const State& state) noexcept {
+  if (const BadInput bad = checkSize(BadInputKind::q, state.q, model.nq)) return bad;
+  if (const BadInput bad = checkSize(BadInputKind::v, state.v, model.nv)) return bad;
+  if (state.hasAcceleration)
+    if (const BadInput bad = checkSize(BadInputKind::a, state.a, model.nv)) return bad;
+  const WarmStart& warm = state.warmstart;
+  if (warm.valid)
+    if (const BadInput bad = checkSize(BadInputKind::warmStart, warm.a, model.nv)) return bad;
+  if (warm.gddValid)
+    for (const VectorX* x : {&warm.gddA, &warm.multipliers})
+      if (const BadInput bad = checkSize(BadInputKind::warmStart, *x, model.nv)) return bad;
+  if (const BadInput bad = findBadInput(model, input)) return bad;
+  return findBadQuaternion(model, state.q);
+}
+
+BadInput findBadQuaternion(const Model& model, const VectorX& q) noexcept {
+  for (int b = 1; b < model.bodyCount(); ++b) {
+    const Body& body = model.bodies[static_cast<std::size_t>(b)];
+    if (body.joint != JointKind::floating) continue;
+    const auto quaternion = q.segment<4>(body.q + 3);
+    const double length = quaternion.norm();
+    if (quaternion.allFinite() &&
+        !(length * kQuaternionFactor >= 1.0 && length <= kQuaternionFactor))
+      return {BadInputKind::quaternion, b, length, 1.0};
+  }
+  return {};
+}
+
+std::string describe(const Model& model, const BadInput& bad) {
+  const auto joint = [&](int body) {
+    return " at joint '" + model.jointNames[static_cast<std::size_t>(body)] + "'";
+  };
+  const std::string name = nameOf(bad.kind);
+  switch (bad.kind) {
+    case BadInputKind::wrench:
+      return name + "[" + std::to_string(bad.index) + "]: found body " + shortText(bad.found) +
+             ", expected 0 to " + shortText(bad.expected - 1.0);
+    case BadInputKind::quaternion:
+      return name + ": found " +
+             (bad.found == 0.0 ? "the quaternion (0, 0, 0, 0)"
+                               : "a quaternion of length " + shortText(bad.found)) +
+             joint(bad.index) + ", expected length 1";
+    case BadInputKind::controlLimits:
+      return name + ": found bounds of dof " + std::to_string(bad.index) +
+             joint(model.dofs[static_cast<std::size_t>(bad.index)].body) +
+             " that cross or are not numbers, expected lower ≤ upper";
+    default:
+      return name + ": found " + shortText(bad.found) + " numbers, expected " +
+             shortText(bad.expected);
+  }
+}
+
+}  // namespace softgauss
