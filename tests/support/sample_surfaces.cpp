@@ -139,6 +139,16 @@ MeshPointer ringSurface(double radius, double tube, int around, int across) {
   return mesh;
 }
 
+MeshPointer cylinderSurface(double radius, double halfLength, int sectors) {
+  auto mesh = emptyMesh("cylinder");
+  addGrid(*mesh, 3, sectors, [&](int i, int j) {
+    const double angle = 2 * M_PI * (j % sectors) / sectors;
+    const double s = i == 0 || i == 3 ? 0.0 : radius;
+    return Vector3(s * std::cos(angle), s * std::sin(angle), i < 2 ? halfLength : -halfLength);
+  });
+  return mesh;
+}
+
 MeshPointer washerSurface(double outer, double inner, double h) {
   auto mesh = emptyMesh("washer");
   for (const double z : {-h, h})

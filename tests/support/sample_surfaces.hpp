@@ -44,6 +44,16 @@ MeshPointer ballSurface(double radius, int rings, int sectors);
 /// A closed ring about z: a circle of `tube` swept along a circle of `radius`.
 MeshPointer ringSurface(double radius, double tube, int around, int across);
 
+/// A closed cylinder about z.
+MeshPointer cylinderSurface(double radius, double halfLength, int sectors);
+
+/// A mug about z, one closed surface with a hollow and a handle on its +x side: outer radius, wall
+/// and floor of `wall`. The middle line of the handle is half an ellipse in the plane y = 0, which
+/// reaches kMugHandleReach out of the outer wall; its section is an octagon of kMugHandleRadius.
+MeshPointer mugSurface(double radius, double halfHeight, double wall);
+inline constexpr double kMugHandleReach = 0.03;    ///< [m]
+inline constexpr double kMugHandleRadius = 0.005;  ///< [m]
+
 /// A closed square plate with a square hole in its middle: half sides across, half thickness along
 /// z.
 MeshPointer washerSurface(double outer, double inner, double halfThickness);
