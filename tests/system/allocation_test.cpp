@@ -4,9 +4,13 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "softgauss/collision/clearance.hpp"
+#include "softgauss/collision/scene_contacts.hpp"
 #include "tests/gdd/robot_scene.hpp"
 #include "tests/support/allocation_guard.hpp"
+#include "tests/support/sample_surfaces.hpp"
 #include "tests/support/scene.hpp"
 
 namespace softgauss::test {
@@ -135,6 +139,54 @@ TEST(Allocation, NoneInTheStepWithEveryEffect) {
     EXPECT_GT(s.data->constraints.weld.rowCount(), 0);
     EXPECT_EQ(allocationsOfSteadySteps(s, 20), 0) << "seed " << seed;
   }
+}
+
+/// A chair at rest on hills, a ring through which a ball lies on them, and a box, a capsule, a
+/// cylinder and a hull: every pair of a shape with triangles.
+Scene restOnHills() {
+  const auto height = [](double x, double y) { return 0.02 * std::sin(3 * x) * std::cos(2 * y); };
+  ModelBuilder builder("hills");
+  builder.geometry(geometrySpec("world", Shape::surface(gridMesh(40, 40, 0.1, 0.0, height))));
+  std::vector<BoxPart> parts = {{{0.2, 0.2, 0.02}, {0, 0, 0.2}}};
+  for (const double x : {-0.18, 0.18})
+    for (const double y : {-0.18, 0.18}) parts.push_back({{0.02, 0.02, 0.1}, {x, y, 0.1}});
+  const std::pair<Shape, Vector3> bodies[] = {
+      {Shape::surface(boxesSurface(parts)), {0, 0, 0.03}},
+      {Shape::surface(ringSurface(0.1, 0.02, 24, 12)), {0.8, 0, 0.06}},
+      {Shape::surface(ringSurface(0.1, 0.02, 24, 12)), {0.84, 0, 0.12}},
+      {Shape::sphere(0.05), {0.8, 0, 0.15}},
+      {Shape::box({0.1, 0.08, 0.05}), {-0.8, 0, 0.08}},
+      {Shape::hull(boxSurface({0.1, 0.08, 0.05})), {-0.8, 0.02, 0.2}},
+      {Shape::capsule(0.05, 0.1), {0, 0.8, 0.15}},
+      {Shape::cylinder(0.05, 0.1), {0, -0.8, 0.15}},
+  };
+  int count = 0;
+  for (const auto& [shape, p] : bodies) {
+    ModelBuilder one = freeBody(boxLink("body", 1.0, {0.1, 0.1, 0.05}));
+    one.X_WRoot.p = p;
+    one.geometry(geometrySpec("body", shape, 0.8));
+    builder.add(one, "object" + std::to_string(count++));
+  }
+  Scene s(builder.build());
+  s.contacts = std::make_shared<collision::SceneContacts>(s.model);
+  return s;
+}
+
+TEST(Allocation, NoneInTheStepOfMeshesOfTrianglesOnATerrain) {
+  SKIP_WITHOUT_HOOK();
+  Scene s = restOnHills();
+  s.steps(400);
+  // All of them touch triangles: the chair and both rings with triangles of their own.
+  std::set<int> touching;
+  bool twoRings = false;
+  for (const ContactRows& made : s.data->constraints.contact.contactsWithRows()) {
+    if (made.bodyA == 0 || made.bodyB == 0) touching.insert(made.bodyA + made.bodyB);
+    twoRings |= made.bodyA == 2 && made.bodyB == 3;
+  }
+  EXPECT_GE(touching.size(), 6u);
+  EXPECT_EQ(touching.count(1), 1u);
+  EXPECT_TRUE(twoRings);
+  EXPECT_EQ(allocationsOfSteadySteps(s, 100), 0);
 }
 
 /// A humanoid that stands, with a goal of every kind that is quadratic.
