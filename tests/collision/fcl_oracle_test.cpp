@@ -2,12 +2,6 @@
 // FCL as the second opinion on every pair of kinds, hulls among them, apart and overlapping. Asked
 // is what FCL answers well: whether two shapes touch. Each pair of kinds is a process of its own
 // with a time limit, so that an abort of FCL fails one test.
-#include <fcl/geometry/shape/box.h>
-#include <fcl/geometry/shape/capsule.h>
-#include <fcl/geometry/shape/convex.h>
-#include <fcl/geometry/shape/cylinder.h>
-#include <fcl/geometry/shape/sphere.h>
-#include <fcl/narrowphase/collision.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -18,6 +12,7 @@
 
 #include "softgauss/collision/detail/convex_pairs.hpp"
 #include "softgauss/collision/primitive_pairs.hpp"
+#include "tests/collision/fcl_shapes.hpp"
 #include "tests/collision/random_pairs.hpp"
 #include "tests/support/in_child.hpp"
 
@@ -27,7 +22,7 @@ namespace {
 using namespace collision;
 using enum ShapeKind;
 
-constexpr ShapeKind kKinds[] = {sphere, capsule, cylinder, box, mesh};
+constexpr ShapeKind kKinds[] = {plane, sphere, capsule, cylinder, box, mesh};
 /// Seconds that a pair of kinds may take; it takes a tenth of one.
 constexpr double kLimit = 60.0;
 /// How near to touching two answers may differ [m]: the tolerance of FCL's search is 1e-6 of its
@@ -38,60 +33,28 @@ constexpr double kUndecided = 1e-4;
 struct Both {
   Shape shape;
   std::shared_ptr<const ConvexHull> hull;
-  std::shared_ptr<fcl::CollisionGeometryd> fcl;
+  FclGeometry fcl;
 };
-
-std::shared_ptr<fcl::CollisionGeometryd> convexOf(const ConvexHull& hull) {
-  auto vertices = std::make_shared<std::vector<Vector3>>(hull.vertices);
-  auto faces = std::make_shared<std::vector<int>>();
-  for (const HullFace& face : hull.faces) {
-    faces->push_back(static_cast<int>(face.vertices.size()));
-    faces->insert(faces->end(), face.vertices.begin(), face.vertices.end());
-  }
-  return std::make_shared<fcl::Convexd>(vertices, static_cast<int>(hull.faces.size()), faces);
-}
 
 Both randomBoth(RandomPairs& random, ShapeKind kind) {
   Both both{random.shape(kind), nullptr, nullptr};
-  const Shape& s = both.shape;
-  switch (kind) {
-    case sphere:
-      both.fcl = std::make_shared<fcl::Sphered>(s.radius);
-      break;
-    case capsule:
-      both.fcl = std::make_shared<fcl::Capsuled>(s.radius, 2 * s.halfLength);
-      break;
-    case cylinder:
-      both.fcl = std::make_shared<fcl::Cylinderd>(s.radius, 2 * s.halfLength);
-      break;
-    case box:
-      both.fcl = std::make_shared<fcl::Boxd>(Vector3(2 * s.halfExtents));
-      break;
-    default: {
-      auto points = std::make_shared<Mesh>();
-      for (int i = 0; i < 24; ++i) points->vertices.push_back(random.vector(0.3));
-      both.shape = Shape::hull(points);
-      both.hull = std::make_shared<ConvexHull>(makeConvexHull(*points));
-      both.fcl = convexOf(*both.hull);
-    }
+  if (kind == mesh) {
+    auto points = std::make_shared<Mesh>();
+    for (int i = 0; i < 24; ++i) points->vertices.push_back(random.vector(0.3));
+    both.shape = Shape::hull(points);
+    both.hull = std::make_shared<ConvexHull>(makeConvexHull(*points));
   }
+  both.fcl = toFcl(both.shape, both.hull.get());
   return both;
 }
 
 bool touchByFcl(const Both& a, const Transform& X_WA, const Both& b, const Transform& X_WB) {
-  const auto pose = [](const Transform& X) {
-    fcl::Transform3d T = fcl::Transform3d::Identity();
-    T.linear() = X.R;
-    T.translation() = X.p;
-    return T;
-  };
-  const fcl::CollisionRequestd request;
-  fcl::CollisionResultd result;
-  return fcl::collide(a.fcl.get(), pose(X_WA), b.fcl.get(), pose(X_WB), request, result) > 0;
+  return touchInFcl(*a.fcl, X_WA, *b.fcl, X_WB);
 }
 
 /// Our answer, whichever way the pair is tested; +∞ for "apart". A capsule's contacts are blended
-/// where it lies along the other, or is pierced: they have no single depth, told as −∞.
+/// where it lies along the other, or is pierced: they have no single depth, told as −∞. In a
+/// half-space they have.
 PairContact deepestByOurs(const Both& a, const Transform& X_WA, const Both& b,
                           const Transform& X_WB) {
   PairContacts found;
@@ -104,8 +67,9 @@ PairContact deepestByOurs(const Both& a, const Transform& X_WA, const Both& b,
   for (int i = 0; i < found.count; ++i)
     if (found[i].distance < best.distance) best = found[i];
   for (const Both* s : {&a, &b})
-    if (s->shape.kind == capsule && hasClosedForm(a.shape.kind, b.shape.kind) &&
-        best.distance < 0.0 && (found.count > 1 || best.distance < -s->shape.radius))
+    if (a.shape.kind != plane && s->shape.kind == capsule &&
+        hasClosedForm(a.shape.kind, b.shape.kind) && best.distance < 0.0 &&
+        (found.count > 1 || best.distance < -s->shape.radius))
       best.distance = -std::numeric_limits<double>::infinity();
   return best;
 }
@@ -125,7 +89,8 @@ std::string compare(ShapeKind kindA, ShapeKind kindB) {
       ++apart;
       // Pushed together by hardly anything they touch, if FCL is right that they touch.
       if (!touchByFcl(a, X_WA, b, X_WB)) continue;
-      X_WB.p -= kUndecided * (X_WB.p - X_WA.p).normalized();
+      X_WB.p -= kUndecided *
+                (kindA == plane ? Vector3(X_WA.R.col(2)) : Vector3((X_WB.p - X_WA.p).normalized()));
       if (!(deepestByOurs(a, X_WA, b, X_WB).distance < 0.0))
         wrong << "case " << i << ": FCL says touching, we say apart\n";
       continue;
@@ -148,8 +113,9 @@ std::string compare(ShapeKind kindA, ShapeKind kindB) {
       // Support points prove them apart along n, or do not: FCL's search errs at times.
       Transform X = X_WB;
       X.p += out * ours.n_W;
-      if (separationAlong({&a.shape, a.hull.get()}, X_WA, {&b.shape, b.hull.get()}, X, ours.n_W) >
-          0.5 * kUndecided)
+      if (kindA != plane &&
+          separationAlong({&a.shape, a.hull.get()}, X_WA, {&b.shape, b.hull.get()}, X, ours.n_W) >
+              0.5 * kUndecided)
         ++errors;
       else
         wrong << "case " << i << ": still touching, moved by the depth " << depth << '\n';
@@ -173,6 +139,7 @@ std::string compare(ShapeKind kindA, ShapeKind kindB) {
 TEST(FclOracle, AgreesOnEveryPairOfKinds) {
   for (std::size_t i = 0; i < std::size(kKinds); ++i)
     for (std::size_t j = i; j < std::size(kKinds); ++j) {
+      if (kKinds[j] == plane) continue;  // two half-spaces always meet
       const std::string wrong = inChild([&] { return compare(kKinds[i], kKinds[j]); }, kLimit);
       EXPECT_EQ(wrong, "") << "kinds " << static_cast<int>(kKinds[i]) << " and "
                            << static_cast<int>(kKinds[j]);
