@@ -98,6 +98,7 @@ class GoalDirectedIslands::Control final : public IslandControl {
     part_->activeSet.options = from.activeSet.options;
     part_->expansion.tolerance = from.expansion.tolerance;
     part_->expansion.maxSolves = from.expansion.maxSolves;
+    part_->iterationBudget = from.iterationBudget;
   }
 
   const std::vector<int>& trees() const { return island_.trees; }

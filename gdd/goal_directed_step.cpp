@@ -40,6 +40,7 @@ const VectorX* GoalDirectedController::solve(Solver& used, const Model& model, c
     if (goal->actsAt(state.time)) goal->addCost({model, state, data}, cost_);
   if (motionLimits) motionLimits->addCost({model, state, data}, limits, cost_);
   data.stats.invalidWarmStarts += refuses(used, state.warmstart);
+  expansion.iterationsLeft = iterationBudget;
   report = solveOneSided(expansion, used, model, cost_, limits, data, state.warmstart, between_);
   const GddReport solved = report;
   report.addEarlier(earlier_);
@@ -70,6 +71,11 @@ const VectorX* GoalDirectedController::apply(const Model& model, const State& st
   return solve(augmentedLagrangian, model, state, data);
 }
 
+void GoalDirectedController::begin() noexcept {
+  solveTime = 0.0;
+  earlier_ = {};
+}
+
 void GoalDirectedController::keep(WarmStart& warmstart) noexcept {
   expansion.keepWarmStart(warmstart);
   earlier_ = report;
@@ -82,8 +88,7 @@ SolveStatus GoalDirectedController::step(const Model& model, const Input& input,
   // Where there is nothing to choose, nobody has to know what friction answers.
   held_.softFriction = input.softFriction || limits.open();
   outside_ = input.tau;
-  solveTime = 0.0;
-  earlier_ = {};
+  begin();
   return softgauss::step(model, held_, state, data, contacts, this, posed);
 }
 

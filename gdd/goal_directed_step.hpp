@@ -7,6 +7,7 @@
 /// control to its limits; run forward dynamics from that acceleration; integrate. Solver 2 ends
 /// on the physics: it clamps nothing, and forward dynamics has nothing left to do.
 
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -48,9 +49,13 @@ class GoalDirectedController final : public StepControl {
   AugmentedLagrangian augmentedLagrangian;
   ActiveSet activeSet;
   SequentialQuadraticSolve expansion;  ///< for goals that are not quadratic
+  /// Iterations of the solver, at most, for one control: past them the best control that was found
+  /// is taken, with GddStatus::iterationLimit and its certificate.
+  int iterationBudget = std::numeric_limits<int>::max();
 
-  VectorX control;   ///< τ = B u of the last step, 0 on unactuated dofs (nv) [N or N m]
-  VectorX commands;  ///< u of the last step, of the actuators of box.transmission, in their order
+  VectorX control;  ///< τ = B u of the last step, 0 on unactuated dofs (nv) [N or N m]
+  VectorX
+      commands;  ///< u of the last step, of the actuators of limits.transmission, in their order
   GddReport report;  ///< of the last step; of a step in parts the worst of them, counts are sums
   double solveTime = 0.0;  ///< wall time of the last step's GDD solves [s]
 
@@ -60,6 +65,8 @@ class GoalDirectedController final : public StepControl {
   SolveStatus step(const Model& model, const Input& input, State& state, Data& data,
                    ContactSource* contacts, bool posed = false) noexcept;
 
+  /// Before apply() outside step(): what the report counts begins anew.
+  void begin() noexcept;
   const VectorX* apply(const Model& model, const State& state, Data& data) noexcept override;
   bool acts() const noexcept override { return limits.open(); }
   void keep(WarmStart& warmstart) noexcept override;

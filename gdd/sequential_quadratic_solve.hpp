@@ -30,7 +30,9 @@
 ///
 /// With functions this allocates.
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "softgauss/gdd/augmented_lagrangian.hpp"
 #include "softgauss/gdd/cell_model.hpp"
@@ -41,6 +43,8 @@ class SequentialQuadraticSolve {
  public:
   double tolerance = 1e-8;  ///< of ∇φ − ∇m, scaled as GddReport::stationarity
   int maxSolves = 100;
+  /// Iterations that the solves to come may still take together, of which each counts its own.
+  int iterationsLeft = std::numeric_limits<int>::max();
 
   explicit SequentialQuadraticSolve(const Model& model)
       : a_(VectorX::Zero(model.nv)), force_(VectorX::Zero(model.nv)) {}
@@ -52,7 +56,7 @@ class SequentialQuadraticSolve {
     solves_ = 0;
     if (!cost.hasFunctions()) {
       solves_ = 1;
-      const GddReport report = solver.solve(model, cost, limits, data, warm);
+      const GddReport report = solveOnce(solver, model, cost, limits, data, warm);
       accept(solver);
       return report;
     }
@@ -63,10 +67,10 @@ class SequentialQuadraticSolve {
     double best = kInfinity, bestGap = kInfinity, mu = 0.0, growth = 4.0;
     GddReport total;
     GddStatus bestStatus = total.status = GddStatus::notFinite;
-    while (solves_ < maxSolves) {
+    while (solves_ < maxSolves && (solves_ == 0 || iterationsLeft > 0)) {
       if (!cost.expand(data.inertia.M, at, guessed ? 0.0 : mu)) break;
       ++solves_;
-      const GddReport report = solver.solve(model, cost, limits, data, warm_);
+      const GddReport report = solveOnce(solver, model, cost, limits, data, warm_);
       if (isRefused(report.status)) return report;
       const VectorX& trial = solver.acceleration();
       solver.keepWarmStart(next_);
@@ -133,6 +137,16 @@ class SequentialQuadraticSolve {
   }
 
  private:
+  template <class Solver>
+  GddReport solveOnce(Solver& solver, const Model& model, GoalCost& cost,
+                      const ControlLimits& limits, Data& data, const WarmStart& warm) {
+    const int most = solver.options.maxIterations;
+    solver.options.maxIterations = std::min(most, iterationsLeft);
+    const GddReport report = solver.solve(model, cost, limits, data, warm);
+    solver.options.maxIterations = most;
+    iterationsLeft -= std::min(iterationsLeft, report.iterations);
+    return report;
+  }
   template <class Solver>
   void accept(const Solver& solver) {
     a_ = solver.acceleration();

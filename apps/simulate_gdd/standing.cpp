@@ -15,7 +15,7 @@ constexpr double kStillTouches = 0.1;  // [s] without contact: it bounces or rol
 constexpr double kFallenShare = 0.25;  // of the base's height
 constexpr double kFallenTilt = M_PI / 9.0;
 constexpr double kTippedTilt = M_PI / 36.0;  // of what stood flat on its root
-constexpr double kFallSpeed = 0.2;  // [m/s]
+constexpr double kFallSpeed = 0.2;           // [m/s]
 constexpr double kLiesTilt = M_PI / 3.0;
 constexpr double kToldSlide = 1e-3;  // [m]
 

@@ -84,29 +84,72 @@ void Simulation::run(double seconds) {
     if (isRefused(step())) throw StepError(failure());
 }
 
-ControlSolution Simulation::solve() {
-  SimulationParts& p = *parts_;
+namespace {
+
+/// What the controller does in the state of `p`, into `answer`, which keeps its memory.
+void solveInto(SimulationParts& p, ContactSource& contacts, ControlSolution& answer) noexcept {
   const Model& model = p.scene->model;
   const bool controlled = !p.controller->goals.empty();
-  Input held = p.inputOfStep();
-  held.softFriction = controlled;
-  ControlSolution solution;
-  solution.status = computeStages(model, held, p.state, *p.data, &p.scene->source());
-  if (isRefused(solution.status)) return solution;
+  p.held = p.inputOfStep();
+  p.held.softFriction = controlled;
+  answer.report = {};
+  answer.status = computeStages(model, p.held, p.state, *p.data, &contacts);
+  if (isRefused(answer.status)) return;
   const VectorX* guess = p.state.warmstart.valid ? &p.state.warmstart.a : nullptr;
   if (controlled) {
+    p.controller->begin();
     guess = p.controller->apply(model, p.state, *p.data);
+    answer.report = p.controller->report;
     if (!guess) {
-      solution.status = p.data->stats.status;
-      return solution;
+      answer.status = p.data->stats.status;
+      return;
     }
-    solution.report = p.controller->report;
   }
-  solution.status = forwardDynamics(model, guess, *p.data);
-  solution.tau = controlled ? p.controller->control : p.data->forces.tau;
-  solution.a = p.data->forward.a;
-  contactForces(*p.data, solution.contacts);
-  return solution;
+  answer.status = forwardDynamics(model, guess, *p.data);
+  answer.tau = controlled ? p.controller->control : p.data->forces.tau;
+  answer.a = p.data->forward.a;
+  contactForces(*p.data, answer.contacts);
+}
+
+}  // namespace
+
+ControlSolution Simulation::solve() {
+  ControlSolution answer;
+  solveInto(*parts_, parts_->scene->source(), answer);
+  return answer;
+}
+
+const ControlSolution& Simulation::solve(const VectorX& q, const VectorX& v,
+                                         ContactSource* contacts) noexcept {
+  SimulationParts& p = *parts_;
+  const Model& model = p.scene->model;
+  const auto misfit = [](BadInputKind kind, const VectorX& found, int expected) {
+    BadInput bad;
+    if (found.size() == expected) return bad;
+    bad.kind = kind;
+    bad.found = static_cast<double>(found.size());
+    bad.expected = expected;
+    return bad;
+  };
+  p.data->stats = {};
+  if (p.data->stats.refuse(model, misfit(BadInputKind::q, q, model.nq)) ||
+      p.data->stats.refuse(model, misfit(BadInputKind::v, v, model.nv))) {
+    p.solution.status = p.data->stats.status;
+    return p.solution;
+  }
+  p.before = p.state;
+  p.state.q = q;
+  p.state.v = v;
+  p.state.hasAcceleration = false;
+  solveInto(p, contacts ? *contacts : p.scene->source(), p.solution);
+  if (isRefused(p.solution.status)) {
+    p.state = p.before;
+    return p.solution;
+  }
+  p.state.warmstart.a = p.solution.a;
+  p.state.warmstart.valid = true;
+  if (!p.controller->goals.empty()) p.controller->keep(p.state.warmstart);
+  return p.solution;
 }
 
 void Simulation::reset() { parts_->state = parts_->scene->initial; }

@@ -58,6 +58,13 @@ class Simulation {
   /// and contact forces. Without goals the control is input().tau. After an iteration limit the
   /// best control that was found, with its report.
   ControlSolution solve();
+  /// The same for a state that was measured: q (nq) and v (nv) become those of state(); its time is
+  /// the caller's to set. `contacts`, where given, in place of
+  /// those that are found from q. Each call starts from the answer of the last, allocates no memory
+  /// once it runs, and stays within controller().iterationBudget. Where isRefused(), state() is as
+  /// it was; what was answered holds until the next call.
+  const ControlSolution& solve(const VectorX& q, const VectorX& v,
+                               ContactSource* contacts = nullptr) noexcept;
   /// Back to the state at which it started; goals stay.
   void reset();
   /// State and time as bytes: restore() goes on from them to the same bits, in another process too,

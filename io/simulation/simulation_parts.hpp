@@ -27,6 +27,9 @@ struct SimulationParts {
   bool hasRegularisers = false;
   Input input;
   Input applied;  ///< with the wrenches of the scene
+  Input held;     ///< of solve()
+  ControlSolution solution;
+  State before;  ///< of solve()
   Kinematics kinematics;
   io::ContactLinks links;
   TimeGrid grid;

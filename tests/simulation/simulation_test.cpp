@@ -170,6 +170,86 @@ TEST(Simulation, SolvingLeavesTheStateAlone) {
   EXPECT_FALSE(answer.contacts.empty());
 }
 
+// The robot is another simulation, without goals: what the controller answers to its states drives
+// it. Where both have the same model the hand arrives.
+TEST(Simulation, AnswersToMeasuredStatesDriveARobot) {
+  Simulation controller = Simulation::load(robot("arm")), real = Simulation::load(robot("arm"));
+  const Vector3 target(0.5, 0.2, 0.4);
+  controller.goals.reach("hand", target);
+  for (int k = 0; k < 1000; ++k) {
+    const ControlSolution& answer = controller.solve(real.state().q, real.state().v);
+    ASSERT_FALSE(isRefused(answer.status));
+    real.input().tau = answer.tau;
+    ASSERT_FALSE(isRefused(real.step()));
+  }
+  EXPECT_LT((real.pose("hand").p - target).norm(), 1e-3);
+}
+
+// Contacts of the caller, as a robot feels them with its feet, stand in for those of the shapes.
+TEST(Simulation, SolvesWithTheContactsOfTheCaller) {
+  Simulation sim = Simulation::load(robot("humanoid"));
+  sim.goals.reach("right_hand", {0.4, -0.2, 1.1});
+  sim.run(0.1);
+  const VectorX q = sim.state().q, v = sim.state().v;
+  const State start = sim.state();
+  const ControlSolution own = sim.solve(q, v);
+  EXPECT_FALSE(own.contacts.empty());
+  FixedContacts felt;
+  felt.points = sim.data().contacts.contacts;
+  sim.state() = start;
+  EXPECT_EQ(sim.solve(q, v, &felt).tau, own.tau);
+  felt.points.clear();
+  sim.state() = start;
+  const ControlSolution& flying = sim.solve(q, v, &felt);
+  EXPECT_TRUE(flying.contacts.empty());
+  EXPECT_NE(flying.tau, own.tau);
+}
+
+// Nothing but the budget bounds the work; what is found within it is feasible, and not worse than
+// what fewer iterations find.
+TEST(Simulation, AnIterationBudgetBoundsTheSolve) {
+  Simulation sim = Simulation::load(robot("humanoid"));
+  sim.goals.reach("right_hand", {0.5, -0.4, 1.3}).weight = 1e4;
+  const State start = sim.state();
+  double last = kInfinity;
+  int limited = 0;
+  for (const int budget : {0, 1, 2, 4, 8, 1000}) {
+    sim.state() = start;
+    sim.controller().iterationBudget = budget;
+    const ControlSolution& answer = sim.solve(start.q, start.v);
+    ASSERT_FALSE(isRefused(answer.status));
+    EXPECT_LE(answer.report.iterations, budget);
+    EXPECT_LE(answer.report.objective, last);
+    last = answer.report.objective;
+    for (int i = 0; i < sim.model().nv; ++i) {
+      EXPECT_GE(answer.tau[i], sim.controller().limits.lower[i]);
+      EXPECT_LE(answer.tau[i], sim.controller().limits.upper[i]);
+    }
+    if (answer.report.status == gdd::GddStatus::iterationLimit) {
+      ++limited;
+      EXPECT_GT(answer.report.stationarity, 1e-12);
+    }
+  }
+  EXPECT_GE(limited, 2);
+  EXPECT_LE(sim.solve(start.q, start.v).report.stationarity, 1e-12);
+}
+
+TEST(Simulation, RefusesMeasurementsOfAnotherSize) {
+  Simulation sim = Simulation::load(robot("humanoid"));
+  sim.goals.reach("right_hand", {0.4, -0.2, 1.1});
+  sim.run(0.05);
+  const std::uint64_t before = hash(sim.state());
+  const VectorX q = sim.state().q, v = sim.state().v;
+  EXPECT_EQ(sim.solve(q, q).status, SolveStatus::badInput);
+  EXPECT_NE(sim.failure().find("State::v: found 28 numbers, expected 27"), std::string::npos)
+      << sim.failure();
+  EXPECT_EQ(sim.solve(v, v).status, SolveStatus::badInput);
+  VectorX none = q;
+  none.segment<4>(3).setZero();
+  EXPECT_EQ(sim.solve(none, v).status, SolveStatus::badInput);
+  EXPECT_EQ(hash(sim.state()), before);
+}
+
 TEST(Simulation, GoalsOfATextAreThoseOfAFile) {
   const io::TempFolder folder;
   const std::string text =

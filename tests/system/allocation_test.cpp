@@ -8,6 +8,7 @@
 
 #include "softgauss/collision/clearance.hpp"
 #include "softgauss/collision/scene_contacts.hpp"
+#include "softgauss/io/simulation/simulation.hpp"
 #include "tests/gdd/robot_scene.hpp"
 #include "tests/support/allocation_guard.hpp"
 #include "tests/support/sample_surfaces.hpp"
@@ -300,6 +301,28 @@ TEST(Allocation, NoneInTheGoalDirectedStepWithCoupledActuators) {
     run();
     EXPECT_EQ(guard.count(), 0);
   }
+}
+
+// A humanoid reaches; the states that it comes through are measured again.
+TEST(Allocation, NoneInTheControllerOfMeasuredStates) {
+  SKIP_WITHOUT_HOOK();
+  Simulation sim =
+      Simulation::load(std::string(SOFTGAUSS_SOURCE_DIR) + "/data/robots/humanoid.urdf");
+  sim.goals.reach("right_hand", {0.4, -0.2, 1.1});
+  std::vector<VectorX> q, v;
+  for (int k = 0; k < 200; ++k) {
+    q.push_back(sim.state().q);
+    v.push_back(sim.state().v);
+    ASSERT_FALSE(isRefused(sim.step()));
+  }
+  const auto answerAll = [&] {
+    for (std::size_t k = 0; k < q.size(); ++k)
+      EXPECT_FALSE(isRefused(sim.solve(q[k], v[k]).status));
+  };
+  answerAll();
+  const AllocationGuard guard;
+  answerAll();
+  EXPECT_EQ(guard.count(), 0);
 }
 
 TEST(Allocation, NoneInInverseDynamics) {
