@@ -7,10 +7,12 @@
 /// collide() whether they touch and along which direction. It tells one point where a body needs
 /// four to rest, so the points are made by ours: of that direction and the normals of the faces
 /// that it meets, the one of least overlap, and on it the clipped faces (manifold.hpp). What
-/// touches a half-space or a surface of triangles has its points from there.
+/// touches a half-space or a surface of triangles has its directions from ours too: FCL says
+/// whether triangles of the surface touch, and of what lies within a closed surface, which FCL
+/// takes for a sheet, rays say it.
 ///
 /// FCL knows no margin: contacts begin where shapes touch, to touchingWithin(): it is asked about
-/// shapes that are nearer by that. Its queries allocate. An exception of
+/// convex shapes that are nearer by that. Its queries allocate. An exception of
 /// FCL leaves the pair to our own test and is counted in pairsFailed(). Contacts come in the order
 /// of the filter's pairs and depend on the poses alone.
 

@@ -2,6 +2,7 @@
 #include "softgauss/collision/fcl_contacts.hpp"
 
 #include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
+#include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/geometry/shape/box.h>
 #include <fcl/geometry/shape/capsule.h>
 #include <fcl/geometry/shape/convex.h>
@@ -12,6 +13,8 @@
 
 #include <algorithm>
 #include <exception>
+#include <map>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -38,7 +41,7 @@ Geometries convexOf(const ConvexHull& hull) {
   return std::make_shared<fcl::Convexd>(vertices, static_cast<int>(hull.faces.size()), faces);
 }
 
-/// Of a surface the box about it, which FCL's tree alone sees.
+/// Of a surface the box about it, which FCL's tree of boxes sees.
 Geometries geometryOf(const Shape& s, const detail::GeometrySet& set, std::size_t i) {
   switch (s.kind) {
     case ShapeKind::plane:
@@ -59,6 +62,25 @@ Geometries geometryOf(const Shape& s, const detail::GeometrySet& set, std::size_
   return nullptr;
 }
 
+/// The triangles of a surface.
+Geometries trianglesOf(const TriangleMesh& surface) {
+  std::vector<Vector3> vertices;
+  for (int v = 0; v < surface.vertices(); ++v) vertices.push_back(surface.vertex(v));
+  std::vector<fcl::Triangle> triangles;
+  for (int t = 0; t < surface.size(); ++t) {
+    const auto& [a, b, c] = surface[t].corners;
+    triangles.emplace_back(idx(a), idx(b), idx(c));
+  }
+  auto model = std::make_shared<fcl::BVHModel<fcl::OBBRSSd>>();
+  int result = model->beginModel(surface.size(), surface.vertices());
+  if (result == fcl::BVH_OK) result = model->addSubModel(vertices, triangles);
+  if (result == fcl::BVH_OK) result = model->endModel();
+  if (result != fcl::BVH_OK)
+    throw std::runtime_error("FCL builds no hierarchy of its triangles, code " +
+                             std::to_string(result));
+  return model;
+}
+
 fcl::Transform3d toFcl(const Transform& X) {
   fcl::Transform3d T = fcl::Transform3d::Identity();
   T.linear() = X.R;
@@ -76,7 +98,11 @@ struct FclContacts::Scene {
   void pose(const Kinematics& kinematics);
   void findNear();
   void testPair(int pair, ContactSet& contacts);
-  /// FCL's answer for a convex pair that is nearer by `within` [m]; false where it gives up.
+  void makeSolids();
+  /// Whether one of a pair, b's a surface, lies within the other and touches none of its triangles,
+  /// which are all that FCL knows of a surface.
+  bool isWithin(const GeometryPair& pair);
+  /// FCL's answer for a pair, a convex one nearer by `within` [m]; false where it gives up.
   bool ask(const GeometryPair& pair, double within, bool& touch, Vector3& n_W);
 
   const Model& model;
@@ -84,6 +110,7 @@ struct FclContacts::Scene {
   const detail::GeometrySet set;
   std::vector<Transform> X_WG;
   std::vector<std::unique_ptr<fcl::CollisionObjectd>> objects;
+  std::vector<Geometries> solids;  ///< what is asked about: of a surface its triangles
   fcl::DynamicAABBTreeCollisionManagerd manager;
   std::vector<int> always;                           ///< pairs with a half-space, which has no box
   std::vector<std::pair<GeometryPair, int>> pairAt;  ///< the others, by their geometries in order
@@ -103,6 +130,7 @@ FclContacts::Scene::Scene(const Model& m, PreparedMeshes& meshes)
     objects.back()->setUserData(reinterpret_cast<void*>(i));
     if (!set.isPlane(static_cast<int>(i))) manager.registerObject(objects.back().get());
   }
+  makeSolids();
   const std::vector<GeometryPair>& pairs = own.filter().pairs;
   for (std::size_t p = 0; p < pairs.size(); ++p) {
     const auto [a, b] = pairs[p];
@@ -115,6 +143,18 @@ FclContacts::Scene::Scene(const Model& m, PreparedMeshes& meshes)
     return std::pair(x.first.a, x.first.b) < std::pair(y.first.a, y.first.b);
   });
   manager.setup();
+}
+
+void FclContacts::Scene::makeSolids() {
+  std::map<const TriangleMesh*, Geometries> known;
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    const TriangleMesh* surface = set.surface[i].get();
+    Geometries& triangles = known[surface];
+    if (surface && !triangles) triangles = trianglesOf(*surface);
+    solids.push_back(surface ? triangles
+                             : std::const_pointer_cast<fcl::CollisionGeometryd>(
+                                   objects[i]->collisionGeometry()));
+  }
 }
 
 void FclContacts::Scene::pose(const Kinematics& kinematics) {
@@ -151,13 +191,13 @@ bool FclContacts::Scene::ask(const GeometryPair& pair, double within, bool& touc
   const Transform& X_WA = X_WG[idx(pair.a)];
   const Vector3 apart = X_WG[idx(pair.b)].p - X_WA.p;
   Transform nearer = X_WA;
-  nearer.p += within * (set.isPlane(pair.a) ? Vector3(X_WA.R.col(2)) : apart.stableNormalized());
+  if (!set.surface[idx(pair.b)])
+    nearer.p += within * (set.isPlane(pair.a) ? Vector3(X_WA.R.col(2)) : apart.stableNormalized());
   fcl::CollisionRequestd request(1, true);
   fcl::CollisionResultd result;
   try {
-    touch = fcl::collide(objects[idx(pair.a)]->collisionGeometry().get(), toFcl(nearer),
-                         objects[idx(pair.b)]->collisionGeometry().get(),
-                         objects[idx(pair.b)]->getTransform(), request, result) > 0;
+    touch = fcl::collide(solids[idx(pair.a)].get(), toFcl(nearer), solids[idx(pair.b)].get(),
+                         toFcl(X_WG[idx(pair.b)]), request, result) > 0;
   } catch (const std::exception&) {
     return false;
   }
@@ -171,18 +211,29 @@ void FclContacts::Scene::testPair(int p, ContactSet& contacts) {
   const double within = touchingWithin(model.options, X_WB.p);
   bool touch = true;
   Vector3 n;
-  if (!set.surface[idx(pair.b)] && !ask(pair, within, touch, n)) {
+  if (!ask(pair, within, touch, n)) {
     ++left;
     touch = true;
     n.setZero();
   }
-  if (!touch) {
+  const bool isSurface = set.surface[idx(pair.b)] != nullptr;
+  if (!touch && !(isSurface && isWithin(pair))) {
     ++contacts.pairsTested;
     return;
   }
-  const bool isOurs = set.isPlane(pair.a) || set.surface[idx(pair.b)] || n.isZero(0.0);
+  const bool isOurs = set.isPlane(pair.a) || isSurface || n.isZero(0.0);
   if (isOurs) return set.report(pair.a, X_WA, pair.b, X_WB, within, test, contacts);
   set.reportAlong(pair.a, X_WA, pair.b, X_WB, n.normalized(), within, test, contacts);
+}
+
+bool FclContacts::Scene::isWithin(const GeometryPair& pair) {
+  const Transform &X_WA = X_WG[idx(pair.a)], &X_WB = X_WG[idx(pair.b)];
+  const TriangleMesh &b = *set.surface[idx(pair.b)], *a = set.surface[idx(pair.a)].get();
+  if (!a)
+    return b.isClosed() && !set.isPlane(pair.a) &&
+           b.encloses(X_WB.inverse() * (X_WA * set.centreInG[idx(pair.a)]), test.scratch);
+  return (b.isClosed() && b.holds(X_WB, *a, X_WA, test.scratch)) ||
+         (a->isClosed() && a->holds(X_WA, b, X_WB, test.scratch));
 }
 
 FclContacts::FclContacts(const Model& model, PreparedMeshes* meshes) {

@@ -42,6 +42,20 @@ double weightOf(const Scene& s) {
   return sum;
 }
 
+/// Geometries that are deeper in each other.
+std::set<std::pair<int, int>> touching(const ContactSet& set, double deeper) {
+  std::set<std::pair<int, int>> pairs;
+  for (const Contact& c : set.contacts)
+    if (c.distance < -deeper) pairs.insert({c.geometryA, c.geometryB});
+  return pairs;
+}
+
+ModelBuilder freeAt(const Shape& shape, const Transform& X_WB) {
+  ModelBuilder one = freeBody(boxLink("body", 1.0, kHalf));
+  one.X_WRoot = X_WB;
+  return one.geometry(geometrySpec("body", shape));
+}
+
 }  // namespace
 
 // Every kind of body on every kind of ground: depths within 0.2 mm, the same weight is carried.
@@ -94,12 +108,6 @@ TEST(FclContacts, TheSamePairsTouch) {
   own.detect(model, kinematics, ours);
   fcl.detect(model, kinematics, theirs);
   fcl.detect(model, kinematics, again);
-  const auto touching = [](const ContactSet& set, double deeper) {
-    std::set<std::pair<int, int>> pairs;
-    for (const Contact& c : set.contacts)
-      if (c.distance < -deeper) pairs.insert({c.geometryA, c.geometryB});
-    return pairs;
-  };
   EXPECT_GT(touching(ours, 1e-4).size(), 40u);
   for (const auto& pair : touching(ours, 1e-4)) EXPECT_EQ(touching(theirs, 0).count(pair), 1u);
   for (const auto& pair : touching(theirs, 1e-4)) EXPECT_EQ(touching(ours, 0).count(pair), 1u);
@@ -109,6 +117,66 @@ TEST(FclContacts, TheSamePairsTouch) {
   for (std::size_t i = 0; i < again.contacts.size(); ++i) {
     EXPECT_EQ(again.contacts[i].p_WC, theirs.contacts[i].p_WC);
     EXPECT_EQ(again.contacts[i].geometryB, theirs.contacts[i].geometryB);
+  }
+}
+
+// The same with surfaces of triangles, hollow ones, in each other and among convex bodies: FCL is
+// asked about the triangles. Of their hulls more pairs would touch.
+TEST(FclContacts, TheSameSurfacesTouch) {
+  const Shape shapes[] = {Shape::surface(ringSurface(0.1, 0.02, 24, 12)),
+                          Shape::surface(clampSurface({0.1, 0.05, 0.08}, 0.02)),
+                          Shape::surface(washerSurface(0.08, 0.05, 0.02)),
+                          Shape::sphere(0.03),
+                          Shape::box({0.03, 0.04, 0.05}),
+                          Shape::cylinder(0.03, 0.05)};
+  int pairs = 0, ofHulls = 0;
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    Random random(seed);
+    ModelBuilder builder("heap");
+    for (int i = 0; i < 18; ++i)
+      builder.add(freeAt(shapes[i % 6], {random.rotation(), random.vector3(0.16)}),
+                  "object" + std::to_string(i));
+    const auto detect = [](const Model& model, auto& source) {
+      Kinematics kinematics(model);
+      computeKinematics(model, State(model), kinematics);
+      ContactSet set;
+      source.detect(model, kinematics, set);
+      return set;
+    };
+    Model model = builder.build();
+    SceneContacts own(model);
+    FclContacts fcl(model);
+    const ContactSet ours = detect(model, own), theirs = detect(model, fcl);
+    EXPECT_EQ(fcl.pairsFailed(), 0);
+    for (const auto& pair : touching(ours, 1e-4)) EXPECT_EQ(touching(theirs, 0).count(pair), 1u);
+    for (const auto& pair : touching(theirs, 1e-4)) EXPECT_EQ(touching(ours, 0).count(pair), 1u);
+    pairs += static_cast<int>(touching(theirs, 1e-4).size());
+    for (Geometry& g : model.geometries)
+      if (g.shape.kind == ShapeKind::triangles) g.shape.kind = ShapeKind::mesh;
+    SceneContacts hulls(model);
+    ofHulls += static_cast<int>(touching(detect(model, hulls), 1e-4).size());
+  }
+  EXPECT_GT(pairs, 200);
+  EXPECT_GT(ofHulls, pairs + pairs / 10);
+}
+
+// What lies within a closed surface touches none of its triangles, and is pushed out all the same.
+TEST(FclContacts, WhatLiesWithinASurfaceIsPushedOut) {
+  const Shape ring = Shape::surface(ringSurface(0.1, 0.02, 24, 12));
+  for (const Shape& inner : {Shape::sphere(0.005), Shape::surface(ballSurface(0.005, 5, 6))}) {
+    ModelBuilder builder("two");
+    builder.add(freeAt(ring, {}), "ring");
+    builder.add(freeAt(inner, {Matrix3::Identity(), Vector3(0.1, 0.0, 0.0)}), "inner");
+    builder.add(freeAt(inner, {Matrix3::Identity(), Vector3(0.0, 0.0, 0.0)}), "beside");
+    const Model model = builder.build();
+    FclContacts fcl(model);
+    Kinematics kinematics(model);
+    computeKinematics(model, State(model), kinematics);
+    ContactSet set;
+    fcl.detect(model, kinematics, set);
+    ASSERT_GT(set.contacts.size(), 0u);
+    EXPECT_EQ(touching(set, 0.004).size(), 1u);
+    for (const Contact& c : set.contacts) EXPECT_EQ(c.bodyA + c.bodyB, 3);
   }
 }
 
