@@ -58,7 +58,7 @@ class Goals:
         """A point (3,) of the link [m] seeks a place (3,) in the world [m]; again: another."""
     def hold(self, link: str) -> Goal:
         """The link stays where and as it is."""
-    def posture(self, weight: float = 100.0) -> Goal:
+    def posture(self, weight: float = 1000.0) -> Goal:
         """All joints and bases seek the configuration of the start."""
     def add(self, goals: Goals_) -> list[Goal]:
         """Any goals of docs/reference/goals.md: YAML text, a dict {kind: {key: value}} or a list of them."""

@@ -126,9 +126,9 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
       ->group(goals);
   CLI::Option* const keepsPosture =
       app.add_flag(
-             "--posture{100}", posture,
+             "--posture{1000}", posture,
              "all joints and the base seek the initial posture; --posture=WEIGHT [-], default "
-             "100")
+             "1000")
           ->group(goals);
   app.add_option("--goals", options.goals, "a .yaml file of goals, see docs/reference/goals.md")
       ->group(goals);
