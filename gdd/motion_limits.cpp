@@ -2,6 +2,7 @@
 #include "softgauss/gdd/motion_limits.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace softgauss::gdd {
 namespace {
@@ -10,6 +11,19 @@ constexpr double kBegins = 0.5;  // of the speed that is allowed
 
 bool isDriven(const Model& model, const ControlLimits& limits, int dof) {
   return model.dofs[dof].actuated || (limits.transmission && limits.transmission->pulls(dof));
+}
+
+/// What may come to the joint's speed within a step: by its own motor, or by as much acceleration
+/// as in the last step [rad/s or m/s].
+double gain(const GoalContext& context, const ControlLimits& limits, int dof) {
+  const Dof& d = context.model.dofs[dof];
+  if (!d.actuated || (limits.transmission && limits.transmission->pulls(dof))) return kInfinity;
+  const double inverseInertia =
+      std::max(1.0 / context.data.inertia.M.row(dof)[dof], context.data.weights.dof[dof]);
+  const double own = std::max(d.effortUpper, -d.effortLower) * inverseInertia;
+  const WarmStart& last = context.state.warmstart;
+  const double before = last.gddValid ? std::abs(last.gddA[dof]) : 0.0;
+  return context.model.options.timestep * std::max(own, before);
 }
 
 }  // namespace
@@ -24,10 +38,10 @@ void MotionLimits::addCost(const GoalContext& context, const ControlLimits& limi
     const double allowed =
         std::min(model.dofs[dof].velocityLimit, std::max(arrivalSpeed, room / approachTime));
     const double speed = sign * context.state.v[dof];
-    if (!(speed > kBegins * allowed)) return;
+    if (!(speed + gain(context, limits, dof) > kBegins * allowed)) return;
     row[dof] = -sign;
     cost.addOneSided(row, weight * context.data.inertia.M.row(dof)[dof],
-                     (speed - allowed) / brakingTime);
+                     (speed - allowed) / std::max(brakingTime, context.model.options.timestep));
     row[dof] = 0.0;
   };
   auto range = model.ranges.begin();

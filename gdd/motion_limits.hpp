@@ -6,13 +6,15 @@
 /// With V_i the velocity limit of joint i and q_i its position in the range up to b_i, the joint
 /// may move up at u_i = min(V_i, max(v₀, (b_i − q_i)/τ)): as fast as it is allowed to, and slower
 /// where the end of its range is near, so that it arrives there at v₀ and not at speed. What keeps
-/// v_i below u_i is an upper bound of the acceleration, approached in the time T, in the cost:
+/// v_i below u_i is an upper bound of the acceleration, approached in the time T, or in the step
+/// where that is longer, in the cost:
 ///   ½ w M_ii max(0, a_i − (u_i − v_i)/T)²
 /// and the same downwards. The weight w outweighs goals, and a cost is never infeasible: where
-/// torque limits or contacts ask for more, the joint is too fast. A joint below u_i/2 has no term,
-/// so that slow motions have the bits that they have without. Only joints with an actuator are
-/// kept; such bounds of velocity and position on the acceleration are usual in task space inverse
-/// dynamics (Del Prete, 2018).
+/// torque limits or contacts ask for more, the joint is too fast. A joint that
+/// its motor, or as much acceleration as in the last step, brings no further than u_i/2 has no
+/// term, so that slow motions have the bits that they have without. Only joints with an actuator
+/// are kept; such bounds of velocity and position on the acceleration are usual in task space
+/// inverse dynamics (Del Prete, 2018).
 
 #include "softgauss/gdd/goal.hpp"
 #include "softgauss/gdd/problem.hpp"
@@ -20,7 +22,7 @@
 namespace softgauss::gdd {
 
 struct MotionLimits {
-  double weight = 1e6;         ///< w [-], in the scale of goals that weigh 1
+  double weight = 1e9;         ///< w [-], against 10³ of a posture and 10⁵ of a strong goal
   double brakingTime = 0.01;   ///< T [s]
   double approachTime = 0.1;   ///< τ [s]
   double arrivalSpeed = 0.05;  ///< v₀ [rad/s or m/s]
