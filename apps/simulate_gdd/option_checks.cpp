@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include "apps/simulate_gdd/options.hpp"
@@ -17,7 +19,27 @@ constexpr double kMostStepsOfARun = 1e9;
 
 }  // namespace
 
+namespace {
+
+/// Tables are CSV, whatever they are called; names of other formats are a mistake.
+void checkTableNames(const SimulateOptions& options) {
+  for (const auto& [option, file] :
+       {std::pair{"--log", &options.log}, std::pair{"--contacts", &options.contacts}}) {
+    std::string ending = file->extension().string();
+    std::transform(ending.begin(), ending.end(), ending.begin(),
+                   [](unsigned char c) { return std::tolower(c); });
+    for (const char* other : {".mcap", ".bag", ".json", ".html", ".gz", ".zip", ".h5", ".parquet"})
+      if (ending == other)
+        throw UsageError(fmt::format(
+            "{}: found '{}', expected the name of a CSV file, such as {}", option, file->string(),
+            std::filesystem::path(*file).replace_extension(".csv").string()));
+  }
+}
+
+}  // namespace
+
 void checkOutputs(const SimulateOptions& options, const std::vector<std::filesystem::path>& read) {
+  checkTableNames(options);
   std::vector<std::pair<std::string, std::filesystem::path>> files = {
       {"MODEL", options.model}, {"--goals", options.goals},   {"--torques", options.torques},
       {"--play", options.play}, {"--resume", options.resume}, {"--view-with", options.viewWith}};

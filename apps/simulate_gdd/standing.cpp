@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kComesToStand = 0.1;  // [s] after the first contact
 constexpr double kStillTouches = 0.1;  // [s] without contact: it bounces or rolls
+constexpr double kStillLies = 1.0;     // [s] without contact of links that do not stand
 constexpr double kFallenShare = 0.25;  // of the base's height
 constexpr double kFallenTilt = M_PI / 9.0;
 constexpr double kTippedTilt = M_PI / 36.0;  // of what stood flat on its root
@@ -77,6 +78,9 @@ void Standing::observe(const Kinematics& kinematics,
     if (link.since < 0.0) link.since = time;
     link.lastTouch = time;
     link.slid += h / link.load * link.drift;
+    if (link.stands) continue;
+    if (robot.lies < 0.0 || time - robot.lastLay > kStillLies) robot.lies = time;
+    robot.lastLay = time;
   }
 }
 
@@ -103,12 +107,12 @@ std::vector<StandingOutcome> Standing::outcomes(const Kinematics& end, double ti
       baseTouches = baseTouches || name == o.base;
       if (link.stands) continue;
       o.onGround.push_back(name);
-      o.since = std::min(o.since.value_or(link.since), link.since);
+      o.since = robot.lies;
     }
     const bool lower = o.cameDown > kFallenShare * robot.height;
     const bool down = lower || o.tilt > (robot.stoodOnRoot ? kTippedTilt : kFallenTilt);
     o.fell = (down && !o.onGround.empty()) || (o.tilt > kLiesTilt && (baseTouches || lower));
-    o.falling = down && !o.fell && !o.inAir && o.speed > kFallSpeed;
+    o.falling = down && !o.fell && !o.inAir && (o.speed > kFallSpeed || o.tilt > kLiesTilt);
     std::stable_sort(o.slides.begin(), o.slides.end(),
                      [](const auto& a, const auto& b) { return a.way > b.way; });
     outcomes.push_back(std::move(o));

@@ -7,8 +7,8 @@
 /// fallen where at the end links lie on the ground that did not stand there, and its base has come
 /// down by a quarter of its height over the lowest point or has tilted by 20°, by 5° where it stood
 /// on its root; or where the base has tilted by 60° and touches the ground itself. It is falling
-/// where the base has come down or tilted so far and comes down at 0.2 m/s. Ground is all that is
-/// fixed to the world.
+/// where the base has come down or tilted so far and comes down at 0.2 m/s, or has tilted by 60°.
+/// Ground is all that is fixed to the world.
 ///
 /// What slides is the material of a link at its contacts with the ground: with v_t the mean
 /// tangential velocity there, weighted by normal force, it slides by |∫ v_t dt|. A wheel that rolls
@@ -32,7 +32,7 @@ struct StandingOutcome {
   double tilt = 0.0;      ///< of the base, against the start [rad]
   double speed = 0.0;     ///< at the end, downwards, of the base [m/s]
   std::vector<std::string> onGround;  ///< links that did not stand there
-  std::optional<double> since;        ///< one of them is on the ground [s]
+  std::optional<double> since;  ///< some of them are on the ground, a second apart at most [s]
   struct Slide {
     std::string link;
     double way;  ///< [m]
@@ -78,10 +78,12 @@ class Standing {
     Vector3 up_B = Vector3::UnitZ();
     bool stoodOnRoot = false;  ///< looksBolted()
     double firstTouch = -1.0;  ///< [s]
+    double lies = -1.0;        ///< links that do not stand touch from here on [s]; −1: none
+    double lastLay = -1.0;     ///< one of them touched last [s]
 
     template <class Archive>
     void archive(Archive& a) {
-      a(firstTouch);
+      a(firstTouch, lies, lastLay);
     }
   };
   double heightOf(const Robot& robot, const Kinematics& k) const;

@@ -155,7 +155,9 @@ std::string Verdict::reasonOf(const GoalRecord::Track& track, const SeenStep& st
   const std::vector<char> counts = dofsOf(track);
   std::vector<std::string> parts;
   for (const StandingOutcome& o : standing_.outcomes(step.data.kinematics, step.record.time))
-    if (o.fell) parts.push_back(fmt::format("the robot of {} fell", o.base));
+    if (o.fell || o.inAir)
+      parts.push_back(
+          fmt::format("the robot of {} {}", o.base, o.fell ? "fell" : "touches nothing"));
   if (const int dof = track.last.dof; dof >= 0)
     parts.push_back("farthest is " + model_.jointNames[model_.dofs[dof].body]);
   parts.push_back(reachReason(track, step));

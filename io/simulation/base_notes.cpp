@@ -76,8 +76,10 @@ std::string fixedRoot(const Model& model) {
   return "world";
 }
 
-bool isRobot(const Model& model, int tree) {
-  return model.floats(tree) && model.trees[tree].bodyEnd - model.trees[tree].rootBody > 1;
+/// `origin` tells URDFs, which may be a body alone, from the objects of a scene.
+bool isRobot(const Model& model, int tree, BaseOrigin origin) {
+  const Tree& t = model.trees[tree];
+  return model.floats(tree) && (origin != BaseOrigin::scene || t.bodyEnd - t.rootBody > 1);
 }
 
 std::string boltsDown(BaseOrigin origin) {
@@ -100,7 +102,7 @@ std::vector<std::string> standsOn(const Model& model, const Kinematics& k, int t
 std::vector<std::string> floatingLines(const Model& model, const Kinematics& k, BaseOrigin origin) {
   std::vector<std::string> lines, names;
   for (int t = 0; t < static_cast<int>(model.trees.size()); ++t) {
-    if (!isRobot(model, t)) continue;
+    if (!isRobot(model, t, origin)) continue;
     const std::string& base = model.bodyNames[model.trees[t].rootBody];
     names.push_back(base);
     const std::string why = origin == BaseOrigin::guess
@@ -182,7 +184,7 @@ BaseNotes baseNotes(const Model& model, const State& start, ContactSource& conta
     if (model.bodies[root].massless)
       notes.warnings.push_back(fmt::format("root link {} has no mass and floats: was {} meant?",
                                            model.bodyNames[root], boltsDown(origin)));
-    else if (heavy && isRobot(model, t))
+    else if (heavy && isRobot(model, t, origin))
       if (auto warning = supportWarning(model, k, t, touching, origin))
         notes.warnings.push_back(std::move(*warning));
   }

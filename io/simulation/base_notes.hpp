@@ -31,7 +31,7 @@ struct BaseNotes {
 };
 
 /// `contacts` is asked what touches where the robots are lowered by 5 mm: their support. A robot is
-/// a floating tree of more than one body, or the fixed one of a URDF.
+/// a floating tree, of a scene one of more than one body, or the fixed one of a URDF.
 BaseNotes baseNotes(const Model& model, const State& start, ContactSource& contacts,
                     BaseOrigin origin);
 

@@ -278,5 +278,14 @@ TEST(Table, EndsTheRunUnlessQuiet) {
   EXPECT_EQ(silent.err, "");
 }
 
+TEST(Outputs, ATableIsNoOtherFormat) {
+  const io::TempFolder folder;
+  const Outcome outcome = simulate({dataFile("robots/arm.urdf"), "--passive", "--duration", "0.01",
+                                    "--log", folder.path() / "run.MCAP"});
+  EXPECT_EQ(outcome.exitCode, 2);
+  EXPECT_NE(outcome.err.find("run.csv"), std::string::npos) << outcome.err;
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "run.MCAP"));
+}
+
 }  // namespace
 }  // namespace softgauss::test

@@ -121,6 +121,18 @@ TEST(Verdict, AHumanoidOnItsWayDownIsFalling) {
   EXPECT_EQ(run.line("stood"), "");
 }
 
+// Its pelvis is down before 3 s, and no bounce of a limb after that makes it later.
+TEST(Verdict, ARobotFellWhenItsFirstLinkCameDown) {
+  const auto since = [](const char* duration) {
+    const Told run({dataFile("robots/humanoid.urdf"), "--passive", "--duration", duration});
+    std::smatch found;
+    const std::string line = run.line("fell");
+    EXPECT_TRUE(std::regex_search(line, found, std::regex("since ([0-9.]+) s"))) << line;
+    return found.size() > 1 ? std::stod(found[1]) : 0.0;
+  };
+  EXPECT_EQ(since("3"), since("6"));
+}
+
 TEST(Verdict, AHumanoidThatHoldsItsPostureStood) {
   const Told run({dataFile("robots/humanoid.urdf"), "--posture", "--duration", "1"});
   EXPECT_EQ(run.json["outcome"], "completed");
@@ -244,6 +256,16 @@ TEST(Base, TheConventionIsALineOfEveryRun) {
   EXPECT_TRUE(out({humanoid}).starts_with("base pelvis floats; --base fixed bolts it down\n"));
   EXPECT_TRUE(out({humanoid, "--base", "fixed"})
                   .starts_with("base pelvis is bolted down; --base floating lets it go\n"));
+}
+
+TEST(Base, ABodyAloneFloats) {
+  const io::TempFolder folder;
+  const std::string stone = folder.write("stone.urdf", R"(<robot name="stone"><link name="stone">
+    <inertial><mass value="1"/>
+      <inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial>
+    <collision><geometry><sphere radius="0.1"/></geometry></collision></link></robot>)");
+  const Told run({stone, "--passive", "--duration", "0.01"});
+  EXPECT_EQ(run.json["bases"][0], "base stone floats; --base fixed bolts it down");
 }
 
 TEST(Base, AGuessIsToldWithItsReason) {
