@@ -35,7 +35,8 @@ class Guide : public ::testing::Test {
 int firstProgram() {
   // clang-format off
   softgauss::Simulation sim = softgauss::Simulation::load("data/robots/humanoid.urdf");
-  sim.goals.reach("right_hand", {0.4, -0.2, 1.1});
+  sim.goals.reach("right_hand", {0.4, -0.2, 1.1}).weight = 1e5;
+  sim.goals.posture(1000);  // a reach alone does not balance
   while (sim.time() < 2.0)
     if (softgauss::isRefused(sim.step())) {
       std::puts(sim.failure().c_str());
@@ -47,6 +48,8 @@ int firstProgram() {
               hand.z(), foot.z(), sim.torque("right_knee"));
   // clang-format on
   EXPECT_GT(hand.z(), 0.9) << "it stands and lifts its hand";
+  sim.run(28.0);
+  EXPECT_GT(sim.pose("pelvis").p.z(), 0.9) << "and goes on standing";
   EXPECT_GT(foot.z(), 0.0);
   return 0;
 }
