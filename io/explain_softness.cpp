@@ -59,10 +59,10 @@ std::vector<Group> groupsOf(const Model& model, const ExplainContext& context) {
     std::string surfaces = key.first == key.second
                                ? fmt::format("{} on itself", key.first)
                                : fmt::format("{} and {}", key.first, key.second);
-    const bool own = std::any_of(
-        model.contactPairs.begin(), model.contactPairs.end(), [&](const ContactPair& p) {
-          return std::minmax(a, b) == std::minmax(p.geometryA, p.geometryB);
-        });
+    const bool own = std::any_of(model.contactPairs.begin(), model.contactPairs.end(),
+                                 [pair = std::pair(std::minmax(a, b))](const ContactPair& p) {
+                                   return pair == std::minmax(p.geometryA, p.geometryB);
+                                 });
     if (own) {
       surfaces = fmt::format("'{}' and '{}', a surface of their own", first.name, second.name);
       key = {surfaces, ""};

@@ -29,11 +29,11 @@ WrenchSchedule::WrenchSchedule(const Model& model, const std::vector<TimedWrench
 }
 
 double WrenchSchedule::nextChange(double time) const {
-  constexpr double kTimeTolerance = 1e-9;  // [s]
+  constexpr double kSameTime = 1e-9;  // [s]
   double next = kInfinity;
   for (const TimedWrench& wrench : wrenches_)
     for (const double change : {wrench.start, wrench.end})
-      if (change > time + kTimeTolerance) next = std::min(next, change);
+      if (change > time + kSameTime) next = std::min(next, change);
   return next;
 }
 

@@ -29,8 +29,8 @@ void setJointPositions(const Model& model, const std::vector<std::pair<std::stri
                        std::set<int> placed, State& state) {
   std::set<std::string> seen;
   for (const auto& [name, value] : q0) {
-    const auto fail = [&](const std::string& problem) {
-      throw OptionError(fmt::format("q0 {}: {}", name, problem));
+    const auto fail = [&joint = name](const std::string& problem) {
+      throw OptionError(fmt::format("q0 {}: {}", joint, problem));
     };
     if (const std::string problem = io::jointProblem(model, name); !problem.empty()) fail(problem);
     const int body = model.findJoint(name);
