@@ -56,22 +56,6 @@ bool canBeMade(const fs::path& file) {
   return true;
 }
 
-/// Makes a new file beside `target` and remembers it as `part`; −1: it cannot, errno says why.
-int makePart(const fs::path& target, fs::path& part) {
-  constexpr int kMostNames = 100;  // that a process killed by force may have left
-  int made = -1;
-  for (int i = 0; i < kMostNames && made < 0; ++i) {
-    part = rememberPart(target);
-    made = open(part.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (made >= 0) break;
-    const int error = errno;
-    forgetPart(std::exchange(part, {}));
-    errno = error;
-    if (error != EEXIST) break;
-  }
-  return made;
-}
-
 bool canBeOpened(const fs::path& file, const struct stat& info) {
   if (S_ISDIR(info.st_mode)) {
     errno = EISDIR;
@@ -118,10 +102,15 @@ void expectWritable(const fs::path& file, const std::string& what) {
                      fmt::format("cannot be written: {}", std::strerror(errno)));
 }
 
+Descriptor::~Descriptor() {
+  if (number_ >= 0) close(number_);
+}
+
 OutputFile::OutputFile(const fs::path& file, const std::string& what) : target_(file), what_(what) {
   expectWritable(file, what);
   if (isWrittenInPlace(file)) return;
   target_ = withoutLinks(file);
+  removeLeftParts(target_);
   fs::path part;
   const int made = makePart(target_, part);
   if (made < 0)
@@ -138,6 +127,7 @@ OutputFile::OutputFile(OutputFile&& other) noexcept
       part_(std::exchange(other.part_, {})),
       what_(std::move(other.what_)),
       file_(std::move(other.file_)),
+      lock_(std::move(other.lock_)),
       error_(other.error_) {}
 
 OutputFile::~OutputFile() {
@@ -157,6 +147,8 @@ void OutputFile::open() {
   } else {
     const int made = makePart(target_, part_);
     if (made >= 0) file_.reset(fdopen(made, "wb"));
+    // The lock outlives the file's closing, until it has its name.
+    lock_ = Descriptor(made < 0 ? -1 : fcntl(made, F_DUPFD_CLOEXEC, STDERR_FILENO + 1));
   }
   note(file_ != nullptr);
 }
@@ -173,6 +165,7 @@ void OutputFile::commit() {
   if (error_ == 0 && !part_.empty()) {
     note(std::rename(part_.c_str(), target_.c_str()) == 0);
     if (error_ == 0) forgetPart(std::exchange(part_, {}));
+    lock_ = Descriptor();
   }
   if (error_ != 0) fail();
 }

@@ -8,6 +8,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace softgauss::io::detail {
 
@@ -15,6 +16,21 @@ struct FileCloser {
   void operator()(std::FILE* file) const { std::fclose(file); }
 };
 using OpenFile = std::unique_ptr<std::FILE, FileCloser>;
+
+/// An open file descriptor, or none.
+class Descriptor {
+ public:
+  explicit Descriptor(int number = -1) : number_(number) {}
+  ~Descriptor();
+  Descriptor(Descriptor&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
+  Descriptor& operator=(Descriptor&& other) noexcept {
+    std::swap(number_, other.number_);
+    return *this;
+  }
+
+ private:
+  int number_;
+};
 
 /// Opens what is written from its beginning on and in its place: "-" is standard output, which a
 /// file may be too; links are followed. Null where it cannot be opened, errno says why.
@@ -49,7 +65,8 @@ class OutputFile {
   std::filesystem::path part_;  ///< that is being written; empty: none
   std::string what_;
   OpenFile file_;
-  int error_ = 0;  ///< errno of the first that failed
+  Descriptor lock_;  ///< says that the part is being written, until it has its name
+  int error_ = 0;    ///< errno of the first that failed
 };
 
 /// Throws ModelError where `file` cannot be made or written, and leaves everything as it is.

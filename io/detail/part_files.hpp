@@ -13,4 +13,12 @@ namespace softgauss::io::detail {
 std::filesystem::path rememberPart(const std::filesystem::path& target);
 void forgetPart(const std::filesystem::path& part) noexcept;
 
+/// Makes such a file and holds a lock on it as long as the descriptor, or a copy of it, is open.
+/// −1: it cannot, errno says why.
+int makePart(const std::filesystem::path& target, std::filesystem::path& part);
+
+/// Removes from the folder of `target` those that nobody writes any more, as a process has left
+/// them that was killed (kill -9). Looks once where it is asked again about the same folder.
+void removeLeftParts(const std::filesystem::path& target);
+
 }  // namespace softgauss::io::detail

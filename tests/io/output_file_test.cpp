@@ -150,5 +150,25 @@ TEST(OutputFile, HalfWrittenIsRemovedBeforeASignalEndsTheProcess) {
   EXPECT_TRUE(namesIn(folder.path()).empty());
 }
 
+TEST(OutputFile, LeftByAKilledProcessIsRemovedByTheNext) {
+  const TempFolder folder, other;
+  folder.write("softgauss-123-4.part", "left");
+  folder.write("softgauss-notes.part", "of the user");
+  fs::create_symlink("page.html", folder.path() / "softgauss-5-6.part");
+  writeAll(folder.path() / "page.html", "new");
+  EXPECT_EQ(namesIn(folder.path()),
+            (std::set<std::string>{"page.html", "softgauss-5-6.part", "softgauss-notes.part"}));
+  EXPECT_EQ(textOf(folder.path() / "page.html"), "new");
+
+  // What is being written stays, also where it is looked for.
+  detail::OutputFile out(other.path() / "page.html", "page");
+  out.write("half");
+  writeAll(folder.path() / "page.html", "newer");
+  writeAll(other.path() / "second.html", "second");
+  EXPECT_EQ(namesIn(other.path()).size(), 2u);
+  out.commit();
+  EXPECT_EQ(textOf(other.path() / "page.html"), "half");
+}
+
 }  // namespace
 }  // namespace softgauss::io
