@@ -20,6 +20,7 @@
 #include "softgauss/engine/core/bytes.hpp"
 #include "softgauss/engine/core/check.hpp"
 #include "softgauss/io/detail/child_process.hpp"
+#include "softgauss/io/printable.hpp"
 
 namespace softgauss {
 
@@ -208,7 +209,7 @@ std::string import(const MeshFile& file, std::uintmax_t largest, Mesh& mesh,
   const aiScene* scene =
       importer.ReadFile(file.path.string(), aiProcess_Triangulate | aiProcess_SortByPType);
   if (!scene || !scene->mRootNode)
-    return fmt::format("cannot be read: {}", importer.GetErrorString());
+    return fmt::format("cannot be read: {}", printable(importer.GetErrorString()));
   Collector(*scene, mesh, images).add(*scene->mRootNode, aiMatrix4x4());
   return {};
 }
