@@ -82,8 +82,8 @@ std::optional<SingularMass> findSingularMass(const Model& model, const VectorX& 
   const double own = inertia.M.row(dof)[dof];
   if (!std::isfinite(1.0 / own))
     return SingularMass{element, link,
-                        "moves an inertia of " + number(own) +
-                            ", whose inverse overflows; expected more, or an armature"};
+                        "moves an inertia of " + number(own) + ", with link '" + link +
+                            "', whose inverse overflows; expected more, or an armature"};
   return SingularMass{element, link,
                       "moves nothing that other joints do not move alike: the mass matrix is "
                       "singular in the initial configuration; try another start (--q0, or "
