@@ -3,6 +3,7 @@
 
 #include "softgauss/engine/step/forward.hpp"
 #include "softgauss/engine/step/integrators/implicit_forces.hpp"
+#include "softgauss/engine/step/integrators/kick.hpp"
 #include "softgauss/engine/step/integrators/velocity_derivative.hpp"
 
 namespace softgauss {
@@ -23,7 +24,7 @@ bool implicitVelocity(const Model& model, Data& data, State& state) {
   else if (!solveMass(data, added, net))
     return false;
   s.start = state.v + h * data.acceleration;
-  if (!s.start.allFinite()) return false;
+  if (tooFast(model, s.start)) return false;
   state.v = s.start;
   integratePosition(model, state.v, h, state.q);
   state.time += h;
