@@ -94,7 +94,7 @@ struct TopCorner {
 };
 
 TopCorner topCorner(std::span<const Triangle> triangles, const Vector3& d_G) {
-  TopCorner top{nullptr, 0};
+  TopCorner top{triangles.data(), 0};  // also where no comparison holds, as the direction is none
   double height = -kInfinity, facing = -kInfinity;
   for (const Triangle& t : triangles) {
     const double faces = t.normal.dot(d_G);

@@ -146,8 +146,10 @@ void checkGeometry(const GeometrySpec& g, const Options& options) {
   const std::string element = "geometry '" + g.name + "'";
   const auto fail = [&](const std::string& text) { throw ModelError(g.where, element, text); };
   const auto positive = [&](double x, const char* what) {
-    if (!(x > 0.0) || !std::isfinite(x))
-      fail(std::string(what) + " is " + number(x) + " m, expected more than 0");
+    constexpr double kLargest = 1e12;  // as of numbers in files: their products do not overflow
+    if (!(x > 0.0) || !(x <= kLargest))
+      fail(std::string(what) + " is " + number(x) + " m, expected more than 0 and at most " +
+           number(kLargest));
   };
   if (!g.X_LG.R.allFinite() || !g.X_LG.p.allFinite()) fail("pose is not finite");
   switch (g.shape.kind) {
