@@ -27,6 +27,11 @@ void expectStateOf(const Model& model, const State& state) {
   expect(std::isfinite(state.time) && state.q.allFinite() && state.v.allFinite() &&
              state.a.allFinite(),
          "holds numbers that are not finite");
+  constexpr double kRounding = 1e-6;  // each step normalises: runs keep far less
+  for (const Body& body : model.bodies)
+    expect(body.joint != JointKind::floating ||
+               std::abs(state.q.segment<4>(body.q + 3).norm() - 1.0) < kRounding,
+           "holds an orientation that is no rotation");
   constexpr int kMostSolves = 1 << 24;
   expect(warm.gddSearchAge >= 0 && warm.gddSearchAge < kMostSolves && warm.gddSearchWait >= 1 &&
              warm.gddSearchWait < kMostSolves,
