@@ -331,7 +331,10 @@ bool ActiveSet::startAgain(const Model& model, const GoalCost& cost, const Contr
   path_.held.clear();
   u_.setZero();
   if (std::isfinite(moveTo(model, cost, nullptr, data))) {
+    const int most = options.maxIterations;  // of both together
+    options.maxIterations = std::max(0, most - first_.report.iterations);
     const std::optional<GddStatus> status = descend(cost, wanted, data);
+    options.maxIterations = most;
     report_.status = status.value_or(GddStatus::notFinite);
     if (report_.status != GddStatus::notFinite) finish(limits, cost, data);
   } else {

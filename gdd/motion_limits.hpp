@@ -22,7 +22,7 @@
 namespace softgauss::gdd {
 
 struct MotionLimits {
-  double weight = 1e9;         ///< w [-], against 10³ of a posture and 10⁵ of a strong goal
+  double weight = 1e8;         ///< w [-], against 10³ of a posture and 10⁵ of a strong goal
   double brakingTime = 0.01;   ///< T [s]
   double approachTime = 0.1;   ///< τ [s]
   double arrivalSpeed = 0.05;  ///< v₀ [rad/s or m/s]
