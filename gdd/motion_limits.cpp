@@ -34,11 +34,11 @@ void MotionLimits::addCost(const GoalContext& context, const ControlLimits& limi
   VectorX& row = cost.workspace().dofs;
   row.setZero();
   // sign 1: upwards, with `room` [rad or m] to the upper end of the range; −1: downwards.
-  const auto bound = [&](int dof, double sign, double room) {
+  const auto bound = [&](int dof, double sign, double room, double gained) {
     const double allowed =
         std::min(model.dofs[dof].velocityLimit, std::max(arrivalSpeed, room / approachTime));
     const double speed = sign * context.state.v[dof];
-    if (!(speed + gain(context, limits, dof) > kBegins * allowed)) return;
+    if (!(speed + gained > kBegins * allowed)) return;
     row[dof] = -sign;
     cost.addOneSided(row, weight * context.data.inertia.M.row(dof)[dof],
                      (speed - allowed) / std::max(brakingTime, context.model.options.timestep));
@@ -51,8 +51,9 @@ void MotionLimits::addCost(const GoalContext& context, const ControlLimits& limi
     while (range != model.ranges.end() && range->body < body) ++range;
     const bool ranged = range != model.ranges.end() && range->body == body;
     const double q = context.state.q[model.bodies[body].q];
-    bound(dof, 1.0, ranged ? range->upper - q : kInfinity);
-    bound(dof, -1.0, ranged ? q - range->lower : kInfinity);
+    const double gained = gain(context, limits, dof);
+    bound(dof, 1.0, ranged ? range->upper - q : kInfinity, gained);
+    bound(dof, -1.0, ranged ? q - range->lower : kInfinity, gained);
   }
 }
 

@@ -68,14 +68,10 @@ void Standing::observe(const Kinematics& kinematics,
     link.load += c.normalForce();
   }
   for (Link& link : links_) {
-    if (link.load == 0.0) {
-      if (time - link.lastTouch > kStillTouches) link.since = -1.0;
-      continue;
-    }
+    if (link.load == 0.0) continue;
     Robot& robot = robots_[link.robot];
     if (robot.firstTouch < 0.0) robot.firstTouch = time;
     if (time <= robot.firstTouch + kComesToStand) link.stands = true;
-    if (link.since < 0.0) link.since = time;
     link.lastTouch = time;
     link.slid += h / link.load * link.drift;
     if (link.stands) continue;
@@ -102,7 +98,7 @@ std::vector<StandingOutcome> Standing::outcomes(const Kinematics& end, double ti
       const std::string& name = contactLinks_.names()[l];
       if (link.stands && link.slid.norm() > kToldSlide)
         o.slides.push_back({name, link.slid.norm()});
-      if (link.since < 0.0 || time - link.lastTouch > kStillTouches) continue;
+      if (time - link.lastTouch > kStillTouches) continue;
       o.inAir = false;
       baseTouches = baseTouches || name == o.base;
       if (link.stands) continue;

@@ -59,8 +59,7 @@ class Standing {
   struct Link {
     int robot = -1;           ///< of robots_
     bool stands = false;      ///< on the ground when the robot came to stand
-    double since = -1.0;      ///< it touches the ground from here on [s]; −1: it does not
-    double lastTouch = -1.0;  ///< [s]
+    double lastTouch = -1.0;  ///< [s]; −1: never
     Vector3 slid = Vector3::Zero();
     // Of the present step:
     double load = 0.0;
@@ -68,7 +67,7 @@ class Standing {
 
     template <class Archive>
     void archive(Archive& a) {
-      a(stands, since, lastTouch, slid);
+      a(stands, lastTouch, slid);
     }
   };
   struct Robot {
