@@ -8,6 +8,7 @@
 #include "softgauss/io/goals.hpp"
 #include "softgauss/io/inputs.hpp"
 #include "softgauss/io/log.hpp"
+#include "softgauss/io/mcap_log.hpp"
 #include "softgauss/io/mesh.hpp"
 #include "softgauss/io/names.hpp"
 #include "softgauss/io/output.hpp"

@@ -24,15 +24,6 @@ constexpr const char* kStepColumns[] = {"contacts",     "constraints",       "it
                                         "stationarity", "forward_us",        "gdd_us",
                                         "step_us",      "energy_J",          "max_penetration_m"};
 
-/// What columns call a joint; for what floats, so that its parts have names of their own.
-std::string columnName(const Model& model, int body) {
-  const std::string& name = model.jointNames[static_cast<std::size_t>(body)];
-  if (model.bodies[static_cast<std::size_t>(body)].joint != JointKind::floating) return name;
-  const bool taken = std::any_of(std::begin(kPoseParts), std::end(kPoseParts),
-                                 [&](auto part) { return model.findJoint(name + part) >= 0; });
-  return taken ? name + "(floating)" : name;
-}
-
 /// Names of their own for columns: a second one of a name is "name#2".
 std::string unique(const std::string& name, std::map<std::string, int>& known) {
   const int count = ++known[name];
@@ -40,6 +31,14 @@ std::string unique(const std::string& name, std::map<std::string, int>& known) {
 }
 
 }  // namespace
+
+std::string columnName(const Model& model, int body) {
+  const std::string& name = model.jointNames[static_cast<std::size_t>(body)];
+  if (model.bodies[static_cast<std::size_t>(body)].joint != JointKind::floating) return name;
+  const bool taken = std::any_of(std::begin(kPoseParts), std::end(kPoseParts),
+                                 [&](auto part) { return model.findJoint(name + part) >= 0; });
+  return taken ? name + "(floating)" : name;
+}
 
 void measureWhole(const Model& model, const Kinematics& kinematics, StepRecord& record) {
   const Momentum momentum = computeMomentum(model, kinematics);

@@ -66,6 +66,10 @@ struct StepRecord {
 /// What a record tells of the whole at `kinematics`: centre of mass and momentum.
 void measureWhole(const Model& model, const Kinematics& kinematics, StepRecord& record);
 
+/// What columns call the joint of a body; of a floating one, so that its parts have names of their
+/// own.
+std::string columnName(const Model& model, int body);
+
 /// Names of the columns, unquoted, in order. `goals` are those of the goals' errors, units
 /// included.
 std::vector<std::string> logColumns(const Model& model, const std::vector<std::string>& goals = {});

@@ -9,6 +9,7 @@
 
 #include "apps/simulate_gdd/options.hpp"
 #include "softgauss/io/inputs.hpp"
+#include "softgauss/io/mcap_log.hpp"
 #include "softgauss/io/output.hpp"
 
 namespace softgauss::app {
@@ -21,7 +22,8 @@ constexpr double kMostStepsOfARun = 1e9;
 
 namespace {
 
-/// Tables are CSV, whatever they are called; names of other formats are a mistake.
+/// Tables are CSV, whatever they are called, but for a log as MCAP; names of other formats are a
+/// mistake.
 void checkTableNames(const SimulateOptions& options) {
   for (const auto& [option, file] :
        {std::pair{"--log", &options.log}, std::pair{"--contacts", &options.contacts}}) {
@@ -29,7 +31,7 @@ void checkTableNames(const SimulateOptions& options) {
     std::transform(ending.begin(), ending.end(), ending.begin(),
                    [](unsigned char c) { return std::tolower(c); });
     for (const char* other : {".mcap", ".bag", ".json", ".html", ".gz", ".zip", ".h5", ".parquet"})
-      if (ending == other)
+      if (ending == other && !(file == &options.log && io::isMcap(options.log)))
         throw UsageError(fmt::format(
             "{}: found '{}', expected the name of a CSV file, such as {}", option, file->string(),
             std::filesystem::path(*file).replace_extension(".csv").string()));

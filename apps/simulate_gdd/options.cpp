@@ -219,7 +219,7 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
   app.add_flag("--explain", options.explain, "report what was loaded and simulate nothing")
       ->group(output);
   app.add_option("--log", options.log,
-                 "write every step to a .csv file; here and below - is standard output")
+                 "write every step to a .csv or .mcap file; here and below - is standard output")
       ->group(output);
   app.add_option("--log-every", options.logEvery, "write every N-th step to the log, default 1")
       ->check(CLI::Range(1L, 1000000000L))

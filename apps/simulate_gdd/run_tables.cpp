@@ -4,7 +4,10 @@
 namespace softgauss::app {
 
 void RunTables::open(const Model& model, const std::vector<std::string>& goals) {
-  if (!options_.log.empty()) log_.emplace(options_.log, model, goals, options_.logEvery, logEnd_);
+  if (io::isMcap(options_.log))
+    mcap_.emplace(options_.log, model, goals, options_.logEvery, mcapEnd_);
+  else if (!options_.log.empty())
+    log_.emplace(options_.log, model, goals, options_.logEvery, logEnd_);
   if (!options_.contacts.empty()) contacts_.emplace(options_.contacts, model, contactsEnd_);
 }
 
@@ -12,12 +15,14 @@ void RunTables::write(const io::StepRecord& row,
                       const std::vector<Snapshot::ContactForce>& touching) {
   if (!errors_.none()) return;
   if (log_) errors_.attempt([&] { log_->write(row); });
+  if (mcap_) errors_.attempt([&] { mcap_->write(row, touching); });
   if (contacts_ && !row.isEnd) errors_.attempt([&] { contacts_->write(row.time, touching); });
 }
 
 void RunTables::close() {
   if (!errors_.none()) return;
   if (log_) errors_.attempt([&] { log_->close(); });
+  if (mcap_) errors_.attempt([&] { mcap_->close(); });
   if (contacts_) errors_.attempt([&] { contacts_->close(); });
 }
 

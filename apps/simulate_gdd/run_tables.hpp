@@ -10,6 +10,7 @@
 #include "apps/simulate_gdd/options.hpp"
 #include "softgauss/io/contact_log.hpp"
 #include "softgauss/io/log.hpp"
+#include "softgauss/io/mcap_log.hpp"
 
 namespace softgauss::app {
 
@@ -44,7 +45,7 @@ class RunTables {
   /// `goals`: columns of their errors. After archive() has read where an earlier process had come
   /// to, the tables go on from there. Throws ModelError.
   void open(const Model& model, const std::vector<std::string>& goals);
-  bool hasLog() const { return log_.has_value(); }
+  bool hasLog() const { return log_ || mcap_; }
   /// A step, or the end, with the contacts of the last step. After an error nothing is written.
   void write(const io::StepRecord& row, const std::vector<Snapshot::ContactForce>& touching);
   void close();
@@ -53,18 +54,21 @@ class RunTables {
   template <class Archive>
   void archive(Archive& a) {
     if constexpr (!Archive::kReads) {
+      mcapEnd_ = mcap_ ? mcap_->end() : std::string();
       logEnd_ = log_ ? std::optional(log_->end()) : std::nullopt;
       contactsEnd_ = contacts_ ? std::optional(contacts_->end()) : std::nullopt;
     }
-    a(logEnd_, contactsEnd_);
+    a(logEnd_, contactsEnd_, mcapEnd_);
   }
 
  private:
   const SimulateOptions& options_;
   OutputErrors& errors_;
   std::optional<io::LogWriter> log_;
+  std::optional<io::McapLog> mcap_;  ///< in its place
   std::optional<io::ContactLog> contacts_;
   std::optional<io::TableEnd> logEnd_, contactsEnd_;  ///< where they go on from
+  std::string mcapEnd_;
 };
 
 }  // namespace softgauss::app

@@ -51,9 +51,9 @@ std::string tooLarge(std::optional<std::uintmax_t> most) {
                      most ? "" : " (--largest-file allows more)");
 }
 
-struct Descriptor {
+struct OpenInput {
   int number = -1;
-  ~Descriptor() {
+  ~OpenInput() {
     if (number > STDERR_FILENO) close(number);
   }
 };
@@ -108,7 +108,7 @@ std::string readInput(const std::string& file, const std::string& expected,
   // Looked at before it is opened, as opening may wait or act, and after it, as it may be another.
   if (const std::string problem = inputProblem(file); !problem.empty())
     refuse(file, problem, expected);
-  const Descriptor opened{open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)};
+  const OpenInput opened{open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)};
   struct stat info = {};
   if (opened.number < 0 || fstat(opened.number, &info) != 0)
     refuse(file, fmt::format("cannot be read: {}", std::strerror(errno)), expected);

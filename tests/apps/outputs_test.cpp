@@ -280,11 +280,13 @@ TEST(Table, EndsTheRunUnlessQuiet) {
 
 TEST(Outputs, ATableIsNoOtherFormat) {
   const io::TempFolder folder;
-  const Outcome outcome = simulate({dataFile("robots/arm.urdf"), "--passive", "--duration", "0.01",
-                                    "--log", folder.path() / "run.MCAP"});
-  EXPECT_EQ(outcome.exitCode, 2);
-  EXPECT_NE(outcome.err.find("run.csv"), std::string::npos) << outcome.err;
-  EXPECT_FALSE(std::filesystem::exists(folder.path() / "run.MCAP"));
+  for (const auto& [option, file] : {std::pair{"--log", "run.JSON"}, {"--contacts", "run.mcap"}}) {
+    const Outcome outcome = simulate({dataFile("robots/arm.urdf"), "--passive", "--duration",
+                                      "0.01", option, folder.path() / file});
+    EXPECT_EQ(outcome.exitCode, 2);
+    EXPECT_NE(outcome.err.find("run.csv"), std::string::npos) << outcome.err;
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / file));
+  }
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 #
 #   install.sh FOLDER
 #
-# FOLDER is in the build tree; playwright-core comes to FOLDER/package. node and Chromium are
+# FOLDER is in the build tree; playwright-core comes to FOLDER/playwright-core. node and Chromium are
 # Debian's; they are installed where they are missing and this user may do so. On success the last
 # line is Chromium's path. Exit code 77: one of them cannot be had here.
 set -euo pipefail
@@ -30,5 +30,7 @@ if ((${#missing[@]})); then
     apt-get install -y --no-install-recommends "${missing[@]}"; } >"$folder/apt.log" 2>&1 ||
     skip "apt-get cannot install ${missing[*]}; $folder/apt.log says why"
 fi
-node "$here/fetch_playwright.mjs" "$folder" || skip "playwright-core cannot be had"
+node "$here/npm_package.mjs" "$folder" playwright-core 1.57.0 \
+  agTcKlMw/mjBWOnD6kFZttAAGHgi/Nw0CZ2o6JqWSbMlI219lAFLZZCyqByTsvVAJq5XA5H8cA6PrvBRpBWEuQ== ||
+  skip "playwright-core cannot be had"
 browser

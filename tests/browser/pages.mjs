@@ -15,7 +15,7 @@ export const PATIENCE = 120000;
 
 export class Browser {
   static async launch(folder, executablePath, args = SOFTWARE) {
-    const { chromium } = createRequire(import.meta.url)(resolve(folder, 'package'));
+    const { chromium } = createRequire(import.meta.url)(resolve(folder, 'playwright-core'));
     return new Browser(folder, await chromium.launch({ executablePath, args }));
   }
 
