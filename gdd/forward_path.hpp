@@ -37,7 +37,7 @@ class ForwardPath {
 
   VectorX a;             ///< f(u), moved along the path
   VectorX slope;         ///< ∇ℓ(a) without contact forces, moved along
-  double value;          ///< ℓ(a) likewise
+  double value = 0.0;    ///< ℓ(a) likewise
   HeldBreakpoints held;  ///< rows at breakpoints, and all that paths have crossed
 
   /// Follows the path from the present point, where ȧ = rate; moves a, ℓ, ∇ℓ and the rows along.

@@ -37,6 +37,15 @@ void expectValues(CLI::App& app, int argc, char** argv) {
     if (option->get_items_expected_max() > 0) option->check(hasText);
 }
 
+/// A second value behind an option is taken for MODEL, and MODEL for one too many.
+void expectModelName(const std::filesystem::path& model) {
+  std::error_code error;
+  if (model.string().find('=') != std::string::npos && !std::filesystem::exists(model, error))
+    throw UsageError(fmt::format(
+        "found '{}' where MODEL is expected; an option takes one value, such as --q0 a=1,b=2",
+        model.string()));
+}
+
 }  // namespace
 
 std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
@@ -248,7 +257,12 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
   expectValues(app, argc, argv);
   std::vector<std::string> arguments = argumentsOf(argc, argv);
   std::reverse(arguments.begin(), arguments.end());  // as CLI11 takes them
-  if (!parses(app, std::move(arguments))) return std::nullopt;
+  try {
+    if (!parses(app, std::move(arguments))) return std::nullopt;
+  } catch (const UsageError&) {
+    expectModelName(options.model);
+    throw;
+  }
 
   if (asksForFiles->count() > 0) io::inputLimits().text = bytesOf(largestFile, "--largest-file");
   if (options.mostDofs < 1)

@@ -180,28 +180,29 @@ Shape readLandscape(const YamlMap& map) {
 }  // namespace
 
 Shape readShape(const YamlMap& map, MeshCache& meshes) {
-  const YamlMap::Entry* only = nullptr;
+  const YamlMap::Entry* found = nullptr;
   for (const std::string& key : kShapeKeys) {
     const YamlMap::Entry* entry = map.find(key);
-    if (entry && only)
-      map.fail(*entry, fmt::format("found beside {} in line {}, expected one shape", only->key,
-                                   only->line));
-    if (entry) only = entry;
+    if (entry && found)
+      map.fail(*entry, fmt::format("found beside {} in line {}, expected one shape", found->key,
+                                   found->line));
+    if (entry) found = entry;
   }
-  if (!only) map.required("sphere", "a shape: one of " + listed(kShapeKeys));
-  const YamlMap size = map.map(*only);
+  const YamlMap::Entry& only =
+      found ? *found : map.required("sphere", "a shape: one of " + listed(kShapeKeys));
+  const YamlMap size = map.map(only);
   const auto length = [&](const std::string& key) {
     return size.number(size.required(key, "a length [m]"), Range::positive);
   };
-  if (only->key == "plane") {
+  if (only.key == "plane") {
     size.expectOnly({});
     return Shape::plane();
   }
-  if (only->key == "sphere") {
+  if (only.key == "sphere") {
     size.expectOnly({"radius"});
     return Shape::sphere(length("radius"));
   }
-  if (only->key == "box") {
+  if (only.key == "box") {
     size.expectOnly({"size"});
     const YamlMap::Entry& entry = size.required("size", "three lengths [x, y, z] [m]");
     const Vector3 full = size.vector3(entry);
@@ -212,17 +213,17 @@ Shape readShape(const YamlMap& map, MeshCache& meshes) {
                     : "found a length of 0 or less, expected more");
     return Shape::box(0.5 * full);
   }
-  if (only->key == "mesh") {
+  if (only.key == "mesh") {
     size.expectOnly({"file", "scale"});
     const YamlMap::Entry& entry = size.required("file", "the name of a mesh file");
     Vector3 scale = Vector3::Ones();
     size.read("scale", scale);
     return Shape::hull(meshes.get(existingFile(size, entry, size.name(entry)), scale));
   }
-  if (only->key == "heights") return readLandscape(size);
+  if (only.key == "heights") return readLandscape(size);
   size.expectOnly({"radius", "length"});
   const double radius = length("radius"), half = 0.5 * length("length");
-  return only->key == "cylinder" ? Shape::cylinder(radius, half) : Shape::capsule(radius, half);
+  return only.key == "cylinder" ? Shape::cylinder(radius, half) : Shape::capsule(radius, half);
 }
 
 MeshUse readMeshUse(const YamlMap& map, MeshUse otherwise) {

@@ -129,7 +129,8 @@ class Script {
     line("set label 1 {} at screen 0.02,{} font 'Helvetica-Bold,15'",
          literal(recording.model().name), y(18.0));
     std::string subtitle = recording.command;
-    if (subtitle.size() > kLongestSubtitle) subtitle = subtitle.substr(0, kLongestSubtitle) + " …";
+    if (subtitle.size() > kLongestSubtitle)
+      subtitle.replace(kLongestSubtitle, std::string::npos, " …");
     if (!recording.outcome.message.empty()) subtitle = recording.outcome.message;
     line("set label 2 {} at screen 0.02,{} textcolor '{}'", literal(subtitle), y(36.0),
          recording.outcome.message.empty() ? "#666666" : "#c00000");
