@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "softgauss/io/mesh.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <utility>
 
 #include "softgauss/engine/core/check.hpp"
 #include "softgauss/io/detail/mesh_file.hpp"
 #include "softgauss/io/detail/mesh_import.hpp"
+#include "softgauss/io/detail/text.hpp"
 
 namespace softgauss::io {
 namespace {
@@ -27,7 +31,14 @@ Mesh readMesh(const std::filesystem::path& path, const Vector3& factors, std::ui
   if (mesh.triangles.empty()) detail::failMesh(path, "holds no triangle");
   scale(mesh, factors);
   for (const Vector3& vertex : mesh.vertices)
-    if (!vertex.allFinite()) detail::failMesh(path, "has a coordinate that is not finite");
+    if (!(vertex.cwiseAbs().maxCoeff() <= detail::kLargestNumber))
+      detail::failMesh(path, fmt::format("has a coordinate of {:g} m, expected at most {:g}",
+                                         vertex.cwiseAbs().maxCoeff(), detail::kLargestNumber));
+  if (const std::uintmax_t most = std::max(largest, kLargestMesh) / kBytesOfTriangle;
+      mesh.triangles.size() > most)
+    detail::failMesh(path, fmt::format("has {} triangles, expected at most {}; simplify it, or "
+                                       "--largest-mesh allows more",
+                                       mesh.triangles.size(), most));
   return mesh;
 }
 

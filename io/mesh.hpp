@@ -23,6 +23,9 @@ namespace softgauss::io {
 
 /// The largest file that is read where nobody says otherwise [bytes].
 inline constexpr std::uintmax_t kLargestMesh = 64u << 20;
+/// A mesh has at most a triangle for so many bytes of the largest file: its convex hull takes some
+/// 10 µs a triangle.
+inline constexpr std::uintmax_t kBytesOfTriangle = 128;
 
 /// Reads a mesh and multiplies its coordinates by `scale`; a mirroring scale turns the triangles
 /// so that they still face outwards. Throws ModelError naming the file when it cannot be read, is

@@ -76,10 +76,9 @@ struct SceneFile {
   bool hasGoals = false;                    ///< has a list that readGoals() reads
   std::optional<gdd::GddSolver> gddSolver;  ///< that follows them, where the file names one
 
-  /// The bodies of the joints in `positions`.
-  std::set<int> placedJoints(const Model& model) const;
   /// The state in which it starts, but for the heights of what stands on the ground. `model` was
-  /// built by `builder`. Throws ModelError where a position lies outside its joint's range.
+  /// built by `builder`. Throws ModelError where a position lies outside its joint's range, or is
+  /// that of a joint which follows another elsewhere.
   State initialState(const Model& model) const;
 };
 

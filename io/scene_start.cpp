@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <map>
 
 #include "softgauss/engine/core/check.hpp"
@@ -10,12 +11,6 @@
 #include "softgauss/io/scene.hpp"
 
 namespace softgauss::io {
-
-std::set<int> SceneFile::placedJoints(const Model& model) const {
-  std::set<int> bodies;
-  for (const JointValue& position : positions) bodies.insert(model.findJoint(position.joint));
-  return bodies;
-}
 
 State SceneFile::initialState(const Model& model) const {
   State state(model);
@@ -31,7 +26,17 @@ State SceneFile::initialState(const Model& model) const {
                                    value, range->second->lower, range->second->upper));
     state.q[model.bodies[static_cast<std::size_t>(body)].q] = value;
   }
-  placeFollowers(model, placedJoints(model), state.q);
+  std::set<int> placed;
+  for (const JointValue& position : positions) placed.insert(model.findJoint(position.joint));
+  placeFollowers(model, placed, state.q);
+  for (const auto& [joint, value, where, element] : positions) {
+    const double asked = followedPosition(model, model.findJoint(joint), state.q).value_or(value);
+    if (std::abs(value - asked) > kFollowerTolerance)
+      throw ModelError(where, element,
+                       fmt::format("found {:g}, expected {:.6g}, for the joint follows another; "
+                                   "give its leader",
+                                   value, asked));
+  }
   for (const JointValue& velocity : velocities)
     state.v[model.bodies[static_cast<std::size_t>(model.findJoint(velocity.joint))].v] =
         velocity.value;

@@ -86,6 +86,10 @@ class ShapeReader {
  private:
   std::shared_ptr<const Mesh> mesh(const UrdfShape& shape) {
     const detail::FoundFile found = finder_.find(shape.meshUri);
+    std::error_code ignored;
+    for (const std::string& place : found.searched)
+      if (found.path.empty() && std::filesystem::exists(place, ignored))
+        shape.element.fail(fmt::format("mesh '{}' {}", shape.meshUri, detail::inputProblem(place)));
     if (found.path.empty())
       shape.element.fail(fmt::format("mesh '{}' not found, expected it as one of: {}",
                                      shape.meshUri, detail::listed(found.searched, 20)));

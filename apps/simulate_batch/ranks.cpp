@@ -25,7 +25,7 @@ constexpr auto kPatience = std::chrono::seconds(10);
 class Background {
  public:
   template <class F>
-  explicit Background(F&& work)
+  requires(!std::is_same_v<std::remove_cvref_t<F>, Background>) explicit Background(F&& work)
       : thread_([this, work = std::forward<F>(work)] {
           try {
             work();
@@ -128,7 +128,7 @@ std::vector<long> Ranks::awaitRuns() {
       lost_ = message->text == "lost";
       return {};
     } else if (message->kind == mpi::Kind::runs) {
-      if (const std::vector<long> runs = mpi::runsOf(message->text); !runs.empty()) return runs;
+      if (std::vector<long> runs = mpi::runsOf(message->text); !runs.empty()) return runs;
     }
   }
 }

@@ -1,10 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/simulate_gdd/run_tables.hpp"
 
+#include <fmt/format.h>
+
+#include "softgauss/engine/core/check.hpp"
+
 namespace softgauss::app {
 
 void RunTables::open(const Model& model, const std::vector<std::string>& goals) {
-  if (io::isMcap(options_.log))
+  const bool mcap = io::isMcap(options_.log);
+  if (!options_.log.empty() && (mcap ? logEnd_.has_value() : !mcapEnd_.empty()))
+    throw ModelError({options_.log.string(), 0}, "--log",
+                     fmt::format("found {}, expected {} as the run began it", mcap ? "MCAP" : "CSV",
+                                 mcap ? "CSV" : "MCAP"));
+  if (mcap)
     mcap_.emplace(options_.log, model, goals, options_.logEvery, mcapEnd_);
   else if (!options_.log.empty())
     log_.emplace(options_.log, model, goals, options_.logEvery, logEnd_);

@@ -17,7 +17,10 @@ constexpr int kRepetitions = 3;
 
 /// The scene with some of its effects.
 struct Variant {
-  explicit Variant(Model m) : model(std::move(m)), contacts(model), data(model) {}
+  Variant(Model m, collision::PreparedMeshes meshes)
+      : model(std::move(m)),
+        contacts(model, collision::SceneContacts::kBroadphasePairs, true, &meshes),
+        data(model) {}
 
   /// Least wall time of a step from `state` [s], which is left alone.
   double time(const State& state) {
@@ -45,12 +48,13 @@ Model without(Model model, Effect effect) {
 }  // namespace
 
 std::map<std::string, io::EffectCost> tryEffects(const Scene& scene) {
-  Variant all(scene.model);
+  const collision::PreparedMeshes meshes = scene.contacts->meshes();
+  Variant all(scene.model, meshes);
   std::map<std::string, io::EffectCost> costs;
   std::map<Effect, std::unique_ptr<Variant>> variants;
   for (const EffectName& e : kEffectNames)
     if (all.data.plan.effects.has(e.effect))
-      variants[e.effect] = std::make_unique<Variant>(without(scene.model, e.effect));
+      variants[e.effect] = std::make_unique<Variant>(without(scene.model, e.effect), meshes);
 
   const Clock::time_point start = Clock::now();
   std::map<Effect, std::vector<double>> differences;

@@ -20,6 +20,12 @@ std::vector<const JointCoupling*> leadersFirst(const Model& model) {
   return order;
 }
 
+std::optional<double> followedPosition(const Model& model, int body, const VectorX& q) {
+  for (const JointCoupling& c : model.couplings)
+    if (c.follower == body && c.leader != 0) return c.value(q[model.bodies[idx(c.leader)].q]);
+  return std::nullopt;
+}
+
 void placeFollowers(const Model& model, const std::set<int>& kept, VectorX& q) {
   for (const JointCoupling* c : leadersFirst(model)) {
     if (kept.count(c->follower)) continue;

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <charconv>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -124,6 +125,33 @@ class Nodes {
   std::map<std::string, std::size_t> byId_, byName_;
 };
 
+/// A skin or morph of a controller is of a geometry or of another controller, and of no controller
+/// that is its own source.
+void checkControllers(const MeshFile& file, const XMLElement& root) {
+  std::map<std::string, std::string> sources;
+  std::map<std::string, int> lines;
+  for (const XMLElement* e = &root; e; e = following(e)) {
+    if (std::string_view(e->Name()) != "controller") continue;
+    const XMLElement* part = e->FirstChildElement("skin");
+    if (!part) part = e->FirstChildElement("morph");
+    if (!part) continue;
+    const std::string id = attribute(*e, "id"), source = attribute(*part, "source");
+    sources.emplace(id, source.starts_with('#') ? source.substr(1) : source);
+    lines.emplace(id, e->GetLineNum());
+  }
+  std::set<std::string> sound;  // they end at what is no controller
+  for (const auto& entry : sources) {
+    std::set<std::string> path;
+    for (auto at = sources.find(entry.first); at != sources.end() && !sound.contains(at->first);
+         at = sources.find(at->second))
+      if (!path.insert(at->first).second)
+        failMesh(file.path,
+                 fmt::format("controller '{}' is its own source, expected none that is", at->first),
+                 lines.at(at->first));
+    sound.merge(path);
+  }
+}
+
 /// Corners of the largest polygon of a <polylist> or <polygons>.
 std::size_t mostCorners(const XMLElement& element) {
   std::size_t most = 0;
@@ -167,6 +195,7 @@ void checkDae(const MeshFile& file) {
                e->GetLineNum());
   }
   Nodes(file, *root).check();
+  checkControllers(file, *root);
 }
 
 }  // namespace softgauss::io::detail

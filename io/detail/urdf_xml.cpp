@@ -10,6 +10,7 @@
 #include "softgauss/engine/core/rotation.hpp"
 #include "softgauss/io/detail/text.hpp"
 #include "softgauss/io/detail/yaml.hpp"
+#include "softgauss/io/inputs.hpp"
 
 namespace softgauss::io::detail {
 namespace {
@@ -41,6 +42,10 @@ constexpr double kLargest = 1e12;
 std::string hintFor(const std::string& value) {
   return value.find("${") == std::string::npos ? "" : " (a xacro expression: run xacro first)";
 }
+
+/// A tag, and what it becomes, takes some 500 bytes of memory: as many tags as a file that is as
+/// large as allowed has of this length take less than 1 GB.
+constexpr std::uintmax_t kBytesOfTag = 40;
 
 }  // namespace
 
@@ -240,6 +245,12 @@ XmlFile::XmlFile(const std::string& path, const std::string& text)
   if (const int line = lineOfManyAttributes(text); line > 0)
     throw ModelError({path_, line}, "XML",
                      fmt::format("an element has more than {} attributes", kMostAttributes));
+  const std::uintmax_t most = inputLimits().text / kBytesOfTag;
+  if (const auto tags = static_cast<std::uintmax_t>(std::count(text.begin(), text.end(), '<'));
+      tags > most)
+    throw ModelError(
+        {path_, 1}, "XML",
+        fmt::format("holds {} tags, expected at most {} (--largest-file allows more)", tags, most));
   if (document_->Parse(text.c_str(), text.size()) != tinyxml2::XML_SUCCESS)
     throw ModelError({path_, std::max(1, document_->ErrorLineNum())}, "XML", problemOf(*document_));
 

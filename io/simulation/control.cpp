@@ -12,22 +12,10 @@
 
 namespace softgauss {
 
-namespace {
-
-constexpr double kFollows = 1e-3;  // [rad or m] as numbers on a command line are rounded
-
-/// Where the joint's leader has it, at q; nothing where it has none.
-std::optional<double> followedPosition(const Model& model, int body, const VectorX& q) {
-  for (const JointCoupling& c : model.couplings)
-    if (c.follower == body && c.leader != 0) return c.value(q[model.bodies[c.leader].q]);
-  return std::nullopt;
-}
-
-}  // namespace
-
 void setJointPositions(const Model& model, const std::vector<std::pair<std::string, double>>& q0,
-                       std::set<int> placed, State& state) {
+                       State& state) {
   std::set<std::string> seen;
+  std::set<int> placed;
   for (const auto& [name, value] : q0) {
     const auto fail = [&joint = name](const std::string& problem) {
       throw OptionError(fmt::format("q0 {}: {}", joint, problem));
@@ -45,7 +33,7 @@ void setJointPositions(const Model& model, const std::vector<std::pair<std::stri
   placeFollowers(model, placed, state.q);
   for (const auto& [name, value] : q0) {
     const double asked = followedPosition(model, model.findJoint(name), state.q).value_or(value);
-    if (std::abs(value - asked) > kFollows)
+    if (std::abs(value - asked) > kFollowerTolerance)
       throw OptionError(fmt::format(
           "q0 {}: {} found, expected {:.6g}, for it follows another joint; give its leader", name,
           value, asked));

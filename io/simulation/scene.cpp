@@ -51,7 +51,7 @@ io::UrdfOptions urdfOptions(const SimulationOptions& options) {
 /// Whether --base auto bolts the robot down: it would stand on its root alone.
 bool standsOnItsRoot(const SimulationOptions& options, const Model& model) {
   State state(model);
-  setJointPositions(model, options.q0, {}, state);
+  setJointPositions(model, options.q0, state);
   Kinematics k(model);
   computeKinematics(model, state, k);
   return !model.trees.empty() && model.floats(0) && looksBolted(model, k, 0);
@@ -79,7 +79,7 @@ void loadRobot(const SimulationOptions& options, Scene& scene) {
     scene.model = builder.build();
   }
   scene.initial = State(scene.model);
-  setJointPositions(scene.model, options.q0, {}, scene.initial);
+  setJointPositions(scene.model, options.q0, scene.initial);
   if (options.baseHeight) {
     for (const Tree& tree : scene.model.trees)
       if (scene.model.bodies[tree.rootBody].joint == JointKind::floating)
@@ -112,7 +112,7 @@ void loadSceneFile(const SimulationOptions& options, Scene& scene) {
   scene.actuators = file.actuators;
   scene.schedule = io::WrenchSchedule(scene.model, file.wrenches);
   scene.initial = file.initialState(scene.model);
-  setJointPositions(scene.model, options.q0, file.placedJoints(scene.model), scene.initial);
+  setJointPositions(scene.model, options.q0, scene.initial);
   if (!scene.ground) return;
   std::vector<std::string> standing;
   for (const io::SceneFile::Start& start : file.starts)

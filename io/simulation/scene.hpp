@@ -62,11 +62,11 @@ std::unique_ptr<Scene> loadScene(const std::filesystem::path& file,
 /// ModelError.
 std::unique_ptr<Scene> copyOf(const Scene& scene);
 
-/// Places scalar joints [rad or m] by name, and what follows them, but for the joints of the bodies
-/// in `placed`. Throws OptionError "q0 NAME: …" on an unknown joint, one given twice, or a position
-/// outside its range.
+/// Places scalar joints [rad or m] by name, and what follows them. Throws OptionError "q0 NAME: …"
+/// on an unknown joint, one given twice, or a position outside its range or not where its leader
+/// has it.
 void setJointPositions(const Model& model, const std::vector<std::pair<std::string, double>>& q0,
-                       std::set<int> placed, State& state);
+                       State& state);
 
 /// What the file and the options ask of the control: its solver, what the actuators can do and the
 /// goals of the scene file, unless they are left out. Throws ModelError.

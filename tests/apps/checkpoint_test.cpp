@@ -193,6 +193,7 @@ TEST(Checkpoint, OfAnotherRunIsRefused) {
            std::pair{same + "--timestep 0.001",
                      "c: checkpoint: found a run without --timestep 0.001"},
            {base + "--passive", "found a run with --log"},
+           {base + "--passive --log log.mcap", "log.mcap: --log: found MCAP, expected CSV"},
            {base + "--hold hand --log log.csv",
             "found a run with --passive, expected one with --hold hand"},
            {"sed -i 's/mass value=\"/&1/' arm.urdf; " + same, "found a run of other files"},

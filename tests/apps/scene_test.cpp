@@ -112,8 +112,6 @@ TEST(SceneRun, FollowersStartWhereTheirLeaderHasThem) {
   const std::string urdf = folder.write("hand.urdf", handOfFollowers());
   const std::string scene = folder.write(
       "scene.yaml", "ground: none\nrobots: [{urdf: hand.urdf, joints: {lead: 0.6}}]\n");
-  const std::string named = folder.write(
-      "named.yaml", "ground: none\nrobots: [{urdf: hand.urdf, joints: {lead: 0.3, sib: 0.7}}]\n");
   const std::string log = folder.path() / "log.csv";
   const auto run = [&](std::vector<std::string> arguments) {
     arguments.insert(arguments.end(), {"--passive", "--effects", "no_gravity", "--duration", "0.5",
@@ -137,11 +135,18 @@ TEST(SceneRun, FollowersStartWhereTheirLeaderHasThem) {
       for (const auto& [column, value] : expected)
         EXPECT_NEAR(csv.number(row, column), value, 1e-12) << column << " in row " << row;
   }
-  // What is named itself stays where it is named, and its own followers go with it.
-  const Csv csv = run({named, "--q0", "lead=0.6"});
-  EXPECT_EQ(csv.number(0, "q:lead"), 0.6);
-  EXPECT_EQ(csv.number(0, "q:sib"), 0.7);
-  EXPECT_NEAR(csv.number(0, "q:second"), 2.0 * 0.7 - 0.1, 1e-12);
+  // What is named itself has to be there too, and goes along where --q0 moves its leader.
+  const auto naming = [&](const char* place) {
+    return folder.write(
+        "named.yaml",
+        std::string("ground: none\nrobots: [{urdf: hand.urdf, joints: {lead: 0.3, sib: ") + place +
+            "}}]\n");
+  };
+  const Csv csv = run({naming("0.05"), "--q0", "lead=0.6"});
+  for (const auto& [column, value] : expected) EXPECT_NEAR(csv.number(0, column), value, 1e-12);
+  const Outcome refused = simulate({naming("0.7"), "--passive"});
+  EXPECT_EQ(refused.exitCode, 2);
+  EXPECT_NE(refused.err.find("expected 0.05"), std::string::npos) << refused.err;
 }
 
 /// gdd_solver and the warnings in the summary of a short run.

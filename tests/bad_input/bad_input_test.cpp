@@ -124,12 +124,12 @@ TEST(BadInputTable, NamesEveryFile) {
   std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
   for (const auto& entry : fs::recursive_directory_iterator(kFiles)) {
     if (!entry.is_regular_file()) continue;
-    const std::string scene = "scene/" + entry.path().stem().string();
     const std::string name = fs::relative(entry.path(), kFiles);
-    // Landscapes and meshes are named by a scene.
+    // Landscapes, meshes and robots are named by a scene or a URDF.
     bool named = text.find(name) != std::string::npos;
     for (const auto& other : fs::recursive_directory_iterator(kFiles)) {
-      if (named || other.path().extension() != ".yaml") continue;
+      const fs::path kind = other.path().extension();
+      if (named || (kind != ".yaml" && kind != ".urdf")) continue;
       std::ifstream file(other.path());
       const std::string content((std::istreambuf_iterator<char>(file)),
                                 std::istreambuf_iterator<char>());

@@ -29,7 +29,7 @@ settings() {
     scene | goals) echo -max_len=4096 -dict=tests/fuzz/yaml.dict ;;
     live) echo -max_len=4200 -dict=tests/fuzz/yaml.dict ;;
     table | mesh) echo -max_len=4096 "-dict=tests/fuzz/$1.dict" ;;
-    checkpoint) echo -max_len=256 ;;
+    checkpoint) echo -max_len=256 -timeout=60 ;;  # steps too
     # Sanitizers make steps some sixty times as slow: what takes 1 s is given a minute.
     step) echo -max_len=512 -len_control=0 -timeout=60 ;;
   esac
