@@ -67,7 +67,7 @@ std::pair<std::string, std::string> readAll(int descriptor, std::optional<std::u
     const ssize_t n = read(descriptor, buffer, sizeof buffer);
     if (n < 0 && errno == EINTR) continue;
     if (n < 0) return {{}, fmt::format("cannot be read: {}", std::strerror(errno))};
-    if (n == 0) return {std::move(text), {}};
+    if (n == 0) return {std::move(text), std::string()};
     text.append(buffer, static_cast<std::size_t>(n));
     if (text.size() > most.value_or(inputLimits().text)) return {{}, tooLarge(most)};
   }
