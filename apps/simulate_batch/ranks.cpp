@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <exception>
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -24,9 +25,8 @@ constexpr auto kPatience = std::chrono::seconds(10);
 /// Runs in a thread of its own; errors come out of finish().
 class Background {
  public:
-  template <class F>
-  requires(!std::is_same_v<std::remove_cvref_t<F>, Background>) explicit Background(F&& work)
-      : thread_([this, work = std::forward<F>(work)] {
+  explicit Background(std::function<void()> work)
+      : thread_([this, work = std::move(work)] {
           try {
             work();
           } catch (...) {
