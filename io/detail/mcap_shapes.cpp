@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "softgauss/io/detail/mcap_shapes.hpp"
 
+#include <map>
+#include <string>
 #include <vector>
 
 namespace softgauss::io::detail {
@@ -15,14 +17,17 @@ struct Drawn {
   Eigen::Vector4d rgba;
 };
 
-std::vector<Drawn> drawnOf(const Model& model, const Frame& link) {
-  std::vector<Drawn> drawn;
-  const Transform X_FB = link.X_BF.inverse();
+/// What is drawn of the links, by name: visuals, and collision shapes of links that have none.
+std::map<std::string, std::vector<Drawn>> drawnByLink(const Model& model) {
+  std::map<std::string, Transform> X_FB;
+  for (const Frame& link : model.frames) X_FB[link.name] = link.X_BF.inverse();
+  std::map<std::string, std::vector<Drawn>> drawn, collisions;
   for (const Visual& visual : model.visuals)
-    if (visual.link == link.name) drawn.push_back({&visual.shape, X_FB * visual.X_BG, visual.rgba});
-  if (!drawn.empty()) return drawn;
+    drawn[visual.link].push_back({&visual.shape, X_FB[visual.link] * visual.X_BG, visual.rgba});
   for (const Geometry& geometry : model.geometries)
-    if (geometry.link == link.name) drawn.push_back({&geometry.shape, X_FB * geometry.X_BG, kGrey});
+    collisions[geometry.link].push_back(
+        {&geometry.shape, X_FB[geometry.link] * geometry.X_BG, kGrey});
+  drawn.merge(collisions);
   return drawn;
 }
 
@@ -84,9 +89,11 @@ void writeShapes(const Model& model, double time, JsonText& json) {
     json.close(']');
   };
   json.open('{').raw("deletions", "[]").open("entities", '[');
+  const std::map<std::string, std::vector<Drawn>> drawnOf = drawnByLink(model);
   for (const Frame& link : model.frames) {
-    const std::vector<Drawn> drawn = drawnOf(model, link);
-    if (drawn.empty()) continue;
+    const auto found = drawnOf.find(link.name);
+    if (found == drawnOf.end()) continue;
+    const std::vector<Drawn>& drawn = found->second;
     beginEntity(link.name, link.name, time, json);
     list("cubes", writeBox, drawn);
     list("spheres", writeSpheres, drawn);

@@ -35,9 +35,6 @@ std::string problemOf(const tinyxml2::XMLDocument& document) {
   }
 }
 
-/// Products of a few numbers of this size, squared, are still finite.
-constexpr double kLargest = 1e12;
-
 /// A hint where the value seems to come from a template that was not expanded.
 std::string hintFor(const std::string& value) {
   return value.find("${") == std::string::npos ? "" : " (a xacro expression: run xacro first)";
@@ -184,9 +181,9 @@ Vector3 XmlElement::requiredVector3(const char* attribute) const {
 }
 
 void XmlElement::expectBounded(const char* attribute, double x) const {
-  if (std::abs(x) > kLargest)
+  if (std::abs(x) > kLargestNumber)
     fail(fmt::format("{} holds {}, expected numbers of size {:g} at most", attribute,
-                     shortNumber(x), kLargest));
+                     shortNumber(x), kLargestNumber));
 }
 
 Transform XmlElement::origin() const {
