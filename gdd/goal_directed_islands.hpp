@@ -8,7 +8,8 @@
 /// there is nothing to choose, and with actuators but no goal (8) chooses none. So a robot among a
 /// thousand objects pays for those that it touches, and two robots with a goal each are two
 /// problems. The goals of all islands together cost what the given ones cost (Goal::within()): the
-/// minimum is the same. What is not controlled keeps the dry friction of the ordinary step.
+/// minimum is the same. Friction is that of a control (Input::controlled) in the trees that it acts
+/// on, and in no others.
 ///
 ///   gdd::GoalDirectedController controller(model);      // goals, box, solver
 ///   gdd::GoalDirectedIslands controls(model, controller);

@@ -85,8 +85,7 @@ SolveStatus GoalDirectedController::step(const Model& model, const Input& input,
                                          Data& data, ContactSource* contacts, bool posed) noexcept {
   if (data.stats.refuse(model, findBadInput(model, input, state))) return data.stats.status;
   held_ = input;
-  // Where there is nothing to choose, nobody has to know what friction answers.
-  held_.softFriction = input.softFriction || limits.open();
+  limits.markControlled(model, held_.controlled);
   outside_ = input.tau;
   begin();
   return softgauss::step(model, held_, state, data, contacts, this, posed);

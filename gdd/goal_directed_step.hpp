@@ -82,7 +82,8 @@ class GoalDirectedController final : public StepControl {
   GravityCompensation holding_;
   WarmStart between_;    ///< from one solve to the next of a step
   VectorX coordinates_;  ///< y of the control (nv)
-  Input held_;           ///< over the step, with soft friction; its τ is the control's at the end
+  Input held_;           ///< over the step, with what is controlled; its τ is the control's at the
+                         ///< end
   VectorX outside_;      ///< τ of the caller's input (nv), or empty
 };
 

@@ -11,7 +11,9 @@
 /// effort limits, or no bound. A solution is an acceleration that the actuators can cause, with
 /// contact forces that the physics agrees to.
 
+#include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "softgauss/engine/model/model.hpp"
 #include "softgauss/engine/step/bad_input.hpp"
@@ -58,6 +60,8 @@ struct ControlLimits {
   }
   /// Whether the box leaves anything to choose.
   bool open() const { return (lower.array() != 0.0).any() || (upper.array() != 0.0).any(); }
+  /// Marks the trees, in Input::controlled, on which forces act among which the box leaves a choice.
+  void markControlled(const Model& model, std::vector<std::uint8_t>& trees) const;
   /// Opens the limits of every force that no actuator causes: root forces are then allowed, and
   /// applied.
   void allowRootForces(const Model& model) {

@@ -190,7 +190,8 @@ class Runner {
   void estimateError() {
     held_.wrenches = input_.wrenches;
     held_.tau = controller_.goals.empty() ? input_.tau : controller_.control;
-    held_.softFriction = !controller_.goals.empty();
+    held_.controlled.clear();
+    if (!controller_.goals.empty()) controller_.limits.markControlled(model_, held_.controlled);
     errorEstimate_->observe(before_, held_, state_, model_.options.timestep);
   }
 

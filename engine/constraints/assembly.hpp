@@ -3,6 +3,9 @@
 
 /// What an effect may read when it makes its rows.
 
+#include <cstdint>
+#include <span>
+
 #include "softgauss/engine/constraints/contact_set.hpp"
 #include "softgauss/engine/constraints/inverse_weight.hpp"
 #include "softgauss/engine/constraints/supported_mass.hpp"
@@ -12,16 +15,29 @@
 namespace softgauss {
 
 struct Assembly {
-  /// Whether friction is regularised less where it sticks.
-  bool usesStiction() const { return model.options.uses(Mechanism::stiction) && !softFriction; }
-  /// Whether rows may take a velocity sooner than their damping does: goals have to know what is
+  /// Whether a control acts on one of the trees that a row holds: on a body, or on one of two.
+  bool isControlled(int bodyA, int bodyB = 0) const {
+    if (controlled.empty()) return false;
+    const auto of = [&](int body) {
+      const int t = model.bodies[static_cast<std::size_t>(body)].tree;
+      return t >= 0 && controlled[static_cast<std::size_t>(t)] != 0;
+    };
+    return of(bodyA) || of(bodyB);
+  }
+  /// Whether friction of a row is regularised less where it sticks.
+  bool usesStiction(int bodyA, int bodyB = 0) const {
+    return model.options.uses(Mechanism::stiction) && !isControlled(bodyA, bodyB);
+  }
+  /// Whether a row may take a velocity sooner than its damping does: goals have to know what is
   /// answered within the step.
-  bool mayCapDampingTime() const {
-    return model.options.uses(Mechanism::contactDampingTime) && !softFriction &&
-           model.options.integrator == Integrator::leapfrog;
+  bool mayCapDampingTime(int bodyA, int bodyB = 0) const {
+    return model.options.uses(Mechanism::contactDampingTime) &&
+           model.options.integrator == Integrator::leapfrog && !isControlled(bodyA, bodyB);
   }
   /// The parts of a step are short for what the damping of contacts and limits is made for.
-  bool isSubstep() const { return mayCapDampingTime() && model.options.outerTimestep > 0.0; }
+  bool isSubstep(int bodyA, int bodyB = 0) const {
+    return model.options.outerTimestep > 0.0 && mayCapDampingTime(bodyA, bodyB);
+  }
   /// How far v lies behind q [s]: half a step where positions drift to mid-step first. A distance
   /// that changes by J v there has changed by J v − lag J̇ v where the step began (4.5).
   double velocityLag() const {
@@ -40,11 +56,11 @@ struct Assembly {
   const Kinematics& kinematics;
   const ContactSet& contacts;
   const InverseWeights& weights;
-  const TreeSparsity& tree;   ///< pattern of M: row i lists the dofs that move body(i)
-  bool softFriction = false;  ///< Input::softFriction
-  const VectorX* midstepVelocity = nullptr;  ///< null: State::v
-  const SupportedMass* load = nullptr;       ///< null: no row knows of a load
-  MechanismCounts* acted = nullptr;          ///< null: nobody counts
+  const TreeSparsity& tree;  ///< pattern of M: row i lists the dofs that move body(i)
+  std::span<const std::uint8_t> controlled = {};  ///< Input::controlled
+  const VectorX* midstepVelocity = nullptr;       ///< null: State::v
+  const SupportedMass* load = nullptr;            ///< null: no row knows of a load
+  MechanismCounts* acted = nullptr;               ///< null: nobody counts
 };
 
 }  // namespace softgauss

@@ -119,8 +119,8 @@ double stickingShare(const Options& options, const Touch& touch, double load,
 /// share.
 double horizonOf(const Assembly& in, const Contact& contact, const Touch& touch, double damping) {
   const Options& options = in.model.options;
-  if (!in.mayCapDampingTime()) return kInfinity;
-  if (in.isSubstep()) return options.timestep;
+  if (!in.mayCapDampingTime(contact.bodyA, contact.bodyB)) return kInfinity;
+  if (in.isSubstep(contact.bodyA, contact.bodyB)) return options.timestep;
   const double rate = contactRotationRate(in.model, in.kinematics, contact);
   double longest = rate > 0.0 ? options.substepAngle / rate : kInfinity;
   if (touch.supportsOthers) longest = std::min(longest, 1.0 / (damping * touch.loadStiffening));
@@ -273,14 +273,16 @@ double ContactBlocks::slipSpeed(const Touch& touch, const FrameVector& velocity)
 Softness ContactBlocks::soften(const Assembly& in, const Touch& touch,
                                const FrameVector& velocity) {
   const Softness& soft = touch.softness;
+  const Contact& contact = in.contacts.contacts[contactsWithRows_.back().contact];
   const auto held = [&](const Softness& s) {
     if (touch.spring) return s;
-    const Contact& contact = in.contacts.contacts[contactsWithRows_.back().contact];
     const double horizon = horizonOf(in, contact, touch, s.damping);
     in.count(Mechanism::contactDampingTime, s.damping * horizon < 1.0);
     return withDampingTime(s, horizon);
   };
-  if (!touch.supportsOthers || !in.usesStiction() || touch.frictionDim == 0) return held(soft);
+  if (!touch.supportsOthers || touch.frictionDim == 0 ||
+      !in.usesStiction(contact.bodyA, contact.bodyB))
+    return held(soft);
   if (!(soft.damping * soft.damping >= 4.0 * soft.stiffness)) return held(soft);  // it bounces
   ContactSpeeds speeds{slipSpeed(touch, velocity), std::abs(velocity[0])};
   speeds.weight = creepUnderWeight(in.model.options, touch);

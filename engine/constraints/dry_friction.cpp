@@ -32,7 +32,7 @@ void DryFriction::assemble(const Assembly& in) {
       if (dof.dryFriction == 0.0) continue;
       const double rate = in.state.v[i];
       Softness soft = softnessAt(dof.frictionImpedance, 0.0, in.weights.dof[i], model.options);
-      if (in.usesStiction()) harden(soft, std::abs(rate), dof.dryFriction);
+      if (in.usesStiction(dof.body)) harden(soft, std::abs(rate), dof.dryFriction);
       dof_.push_back(i);
       reference.push_back(soft.referenceAcceleration(rate, 0.0));
       pushSoftness(soft);

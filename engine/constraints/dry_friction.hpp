@@ -8,7 +8,7 @@
 /// There is no distance: b, D come from the dof's Impedance at r = 0. While the joint slides, the
 /// force is f_max against the motion. While it sticks under a load f, it would creep at R f/b, but
 /// slower than 2 R f_max/b its row hardens (5.6), unless friction is asked
-/// to stay soft (Options::constraintModel, Input::softFriction). Contract: |f| ≤ f_max.
+/// to stay soft (Options::constraintModel, Input::controlled). Contract: |f| ≤ f_max.
 
 #include <vector>
 

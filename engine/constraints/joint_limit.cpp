@@ -39,7 +39,7 @@ Softness limitSoftness(const Assembly& in, const JointRange& range, double r) {
     in.count(Mechanism::supportedMass, loaded < weight);
   }
   in.count(Mechanism::referenceClamp, soft.bounded);
-  return in.isSubstep() ? implicitSpringDamper(soft, 0.0, options) : soft;
+  return in.isSubstep(range.body) ? implicitSpringDamper(soft, 0.0, options) : soft;
 }
 
 }  // namespace

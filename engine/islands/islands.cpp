@@ -223,7 +223,9 @@ SolveStatus Islands::take(Island& island, const Input& input) {
   } else {
     part.tau.resize(0);
   }
-  part.softFriction = input.softFriction;
+  part.controlled.clear();
+  if (!input.controlled.empty())
+    for (const int tree : island.part.trees) part.controlled.push_back(input.controlled[idx(tree)]);
   part.wrenches.clear();
   for (ExternalWrench wrench : input.wrenches) {
     const int unit = units_.ofBody(model_, wrench.body);

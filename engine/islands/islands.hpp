@@ -7,7 +7,9 @@
 /// between two islands, so the objective of (1.1) is the sum of theirs, and each is solved alone,
 /// as a model of its own (sub_model.hpp): it stops when it has converged, and its result is the
 /// same, bit for bit, whoever else is in the scene. The joint solve of step() finds the same
-/// accelerations up to rounding.
+/// accelerations up to rounding: a row is as soft as the two trees that it holds have it
+/// (Input::controlled). What differs is which trees a control acts on, where it has no goal for a
+/// robot: alone in its island this is passive, in the joint solve it gets what costs nothing.
 ///
 ///   1. islands that touch become one; an island may fall apart into those that touch
 ///   2. each island that is awake takes its step, and the poses are found where it ends

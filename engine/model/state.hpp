@@ -65,10 +65,17 @@ struct ExternalWrench {
 struct Input {
   VectorX tau;  ///< generalised applied force (nv) [N or N m]; empty: none
   std::vector<ExternalWrench> wrenches;
-  /// Friction is as soft at rest as in motion, as MuJoCo's, and creeps under load: (5.6) and
-  /// (5.7) are left out. What sticks hard does not answer its control, so goals see it like this.
-  bool softFriction = false;
+  /// (trees) 1: a control acts on the tree; empty: on none. Friction of such a tree is as soft at
+  /// rest as in motion, as MuJoCo's, and creeps under load: (5.6), (5.7) and (3.15) are left out of
+  /// its rows. What sticks hard does not answer its control, so goals see it like this. All other
+  /// rows are as they are without a control, bit for bit.
+  std::vector<std::uint8_t> controlled;
 };
+
+/// Input::controlled where a control acts on every tree.
+inline std::vector<std::uint8_t> allTrees(const Model& model) {
+  return std::vector<std::uint8_t>(model.trees.size(), 1);
+}
 
 /// 64-bit hash of q, v, time and the warm start, bit for bit.
 std::uint64_t hash(const State& state);

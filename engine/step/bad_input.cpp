@@ -6,9 +6,11 @@
 namespace softgauss {
 namespace {
 
-BadInput checkSize(BadInputKind kind, const VectorX& x, int size) {
-  if (x.size() == size) return {};
-  return {kind, -1, static_cast<double>(x.size()), static_cast<double>(size)};
+template <class Vector>
+BadInput checkSize(BadInputKind kind, const Vector& x, int size) {
+  const auto found = static_cast<int>(x.size());
+  if (found == size) return {};
+  return {kind, -1, static_cast<double>(found), static_cast<double>(size)};
 }
 
 std::string shortText(double x) {
@@ -31,6 +33,8 @@ const char* nameOf(BadInputKind kind) {
       return "the warm start";
     case BadInputKind::tau:
       return "Input::tau";
+    case BadInputKind::controlled:
+      return "Input::controlled";
     case BadInputKind::wrench:
       return "Input::wrenches";
     case BadInputKind::quaternion:
@@ -47,6 +51,11 @@ const char* nameOf(BadInputKind kind) {
 BadInput findBadInput(const Model& model, const Input& input) noexcept {
   if (input.tau.size() != 0)
     if (const BadInput bad = checkSize(BadInputKind::tau, input.tau, model.nv)) return bad;
+  if (!input.controlled.empty()) {
+    const auto trees = static_cast<int>(model.trees.size());
+    if (const BadInput bad = checkSize(BadInputKind::controlled, input.controlled, trees))
+      return bad;
+  }
   int index = 0;
   for (const ExternalWrench& w : input.wrenches) {
     if (w.body < 0 || w.body >= model.bodyCount())

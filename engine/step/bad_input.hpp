@@ -18,6 +18,7 @@ enum class BadInputKind : std::uint8_t {
   a,                  ///< size of State::a, where it is set; of a in inverseDynamics()
   warmStart,          ///< size of a vector of State::warmstart; of the guess of forwardDynamics()
   tau,                ///< size of Input::tau
+  controlled,         ///< size of Input::controlled
   wrench,             ///< the body of one of Input::wrenches
   quaternion,         ///< length of a quaternion in State::q
   controlLimitsSize,  ///< size of gdd::ControlLimits

@@ -151,7 +151,7 @@ void assembleRows(const Model& model, const Input& input, const State& state, Da
                     data.contacts,
                     data.weights,
                     data.inertia.sparsity,
-                    input.softFriction};
+                    input.controlled};
   if (data.plan.drifts && predictsMidstepVelocity(model, state))
     assembly.midstepVelocity = &data.midstepVelocity;
   data.constraints.assemble(assembly);

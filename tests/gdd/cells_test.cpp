@@ -124,7 +124,7 @@ GddScene smallScene(std::uint64_t seed, int contacts, bool boxed, double weight,
     source.points.push_back(c);
   }
   scene.contacts = std::make_shared<FixedContacts>(source);
-  scene.input.softFriction = true;
+  scene.input.controlled = allTrees(scene.model);
   EXPECT_EQ(scene.stages(), SolveStatus::converged);
   GddScene s(std::move(scene));
   if (seed % 2 == 0) s.limits.lower[3] = s.limits.upper[3] = 0.0;

@@ -135,7 +135,6 @@ TEST(GddPhysics, WithoutActuatorsMotionIsPassive) {
     Scene passive = randomScene(5, 6);
     passive.input = {};
     passive.input.tau = VectorX::Zero(passive.model.nv);
-    passive.input.softFriction = true;  // as goals have it
     if (byEffect) passive.model.options.effects.remove(Effect::actuation);
     State state = passive.state;
     Data data(passive.model);

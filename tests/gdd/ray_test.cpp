@@ -180,7 +180,7 @@ TEST(Ray, PassesBothKnotsOfDryFriction) {
   JointSpec joint = jointSpec("x", JointType::prismatic, "world", "box", {}, Vector3::UnitX());
   joint.dryFriction = limit;
   Scene scene(builder.joint(joint).build());
-  scene.input.softFriction = true;
+  scene.input.controlled = allTrees(scene.model);
   scene.stages();
   const Constraints& constraints = scene.data->constraints;
   const gdd::ControlLimits limits(scene.model);

@@ -103,7 +103,7 @@ Off offOver(const Realised& run, const Method& method) {
   Data data(r.model);
   Witness witness(r.controller);
   Input input;
-  input.softFriction = true;
+  input.controlled = allTrees(r.model);
   for (int i = 0; i < static_cast<int>(1.0 / method.timestep); ++i) {
     const std::size_t before = witness.off.size();
     witness.leftOut = 0;

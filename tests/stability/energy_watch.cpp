@@ -16,8 +16,8 @@ namespace {
 template <class F>
 void forEachSoft(const Model& model, const State& state, const Data& data, F&& f) {
   const Constraints& rows = data.constraints;
-  const Assembly in{
-      model, state, data.kinematics, data.contacts, data.weights, data.inertia.sparsity, true};
+  const Assembly in{model,         state,        data.kinematics,
+                    data.contacts, data.weights, data.inertia.sparsity};
   rows.visitContacts([&](const auto& c) {
     for (std::size_t i = 0; i < c.contactsWithRows().size(); ++i) {
       const int end =
@@ -123,7 +123,7 @@ double EnergyWatch::offset(const State& state, const Input& input) {
 
 double EnergyWatch::stored(const State& state, const Input& input) {
   Input soft = input;
-  soft.softFriction = true;  // (5.7) scales k d by the speed
+  soft.controlled = allTrees(model_);  // (5.7) scales k d by the speed
   State still = state;
   still.v.setZero();
   still.hasAcceleration = false;

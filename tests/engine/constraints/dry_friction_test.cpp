@@ -84,7 +84,7 @@ TEST(DryFriction, HardensAsItComesToRest) {
     Scene s = slide(-share * slow, 0.0);
     DryFriction& rows = s.data->constraints.dryFriction;
     EXPECT_SMALL(1.0 / rows.D[0] / (R * std::clamp(share, 1e-9, 1.0)) - 1.0, 1e-12) << share;
-    s.input.softFriction = true;
+    s.input.controlled = allTrees(s.model);
     s.stages();
     EXPECT_SMALL(1.0 / rows.D[0] / R - 1.0, 1e-15) << share;
   }

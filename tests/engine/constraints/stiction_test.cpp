@@ -32,7 +32,7 @@ struct Row {
   double D = 0.0, reference = 0.0, perInertia = 0.0;
 };
 Row firstRow(Scene& scene, bool soft) {
-  scene.input.softFriction = soft;
+  scene.input.controlled = soft ? allTrees(scene.model) : std::vector<std::uint8_t>();
   EXPECT_EQ(scene.stages(), SolveStatus::converged);
   const Constraints& all = scene.data->constraints;
   if (scene.model.options.cone == Cone::elliptic)
@@ -97,7 +97,7 @@ TEST(Stiction, LeavesWhatStandsAloneAsItIs) {
       builder.options.cone = cone;
       builder.geometry(groundSpec(0.8));
       Scene scene(builder.build(), std::make_shared<SampleContacts>());
-      scene.input.softFriction = soft;
+      if (soft) scene.input.controlled = allTrees(scene.model);
       int contacts = 0;
       for (int i = 0; i < 400; ++i) {
         scene.step();

@@ -72,6 +72,10 @@ TEST(BadInput, OfAnotherSizeIsRefused) {
                 [](Scene& s) { s.state.v.resize(0); });
   expectRefused(BadInputKind::tau, nv - 6, nv, sizeText("Input::tau", nv - 6, nv),
                 [&](Scene& s) { s.input.tau.setZero(nv - 6); });
+  const int trees = static_cast<int>(sample().trees.size());
+  expectRefused(BadInputKind::controlled, trees + 1, trees,
+                sizeText("Input::controlled", trees + 1, trees),
+                [&](Scene& s) { s.input.controlled.resize(static_cast<std::size_t>(trees) + 1); });
   expectRefused(BadInputKind::warmStart, 2, nv, sizeText("the warm start", 2, nv),
                 [](Scene& s) { s.state.warmstart.a.setZero(2); });
   expectRefused(BadInputKind::a, 2, nv, sizeText("the acceleration a", 2, nv), [](Scene& s) {
