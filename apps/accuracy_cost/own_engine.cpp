@@ -30,8 +30,7 @@ class OwnEngine final : public EngineUnderTest {
     state_.time = state.time;
     const State fresh(model_);
     state_.warmstart = fresh.warmstart;
-    state_.a = fresh.a;
-    state_.hasAcceleration = fresh.hasAcceleration;
+    state_.forgetLastStep();
   }
 
   bool advance(const VectorX& tau, int steps) override {

@@ -187,7 +187,7 @@ std::string Hands::setJoint(const Event& event) {
   placeFollowers(run_.model, {joint.body}, state.q);
   // What the last step has found is of another place.
   state.warmstart = State(run_.model).warmstart;
-  state.hasAcceleration = false;
+  state.forgetLastStep();
   jumped_ = true;
   return "";
 }

@@ -39,7 +39,7 @@ class AtState {
     if (!q.is_none()) at.q = vectorOf(q, "q", sim.model().nq, "nq");
     if (!v.is_none()) at.v = vectorOf(v, "v", sim.model().nv, "nv");
     expectConfiguration(sim.model(), at.q);
-    at.hasAcceleration = false;
+    at.forgetLastStep();
     at.warmstart = {};
     own_ = state_;
     state_ = at;

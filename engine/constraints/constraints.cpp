@@ -11,11 +11,6 @@ bool same(const std::vector<Segment>& a, const std::vector<Segment>& b) {
                     [](Segment s, Segment t) { return s.begin == t.begin && s.end == t.end; });
 }
 
-/// Made of what connections do, after them.
-bool isGeometricStiffness(int kind) {
-  return kind == static_cast<int>(RowKind::geometricStiffness);
-}
-
 bool isContact(int kind) {
   return kind == static_cast<int>(RowKind::pyramid) ||
          kind == static_cast<int>(RowKind::ellipticCone);
@@ -34,8 +29,7 @@ void Constraints::assemble(const Assembly& given) {
   active_ = RowKinds::none();
   visitThese(*this, planned_, [&](auto& c, int kind) {
     // Without contacts there is nothing to look at, but old rows to drop.
-    const bool nothing = isGeometricStiffness(kind) || (isContact(kind) && in.contacts.size() == 0);
-    if (nothing && c.rowCount() == 0) return;
+    if (isContact(kind) && in.contacts.size() == 0 && c.rowCount() == 0) return;
     ++calls_[kind];
     c.assemble(in);
     if (c.rowCount() > 0) active_.insert(kind);
@@ -66,16 +60,33 @@ void Constraints::couple(const TreeSparsity& tree) {
   sparsity_ = &coupled_;
 }
 
-int Constraints::addGeometricStiffness(const Assembly& in) {
-  if (!planned_.has(RowKind::geometricStiffness) || !active_.has(RowKind::connection)) return 0;
-  rowForces_.setZero(in.model.nv);
-  addForce(rowForces_);
-  const int held = geometricStiffness.assembleRows(in, connection, rowForces_);
-  if (held > 0) {
-    active_.insert(RowKind::geometricStiffness);
-    couple(in.tree);
+void Constraints::connectionForces(const Model& model, std::span<const std::uint8_t> trees,
+                                   VectorX& forces) {
+  const auto numbers = 9 * static_cast<Eigen::Index>(model.connections.size());
+  if (forces.size() != numbers) forces.setZero(numbers);
+  if (!active_.has(RowKind::connection)) {
+    forces.setZero();
+    return;
   }
-  return held;
+  rowForces_.setZero(model.nv);
+  addForce(rowForces_);
+  const auto treeOf = [&](int body) { return model.bodies[static_cast<std::size_t>(body)].tree; };
+  const auto onTree = [&](int body) -> Vector3 {
+    const int tree = treeOf(body);
+    if (tree < 0 || !model.floats(tree)) return Vector3::Zero();
+    return rowForces_.segment<3>(model.trees[static_cast<std::size_t>(tree)].firstDof);
+  };
+  const auto meant = [&](int body) {
+    const int tree = treeOf(body);
+    return trees.empty() || (tree >= 0 && trees[static_cast<std::size_t>(tree)] != 0);
+  };
+  for (std::size_t i = 0; i < model.connections.size(); ++i) {
+    const Connection& c = model.connections[i];
+    if (!meant(c.bodyA) && !meant(c.bodyB)) continue;
+    forces.segment<9>(9 * static_cast<Eigen::Index>(i))
+        << Eigen::Map<const Vector3>(connection.f.data() + 3 * i),
+        onTree(c.bodyA), onTree(c.bodyB);
+  }
 }
 
 int Constraints::rowCount() const {

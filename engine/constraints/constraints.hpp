@@ -9,7 +9,9 @@
 
 #include <array>
 #include <concepts>
+#include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "softgauss/engine/constraints/connection.hpp"
@@ -99,9 +101,9 @@ class Constraints {
   }
 
   void assemble(const Assembly& in);
-  /// Makes rows against what swings too fast on the connections, by their forces (6.9); returns
-  /// how many bodies they hold.
-  int addGeometricStiffness(const Assembly& in);
+  /// forces ← those of the rows' present f, as State::connectionForces; of connections of these
+  /// trees (1) alone, unless `trees` is empty.
+  void connectionForces(const Model& model, std::span<const std::uint8_t> trees, VectorX& forces);
   int rowCount() const;
   /// Kinds that may make rows, and those that have some in this step.
   RowKinds planned() const { return planned_; }

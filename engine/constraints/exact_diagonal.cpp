@@ -24,7 +24,8 @@ bool ExactDiagonal::apply(const TreeMatrix& M, Constraints& constraints) {
   };
   constraints.visitAllButContacts([&](auto& effect) {
     for (int i = 0; i < effect.rowCount(); ++i)
-      effect.D[i] = stiffness(effect, i, effect.perInertia[i], effect.D[i]);
+      if (effect.perInertia[i] != 0.0)
+        effect.D[i] = stiffness(effect, i, effect.perInertia[i], effect.D[i]);
   });
   PyramidalContact& pyramids = constraints.contact;
   for (const ContactRows& made : pyramids.contactsWithRows()) {

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "softgauss/engine/constraints/connection.hpp"
 #include "softgauss/engine/core/rotation.hpp"
 
 namespace softgauss {
@@ -27,58 +26,64 @@ Vector3 leverOn(const Assembly& in, int body, const Vector3& p_WP) {
 
 }  // namespace
 
-int GeometricStiffness::assembleRows(const Assembly& in, const ConnectionRows& connections,
-                                     const VectorX& rows) {
-  constexpr double kFollowed = 0.5;  // h ω [rad]
-  constexpr double kThrough = 0.2;   // of the forces: what counts as all
+void GeometricStiffness::assemble(const Assembly& in) {
   const Model& model = in.model;
   clearBlocks();
-  findConnectionForces(in, connections);
-  otherLoadRatio_.assign(model.trees.size(), 0.0);
-  int held = 0;
-  for (std::size_t t = 0; t < model.trees.size(); ++t) {
-    const Tree& tree = model.trees[t];
-    if (!model.floats(static_cast<int>(t))) continue;
-    for (int b = tree.rootBody; b < tree.bodyEnd; ++b) {
-      BodyStiffness& stiffness = bodyStiffness_[b];
-      const Body& body = model.bodies[b];
-      Vector3 all = stiffness.sum;
-      if (b == tree.rootBody) {
-        all = rows.segment<3>(body.v);
-        // What touches it, or welds it, presses at once and not as a string does.
-        if (stiffness.force > 0.0)
-          otherLoadRatio_[t] = (all - stiffness.sum).norm() / (kThrough * stiffness.force);
-      }
-      if (body.massless || stiffness.K.isZero(0.0)) continue;
-      const double through = std::min(1.0, (1.0 - all.norm() / stiffness.force) / kThrough);
-      if (!(through > 0.0)) continue;
-      const Matrix3& R = in.kinematics.X_WB[b].R;
-      const Matrix3 K = through * (R.transpose() * stiffness.K * R);
-      const double turn =
-          model.options.timestep * std::sqrt(0.5 * body.I_Bcm.matrix().ldlt().solve(K).trace());
-      stiffness.share = through * (1.0 - kFollowed * kFollowed / (turn * turn));
-      held += stiffness.share > 0.0;
+  heldBodies_ = 0;
+  if (!in.state.connectionForces.isZero(0.0) && model.options.effects.has(Effect::equality)) {
+    findConnectionForces(in);
+    for (const Tree& tree : model.trees)
+      if (model.floats(model.bodies[tree.rootBody].tree))
+        for (int b = tree.rootBody; b < tree.bodyEnd; ++b) findShare(in, b);
+    for (std::size_t i = 0; i < connectionForces_.size(); ++i) {
+      const double share = bodyStiffness_[connectionForces_[i].body].share;
+      if (share > 0.0 && connectionForces_[i].moment > 0.0)
+        addRows(in, i, share, otherLoadRatio_[model.bodies[connectionForces_[i].body].tree]);
     }
   }
-  for (std::size_t i = 0; i < connectionForces_.size(); ++i) {
-    const double share = bodyStiffness_[connectionForces_[i].body].share;
-    if (share > 0.0 && connectionForces_[i].moment > 0.0)
-      addRows(in, i, share, otherLoadRatio_[model.bodies[connectionForces_[i].body].tree]);
-  }
   resizeRows(reference.size());
-  return held;
 }
 
-void GeometricStiffness::findConnectionForces(const Assembly& in,
-                                              const ConnectionRows& connections) {
+void GeometricStiffness::findShare(const Assembly& in, int b) {
+  constexpr double kFollowed = 0.5;  // h ω [rad]
+  constexpr double kThrough = 0.2;   // of the forces: what counts as all
+  const Body& body = in.model.bodies[b];
+  BodyStiffness& stiffness = bodyStiffness_[b];
+  Vector3 all = stiffness.sum;
+  if (b == in.model.trees[body.tree].rootBody) {
+    all = treeForce_[body.tree];
+    // What touches it, or welds it, presses at once and not as a string does.
+    if (stiffness.force > 0.0)
+      otherLoadRatio_[body.tree] = (all - stiffness.sum).norm() / (kThrough * stiffness.force);
+  }
+  if (body.massless || stiffness.K.isZero(0.0)) return;
+  const double through = std::min(1.0, (1.0 - all.norm() / stiffness.force) / kThrough);
+  if (!(through > 0.0)) return;
+  const Matrix3& R = in.kinematics.X_WB[b].R;
+  const Matrix3 K = through * (R.transpose() * stiffness.K * R);
+  const double turn =
+      in.model.options.timestep * std::sqrt(0.5 * body.I_Bcm.matrix().ldlt().solve(K).trace());
+  stiffness.share = through * (1.0 - kFollowed * kFollowed / (turn * turn));
+  heldBodies_ += stiffness.share > 0.0;
+}
+
+void GeometricStiffness::findConnectionForces(const Assembly& in) {
   const Model& model = in.model;
   connectionForces_.clear();
   bodyStiffness_.assign(model.bodies.size(), {});
-  for (std::size_t i = 0; i < model.connections.size(); ++i) {
-    const Connection& c = model.connections[i];
-    const Vector3 f_W = Eigen::Map<const Vector3>(connections.f.data() + 3 * i);
+  otherLoadRatio_.assign(model.trees.size(), 0.0);
+  treeForce_.assign(model.trees.size(), Vector3::Zero());
+  const double* force = in.state.connectionForces.data();
+  for (const Connection& c : model.connections) {
     addConnectionForces(in, c.bodyA, c.bodyB, in.kinematics.X_WB[c.bodyA] * c.p_AP,
-                        in.kinematics.X_WB[c.bodyB] * c.p_BP, f_W);
+                        in.kinematics.X_WB[c.bodyB] * c.p_BP,
+                        Vector3(force[0], force[1], force[2]));
+    for (const int body : {c.bodyA, c.bodyB}) {
+      force += 3;
+      if (model.bodies[body].tree >= 0)
+        treeForce_[model.bodies[body].tree] << force[0], force[1], force[2];
+    }
+    force += 3;
   }
   for (const Tree& tree : model.trees)
     if (model.floats(model.bodies[tree.rootBody].tree)) addJointForces(in, tree);

@@ -28,8 +28,10 @@
 /// by λ C and δ, and by (1 − λ) C and λ δ, λ of its own lever, against what pulls hardest on the
 /// other side of the bead. Where nothing does, by C and λ δ against the other body alone.
 ///
-/// f is that of a solve without all this. Momentum is kept, and what turns together is as it was.
-/// Trees that do not float are not held: their joints have inertias of their own.
+/// f and F are those of the last solve (State::connectionForces), so that these rows are in the one
+/// solve of the step, which goals see; where none are known, as in the first solve of a run,
+/// nothing is held. Momentum is kept, and what turns together is as it was. Trees that do not
+/// float are not held: their joints have inertias of their own.
 
 #include <vector>
 
@@ -38,21 +40,15 @@
 
 namespace softgauss {
 
-class ConnectionRows;
-
 class GeometricStiffness : public BlockRows {
  public:
-  /// None: they are made of the forces of connections, by assembleRows().
-  void assemble(const Assembly& /*in*/) {
-    clearBlocks();
-    resizeRows(0);
-  }
-  /// Rows against the swings that these forces make; returns how many bodies they hold. `rows`:
-  /// (nv) Jᵀf of all kinds.
-  int assembleRows(const Assembly& in, const ConnectionRows& connections, const VectorX& rows);
+  void assemble(const Assembly& in);
+  /// How many bodies the rows hold.
+  int heldBodies() const { return heldBodies_; }
 
   std::size_t bytes() const {
-    return BlockRows::bytes() + bytesOfAll(connectionForces_, bodyStiffness_, otherLoadRatio_);
+    return BlockRows::bytes() +
+           bytesOfAll(connectionForces_, bodyStiffness_, otherLoadRatio_, treeForce_);
   }
 
  private:
@@ -71,7 +67,9 @@ class GeometricStiffness : public BlockRows {
     Vector3 sum = Vector3::Zero();  ///< Σ f [N]
     double share = 0.0;             ///< η (1 − ¼/(h ω)²), ≤ 0 where a step follows it
   };
-  void findConnectionForces(const Assembly& in, const ConnectionRows& connections);
+  void findConnectionForces(const Assembly& in);
+  /// How fast body b swings, K being that of its connections: `share`.
+  void findShare(const Assembly& in, int b);
   /// f_W pulls A at one point and −f_W B at the other.
   void addConnectionForces(const Assembly& in, int bodyA, int bodyB, const Vector3& p_WA,
                            const Vector3& p_WB, const Vector3& f_W);
@@ -86,6 +84,8 @@ class GeometricStiffness : public BlockRows {
   std::vector<ConnectionForce> connectionForces_;
   std::vector<BodyStiffness> bodyStiffness_;  ///< of each body
   std::vector<double> otherLoadRatio_;        ///< of each tree: 5 |F − Σ f|/Σ |f| of its root
+  std::vector<Vector3> treeForce_;            ///< of each tree: F of its root [N]
+  int heldBodies_ = 0;
 };
 
 }  // namespace softgauss

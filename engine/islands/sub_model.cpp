@@ -32,6 +32,10 @@ Block coordinatesOf(const Model& whole, const Model& part, int wholeTree, std::s
 constexpr VectorX WarmStart::*kWarmVectors[] = {&WarmStart::a, &WarmStart::gddA,
                                                 &WarmStart::multipliers, &WarmStart::control};
 
+/// State::connectionForces of one connection.
+auto ofConnection(State& state, int i) { return state.connectionForces.segment<9>(9 * i); }
+auto ofConnection(const State& state, int i) { return state.connectionForces.segment<9>(9 * i); }
+
 /// The place of x in ascending numbers, −1: it is not there.
 int placeIn(const std::vector<int>& numbers, int x) {
   const auto place = std::lower_bound(numbers.begin(), numbers.end(), x);
@@ -99,8 +103,12 @@ class Extraction {
     Model& m = part_.model;
     for (JointRange range : whole_.ranges)
       if ((range.body = body(range.body)) >= 0) m.ranges.push_back(range);
-    for (Connection c : whole_.connections)
-      if (move(c.bodyA, c.bodyB)) m.connections.push_back(c);
+    for (std::size_t i = 0; i < whole_.connections.size(); ++i) {
+      Connection c = whole_.connections[i];
+      if (!move(c.bodyA, c.bodyB)) continue;
+      part_.connections.push_back(static_cast<int>(i));
+      m.connections.push_back(c);
+    }
     for (Weld w : whole_.welds)
       if (move(w.bodyA, w.bodyB)) m.welds.push_back(w);
     for (JointCoupling c : whole_.couplings)
@@ -204,6 +212,10 @@ void SubModel::gather(const Model& whole, const State& from, State& to) const {
     }
   if (from.a.size() == whole.nv) gather(whole, from.a, to.a);
   to.hasAcceleration = from.hasAcceleration;
+  to.connectionForces.setZero(9 * static_cast<Eigen::Index>(connections.size()));
+  if (from.connectionForces.size() > 0)
+    for (std::size_t i = 0; i < connections.size(); ++i)
+      ofConnection(to, static_cast<int>(i)) = ofConnection(from, connections[i]);
   to.warmstart.valid = ofWhole.valid;
   to.warmstart.gddValid = ofWhole.gddValid;
   to.time = from.time;
@@ -219,6 +231,10 @@ void SubModel::scatter(const Model& whole, const State& from, State& to) const {
     scatter(whole, from.a, to.a);
     to.hasAcceleration = to.hasAcceleration || from.hasAcceleration;
   }
+  if (to.connectionForces.size() == 0)
+    to.connectionForces.setZero(9 * static_cast<Eigen::Index>(whole.connections.size()));
+  for (std::size_t i = 0; i < connections.size(); ++i)
+    ofConnection(to, connections[i]) = ofConnection(from, static_cast<int>(i));
   for (const auto warm : kWarmVectors)
     if ((from.warmstart.*warm).size() == model.nv && (to.warmstart.*warm).size() == whole.nv)
       scatter(whole, from.warmstart.*warm, to.warmstart.*warm);

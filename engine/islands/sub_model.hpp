@@ -16,9 +16,10 @@ namespace softgauss {
 
 struct SubModel {
   Model model;
-  std::vector<int> trees;       ///< (trees of the part) their indices in the whole, ascending
-  std::vector<int> geometries;  ///< (geometries of the part) their indices in the whole, ascending
-  std::vector<int> frames;      ///< (frames of the part) their indices in the whole, ascending
+  std::vector<int> trees;        ///< (trees of the part) their indices in the whole, ascending
+  std::vector<int> geometries;   ///< (geometries of the part) their indices in the whole, ascending
+  std::vector<int> frames;       ///< (frames of the part) their indices in the whole, ascending
+  std::vector<int> connections;  ///< (connections of the part) likewise
 
   /// `ofWhole`: trees, ascending.
   SubModel(const Model& whole, std::vector<int> ofWhole);

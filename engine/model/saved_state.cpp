@@ -11,7 +11,7 @@ namespace softgauss {
 namespace {
 
 constexpr std::string_view kStateKind = "SGSTATE\n";
-constexpr std::uint32_t kStateVersion = 1;
+constexpr std::uint32_t kStateVersion = 2;
 
 }  // namespace
 
@@ -20,12 +20,14 @@ void expectStateOf(const Model& model, const State& state) {
     if (!holds) ByteReader::fail(problem);
   };
   const WarmStart& warm = state.warmstart;
-  expect(state.q.size() == model.nq && state.v.size() == model.nv && state.a.size() == model.nv,
+  const Eigen::Index forces = state.connectionForces.size();
+  expect(state.q.size() == model.nq && state.v.size() == model.nv && state.a.size() == model.nv &&
+             (forces == 0 || forces == 9 * static_cast<Eigen::Index>(model.connections.size())),
          "holds vectors that are not of the model's size");
   for (const VectorX* x : {&warm.a, &warm.gddA, &warm.multipliers, &warm.control})
     expect(x->size() == model.nv, "holds a warm start that is not of the model's size");
   expect(std::isfinite(state.time) && state.q.allFinite() && state.v.allFinite() &&
-             state.a.allFinite(),
+             state.a.allFinite() && state.connectionForces.allFinite(),
          "holds numbers that are not finite");
   constexpr double kRounding = 1e-6;  // each step normalises: runs keep far less
   for (const Body& body : model.bodies)

@@ -45,8 +45,8 @@ void archive(Archive& a, WarmStart& warmstart) {
 }
 template <class Archive>
 void archive(Archive& a, State& state) {
-  auto& [q, v, time, acceleration, hasAcceleration, warmstart] = state;
-  a(q, v, time, acceleration, hasAcceleration, warmstart);
+  auto& [q, v, time, acceleration, hasAcceleration, connectionForces, warmstart] = state;
+  a(q, v, time, acceleration, hasAcceleration, connectionForces, warmstart);
 }
 
 /// Throws BytesError where a state that was read is none of the model's.

@@ -32,7 +32,10 @@ void mix(std::uint64_t& h, const double* data, Eigen::Index count) {
 }  // namespace
 
 State::State(const Model& model)
-    : q(model.q0), v(VectorX::Zero(model.nv)), a(VectorX::Zero(model.nv)) {
+    : q(model.q0),
+      v(VectorX::Zero(model.nv)),
+      a(VectorX::Zero(model.nv)),
+      connectionForces(VectorX::Zero(9 * static_cast<Eigen::Index>(model.connections.size()))) {
   warmstart.a = VectorX::Zero(model.nv);
   warmstart.gddA = VectorX::Zero(model.nv);
   warmstart.multipliers = VectorX::Zero(model.nv);
@@ -54,6 +57,7 @@ std::uint64_t hash(const State& state) {
          {k.kind, k.row.first, k.row.second, k.row.contact, k.row.direction, k.index})
       mixBits(h, static_cast<std::uint64_t>(part));
   if (state.hasAcceleration) mix(h, state.a.data(), state.a.size());
+  mix(h, state.connectionForces.data(), state.connectionForces.size());
   return h;
 }
 

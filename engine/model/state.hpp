@@ -48,11 +48,22 @@ struct State {
   double time = 0.0;  ///< [s]
   VectorX a;          ///< acceleration by which the last step ended (nv), of the leapfrog
   bool hasAcceleration = false;  ///< a is set
+  /// Of each connection, in the solve of the last step: its force on body A, and those of all rows
+  /// on the trees that A and B float in, else 0; world axes (9 × connections) [N]. From these
+  /// follows the geometric stiffness of the next step (6.8). Zero or empty: none is known.
+  VectorX connectionForces;
   WarmStart warmstart;
 
   State() = default;
   /// At rest in the model's initial configuration.
   explicit State(const Model& model);
+
+  /// To be called where q or v have been put elsewhere than the last step has ended: what it has
+  /// found says nothing there. The warm start, a guess, stays.
+  void forgetLastStep() {
+    hasAcceleration = false;
+    connectionForces.setZero();
+  }
 };
 
 /// An external force on a body: wrench about the body's origin, in world axes.
@@ -77,7 +88,7 @@ inline std::vector<std::uint8_t> allTrees(const Model& model) {
   return std::vector<std::uint8_t>(model.trees.size(), 1);
 }
 
-/// 64-bit hash of q, v, time and the warm start, bit for bit.
+/// 64-bit hash of a state, bit for bit.
 std::uint64_t hash(const State& state);
 
 /// q ← q ⊕ h v on the configuration manifold; v in the convention of JointKind.

@@ -29,6 +29,8 @@ const char* nameOf(BadInputKind kind) {
       return "State::v";
     case BadInputKind::a:
       return "the acceleration a";
+    case BadInputKind::connectionForces:
+      return "State::connectionForces";
     case BadInputKind::warmStart:
       return "the warm start";
     case BadInputKind::tau:
@@ -71,6 +73,12 @@ BadInput findBadInput(const Model& model, const Input& input, const State& state
   if (const BadInput bad = checkSize(BadInputKind::v, state.v, model.nv)) return bad;
   if (state.hasAcceleration)
     if (const BadInput bad = checkSize(BadInputKind::a, state.a, model.nv)) return bad;
+  if (state.connectionForces.size() != 0) {
+    const int numbers = 9 * static_cast<int>(model.connections.size());
+    if (const BadInput bad =
+            checkSize(BadInputKind::connectionForces, state.connectionForces, numbers))
+      return bad;
+  }
   const WarmStart& warm = state.warmstart;
   if (warm.valid)
     if (const BadInput bad = checkSize(BadInputKind::warmStart, warm.a, model.nv)) return bad;

@@ -16,6 +16,7 @@ enum class BadInputKind : std::uint8_t {
   q,                  ///< size of State::q
   v,                  ///< size of State::v
   a,                  ///< size of State::a, where it is set; of a in inverseDynamics()
+  connectionForces,   ///< size of State::connectionForces, where it is not empty
   warmStart,          ///< size of a vector of State::warmstart; of the guess of forwardDynamics()
   tau,                ///< size of Input::tau
   controlled,         ///< size of Input::controlled

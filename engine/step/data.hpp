@@ -57,7 +57,7 @@ struct StepStats {
   std::int64_t pairsSkipped = 0;
   int substeppedTrees = 0;       ///< that moved freely, followed within the step (6.3)
   int abandonedTrees = 0;        ///< that needed more sub-steps than allowed and took (6.2) instead
-  int stabilisedBodies = 0;      ///< bodies that swing too fast, held in a second solve (6.9)
+  int stabilisedBodies = 0;      ///< bodies that swing too fast, held by rows (6.9)
   int substeps = 0;              ///< of followed trees, over all of them; parts of a divided step
   int parts = 1;                 ///< into which the leapfrog has divided the step (6.3)
   int repeats = 0;               ///< solves that were repeated, with another prediction (6.2)

@@ -145,12 +145,8 @@ void computeForces(const Model& model, const Input& input, const State& state, D
 void assembleRows(const Model& model, const Input& input, const State& state, Data& data,
                   Clock::time_point& clock) {
   if (kBuiltRows.empty() || data.plan.rows.empty()) return;
-  Assembly assembly{model,
-                    state,
-                    data.kinematics,
-                    data.contacts,
-                    data.weights,
-                    data.inertia.sparsity,
+  Assembly assembly{model,           state,        data.kinematics,
+                    data.contacts,   data.weights, data.inertia.sparsity,
                     input.controlled};
   if (data.plan.drifts && predictsMidstepVelocity(model, state))
     assembly.midstepVelocity = &data.midstepVelocity;
@@ -160,6 +156,7 @@ void assembleRows(const Model& model, const Input& input, const State& state, Da
     data.exactDiagonal.apply(data.inertia.M, data.constraints);
   if (model.options.noSlip) data.noSlipFriction.clear();
   data.stats.rows = data.constraints.rowCount();
+  data.stats.stabilisedBodies = data.constraints.geometricStiffness.heldBodies();
   data.stats.times.rows += lap(clock);
 }
 
@@ -285,8 +282,7 @@ Tried tryStep(const Model& model, const Given& given, const State& start, int mo
       if (data.parts->substepSelection.parts > most) return Tried::unresolved;
     }
     if (isRefused(solve(model, given, state, data, aim, clock))) return Tried::refused;
-    if (!drifts || again || !predictionFailed(model, data.parts->substepSelection, data, state))
-      break;
+    if (!drifts || again || !predictionFailed(model, data, state)) break;
     ++stats.repeats;
     stats.residual = 0.0;  // what was predicted by it does not move
     computeForces(model, given.input, state, data, clock);
@@ -330,6 +326,7 @@ Tried stepInParts(const Model& model, const Given& given, int parts, State& stat
   const int most = parts < SubstepSelection::kMaxDivisions ? 2 : SubstepSelection::kMaxDivisions;
   p.start = p.before;
   p.start.a = p.predicted;
+  p.start.connectionForces = p.predictedForces;
   p.start.hasAcceleration = true;
   StepStats total;
   Tried tried = Tried::taken;
@@ -381,6 +378,7 @@ SolveStatus step(const Model& model, const Input& input, State& state, Data& dat
   const int most = model.options.stepDoubling ? kAny : 1;
   Tried tried = tryStep(model, given, p.before, most, posed, state, data);
   p.predicted = state.a;
+  p.predictedForces = state.connectionForces;
   for (int parts = 1; tried == Tried::unresolved;) {
     parts = std::min(SubstepSelection::kMaxDivisions, parts * p.substepSelection.parts);
     tried = stepInParts(model, given, parts, state, data);

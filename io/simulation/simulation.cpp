@@ -140,7 +140,7 @@ const ControlSolution& Simulation::solve(const VectorX& q, const VectorX& v,
   p.before = p.state;
   p.state.q = q;
   p.state.v = v;
-  p.state.hasAcceleration = false;
+  p.state.forgetLastStep();
   solveInto(p, contacts ? *contacts : p.scene->source(), p.solution);
   if (isRefused(p.solution.status)) {
     p.state = p.before;

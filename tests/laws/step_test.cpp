@@ -73,6 +73,7 @@ TEST(State, HashSeesEveryMember) {
   EXPECT_TRUE(changed([](State& x) { x.time += 1e-9; }));
   EXPECT_TRUE(changed([](State& x) { x.a[2] = std::nextafter(x.a[2], kInfinity); }));
   EXPECT_TRUE(changed([](State& x) { x.hasAcceleration = !x.hasAcceleration; }));
+  EXPECT_TRUE(changed([](State& x) { x.connectionForces = VectorX::Ones(9); }));
   EXPECT_TRUE(changed([](State& x) { x.warmstart.a[0] += 1.0; }));
   EXPECT_TRUE(changed([](State& x) { x.warmstart.valid = !x.warmstart.valid; }));
   EXPECT_TRUE(changed([](State& x) { x.warmstart.gddA[0] += 1.0; }));

@@ -76,7 +76,7 @@ double EnergyWatch::energy(const State& state) {
 void EnergyWatch::forceAt(const VectorX& q, const Input& input, VectorX& force) {
   back_.q = q;
   back_.v.setZero();
-  back_.hasAcceleration = false;
+  back_.forgetLastStep();
   computeStages(model_, input, back_, data_, nullptr);
   force = data_.forces.net;
   for (const Tree& tree : model_.trees)
@@ -126,7 +126,7 @@ double EnergyWatch::stored(const State& state, const Input& input) {
   soft.controlled = allTrees(model_);  // (5.7) scales k d by the speed
   State still = state;
   still.v.setZero();
-  still.hasAcceleration = false;
+  still.forgetLastStep();
   computeStages(model_, soft, still, data_, &contacts_);
   forwardDynamics(model_, nullptr, data_);
   std::vector<const void*> kinds;

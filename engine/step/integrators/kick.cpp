@@ -3,8 +3,6 @@
 
 #include <algorithm>
 
-#include "softgauss/engine/step/forward.hpp"
-
 namespace softgauss {
 
 bool tooFast(const Model& model, const VectorX& v) {
@@ -16,13 +14,10 @@ bool tooFast(const Model& model, const VectorX& v) {
   });
 }
 
-bool addGeometricStiffness(const Model& model, Data& data, const State& state) {
-  data.stats.stabilisedBodies = data.constraints.addGeometricStiffness(
-      {model, state, data.kinematics, data.contacts, data.weights, data.inertia.sparsity});
-  if (data.stats.stabilisedBodies == 0) return true;
-  data.acceleration = data.forward.a;
-  forwardDynamics(model, &data.acceleration, data);
-  return data.stats.count(data.forward.report);
+void keepConnectionForces(const Model& model, Data& data, State& state,
+                          std::span<const std::uint8_t> trees) {
+  if (data.plan.rows.has(RowKind::geometricStiffness))
+    data.constraints.connectionForces(model, trees, state.connectionForces);
 }
 
 }  // namespace softgauss

@@ -3,12 +3,17 @@
 
 /// What the integrators of one solve share between the solve and the new velocity.
 
+#include <cstdint>
+#include <span>
+
 #include "softgauss/engine/step/data.hpp"
 
 namespace softgauss {
 
-/// Solves again where rows have to hold what swings too fast (6.9). False: not finite.
-bool addGeometricStiffness(const Model& model, Data& data, const State& state);
+/// state.connectionForces ← those of the solve, of which the next one makes its rows (6.9); of
+/// connections of these trees alone, unless `trees` is empty.
+void keepConnectionForces(const Model& model, Data& data, State& state,
+                          std::span<const std::uint8_t> trees = {});
 
 /// Not finite, or turning so fast that the square of the angle overflows.
 bool tooFast(const Model& model, const VectorX& v);

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "softgauss/engine/step/integrators/leapfrog.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "softgauss/engine/step/integrators/implicit_forces.hpp"
 #include "softgauss/engine/step/integrators/kick.hpp"
+#include "softgauss/engine/step/substep_workspace.hpp"
 
 namespace softgauss {
 namespace {
@@ -49,30 +51,30 @@ void predictMidstepVelocity(const Model& model, const State& state, Data& data) 
   setMidstepVelocity(model, data.midstepVelocity, data.kinematics);
 }
 
-bool predictionFailed(const Model& model, const SubstepSelection& substepSelection,
-                      const Data& data, State& state) {
+bool predictionFailed(const Model& model, Data& data, State& state) {
   if (!data.plan.coriolis || !model.options.uses(Mechanism::midpointVelocity)) return false;
   const double h = model.options.timestep;
   const VectorX& a = data.forward.a;
+  std::vector<std::uint8_t>& mispredicted = data.parts->mispredicted;
+  std::fill(mispredicted.begin(), mispredicted.end(), 0);
   bool any = false;
   for (std::size_t t = 0; t < model.trees.size(); ++t) {
     const Tree& tree = model.trees[t];
     // A joint alone has nothing to turn against.
-    if (substepSelection.free[t] || tree.dofEnd - tree.firstDof == 1) continue;
+    if (data.parts->substepSelection.free[t] || tree.dofEnd - tree.firstDof == 1) continue;
     const double off = 0.5 * h * h * worstTurn(model, tree, a, state.a);
     if (state.hasAcceleration && !(off > kForgets)) continue;
     const int first = tree.firstDof, dofs = tree.dofEnd - first;
     state.a.segment(first, dofs) = a.segment(first, dofs);
-    any = true;
+    mispredicted[t] = 1, any = true;
   }
+  if (any) keepConnectionForces(model, data, state, mispredicted);
   state.hasAcceleration = state.hasAcceleration || any;
   return any;
 }
 
 bool kickAndDrift(const Model& model, Data& data, State& state) {
   const double h = model.options.timestep;
-  if (data.plan.rows.has(RowKind::geometricStiffness) && !addGeometricStiffness(model, data, state))
-    return false;
   VectorX& v = data.forward.start;
   data.acceleration = data.forward.a;
   v = state.v + h * data.acceleration;
@@ -82,6 +84,7 @@ bool kickAndDrift(const Model& model, Data& data, State& state) {
   integratePosition(model, v, 0.5 * h, state.q);
   state.a = data.acceleration;
   state.hasAcceleration = true;
+  keepConnectionForces(model, data, state);
   state.time += h;
   return true;
 }

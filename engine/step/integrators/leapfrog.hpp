@@ -14,10 +14,10 @@
 /// are those of the step's end, as inertia of the solve (implicit_forces.hpp); joints on stiff
 /// springs do not drift before it, for their springs know where they end. Where a₋ is not known, or
 /// has changed so much that a tree ends elsewhere, ½ h² |a − a₋| > kForgets, the solve is repeated
-/// with a in its place.
+/// with a in its place, and with its forces in the place of f₋ (6.8): a string that comes taut is
+/// held in the step in which it does.
 
 #include "softgauss/engine/step/data.hpp"
-#include "softgauss/engine/step/substep_selection.hpp"
 
 namespace softgauss {
 
@@ -30,9 +30,8 @@ bool predictsMidstepVelocity(const Model& model, const State& state);
 void predictMidstepVelocity(const Model& model, const State& state, Data& data);
 
 /// Where a tree that is not free ends elsewhere than a₋ has it, or a₋ is not known: state.a ← a,
-/// and true.
-bool predictionFailed(const Model& model, const SubstepSelection& substepSelection,
-                      const Data& data, State& state);
+/// state.connectionForces ← those of its connections, and true.
+bool predictionFailed(const Model& model, Data& data, State& state);
 
 /// v⁺ and q⁺ of a state at q_m; writes data.acceleration and the state. Returns false, with the
 /// state untouched, when the result is not finite.

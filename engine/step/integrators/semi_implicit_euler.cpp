@@ -10,8 +10,6 @@ namespace softgauss {
 bool semiImplicitEuler(const Model& model, Data& data, State& state) {
   const double h = model.options.timestep;
   ForwardSolution& s = data.forward;
-  if (data.plan.rows.has(RowKind::geometricStiffness) && !addGeometricStiffness(model, data, state))
-    return false;
   data.acceleration = s.a;
   if (implicitFollows(model, data)) {
     VectorX& net = data.acceleration;  // M a
@@ -26,6 +24,7 @@ bool semiImplicitEuler(const Model& model, Data& data, State& state) {
   if (tooFast(model, s.start)) return false;
   state.v = s.start;
   integratePosition(model, state.v, h, state.q);
+  keepConnectionForces(model, data, state);
   state.time += h;
   return true;
 }

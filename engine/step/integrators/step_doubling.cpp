@@ -92,6 +92,7 @@ bool stepDoubling(const Model& model, const Input& input, ContactSource* contact
   state.v = s.from.v;
   state.a = s.from.a;
   state.hasAcceleration = s.from.hasAcceleration;
+  state.connectionForces = s.from.connectionForces;
   state.time += h;
   return true;
 }

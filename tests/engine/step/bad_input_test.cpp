@@ -78,6 +78,10 @@ TEST(BadInput, OfAnotherSizeIsRefused) {
                 [&](Scene& s) { s.input.controlled.resize(static_cast<std::size_t>(trees) + 1); });
   expectRefused(BadInputKind::warmStart, 2, nv, sizeText("the warm start", 2, nv),
                 [](Scene& s) { s.state.warmstart.a.setZero(2); });
+  const int forces = 9 * static_cast<int>(sample().connections.size());
+  expectRefused(BadInputKind::connectionForces, forces + 9, forces,
+                sizeText("State::connectionForces", forces + 9, forces),
+                [&](Scene& s) { s.state.connectionForces.setZero(forces + 9); });
   expectRefused(BadInputKind::a, 2, nv, sizeText("the acceleration a", 2, nv), [](Scene& s) {
     s.state.a.setZero(2);
     s.state.hasAcceleration = true;
