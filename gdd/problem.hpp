@@ -60,7 +60,8 @@ struct ControlLimits {
   }
   /// Whether the box leaves anything to choose.
   bool open() const { return (lower.array() != 0.0).any() || (upper.array() != 0.0).any(); }
-  /// Marks the trees, in Input::controlled, on which forces act among which the box leaves a choice.
+  /// Marks the trees, in Input::controlled, on which forces act among which the box leaves a
+  /// choice.
   void markControlled(const Model& model, std::vector<std::uint8_t>& trees) const;
   /// Opens the limits of every force that no actuator causes: root forces are then allowed, and
   /// applied.
