@@ -4,12 +4,26 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numeric>
 
 #include "softgauss/engine/core/check.hpp"
 #include "softgauss/engine/core/vector_clones.hpp"
 #include "softgauss/engine/core/vector_kernels.hpp"
 
 namespace softgauss {
+namespace {
+
+/// The first bit in [from, end) that is `set`, `end` if there is none.
+int nextBit(const std::uint64_t* bits, int from, int end, bool set) {
+  for (int w = from / 64; 64 * w < end; ++w) {
+    std::uint64_t word = set ? bits[w] : ~bits[w];
+    if (w == from / 64) word &= ~std::uint64_t{0} << (from % 64);
+    if (word) return std::min(end, 64 * w + std::countr_zero(word));
+  }
+  return end;
+}
+
+}  // namespace
 
 TreeSparsity::TreeSparsity(const Model& model) {
   const int n = model.nv;
@@ -48,27 +62,32 @@ void TreeSparsity::finishRow(int row, int firstColumn) {
 }
 
 void TreeSparsity::finish() {
-  // Transpose: for every column the rows below the diagonal, as ranges.
+  // Transpose: for every column the rows below the diagonal, as ranges. Rows come one by one; a
+  // column that the row before has too, from the same first column on, lengthens its last range.
   const int n = size();
-  columns_.clear();
-  columnBegin_.assign(1, 0);
-  cursor_.assign(static_cast<std::size_t>(n), 0);
-  for (int column = 0; column < n; ++column) {
-    const std::size_t before = columns_.size();
-    for (int row = column + 1; row < n; ++row) {
-      // Rows are visited with rising columns, so each keeps its place in its segments.
-      const Segment* s = begin(row) + cursor_[row];
-      while (s != end(row) && s->end <= column) ++s, ++cursor_[row];
-      if (s == end(row) || s->begin > column) continue;
-      const bool joins = columns_.size() > before && columns_.back().end == row &&
-                         first(columns_.back().begin) == first(row);
-      if (joins)
-        columns_.back().end = row + 1;
-      else
-        columns_.push_back({row, row + 1});
+  const auto visitEntries = [&](auto&& f) {
+    for (int row = 1; row < n; ++row) {
+      const bool joins = first(row - 1) == first(row);
+      for (const Segment* s = begin(row); s != end(row); ++s)
+        for (int column = s->begin; column < std::min(s->end, row); ++column) f(row, column, joins);
     }
-    columnBegin_.push_back(static_cast<int>(columns_.size()));
-  }
+  };
+  columnBegin_.assign(static_cast<std::size_t>(n) + 1, 0);
+  cursor_.assign(static_cast<std::size_t>(n), -1);  // the last row that has the column
+  visitEntries([&](int row, int column, bool joins) {
+    if (!joins || cursor_[column] != row - 1) ++columnBegin_[column + 1];
+    cursor_[column] = row;
+  });
+  std::partial_sum(columnBegin_.begin(), columnBegin_.end(), columnBegin_.begin());
+  columns_.resize(static_cast<std::size_t>(columnBegin_[n]));
+  std::copy_n(columnBegin_.begin(), n, cursor_.begin());  // where its next range goes
+  visitEntries([&](int row, int column, bool joins) {
+    int& next = cursor_[column];
+    if (joins && next > columnBegin_[column] && columns_[next - 1].end == row)
+      columns_[next - 1].end = row + 1;
+    else
+      columns_[next++] = {row, row + 1};
+  });
 }
 
 void TreeSparsity::couple(const TreeSparsity& tree, const std::vector<Segment>& couplings,
@@ -113,15 +132,12 @@ void TreeSparsity::couple(const TreeSparsity& tree, const std::vector<Segment>& 
   storage_ = 0;
   for (int i = 0; i < n; ++i) {
     const std::uint64_t* bits = row(i);
-    const std::size_t before = segments_.size();
-    for (int j = 0; j <= i; ++j) {
-      if (!((bits[j / 64] >> (j % 64)) & 1)) continue;
-      if (segments_.size() > before && segments_.back().end == j)
-        segments_.back().end = j + 1;
-      else
-        segments_.push_back({j, j + 1});
+    const int firstColumn = nextBit(bits, 0, i + 1, true);
+    for (int from = firstColumn, to; from <= i; from = nextBit(bits, to, i + 1, true)) {
+      to = nextBit(bits, from, i + 1, false);
+      segments_.push_back({from, to});
     }
-    finishRow(i, segments_[before].begin);
+    finishRow(i, firstColumn);
   }
   finish();
 }

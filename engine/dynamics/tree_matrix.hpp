@@ -67,7 +67,7 @@ class TreeSparsity {
   std::vector<int> columnBegin_;
   std::size_t storage_ = 0;
   std::vector<std::uint64_t> bits_;  ///< scratch of couple(): one bitset per row
-  std::vector<std::size_t> cursor_;  ///< scratch of finish()
+  std::vector<int> cursor_;          ///< scratch of finish(): a place per column
 };
 
 /// A symmetric matrix on a TreeSparsity; row() points at column 0 of a row. What lies between the
