@@ -285,6 +285,9 @@ Tried tryStep(const Model& model, const Given& given, const State& start, int mo
     if (!drifts || again || !predictionFailed(model, data, state)) break;
     ++stats.repeats;
     stats.residual = 0.0;  // what was predicted by it does not move
+    stats.roundingLimitedSolves = 0;
+    state.warmstart.a = data.forward.a;  // nearer than the last step's
+    state.warmstart.valid = true;
     computeForces(model, given.input, state, data, clock);
     assembleRows(model, given.input, state, data, clock);
   }
