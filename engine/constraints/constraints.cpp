@@ -117,6 +117,14 @@ void Constraints::along(double alpha, Jet& jet) const {
   visit([&](const auto& c) { c.along(alpha, jet); });
 }
 
+bool Constraints::staysInCell() const {
+  bool stays = piecewiseQuadratic();
+  visit([&](const auto& c) {
+    if constexpr (requires { c.staysInCell(); }) stays = stays && c.staysInCell();
+  });
+  return stays;
+}
+
 void Constraints::advance(double alpha) {
   visit([&](auto& c) { c.advance(alpha); });
 }

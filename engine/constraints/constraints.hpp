@@ -123,6 +123,8 @@ class Constraints {
   double evaluate(bool& cellChanged);
   /// Adds the derivatives of s(x + α dx) in α.
   void along(double alpha, Jet& jet) const;
+  /// Whether s is one quadratic on the ray up to α = 1: no row changes its piece, no cone bends.
+  bool staysInCell() const;
   void advance(double alpha);
   void addForce(VectorX& tau) const;
   /// df ← −∇²s dx: the rates of the rows' forces along the ray, at the present residual.

@@ -120,6 +120,13 @@ class ScalarRows {
     }
   }
 
+  /// Whether x + dx has every row in the piece in which it was.
+  bool staysInCell() const {
+    for (std::size_t i = 0; i < x.size(); ++i)
+      if (penalty(i).piece(x[i] + dx[i]) != piece_[i]) return false;
+    return true;
+  }
+
   /// Appends the breakpoints that x + α dx meets at α ≥ 0.
   void findCrossings(int kind, std::vector<Crossing>& crossings) const {
     if constexpr (Penalty::kBreakpoints > 0) {

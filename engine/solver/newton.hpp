@@ -4,8 +4,9 @@
 /// Newton's method with exact line search for a strictly convex, piecewise quadratic objective.
 ///
 /// Inside a cell (no row of s changes its piece) the objective is a quadratic with one curvature,
-/// so a full step that stays in its cell is the solution up to rounding; the gradient says so. The
-/// factorisation is reused as long as the cell does not change. The solver knows no physics.
+/// so a full step that stays in its cell is the solution up to rounding, without a search; the
+/// gradient says so. The factorisation is reused as long as the cell does not change. The solver
+/// knows no physics.
 ///
 /// Stops when the scaled gradient  max_i |g_i| / scale_i  is at most the tolerance; the scales are
 /// the objective's, so that all entries share their unit.
@@ -67,7 +68,9 @@ concept NewtonObjective = requires(O o, VectorX& g, VectorX& d, double alpha) {
   { o.cellChanged() } -> std::convertible_to<bool>;  // since the last factorize()
   { o.factorize() } -> std::convertible_to<bool>;    // curvature of this cell
   o.direction(g, d);                                 // d ← −(∇²)⁻¹ g, and readies the ray
-  { o.along(alpha) } -> std::convertible_to<Jet>;    // along point + α d
+  // Whether the objective is one quadratic from the point to point + d.
+  { o.staysInCell() } -> std::convertible_to<bool>;
+  { o.along(alpha) } -> std::convertible_to<Jet>;  // along point + α d
   o.advance(d, alpha);
 };
 
@@ -109,8 +112,9 @@ NewtonReport minimize(Objective& objective, double tolerance, int maxIterations,
       factored = true;
     }
     objective.direction(g, d);
-    const LineSearchResult search =
-        exactLineSearch([&](double alpha) { return objective.along(alpha); }, g.dot(d));
+    LineSearchResult search{.alpha = 1.0};
+    if (!objective.staysInCell())
+      search = exactLineSearch([&](double alpha) { return objective.along(alpha); }, g.dot(d));
     report.lineSearchEvaluations += search.evaluations;
     ++report.iterations;
     if (search.alpha == 0.0) {

@@ -49,6 +49,7 @@ class GaussObjective {
 
   bool factorize() {
     changed_ = false;
+    newFactor_ = true;
     s_.P.resize(rows_.sparsity());
     s_.P.assign(M_);
     rows_.addCurvature(s_.P);
@@ -65,6 +66,10 @@ class GaussObjective {
     curvature_ = d.dot(s_.Md);
   }
 
+  /// Of the first step with a factor. What rounding has left of it is found with a search: where
+  /// rows are very stiff, that gains more than whole steps do.
+  bool staysInCell() const { return newFactor_ && rows_.staysInCell(); }
+
   Jet along(double alpha) const {
     Jet jet{0.0, slope_ + alpha * curvature_, curvature_};
     rows_.along(alpha, jet);
@@ -75,6 +80,7 @@ class GaussObjective {
     s_.a += alpha * d;
     s_.Ma += alpha * s_.Md;
     rows_.advance(alpha);
+    newFactor_ = false;
   }
 
  private:
@@ -84,6 +90,7 @@ class GaussObjective {
   ForwardSolution& s_;
   bool changed_ = true;
   bool fresh_ = false;
+  bool newFactor_ = false;  ///< no step has been taken with it
   double slope_ = 0.0, curvature_ = 0.0;
 };
 static_assert(NewtonObjective<GaussObjective<Constraints>>);

@@ -34,6 +34,7 @@ class BoundedFriction {
     constraints_.visitAllButContacts([&](const auto& c) { c.along(alpha, jet); });
     friction_.along(alpha, jet);
   }
+  bool staysInCell() const { return false; }  // its cones bend
   void advance(double alpha) {
     constraints_.visitAllButContacts([&](auto& c) { c.advance(alpha); });
     friction_.advance(alpha);
