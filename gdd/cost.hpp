@@ -18,6 +18,7 @@
 ///
 /// Nothing here allocates in steady state, but what is for functions does.
 
+#include <Eigen/Cholesky>
 #include <functional>
 #include <vector>
 
@@ -36,8 +37,14 @@ struct GoalWorkspace {
   VectorX dofs;        ///< (nv)
   TreeFactor massFactor;
   Centroidal centroidal;
+  // Of a posture that yields to k rows of places:
+  MatrixX placeRows, placeHalf;  ///< (nv × k)
+  MatrixX placeInertia;          ///< (k × k)
+  VectorX placePull;             ///< (k)
+  Eigen::LLT<MatrixX> placeFactor;
+  VectorX pull;  ///< (nv)
 
-  explicit GoalWorkspace(int n) : J(6, n), half(6, n), rows(6, n), dofs(n) {}
+  explicit GoalWorkspace(int n) : J(6, n), half(6, n), rows(6, n), dofs(n), pull(n) {}
 };
 
 class GoalCost {

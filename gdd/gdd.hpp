@@ -13,6 +13,7 @@
 #include "softgauss/gdd/goals/balance.hpp"
 #include "softgauss/gdd/goals/center_of_pressure.hpp"
 #include "softgauss/gdd/goals/contact_force.hpp"
+#include "softgauss/gdd/goals/default_weight.hpp"
 #include "softgauss/gdd/goals/effort.hpp"
 #include "softgauss/gdd/goals/functions.hpp"
 #include "softgauss/gdd/goals/hold.hpp"

@@ -47,6 +47,14 @@ struct GoalError {
   static constexpr double kMetShare = 0.05;   ///< of a force or an acceleration that is asked for
 };
 
+/// A place of a link that a goal without a weight of its own seeks: a posture yields to it.
+struct LedPlace {
+  int frame = 0;                                       ///< index into Model::frames
+  Vector3 p_FP = Vector3::Zero();                      ///< the point of the link [m]
+  bool turns = false;                                  ///< the link's orientation too
+  double startTime = -kInfinity, endTime = kInfinity;  ///< when the goal acts [s]
+};
+
 /// What a figure is read from, besides the context: the contact forces of the step.
 using ContactForces = std::vector<Snapshot::ContactForce>;
 
@@ -68,6 +76,12 @@ class Goal {
   /// nothing there. The goals of all islands together cost what this one costs. Throws ModelError
   /// where it ties what may be apart, as any goal does that does not say otherwise.
   virtual std::unique_ptr<Goal> within(const Model& whole, const SubModel& island) const;
+  /// Index into Model::frames of the link that it moves; −1: none, or a robot as a whole.
+  virtual int linkFrame() const { return -1; }
+  /// Sets the weights that nobody has given to what they are beside a posture of this weight.
+  virtual void weighBeside(double) {}
+  /// What a posture leaves to it: the place it seeks, where nobody has given its weight.
+  virtual std::optional<LedPlace> ledPlace() const { return std::nullopt; }
   /// Nothing for a goal that is no place.
   virtual std::optional<GoalMark> mark(const GoalContext&) const { return std::nullopt; }
   /// Appends how far the robot is from the goal; nothing where it has no aim that one could reach,

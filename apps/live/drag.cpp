@@ -12,9 +12,9 @@ Drag::Drag(const Model& model, int number)
 }
 
 void Drag::begin(const Model& model, const std::string& link, const Vector3& p_FP,
-                 const Vector3& p_WTarget, double weight) {
+                 const Vector3& p_WTarget, std::optional<double> weight) {
   reach = gdd::Reach(model, link, p_WTarget, p_FP);
-  reach.weight = weight;
+  if (weight) reach.weight = *weight, reach.defaultWeight.giveUp();
   line.reset();
   startTime = -kInfinity;
 }
@@ -30,6 +30,12 @@ void Drag::followLine(const Vector3& p_W, double time, double duration) {
 void Drag::moveTo(const Vector3& p_WTarget, double time) {
   reach.p_WTarget = p_WTarget;
   if (line) line->turnTo(p_WTarget, time);
+}
+
+std::optional<gdd::LedPlace> Drag::ledPlace() const {
+  std::optional<gdd::LedPlace> place = reach.ledPlace();
+  if (place) place->startTime = startTime, place->endTime = endTime;
+  return place;
 }
 
 /// As a reach does it along its line.

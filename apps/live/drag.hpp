@@ -17,8 +17,9 @@ class Drag final : public gdd::Goal {
   Drag(const Model& model, int number);
 
   /// From now on the point of the link seeks `p_WTarget`. The link exists.
+  /// Without a weight [kg] it weighs as a reach does.
   void begin(const Model& model, const std::string& link, const Vector3& p_FP,
-             const Vector3& p_WTarget, double weight);
+             const Vector3& p_WTarget, std::optional<double> weight);
   /// Lets it come along a line in `duration` [s] from p_W, at rest, at `time` [s].
   void followLine(const Vector3& p_W, double time, double duration);
   /// From `time` on [s] the point seeks another place.
@@ -28,6 +29,9 @@ class Drag final : public gdd::Goal {
 
   std::string name() const override { return name_; }
   bool steadyAt(double) const override { return false; }
+  int linkFrame() const override { return reach.frame; }
+  void weighBeside(double posture) override { reach.weighBeside(posture); }
+  std::optional<gdd::LedPlace> ledPlace() const override;
   void addCost(const gdd::GoalContext& context, gdd::GoalCost& cost) const override;
   std::optional<gdd::GoalMark> mark(const gdd::GoalContext& context) const override {
     return reach.mark(context);

@@ -48,6 +48,7 @@ std::string Hands::apply(const Event& event) {
     case EventKind::release:
       if (drag) drag->end();
       holding_.clear();
+      weighDefaults();
       return "";
     case EventKind::pin:
       if (!drag) return "nothing is held that could be pinned";
@@ -96,24 +97,11 @@ Drag* Hands::held() const {
   return nullptr;
 }
 
-/// What moves the link nearer has to outweigh a posture that holds it: the default of a reach,
-/// times the weight of the strongest posture in force.
-double Hands::dragWeight(const std::string& link) const {
-  double weight =
-      gdd::kReachWeightPerMass * gdd::referenceMass(run_.model, run_.model.findFrame(link));
-  double strongest = 1.0;
-  for (const auto& goal : run_.controller.goals) {
-    const auto* posture = dynamic_cast<const gdd::Posture*>(goal.get());
-    if (posture && posture->actsAt(run_.state.time))
-      strongest = std::max(strongest, posture->weight);
-  }
-  return weight * strongest;
-}
-
 std::string Hands::grab(const Event& event) {
   if (drags_.empty()) return "nothing drives this run: links can be pushed, not dragged";
   if (Drag* before = held()) before->end();
   holding_.clear();
+  weighDefaults();
   const auto free =
       std::find_if(drags_.begin(), drags_.end(), [](const Drag* drag) { return !drag->held(); });
   if (free == drags_.end())
@@ -121,7 +109,8 @@ std::string Hands::grab(const Event& event) {
   const std::string& link = event.text("link");
   Drag& drag = **free;
   drag.begin(run_.model, link, event.vector("point"), event.vector("target"),
-             event.maybeNumber("weight").value_or(dragWeight(link)));
+             event.maybeNumber("weight"));
+  weighDefaults();
   drag.reach.stiffness = event.maybeNumber("stiffness").value_or(drag.reach.stiffness);
   drag.reach.damping = event.maybeNumber("damping").value_or(drag.reach.damping);
   if (const std::optional<double> duration = event.maybeNumber("duration"))
@@ -167,15 +156,24 @@ std::string Hands::setGoal(const Event& event) {
   if (drag && on && *on && !drag->held()) return "a drag begins when a link is grabbed";
   for (const auto& [field, place] : places)
     if (const std::optional<double> value = event.maybeNumber(field)) *place = *value;
-  if (!on) return "";
-  if (drag && !*on) {
+  if (on) switchGoal(index, *on);
+  weighDefaults();
+  return "";
+}
+
+void Hands::switchGoal(std::size_t index, bool on) {
+  gdd::Goal& goal = *run_.controller.goals[index];
+  auto* drag = dynamic_cast<Drag*>(&goal);
+  if (drag && !on) {
     if (holding_ == drag->name()) holding_.clear();
     drag->end();
   } else if (!drag) {
-    goal.startTime = *on ? starts_[index] : kInfinity;
+    goal.startTime = on ? starts_[index] : kInfinity;
   }
-  return "";
 }
+
+/// As simulate_gdd has set them up; postures, their weights and drags come and go here.
+void Hands::weighDefaults() { gdd::weighDefaults(run_.model, run_.controller.goals); }
 
 std::string Hands::setJoint(const Event& event) {
   if (!paused()) return "joints are put somewhere where the run is paused";

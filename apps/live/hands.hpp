@@ -77,7 +77,8 @@ class Hands {
   std::string setJoint(const Event& event);
   void setEffect(const Event& event);
   void goTo(const Rewind::Place& place);
-  double dragWeight(const std::string& link) const;
+  void switchGoal(std::size_t index, bool on);
+  void weighDefaults();
   Vector3 placeOf(const gdd::Reach& reach) const;
   Drag* held() const;
 

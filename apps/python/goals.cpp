@@ -136,7 +136,18 @@ class Handle {
     return *weight;
   }
 
-  void setWeight(double weight) const { this->weight() = checkedWeight(weight); }
+  void setWeight(double weight) const {
+    this->weight() = checkedWeight(weight);
+    held_.sim().goals.weighDefaults();
+  }
+  void setStart(double time) const {
+    get().startTime = checkedTime(time, "start");
+    held_.sim().goals.weighDefaults();
+  }
+  void setEnd(double time) const {
+    get().endTime = checkedTime(time, "end");
+    held_.sim().goals.weighDefaults();
+  }
 
  private:
   Targets targets() const {
@@ -187,13 +198,10 @@ void bindHandle(py::module_& m) {
           "none.")
       .def_property("weight", &Handle::weight, &Handle::setWeight, "In the unit of its kind, ≥ 0.")
       .def_property(
-          "start", [](Handle& h) { return h.get().startTime; },
-          [](Handle& h, double t) { h.get().startTime = checkedTime(t, "start"); },
+          "start", [](Handle& h) { return h.get().startTime; }, &Handle::setStart,
           "It acts from here on [s].")
       .def_property(
-          "end", [](Handle& h) { return h.get().endTime; },
-          [](Handle& h, double t) { h.get().endTime = checkedTime(t, "end"); },
-          "And before this [s].")
+          "end", [](Handle& h) { return h.get().endTime; }, &Handle::setEnd, "And before this [s].")
       .def("__repr__", [](Handle& h) { return "<softgauss.Goal '" + h.get().name() + "'>"; });
 }
 
@@ -245,7 +253,9 @@ void bindGoals(py::module_& m) {
           "reach", reach, py::arg("link"), py::arg("target"), py::arg("point") = zero,
           py::arg("weight") = py::none(), py::keep_alive<0, 1>(),
           "A point (3,) of the link [m] seeks a place (3,) in the world [m]. Called again for the\n"
-          "same point it moves the place. weight [kg]: 2.5 times the robot's mass. UnknownName.")
+          "same point it moves the place. weight [kg]: 2.5 times the robot's mass, times the "
+          "weight\n"
+          "of the strongest posture beside it where that is above 1. UnknownName.")
       .def(
           "hold",
           [](GoalList& g, const std::string& link) {

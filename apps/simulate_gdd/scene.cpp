@@ -53,7 +53,7 @@ void setUp(const SimulateOptions& options, const Scene& scene,
   if (!options.goals.empty()) addGoals(options.goals, scene, controller);
   for (const ReachArgument& r : options.reach) {
     auto goal = std::make_unique<gdd::Reach>(scene.model, r.link, r.p_WTarget, r.p_FP);
-    if (r.weight) goal->weight = *r.weight;
+    if (r.weight) goal->weight = *r.weight, goal->defaultWeight.giveUp();
     controller.goals.push_back(std::move(goal));
   }
   for (const std::string& link : options.hold)
@@ -61,6 +61,7 @@ void setUp(const SimulateOptions& options, const Scene& scene,
   if (options.hasOwnGoals())
     for (std::unique_ptr<gdd::Goal>& goal : regularisers(scene.initial.q, options.posture))
       controller.goals.push_back(std::move(goal));
+  gdd::weighDefaults(scene.model, controller.goals);
   if (options.controlCost) controller.controlCost = *options.controlCost;
   if (options.changeGoals) options.changeGoals(controller);
 }

@@ -46,7 +46,10 @@ int drivenRobot(const Model& model) {
 }
 
 CenterOfMass::CenterOfMass(const Model& model, int ofRobot, const Vector3& target)
-    : robot(ofRobot), p_WTarget(target), weight(kReachWeightPerMass * massOfRobot(model, robot)) {}
+    : robot(ofRobot),
+      p_WTarget(target),
+      weight(kReachWeightPerMass * massOfRobot(model, robot)),
+      defaultWeight(weight) {}
 
 void CenterOfMass::addCost(const GoalContext& context, GoalCost& cost) const {
   const Centroidal& c = centroidalOf(context, robot, cost.workspace().centroidal);
@@ -70,7 +73,10 @@ void MomentumGoal::addCost(const GoalContext& context, GoalCost& cost) const {
 }
 
 CapturePoint::CapturePoint(const Model& model, int ofRobot, const Vector3& target)
-    : robot(ofRobot), p_WTarget(target), weight(kReachWeightPerMass * massOfRobot(model, robot)) {}
+    : robot(ofRobot),
+      p_WTarget(target),
+      weight(kReachWeightPerMass * massOfRobot(model, robot)),
+      defaultWeight(weight) {}
 
 std::optional<Vector3> CapturePoint::position(const GoalContext& context) const {
   Centroidal c;

@@ -19,6 +19,7 @@
 
 #include "softgauss/engine/dynamics/centroidal.hpp"
 #include "softgauss/gdd/goal.hpp"
+#include "softgauss/gdd/goals/default_weight.hpp"
 
 namespace softgauss::gdd {
 
@@ -31,12 +32,14 @@ class CenterOfMass final : public Goal {
   Vector3 p_WTarget;                           ///< x* [m]
   std::array<bool, 3> axes{true, true, true};  ///< S: of x, y, z
   double weight;                               ///< w [kg]; default 2.5 × the robot's mass
+  DefaultWeight defaultWeight;                 ///< of w
   double stiffness = 100.0;                    ///< k_p [1/s²]
   double damping = 20.0;                       ///< k_d [1/s]
 
   CenterOfMass(const Model& model, int robot, const Vector3& p_WTarget);
 
   std::string name() const override { return "center_of_mass"; }
+  void weighBeside(double posture) override { defaultWeight.setBeside(posture, weight); }
   void addCost(const GoalContext& context, GoalCost& cost) const override;
   std::unique_ptr<Goal> within(const Model& whole, const SubModel& island) const override;
   void errors(const GoalContext& context, const ContactForces& contacts,
@@ -63,10 +66,11 @@ class MomentumGoal final : public Goal {
 
 class CapturePoint final : public Goal {
  public:
-  int robot;          ///< Body::robot
-  Vector3 p_WTarget;  ///< ξ*, on the ground: z is the ground's height [m]
-  double weight;      ///< w [kg]; default 2.5 × the robot's mass
-  double rate = 5.0;  ///< β [1/s]
+  int robot;                    ///< Body::robot
+  Vector3 p_WTarget;            ///< ξ*, on the ground: z is the ground's height [m]
+  double weight;                ///< w [kg]; default 2.5 × the robot's mass
+  DefaultWeight defaultWeight;  ///< of w
+  double rate = 5.0;            ///< β [1/s]
 
   CapturePoint(const Model& model, int robot, const Vector3& p_WTarget);
 
@@ -74,6 +78,7 @@ class CapturePoint final : public Goal {
   /// gravity does not pull down.
   std::optional<Vector3> position(const GoalContext& context) const;
   std::string name() const override { return "capture_point"; }
+  void weighBeside(double posture) override { defaultWeight.setBeside(posture, weight); }
   void addCost(const GoalContext& context, GoalCost& cost) const override;
   std::unique_ptr<Goal> within(const Model& whole, const SubModel& island) const override;
   void errors(const GoalContext& context, const ContactForces& contacts,

@@ -7,7 +7,9 @@ Hold::Hold(const Model& model, const std::string& linkName)
     : link(linkName),
       frame(model.findFrame(linkName)),
       weight(kReachWeightPerMass * referenceMass(model, frame)),
-      rotationWeight(kRotationWeightPerWeight * weight) {
+      rotationWeight(kRotationWeightPerWeight * weight),
+      defaultWeight(weight),
+      defaultRotationWeight(rotationWeight) {
   if (frame < 0)
     throw ModelError({}, "goal 'hold " + linkName + "'", "the model has no link of that name");
 }

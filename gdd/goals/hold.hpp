@@ -13,18 +13,29 @@ namespace softgauss::gdd {
 
 class Hold final : public Goal {
  public:
-  std::string link;                ///< for the name
-  int frame = 0;                   ///< index into Model::frames
-  Vector3 p_FP = Vector3::Zero();  ///< the point in the link's frame [m]
-  bool wholeLink = true;           ///< false: the point only
-  double weight;                   ///< w [kg]; default 2.5 × referenceMass()
-  double rotationWeight;           ///< w_r [kg m²]; default 0.01 m² × w
-  double rate = 20.0;              ///< β [1/s]
+  std::string link;                     ///< for the name
+  int frame = 0;                        ///< index into Model::frames
+  Vector3 p_FP = Vector3::Zero();       ///< the point in the link's frame [m]
+  bool wholeLink = true;                ///< false: the point only
+  double weight;                        ///< w [kg]; default 2.5 × referenceMass()
+  double rotationWeight;                ///< w_r [kg m²]; default 0.01 m² × w
+  DefaultWeight defaultWeight;          ///< of w
+  DefaultWeight defaultRotationWeight;  ///< of w_r
+  double rate = 20.0;                   ///< β [1/s]
 
   /// Throws ModelError when the model has no such link.
   Hold(const Model& model, const std::string& link);
 
   std::string name() const override { return "hold " + link; }
+  int linkFrame() const override { return frame; }
+  void weighBeside(double posture) override {
+    defaultWeight.setBeside(posture, weight);
+    defaultRotationWeight.setBeside(posture, rotationWeight);
+  }
+  std::optional<LedPlace> ledPlace() const override {
+    if (!defaultWeight.isAt(weight)) return std::nullopt;
+    return LedPlace{frame, p_FP, wholeLink, startTime, endTime};
+  }
   void addCost(const GoalContext& context, GoalCost& cost) const override;
   std::unique_ptr<Goal> within(const Model&, const SubModel& island) const override {
     return ofLinkWithin(*this, island);

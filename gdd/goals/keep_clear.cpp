@@ -92,6 +92,7 @@ KeepClear::KeepClear(const Model& model, const std::string& linkName, const std:
       pairs(pairsOf(model, linkName, fromName)),
       distance(least),
       weight(kClearWeightPerMass * referenceMass(model, model.findFrame(linkName))),
+      defaultWeight(weight),
       shapes(std::move(source)) {
   const auto fail = [&](const std::string& problem) {
     throw ModelError({}, "goal '" + name() + "'", problem);

@@ -42,10 +42,11 @@ class KeepClear final : public Goal {
 
   std::string link, from;  ///< for the name
   std::vector<Pair> pairs;
-  double distance;           ///< d* [m]
-  double weight;             ///< w [kg]; default 2500 × referenceMass()
-  double stiffness = 400.0;  ///< k_p [1/s²]
-  double damping = 40.0;     ///< k_d [1/s]
+  double distance;              ///< d* [m]
+  double weight;                ///< w [kg]; default 2500 × referenceMass()
+  DefaultWeight defaultWeight;  ///< of w
+  double stiffness = 400.0;     ///< k_p [1/s²]
+  double damping = 40.0;        ///< k_d [1/s]
   std::shared_ptr<ShapeDistances> shapes;
 
   /// `from`: a link, or "world" for all that is fixed to it. Throws ModelError where a name is
@@ -58,6 +59,7 @@ class KeepClear final : public Goal {
                                    const std::string& from);
 
   std::string name() const override { return "keep_clear " + link + " from " + from; }
+  void weighBeside(double posture) override { defaultWeight.setBeside(posture, weight); }
   void addCost(const GoalContext& context, GoalCost& cost) const override;
   std::unique_ptr<Goal> within(const Model& whole, const SubModel& island) const override;
   void errors(const GoalContext& context, const ContactForces& contacts,

@@ -12,7 +12,9 @@ LinkAcceleration::LinkAcceleration(const Model& model, const std::string& linkNa
       p_FP(point),
       linear(wished),
       weight(kReachWeightPerMass * referenceMass(model, frame)),
-      rotationWeight(kRotationWeightPerWeight * weight) {
+      rotationWeight(kRotationWeightPerWeight * weight),
+      defaultWeight(weight),
+      defaultRotationWeight(rotationWeight) {
   const std::string element = "goal 'acceleration of " + linkName + "'";
   if (frame < 0) throw ModelError({}, element, "the model has no link of that name");
   if (!wished.allFinite() || !point.allFinite())

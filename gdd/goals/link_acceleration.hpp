@@ -10,19 +10,22 @@
 
 #include <optional>
 
+#include "softgauss/gdd/goals/default_weight.hpp"
 #include "softgauss/gdd/goals/link_rows.hpp"
 
 namespace softgauss::gdd {
 
 class LinkAcceleration final : public Goal {
  public:
-  std::string link;                ///< for the name
-  int frame = 0;                   ///< index into Model::frames
-  Vector3 p_FP = Vector3::Zero();  ///< the point in the link's frame [m]
-  Vector3 linear;                  ///< a* of the point, world axes [m/s²]
-  std::optional<Vector3> angular;  ///< α* of the link, world axes [rad/s²]; absent: any
-  double weight;                   ///< w [kg; - if consistent]; default 2.5 × referenceMass()
-  double rotationWeight;           ///< w_r [kg m²; - if consistent]; default 0.01 m² × w
+  std::string link;                     ///< for the name
+  int frame = 0;                        ///< index into Model::frames
+  Vector3 p_FP = Vector3::Zero();       ///< the point in the link's frame [m]
+  Vector3 linear;                       ///< a* of the point, world axes [m/s²]
+  std::optional<Vector3> angular;       ///< α* of the link, world axes [rad/s²]; absent: any
+  double weight;                        ///< w [kg; - if consistent]; default 2.5 × referenceMass()
+  double rotationWeight;                ///< w_r [kg m²; - if consistent]; default 0.01 m² × w
+  DefaultWeight defaultWeight;          ///< of w
+  DefaultWeight defaultRotationWeight;  ///< of w_r
   LinkMetric metric = LinkMetric::euclidean;
 
   /// Throws ModelError when the model has no such link.
@@ -30,6 +33,11 @@ class LinkAcceleration final : public Goal {
                    const Vector3& p_FP = Vector3::Zero());
 
   std::string name() const override { return "acceleration of " + link; }
+  int linkFrame() const override { return frame; }
+  void weighBeside(double posture) override {
+    defaultWeight.setBeside(posture, weight);
+    defaultRotationWeight.setBeside(posture, rotationWeight);
+  }
   void addCost(const GoalContext& context, GoalCost& cost) const override;
   std::unique_ptr<Goal> within(const Model&, const SubModel& island) const override {
     return ofLinkWithin(*this, island);

@@ -26,7 +26,8 @@ LookAt::LookAt(const Model& model, const std::string& linkName, const Vector3& t
       axis_F(axis.stableNormalized()),
       p_FP(point),
       p_WTarget(target),
-      weight(kRotationWeightPerWeight * kReachWeightPerMass * referenceMass(model, frame)) {
+      weight(kRotationWeightPerWeight * kReachWeightPerMass * referenceMass(model, frame)),
+      defaultWeight(weight) {
   const std::string element = "goal 'look_at " + linkName + "'";
   if (frame < 0) throw ModelError({}, element, "the model has no link of that name");
   if (!target.allFinite() || !point.allFinite() || !axis.allFinite())

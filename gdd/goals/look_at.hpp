@@ -12,6 +12,7 @@
 /// ω̇ and p̈ are affine in a; rolling about u is free. A place nearer than 1 mm has no direction:
 /// then the goal asks for nothing. Where u points away from the place, any axis across is taken.
 
+#include "softgauss/gdd/goals/default_weight.hpp"
 #include "softgauss/gdd/goals/link_rows.hpp"
 
 namespace softgauss::gdd {
@@ -24,6 +25,7 @@ class LookAt final : public Goal {
   Vector3 p_FP = Vector3::Zero();       ///< p in the link's frame [m]
   Vector3 p_WTarget = Vector3::Zero();  ///< p* [m]
   double weight;                        ///< w [kg m²]; default 0.025 m² × referenceMass()
+  DefaultWeight defaultWeight;          ///< of w
   double stiffness = 100.0;             ///< k_p [1/s²]
   double damping = 20.0;                ///< k_d [1/s]
 
@@ -33,6 +35,8 @@ class LookAt final : public Goal {
          const Vector3& axis = Vector3::UnitX(), const Vector3& p_FP = Vector3::Zero());
 
   std::string name() const override { return "look_at " + link; }
+  int linkFrame() const override { return frame; }
+  void weighBeside(double posture) override { defaultWeight.setBeside(posture, weight); }
   void addCost(const GoalContext& context, GoalCost& cost) const override;
   std::unique_ptr<Goal> within(const Model&, const SubModel& island) const override {
     return ofLinkWithin(*this, island);

@@ -46,7 +46,9 @@ Reach::Reach(const Model& model, const std::string& linkName, const Vector3& tar
       p_FP(point),
       p_WTarget(target),
       weight(kReachWeightPerMass * referenceMass(model, frame)),
-      rotationWeight(kRotationWeightPerWeight * weight) {
+      rotationWeight(kRotationWeightPerWeight * weight),
+      defaultWeight(weight),
+      defaultRotationWeight(rotationWeight) {
   const std::string element = "goal 'reach " + linkName + "'";
   if (frame < 0) throw ModelError({}, element, "the model has no link of that name");
   if (!target.allFinite() || !point.allFinite())

@@ -16,6 +16,7 @@
 
 #include <optional>
 
+#include "softgauss/gdd/goals/default_weight.hpp"
 #include "softgauss/gdd/goals/link_rows.hpp"
 
 namespace softgauss::gdd {
@@ -50,6 +51,8 @@ class Reach final : public Goal {
   std::optional<Matrix3> R_WTarget;     ///< R*: orientation of the link; absent: any
   double weight;                        ///< w [kg; - if consistent]; default 2.5 × referenceMass()
   double rotationWeight;                ///< w_r [kg m²; - if consistent]; default 0.01 m² × w
+  DefaultWeight defaultWeight;          ///< of w
+  DefaultWeight defaultRotationWeight;  ///< of w_r
   LinkMetric metric = LinkMetric::euclidean;
   double stiffness = 100.0;                ///< k_p [1/s²]
   double damping = 20.0;                   ///< k_d [1/s]
@@ -60,6 +63,15 @@ class Reach final : public Goal {
         const Vector3& p_FP = Vector3::Zero());
 
   std::string name() const override { return "reach " + link; }
+  int linkFrame() const override { return frame; }
+  void weighBeside(double posture) override {
+    defaultWeight.setBeside(posture, weight);
+    defaultRotationWeight.setBeside(posture, rotationWeight);
+  }
+  std::optional<LedPlace> ledPlace() const override {
+    if (!defaultWeight.isAt(weight)) return std::nullopt;
+    return LedPlace{frame, p_FP, R_WTarget.has_value(), startTime, endTime};
+  }
   bool steadyAt(double time) const override {
     return !minimumJerk || time < minimumJerk->startTime ||
            time > minimumJerk->startTime + minimumJerk->duration;

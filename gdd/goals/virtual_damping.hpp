@@ -19,7 +19,7 @@ enum class DampingMetric {
 
 class VirtualDamping final : public Goal {
  public:
-  double weight = 0.1;  ///< α [-]; with M⁻¹ in the units of M²
+  double weight = 1.0;  ///< α [-]; with M⁻¹ in the units of M²
   double rate = 10.0;   ///< β [1/s]
   DampingMetric metric = DampingMetric::inertia;
 

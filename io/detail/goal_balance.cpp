@@ -18,7 +18,7 @@ GoalPointer readCenterOfMass(const YamlMap& keys, const GoalScene& scene) {
   auto goal = std::make_unique<gdd::CenterOfMass>(model, robot, centroidal.p_WC);
   keys.read("target", goal->p_WTarget);
   if (const auto* axes = keys.find("axes")) goal->axes = readAxes(keys, *axes);
-  keys.read("weight", goal->weight, Range::notNegative);
+  readWeight(keys, *goal);
   keys.read("stiffness", goal->stiffness, Range::notNegative);
   keys.read("damping", goal->damping, Range::notNegative);
   return goal;
@@ -38,7 +38,7 @@ GoalPointer readCapturePoint(const YamlMap& keys, const GoalScene& scene) {
   const int robot = readRobot(keys, scene.model);
   const Vector3 target = keys.vector3(keys.required("target", "three numbers [x, y, z]"));
   auto goal = std::make_unique<gdd::CapturePoint>(scene.model, robot, target);
-  keys.read("weight", goal->weight, Range::notNegative);
+  readWeight(keys, *goal);
   keys.read("rate", goal->rate, Range::notNegative);
   return goal;
 }

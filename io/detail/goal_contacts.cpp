@@ -76,7 +76,7 @@ GoalPointer readKeepClear(const YamlMap& keys, const GoalScene& scene) {
   keys.read("distance", distance, Range::notNegative);
   if (!scene.distances) keys.fail(entry, "found without a source of shape distances");
   auto goal = std::make_unique<gdd::KeepClear>(model, link, from, distance, scene.distances(model));
-  keys.read("weight", goal->weight, Range::notNegative);
+  readWeight(keys, *goal);
   keys.read("stiffness", goal->stiffness, Range::notNegative);
   keys.read("damping", goal->damping, Range::notNegative);
   return goal;

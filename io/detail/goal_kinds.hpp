@@ -54,6 +54,14 @@ std::array<bool, 3> readAxes(const YamlMap& keys, const YamlMap::Entry& entry);
 /// begins at the target of that one, and not where the point was at first.
 void joinLines(const std::vector<GoalPointer>& goals);
 
+/// The key `weight` of a goal that has a default: what a file gives stays.
+template <class WeightedGoal>
+void readWeight(const YamlMap& keys, WeightedGoal& goal) {
+  if (!keys.find("weight")) return;
+  keys.read("weight", goal.weight, Range::notNegative);
+  goal.defaultWeight.giveUp();
+}
+
 /// Pose of a frame in the initial state.
 Transform initialPose(const GoalScene& scene, int frame);
 

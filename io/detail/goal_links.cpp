@@ -47,9 +47,12 @@ void readWeights(const YamlMap& keys, bool turns, const std::string& how, Goal& 
   if (consistent) {
     goal.metric = gdd::LinkMetric::consistent;
     goal.weight = kConsistentWeight;
+    goal.defaultWeight = gdd::DefaultWeight(kConsistentWeight);
   }
-  keys.read("weight", goal.weight, Range::notNegative);
+  readWeight(keys, goal);
   goal.rotationWeight = (consistent ? 1.0 : gdd::kRotationWeightPerWeight) * goal.weight;
+  goal.defaultRotationWeight = gdd::DefaultWeight(goal.rotationWeight);
+  if (keys.find("weight") || keys.find("rotation_weight")) goal.defaultRotationWeight.giveUp();
   keys.read("rotation_weight", goal.rotationWeight, Range::notNegative);
   const YamlMap::Entry* rotation = keys.find("rotation_weight");
   if (rotation && !turns) keys.fail(*rotation, how);
@@ -121,7 +124,7 @@ GoalPointer readLookAt(const YamlMap& keys, const GoalScene& scene) {
     keys.fail(*keys.find("axis"), "found a vector of length 0, expected a direction");
   auto goal = std::make_unique<gdd::LookAt>(scene.model, link, target, axis);
   keys.read("point", goal->p_FP);
-  keys.read("weight", goal->weight, Range::notNegative);
+  readWeight(keys, *goal);
   keys.read("stiffness", goal->stiffness, Range::notNegative);
   keys.read("damping", goal->damping, Range::notNegative);
   return goal;
@@ -131,8 +134,9 @@ GoalPointer readHold(const YamlMap& keys, const GoalScene& scene) {
   auto goal = std::make_unique<gdd::Hold>(scene.model, requiredLink(keys, scene.model));
   goal->wholeLink = !keys.find("point");
   keys.read("point", goal->p_FP);
-  keys.read("weight", goal->weight, Range::notNegative);
+  readWeight(keys, *goal);
   goal->rotationWeight = gdd::kRotationWeightPerWeight * goal->weight;
+  if (keys.find("weight") || keys.find("rotation_weight")) goal->defaultRotationWeight.giveUp();
   keys.read("rotation_weight", goal->rotationWeight, Range::notNegative);
   const YamlMap::Entry* rotation = keys.find("rotation_weight");
   if (rotation && !goal->wholeLink)

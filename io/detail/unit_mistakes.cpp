@@ -211,6 +211,15 @@ std::vector<std::string> meshes(const UrdfDescription& urdf, double robot, MeshB
 
 }  // namespace
 
+std::string radiansMeant(double position, double lower, double upper) {
+  constexpr double kLeastDegrees = 5.0;  // less is no angle that people give in degrees
+  const double radians = position * kDegree;
+  const bool isBeyond = position < lower || position > upper;
+  if (!isBeyond || std::abs(position) < kLeastDegrees || radians < lower || radians > upper)
+    return {};
+  return fmt::format(" ({} rad if it is in degrees)", shortNumber(radians));
+}
+
 std::string radiansMeant(const std::vector<double>& angles) {
   std::string meant;
   for (const double angle : angles) meant += shortNumber(angle * kDegree) + " ";

@@ -23,6 +23,10 @@ namespace softgauss::io::detail {
 /// "0 0 1.5708 rad" for angles of a pose that are probably degrees, or nothing.
 std::string radiansMeant(const std::vector<double>& angles);
 
+/// " (0.5236 rad if it is in degrees)" for a position of a hinge beyond its range that degrees
+/// would bring into it, or nothing.
+std::string radiansMeant(double position, double lower, double upper);
+
 /// One warning of each kind. Meshes of `urdf` count where they have been read.
 std::vector<std::string> unitMistakes(const XmlElement& robot, const UrdfDescription& urdf);
 

@@ -7,6 +7,7 @@
 
 #include "softgauss/collision/clearance.hpp"
 #include "softgauss/engine/model/followers.hpp"
+#include "softgauss/io/detail/unit_mistakes.hpp"
 #include "softgauss/io/names.hpp"
 #include "softgauss/io/simulation/scene.hpp"
 
@@ -25,8 +26,11 @@ void setJointPositions(const Model& model, const std::vector<std::pair<std::stri
     if (!seen.insert(name).second) fail("is given twice");
     for (const JointRange& range : model.ranges)
       if (range.body == body && (value < range.lower || value > range.upper))
-        fail(fmt::format("{} lies outside the joint's range {} .. {}", value, range.lower,
-                         range.upper));
+        fail(fmt::format("{} lies outside the joint's range {} .. {}{}", value, range.lower,
+                         range.upper,
+                         model.bodies[body].joint == JointKind::revolute
+                             ? io::detail::radiansMeant(value, range.lower, range.upper)
+                             : ""));
     state.q[model.bodies[body].q] = value;
     placed.insert(body);
   }
@@ -65,6 +69,7 @@ void addGoals(const std::filesystem::path& file, const Scene& scene,
   io::GoalFile asked = readGoalFile(file, scene);
   if (asked.controlCost) controller.controlCost = *asked.controlCost;
   for (std::unique_ptr<gdd::Goal>& goal : asked.goals) controller.goals.push_back(std::move(goal));
+  gdd::weighDefaults(scene.model, controller.goals);
 }
 
 void setUpControl(const Scene& scene, const SimulationOptions& options,
@@ -78,13 +83,12 @@ void setUpControl(const Scene& scene, const SimulationOptions& options,
   if (options.controlCost) controller.controlCost = *options.controlCost;
 }
 
-/// It takes less than a millimetre of a reach.
-constexpr double kWeakPosture = 0.01;
-
+/// The posture yields to reaches and holds (9.24), lets a robot that stands lean no further than
+/// they ask for, and brings to rest what they leave free (docs/robots.md).
 std::vector<std::unique_ptr<gdd::Goal>> regularisers(const VectorX& q,
                                                      std::optional<double> postureWeight) {
   auto posture = std::make_unique<gdd::Posture>(q);
-  posture->weight = postureWeight.value_or(kWeakPosture);
+  posture->weight = postureWeight.value_or(gdd::Posture::kDefaultWeight);
   posture->isRegulariser = !postureWeight;
   std::vector<std::unique_ptr<gdd::Goal>> goals;
   goals.push_back(std::move(posture));

@@ -83,8 +83,8 @@ io::GoalFile parseGoals(const std::string& text, const std::string& name, const 
 void addGoals(const std::filesystem::path& file, const Scene& scene,
               gdd::GoalDirectedController& controller);
 
-/// What goals that are given one by one come with: a posture about `q`, weak where no weight [-] is
-/// given, which holds what they leave free, and virtual damping (26).
+/// What goals that are given one by one come with: a posture about `q`, of weight 1000 where none
+/// [-] is given, which holds what they leave free, and virtual damping (26).
 std::vector<std::unique_ptr<gdd::Goal>> regularisers(const VectorX& q,
                                                      std::optional<double> postureWeight);
 

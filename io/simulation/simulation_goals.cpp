@@ -14,7 +14,14 @@ void SimulationGoals::expectLink(const std::string& goal, const std::string& lin
 gdd::Goal& SimulationGoals::add(std::unique_ptr<gdd::Goal> goal) {
   auto& goals = parts_->controller->goals;
   const std::size_t place = goals.size() - (parts_->hasRegularisers ? 2 : 0);
-  return **goals.insert(goals.begin() + static_cast<std::ptrdiff_t>(place), std::move(goal));
+  gdd::Goal& added =
+      **goals.insert(goals.begin() + static_cast<std::ptrdiff_t>(place), std::move(goal));
+  weighDefaults();
+  return added;
+}
+
+void SimulationGoals::weighDefaults() {
+  gdd::weighDefaults(parts_->scene->model, parts_->controller->goals);
 }
 
 gdd::Goal& SimulationGoals::addOwn(std::unique_ptr<gdd::Goal> goal) {
@@ -23,6 +30,7 @@ gdd::Goal& SimulationGoals::addOwn(std::unique_ptr<gdd::Goal> goal) {
     for (auto& regulariser : regularisers(parts_->scene->initial.q, std::nullopt))
       parts_->controller->goals.push_back(std::move(regulariser));
   parts_->hasRegularisers = true;
+  weighDefaults();
   return added;
 }
 
@@ -33,11 +41,12 @@ gdd::Reach& SimulationGoals::reach(const std::string& link, const Vector3& p_WTa
     if (auto* same = dynamic_cast<gdd::Reach*>(goal.get());
         same && same->link == link && same->p_FP == p_LP) {
       same->p_WTarget = p_WTarget;
-      if (weight) same->weight = *weight;
+      if (weight) same->weight = *weight, same->defaultWeight.giveUp();
+      weighDefaults();
       return *same;
     }
   auto goal = std::make_unique<gdd::Reach>(parts_->scene->model, link, p_WTarget, p_LP);
-  if (weight) goal->weight = *weight;
+  if (weight) goal->weight = *weight, goal->defaultWeight.giveUp();
   return static_cast<gdd::Reach&>(addOwn(std::move(goal)));
 }
 
@@ -56,6 +65,7 @@ gdd::Posture& SimulationGoals::posture(double weight) {
   auto& posture = static_cast<gdd::Posture&>(*goals[goals.size() - 2]);
   posture.weight = weight;
   posture.isRegulariser = false;
+  weighDefaults();
   return posture;
 }
 

@@ -34,7 +34,8 @@ class SimulationGoals {
   explicit SimulationGoals(SimulationParts& parts) : parts_(&parts) {}
 
   /// A point of the link, given in the link's frame [m], seeks a place in the world [m]; without a
-  /// weight [kg] 2.5 times the robot's mass. Where that point has such a goal already, its place,
+  /// weight [kg] 2.5 times the robot's mass, times the weight of the strongest posture beside it
+  /// where that is above 1. Where that point has such a goal already, its place,
   /// and the weight if one is given, become these. The goal lives until clear().
   gdd::Reach& reach(const std::string& link, const Vector3& p_WTarget,
                     const Vector3& p_LP = Vector3::Zero(),
@@ -49,6 +50,9 @@ class SimulationGoals {
   std::vector<gdd::Goal*> readText(const std::string& text, const std::string& name = "goals");
   /// Any other goal; nothing comes with it.
   gdd::Goal& add(std::unique_ptr<gdd::Goal> goal);
+  /// Weights that nobody has given, again as they are beside the postures: after a posture's
+  /// weight, or the times of a goal, were changed.
+  void weighDefaults();
   void clear();
 
   std::size_t size() const;

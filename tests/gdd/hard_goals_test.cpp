@@ -81,7 +81,7 @@ TEST(HardGoals, WeakActuatorsDoWhatTheyCan) {
     r.controller.limits.lower *= strength;
     r.controller.limits.upper *= strength;
     r.addReach("hand", target).weight = 1e4;
-    r.addDamping();
+    r.addDamping().weight = 0.1;
     Course course(r);
     course.run(8.0);
     EXPECT_EQ(course.saturation, 1.0);

@@ -220,7 +220,7 @@ struct PastObstacle {
         measure(r.model, "hand", "world", distance, std::make_shared<Clearance>(r.model)) {
     r.addReach("hand", kTarget);
     r.addPosture().weight = 0.01;
-    r.addDamping();
+    r.addDamping().weight = 0.1;
     if (keepsClear) r.controller.goals.push_back(std::make_unique<gdd::KeepClear>(measure));
   }
   void run(double seconds) {

@@ -38,12 +38,34 @@ TEST(Simulation, IsTheEngineUnderTheSameGoals) {
   controller.goals.push_back(std::make_unique<gdd::Reach>(model, "hand", target));
   for (auto& goal : regularisers(state.q, std::nullopt))
     controller.goals.push_back(std::move(goal));
+  gdd::weighDefaults(model, controller.goals);
   for (int k = 1; k <= 100; ++k) {
     ASSERT_FALSE(isRefused(sim.step()));
     ASSERT_FALSE(isRefused(controller.step(model, {}, state, data, &contacts)));
     state.time = k * model.options.timestep;
   }
   EXPECT_EQ(hash(sim.state()), hash(state));
+}
+
+// Whichever comes first; a weight that is given stays, and the posture that nobody asked for is
+// then weak.
+TEST(Simulation, GoalsWithoutAWeightFollowThePosture) {
+  const Vector3 target(0.5, 0.2, 0.4);
+  Simulation first = Simulation::load(robot("arm")), second = Simulation::load(robot("arm"));
+  const double alone = gdd::Reach(first.model(), "hand", target).weight;
+  gdd::Reach& reach = first.goals.reach("hand", target);
+  EXPECT_EQ(reach.weight, gdd::Posture::kDefaultWeight * alone);
+  first.goals.posture(300.0);
+  EXPECT_EQ(reach.weight, 300.0 * alone);
+  second.goals.posture(300.0);
+  EXPECT_EQ(second.goals.reach("hand", target).weight, 300.0 * alone);
+  EXPECT_EQ(second.goals.reach("hand", target, Vector3::Zero(), 7.0).weight, 7.0);
+  EXPECT_EQ(second.goals.reach("hand", target).weight, 7.0);
+  Simulation given = Simulation::load(robot("arm"));
+  EXPECT_EQ(given.goals.reach("hand", target, Vector3::Zero(), 51.0).weight, 51.0);
+  EXPECT_LT(dynamic_cast<gdd::Posture&>(given.goals[1]).weight, 0.1);
+  given.run(2.0);
+  EXPECT_LT((given.pose("hand").p - target).norm(), 1e-3);
 }
 
 // failure() tells what does not fit, under goals and without.
