@@ -7,7 +7,8 @@
 namespace softgauss::gdd {
 namespace {
 
-constexpr double kBegins = 0.5;  // of the speed that is allowed
+constexpr double kBegins = 0.5;    // of the speed that is allowed
+constexpr double kOwnShare = 0.5;  // of a motor's effort, to brake with
 
 bool isDriven(const Model& model, const ControlLimits& limits, int dof) {
   return model.dofs[dof].actuated || (limits.transmission && limits.transmission->pulls(dof));
@@ -26,6 +27,15 @@ double gain(const GoalContext& context, const ControlLimits& limits, int dof) {
   return context.model.options.timestep * std::max(own, before);
 }
 
+/// â: what the joint brakes by, ahead of an end of its range [rad/s² or m/s²].
+double braking(const GoalContext& context, const ControlLimits& limits, int dof, double arrival) {
+  const Dof& d = context.model.dofs[dof];
+  const double most = arrival / context.model.options.timestep;
+  if (!d.actuated || (limits.transmission && limits.transmission->pulls(dof))) return most;
+  const double effort = std::min(d.effortUpper, -d.effortLower);
+  return std::min(most, kOwnShare * effort / context.data.inertia.M.row(dof)[dof]);
+}
+
 }  // namespace
 
 void MotionLimits::addCost(const GoalContext& context, const ControlLimits& limits,
@@ -35,13 +45,19 @@ void MotionLimits::addCost(const GoalContext& context, const ControlLimits& limi
   row.setZero();
   // sign 1: upwards, with `room` [rad or m] to the upper end of the range; −1: downwards.
   const auto bound = [&](int dof, double sign, double room, double gained) {
-    const double allowed =
-        std::min(model.dofs[dof].velocityLimit, std::max(arrivalSpeed, room / approachTime));
+    double allowed = model.dofs[dof].velocityLimit, falls = 0.0;  // −u̇ for a joint at u
+    if (room < kInfinity) {
+      const double brake = braking(context, limits, dof, arrivalSpeed);
+      const double near = std::sqrt(2.0 * brake * std::max(0.0, room));
+      if (near < allowed && near > arrivalSpeed) falls = brake;
+      allowed = std::min(allowed, std::max(arrivalSpeed, near));
+    }
     const double speed = sign * context.state.v[dof];
     if (!(speed + gained > kBegins * allowed)) return;
     row[dof] = -sign;
+    const double time = std::max(brakingTime, context.model.options.timestep);
     cost.addOneSided(row, weight * context.data.inertia.M.row(dof)[dof],
-                     (speed - allowed) / std::max(brakingTime, context.model.options.timestep));
+                     (speed - allowed) / time + falls * std::max(0.0, speed) / allowed);
     row[dof] = 0.0;
   };
   auto range = model.ranges.begin();
