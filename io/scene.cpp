@@ -84,7 +84,11 @@ class SceneReader {
     readPairsAndWrenches(forEach);
     if (scene_.contents.links == 0)
       throw ModelError({top_.file(), top_.line()}, "scene",
-                       "holds nothing, expected a list of robots or of objects");
+                       top_.find("goals")
+                           ? "holds goals alone, expected robots or objects too; give "
+                             "it as --goals FILE behind a MODEL"
+                           : "holds nothing, expected a list of robots or of "
+                             "objects");
     for (const std::filesystem::path& file : meshes_.files()) scene_.contents.files.push_back(file);
     std::vector<std::string> warnings;
     unsoundHulls_.appendTo(warnings);
@@ -181,6 +185,10 @@ class SceneReader {
     map.read("velocity", start.velocity);
     map.read("angular_velocity", start.angularVelocity);
     start.onGround = flag(map, "on_ground", !map.find("position"));
+    if (const auto* asked = map.find("on_ground"); asked && start.onGround && scene_.noGround)
+      map.fail(*asked,
+               "found true with ground: none, where there is no ground to stand on; expected a "
+               "position, or ground: {height: …}");
     if (floats) scene_.starts.push_back(start);
   }
 

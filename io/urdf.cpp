@@ -91,8 +91,13 @@ class ShapeReader {
       if (found.path.empty() && std::filesystem::exists(place, ignored))
         shape.element.fail(fmt::format("mesh '{}' {}", shape.meshUri, detail::inputProblem(place)));
     if (found.path.empty())
-      shape.element.fail(fmt::format("mesh '{}' not found, expected it as one of: {}",
-                                     shape.meshUri, detail::listed(found.searched, 20)));
+      shape.element.fail(fmt::format(
+          "mesh '{}' not found, expected it as one of: {}{}", shape.meshUri,
+          detail::listed(found.searched, 20),
+          shape.meshUri.find("://") == std::string::npos
+              ? ""
+              : "; where the folder of its package lies elsewhere, give the folder above it with "
+                "--package-path"));
     return readMesh(found.path, shape);
   }
 

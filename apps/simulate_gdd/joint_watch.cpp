@@ -10,7 +10,9 @@ namespace {
 constexpr double kMemory = 0.5;         // [s]
 constexpr double kOftenNow = 0.2;       // share of the recent steps
 constexpr double kOften = 0.05;         // share of all steps
-constexpr double kAtEnd = 0.01;         // [rad or m] nearer is at the end of the range
+constexpr double kAtEndAngle = 0.01;    // [rad] nearer is at the end of the range
+constexpr double kAtEndLength = 1e-3;   // [m]
+constexpr double kAtEndShare = 0.01;    // of the range, where that is less
 constexpr double kAtSpeed = 0.95;       // of the velocity limit
 constexpr double kTooFast = 1.05;       // of it: joints that are held to it stay below
 constexpr double kChatterShare = 0.05;  // of the bound
@@ -103,7 +105,9 @@ std::vector<std::string> JointWatch::atRangeEnd(const std::vector<char>& counts)
   for (const JointRange& range : model_.ranges) {
     const Body& body = model_.bodies[range.body];
     const double q = q_[body.q];
-    if (counts[body.v] && (q < range.lower + kAtEnd || q > range.upper - kAtEnd))
+    const double most = body.joint == JointKind::prismatic ? kAtEndLength : kAtEndAngle;
+    const double near = std::min(most, kAtEndShare * (range.upper - range.lower));
+    if (counts[body.v] && (q < range.lower + near || q > range.upper - near))
       names.push_back(model_.jointNames[range.body]);
   }
   return names;

@@ -5,11 +5,16 @@
 
 namespace softgauss::app {
 
+std::string nameText(const std::string& name) {
+  const bool isNumber = name.find_first_not_of("0123456789.+-") == std::string::npos;
+  return isNumber ? "'" + name + "'" : name;
+}
+
 std::string listed(const std::vector<std::string>& names) {
   constexpr std::size_t kMost = 6;
   std::string text;
   for (std::size_t i = 0; i < names.size() && i < kMost; ++i)
-    text += (i == 0 ? "" : ", ") + names[i];
+    text += (i == 0 ? "" : ", ") + nameText(names[i]);
   if (names.size() > kMost) text += fmt::format(" and {} more", names.size() - kMost);
   return text;
 }

@@ -355,7 +355,8 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
   if (!options.isScene() && !options.passive && options.torques.empty() && !hasGoals &&
       !options.explain)
     throw UsageError(
-        "nothing to do: give a goal (--reach LINK=x,y,z or --goals FILE), --torques or --passive");
+        "nothing to do: give a goal (--reach LINK=x,y,z, --hold LINK, --posture or --goals FILE), "
+        "--torques FILE or --passive");
   return options;
 }
 

@@ -20,6 +20,7 @@
 #include "apps/simulate_gdd/replay.hpp"
 #include "apps/simulate_gdd/run_tables.hpp"
 #include "apps/simulate_gdd/run_tally.hpp"
+#include "apps/simulate_gdd/start_check.hpp"
 #include "apps/simulate_gdd/verdict.hpp"
 #include "softgauss/engine/engine.hpp"
 #include "softgauss/engine/model/saved_state.hpp"
@@ -66,6 +67,9 @@ class Runner {
     if (options.islands) islands_.emplace(model_, state_, options.sleep, controller_);
     if (options.reportError)
       errorEstimate_.emplace(model_, state_, outside_, !controller_.goals.empty());
+    computeStages(model_, input_, state_, data_, &contacts_);
+    for (std::string& told : weakAtStart(model_, state_, controller_, data_))
+      summary_.warnings.push_back(std::move(told));
     computeStages(model_, input_, state_, data_, &contacts_);
     const gdd::GoalContext start{model_, state_, data_};
     verdict_.emplace(controller_, start, passive, scene.baseOrigin);

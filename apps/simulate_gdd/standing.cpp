@@ -42,8 +42,11 @@ Standing::Standing(const Model& model, const Kinematics& start)
     robots_.push_back(robot);
   }
   for (int g = 0; g < static_cast<int>(model.geometries.size()); ++g)
-    if (const int link = contactLinks_.of(g); link >= 0)
-      links_[link].robot = robotOf[model.geometries[g].body];
+    if (const int link = contactLinks_.of(g); link >= 0) {
+      const int robot = robotOf[model.geometries[g].body];
+      links_[link].robot = robot;
+      links_[link].isBase = robot >= 0 && model.geometries[g].body == robots_[robot].body;
+    }
 }
 
 double Standing::heightOf(const Robot& robot, const Kinematics& k) const {
@@ -91,7 +94,7 @@ std::vector<StandingOutcome> Standing::outcomes(const Kinematics& end, double ti
     o.tilt = std::acos(std::clamp(up.dot(up_W), -1.0, 1.0));
     o.speed = -pointVelocity(model_, end, robot.body, end.X_WB[robot.body].p).dot(up_W);
     o.inAir = true;
-    bool baseTouches = false;
+    bool baseTouches = false, baseLies = false;
     for (std::size_t l = 0; l < links_.size(); ++l) {
       const Link& link = links_[l];
       if (link.robot != static_cast<int>(r)) continue;
@@ -100,14 +103,16 @@ std::vector<StandingOutcome> Standing::outcomes(const Kinematics& end, double ti
         o.slides.push_back({name, link.slid.norm()});
       if (time - link.lastTouch > kStillTouches) continue;
       o.inAir = false;
-      baseTouches = baseTouches || name == o.base;
+      baseTouches = baseTouches || link.isBase;
       if (link.stands) continue;
+      baseLies = baseLies || link.isBase;
       o.onGround.push_back(name);
       o.since = robot.lies;
     }
     const bool lower = o.cameDown > kFallenShare * robot.height;
     const bool down = lower || o.tilt > (robot.stoodOnRoot ? kTippedTilt : kFallenTilt);
-    o.fell = (down && !o.onGround.empty()) || (o.tilt > kLiesTilt && (baseTouches || lower));
+    o.fell =
+        (down && !o.onGround.empty()) || baseLies || (o.tilt > kLiesTilt && (baseTouches || lower));
     o.falling = down && !o.fell && !o.inAir && (o.speed > kFallSpeed || o.tilt > kLiesTilt);
     std::stable_sort(o.slides.begin(), o.slides.end(),
                      [](const auto& a, const auto& b) { return a.way > b.way; });

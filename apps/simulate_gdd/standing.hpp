@@ -6,9 +6,9 @@
 /// A robot stands on the links that touch the ground within 0.1 s of its first contact. It has
 /// fallen where at the end links lie on the ground that did not stand there, and its base has come
 /// down by a quarter of its height over the lowest point or has tilted by 20°, by 5° where it stood
-/// on its root; or where the base has tilted by 60° and touches the ground itself. It is falling
-/// where the base has come down or tilted so far and comes down at 0.2 m/s, or has tilted by 60°.
-/// Ground is all that is fixed to the world.
+/// on its root; or where the base itself lies on the ground and did not stand there, or has tilted
+/// by 60° and touches it. It is falling where the base has come down or tilted so far and comes
+/// down at 0.2 m/s, or has tilted by 60°. Ground is all that is fixed to the world.
 ///
 /// What slides is the material of a link at its contacts with the ground: with v_t the mean
 /// tangential velocity there, weighted by normal force, it slides by |∫ v_t dt|. A wheel that rolls
@@ -58,6 +58,7 @@ class Standing {
  private:
   struct Link {
     int robot = -1;           ///< of robots_
+    bool isBase = false;      ///< of the robot's root body
     bool stands = false;      ///< on the ground when the robot came to stand
     double lastTouch = -1.0;  ///< [s]; −1: never
     Vector3 slid = Vector3::Zero();

@@ -120,6 +120,9 @@ std::string Verdict::reachReason(const GoalRecord::Track& track, const SeenStep&
   if (!reach || *track.last.what) return {};
   const int body = model_.frames[reach->frame].body;
   if (body == 0) return fmt::format("{} is fixed to the world", reach->link);
+  bool isChain = false;
+  for (int b = body; b > 0; b = model_.bodies[b].parent) isChain |= model_.bodies[b].dofs == 1;
+  if (!isChain) return {};  // the link goes where its base goes
   const ReachLimit limit =
       reachLimit(model_, step.record.q, reach->frame, reach->p_FP, reach->p_WTarget);
   const int tree = model_.bodies[body].tree;
@@ -132,12 +135,20 @@ std::string Verdict::reachReason(const GoalRecord::Track& track, const SeenStep&
   return {};
 }
 
-/// What the chain of the goal's link presses against, the hardest.
+/// What the chain of the goal's link, or what the joint that is farthest off carries, presses
+/// against, the hardest.
 std::string Verdict::contactReason(const GoalRecord::Track& track, const SeenStep& step) const {
-  if (track.last.frame < 0) return {};
+  const gdd::GoalError& figure = track.last;
+  if (figure.frame < 0 && figure.dof < 0) return {};
   std::vector<char> inChain(model_.bodies.size(), 0);
-  for (int b = model_.frames[track.last.frame].body; b > 0; b = model_.bodies[b].parent)
-    inChain[b] = model_.bodies[b].dofs == 1;
+  if (figure.frame >= 0) {
+    for (int b = model_.frames[figure.frame].body; b > 0; b = model_.bodies[b].parent)
+      inChain[b] = model_.bodies[b].dofs == 1;
+  } else {
+    const int carried = model_.dofs[figure.dof].body;
+    for (int b = carried; b < model_.bodyCount(); ++b)
+      inChain[b] = b == carried || inChain[model_.bodies[b].parent];
+  }
   double most = kToldForce;
   std::string text;
   for (const Snapshot::ContactForce& c : step.contacts) {
@@ -159,7 +170,7 @@ std::string Verdict::reasonOf(const GoalRecord::Track& track, const SeenStep& st
       parts.push_back(
           fmt::format("the robot of {} {}", o.base, o.fell ? "fell" : "touches nothing"));
   if (const int dof = track.last.dof; dof >= 0)
-    parts.push_back("farthest is " + model_.jointNames[model_.dofs[dof].body]);
+    parts.push_back("farthest is " + nameText(model_.jointNames[model_.dofs[dof].body]));
   parts.push_back(reachReason(track, step));
   if (joints_.hasSeen()) {
     const auto actuated = [&](int i) { return counts[i] && model_.dofs[i].actuated; };
@@ -256,17 +267,19 @@ void Verdict::tellControls(io::Summary& summary) const {
   };
   std::vector<std::string> full, fast, slid, chattered;
   for (const WatchedControl& c : joints_.saturated())
-    full.push_back(c.amount < 0.0995
-                       ? fmt::format("{} in {:.2g} % of the steps", c.name, 100.0 * c.amount)
-                       : fmt::format("{} in {:.0f} % of the steps", c.name, 100.0 * c.amount));
+    full.push_back(
+        c.amount < 0.0995
+            ? fmt::format("{} in {:.2g} % of the steps", nameText(c.name), 100.0 * c.amount)
+            : fmt::format("{} in {:.0f} % of the steps", nameText(c.name), 100.0 * c.amount));
   for (const FastJoint& j : joints_.tooFast())
-    fast.push_back(fmt::format("{} at {:.3g} {}, limit {:.3g}", j.name, j.speed, j.unit, j.limit));
+    fast.push_back(
+        fmt::format("{} at {:.3g} {}, limit {:.3g}", nameText(j.name), j.speed, j.unit, j.limit));
   for (const StandingOutcome& o : stood_)
     for (const StandingOutcome::Slide& s : o.slides)
-      if (!o.fell) slid.push_back(fmt::format("{} {}", s.link, lengthText(s.way)));
+      if (!o.fell) slid.push_back(fmt::format("{} {}", nameText(s.link), lengthText(s.way)));
   for (const WatchedControl& c : joints_.chattering())
-    chattered.push_back(fmt::format("{} by {:.2g}{}{} from step to step", c.name, c.amount,
-                                    c.unit.empty() ? "" : " ", c.unit));
+    chattered.push_back(fmt::format("{} by {:.2g}{}{} from step to step", nameText(c.name),
+                                    c.amount, c.unit.empty() ? "" : " ", c.unit));
   add("saturated", full);
   add("too fast", fast);
   add("slid", slid);
@@ -287,9 +300,6 @@ void Verdict::tell(const std::string& ending, const std::vector<std::string>& ba
     if (!track.wasNotAsked()) summary.goals.push_back(track.outcome);
   if (!ending.empty()) summary.verdict.emplace_back(summary.outcome, ending);
   tellStanding(summary);
-  if (summary.verdict.empty())
-    summary.verdict.emplace_back(summary.outcome,
-                                 fmt::format("{:.4g} s", summary.simulatedSeconds()));
   if (fell() && ending.empty()) summary.outcome = "fell";
   for (const std::string& warning : baseWarnings) summary.verdict.emplace_back("base", warning);
   if (baseWarnings.empty())
@@ -298,6 +308,9 @@ void Verdict::tell(const std::string& ending, const std::vector<std::string>& ba
         if (o.fell && bolted_[t] && o.base == model_.bodyNames[model_.trees[t].rootBody])
           summary.verdict.emplace_back("base", boltAdvice(o.base, baseOrigin_));
   tellGoals(summary);
+  if (summary.verdict.empty())
+    summary.verdict.emplace_back(summary.outcome,
+                                 fmt::format("{:.4g} s", summary.simulatedSeconds()));
   tellControls(summary);
   for (std::string& sentence : oddities_.sentences())
     summary.verdict.emplace_back("implausible", std::move(sentence));

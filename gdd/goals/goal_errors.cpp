@@ -118,9 +118,15 @@ void Posture::errors(const GoalContext& context, const ContactForces&,
   const VectorX away = positionDifference(model, context.state.q, q);
   WorstJoints worst("rad", "m");
   double place = -1.0, turn = -1.0;
+  // A posture of a scene holds objects too, but nobody asks where a cube is that a robot carries.
+  const bool hasRobot = std::any_of(model.dofs.begin(), model.dofs.end(),
+                                    [](const Dof& dof) { return dof.actuated; });
   for (int b = 1; b < model.bodyCount(); ++b) {
     const Body& body = model.bodies[b];
+    const Tree& tree = model.trees[body.tree];
+    const bool isObject = hasRobot && tree.bodyEnd - tree.rootBody == 1;
     if (body.joint == JointKind::floating) {
+      if (isObject) continue;
       place = std::max(place, away.segment<3>(body.v).norm());
       turn = std::max(turn, away.segment<3>(body.v + 3).norm());
     } else if (body.dofs == 1) {

@@ -151,6 +151,16 @@ void expectText(const std::string& file, const std::string& text) {
                                  static_cast<unsigned char>(text[bad])));
 }
 
+/// What to tell where the line is indented by a tab, which YAML does not take.
+const char* tabAdvice(const std::string& text, int line) {
+  std::size_t begin = 0;
+  for (; line > 0 && begin < text.size(); --line) begin = text.find('\n', begin) + 1;
+  const std::size_t first = text.find_first_not_of(" ", begin);
+  return first != std::string::npos && text[first] == '\t'
+             ? "; the line is indented by a tab, expected blanks"
+             : "";
+}
+
 }  // namespace
 
 YamlValue parseYaml(const std::string& file, const std::string& text, const std::string& expected) {
@@ -168,9 +178,9 @@ YamlValue parseYaml(const std::string& file, const std::string& text, const std:
       throw ModelError({file, 1}, "file", "is empty, expected " + expected);
     return std::move(first.root);
   } catch (const YAML::Exception& error) {
-    throw ModelError(
-        {file, error.mark.line + 1}, "YAML",
-        fmt::format("cannot be read: {} (column {})", error.msg, error.mark.column + 1));
+    throw ModelError({file, error.mark.line + 1}, "YAML",
+                     fmt::format("cannot be read: {} (column {}){}", error.msg,
+                                 error.mark.column + 1, tabAdvice(text, error.mark.line)));
   }
 }
 

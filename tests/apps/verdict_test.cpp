@@ -183,6 +183,75 @@ TEST(Verdict, BlamesTheJointsBetweenBaseAndLink) {
   EXPECT_NE(weak.find("torque limits of weak"), std::string::npos) << weak;
 }
 
+// Legs that give way by 10 cm of a trunk of 30 cm: no quarter of its height, and it lies on itself.
+TEST(Verdict, ARobotThatLiesOnItsTrunkFell) {
+  std::string urdf = R"(<robot name="stool"><link name="trunk"><inertial><mass value="8"/>
+    <inertia ixx="0.1" iyy="0.1" izz="0.1" ixy="0" ixz="0" iyz="0"/></inertial>
+    <collision><geometry><box size="0.4 0.4 0.3"/></geometry></collision></link>)";
+  for (const char* place : {"0.15 0.15", "0.15 -0.15", "-0.15 0.15", "-0.15 -0.15"}) {
+    const std::string name = place;
+    urdf += fmt::format(R"(<link name="leg {0}"><inertial><mass value="0.2"/>
+    <inertia ixx="0.001" iyy="0.001" izz="0.001" ixy="0" ixz="0" iyz="0"/></inertial>
+    <collision><geometry><box size="0.05 0.05 0.04"/></geometry></collision></link>
+  <joint name="slide {0}" type="prismatic"><parent link="trunk"/><child link="leg {0}"/>
+    <origin xyz="{0} -0.16"/><axis xyz="0 0 1"/>
+    <limit lower="0" upper="0.1" effort="100" velocity="1"/><dynamics damping="400"/></joint>)",
+                        name);
+  }
+  const io::TempFolder folder;
+  const Told run({folder.write("stool.urdf", urdf + "</robot>"), "--passive", "--duration", "3"});
+  EXPECT_TRUE(run.says("fell", "on the ground since")) << run.json["verdict"];
+  EXPECT_TRUE(run.says("fell", "trunk")) << run.json["verdict"];
+}
+
+// The base of a plate is no chain that could be too short, wherever it is sent.
+TEST(Verdict, ABaseIsNotOutOfReachOfAChain) {
+  const io::TempFolder folder;
+  const Told run({folder.write("plate.urdf", plateWithArm("plate")), "--reach", "plate=0.5,0,0.01",
+                  "--duration", "1"});
+  EXPECT_FALSE(run.line("not reached").empty()) << run.json["verdict"];
+  EXPECT_FALSE(run.says("not reached", "out of reach")) << run.json["verdict"];
+}
+
+// The ball keeps the fingers open, and a ball that falls is no posture that is off.
+TEST(Verdict, WhatAJointPressesAgainstIsAReasonAndObjectsAreNoPosture) {
+  const Told run({dataFile("scenes/hand_and_ball.yaml"), "--duration", "1"});
+  EXPECT_TRUE(run.says("off", "presses against ball")) << run.json["verdict"];
+  EXPECT_TRUE(run.goal("posture (base)").is_null()) << run.json["goals"];
+}
+
+TEST(Verdict, AJointCalled3IsNoNumber) {
+  const io::TempFolder folder;
+  const std::string urdf =
+      std::regex_replace(kTwoArms, std::regex("joint name=\"weak\""), "joint name=\"3\"");
+  const std::string goals =
+      folder.write("goals.yaml", "goals: [joint_posture: {joints: {'3': 0.0}}]\n");
+  const Told run({folder.write("arms.urdf", urdf), "--goals", goals, "--duration", "2"});
+  EXPECT_TRUE(run.says("not kept", "farthest is '3'")) << run.json["verdict"];
+  EXPECT_TRUE(run.says("saturated", "'3' in ")) << run.json["verdict"];
+}
+
+// 5 kg at 0.3 m are 14.7 N m; the joint has 2. The other arm carries 8.8 of 100 and 1.5 of 50.
+TEST(Verdict, JointsThatCannotHoldTheStartAreToldWithBothFigures) {
+  const io::TempFolder folder;
+  const Told run(
+      {folder.write("arms.urdf", kTwoArms), "--reach", "hand=0,0,-0.5", "--duration", "0.01"});
+  const std::string warnings = run.json["warnings"].dump();
+  EXPECT_NE(warnings.find("cannot hold the start against gravity: weak needs 14.7 of 2 N m;"),
+            std::string::npos)
+      << warnings;
+  const Told strong({dataFile("robots/humanoid.urdf"), "--posture", "--duration", "0.01"});
+  EXPECT_EQ(strong.json["warnings"].dump().find("cannot hold"), std::string::npos);
+}
+
+// Nothing stands or falls: what was reached is the first line, and the heading of the page.
+TEST(Verdict, OfAFixedRobotBeginsWithItsGoals) {
+  const Told run({dataFile("robots/arm.urdf"), "--reach", "hand=0.5,0.3,0.5", "--duration", "2"});
+  EXPECT_EQ(run.json["verdict"][0].get<std::string>().substr(0, 8), "reached:");
+  const Told passive({dataFile("robots/arm.urdf"), "--passive", "--duration", "0.1"});
+  EXPECT_EQ(passive.json["verdict"][0].get<std::string>().substr(0, 10), "completed:");
+}
+
 // The first place is judged when its goal ends, wherever the hand is later.
 TEST(Verdict, EveryGoalIsJudgedAtItsOwnEnd) {
   const io::TempFolder folder;
