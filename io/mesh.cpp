@@ -9,6 +9,7 @@
 #include "softgauss/engine/core/check.hpp"
 #include "softgauss/io/detail/mesh_file.hpp"
 #include "softgauss/io/detail/mesh_import.hpp"
+#include "softgauss/io/detail/mesh_points.hpp"
 #include "softgauss/io/detail/text.hpp"
 
 namespace softgauss::io {
@@ -27,6 +28,7 @@ Mesh readMesh(const std::filesystem::path& path, const Vector3& factors, std::ui
   if (file.format == ".obj") detail::checkObj(file);
   if (file.format == ".dae") detail::checkDae(file);
   Mesh mesh = detail::importMesh(file, largest);
+  detail::joinRoundedPoints(mesh);
   mesh.file = path.string();
   if (mesh.triangles.empty()) detail::failMesh(path, "holds no triangle");
   scale(mesh, factors);

@@ -107,12 +107,19 @@ SweepRuns planRuns(const Sweep& sweep, const Model& model) {
     }
     const std::uint64_t seed = next(state);
     std::uint64_t own = seed;
-    for (std::size_t p = 0; p < parameters.size(); ++p) {
-      if (sweep.varied[p].values.empty()) values[p] = drawn(sweep.varied[p].draw, own);
-      if (const std::string problem = parameters[p].problem(values[p]); !problem.empty())
+    const auto expectNone = [&](std::size_t p, const std::string& problem) {
+      if (!problem.empty())
         throw ModelError(sweep.varied[p].where, fmt::format("key '{}'", parameters[p].name()),
                          fmt::format("{}, in run {}", problem, run));
+    };
+    std::vector<JointRange> ranges = model.ranges;
+    for (std::size_t p = 0; p < parameters.size(); ++p) {
+      if (sweep.varied[p].values.empty()) values[p] = drawn(sweep.varied[p].draw, own);
+      expectNone(p, parameters[p].problem(values[p]));
+      parameters[p].setEnd(values[p], ranges);
     }
+    for (std::size_t p = 0; p < parameters.size(); ++p)
+      expectNone(p, parameters[p].startProblem(values[p], ranges));
     runs.values.insert(runs.values.end(), values.begin(), values.end());
     runs.seeds.push_back(seed);
   }

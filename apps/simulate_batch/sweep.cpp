@@ -6,12 +6,14 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <map>
 #include <string_view>
 
 #include "softgauss/io/detail/input_file.hpp"
 #include "softgauss/io/detail/text.hpp"
 #include "softgauss/io/detail/yaml.hpp"
 #include "softgauss/io/names.hpp"
+#include "softgauss/io/simulation/named_options.hpp"
 
 namespace softgauss::app {
 namespace {
@@ -32,6 +34,28 @@ std::string shellWord(const std::string& text) {
   std::string word = "'";
   for (const char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return word + "'";
+}
+
+/// As an option takes it.
+OptionValue valueOf(const YamlValue& value) {
+  switch (value.kind) {
+    case YamlValue::Kind::list: {
+      std::vector<std::string> words;
+      for (const YamlValue& item : value.items) words.push_back(item.text);
+      return words;
+    }
+    case YamlValue::Kind::map: {
+      std::map<std::string, double> numbers;
+      for (const YamlValue::Pair& pair : value.pairs)
+        numbers[pair.key.text] = pair.value.finiteNumber().value_or(kNaN);
+      return numbers;
+    }
+    default:
+      if (value.isPlain && (value.text == "true" || value.text == "false"))
+        return value.text == "true";
+      if (const std::optional<double> number = value.finiteNumber()) return *number;
+      return value.text;
+  }
 }
 
 /// A whole number from `least` on.
@@ -100,8 +124,10 @@ class SweepReader {
   SweepReader(const YamlMap& top, Sweep& sweep) : top_(top), sweep_(sweep) {}
 
   void read() {
-    top_.expectOnly({"model", "base", "goals", "reach", "posture", "passive", "duration",
-                     "timestep", "integrator", "cone", "seed", "runs", "vary", "list", "measure"});
+    std::vector<std::string> known = {"model", "goals", "reach", "posture", "passive", "duration",
+                                      "seed",  "runs",  "vary",  "list",    "measure"};
+    for (const NamedOption& option : NamedOption::all()) known.emplace_back(option.name);
+    top_.expectOnly(known);
     readModel();
     readGoals();
     if (const auto* entry = top_.find("seed"))
@@ -121,19 +147,38 @@ class SweepReader {
   void readModel() {
     SimulateOptions& o = sweep_.options;
     o.model = path(top_.required("model", "a .urdf file or a .yaml scene"));
-    if (const auto* entry = top_.find("base")) {
-      if (o.isScene()) top_.fail(*entry, "is for a URDF; a scene file says it itself");
-      o.base = top_.choice(*entry, {"fixed", "floating"}) == "fixed" ? BaseKind::fixed
-                                                                     : BaseKind::floating;
-    }
     top_.read("duration", o.duration, Range::positive);
-    if (const auto* entry = top_.find("timestep"))
-      o.timestep = top_.number(*entry, Range::positive);
-    if (const auto* entry = top_.find("integrator"))
-      o.integrator = io::integratorCalled(top_.choice(*entry, io::integratorNames()));
-    if (const auto* entry = top_.find("cone"))
-      o.cone = top_.choice(*entry, {"pyramidal", "elliptic"}) == "elliptic" ? Cone::elliptic
-                                                                            : Cone::pyramidal;
+    for (const NamedOption& option : NamedOption::all())
+      if (const auto* entry = top_.find(option.name)) readOption(option, *entry);
+  }
+
+  void readOption(const NamedOption& option, const YamlMap::Entry& entry) {
+    SimulateOptions& o = sweep_.options;
+    if (option.ofUrdf && o.isScene())
+      top_.fail(entry, "is for a URDF; a scene file says it itself");
+    if (!option.set(valueOf(entry.value), o))
+      top_.fail(entry,
+                fmt::format("found {}, expected {}", entry.value.described(), option.expected));
+    if (option.name != std::string("package_paths")) return;
+    // As every other name of a file in the sweep.
+    for (std::filesystem::path& folder : o.packagePaths)
+      if (folder.is_relative()) folder = std::filesystem::path(top_.file()).parent_path() / folder;
+  }
+
+  /// LINK: [x, y, z], or {target: [x, y, z], point: [x, y, z], weight: …}.
+  static ReachArgument readReach(const YamlMap& map, const YamlMap::Entry& entry) {
+    ReachArgument reach{entry.key, Vector3::Zero(), Vector3::Zero(), std::nullopt};
+    if (entry.value.kind != YamlValue::Kind::map) {
+      reach.p_WTarget = map.vector3(entry);
+      return reach;
+    }
+    const YamlMap keys = map.map(entry);
+    keys.expectOnly({"target", "point", "weight"});
+    reach.p_WTarget = keys.vector3(keys.required("target", "three numbers [x, y, z]"));
+    keys.read("point", reach.p_FP);
+    if (const auto* weight = keys.find("weight"))
+      reach.weight = keys.number(*weight, Range::notNegative);
+    return reach;
   }
 
   void readGoals() {
@@ -141,8 +186,7 @@ class SweepReader {
     if (const auto* entry = top_.find("goals")) o.goals = path(*entry);
     if (const auto* entry = top_.find("reach")) {
       const YamlMap map = top_.map(*entry);
-      for (const YamlMap::Entry& reach : map.entries())
-        o.reach.push_back({reach.key, Vector3::Zero(), map.vector3(reach), std::nullopt});
+      for (const YamlMap::Entry& reach : map.entries()) o.reach.push_back(readReach(map, reach));
     }
     if (const auto* entry = top_.find("posture"))
       o.posture = top_.number(*entry, Range::notNegative);

@@ -209,6 +209,23 @@ std::string Parameter::problem(double value) const {
                                                    : "");
 }
 
+std::string Parameter::startProblem(double value, const std::vector<JointRange>& ranges) const {
+  if (kind_ != Kind::q || body_ == 0) return {};
+  for (const JointRange& range : ranges)
+    if (range.body == body_ && (value < range.lower || value > range.upper))
+      return fmt::format("found {}, which lies outside the joint's range {} .. {}", value,
+                         range.lower, range.upper);
+  return {};
+}
+
+void Parameter::setEnd(double value, std::vector<JointRange>& ranges) const {
+  if (kind_ != Kind::lower && kind_ != Kind::upper) return;
+  for (const int i : indices_) {
+    JointRange& range = ranges[static_cast<std::size_t>(i)];
+    (kind_ == Kind::lower ? range.lower : range.upper) = value;
+  }
+}
+
 bool Parameter::isOfModel() const { return kindName(kind_).ofModel; }
 
 void Parameter::apply(double value, Model& model, State& initial) const {
@@ -240,12 +257,6 @@ void Parameter::apply(double value, Model& model, State& initial) const {
         model.dofs[at].effortLower = -value;
         model.dofs[at].effortUpper = value;
         break;
-      case Kind::lower:
-        model.ranges[at].lower = value;
-        break;
-      case Kind::upper:
-        model.ranges[at].upper = value;
-        break;
       case Kind::gravity:
         model.options.gravity[i] = value;
         break;
@@ -256,11 +267,14 @@ void Parameter::apply(double value, Model& model, State& initial) const {
       case Kind::v:
         initial.v[i] = value;
         break;
+      case Kind::lower:
+      case Kind::upper:
       case Kind::timestep:
       case Kind::reach:
         break;
     }
   }
+  setEnd(value, model.ranges);
 }
 
 bool Parameter::isOfTheSame(const Parameter& other) const {

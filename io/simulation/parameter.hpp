@@ -21,8 +21,9 @@
 /// | `v:BASE.vx`, …, `v:BASE.wz` | how fast [m/s, rad/s], as in the log |
 /// | `reach:LINK.x`, `.y`, `.z` | the place that the reach goal of that link seeks [m], world |
 ///
-/// `*` stands for all: `friction:*` is every shape and every pair with a surface of its own,
-/// `damping:*` every joint of one degree of freedom.
+/// `*` stands for all where one value can be meant for all: `friction:*` is every shape and every
+/// pair with a surface of its own; `damping:*`, `armature:*`, `dry_friction:*`, `effort:*`,
+/// `lower:*` and `upper:*` are every joint of one degree of freedom that has it.
 
 #include <string>
 #include <vector>
@@ -40,6 +41,11 @@ class Parameter {
   /// Why a run cannot have this value, as a message goes on: "found -1, expected a number of at
   /// least 0"; empty where it can.
   std::string problem(double value) const;
+  /// Why a run cannot start there, as problem() says it: a joint beyond its range, of those that
+  /// the model has once parameters of ends are set in them (setEnd()); empty where it can.
+  std::string startProblem(double value, const std::vector<JointRange>& ranges) const;
+  /// Sets it in the ranges of joints, where it is an end of one.
+  void setEnd(double value, std::vector<JointRange>& ranges) const;
   /// Whether it changes the model, beyond its state and goals.
   bool isOfModel() const;
   /// Sets it in the model and in the state from which a run starts.

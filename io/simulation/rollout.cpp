@@ -120,6 +120,11 @@ void Rollout::Worker::begin(Task& task, RolloutRun& run) {
   }
   if (const std::string problem = Parameter::problemOf(scene.model); !problem.empty())
     throw NameError(problem);
+  for (std::size_t p = 0; p < task.parameters.size(); ++p)
+    if (const std::string problem =
+            task.parameters[p].startProblem(run.values[p], scene.model.ranges);
+        !problem.empty())
+      throw NameError(fmt::format("parameter '{}': {}", task.parameters[p].name(), problem));
   parts.restart(otherModel);
   if (task.hooks.begin) task.hooks.begin(run);
   for (std::size_t p = 0; p < task.parameters.size(); ++p)

@@ -301,6 +301,29 @@ TEST(Batch, AListTakesThePlaceOfAGrid) {
   EXPECT_EQ(csv.number(1, "v:elbow_pitch"), -0.5);
 }
 
+// A wider range lets a joint start where the file's own would not; a reach has a weight.
+TEST(Batch, OptionsRangesAndWeightsAreTaken) {
+  const auto errorOf = [](const std::string& reach) {
+    const Batch batch("model: " + dataFile("robots/arm.urdf") +
+                      "\nduration: 2\nlevel_slip: true\nq0: {shoulder_yaw: 0.1}\n"
+                      "without: [supported_mass]\nposture: 1000\nreach: {hand: " +
+                      reach + "}\nvary:\n  upper:elbow_pitch: [2]\n  q:elbow_pitch: [0.7]\n");
+    const Outcome outcome = batch.run("out");
+    EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+    const Csv csv(batch.table("out"));
+    EXPECT_EQ(csv.rows.size(), 1u);
+    for (const std::string& column : csv.columns)
+      if (column.find("reach hand") != std::string::npos &&
+          column.find("final_error") != std::string::npos)
+        return csv.number(0, column);
+    ADD_FAILURE() << batch.table("out");
+    return std::nan("");
+  };
+  EXPECT_LT(errorOf("[0.5, 0.2, 0.5]"), 1e-3);
+  EXPECT_LT(errorOf("{target: [0.5, 0.2, 0.5]}"), 1e-3);
+  EXPECT_GT(errorOf("{target: [0.5, 0.2, 0.5], weight: 50}"), 0.1);  // the posture outweighs it
+}
+
 TEST(Batch, MistakesAreToldWithFileLineAndKey) {
   const std::string model = "model: " + dataFile("robots/arm.urdf") + "\npassive: true\n";
   const std::tuple<std::string, int, std::string> cases[] = {
@@ -318,6 +341,13 @@ TEST(Batch, MistakesAreToldWithFileLineAndKey) {
       {"passive: true\n", 1, "model"},
       {"model: " + dataFile("robots/arm.urdf") + "\n", 1, "passive"},
       {model + "list: [{mass:hand: 1}, {mass:base: 1}]\n", 3, "first item"},
+      {model + "vary:\n  q:elbow_pitch: [0, 5]\n", 4,
+       "outside the joint's range -1.5 .. 0.6, in run 1"},
+      {model + "vary:\n  upper:elbow_pitch: [0.2]\n  q:elbow_pitch: [0.5]\n", 5, "-1.5 .. 0.2"},
+      {model + "level_slip: 3\n", 3, "found '3', expected true or false"},
+      {model + "cone: round\n", 3, "one of pyramidal, elliptic"},
+      {model + "q0: {elbow_pitch: much}\n", 3, "joints and their positions"},
+      {"model: " + dataFile("robots/arm.urdf") + "\nreach: {hand: {weight: 3}}\n", 2, "target"},
   };
   for (const auto& [text, line, part] : cases) {
     const Batch batch(text);

@@ -8,6 +8,7 @@
 
 #include "sample_urdf.hpp"
 #include "softgauss/engine/core/check.hpp"
+#include "softgauss/engine/model/closed_surface.hpp"
 #include "temp_folder.hpp"
 
 namespace softgauss::io {
@@ -110,6 +111,28 @@ TEST(Mesh, ReadsEveryFormatAsTheSameSolid) {
     EXPECT_EQ(mesh.triangles.size(), 4u) << file;
     EXPECT_NEAR(volume(mesh), 1.0 / 6.0, 1e-12) << file;
     EXPECT_EQ(mesh.file, file.string());
+  }
+}
+
+/// A pyramid over a square whose corner at (1, 0, 0) one of its faces has by `beside`.
+std::string seamed(const std::string& beside) {
+  return "v 1 0 0\nv 0 1 0\nv -1 0 0\nv 0 -1 0\nv 0 0 1\nv " + beside +
+         "\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 6 5\nf 4 3 2\nf 4 2 1\n";
+}
+
+// sin 2π is −2.4e-17. Single numbers near 1 are 1.2e-7 apart.
+TEST(Mesh, PointsThatDifferByRoundingAreOne) {
+  const TempFolder folder;
+  for (const char* beside : {"1 -2.4e-17 0", "1 0 1e-8", "1.00000006 0 0"}) {
+    const Mesh mesh = readMesh(folder.write("seam.obj", seamed(beside)));
+    EXPECT_EQ(mesh.vertices.size(), 5u) << beside;
+    EXPECT_FALSE(surfaceDefects(mesh).any()) << beside;
+    EXPECT_NEAR(volume(mesh), 2.0 / 3.0, 1e-6);
+  }
+  for (const char* beside : {"1 -1e-6 0", "1 0 3e-7"}) {
+    const Mesh mesh = readMesh(folder.write("open.obj", seamed(beside)));
+    EXPECT_EQ(mesh.vertices.size(), 6u) << beside;
+    EXPECT_TRUE(surfaceDefects(mesh).any()) << beside;
   }
 }
 
