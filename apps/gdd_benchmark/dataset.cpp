@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include "softgauss/collision/lowest_point.hpp"
-#include "softgauss/gdd/goals/virtual_damping.hpp"
 #include "softgauss/io/urdf.hpp"
 
 namespace softgauss::app {
@@ -54,7 +53,13 @@ std::unique_ptr<Robot> loadRobot(const std::string& folder, const std::string& n
 void poseProblem(const gdd::Reach& reach, const gdd::GoalContext& context, gdd::GoalCost& cost) {
   cost.clear();
   reach.addCost(context, cost);
-  gdd::VirtualDamping().addCost(context, cost);
+  datasetDamping().addCost(context, cost);
+}
+
+gdd::VirtualDamping datasetDamping() {
+  gdd::VirtualDamping damping;
+  damping.weight = 0.1;
+  return damping;
 }
 
 namespace {

@@ -15,6 +15,7 @@
 #include "apps/shared/progress.hpp"
 #include "softgauss/collision/scene_contacts.hpp"
 #include "softgauss/engine/engine.hpp"
+#include "softgauss/gdd/goals/virtual_damping.hpp"
 
 namespace softgauss::app {
 
@@ -55,6 +56,9 @@ struct Dataset {
 /// The goal directed problem at the state of the stages in `data`: clears `cost`, then adds the
 /// reach and virtual damping (26) with α = 0.1, β = 10 1/s.
 void poseProblem(const gdd::Reach& reach, const gdd::GoalContext& context, gdd::GoalCost& cost);
+
+/// That damping.
+gdd::VirtualDamping datasetDamping();
 
 /// Simulates until there are `records` of them, under the operator's goals and records them; fewer
 /// on an interrupt. `weight` is the humanoid's w [kg]. Throws std::runtime_error when the state

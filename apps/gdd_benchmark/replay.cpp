@@ -7,7 +7,6 @@
 #include <stdexcept>
 
 #include "apps/gdd_benchmark/statistics.hpp"
-#include "softgauss/gdd/goals/virtual_damping.hpp"
 
 namespace softgauss::app {
 namespace {
@@ -136,7 +135,8 @@ class Replayer {
     data_.inertia.M.multiply(data_.forward.a, scratch_);
     const double goals = cost_.value(data_.forward.a, scratch_);
     data_.inertia.M.multiply(state.v, scratch_);
-    const gdd::VirtualDamping damping;  // its constant, which the cost leaves out
+    const gdd::VirtualDamping damping =
+        datasetDamping();  // its constant, which the cost leaves out
     const double constant =
         0.5 * damping.weight * damping.rate * damping.rate * state.v.dot(scratch_);
     return effort + goals + constant;

@@ -150,7 +150,9 @@ TYPED_TEST(GddFound, StaysWhatItWas) {
       reach.weight = goal.at("weight");
       cost.clear();
       reach.addCost({model, state, data}, cost);
-      gdd::VirtualDamping().addCost({model, state, data}, cost);
+      gdd::VirtualDamping damping;
+      damping.weight = 0.1;  // as it was recorded
+      damping.addCost({model, state, data}, cost);
       WarmStart warm;
       warm.gddA = vectorOf(recorded.at("acceleration"));
       warm.multipliers = VectorX::Zero(model.nv);

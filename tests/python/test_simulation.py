@@ -319,3 +319,36 @@ def test_the_bits_are_those_of_simulate_gdd(tmp_path, model, goals):
     sim.run(0.5)
     assert [float(last["q:" + name]) for name in sim.q_names] == sim.q.tolist()
     assert [float(last["v:" + name]) for name in sim.v_names] == sim.v.tolist()
+
+
+def test_options_of_the_program_are_keywords(tmp_path):
+    arm = softgauss.Simulation(
+        ROBOTS / "arm.urdf",
+        base="auto",
+        level_slip=True,
+        exact_diagonal=True,
+        step_doubling=True,
+        integration_tolerance=1e-5,
+        effects="auto",
+        without=["supported_mass"],
+        zero_effort="unlimited",
+        most_dofs=100,
+        ground=None,
+        package_paths=[tmp_path],
+    )
+    arm.run(0.01)
+    with pytest.raises(TypeError, match="without: found 'parts', expected a list of mechanisms"):
+        softgauss.Simulation(ROBOTS / "arm.urdf", without="parts")
+    with pytest.raises(TypeError, match="level_slip: found 1, expected True or False"):
+        softgauss.Simulation(ROBOTS / "arm.urdf", level_slip=1)
+
+
+def test_a_reach_follows_the_posture_beside_it(arm):
+    goal = arm.goals.reach("hand", [0.5, 0.3, 0.5])
+    posture = arm.goals.posture(100.0)
+    weight = goal.weight
+    posture.weight = 200.0
+    assert goal.weight == 2 * weight
+    goal.weight = 7.0
+    posture.weight = 300.0
+    assert goal.weight == 7.0
