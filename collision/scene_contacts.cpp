@@ -4,11 +4,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "softgauss/collision/detail/broadphase.hpp"
-#include "softgauss/collision/detail/geometry_set.hpp"
+#include "softgauss/collision/detail/scene.hpp"
 #include "softgauss/collision/primitive_pairs.hpp"
 #include "softgauss/collision/reach.hpp"
-#include "softgauss/collision/tunnelling.hpp"
 #include "softgauss/engine/constraints/contact.hpp"
 #include "softgauss/engine/core/memory.hpp"
 #include "softgauss/engine/model/state.hpp"
@@ -23,84 +21,11 @@ void release(std::vector<T>& v) {
 
 }  // namespace
 
-/// Everything that detect() reads and writes, in flat arrays by geometry and by pair.
-struct SceneContacts::Scene {
-  /// Of a pair: centres farther apart than `reach` do not touch. For a plane, the distance of the
-  /// centre from it counts.
-  struct Row {
-    int a, b;
-    double reach;   ///< bounding radii and margin together [m]
-    double margin;  ///< sum of the two margins [m]
-    bool plane;     ///< a is one
-    int surface;    ///< place in `reaches`, −1 where b is no surface
-  };
-
-  /// How much of a geometry's orientation is ever read.
-  enum class Turn : std::uint8_t { none, axis, full };
-
-  Scene(const Model& model, PreparedMeshes& meshes);
-  /// Poses of the geometries of some pair that move, or of all.
-  void pose(const Kinematics& kinematics, bool all = false);
-  void choosePosed();
-  void makeMovingShapes();
-  void chooseSlack(const std::vector<GeometryPair>& pairs);
-  void setPairs(const std::vector<GeometryPair>& pairs, int broadphasePairs);
-  bool stayApart(int a, int b) const;
-  /// Poses of all geometries in the initial configuration.
-  void placeInitially();
-  /// Signed distance [m] of a pair that overlaps, anything ≥ 0 of others.
-  double distance(const GeometryPair& pair);
-  void report(const Row& row, ContactSet& contacts);
-  /// Whether the bounding sphere of row.b is within the reach of row.a and `extra` [m].
-  bool within(const Row& row, double extra) const;
-  /// The same, of a surface that is fixed, for any of its triangles.
-  bool surfaceWithin(const Row& row, double extra) const {
-    const auto a = static_cast<std::size_t>(row.a), b = static_cast<std::size_t>(row.b);
-    return row.plane || set.comesNear(row.a, centre[a], row.b, X_WG[b], row.margin + extra);
-  }
-  /// Whether the rows that are not near may have come near since findNear().
-  bool moved() const;
-  void findNear();
-  void sweep();
-  /// (7.7) over all pairs, with `sign` times the velocities.
-  double tunnellingTimeBound(const Kinematics& kinematics, double longest, double sign);
-  /// Sets `moving` and which of them are fast; false where none is.
-  bool setMotion(const Kinematics& kinematics, double longest, double sign);
-
-  /// Keeps the hulls and surfaces alone.
-  void forget();
-  std::size_t bytes() const;
-
-  const Model& model;
-  detail::GeometrySet set;
-  std::vector<Turn> turn;
-  std::vector<int> posed;  ///< geometries whose pose a step needs anew
-
-  std::vector<Transform> X_WG;
-  std::vector<Vector3> centre;  ///< of the bounding sphere, world
-
-  std::vector<Row> planeRows;
-  std::vector<Row> rows;
-  detail::PairTest test;
-  std::vector<detail::SurfaceReach> reaches;
-
-  std::unique_ptr<detail::Broadphase> broadphase;  ///< null in small scenes
-  std::vector<int> movable;                        ///< geometries that are no planes
-  std::vector<Vector3> movableCentre;
-  std::vector<std::pair<int, int>> near;
-  std::vector<int> nearPlaneRows, nearRows;  ///< within reach and slack at `reference`
-  double slack = 0.0;                        ///< [m]; 0: near rows are found at every step
-  std::vector<Vector3> reference;            ///< centres when they were found; empty: never
-  std::int64_t sweeps = 0;
-  std::vector<MovingShape> moving;  ///< of all geometries; those of posed ones are setMotion()'s
-  std::vector<std::uint8_t> fast;   ///< may pass through something as thin as itself
-  std::vector<int> firstRow;        ///< rows of geometry a are [firstRow[a], firstRow[a + 1])
-};
-
 SceneContacts::Scene::Scene(const Model& m, PreparedMeshes& meshes) : model(m), set(m, meshes) {
   const std::size_t count = model.geometries.size();
   X_WG.resize(count);
   centre.resize(count, Vector3::Zero());
+  way.assign(count, 0.0);
   for (const Geometry& g : model.geometries)
     turn.push_back(g.shape.kind == ShapeKind::sphere ? Turn::none : Turn::full);
 }
@@ -133,7 +58,7 @@ void SceneContacts::Scene::setPairs(const std::vector<GeometryPair>& pairs, int 
   for (std::size_t i = 0; i < model.geometries.size(); ++i) {
     if (!paired[i]) continue;
     movable.push_back(static_cast<int>(i));
-    radii.push_back(set.radius[i] + marginShares[i] + 0.5 * slack);
+    radii.push_back(set.radius[i] + marginShares[i]);
   }
   movableCentre.resize(movable.size());
   broadphase = std::make_unique<detail::Broadphase>(radii);
@@ -145,13 +70,14 @@ void SceneContacts::Scene::setPairs(const std::vector<GeometryPair>& pairs, int 
 }
 
 void SceneContacts::Scene::forget() {
-  release(X_WG), release(centre), release(turn), release(posed), release(moving), release(fast);
+  release(X_WG), release(centre), release(way), release(turn), release(posed), release(moving),
+      release(fast);
   release(set.colliders), release(set.centreInG), release(set.radius);
 }
 
 std::size_t SceneContacts::Scene::bytes() const {
   return bytesOfAll(turn, posed, X_WG, centre, planeRows, rows, movable, movableCentre, near,
-                    nearPlaneRows, nearRows, reference, firstRow, moving, fast, set.colliders,
+                    nearPlaneRows, nearRows, reference, way, firstRow, moving, fast, set.colliders,
                     set.centreInG, set.radius);
 }
 
@@ -175,18 +101,6 @@ void SceneContacts::Scene::choosePosed() {
       paired[static_cast<std::size_t>(row.a)] = paired[static_cast<std::size_t>(row.b)] = true;
   for (std::size_t i = 0; i < paired.size(); ++i)
     if (paired[i] && model.geometries[i].body != 0) posed.push_back(static_cast<int>(i));
-}
-
-/// Of all at rest where they are now.
-void SceneContacts::Scene::makeMovingShapes() {
-  for (std::size_t i = 0; i < X_WG.size(); ++i) {
-    const Shape& shape = model.geometries[i].shape;
-    const ConvexHull* hull = set.hull[i].get();
-    const TriangleMesh* surface = set.surface[i].get();
-    moving.push_back({&shape, hull, extentOf(shape, hull, surface), &X_WG[i], centre[i],
-                      Vector3::Zero(), Vector3::Zero(), surface});
-  }
-  fast.assign(moving.size(), 0);
 }
 
 void SceneContacts::Scene::pose(const Kinematics& kinematics, bool all) {
@@ -213,35 +127,6 @@ void SceneContacts::Scene::placeInitially() {
   pose(kinematics, true);
 }
 
-bool SceneContacts::Scene::setMotion(const Kinematics& kinematics, double longest, double sign) {
-  pose(kinematics);
-  bool any = false;
-  for (const int g : posed) {
-    const auto i = static_cast<std::size_t>(g);
-    const int body = model.geometries[i].body;
-    MovingShape& shape = moving[i];
-    shape.centre = centre[i];
-    shape.v = sign * pointVelocity(model, kinematics, body, centre[i]);
-    shape.omega = sign * kinematics.V[static_cast<std::size_t>(body)].angular;
-    fast[i] = shape.mayTunnel(longest);
-    any = any || fast[i];
-  }
-  return any;
-}
-
-double SceneContacts::Scene::tunnellingTimeBound(const Kinematics& kinematics, double longest,
-                                                 double sign) {
-  // Where no shape moves by its share of its own thickness no two move by that of both.
-  if (!setMotion(kinematics, longest, sign)) return longest;
-  double time = longest;
-  for (const Row& row : rows) {
-    const auto a = static_cast<std::size_t>(row.a), b = static_cast<std::size_t>(row.b);
-    if ((fast[a] || fast[b]) && surfaceWithin(row, time * moving[a].speed()))
-      time = collision::tunnellingTimeBound(moving[a], moving[b], row.margin, time);
-  }
-  return time;
-}
-
 double SceneContacts::Scene::distance(const GeometryPair& pair) {
   double deepest = kInfinity;
   const auto a = static_cast<std::size_t>(pair.a), b = static_cast<std::size_t>(pair.b);
@@ -265,7 +150,7 @@ bool SceneContacts::Scene::stayApart(int a, int b) const {
 void SceneContacts::Scene::report(const Row& row, ContactSet& contacts) {
   const auto a = static_cast<std::size_t>(row.a), b = static_cast<std::size_t>(row.b);
   test.reach = row.surface < 0 ? nullptr : &reaches[static_cast<std::size_t>(row.surface)];
-  const double margin = row.margin + touchingWithin(model.options, centre[b]);
+  const double margin = row.margin + wayOf(row) + touchingWithin(model.options, centre[b]);
   set.report(row.a, X_WG[a], row.b, X_WG[b], margin, test, contacts);
 }
 
@@ -278,30 +163,35 @@ bool SceneContacts::Scene::within(const Row& row, double extra) const {
 
 bool SceneContacts::Scene::moved() const {
   if (reference.empty()) return true;
-  // A little less than half the slack each: rounding of positions does not count.
-  const double allowed = 0.499 * slack;
+  // A little less than half of it each: rounding of positions does not count.
+  const double allowed = 0.499 * nearWithin;
   for (const int g : posed) {
     const auto i = static_cast<std::size_t>(g);
+    const double left = allowed - way[i];
     // Also where it is not finite.
-    if (!((centre[i] - reference[i]).squaredNorm() <= allowed * allowed)) return true;
+    if (!(left >= 0.0 && (centre[i] - reference[i]).squaredNorm() <= left * left)) return true;
   }
   return false;
 }
 
 void SceneContacts::Scene::findNear() {
   ++sweeps;
+  // What goes far in a step goes so in the next ones too.
+  double longest = 0.0;
+  for (const int g : posed) longest = std::max(longest, way[static_cast<std::size_t>(g)]);
+  nearWithin = std::max(slack, 4.0 * longest);
   nearPlaneRows.clear();
   for (std::size_t r = 0; r < planeRows.size(); ++r) {
     // A plane that moves may turn, which its own centre does not tell.
     const bool moves = model.geometries[static_cast<std::size_t>(planeRows[r].a)].body != 0;
-    if (moves || within(planeRows[r], slack)) nearPlaneRows.push_back(static_cast<int>(r));
+    if (moves || within(planeRows[r], nearWithin)) nearPlaneRows.push_back(static_cast<int>(r));
   }
   nearRows.clear();
   if (broadphase)
     sweep();
   else
     for (std::size_t r = 0; r < rows.size(); ++r)
-      if (within(rows[r], slack) && surfaceWithin(rows[r], slack))
+      if (within(rows[r], nearWithin) && surfaceWithin(rows[r], nearWithin))
         nearRows.push_back(static_cast<int>(r));
   if (slack > 0.0) reference = centre;
 }
@@ -310,7 +200,7 @@ void SceneContacts::Scene::sweep() {
   for (std::size_t k = 0; k < movable.size(); ++k)
     movableCentre[k] = centre[static_cast<std::size_t>(movable[k])];
   near.clear();
-  broadphase->findNear(movableCentre, near);
+  broadphase->findNear(movableCentre, 0.5 * nearWithin, near);
 
   // Near pairs become rows of the filter, in its order; the others are filtered out.
   for (const auto& [i, j] : near) {
@@ -323,7 +213,7 @@ void SceneContacts::Scene::sweep() {
     const auto last = rows.begin() + firstRow[static_cast<std::size_t>(a) + 1];
     const auto row =
         std::lower_bound(first, last, b, [](const Row& r, int value) { return r.b < value; });
-    if (row != last && row->b == b && within(*row, slack) && surfaceWithin(*row, slack))
+    if (row != last && row->b == b && within(*row, nearWithin) && surfaceWithin(*row, nearWithin))
       nearRows.push_back(static_cast<int>(row - rows.begin()));
   }
   std::sort(nearRows.begin(), nearRows.end());
@@ -368,17 +258,18 @@ std::size_t SceneContacts::bytes() const noexcept {
 
 SceneContacts::~SceneContacts() = default;
 
-void SceneContacts::detect(const Model&, const Kinematics& kinematics,
+void SceneContacts::detect(const Model& model, const Kinematics& kinematics,
                            ContactSet& contacts) noexcept {
   contacts.clear();
   Scene& scene = *scene_;
   scene.pose(kinematics);
+  if (model.options.hasRowLaw()) scene.setWays(kinematics, model.options.timestep);
   if (scene.moved()) scene.findNear();
   for (const auto& [list, of] :
        {std::pair(&scene.nearPlaneRows, &scene.planeRows), std::pair(&scene.nearRows, &scene.rows)})
     for (const int r : *list) {
       const Scene::Row& row = (*of)[static_cast<std::size_t>(r)];
-      if (scene.within(row, 0.0)) scene.report(row, contacts);
+      if (scene.within(row, scene.wayOf(row))) scene.report(row, contacts);
     }
 }
 

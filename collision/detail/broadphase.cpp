@@ -9,7 +9,7 @@ Broadphase::Broadphase(std::vector<double> radii) : radii_(std::move(radii)) {
   sorted_.reserve(radii_.size());
 }
 
-void Broadphase::findNear(const std::vector<Vector3>& centres,
+void Broadphase::findNear(const std::vector<Vector3>& centres, double growth,
                           std::vector<std::pair<int, int>>& near) {
   Vector3 sum = Vector3::Zero(), squares = Vector3::Zero();
   for (const Vector3& c : centres) {
@@ -21,8 +21,10 @@ void Broadphase::findNear(const std::vector<Vector3>& centres,
   (squares - sum.cwiseProduct(sum) / count).maxCoeff(&axis);
 
   sorted_.clear();
-  for (std::size_t i = 0; i < centres.size(); ++i)
-    sorted_.push_back({centres[i][axis] - radii_[i], radii_[i], centres[i], static_cast<int>(i)});
+  for (std::size_t i = 0; i < centres.size(); ++i) {
+    const double radius = radii_[i] + growth;
+    sorted_.push_back({centres[i][axis] - radius, radius, centres[i], static_cast<int>(i)});
+  }
   // A centre that is not finite goes to the end, where it is near nothing.
   std::sort(sorted_.begin(), sorted_.end(), [](const Sphere& a, const Sphere& b) {
     return a.begin < b.begin || (b.begin != b.begin && a.begin == a.begin);

@@ -19,9 +19,10 @@ class Broadphase {
   /// Radii of the bounding spheres [m], margins included.
   explicit Broadphase(std::vector<double> radii);
 
-  /// Appends to `near` every pair (i < j) of spheres about `centres` that touch, in no particular
-  /// order.
-  void findNear(const std::vector<Vector3>& centres, std::vector<std::pair<int, int>>& near);
+  /// Appends to `near` every pair (i < j) of spheres about `centres` that touch, radii being larger
+  /// by `growth` [m], in no particular order.
+  void findNear(const std::vector<Vector3>& centres, double growth,
+                std::vector<std::pair<int, int>>& near);
 
  private:
   struct Sphere {

@@ -8,6 +8,7 @@
 #include "softgauss/engine/constraints/contact_motion.hpp"
 #include "softgauss/engine/constraints/contact_rotation.hpp"
 #include "softgauss/engine/constraints/contact_softness.hpp"
+#include "softgauss/engine/constraints/law/row_law.hpp"
 #include "softgauss/engine/constraints/stiction.hpp"
 #include "softgauss/engine/core/rotation.hpp"
 
@@ -68,18 +69,55 @@ double creepUnderWeight(const Options& options, const Touch& touch) {
   return residualUnder(options.gravity.norm(), options, touch) / touch.softness.damping;
 }
 
-/// Whether a pyramid turns with the slip (5.9): where its depth and normal speed let it slide,
-/// and ten times its weight would. There friction then points against the slip, whatever tangents
-/// the pyramid has.
-bool slides(const Options& options, const Touch& touch, const Vector3& n_W, const Vector3& slip) {
-  constexpr double kSure = 10.0;
-  if (touch.frictionDim == 0 || options.cone != Cone::pyramidal || !options.limitsGliding())
+/// What turns a body by a push at p_W, as an inverse weight there [1/kg].
+double turnedWeight(const Assembly& in, int body, const Vector3& p_W) {
+  const Vector3 lever = p_W - in.kinematics.X_WB[body] * in.model.bodies[body].com;
+  return in.weights.rotation[body] * lever.squaredNorm();
+}
+
+/// Where the centre of mass cannot move, a wheel's on its stand, a push moves p by turning the body
+/// alone: this share of that counts at least, or the row's mass would be without bound.
+constexpr double kTurned = 1e-4;
+
+/// The inverse weight of a body at p_W [1/kg]: that of its centre of mass, if that can move.
+double weightAt(const Assembly& in, int body, const Vector3& p_W) {
+  const double ofCentre = in.weights.translation[body];
+  if (in.model.options.constraintModel == ConstraintModel::mujoco) return ofCentre;
+  return std::max(ofCentre, kTurned * turnedWeight(in, body, p_W));
+}
+
+/// V (5.11): by how much a slip [m/s] is faster than what friction stops within the row's horizon,
+/// where its contact `presses` by so much [m/s²], or by its weight.
+double slipNumber(const Options& options, const Touch& touch, double slip, double presses) {
+  const double gain = rowsAlongNormal(options, touch) * touch.inverseMass / touch.softness.R;
+  const double horizon = std::max(options.timestep, 1.0 / touch.softness.damping);
+  const double stopped =
+      touch.mu() * horizon * std::max(options.gravity.norm(), gain * std::max(0.0, presses));
+  return stopped > 0.0 ? slip / stopped : (slip > 0.0 ? kInfinity : 0.0);
+}
+
+/// Whether slip may push the bodies of a contact apart: nothing glides whose centre of mass cannot
+/// move.
+bool mayGlide(const Assembly& in, const Contact& c) {
+  return in.weights.translation[c.bodyA] + in.weights.translation[c.bodyB] >
+         kTurned * (turnedWeight(in, c.bodyA, c.p_WC) + turnedWeight(in, c.bodyB, c.p_WC));
+}
+
+/// Whether a pyramid turns with the slip: where friction turns the slip stably, slower than it
+/// points. Friction then points against the slip, whatever tangents the pyramid has.
+bool slides(const Assembly& in, const Contact& contact, const Touch& touch, const Vector3& slip) {
+  constexpr double kTurnsStably = 0.5;
+  const Options& options = in.model.options;
+  if (touch.frictionDim == 0 || options.cone != Cone::pyramidal || !options.correctsSlip() ||
+      !mayGlide(in, contact))
     return false;
-  const double normal = n_W.dot(slip);
-  const double push = touch.softness.referenceAcceleration(normal, touch.distance);
-  const double weight = residualUnder(options.gravity.norm(), options, touch);
-  return touch.mu() * touch.softness.damping * (slip - normal * n_W).norm() >
-         touch.frictionDim * std::max(push, kSure * weight);
+  const Softness& s = touch.softness;
+  const double normal = contact.n_W.dot(slip);
+  const double gain = rowsAlongNormal(options, touch) * touch.inverseMass / s.R;
+  const double presses =
+      std::max(0.0, -s.stiffness * touch.distance) +
+      std::max(0.0, -s.damping * normal) / (1.0 + gain * options.timestep * s.damping);
+  return slipNumber(options, touch, (slip - normal * contact.n_W).norm(), presses) > kTurnsStably;
 }
 
 /// What presses by the weight and by J̇ v [m/s²].
@@ -119,7 +157,7 @@ double stickingShare(const Options& options, const Touch& touch, double load,
 /// share.
 double horizonOf(const Assembly& in, const Contact& contact, const Touch& touch, double damping) {
   const Options& options = in.model.options;
-  if (!in.mayCapDampingTime(contact.bodyA, contact.bodyB)) return kInfinity;
+  if (options.hasRowLaw() || !in.mayCapDampingTime(contact.bodyA, contact.bodyB)) return kInfinity;
   if (in.isSubstep(contact.bodyA, contact.bodyB)) return options.timestep;
   const double rate = contactRotationRate(in.model, in.kinematics, contact);
   double longest = rate > 0.0 ? options.substepAngle / rate : kInfinity;
@@ -167,15 +205,12 @@ Material pairMaterial(const Model& model, int geometryA, int geometryB) {
   return mixMaterials(inUse(first.material), inUse(second.material));
 }
 
-/// The inverse weight of a body at p_W [1/kg]: that of its centre of mass. Where that cannot move,
-/// a wheel's on its stand, a push moves p by turning the body alone: kTurned of that at least, or
-/// the row's mass would be without bound.
-double weightAt(const Assembly& in, int body, const Vector3& p_W) {
-  constexpr double kTurned = 1e-4;
-  const double ofCentre = in.weights.translation[body];
-  if (in.model.options.constraintModel == ConstraintModel::mujoco) return ofCentre;
-  const Vector3 lever = p_W - in.kinematics.X_WB[body] * in.model.bodies[body].com;
-  return std::max(ofCentre, kTurned * in.weights.rotation[body] * lever.squaredNorm());
+/// Whether bodies that are apart touch by the end of the step.
+bool beginsNow(const Assembly& in, const Contact& c, double distance) {
+  if (!in.model.options.hasRowLaw()) return false;
+  const double rate = c.n_W.dot(pointVelocity(in.model, in.kinematics, c.bodyB, c.p_WC) -
+                                pointVelocity(in.model, in.kinematics, c.bodyA, c.p_WC));
+  return begins(distance, rate, in.model.options);
 }
 
 std::optional<Touch> touchAt(const Assembly& in, int i) {
@@ -188,7 +223,8 @@ std::optional<Touch> touchAt(const Assembly& in, int i) {
   Touch touch;
   touch.distance = c.distance - material.margin;
   // NaN makes rows, so that the solve reports it.
-  if (touch.distance >= touchingWithin(model.options, c.p_WC)) return std::nullopt;
+  const bool apart = touch.distance >= touchingWithin(model.options, c.p_WC);
+  if (apart && (material.spring || !beginsNow(in, c, touch.distance))) return std::nullopt;
   touch.frictionDim = frictionDim(material, model.options.effects);
   double weight = weightAt(in, c.bodyA, c.p_WC) + weightAt(in, c.bodyB, c.p_WC);
   double load = in.load ? in.load->mass(model, c.bodyA, c.bodyB) : 0.0;
@@ -202,8 +238,9 @@ std::optional<Touch> touchAt(const Assembly& in, int i) {
   touch.inverseMass = weight;
   touch.softness =
       contactSoftness(material, touch.frictionDim, touch.distance, weight, model.options);
-  if (model.options.uses(Mechanism::referenceClamp) && !material.spring &&
-      (isSprung(model, c.bodyA) || isSprung(model, c.bodyB)))
+  if (apart) touch.softness = beginning(touch.softness, model.options);
+  if (!model.options.hasRowLaw() && model.options.uses(Mechanism::referenceClamp) &&
+      !material.spring && (isSprung(model, c.bodyA) || isSprung(model, c.bodyB)))
     touch.softness = withoutVirtualMass(touch.softness, model.options.rowTimestep());
   const bool bounces = material.spring && !surface.spring;
   in.count(Mechanism::referenceClamp, bounces || touch.softness.bounded);
@@ -224,9 +261,8 @@ ContactBlocks::BlockMotion ContactBlocks::addBlock(const Assembly& in, int i, co
   const Motion slips{
       k.V[c.bodyB].angular - k.V[c.bodyA].angular,
       pointVelocity(model, k, c.bodyB, c.p_WC) - pointVelocity(model, k, c.bodyA, c.p_WC)};
-  const Matrix3 R_WC = slides(model.options, touch, c.n_W, slips.linear)
-                           ? contactFrame(c.n_W, slips.linear)
-                           : contactFrame(c.n_W, c.tangent_W);
+  const Matrix3 R_WC = slides(in, c, touch, slips.linear) ? contactFrame(c.n_W, slips.linear)
+                                                          : contactFrame(c.n_W, c.tangent_W);
   // The contacts of a pair are neighbours in the set.
   const std::vector<Contact>& all = in.contacts.contacts;
   int place = 0;
@@ -290,6 +326,34 @@ Softness ContactBlocks::soften(const Assembly& in, const Touch& touch,
   contactsWithRows_.back().regularisationScale = speeds.regularisationScale();
   in.count(Mechanism::stiction, contactsWithRows_.back().regularisationScale < 1.0);
   return held(stiffened(soft, contactsWithRows_.back().regularisationScale));
+}
+
+Slip ContactBlocks::slipOf(const Assembly& in, const Touch& touch, const Softness& soft,
+                           const BlockMotion& moves) const {
+  constexpr double kSure = 30.0;
+  const Options& options = in.model.options;
+  Slip slip;
+  slip.dim = touch.frictionDim;
+  slip.damping = options.timestep * soft.damping;
+  slip.asked = soft.damping * slipSpeed(touch, moves.velocity);
+  if (!(slip.asked > 0.0)) return slip;
+  if (!mayGlide(in, in.contacts.contacts[contactsWithRows_.back().contact])) return slip;
+  slip.share =
+      std::min(1.0, kSure * slipNumber(options, touch, slip.asked / (soft.damping * touch.mu()),
+                                       -soft.stiffness * touch.distance));
+  in.count(Mechanism::slipCorrection, slip.share == 1.0);
+  for (int k = 0; k < slip.dim; ++k)
+    slip.direction[k] = -touch.friction[k] * soft.damping * moves.velocity[k + 1] / slip.asked;
+  if (!in.state.hasAcceleration) return slip;
+  double last[6];
+  jacobian_.multiply(jacobian_.size() - 1, in.state.a, last);
+  for (int k = 0; k < slip.dim; ++k)
+    slip.met += slip.direction[k] * touch.friction[k] * (last[k + 1] + moves.bias[k + 1]);
+  const double leaves = last[0] + moves.bias[0];
+  if (slip.met > 0.0 && leaves > 0.0)
+    slip.met = std::max(0.0, slip.met - 0.5 * touch.mu() * touch.mu() * leaves);
+  slip.met = std::clamp(slip.met, -slip.asked, slip.asked);
+  return slip;
 }
 
 void ContactBlocks::indexRows(std::size_t rows) {

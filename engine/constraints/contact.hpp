@@ -18,6 +18,7 @@
 #include "softgauss/engine/constraints/assembly.hpp"
 #include "softgauss/engine/constraints/block_jacobian.hpp"
 #include "softgauss/engine/constraints/impedance.hpp"
+#include "softgauss/engine/constraints/law/slip.hpp"
 #include "softgauss/engine/constraints/rows.hpp"
 #include "softgauss/engine/core/index.hpp"
 
@@ -122,6 +123,9 @@ class ContactBlocks {
   static double slipSpeed(const Touch& touch, const FrameVector& velocity);
   /// How soft the last block is: as it is, or harder where it sticks (5.7).
   Softness soften(const Assembly& in, const Touch& touch, const FrameVector& velocity);
+  /// How the last block slides (5.8).
+  Slip slipOf(const Assembly& in, const Touch& touch, const Softness& soft,
+              const BlockMotion& moves) const;
   /// Contact of each of `rows` rows.
   void indexRows(std::size_t rows);
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "softgauss/engine/constraints/law/row_law.hpp"
+
 namespace softgauss {
 
 double restingMass(const Model& model, int bodyA, int bodyB) {
@@ -80,6 +82,10 @@ Softness contactSoftness(const Material& pair, int frictionDim, double distance,
         implicitSpringDamper(K, pair.spring->damping, stiff ? h : timeToStepEnd(options), options);
     if (edges) s.R *= 2.0 * frictionDim;
     return s;
+  }
+  if (options.hasRowLaw()) {
+    const Softness s = rowLaw(pair.impedance, distance, weight, options);
+    return edges ? s.hardened(options.impedanceRatio / (2.0 * frictionDim)) : s;
   }
   const double mu = edges ? pair.slidingFriction : 0.0;
   Softness s = softnessAt(pair.impedance, distance, weight * (1.0 + mu * mu), options);

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "softgauss/engine/constraints/impedance.hpp"
+#include "softgauss/engine/constraints/law/row_law.hpp"
 
 namespace softgauss {
 namespace {
@@ -31,7 +31,11 @@ void DryFriction::assemble(const Assembly& in) {
       const Dof& dof = model.dofs[i];
       if (dof.dryFriction == 0.0) continue;
       const double rate = in.state.v[i];
-      Softness soft = softnessAt(dof.frictionImpedance, 0.0, in.weights.dof[i], model.options);
+      Softness soft =
+          model.options.hasRowLaw()
+              ? implicitDamper(kNearRigid / model.options.timestep, in.weights.dof[i],
+                               model.options)
+              : softnessAt(dof.frictionImpedance, 0.0, in.weights.dof[i], model.options);
       if (in.usesStiction(dof.body)) harden(soft, std::abs(rate), dof.dryFriction);
       dof_.push_back(i);
       reference.push_back(soft.referenceAcceleration(rate, 0.0));

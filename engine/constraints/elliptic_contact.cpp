@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "softgauss/engine/constraints/gliding_correction.hpp"
-
 namespace softgauss {
 
 void EllipticContact::assemble(const Assembly& in) {
@@ -19,18 +17,13 @@ void EllipticContact::assemble(const Assembly& in) {
       const std::optional<Touch> touch = touchAt(in, i);
       if (!touch || touch->frictionDim == 0) continue;
       const BlockMotion moves = addBlock(in, i, *touch, static_cast<int>(reference.size()));
-      const Softness soft = soften(in, *touch, moves.velocity);
-      perInertia_.push_back(soft.perInertia);
-      cones_.push_back({touch->frictionDim + 1, 1.0 / soft.R,
-                        touch->mu() / std::sqrt(options.impedanceRatio), touch->friction});
+      Softness soft = soften(in, *touch, moves.velocity);
+      const double ratio = touch->mu() / std::sqrt(options.impedanceRatio);
       double push = soft.referenceAcceleration(moves.velocity[0], touch->distance);
-      if (options.limitsGliding()) {
-        const double friction = soft.damping * slipSpeed(*touch, moves.velocity);
-        push -= contactsWithRows_.back().regularisationScale *
-                GlidingCorrection::share(touch->mu()) *
-                GlidingCorrection(push, soft.damping, options.timestep)
-                    .ofCone(friction, cones_.back().mu);
-      }
+      if (options.correctsSlip())
+        soft = soft.hardened(levelCone(slipOf(in, *touch, soft, moves), ratio, push));
+      perInertia_.push_back(soft.perInertia);
+      cones_.push_back({touch->frictionDim + 1, 1.0 / soft.R, ratio, touch->friction});
       reference.push_back(push - moves.bias[0]);
       for (int k = 1; k <= touch->frictionDim; ++k)
         reference.push_back(-soft.damping * moves.velocity[k] - moves.bias[k]);

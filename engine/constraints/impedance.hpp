@@ -37,6 +37,13 @@ struct Softness {
   double referenceAcceleration(double velocity, double distance) const {
     return -damping * velocity - stiffness * distance;
   }
+  /// The row with so many times the D, and the same reference.
+  Softness hardened(double times) const {
+    Softness s = *this;
+    s.R = std::max(kSmallestRegulariser, R / times);
+    s.perInertia /= times;
+    return s;
+  }
 };
 
 /// d(r) ∈ (0, 1).

@@ -5,6 +5,7 @@
 
 #include "softgauss/engine/constraints/carried_inertia.hpp"
 #include "softgauss/engine/constraints/contact_softness.hpp"
+#include "softgauss/engine/constraints/law/row_law.hpp"
 #include "softgauss/engine/constraints/supported_mass.hpp"
 
 namespace softgauss {
@@ -28,6 +29,18 @@ Softness limitSoftness(const Assembly& in, const JointRange& range, double r) {
   constexpr double kOfCarried = 0.2;
   const Options& options = in.model.options;
   const double weight = in.weights.dof[in.model.bodies[range.body].v];
+  if (options.hasRowLaw()) {
+    if (const auto spring = underdampedReference(range.impedance, options)) {
+      const double t = timeToStepEnd(options), K = spring->stiffness / weight;
+      return implicitSpringDamper(K, std::max(0.0, spring->damping / weight - t * K), t, options);
+    }
+    const double A = options.uses(Mechanism::supportedMass)
+                         ? cappedInverseMass(weight, kOfCarried * borneInertia(in, range.body))
+                         : weight;
+    in.count(Mechanism::supportedMass, A < weight);
+    return r >= 0.0 ? beginning(rowLaw(range.impedance, 0.0, A, options), options)
+                    : rowLaw(range.impedance, r, A, options);
+  }
   const auto softness = [&](double A) { return softnessAt(range.impedance, r, A, options); };
   Softness soft = softness(weight);
   if (isSprung(in.model, range.body)) {
@@ -55,8 +68,10 @@ void JointLimit::assemble(const Assembly& in) {
       for (const double sign : {1.0, -1.0}) {
         const double bound = sign > 0.0 ? range.lower : range.upper;
         const double r = sign * (in.state.q[body.q] - bound) - range.margin;
-        if (!(r < 0.0)) continue;
         const double rate = sign * in.state.v[body.v];
+        if (!(r < 0.0) && !(model.options.hasRowLaw() && begins(r, rate, model.options) &&
+                            !underdampedReference(range.impedance, model.options)))
+          continue;
         const Softness soft = limitSoftness(in, range, r);
         dof_.push_back(body.v);
         sign_.push_back(sign);

@@ -3,8 +3,6 @@
 
 #include <algorithm>
 
-#include "softgauss/engine/constraints/gliding_correction.hpp"
-
 namespace softgauss {
 namespace {
 
@@ -32,17 +30,14 @@ void PyramidalContact::assemble(const Assembly& in) {
     toEdges(moves.velocity.data(), touch->frictionDim, touch->friction, velocity);
     toEdges(moves.bias.data(), touch->frictionDim, touch->friction, bias);
     const int edges = std::max(1, 2 * touch->frictionDim);
-    const Softness soft = soften(in, *touch, moves.velocity);
+    Softness soft = soften(in, *touch, moves.velocity);
     double asks[10];
     for (int edge = 0; edge < edges; ++edge)
       asks[edge] = soft.referenceAcceleration(velocity[edge], touch->distance);
-    if (touch->frictionDim > 0 && options.limitsGliding()) {
-      const double push = soft.referenceAcceleration(moves.velocity[0], touch->distance);
-      GlidingCorrection(push, soft.damping, options.timestep)
-          .level(
-              asks, edges,
-              contactsWithRows_.back().regularisationScale * GlidingCorrection::share(touch->mu()));
-    }
+    if (touch->frictionDim > 0 && options.correctsSlip())
+      soft = soft.hardened(
+          levelPyramid(slipOf(in, *touch, soft, moves),
+                       soft.referenceAcceleration(moves.velocity[0], touch->distance), asks));
     for (int edge = 0; edge < edges; ++edge) {
       reference.push_back(asks[edge] - bias[edge]);
       pushSoftness(soft);

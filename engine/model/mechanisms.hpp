@@ -24,6 +24,7 @@ enum class Mechanism : std::uint8_t {
   referenceClamp,
   supportedMass,
   stiction,
+  slipCorrection,
   geometricStiffness
 };
 
@@ -51,6 +52,8 @@ inline constexpr MechanismName kMechanismNames[] = {
     {Mechanism::supportedMass, "supported_mass",
      "constraints are regularised by the mass that they support"},
     {Mechanism::stiction, "stiction", "friction is regularised less where it sticks"},
+    {Mechanism::slipCorrection, "slip_correction",
+     "sliding contacts are pressed by their load and held back along their slip"},
     {Mechanism::geometricStiffness, "geometric_stiffness",
      "the geometric stiffness of taut connections stabilises light bodies"},
 };

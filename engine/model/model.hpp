@@ -167,9 +167,10 @@ struct Options {
   /// softgauss's is beyond MuJoCo's by (5.1), (5.6), (4.9), (5.7), (3.5), (3.11), and the curvature
   /// of couplings (4.6).
   ConstraintModel constraintModel = ConstraintModel::softgauss;
-  /// Slip adds no push to a contact (5.8), and pyramids turn with it (5.9): what slides stays
-  /// level and keeps its line. Of softgauss's `constraintModel` alone.
-  bool levelSlip = false;
+  /// Contacts, limits and friction whose stiffness is not given are near-rigid and begin before
+  /// they touch (3.16), of integrators of one solve; in the leapfrog what slides obeys Coulomb's
+  /// law (5.8).
+  bool nearRigid = false;
   /// Of softgauss's `constraintModel` and the leapfrog, which mechanisms may be used.
   MechanismSet mechanisms = MechanismSet::all();
   bool exactDiagonal = false;  ///< see constraints/exact_diagonal.hpp
@@ -189,7 +190,17 @@ struct Options {
     return integrator == Integrator::semiImplicitEuler || integrator == Integrator::leapfrog ||
            integrator == Integrator::implicit;
   }
-  bool limitsGliding() const { return constraintModel == ConstraintModel::softgauss && levelSlip; }
+  /// Rows are near-rigid springs and dampers of the step's end, (3.16).
+  bool hasRowLaw() const {
+    return constraintModel == ConstraintModel::softgauss && nearRigid && isSingleSolve() &&
+           !stepDoubling;
+  }
+  /// Contacts slide by Coulomb's law (5.8). It needs the last acceleration, which the leapfrog has;
+  /// the second problem of noSlip bounds friction by itself.
+  bool correctsSlip() const {
+    return hasRowLaw() && uses(Mechanism::slipCorrection) && integrator == Integrator::leapfrog &&
+           !noSlip;
+  }
   bool uses(Mechanism m) const {
     return constraintModel == ConstraintModel::softgauss && mechanisms.has(m);
   }

@@ -18,7 +18,8 @@ namespace {
 double contactRate(const Model& model, const Data& data) {
   double rate = 0.0;
   for (const Contact& c : data.contacts.contacts)
-    rate = std::max(rate, contactRotationRate(model, data.kinematics, c));
+    if (!(model.options.hasRowLaw() && c.distance > 0.0))
+      rate = std::max(rate, contactRotationRate(model, data.kinematics, c));
   return rate;
 }
 

@@ -31,7 +31,8 @@ double heldWeight(const Model& model, const Goal& goal, const Goal& other) {
 }
 
 /// Of a posture that nobody asked for, beside a goal whose weight somebody has given as if there
-/// were none: less than a millimetre of a reach.
+/// were none: less than a millimetre of a reach. And with elliptic cones, whose solver seldom ends
+/// with a certificate: what it is short of grows with the weights.
 constexpr double kWeakPosture = 0.01;
 
 bool hasOwnWeight(const Goal& goal) {
@@ -42,21 +43,22 @@ bool hasOwnWeight(const Goal& goal) {
 }
 
 /// Regularisers give way to weights that were given; those that somebody has changed stay.
-void weighRegularisers(const std::vector<std::unique_ptr<Goal>>& goals) {
-  const bool given =
+void weighRegularisers(const Model& model, const std::vector<std::unique_ptr<Goal>>& goals) {
+  const bool weak =
+      model.options.cone == Cone::elliptic ||
       std::any_of(goals.begin(), goals.end(), [](const auto& goal) { return hasOwnWeight(*goal); });
   for (const auto& goal : goals) {
     auto* posture = dynamic_cast<Posture*>(goal.get());
     if (!posture || !posture->isRegulariser) continue;
     if (posture->weight == Posture::kDefaultWeight || posture->weight == kWeakPosture)
-      posture->weight = given ? kWeakPosture : Posture::kDefaultWeight;
+      posture->weight = weak ? kWeakPosture : Posture::kDefaultWeight;
   }
 }
 
 }  // namespace
 
 void weighDefaults(const Model& model, const std::vector<std::unique_ptr<Goal>>& goals) {
-  weighRegularisers(goals);
+  weighRegularisers(model, goals);
   for (const auto& goal : goals) {
     double strongest = 0.0;
     for (const auto& other : goals)

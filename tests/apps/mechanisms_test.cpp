@@ -35,6 +35,13 @@ TEST(Mechanisms, ActWhereASceneCallsForThem) {
                    "  - {name: ball, sphere: {radius: 0.1}, mass: 1, position: [0, 0, 0.1],\n"
                    "     material: springy}\n"
                    "materials: {springy: {damping_ratio: 0.1, priority: 1}}\n");
+  const std::string thrown =
+      folder.write("thrown.yaml",
+                   "ground: 0\n"
+                   "options: {near_rigid: true}\n"
+                   "objects:\n"
+                   "  - {name: cube, box: {size: [0.1, 0.1, 0.1]}, mass: 1, position: [0, 0, 0.05],\n"
+                   "     velocity: [3, 0, 0]}\n");
   const auto hard = [](const std::string& name) {
     return dataFile("scenes/stability/" + name + ".yaml");
   };
@@ -47,6 +54,7 @@ TEST(Mechanisms, ActWhereASceneCallsForThem) {
                                                      {"reference_clamp", bouncing},
                                                      {"supported_mass", hard("boxes_1000_on_1")},
                                                      {"stiction", hard("boxes_1000_on_1")},
+                                                     {"slip_correction", thrown},
                                                      {"geometric_stiffness", hard("rope")}};
   for (const MechanismName& mechanism : kMechanismNames) {
     const std::string name(mechanism.name);

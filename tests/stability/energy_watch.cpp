@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "softgauss/engine/constraints/equality_softness.hpp"
+#include "softgauss/engine/constraints/law/row_law.hpp"
 #include "softgauss/engine/step/integrators/tree_motion.hpp"
 
 namespace softgauss::test {
@@ -26,7 +27,10 @@ void forEachSoft(const Model& model, const State& state, const Data& data, F&& f
         touchAt(in, c.contactsWithRows()[i].contact)->softness);
     }
   });
-  const auto softness = [&](const Impedance& p) { return softnessAt(p, 0.0, 1.0, model.options); };
+  const auto softness = [&](const Impedance& p) {
+    return model.options.hasRowLaw() ? rowLaw(p, 0.0, 1.0, model.options)
+                                     : softnessAt(p, 0.0, 1.0, model.options);
+  };
   const auto tie = [&](const Impedance& p) { return equalitySoftness(p, 0.0, 1.0, model.options); };
   for (int i = 0; i < rows.jointLimit.rowCount(); ++i)
     for (const JointRange& range : model.ranges)

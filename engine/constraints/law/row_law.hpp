@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// One law for every row: a spring and a damper at the end of the step,
+///
+///   f = max(0, −K (r + t ẋ⁺) − τ K ẋ⁺)           (equalities and friction without the max)
+///     = max(0, −D (ẍ − a_ref)),   D = h (t + τ) K,   a_ref = −ẋ/h − (K/D) r              (3.14)
+///
+/// with t from where r is taken to the step's end. It is passive at any step, for any K and τ that
+/// hold while the row lasts, and stiff ones answer within the step. Where a user gives no stiffness
+/// the row is near-rigid: of what it feels, A, it leaves 1/(1 + κ) unanswered,
+///
+///   K = κ/(A h_o (t_o + τ)),   τ = max(2 t_c ζ², ½ h_o)                                  (3.16)
+///
+/// h_o the whole step, so that parts of a step keep K and τ. An impedance that is given means K and
+/// τ of (3.1), no harder than its largest d.
+///
+/// A row begins before it touches, where r ≥ 0 and r + h ẋ < 0: it ends the step where it touches,
+///   a_ref = −ẋ/h − r/h²                                                                  (3.17)
+
+#include <algorithm>
+
+#include "softgauss/engine/constraints/impedance.hpp"
+#include "softgauss/engine/model/model.hpp"
+
+namespace softgauss {
+
+/// κ of rows whose stiffness nobody gave: an impedance of 0.968.
+inline constexpr double kNearRigid = 30.0;
+
+/// The row (3.14) of a damper alone, [N s/m] per inverse inertia.
+inline Softness implicitDamper(double dampingTimesA, double inverseInertia,
+                               const Options& options) {
+  Softness s;
+  s.perInertia = 1.0 / (options.timestep * dampingTimesA);
+  s.R = std::max(kSmallestRegulariser, s.perInertia * inverseInertia);
+  s.damping = 1.0 / options.timestep;
+  return s;
+}
+
+/// The row (3.14) of an impedance, of inverse inertia A.
+inline Softness rowLaw(const Impedance& p, double distance, double inverseInertia,
+                       const Options& options) {
+  constexpr double kHardest = 9999.0;  // κ of the largest impedance
+  const double h = options.rowTimestep();
+  const double lead = h / options.timestep * timeToStepEnd(options);
+  const double A = inverseInertia;
+  double tau = 0.5 * h, K = 0.0;
+  if (p == Impedance{}) {
+    tau = std::max(tau, 2.0 * p.timeConstant * p.dampingRatio * p.dampingRatio);
+    K = kNearRigid / (A * h * (lead + tau));
+  } else {
+    const Softness s = softnessAt(p, distance, A, h, true);
+    K = s.stiffness / s.R;
+    const double B = s.damping / s.R;
+    if (!(K > 0.0)) return implicitDamper(std::min(B * A, kHardest / h), A, options);
+    tau = std::max(tau, B / K);
+    K = std::min(K, kHardest / (A * h * (lead + tau)));
+  }
+  Softness s = implicitSpringDamper(K, tau * K, timeToStepEnd(options), options);
+  s.R = std::max(kSmallestRegulariser, s.R);
+  s.perInertia = s.R / A;
+  return s;
+}
+
+/// (3.17) for a row that is not touched yet.
+inline Softness beginning(Softness s, const Options& options) {
+  s.stiffness = 1.0 / (options.timestep * options.timestep);
+  return s;
+}
+
+/// Whether a row of this distance and rate begins within the step.
+inline bool begins(double distance, double rate, const Options& options) {
+  return distance >= 0.0 && distance + options.timestep * rate < 0.0;
+}
+
+}  // namespace softgauss

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Coulomb's law of what slides: pressed by what rests on it, held back along its slip.
+///
+/// The penalty of a friction cone is associated: it pushes what slides off the surface by μ times
+/// its slip, which Castro, Han and Masterjohn call gliding ("Irrotational Contact Fields", 2023).
+/// De Saxcé's change of variable removes it ("The bipotential method", 1998): the normal row asks
+/// for less by the slip at the step's end. The last acceleration a₋ tells what that will be, so
+/// that references stay functions of the state, the penalty convex and the inverse (1.2) explicit:
+///
+///   p = −b ẏ_n − k d r,   s_k = −μ_k b ẏ_k,   û = s/|s|     what depth, speed and slip ask for
+///   ŷ = J a₋ + J̇ v,   t = Σ û_k μ_k ŷ_k,   |t| ≤ |s|        what of s the last acceleration met
+///   σ = |s| − t                                             the slip that is left          (5.8)
+///
+/// Where the contact leaves, ŷ_n > 0, t is less by ½ μ² ŷ_n, as far as 0: what brakes is lifted,
+/// and a lag that answers it is unstable from μ = 1 on.
+///
+/// *Pyramids*: the n edges push by m_e ≥ 0 that add up to n p, whatever slides, and no edge asks
+/// for more than stops the body within the step:
+///
+///   m_e = max(0, p ± σ û_k − λ),   Σ m_e = n p,   κ = max(1, h b max m_e/p)
+///   D ← κ D,   a_ref,e = m_e/κ ± t û_k                                                   (5.9)
+///
+/// so that in fast slip the leading edge has the stiffness n D of all. Where p ≤ 0 it asks for n p,
+/// κ = max(1, n h b). The tangents turn with the slip: friction points against it.
+///
+/// *Elliptic cones* of ratio μ̂ slide where σ > μ̂² max(0, p). They have 1/(1 + μ̂²) of their normal
+/// stiffness there, so that
+///
+///   κ = max(1, h b (1 + μ̂²)),   D ← κ D,   a_ref,n = p (1 + μ̂²)/κ − σ                   (5.10)
+///
+/// makes the normal force D max(0, p − y_n). All this counts min(1, 30 V) times, V the slip over
+/// what friction stops within the row's horizon (5.11): what creeps sticks, and answers s by
+/// itself.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+
+namespace softgauss {
+
+/// How a contact slides.
+struct Slip {
+  std::array<double, 5> direction{};  ///< û, of `dim` directions of friction
+  int dim = 0;
+  double asked = 0.0;    ///< |s| [m/s²]
+  double met = 0.0;      ///< t [m/s²]
+  double share = 0.0;    ///< min(1, 100 V), how much the law counts
+  double damping = 0.0;  ///< h b [-]
+
+  double left() const { return asked - met; }  ///< σ
+};
+
+namespace detail {
+
+/// λ with Σ max(0, q_e − λ) = target of n ≤ 10 numbers, where they add up to more than that.
+inline double waterLevel(const double* q, int n, double target) {
+  double sorted[10];
+  std::copy_n(q, n, sorted);
+  std::sort(sorted, sorted + n, std::greater<>());
+  double sum = 0.0;
+  for (int e = 0; e < n; ++e) {
+    sum += sorted[e];
+    const double level = (sum - target) / (e + 1);
+    if (e + 1 == n || sorted[e + 1] <= level) return level;
+  }
+  return 0.0;
+}
+
+}  // namespace detail
+
+/// References of a pyramid's edges in place of `asks`, p ± s_k; returns κ. `push` is p.
+inline double levelPyramid(const Slip& slip, double push, double* asks) {
+  const int n = 2 * slip.dim;
+  const auto along = [&](int e) {
+    return (e % 2 == 0 ? 1.0 : -1.0) * slip.direction[static_cast<std::size_t>(e / 2)];
+  };
+  double q[10];
+  int lead = 0;
+  for (int e = 0; e < n; ++e) {
+    q[e] = push + along(e) * slip.left();
+    if (q[e] > q[lead]) lead = e;
+  }
+  const bool presses = push > 0.0;
+  const double level =
+      presses ? std::max(0.0, detail::waterLevel(q, n, n * push)) : q[lead] - n * push;
+  const double kappa = std::max(1.0, slip.damping * (presses ? (q[lead] - level) / push : n));
+  for (int e = 0; e < n; ++e) {
+    const double m = q[e] - level;
+    const double levelled = (m > 0.0 || e == lead ? m / kappa : m) + along(e) * slip.met;
+    asks[e] += slip.share * (levelled - asks[e]);
+  }
+  return 1.0 + slip.share * (kappa - 1.0);
+}
+
+/// The same of the normal row of an elliptic cone of ratio μ̂, in place of `push`.
+inline double levelCone(const Slip& slip, double ratio, double& push) {
+  const double square = ratio * ratio;
+  if (!(slip.left() > square * std::max(0.0, push))) return 1.0;
+  const double kappa = std::max(1.0, slip.damping * (1.0 + square));
+  const double levelled = push * (1.0 + square) / kappa - slip.left();
+  push += slip.share * (levelled - push);
+  return 1.0 + slip.share * (kappa - 1.0);
+}
+
+}  // namespace softgauss
