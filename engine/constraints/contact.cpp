@@ -59,9 +59,14 @@ int rowsAlongNormal(const Options& options, const Touch& touch) {
   return options.cone == Cone::pyramidal && touch.frictionDim > 0 ? 2 * touch.frictionDim : 1;
 }
 
-/// Residual of a row that holds its body at rest under `acceleration` [m/s²]: R a/(n A), of n rows.
+/// n A/R: what its n rows answer to a residual along the normal, of what would undo it [-].
+double gain(const Options& options, const Touch& touch) {
+  return rowsAlongNormal(options, touch) * touch.inverseMass / touch.softness.R;
+}
+
+/// Residual of a row that holds its body at rest under `acceleration` [m/s²].
 double residualUnder(double acceleration, const Options& options, const Touch& touch) {
-  return touch.softness.R * acceleration / (touch.inverseMass * rowsAlongNormal(options, touch));
+  return acceleration / gain(options, touch);
 }
 
 /// Speed at which it creeps under its weight [m/s].
@@ -89,10 +94,9 @@ double weightAt(const Assembly& in, int body, const Vector3& p_W) {
 /// V (5.11): by how much a slip [m/s] is faster than what friction stops within the row's horizon,
 /// where its contact `presses` by so much [m/s²], or by its weight.
 double slipNumber(const Options& options, const Touch& touch, double slip, double presses) {
-  const double gain = rowsAlongNormal(options, touch) * touch.inverseMass / touch.softness.R;
   const double horizon = std::max(options.timestep, 1.0 / touch.softness.damping);
-  const double stopped =
-      touch.mu() * horizon * std::max(options.gravity.norm(), gain * std::max(0.0, presses));
+  const double load = gain(options, touch) * std::max(0.0, presses);
+  const double stopped = touch.mu() * horizon * std::max(options.gravity.norm(), load);
   return stopped > 0.0 ? slip / stopped : (slip > 0.0 ? kInfinity : 0.0);
 }
 
@@ -113,10 +117,9 @@ bool slides(const Assembly& in, const Contact& contact, const Touch& touch, cons
     return false;
   const Softness& s = touch.softness;
   const double normal = contact.n_W.dot(slip);
-  const double gain = rowsAlongNormal(options, touch) * touch.inverseMass / s.R;
-  const double presses =
-      std::max(0.0, -s.stiffness * touch.distance) +
-      std::max(0.0, -s.damping * normal) / (1.0 + gain * options.timestep * s.damping);
+  const double presses = std::max(0.0, -s.stiffness * touch.distance) +
+                         std::max(0.0, -s.damping * normal) /
+                             (1.0 + gain(options, touch) * options.timestep * s.damping);
   return slipNumber(options, touch, (slip - normal * contact.n_W).norm(), presses) > kTurnsStably;
 }
 

@@ -164,12 +164,11 @@ struct Options {
   double substepAngle = 0.1;
   /// h of the step that this one is a part of, whose rows and stiff springs it keeps; 0: of none.
   double outerTimestep = 0.0;
-  /// softgauss's is beyond MuJoCo's by (5.1), (5.6), (4.9), (5.7), (3.5), (3.11), and the curvature
-  /// of couplings (4.6).
+  /// softgauss's is beyond MuJoCo's by (5.1), (5.6), (4.9), (5.7), (5.8), (3.5), (3.11), and the
+  /// curvature of couplings (4.6).
   ConstraintModel constraintModel = ConstraintModel::softgauss;
   /// Contacts, limits and friction whose stiffness is not given are near-rigid and begin before
-  /// they touch (3.16), of integrators of one solve; in the leapfrog what slides obeys Coulomb's
-  /// law (5.8).
+  /// they touch (3.16), of integrators of one solve.
   bool nearRigid = false;
   /// Of softgauss's `constraintModel` and the leapfrog, which mechanisms may be used.
   MechanismSet mechanisms = MechanismSet::all();
@@ -198,7 +197,7 @@ struct Options {
   /// Contacts slide by Coulomb's law (5.8). It needs the last acceleration, which the leapfrog has;
   /// the second problem of noSlip bounds friction by itself.
   bool correctsSlip() const {
-    return hasRowLaw() && uses(Mechanism::slipCorrection) && integrator == Integrator::leapfrog &&
+    return uses(Mechanism::slipCorrection) && integrator == Integrator::leapfrog && !stepDoubling &&
            !noSlip;
   }
   bool uses(Mechanism m) const {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What slides is pressed by its load, keeps its line, and stops where Coulomb's law says (5.8),
-/// with Options::nearRigid.
+/// What slides is pressed by its load, keeps its line, and stops where Coulomb's law says (5.8): by
+/// default, and with Options::nearRigid.
 
 #include <fmt/format.h>
 
@@ -15,14 +15,15 @@ namespace {
 struct Throw {
   double speed = 3.0, friction = 0.5;
   double direction = 0.0;  ///< of the throw, from x [rad]
-  double turned = 0.0;     ///< the body about the vertical [rad]
   Cone cone = Cone::pyramidal;
   double timestep = 0.002;
+  bool nearRigid = false;
 
   std::string name(const char* body) const {
-    return fmt::format("{} of friction {} at {} m/s, {:.0f} deg, turned by {:.0f}, {}, {} ms", body,
-                       friction, speed, direction * 180.0 / M_PI, turned * 180.0 / M_PI,
-                       cone == Cone::pyramidal ? "pyramids" : "elliptic cones", 1e3 * timestep);
+    return fmt::format("{} of friction {} at {} m/s, {:.0f} deg, {}, {} ms{}", body, friction,
+                       speed, direction * 180.0 / M_PI,
+                       cone == Cone::pyramidal ? "pyramids" : "elliptic cones", 1e3 * timestep,
+                       nearRigid ? ", near-rigid" : "");
   }
   Vector3 way() const { return {std::cos(direction), std::sin(direction), 0.0}; }
   double stopsAfter() const { return speed * speed / (2.0 * friction * 9.81); }
@@ -32,9 +33,9 @@ ModelBuilder thrown(const Throw& t, const Shape& shape, double height) {
   ModelBuilder builder("throw");
   builder.link(emptyLink("world"));
   builder.geometry(groundSpec(t.friction));
-  const Matrix3 turned = Eigen::AngleAxisd(t.turned, Vector3::UnitZ()).toRotationMatrix();
-  addBody(builder, "body", shape, 1.0, {turned, Vector3(0.0, 0.0, height)}, t.friction);
-  builder.options.nearRigid = true;
+  addBody(builder, "body", shape, 1.0, {Matrix3::Identity(), Vector3(0.0, 0.0, height)},
+          t.friction);
+  builder.options.nearRigid = t.nearRigid;
   return with(std::move(builder), t.timestep, t.cone);
 }
 
@@ -67,7 +68,8 @@ TEST_P(Slides, ThrownCubesStayLevelAndStopByCoulombsLaw) {
     for (const double friction : {0.3, 0.5, 0.8, 0.95})
       for (const double speed : {1.0, 3.0, 6.0})
         for (const double degrees : {0.0, 22.5, 37.0, 45.0})
-          throwCube({speed, friction, degrees * M_PI / 180.0, 0.0, cone, GetParam()});
+          for (const bool nearRigid : {false, true})
+            throwCube({speed, friction, degrees * M_PI / 180.0, cone, GetParam(), nearRigid});
 }
 
 /// A slab held by a soft spring on a belt of 1 m/s, which goes along and askew to its tangents: the
@@ -75,8 +77,9 @@ TEST_P(Slides, ThrownCubesStayLevelAndStopByCoulombsLaw) {
 TEST_P(Slides, SlabsOnABeltArePressedByTheirWeight) {
   for (const Cone cone : kCones)
     for (const double friction : {0.3, 1.0})
-      for (const double degrees : {0.0, 30.0}) {
-        const Throw t{1.0, friction, degrees * M_PI / 180.0, 0.0, cone, GetParam()};
+      for (const auto& [degrees, nearRigid] :
+           {std::pair(0.0, false), {30.0, false}, {30.0, true}}) {
+        const Throw t{1.0, friction, degrees * M_PI / 180.0, cone, GetParam(), nearRigid};
         const Matrix3 turned = Eigen::AngleAxisd(t.direction, Vector3::UnitZ()).toRotationMatrix();
         ModelBuilder builder("belt");
         builder.base = BaseKind::fixed;
@@ -85,7 +88,7 @@ TEST_P(Slides, SlabsOnABeltArePressedByTheirWeight) {
         builder.joint(jointSpec("slide", JointType::prismatic, "world", "belt",
                                 {turned, Vector3(0.0, 0.0, -0.1)}, Vector3::UnitX()));
         builder.geometry(geometrySpec("belt", Shape::box(Vector3(50.0, 1.0, 0.1)), friction));
-        builder.options.nearRigid = true;
+        builder.options.nearRigid = nearRigid;
         addBody(builder, "slab", Shape::box(Vector3(0.1, 0.1, 0.02)), 1.0,
                 {Matrix3::Identity(), Vector3(0.0, 0.0, 0.02)}, friction);
         Trial trial(t.name("slab"), with(std::move(builder), t.timestep, cone));

@@ -31,8 +31,8 @@
 ///   κ = max(1, h b (1 + μ̂²)),   D ← κ D,   a_ref,n = p (1 + μ̂²)/κ − σ                   (5.10)
 ///
 /// makes the normal force D max(0, p − y_n). All this counts min(1, 30 V) times, V the slip over
-/// what friction stops within the row's horizon (5.11): what creeps sticks, and answers s by
-/// itself.
+/// what friction stops within the row's horizon (5.11), so that forces are between the two: what
+/// creeps sticks, and answers s by itself.
 
 #include <algorithm>
 #include <array>
@@ -47,7 +47,7 @@ struct Slip {
   int dim = 0;
   double asked = 0.0;    ///< |s| [m/s²]
   double met = 0.0;      ///< t [m/s²]
-  double share = 0.0;    ///< min(1, 100 V), how much the law counts
+  double share = 0.0;    ///< min(1, 30 V), how much the law counts
   double damping = 0.0;  ///< h b [-]
 
   double left() const { return asked - met; }  ///< σ
@@ -87,12 +87,13 @@ inline double levelPyramid(const Slip& slip, double push, double* asks) {
   const double level =
       presses ? std::max(0.0, detail::waterLevel(q, n, n * push)) : q[lead] - n * push;
   const double kappa = std::max(1.0, slip.damping * (presses ? (q[lead] - level) / push : n));
+  const double harder = 1.0 + slip.share * (kappa - 1.0);
   for (int e = 0; e < n; ++e) {
-    const double m = q[e] - level;
-    const double levelled = (m > 0.0 || e == lead ? m / kappa : m) + along(e) * slip.met;
-    asks[e] += slip.share * (levelled - asks[e]);
+    const double met = slip.share * along(e) * slip.met;
+    const double pushes = asks[e] - met - slip.share * level;
+    asks[e] = (pushes > 0.0 || e == lead ? pushes / harder : pushes) + met;
   }
-  return 1.0 + slip.share * (kappa - 1.0);
+  return harder;
 }
 
 /// The same of the normal row of an elliptic cone of ratio μ̂, in place of `push`.
@@ -100,9 +101,10 @@ inline double levelCone(const Slip& slip, double ratio, double& push) {
   const double square = ratio * ratio;
   if (!(slip.left() > square * std::max(0.0, push))) return 1.0;
   const double kappa = std::max(1.0, slip.damping * (1.0 + square));
-  const double levelled = push * (1.0 + square) / kappa - slip.left();
-  push += slip.share * (levelled - push);
-  return 1.0 + slip.share * (kappa - 1.0);
+  const double harder = 1.0 + slip.share * (kappa - 1.0);
+  const double glides = push + slip.left();
+  push = (glides + slip.share * (push * (1.0 + square) - glides)) / harder - slip.left();
+  return harder;
 }
 
 }  // namespace softgauss

@@ -48,8 +48,8 @@ TEST(Stiction, HardensAsItSlowsDownUnderTheSameForce) {
   const double b = 2.0 / (0.95 * 0.02);
   for (const Cone cone : {Cone::pyramidal, Cone::elliptic}) {
     Scene scene = twoBalls(cone);
-    scene.model.options.mechanisms.remove(
-        Mechanism::contactDampingTime);  // (3.15) has its own tests
+    for (const Mechanism other : {Mechanism::contactDampingTime, Mechanism::slipCorrection})
+      scene.model.options.mechanisms.remove(other);  // (3.15) and (5.8) have their own tests
     const Row soft = firstRow(scene, true);
     const double edges = cone == Cone::pyramidal ? 4.0 : 1.0;
     const double square = cone == Cone::pyramidal ? kMu * kMu : 0.0;
