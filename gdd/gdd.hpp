@@ -22,6 +22,7 @@
 #include "softgauss/gdd/goals/link_acceleration.hpp"
 #include "softgauss/gdd/goals/look_at.hpp"
 #include "softgauss/gdd/goals/posture.hpp"
+#include "softgauss/gdd/goals/quadratic_value.hpp"
 #include "softgauss/gdd/goals/reach.hpp"
 #include "softgauss/gdd/goals/virtual_damping.hpp"
 #include "softgauss/gdd/motion_limits.hpp"

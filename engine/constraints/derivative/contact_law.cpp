@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "softgauss/engine/constraints/derivative/contact_law.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace softgauss {
+namespace {
+
+/// By how much z is changed: of a distance [m], of a velocity and of an acceleration. Impedances
+/// bend over a millimetre, slips over millimetres a second: the square of the ratio is what a
+/// difference leaves out. Rounding is 1e-16 of accelerations of some hundred.
+double stepOf(int input) {
+  if (input < ContactLawDerivative::kVelocity) return 2e-8;
+  return input < ContactLawDerivative::kBias ? 1e-7 : 1e-5;
+}
+
+/// Moves a point of a body at `r` from O by `linear`, and turns the body by `angular` about it.
+void add(const Vector3& linear, const Vector3& angular, const Vector3& r, Motion& m) {
+  m.angular += angular;
+  m.linear += linear - angular.cross(r);
+}
+
+double stiffnessOf(const PyramidalContact& rows, int contact) {
+  return rows.D[idx(rows.contactsWithRows()[idx(contact)].row)];
+}
+double stiffnessOf(const EllipticContact& rows, int contact) { return rows.cone(contact).D; }
+
+/// Row e of a contact: what it takes of each of its directions.
+ContactBlocks::FrameVector rowInFrame(const PyramidalContact& rows, const ContactRows& made,
+                                      int e) {
+  return rows.breakpointInFrame(made.row + e, 0);
+}
+ContactBlocks::FrameVector rowInFrame(const EllipticContact&, const ContactRows&, int e) {
+  ContactBlocks::FrameVector frame{};
+  frame[idx(e)] = 1.0;
+  return frame;
+}
+
+}  // namespace
+
+void ContactLaw::begin(const Assembly& in) {
+  kinematics_ = in.kinematics;
+  if (kinematics_.V_midstep.empty()) kinematics_.V_midstep = kinematics_.V;
+}
+
+template <class Contacts>
+bool ContactLaw::sample(const Assembly& in, const ContactRows& made, Contacts& rows,
+                        const Inputs& by, Sample& out) {
+  using L = ContactLawDerivative;
+  contact_.clear();
+  contact_.add(in.contacts.contacts[made.contact]);
+  Contact& contact = contact_.contacts[0];
+  contact.distance += by[0];
+  const int body = contact.bodyB != 0 ? contact.bodyB : contact.bodyA;
+  const double sign = contact.bodyB != 0 ? 1.0 : -1.0;
+  Motion &V = kinematics_.V[body], &A = kinematics_.A_bias[body];
+  const Motion keptV = V, keptA = A;
+  const Vector3 r = contact.p_WC - kinematics_.p_WO[in.model.bodies[body].tree];
+  const auto move = [&](int first, Motion& m) {
+    add(sign * made.R_WC * by.template segment<3>(first),
+        sign * made.R_WC * by.template segment<3>(first + 3), r, m);
+  };
+  move(L::kVelocity, V);
+  move(L::kBias, A);
+  rows.assemble({in.model, in.state, kinematics_, contact_, in.weights, in.tree, in.controlled,
+                 in.midstepVelocity, in.load, nullptr});
+  V = keptV, A = keptA;
+  out.rows = rows.rowCount();
+  if (out.rows == 0) return false;
+  std::copy(rows.reference.begin(), rows.reference.end(), out.reference);
+  out.D = stiffnessOf(rows, 0);
+  out.R_WC = rows.contactsWithRows()[0].R_WC;
+  return true;
+}
+
+template <class Contacts>
+bool ContactLaw::isAffine(const Assembly& in, const Contacts& contacts, const ContactRows& made,
+                          Contacts& rows, const Inputs& used) {
+  using L = ContactLawDerivative;
+  constexpr double kStep = 1e-6, kAlike = 1e-6;  // of rounding 1e-9 of the response
+  const double* reference = contacts.reference.data() + made.row;
+  Sample with;
+  double gain[2] = {};  // β, γ
+  for (const int which : {0, 1}) {
+    Inputs by = Inputs::Zero();
+    by[which == 0 ? L::kVelocity : L::kBias] = kStep;
+    if (!sample(in, made, rows, by, with)) return false;
+    gain[which] = (reference[0] - with.reference[0]) / kStep;
+  }
+  // All directions at once, none alike.
+  Inputs by = Inputs::Zero();
+  for (int i = L::kVelocity; i < L::kInputs; ++i)
+    by[i] = used[i] * kStep * (i % 2 == 0 ? 1.0 : -1.0) * (1.0 + 0.1 * i);
+  const double D = stiffnessOf(contacts, contacts.contactOfRow(made.row));
+  if (!sample(in, made, rows, by, with) || std::abs(with.D - D) > 1e-12 * D ||
+      (with.R_WC - made.R_WC).cwiseAbs().maxCoeff() > 1e-12)
+    return false;
+  L& d = derivative_;
+  for (int e = 0; e < with.rows; ++e) {
+    const auto row = rowInFrame(contacts, made, e);
+    for (int k = 0; k < 6; ++k) {
+      d.reference(e, L::kVelocity + k) = -gain[0] * row[idx(k)] * used[L::kVelocity + k];
+      d.reference(e, L::kBias + k) = -gain[1] * row[idx(k)] * used[L::kBias + k];
+    }
+    const double expected = d.reference.row(e).dot(by), found = with.reference[e] - reference[e];
+    if (!(std::abs(found - expected) <=
+          kAlike * kStep * (std::abs(gain[0]) + std::abs(gain[1]) + 1.0)))
+      return false;
+  }
+  d.rows = with.rows;
+  return true;
+}
+
+void ContactLaw::difference(int input, const Sample& more, const Sample& less, double apart) {
+  ContactLawDerivative& d = derivative_;
+  for (int row = 0; row < more.rows; ++row)
+    d.reference(row, input) = (more.reference[row] - less.reference[row]) / apart;
+  d.stiffness[input] = 2.0 * (more.D - less.D) / (apart * (more.D + less.D));
+  const Matrix3 turn = less.R_WC.transpose() * more.R_WC;
+  d.turn.col(input) << turn(2, 1) - turn(1, 2), turn(0, 2) - turn(2, 0), turn(1, 0) - turn(0, 1);
+  d.turn.col(input) *= 0.5 / apart;
+}
+
+template <class Contacts>
+const ContactLawDerivative& ContactLaw::of(const Assembly& in, const Contacts& contacts, int i,
+                                           const Eigen::Matrix<double, 6, 1>& bias) {
+  using L = ContactLawDerivative;
+  Contacts& rows = [&]() -> Contacts& {
+    if constexpr (std::same_as<Contacts, PyramidalContact>)
+      return pyramid_;
+    else
+      return cone_;
+  }();
+  const ContactRows& made = contacts.contactsWithRows()[i];
+  L& d = derivative_;
+  d.reference.setZero(), d.stiffness.setZero(), d.turn.setZero();
+  const int linear = made.frictionDim > 0 ? 3 : 1, angular = std::max(0, made.frictionDim - 2);
+  Inputs used = Inputs::Zero();
+  used[0] = 1.0;
+  for (const int first : {L::kVelocity, L::kBias})
+    for (int axis = 0; axis < 6; ++axis)
+      used[first + axis] = axis < 3 ? axis < linear : axis - 3 < angular;
+  const int inputs = isAffine(in, contacts, made, rows, used) ? 1 : L::kInputs;
+  if (inputs > 1) d.reference.setZero();
+  Sample more, less;
+  for (int input = 0; input < inputs; ++input) {
+    if (used[input] == 0.0) continue;
+    const double step = stepOf(input);
+    const Inputs by = Inputs::Unit(input) * step;
+    const bool ahead = sample(in, made, rows, by, more), behind = sample(in, made, rows, -by, less);
+    // Where the rows begin there is one side of it.
+    if (!ahead && !sample(in, made, rows, Inputs::Zero(), more)) continue;
+    if (!behind && !sample(in, made, rows, Inputs::Zero(), less)) continue;
+    difference(input, more, less, (ahead ? step : 0.0) + (behind ? step : 0.0));
+    d.rows = more.rows;
+  }
+  // A contact that is nearer has another bias, which is counted by itself.
+  d.reference.col(0).noalias() -= d.reference.rightCols<6>() * bias;
+  d.stiffness[0] -= d.stiffness.rightCols<6>().dot(bias);
+  d.turn.col(0).noalias() -= d.turn.rightCols<6>() * bias;
+  return d;
+}
+
+template const ContactLawDerivative& ContactLaw::of(const Assembly&, const PyramidalContact&, int,
+                                                    const Eigen::Matrix<double, 6, 1>&);
+template const ContactLawDerivative& ContactLaw::of(const Assembly&, const EllipticContact&, int,
+                                                    const Eigen::Matrix<double, 6, 1>&);
+
+}  // namespace softgauss

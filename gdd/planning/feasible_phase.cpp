@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "softgauss/gdd/planning/feasible_phase.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace softgauss::planning {
+
+FeasiblePhase::FeasiblePhase(const Problem& problem, PlanDynamics& dynamics,
+                             const FeasibleOptions& options)
+    : problem_(problem),
+      dynamics_(dynamics),
+      options_(options),
+      cost_(problem),
+      backward_(problem.model, problem.controlled),
+      controller_(problem.model),
+      x_(problem, dynamics),
+      trial_(x_),
+      reference_(x_),
+      values_(static_cast<std::size_t>(problem.knots) + 1, ValueModel(problem.model.nv)),
+      feedback_(static_cast<std::size_t>(problem.knots),
+                Feedback(static_cast<int>(problem.controlled.size()), problem.model.nv)),
+      knotCost_(problem.model.nv),
+      R_(problem.h() * problem.cost.effort),
+      metric_(VectorX::Ones(problem.model.nv)),
+      free_(VectorX::Zero(problem.model.nv)),
+      dx_(VectorX::Zero(2 * problem.model.nv)),
+      dq_(free_),
+      du_(VectorX::Zero(static_cast<Eigen::Index>(problem.controlled.size()))),
+      control_(free_) {
+  auto value = std::make_unique<gdd::QuadraticValue>(problem.model);
+  value_ = value.get();
+  controller_.goals.push_back(std::move(value));
+  controller_.controlCost = gdd::ControlCost::total;
+  controller_.limits.lower = problem.lower;
+  controller_.limits.upper = problem.upper;
+}
+
+void FeasiblePhase::difference(const Knot& from, const Knot& to) {
+  const Eigen::Index n = problem_.model.nv;
+  positionDifference(problem_.model, from.q, to.q, dq_);
+  dx_.head(n) = dq_;
+  dx_.tail(n) = to.v - from.v;
+}
+
+/// One GDD solve at the state of `knot` for the value model of t + 1; sets its a and tau.
+bool FeasiblePhase::solveGoal(int t, Knot& knot, double alpha) {
+  const Knot &old = reference_.knots[idx(t)], &next = reference_.knots[idx(t + 1)];
+  if (isRefused(dynamics_.stages(knot.q, knot.v))) return false;
+  difference(old, knot);
+  const Feedback& f = feedback_[idx(t)];
+  du_.noalias() = f.K * dx_;
+  value_->q = next.q, value_->v = next.v;
+  value_->slope = values_[idx(t + 1)].slope;
+  value_->curvature = values_[idx(t + 1)].curvature;
+  value_->about = old.a;
+  control_.setZero();
+  free_.setZero();
+  for (std::size_t j = 0; j < problem_.controlled.size(); ++j) {
+    const int i = problem_.controlled[j];
+    const auto row = static_cast<Eigen::Index>(j);
+    const double D = rho_ * f.diagonal[row];
+    metric_[i] = R_[i] + D;
+    free_[i] = (D * (old.tau[i] + du_[row]) + (1.0 - alpha) * f.slope[row]) / metric_[i];
+    control_[i] =
+        std::clamp(old.tau[i] + alpha * f.k[row] + du_[row], problem_.lower[i], problem_.upper[i]);
+  }
+  if (!metric_.allFinite() || !free_.allFinite()) return false;
+  controller_.forceMetric = gdd::ForceMetric::diagonal(metric_);
+  value_->freeControl = free_;
+  WarmStart& warm = dynamics_.middle.warmstart;
+  warm.a = warm.gddA = old.a;
+  warm.control = control_;
+  warm.multipliers = VectorX::Zero(problem_.model.nv);
+  warm.breakpoints.clear();
+  warm.valid = warm.gddValid = true;
+  controller_.begin();
+  const VectorX* a = controller_.apply(problem_.model, dynamics_.middle, dynamics_.data);
+  if (!a) return false;
+  knot.tau = controller_.control;
+  // What moves is what the controls cause.
+  if (isRefused(dynamics_.forward(knot.tau, a))) return false;
+  knot.a = dynamics_.data.forward.a;
+  return true;
+}
+
+bool FeasiblePhase::solveControls(int t, Knot& knot, double alpha) {
+  const Knot& old = reference_.knots[idx(t)];
+  difference(old, knot);
+  const Feedback& f = feedback_[idx(t)];
+  du_ = alpha * f.k;
+  du_.noalias() += f.K * dx_;
+  knot.tau.setZero();
+  for (std::size_t j = 0; j < problem_.controlled.size(); ++j) {
+    const int i = problem_.controlled[j];
+    knot.tau[i] = std::clamp(old.tau[i] + du_[static_cast<Eigen::Index>(j)], problem_.lower[i],
+                             problem_.upper[i]);
+  }
+  if (isRefused(dynamics_.stages(knot.q, knot.v)) || isRefused(dynamics_.forward(knot.tau, &old.a)))
+    return false;
+  knot.a = dynamics_.data.forward.a;
+  return true;
+}
+
+bool FeasiblePhase::pass(double alpha, bool goalDirected, Trajectory& y) {
+  y.knots[0].q = reference_.knots[0].q;
+  y.knots[0].v = reference_.knots[0].v;
+  for (int t = 0; t < problem_.knots; ++t) {
+    Knot &knot = y.knots[idx(t)], &next = y.knots[idx(t + 1)];
+    if (!(goalDirected ? solveGoal(t, knot, alpha) : solveControls(t, knot, alpha))) return false;
+    next.q = knot.q, next.v = knot.v;
+    dynamics_.move(knot.a, next.q, next.v);
+    if (!next.q.allFinite() || !next.v.allFinite() ||
+        next.v.cwiseAbs().maxCoeff() > options_.mostSpeed)
+      return false;
+  }
+  cost_.evaluate(problem_, y);
+  return std::isfinite(y.cost);
+}
+
+bool FeasiblePhase::take(const Trajectory& about, const std::vector<ValueModel>& values,
+                         bool always) {
+  for (std::size_t t = 0; t < about.knots.size(); ++t) {
+    const Knot& from = about.knots[t];
+    Knot& to = reference_.knots[t];
+    to.q = from.q, to.v = from.v, to.a = from.a, to.tau = from.tau;
+    values_[t] = values[t];
+  }
+  for (Feedback& f : feedback_) {
+    f.k.setZero(), f.K.setZero(), f.slope.setZero(), f.diagonal.setZero();
+  }
+  if (!pass(1.0, true, trial_)) return false;
+  if (has_ && !always && !(trial_.cost < x_.cost)) return false;
+  std::swap(x_, trial_);
+  has_ = fresh_ = true;
+  rho_ = 0.0, growth_ = 1.0;
+  return true;
+}
+
+bool FeasiblePhase::rollOut(const VectorX& q, const VectorX& v,
+                            const std::vector<VectorX>& controls) {
+  reference_.knots[0].q = q;
+  reference_.knots[0].v = v;
+  for (Feedback& f : feedback_) f.k.setZero(), f.K.setZero();
+  for (int t = 0; t < problem_.knots; ++t) {
+    reference_.knots[idx(t)].tau = controls[idx(t)];
+    reference_.knots[idx(t)].a.setZero();
+  }
+  if (!pass(0.0, false, trial_)) return false;
+  std::swap(x_, trial_);
+  has_ = fresh_ = true;
+  rho_ = 0.0, growth_ = 1.0;
+  return true;
+}
+
+bool FeasiblePhase::backward() {
+  backward_.begin();
+  ValueModel& end = values_.back();
+  cost_.expand(problem_, x_.knots.back(), problem_.knots, end);
+  for (Eigen::Index j = 1; j < end.slope.size(); ++j)
+    for (Eigen::Index i = 0; i < j; ++i) end.curvature(i, j) = end.curvature(j, i);
+  for (int t = problem_.knots - 1; t >= 0; --t) {
+    const Knot& knot = x_.knots[idx(t)];
+    cost_.expand(problem_, knot, t, knotCost_);
+    if (!backward_.overControls(knot, values_[idx(t + 1)], knotCost_, R_, problem_.lower,
+                                problem_.upper, rho_, feedback_[idx(t)], values_[idx(t)]))
+      return false;
+  }
+  promised_ = -(backward_.linear() + backward_.quadratic());
+  return true;
+}
+
+bool FeasiblePhase::iterate() {
+  constexpr double kArmijo = 1e-4, kShorter = 0.4, kLeastRho = 1e-3, kNoRho = 1e-8;
+  if (fresh_) {
+    for (int t = 0; t < problem_.knots; ++t) {
+      Knot& knot = x_.knots[idx(t)];
+      control_ = knot.tau;  // what was applied; g is it to rounding
+      if (isRefused(dynamics_.linearise(knot))) return false;
+      knot.tau = control_;
+    }
+    fresh_ = false;
+  }
+  bool moved = false;
+  if (backward()) {
+    for (std::size_t t = 0; t < x_.knots.size(); ++t) {
+      Knot& to = reference_.knots[t];
+      const Knot& from = x_.knots[t];
+      to.q = from.q, to.v = from.v, to.a = from.a, to.tau = from.tau;
+    }
+    alpha_ = 1.0;
+    for (int length = 0; length < options_.lengths && !moved; ++length) {
+      for (const bool goalDirected : {true, false}) {
+        if (!(goalDirected ? options_.goalDirected : options_.plainControls)) continue;
+        if (!pass(alpha_, goalDirected, trial_)) continue;
+        const double model =
+            -(alpha_ * backward_.linear() + alpha_ * alpha_ * backward_.quadratic());
+        moved = x_.cost - trial_.cost > kArmijo * std::max(model, 0.0) && trial_.cost < x_.cost;
+        if (moved) break;
+      }
+      if (!moved) alpha_ *= kShorter;
+    }
+  }
+  if (moved) {
+    std::swap(x_, trial_);
+    fresh_ = true;
+    growth_ = std::min(0.5 * growth_, 0.5);
+    rho_ *= growth_;
+    if (rho_ < kNoRho) rho_ = 0.0;
+  } else {
+    growth_ = std::max(2.0 * growth_, 2.0);
+    rho_ = std::max(kLeastRho, growth_ * rho_);
+  }
+  return moved;
+}
+
+double FeasiblePhase::gap() {
+  double worst = 0.0;
+  for (int t = 0; t < problem_.knots; ++t) {
+    const Knot& knot = x_.knots[idx(t)];
+    if (isRefused(dynamics_.stages(knot.q, knot.v)) ||
+        isRefused(dynamics_.forward(knot.tau, nullptr)))
+      return kInfinity;
+    const double size = std::max(1.0, knot.a.cwiseAbs().maxCoeff());
+    worst = std::max(worst, (dynamics_.data.forward.a - knot.a).cwiseAbs().maxCoeff() / size);
+  }
+  return worst;
+}
+
+}  // namespace softgauss::planning

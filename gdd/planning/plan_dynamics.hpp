@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// The engine at the knots of a plan: inverse dynamics, its derivatives, the exact step (23).
+///
+/// A plan steps barely (StepDerivative::bareStep()): then (q, v) is the whole state, and
+/// g(q, v, a) = M̂ a + c + Jᵀ∇s at q_m. Control acts on every tree.
+
+#include <memory>
+
+#include "softgauss/engine/step/contact_source.hpp"
+#include "softgauss/engine/step/inverse_derivative.hpp"
+#include "softgauss/engine/step/transition.hpp"
+
+namespace softgauss::planning {
+
+/// An instant of a plan.
+struct Knot {
+  Knot(const Model& model, const Transition& step);
+
+  VectorX q, v;    ///< state
+  VectorX a, tau;  ///< acceleration of the step from here, and the force g(q, v, a) that it takes
+  MatrixX G;       ///< ∂g/∂(q, v) (nv × 2 nv)
+  MatrixX P;       ///< ∂g/∂a (nv × nv)
+  Transition transition;
+};
+
+/// One a thread.
+class PlanDynamics {
+ public:
+  /// `model` has the options of a bare step; `contacts` may be null. Both must outlive this.
+  PlanDynamics(const Model& model, ContactSource* contacts);
+
+  const Model& model;
+  Data data;
+  State middle;  ///< where the stages are: (q_m, v)
+  const Input& input() const { return input_; }
+
+  /// Stages of the step from (q, v).
+  SolveStatus stages(const VectorX& q, const VectorX& v);
+  /// knot.tau ← g(q, v, a).
+  SolveStatus inverse(Knot& knot);
+  /// Also G, P and the transition.
+  SolveStatus linearise(Knot& knot);
+  /// a of (1.1) under data.forces.tau ← tau, from the stages; `guess` may be null.
+  SolveStatus forward(const VectorX& tau, const VectorX* guess);
+  /// (q, v) ← those of the step's end by a.
+  void move(const VectorX& a, VectorX& q, VectorX& v) const { step_.move(model, a, q, v); }
+  const Transition& step() const { return step_; }
+
+ private:
+  ContactSource* contacts_;
+  Input input_;
+  Transition step_;
+  InverseDerivative derivative_;
+};
+
+}  // namespace softgauss::planning

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// AILQR: acceleration-based iterative LQR, which the paper's section IV names.
+///
+///   planning::Planner planner(model, {.step = 0.05, .knots = 20}, contacts);
+///   planner.cost.running.push_back(…);   planner.cost.effort.setConstant(1e-2);
+///   const planning::MotionPlan& plan = planner.solve(state.q, state.v);
+///
+/// Phase I (infeasible_phase.hpp) finds a trajectory in accelerations, through root forces if need
+/// be. Every third iteration goal directed dynamics make a feasible one of its value models, and
+/// phase F (feasible_phase.hpp) goes on from the best of these. A plan is what the actuators can
+/// cause: its root forces are 0, its controls in their bounds, and a bare step by them gives it.
+
+#include <functional>
+#include <memory>
+#include <string_view>
+
+#include "softgauss/gdd/planning/feasible_phase.hpp"
+#include "softgauss/gdd/planning/infeasible_phase.hpp"
+
+namespace softgauss::planning {
+
+struct PlanSteps {
+  double step = 0.05;  ///< h [s]
+  int knots = 20;      ///< N
+};
+
+struct PlanOptions {
+  int infeasible = 15;         ///< iterations of phase I, at most
+  int feasible = 60;           ///< iterations of phase F, at most
+  int passEvery = 3;           ///< iterations of phase I from one feasible pass to the next
+  double tolerance = 1e-6;     ///< decrease of the cost, over it, at which phase F ends
+  double seconds = kInfinity;  ///< of wall time, after which the best feasible plan is taken
+  InfeasibleOptions inPhaseI;
+  FeasibleOptions inPhaseF;
+};
+
+enum class PlanStatus {
+  converged,       ///< the cost falls by less than the tolerance
+  iterationLimit,  ///< or time: the best feasible plan
+  noDescent,       ///< no step lowers the cost: at a kink, or where rounding ends
+  infeasible,      ///< no feasible trajectory was found: plan is that of phase I, with root forces
+  refused          ///< the start, or the cost, is not finite
+};
+std::string_view planStatusName(PlanStatus status);
+
+struct MotionPlan {
+  std::vector<VectorX> q, v;    ///< N + 1 states
+  std::vector<VectorX> a, tau;  ///< N accelerations, and the forces on the dofs that cause them
+  PlanStatus status = PlanStatus::refused;
+  double cost = 0.0;                 ///< J (P.3)
+  double rootForce = 0.0;            ///< largest force where nobody pulls [N, N m]
+  double gap = 0.0;                  ///< FeasiblePhase::gap()
+  double certificate = 0.0;          ///< decrease that the last model promises still, over the cost
+  int infeasible = 0, feasible = 0;  ///< iterations
+  double seconds = 0.0;              ///< wall time
+  std::vector<double> costs;         ///< after each iteration: L of phase I, then J of phase F
+};
+
+class Planner {
+ public:
+  using Contacts = std::function<std::unique_ptr<ContactSource>(const Model&)>;
+
+  /// Plans with a copy of the model, whose steps are bare and of steps.step; `contacts` makes what
+  /// finds its contacts (empty: nothing collides). Throws ModelError where steps are none.
+  Planner(const Model& model, const PlanSteps& steps, const Contacts& contacts = {});
+  Planner(const Planner&) = delete;
+
+  PlanCost cost;     ///< none; effort is 0.01 on every actuated dof
+  VectorX rootCost;  ///< (nv) at first, of forces that no actuator causes; a hundred times effort
+
+  /// From a state. `accelerations` (N of nv): where phase I begins; empty: at rest.
+  const MotionPlan& solve(const VectorX& q, const VectorX& v, const PlanOptions& options = {},
+                    const std::vector<VectorX>& accelerations = {});
+  const MotionPlan& plan() const { return plan_; }
+  const Model& model() const { return *model_; }
+  /// Value models and feedback about the plan, of phase F.
+  const FeasiblePhase& feasible() const { return *feasible_; }
+
+ private:
+  Problem problem();
+  void runInfeasible(const PlanOptions& options, double start);
+  void runFeasible(const PlanOptions& options, double start);
+  void publish(const Trajectory& x);
+
+  std::unique_ptr<Model> model_;
+  std::unique_ptr<ContactSource> contacts_;
+  int knots_;
+  std::unique_ptr<PlanDynamics> dynamics_;
+  std::unique_ptr<Problem> problem_;
+  std::unique_ptr<InfeasiblePhase> infeasible_;
+  std::unique_ptr<FeasiblePhase> feasible_;
+  MotionPlan plan_;
+};
+
+}  // namespace softgauss::planning

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "softgauss/gdd/planning/trajectory.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace softgauss::planning {
+
+Trajectory::Trajectory(const Problem& problem, const PlanDynamics& dynamics)
+    : knots(static_cast<std::size_t>(problem.knots) + 1, Knot(problem.model, dynamics.step())) {}
+
+bool Trajectory::integrate(const PlanDynamics& dynamics) {
+  for (std::size_t t = 0; t + 1 < knots.size(); ++t) {
+    Knot& next = knots[t + 1];
+    next.q = knots[t].q, next.v = knots[t].v;
+    dynamics.move(knots[t].a, next.q, next.v);
+    if (!next.q.allFinite() || !next.v.allFinite()) return false;
+  }
+  return true;
+}
+
+bool Trajectory::findForces(PlanDynamics& dynamics) {
+  for (std::size_t t = 0; t + 1 < knots.size(); ++t)
+    if (isRefused(dynamics.inverse(knots[t])) || !knots[t].tau.allFinite()) return false;
+  return true;
+}
+
+TrajectoryCost::TrajectoryCost(const Problem& problem)
+    : state_(problem.model), kinematics_(problem.model) {
+  for (const auto* terms : {&problem.cost.running, &problem.cost.final})
+    for (const auto& term : *terms) needsKinematics_ = needsKinematics_ || term->needsKinematics();
+}
+
+KnotView TrajectoryCost::view(const Problem& problem, const Knot& knot, int t) {
+  if (needsKinematics_) {
+    state_.q = knot.q, state_.v = knot.v;
+    computeKinematics(problem.model, state_, kinematics_);
+  }
+  return {problem.model, knot.q, knot.v, t, needsKinematics_ ? &kinematics_ : nullptr};
+}
+
+double TrajectoryCost::value(const Problem& problem, const Knot& knot, int t) {
+  const KnotView at = view(problem, knot, t);
+  double cost = 0.0;
+  if (t == problem.knots) {
+    for (const auto& term : problem.cost.final) cost += term->value(at);
+    return cost;
+  }
+  for (const auto& term : problem.cost.running) cost += term->value(at);
+  return problem.h() * cost;
+}
+
+double TrajectoryCost::expand(const Problem& problem, const Knot& knot, int t, ValueModel& model) {
+  const KnotView at = view(problem, knot, t);
+  model.slope.setZero();
+  model.curvature.setZero();
+  double cost = 0.0;
+  const bool last = t == problem.knots;
+  const double scale = last ? 1.0 : problem.h();
+  for (const auto& term : last ? problem.cost.final : problem.cost.running)
+    cost += scale * term->expand(at, scale, model.slope, model.curvature);
+  return cost;
+}
+
+void TrajectoryCost::evaluate(const Problem& problem, Trajectory& x) {
+  x.cost = value(problem, x.knots.back(), problem.knots);
+  x.rootForce = x.excess = 0.0;
+  for (int t = 0; t < problem.knots; ++t) {
+    const Knot& knot = x.knots[idx(t)];
+    x.cost += value(problem, knot, t);
+    for (int i = 0; i < problem.model.nv; ++i) {
+      const double f = knot.tau[i];
+      if (problem.isControlled(i)) {
+        x.cost += 0.5 * problem.h() * problem.cost.effort[i] * f * f;
+        x.excess = std::max({x.excess, f - problem.upper[i], problem.lower[i] - f});
+      } else {
+        x.rootForce = std::max(x.rootForce, std::abs(f));
+      }
+    }
+  }
+}
+
+}  // namespace softgauss::planning

@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "softgauss/engine/step/inverse_derivative.hpp"
+
+#include <functional>
+
+#include "softgauss/collision/scene_contacts.hpp"
+#include "softgauss/engine/step/inverse.hpp"
+#include "tests/support/matchers.hpp"
+#include "tests/support/sample_surfaces.hpp"
+#include "tests/support/scene.hpp"
+
+namespace softgauss::test {
+namespace {
+
+/// Of the largest entry: differences of fourth order by 1e-7 keep eight digits.
+constexpr double kTolerance = 1e-7;
+
+VectorX inverse(Scene& s, const State& state, const VectorX& a) {
+  const State kept = s.state;
+  s.state = state;
+  s.stages();
+  VectorX tau(s.model.nv);
+  inverseDynamics(s.model, a, *s.data, tau);
+  s.state = kept;
+  return tau;
+}
+
+/// Compared columns, and those left out because a kink is nearer than the difference's step.
+struct Count {
+  int compared = 0, kinks = 0;
+};
+
+/// Columns of the derivative against central differences; where the differences to both sides are
+/// not alike, a kink lies between them.
+void expectDerivative(Scene& s, const VectorX& a, Count& count, double tolerance = kTolerance,
+                      double kink = kTolerance) {
+  constexpr double kStep = 1e-7;
+  const int n = s.model.nv;
+  InverseDerivative derivative(s.model);
+  s.stages();
+  ASSERT_EQ(derivative.compute(s.model, s.input, s.state, a, s.contacts.get(), *s.data),
+            SolveStatus::converged);
+  const VectorX here = inverse(s, s.state, a);
+  EXPECT_APPROX(derivative.force(), here, 1e-15);
+  const auto column = [&](int j, double by, bool ofPosition) {
+    State moved = s.state;
+    if (ofPosition)
+      integratePosition(s.model, VectorX::Unit(n, j) * by, 1.0, moved.q);
+    else
+      moved.v[j] += by;
+    return inverse(s, moved, a);
+  };
+  for (const bool ofPosition : {true, false}) {
+    const MatrixX& G = ofPosition ? derivative.q() : derivative.v();
+    MatrixX expected(n, n);
+    VectorX bend(n);
+    for (int j = 0; j < n; ++j) {
+      const VectorX more = column(j, kStep, ofPosition), less = column(j, -kStep, ofPosition);
+      const VectorX far = column(j, 2.0 * kStep, ofPosition) - column(j, -2.0 * kStep, ofPosition);
+      // Of fourth order: impedances bend over a millimetre.
+      expected.col(j) = (8.0 * (more - less) - far) / (12.0 * kStep);
+      bend[j] = (far - 2.0 * (more - less)).cwiseAbs().maxCoeff() / kStep;
+    }
+    // Third differences: of a smooth function (step/1 mm)² of it, at a kink as much as it misleads.
+    const double scale = std::max(1.0, expected.cwiseAbs().maxCoeff());
+    std::vector<bool> smooth(n);
+    for (int j = 0; j < n; ++j) {
+      smooth[j] = bend[j] <= kink * scale;
+      ++(smooth[j] ? count.compared : count.kinks);
+    }
+    for (int j = 0; j < n; ++j) {
+      if (!smooth[j]) continue;
+      EXPECT_LE((G.col(j) - expected.col(j)).cwiseAbs().maxCoeff(), tolerance * scale)
+          << (ofPosition ? "q " : "v ") << j << " of " << s.model.name << "\n"
+          << G.col(j).transpose() << "\n"
+          << expected.col(j).transpose();
+    }
+  }
+}
+
+void expectFewKinks(const Count& count) {
+  EXPECT_GT(count.compared, 20);
+  EXPECT_LT(count.kinks, count.compared / 10);
+}
+
+TEST(InverseDerivative, OfTreesSpringsDampingAndWrenches) {
+  Count count;
+  for (int seed = 0; seed < 40; ++seed) {
+    RandomTreeOptions options;
+    options.springs = true;
+    options.ranges = options.geometries = false;
+    Scene s = randomScene(seed, 0, options);
+    Random random(seed);
+    expectDerivative(s, random.vector(s.model.nv, 10.0), count);
+  }
+  expectFewKinks(count);
+}
+
+TEST(InverseDerivative, OfTheVelocityOfTurningThatTheLastStepPredicts) {
+  Count count;
+  for (int seed = 0; seed < 10; ++seed) {
+    Scene s = randomScene(seed, 0);
+    Random random(seed);
+    s.state.a = random.vector(s.model.nv, 100.0);
+    s.state.hasAcceleration = true;
+    expectDerivative(s, random.vector(s.model.nv, 10.0), count);
+  }
+  expectFewKinks(count);
+}
+
+TEST(InverseDerivative, OfEffectsThatAreSwitchedOff) {
+  for (const Effect off : {Effect::gravity, Effect::coriolis, Effect::armature}) {
+    Count count;
+    Scene s = randomScene(3, 0);
+    s.model.options.effects.remove(off);
+    Random random(3);
+    expectDerivative(s, random.vector(s.model.nv, 10.0), count);
+  }
+}
+
+TEST(InverseDerivative, OfLimitsAndDryFriction) {
+  for (const bool nearRigid : {false, true}) {
+    for (const bool controlled : {false, true}) {
+      Count count;
+      for (int seed = 0; seed < 20; ++seed) {
+        RandomTreeOptions options;
+        options.dryFriction = true;
+        options.geometries = false;
+        Scene s = randomScene(seed, 0, options);
+        s.model.options.nearRigid = nearRigid;
+        if (controlled) s.input.controlled = allTrees(s.model);
+        Random random(seed);
+        expectDerivative(s, random.vector(s.model.nv, 1.0), count);
+      }
+      expectFewKinks(count);
+    }
+  }
+}
+
+TEST(InverseDerivative, OfEqualityConstraints) {
+  Count count;
+  for (int seed = 0; seed < 10; ++seed) {
+    RandomTreeOptions options;
+    options.equalities = true;
+    options.geometries = options.ranges = false;
+    Scene s = randomScene(seed, 0, options);
+    Random random(seed);
+    // Differences themselves, of constraints that are off by as much as impedances bend over.
+    expectDerivative(s, random.vector(s.model.nv, 10.0), count, 1e-6, 1e-6);
+  }
+  expectFewKinks(count);
+}
+
+enum class Ground { plane, tilting, ball, box };
+
+/// A trunk of some shape with an arm of two links, which has the same shape at its end, on a plane,
+/// or on a floor that turns about a hinge: a plane, a ball or a box.
+Model walker(const Shape& foot, Ground ground, const Material& material, std::uint64_t seed) {
+  Random random(seed);
+  ModelBuilder b("walker");
+  const auto at = [&] { return Transform{random.rotation(), random.vector3(0.3)}; };
+  const auto add = [&](const char* link, const Shape& shape, const Transform& X) {
+    GeometrySpec g = geometrySpec(link, shape, 1.0, X);
+    g.material = material;
+    b.geometry(g);
+  };
+  b.link(emptyLink("world"));
+  for (const char* link : {"trunk", "upper", "lower"}) b.link(randomLink(link, random));
+  b.joint(jointSpec("free", JointType::floating, "world", "trunk"));
+  b.joint(jointSpec("a", JointType::continuous, "trunk", "upper", at(), random.direction()));
+  b.joint(jointSpec("b", JointType::continuous, "upper", "lower", at(), random.direction()));
+  add("trunk", foot, at());
+  add("lower", foot, at());
+  if (ground == Ground::plane) {
+    add("world", Shape::plane(), {random.rotation(), Vector3::Zero()});
+    return b.build();
+  }
+  b.link(randomLink("floor", random));
+  b.joint(jointSpec("hinge", JointType::continuous, "world", "floor", at(), random.direction()));
+  add("floor",
+      ground == Ground::tilting ? Shape::plane()
+      : ground == Ground::ball  ? Shape::sphere(0.3)
+                                : Shape::box({0.4, 0.3, 0.2}),
+      at());
+  return b.build();
+}
+
+/// A walker of that seed that moves at `speed`, its deepest point 0.7 mm deep.
+Scene walking(const Shape& foot, Ground ground, Material material, double speed,
+              std::uint64_t seed) {
+  Random random(seed + 100);
+  Scene s(walker(foot, ground, material, seed));
+  s.model.options.effects.remove(Effect::selfCollision);
+  s.state = randomState(s.model, random, speed);
+  material.margin = 5.0;
+  Model wide = walker(foot, ground, material, seed);
+  wide.options.effects.remove(Effect::selfCollision);
+  Kinematics k(wide);
+  computeKinematics(wide, s.state, k);
+  ContactSet found;
+  collision::SceneContacts(wide).detect(wide, k, found);
+  const Contact* deepest = &found.contacts.at(0);
+  for (const Contact& c : found.contacts)
+    if (c.distance < deepest->distance) deepest = &c;
+  const double sign = wide.bodies[deepest->bodyB].tree == 0 ? 1.0 : -1.0;
+  s.state.q.head<3>() += sign * (-7e-4 - deepest->distance) * deepest->n_W;
+  s.contacts = std::make_shared<collision::SceneContacts>(s.model);
+  s.input.controlled = allTrees(s.model);
+  s.stages();
+  return s;
+}
+
+Shape hull() { return Shape::hull(boxSurface({0.1, 0.06, 0.04})); }
+
+struct Feet {
+  Shape foot;
+  Ground ground;
+};
+
+std::vector<Feet> closedForms() {
+  std::vector<Feet> feet;
+  for (const Ground ground : {Ground::plane, Ground::tilting})
+    for (const Shape& foot : {Shape::sphere(0.06), Shape::capsule(0.04, 0.1),
+                              Shape::cylinder(0.08, 0.03), Shape::box({0.1, 0.06, 0.04}), hull()})
+      feet.push_back({foot, ground});
+  feet.push_back({Shape::sphere(0.06), Ground::ball});
+  return feet;
+}
+
+void expectContacts(const std::vector<Feet>& feet, const std::function<void(Scene&)>& change,
+                    const Material& material, double speed, double tolerance = kTolerance) {
+  Count count;
+  for (const Feet& f : feet) {
+    for (int seed = 0; seed < 4; ++seed) {
+      Scene s = walking(f.foot, f.ground, material, speed, seed);
+      change(s);
+      SCOPED_TRACE(testing::Message() << "shape " << static_cast<int>(f.foot.kind) << " on "
+                                      << static_cast<int>(f.ground) << ", seed " << seed);
+      Random random(seed);
+      expectDerivative(s, random.vector(s.model.nv, 3.0), count, tolerance);
+    }
+  }
+  expectFewKinks(count);
+}
+
+TEST(InverseDerivative, OfContacts) {
+  for (const int condim : {1, 3, 4, 6}) {
+    for (const Cone cone : {Cone::pyramidal, Cone::elliptic}) {
+      SCOPED_TRACE(testing::Message() << "condim " << condim << (cone == Cone::elliptic));
+      Material material;
+      material.condim = condim;
+      material.torsionalFriction = 0.1, material.rollingFriction = 0.05;
+      expectContacts(
+          closedForms(), [&](Scene& s) { s.model.options.cone = cone; }, material, 0.5);
+    }
+  }
+}
+
+TEST(InverseDerivative, OfContactsThatFollowTheirSlip) {
+  Material material;
+  material.slidingFriction = 0.4;
+  for (const Cone cone : {Cone::pyramidal, Cone::elliptic}) {
+    expectContacts(
+        closedForms(),
+        [&](Scene& s) { s.model.options.cone = cone, s.model.options.nearRigid = true; }, material,
+        0.5);
+  }
+}
+
+TEST(InverseDerivative, OfSoftContactsInTheirMargin) {
+  Material material;
+  material.margin = 0.02;
+  material.impedance.dMin = 1e-4, material.impedance.width = 0.05;
+  expectContacts(
+      closedForms(), [](Scene&) {}, material, 0.5);
+}
+
+TEST(InverseDerivative, OfContactsOfShapesWithoutAClosedForm) {
+  expectContacts(
+      {{Shape::box({0.1, 0.06, 0.04}), Ground::box},
+       {Shape::capsule(0.04, 0.1), Ground::box},
+       {Shape::capsule(0.04, 0.1), Ground::ball}},
+      [](Scene&) {}, {}, 0.5, 1e-6);  // themselves differences
+}
+
+}  // namespace
+}  // namespace softgauss::test

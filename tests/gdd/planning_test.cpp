@@ -1,0 +1,356 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <Eigen/Eigenvalues>
+#include <numbers>
+#include <optional>
+
+#include "softgauss/engine/core/rotation.hpp"
+#include "softgauss/engine/step/forward_derivative.hpp"
+#include "softgauss/engine/step/step.hpp"
+#include "softgauss/gdd/goals/quadratic_value.hpp"
+#include "softgauss/gdd/planning/planner.hpp"
+#include "tests/support/allocation_guard.hpp"
+#include "tests/support/finite_difference.hpp"
+#include "tests/support/matchers.hpp"
+#include "tests/support/scene.hpp"
+
+namespace softgauss::test {
+namespace {
+
+using namespace planning;
+
+// ---- Costs and the program in a box -------------------------------------------------------------
+
+/// Slope and curvature of a term that is ½ |r|² are those of r, by differences of its value.
+void expectModel(CostTerm& term, int seed) {
+  Random random(seed);
+  const Model model = randomFloatingTree(seed).build();
+  const int n = model.nv;
+  State state = randomState(model, random);
+  Kinematics k(model);
+  const auto value = [&](const VectorX& q, const VectorX& v) {
+    State at = state;
+    at.q = q, at.v = v;
+    computeKinematics(model, at, k);
+    return VectorX(VectorX::Constant(1, term.value({model, at.q, at.v, 0, &k})));
+  };
+  MatrixX expected(1, 2 * n);
+  expected << configurationGradient(model, state.q,
+                                    [&](const VectorX& q) { return value(q, state.v); }),
+      gradient(state.v, [&](const VectorX& v) { return value(state.q, v); });
+  value(state.q, state.v);
+  ValueModel found(n);
+  const double at =
+      term.expand({model, state.q, state.v, 0, &k}, 2.0, found.slope, found.curvature);
+  EXPECT_APPROX(found.slope.transpose(), 2.0 * expected, 1e-7) << seed;
+  EXPECT_NEAR(at, value(state.q, state.v)[0], 1e-12 * std::abs(at));
+  const MatrixX full = MatrixX(found.curvature.selfadjointView<Eigen::Lower>());
+  EXPECT_GE(full.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff(), -1e-9 * full.norm());
+}
+
+TEST(PlanCost, SlopesAreThoseOfTheValue) {
+  for (int seed = 0; seed < 10; ++seed) {
+    Random random(seed + 50);
+    const Model model = randomFloatingTree(seed).build();
+    StateCost states(model, randomState(model, random).q);
+    states.positionWeight = random.vector(model.nv, 1.0).cwiseAbs();
+    states.velocityWeight = random.vector(model.nv, 1.0).cwiseAbs();
+    expectModel(states, seed);
+    const std::string frame = model.frames.back().name;
+    PointCost point(model, frame, random.vector3(0.2), random.vector3(1.0), 2.0, 0.5);
+    expectModel(point, seed);
+    OrientationCost orientation(model, frame, random.rotation(), 3.0);
+    expectModel(orientation, seed);
+    CentroidalCost centroidal(model);
+    centroidal.centre(random.vector3(1.0), 5.0);
+    centroidal.momentum(random.vector3(1.0), 0.5);
+    centroidal.angularMomentum(0.3);
+    expectModel(centroidal, seed);
+  }
+}
+
+TEST(BoxProgram, IsAtItsMinimum) {
+  Random random(7);
+  for (int trial = 0; trial < 200; ++trial) {
+    const int m = 1 + random.index(8);
+    MatrixX A(m, m);
+    for (double& x : A.reshaped()) x = random.uniform(-1.0, 1.0);
+    const MatrixX H = A * A.transpose() + 0.1 * MatrixX::Identity(m, m);
+    const VectorX g = random.vector(m, 3.0), lower = -random.vector(m, 1.0).cwiseAbs(),
+                  upper = random.vector(m, 1.0).cwiseAbs();
+    VectorX x = VectorX::Zero(m);
+    BoxProgram program(m);
+    ASSERT_TRUE(program.solve(H, g, lower, upper, x));
+    const VectorX slope = H * x + g;
+    for (int i = 0; i < m; ++i) {
+      EXPECT_GE(x[i], lower[i]);
+      EXPECT_LE(x[i], upper[i]);
+      if (x[i] > lower[i] && x[i] < upper[i])
+        EXPECT_NEAR(slope[i], 0.0, 1e-9);
+      else
+        EXPECT_GE(slope[i] * (x[i] == lower[i] ? 1.0 : -1.0), -1e-9);
+    }
+  }
+}
+
+// ---- A linear system ----------------------------------------------------------------------------
+
+/// Five masses on rails of all directions, one hanging from another, with springs and dampers.
+Model rails(double step) {
+  Random random(11);
+  ModelBuilder b("rails");
+  b.link(emptyLink("world"));
+  std::string parent = "world";
+  for (int i = 0; i < 5; ++i) {
+    const std::string name = "mass" + std::to_string(i);
+    b.link(boxLink(name, random.uniform(0.5, 3.0), Vector3(0.1, 0.1, 0.1)));
+    JointSpec joint = jointSpec("rail" + std::to_string(i), JointType::prismatic, parent, name, {},
+                                random.direction());
+    joint.damping = random.uniform(0.1, 2.0);
+    joint.stiffness = random.uniform(1.0, 30.0);
+    b.joint(joint);
+    if (i != 1) parent = name;
+  }
+  b.options.effects.remove(Effect::gravity);
+  b.options = StepDerivative::bareStep(b.options);
+  b.options.timestep = step;
+  return b.build();
+}
+
+std::unique_ptr<StateCost> towards(const Model& model, const VectorX& q, double position,
+                                   double velocity) {
+  auto term = std::make_unique<StateCost>(model, q);
+  term->positionWeight.setConstant(position);
+  term->velocityWeight.setConstant(velocity);
+  return term;
+}
+
+// With x⁺ = A x + B u and quadratic costs, Riccati's recursion gives the least cost ½ xᵀS x from x.
+// One iteration of phase I finds it, and so does one of phase F.
+TEST(Planner, OnALinearModelTheFirstIterationIsRiccatis) {
+  constexpr double kStep = 0.02;
+  constexpr int kKnots = 30;
+  const Model model = rails(kStep);
+  const int n = model.nv;
+  Random random(3);
+  const VectorX q = random.vector(n, 1.0), v = random.vector(n, 1.0);
+
+  Data data(model);
+  Input input;
+  input.tau = VectorX::Zero(n);
+  State state(model);
+  StepDerivative step(model);
+  ASSERT_EQ(step.compute(model, input, state, nullptr, data), SolveStatus::converged);
+  const MatrixX A = step.state(), B = step.tau();
+  const MatrixX R = kStep * 0.01 * MatrixX::Identity(n, n);
+  MatrixX Q = MatrixX::Identity(2 * n, 2 * n), S = Q;
+  Q.topLeftCorner(n, n) *= 3.0 * kStep, Q.bottomRightCorner(n, n) *= 0.5 * kStep;
+  S.topLeftCorner(n, n) *= 20.0, S.bottomRightCorner(n, n) *= 2.0;
+  MatrixX K;
+  for (int t = 0; t < kKnots; ++t) {
+    K = (R + B.transpose() * S * B).llt().solve(B.transpose() * S * A);
+    S = Q + A.transpose() * S * (A - B * K);
+  }
+  VectorX x(2 * n);
+  x << q, v;
+  const double least = 0.5 * x.dot(S * x);
+
+  Planner planner(model, {kStep, kKnots});
+  planner.cost.running.push_back(towards(model, VectorX::Zero(n), 3.0, 0.5));
+  planner.cost.final.push_back(towards(model, VectorX::Zero(n), 20.0, 2.0));
+  PlanOptions options;
+  options.infeasible = 1;
+  const MotionPlan& plan = planner.solve(q, v, options);
+  EXPECT_EQ(plan.status, PlanStatus::converged);
+  EXPECT_NEAR(plan.costs[0], least, 1e-10 * least);
+  EXPECT_NEAR(plan.cost, least, 1e-10 * least);
+  EXPECT_APPROX(plan.tau[0], VectorX(-K * x), 1e-8);
+  EXPECT_SMALL(plan.gap, 1e-10);
+}
+
+// ---- Smooth and fully actuated ------------------------------------------------------------------
+
+// At a feasible point the subproblem over accelerations is that over controls (substitute
+// δa = P⁻¹(δu − G δx)): all three end where the cost is stationary.
+TEST(Planner, PhasesAndPlainControlsEndAtOneMinimum) {
+  const Model model = chain(3).build();
+  const int n = model.nv;
+  VectorX target = VectorX::Constant(n, 0.7);
+  target[1] = -0.5;
+  double cost[3];
+  for (const int method : {0, 1, 2}) {
+    Planner planner(model, {0.05, 20});
+    planner.cost.running.push_back(towards(model, target, 0.1, 0.01));
+    planner.cost.final.push_back(towards(model, target, 100.0, 10.0));
+    planner.cost.effort.setConstant(1e-3);
+    PlanOptions options;
+    options.tolerance = 1e-14;
+    options.feasible = method == 0 ? 0 : 200;
+    options.infeasible = method == 0 ? 100 : 1;
+    options.inPhaseF.goalDirected = method != 2;
+    options.inPhaseF.plainControls = method == 2;
+    const MotionPlan& plan = planner.solve(model.q0, VectorX::Zero(n), options);
+    cost[method] = method == 0 ? plan.costs.back() : plan.cost;
+  }
+  EXPECT_NEAR(cost[1], cost[0], 1e-8 * cost[0]);
+  EXPECT_NEAR(cost[2], cost[0], 1e-8 * cost[0]);
+}
+
+// ---- What is underactuated, and bounded ---------------------------------------------------------
+
+Model cartPole(std::optional<double> effort) {
+  ModelBuilder b("cart-pole");
+  b.link(emptyLink("world"));
+  LinkSpec cart = sphereLink("cart", 1.0, 0.1);
+  LinkSpec pole = sphereLink("pole", 0.2, 0.2, {0, 0, -0.5});
+  b.link(cart).link(pole);
+  JointSpec slide = jointSpec("slide", JointType::prismatic, "world", "cart", {}, Vector3::UnitX());
+  slide.effort = effort;
+  JointSpec hinge = jointSpec("hinge", JointType::continuous, "cart", "pole", {}, Vector3::UnitY());
+  hinge.effort = 0.0;
+  b.joint(slide).joint(hinge);
+  return b.build();
+}
+
+void swingUp(Planner& planner) {
+  const VectorX up = Eigen::Vector2d(0.0, std::numbers::pi);
+  planner.cost.running.push_back(towards(planner.model(), up, 0.2, 0.02));
+  planner.cost.final.push_back(towards(planner.model(), up, 200.0, 20.0));
+  planner.cost.effort[0] = 0.02;
+  planner.rootCost[1] = 200.0;
+}
+
+TEST(Planner, SwingsUpWithinBoundsByWhatTheStepDoes) {
+  for (const std::optional<double> effort :
+       {std::optional<double>(), std::optional<double>(15.0)}) {
+    const Model model = cartPole(effort);
+    Planner planner(model, {0.05, 40});
+    swingUp(planner);
+    PlanOptions options;
+    options.infeasible = 30;
+    const MotionPlan& plan = planner.solve(model.q0, VectorX::Zero(2), options);
+    EXPECT_TRUE(plan.status == PlanStatus::converged || plan.status == PlanStatus::iterationLimit);
+    EXPECT_NEAR(plan.q.back()[1], std::numbers::pi, 0.1);
+    EXPECT_EQ(plan.rootForce, 0.0);
+    EXPECT_SMALL(plan.gap, 1e-10);
+    for (std::size_t i = static_cast<std::size_t>(plan.infeasible); i + 1 < plan.costs.size(); ++i)
+      EXPECT_LE(plan.costs[i + 1], plan.costs[i]);
+    // Step by step, for an open loop would leave an unstable plan by rounding alone.
+    const Model& bare = planner.model();
+    Data data(bare);
+    for (std::size_t t = 0; t < plan.tau.size(); ++t) {
+      EXPECT_LE(std::abs(plan.tau[t][0]), effort.value_or(kInfinity));
+      EXPECT_EQ(plan.tau[t][1], 0.0);
+      State state(bare);
+      state.q = plan.q[t], state.v = plan.v[t];
+      Input input;
+      input.tau = plan.tau[t];
+      input.controlled = allTrees(bare);
+      ASSERT_EQ(softgauss::step(bare, input, state, data, nullptr), SolveStatus::converged);
+      EXPECT_APPROX(state.q, plan.q[t + 1], 1e-10);
+      EXPECT_APPROX(state.v, plan.v[t + 1], 1e-10);
+    }
+  }
+}
+
+TEST(Planner, GivesTheSameBitsAgain) {
+  std::vector<MotionPlan> plans;
+  for (int i = 0; i < 2; ++i) {
+    const Model model = cartPole(10.0);
+    Planner planner(model, {0.05, 30});
+    swingUp(planner);
+    plans.push_back(planner.solve(model.q0, VectorX::Zero(2)));
+  }
+  EXPECT_EQ(plans[0].costs, plans[1].costs);
+  EXPECT_EQ(plans[0].q.back(), plans[1].q.back());
+}
+
+TEST(Planner, RefusesWhatIsNotFinite) {
+  const Model model = cartPole({});
+  Planner planner(model, {0.05, 5});
+  swingUp(planner);
+  const VectorX bad = VectorX::Constant(2, std::numeric_limits<double>::quiet_NaN());
+  EXPECT_EQ(planner.solve(bad, VectorX::Zero(2)).status, PlanStatus::refused);
+  EXPECT_EQ(planner.solve(model.q0, VectorX::Zero(3)).status, PlanStatus::refused);
+  EXPECT_THROW(Planner(model, {0.0, 5}), ModelError);
+  EXPECT_THROW(Planner(model, {0.05, 0}), ModelError);
+}
+
+// ---- The backward pass and the goal -------------------------------------------------------------
+
+TEST(BackwardPass, AllocatesNothing) {
+  const Model model = rails(0.02);
+  const int n = model.nv;
+  PlanDynamics dynamics(model, nullptr);
+  Knot knot(model, dynamics.step());
+  ASSERT_EQ(dynamics.linearise(knot), SolveStatus::converged);
+  std::vector<int> all;
+  for (int i = 0; i < n; ++i) all.push_back(i);
+  BackwardPass pass(model, all);
+  ValueModel next(n), cost(n), value(n);
+  next.curvature.setIdentity();
+  Feedback feedback(n, n);
+  const VectorX w = VectorX::Ones(n), W = VectorX::Ones(n), far = VectorX::Constant(n, 1e3),
+                near = -far;
+  const auto both = [&] {
+    return pass.overAccelerations(knot, next, cost, w, W, 0.0, feedback, value) &&
+           pass.overControls(knot, next, cost, W, near, far, 0.0, feedback, value);
+  };
+  EXPECT_TRUE(both());
+  AllocationGuard guard;
+  const bool done = both();
+  EXPECT_EQ(guard.count(), 0);
+  EXPECT_TRUE(done);
+}
+
+// ℓ(a) is V at the state where the step by a ends, to the order that the expansion has.
+TEST(QuadraticValue, IsTheValueAtTheStepsEnd) {
+  for (const Integrator integrator : {Integrator::leapfrog, Integrator::semiImplicitEuler}) {
+    for (int seed = 0; seed < 10; ++seed) {
+      Random random(seed);
+      ModelBuilder builder = randomFloatingTree(seed);
+      builder.options = StepDerivative::bareStep(builder.options);
+      builder.options.integrator = integrator;
+      builder.options.timestep = 0.02;
+      const Model model = builder.build();
+      const int n = model.nv;
+      const State begin = randomState(model, random);
+      gdd::QuadraticValue goal(model);
+      goal.q = begin.q;
+      integratePosition(model, random.vector(n, 0.1), 1.0, goal.q);
+      goal.v = random.vector(n, 1.0);
+      goal.slope = random.vector(2 * n, 1.0);
+      MatrixX root(2 * n, 2 * n);
+      for (double& x : root.reshaped()) x = random.uniform(-1.0, 1.0);
+      goal.curvature = root * root.transpose();
+      goal.about = random.vector(n, 5.0);
+      const double h = model.options.timestep;
+      const auto value = [&](const VectorX& a) {
+        State end = begin;
+        const bool drifts = integrator == Integrator::leapfrog;
+        if (drifts) integratePosition(model, end.v, 0.5 * h, end.q);
+        end.v += h * a;
+        integratePosition(model, end.v, drifts ? 0.5 * h : h, end.q);
+        VectorX e(2 * n);
+        e << positionDifference(model, goal.q, end.q), end.v - goal.v;
+        return goal.slope.dot(e) + 0.5 * e.dot(goal.curvature * e);
+      };
+      State at = begin;
+      if (integrator == Integrator::leapfrog) integratePosition(model, at.v, 0.5 * h, at.q);
+      Data data(model);
+      computeStages(model, Input{}, at, data, nullptr);
+      gdd::GoalCost cost(n);
+      cost.clear();
+      goal.addCost({model, at, data}, cost);
+      VectorX slope(n), Ma(n);
+      data.inertia.M.multiply(goal.about, Ma);
+      cost.gradient(goal.about, Ma, slope);
+      const MatrixX expected = gradient(
+          goal.about, [&](const VectorX& a) { return VectorX(VectorX::Constant(1, value(a))); },
+          1e-4);
+      EXPECT_APPROX(slope.transpose(), expected, 1e-7) << seed;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace softgauss::test
