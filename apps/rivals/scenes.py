@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """Writes the scenes of the study as plain data (scene.hpp): scenes.py FOLDER [NAME...].
 

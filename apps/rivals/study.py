@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """Runs the study beside other engines: study.py PROGRAMS FOLDER [--quick] [--only PATTERN] [--times ROUNDS].
 
