@@ -13,7 +13,7 @@ import re
 import resource
 import signal
 import subprocess
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor, as_completed
 
 import plan
 import scenes
@@ -117,8 +117,8 @@ def run_errors(study, quick, only, workers):
     first = [r for r in todo if r[1].role == "reference"]
     with path.open("a") as file, ThreadPoolExecutor(workers) as pool:
         for part in (first, [r for r in todo if r[1].role != "reference"]):
-            for result in pool.map(lambda r: study.result(*r), part):
-                file.write(json.dumps(result) + "\n")
+            for run in as_completed([pool.submit(study.result, *r) for r in part]):
+                file.write(json.dumps(run.result()) + "\n")
                 file.flush()
         # A reference that came later, or of another program, judges the runs that were there.
         latest = {(r["scene"], r["entry"], r["h"]): r for r in read(path)}
