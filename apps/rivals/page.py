@@ -181,7 +181,8 @@ class Page:
             by.setdefault((entry.split()[0], re.sub(r"[\d.e+-]+", "…", why)), []).append((scene, why))
         for (engine, _), found in sorted(by.items()):
             lines.append(f"Refused of {engine}: {', '.join(sorted({s for s, _ in found}))}: {found[0][1]}.")
-        failed = sorted({(r["entry"], r["scene"], r.get("why", "")) for r in self.runs.values() if r["end"] in ("cannot express", "crashed")})
+        said = lambda r: r.get("why", "")[max(r.get("why", "").find("Assertion"), 0):][:100]
+        failed = sorted({(r["entry"], r["scene"], said(r)) for r in self.runs.values() if r["end"] in ("cannot express", "crashed")})
         for why in sorted({(e.split()[0], w) for e, _, w in failed}):
             found = sorted({s for e, s, w in failed if (e.split()[0], w) == why})
             lines.append(f"No run of {why[0]}: {', '.join(found)}: {why[1]}.")
