@@ -110,8 +110,9 @@ Problem capsules() {
   p.build = [] {
     ModelBuilder builder("capsules");
     for (int i = 0; i < 27; ++i) {
+      // Each is further from the next than the 0.3 m that it is long: none begins within another.
       ModelBuilder one = floating(capsule("capsule", 1.0, 0.05, 0.1), Shape::capsule(0.05, 0.1),
-                                  0.5, {0.12 * (i % 3), 0.12 * (i / 3 % 3), 0.25 + 0.35 * (i / 9)});
+                                  0.5, {0.31 * (i % 3), 0.31 * (i / 3 % 3), 0.25 + 0.35 * (i / 9)});
       const Vector3 axis = Vector3(std::sin(1.0 + i), std::cos(2.0 * i), 0.3).normalized();
       one.X_WRoot.R = Eigen::AngleAxisd(0.8 * i, axis).toRotationMatrix();
       builder.add(one, fmt::format("c{}", i));

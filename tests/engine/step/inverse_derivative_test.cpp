@@ -78,9 +78,10 @@ void expectDerivative(Scene& s, const VectorX& a, Count& count, double tolerance
   }
 }
 
+/// A sliding contact has kinks of its own, where the slip law begins and where its pyramid turns.
 void expectFewKinks(const Count& count) {
   EXPECT_GT(count.compared, 20);
-  EXPECT_LT(count.kinks, count.compared / 10);
+  EXPECT_LT(count.kinks, count.compared / 8);
 }
 
 TEST(InverseDerivative, OfTreesSpringsDampingAndWrenches) {

@@ -1,0 +1,243 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Writes what the study has found: page.py FOLDER DOCS.
+
+FOLDER is that of study.py. Of DOCS/rivals.md what stands between `<!-- NAME -->` and `<!-- end -->` is
+written anew; DOCS/rivals/ gets all results as results.csv and the pictures.
+"""
+import csv
+import json
+import pathlib
+import re
+import statistics
+import sys
+
+import gate
+import pictures
+import plan
+import verdicts
+
+RED = "🔴 "
+
+
+def load(folder):
+    """Runs by (scene, entry, step); the last of each counts."""
+    lines = (folder / "results.jsonl").read_text().splitlines()
+    return {(r["scene"], r["entry"], r["h"]): r for r in map(json.loads, lines)}
+
+
+class Page:
+    def __init__(self, folder):
+        self.runs = load(folder)
+        self.refusals = gate.refusals(list(self.runs.values()))
+        path = folder / "times.jsonl"
+        self.times = [json.loads(l) for l in path.read_text().splitlines()] if path.exists() else []
+
+    def present(self, kind):
+        """Columns of a kind of table: those that have run."""
+        entries = {key[1] for key in self.runs}
+        return [e for e in plan.ENTRIES if e.key in entries and (not e.scenes or kind in e.scenes)]
+
+    def measures(self, scene, entry, h=plan.STEP):
+        """Of a run; or a word on why there are none."""
+        if entry.engine == "simbody" and scene in plan.SMOOTH:
+            h = plan.REFERENCE_STEP
+        run, why = self.runs.get((scene, entry.key, h)), self.refusals.get((scene, entry.key, h))
+        if run is None:
+            return "–"
+        if run["end"] == "cannot express":
+            return "cannot"
+        if run["end"] == "crashed":
+            return "crashes"
+        if why:
+            return "refused"
+        if run["end"] in ("diverged", "late"):
+            return f"diverges at {run['time']:.2g} s" if run["end"] == "diverged" else "too slow"
+        return run["judged"]["measures"]
+
+    def cell(self, scene, entry, *names, h=plan.STEP, style="{:.3g}"):
+        m = self.measures(scene, entry, h)
+        return m if isinstance(m, str) else ", ".join(style.format(m[n]) for n in names)
+
+    # ---- Tables ------------------------------------------------------------------------------
+
+    def table(self, head, rows):
+        lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
+        return lines + ["| " + " | ".join(r) + " |" for r in rows]
+
+    def versions(self):
+        rows = []
+        for engine in dict.fromkeys(e.engine for e in plan.ENTRIES):
+            found = {r["version"] for k, r in self.runs.items() if k[1].split()[0] == engine and "version" in r}
+            entries = [e for e in plan.ENTRIES if e.engine == engine and e.role != "gate"]
+            columns = "; ".join(f"{e.label}: " + (f"`{' '.join(e.settings)}`" if e.settings else "no setting")
+                                + (f" ({e.source})" if e.source else "") for e in entries)
+            rows.append([", ".join(sorted(found)) or f"{engine}: not found", columns])
+        return self.table(["engine", "columns"], rows)
+
+    def line(self):
+        """Who is on the page, in one line."""
+        versions = [r["version"] for r in self.runs.values() if "version" in r]
+        return [", ".join(dict.fromkeys(sorted(versions))) + "."]
+
+    def smooth(self, scene):
+        rows = []
+        for e in self.present("smooth"):
+            if e.role == "gate":
+                continue
+            if e.engine == "simbody":
+                rows.append([e.label, self.cell(scene, e, "error_m")] + ["" for _ in plan.STEPS[1:]])
+            else:
+                rows.append([e.label] + [self.cell(scene, e, "error_m", h=h) for h in plan.STEPS])
+        return self.table(["error [m]"] + [f"{1e3 * h:g} ms" for h in plan.STEPS], rows)
+
+    def drift(self):
+        rows = [[e.label, self.cell("chain_10_long", e, "energy_percent"),
+                 self.cell("top", e, "tilt_low_deg", "tilt_high_deg", style="{:.2f}"),
+                 self.cell("free_body", e, "energy_percent"), self.cell("free_body", e, "momentum"),
+                 self.cell("thrown_body", e, "parabola_mm")] for e in self.present("drift")]
+        return self.table(["", "chain of 10: energy [%]", "top: tilt [°], true 20.00, 55.46", "free body at 50 rad/s: energy [%]",
+                           "momentum, relative", "thrown body: off its parabola [mm]"], rows)
+
+    def thrown(self):
+        rows = []
+        for e in self.present("friction"):
+            cells = []
+            for speed in plan.scenes.SPEEDS:
+                all_ = [self.measures(s, e) for s in plan.THROWN if s.startswith(f"thrown_{speed:g}_")]
+                found = [m for m in all_ if not isinstance(m, str)]
+                if not found:
+                    cells.append(all_[0])
+                    continue
+                off = max((m["off_percent"] for m in found), key=abs)
+                aside = max(100 * m["aside_mm"] / m["truth_mm"] for m in found)
+                turned = max(m["turned_deg"] for m in found)
+                cells.append(f"{off:+.2g}, {aside:.2g}" + (f", turns {turned:.2g}°" if turned > 1 else "")
+                             + (f" (of {len(found)})" if len(found) < len(all_) else ""))
+            cells.append(self.cell("thrown_2_37", e, "off_mm", "aside_mm", "lifted_mm"))
+            cells.append(self.cell("thrown_2_37", e, "off_mm", "aside_mm", "lifted_mm", h=0.01))
+            rows.append([e.label] + cells)
+        return self.table(["off [%], aside [%], worst of eight directions"] + [f"{s:g} m/s" for s in plan.scenes.SPEEDS]
+                          + ["2 m/s at 37°: off, aside, lifted [mm]", "the same at 10 ms"], rows)
+
+    def friction(self):
+        rows = [[e.label, self.cell("slides_37", e, "off_mm"), self.cell("creep_15", e, "creep_mm_s"),
+                 self.cell("creep_50", e, "creep_mm_s"), self.cell("creep_99", e, "creep_mm_s"),
+                 self.cell("creep_99_askew", e, "creep_mm_s", "aside_mm_s"),
+                 self.cell("rolling", e, "off_mm", "slip_percent")] for e in self.present("friction")]
+        return self.table(["", "slides down 37° for 1 s, off its 993.2 mm [mm]", "creep on 15°, μ 1 [mm/s]",
+                           "at half the cone [mm/s]", "at 99 % of the cone [mm/s]", "at 99 %, slope askew by 37°: down, aside [mm/s]",
+                           "ball slides, then rolls: off [mm], slips [%]"], rows)
+
+    def hold(self):
+        rows = [[e.label, self.cell("mass_1000", e, "sinks_mm", "leans_deg"), self.cell("tower_10", e, "sinks_mm", "leans_deg"),
+                 self.cell("tower_20", e, "sinks_mm", "leans_deg"), self.grip(e),
+                 self.cell("rope", e, "gap_mm"), self.cell("humanoid_falls", e, "rest_mm"),
+                 self.cell("pile_50", e, "rest_mm", "end_kinetic"), self.cell("capsules_27", e, "rest_mm", "end_kinetic")]
+                for e in self.present("hold")]
+        return self.table(["", "1000 kg on 1 kg: sinks [mm], leans [°]", "tower of 10: top sinks, leans", "tower of 20",
+                           "grip, 60 s: falls [mm], then [µm/s]", "rope: widest gap [mm]", "humanoid lies: overlap [mm]",
+                           "pile of 50: overlap [mm], energy left [J]", "27 capsules: overlap, energy"], rows)
+
+    def grip(self, entry):
+        m = self.measures("grip", entry)
+        if isinstance(m, str):
+            return m
+        return f"lost at {m['lost_s']:.2g} s" if m["lost_s"] >= 0 else f"{m['fell_mm']:.2g}, {m['creep_um_s']:.2g}"
+
+    def softness(self):
+        rows = [[e.label] + [self.cell("drop", e, name) for name in ("deepest_mm", "rebound_mm", "rest_mm")]
+                for e in self.present("softness")]
+        return self.table(["a ball of 1 kg from 1 m", "deepest [mm]", "rebound [mm]", "at rest [mm]"], rows)
+
+    WORDS = {"held": "held", "missed": RED + "missed", "diverged": RED + "diverged", "late": RED + "too slow", "cannot": "cannot",
+             "refused": "refused", None: "–"}
+    MATRIX = ("ours", "ours, near-rigid", "MuJoCo", "MuJoCo (npm)", "DART", "Bullet", "ODE", "ODE, quick", "Simbody", "Rapier", "Jolt")
+
+    def matrix_entries(self):
+        labels = {e.label: e for e in plan.ENTRIES if e.key in {k[1] for k in self.runs}}
+        return [labels[l] for l in self.MATRIX if l in labels]
+
+    def verdict(self, case, entry):
+        v = verdicts.verdict(case, entry, self.runs, self.refusals)
+        if v is None and entry.scenes:  # smooth motion is that of its engine's default
+            default = next(e for e in plan.ENTRIES if e.engine == entry.engine and not e.settings)
+            v = verdicts.verdict(case, default, self.runs, self.refusals)
+        return v
+
+    def matrix(self):
+        entries = self.matrix_entries()
+        rows = [[case[0]] + [self.WORDS[self.verdict(case, e)] for e in entries] for case in verdicts.CASES]
+        return self.table(["at 2 ms"] + [e.label for e in entries], rows)
+
+    def gate(self):
+        lines = [f"Passed: {len(self.runs) - len(self.refusals)} of {len(self.runs)} runs."]
+        if not gate.references(list(self.runs.values())):
+            lines.append("Simbody was not there: errors of smooth motion are from our own reference, without a second one.")
+        for scene, distance in gate.references(list(self.runs.values())).items():
+            lines.append(f"The two references of `{scene}` differ by {distance:.2g} m (root mean square).")
+        by = {}
+        for (scene, entry, _), why in self.refusals.items():
+            by.setdefault((entry.split()[0], re.sub(r"[\d.e+-]+", "…", why)), []).append((scene, why))
+        for (engine, _), found in sorted(by.items()):
+            lines.append(f"Refused of {engine}: {', '.join(sorted({s for s, _ in found}))}: {found[0][1]}.")
+        said = lambda r: r.get("why", "")[max(r.get("why", "").find("Assertion"), 0):][:100]
+        failed = sorted({(r["entry"], r["scene"], said(r)) for r in self.runs.values() if r["end"] in ("cannot express", "crashed")})
+        for why in sorted({(e.split()[0], w) for e, _, w in failed}):
+            found = sorted({s for e, s, w in failed if (e.split()[0], w) == why})
+            lines.append(f"No run of {why[0]}: {', '.join(found)}: {why[1]}.")
+        return ["- " + l for l in lines]
+
+    def time_rows(self):
+        """Medians and spread of CPU time a step over that of the calibration beside it, by scene."""
+        rows = []
+        for scene in plan.TIMED:
+            for e in plan.ENTRIES:
+                found = [t for t in self.times if t["scene"] == scene and t["entry"] == e.key]
+                if found:
+                    us = sorted(t["us_a_step"] for t in found)
+                    rows.append((scene, e, statistics.median(us), us[0], us[-1], statistics.median(t["calibration_us"] for t in found),
+                                 statistics.median(t["load"] for t in found), found[-1]["end"]))
+        return rows
+
+    def time_table(self):
+        rows = self.time_rows()
+        if not rows:
+            return ["Not measured in this run of the study: `./dev rivals` times after the errors, on a machine that does nothing else."]
+        load = max(r[6] for r in rows)
+        lines = self.table(["scene", "column", "µs a step, median (least to most)", "calibration [µs]", "end"],
+                           [[s, e.label, f"{m:.3g} ({a:.3g} to {b:.3g})", f"{c:.3g}", end] for s, e, m, a, b, c, _, end in rows])
+        return lines + ["", f"Largest median load of the machine: {load:.2g}" + ("; above 1.5 these figures say little." if load > 1.5 else ".")]
+
+    def write_csv(self, path):
+        with path.open("w", newline="") as file:
+            out = csv.writer(file, lineterminator="\n")
+            out.writerow(["scene", "engine", "settings", "h", "version", "end", "refused", "measures"])
+            for (scene, entry, h), r in sorted(self.runs.items()):
+                engine, *settings = entry.split()
+                m = r.get("judged", {}).get("measures", {})
+                out.writerow([scene, engine, " ".join(settings), h, r.get("version", ""), r["end"], self.refusals.get((scene, entry, h), ""),
+                              " ".join(f"{k}={v:.6g}" for k, v in sorted(m.items()) if v is not None)])
+
+    SECTIONS = {"line": line, "versions": versions, "gate": gate, "chain_20": lambda s: s.smooth("chain_20"),
+                "humanoid_in_the_air": lambda s: s.smooth("humanoid_in_the_air"), "drift": drift, "thrown": thrown, "friction": friction,
+                "hold": hold, "softness": softness, "matrix": matrix, "times": time_table}
+
+    def fill(self, text):
+        for name, make in self.SECTIONS.items():
+            content = "\n".join(make(self))
+            text = re.sub(rf"(<!-- {name} -->\n).*?(<!-- end -->)", lambda m: m[1] + content + "\n" + m[2], text, flags=re.S)
+        return text
+
+
+def main(folder, docs):
+    page = Page(pathlib.Path(folder))
+    docs = pathlib.Path(docs)
+    (docs / "rivals").mkdir(parents=True, exist_ok=True)
+    page.write_csv(docs / "rivals/results.csv")
+    pictures.draw(page, docs / "rivals")
+    text = docs / "rivals.md"
+    text.write_text(page.fill(text.read_text()))
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

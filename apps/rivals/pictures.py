@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Pictures of the study: error against the step, what held, and how far thrown boxes go."""
+import math
+
+import matplotlib
+
+matplotlib.use("svg")
+import matplotlib.pyplot as plt
+
+import plan
+import verdicts
+
+matplotlib.rcParams.update({"font.size": 9, "svg.hashsalt": "softgauss", "svg.fonttype": "none", "axes.spines.top": False, "axes.spines.right": False})
+INK = {"ours": "#0b6e75", "ours, near-rigid": "#e07b39", "ours, RK4": "#5fb3b3", "ours, Dormand-Prince 1e-5": "#e07b39"}
+COLOURS = {"held": "#7fbf8e", "missed": "#d9534f", "diverged": "#8c2d2a", "late": "#b0763f", "cannot": "#d8d8d8",
+           "refused": "#ffffff", None: "#ffffff"}
+# At most six curves a picture, each labelled at its end.
+CURVES = ("ours", "ours, RK4", "ours, Dormand-Prince 1e-5", "MuJoCo", "Bullet, RK4", "ODE")
+
+
+def save(figure, path):
+    figure.savefig(path, metadata={"Date": None}, bbox_inches="tight")
+    plt.close(figure)
+
+
+def apart(heights, least):
+    """Heights in order, moved up so that labels do not lie on one another (in decades)."""
+    out = []
+    for h in heights:
+        out.append(max(h, out[-1] + least) if out else h)
+    return out
+
+
+def smooth(page, scene, path):
+    figure, axes = plt.subplots(figsize=(6.0, 3.6))
+    ends = []
+    for entry in page.present("smooth"):
+        if entry.label not in CURVES:
+            continue
+        points = [(h, m["error_m"]) for h in plan.STEPS if not isinstance(m := page.measures(scene, entry, h), str)]
+        if not points:
+            continue
+        line, = axes.loglog([1e3 * h for h, _ in points], [e for _, e in points], "o-", ms=3, lw=1.2, color=INK.get(entry.label))
+        ends.append((math.log10(points[0][1]), entry.label, line.get_color()))
+    ends.sort()
+    decades = math.log10(axes.get_ylim()[1] / axes.get_ylim()[0])
+    for y, (_, label, colour) in zip(apart([e[0] for e in ends], 0.055 * decades), ends):
+        axes.annotate(label, (11, 10 ** y), color=colour, va="center", annotation_clip=False)
+    axes.set_xlabel("step [ms]")
+    axes.set_ylabel("error [m]")
+    axes.set_title(scene.replace("_", " ") + ": root mean square, from Simbody at 1e-12", loc="left", fontsize=9)
+    axes.set_xticks([1e3 * h for h in plan.STEPS], [f"{1e3 * h:g}" for h in plan.STEPS])
+    axes.minorticks_off()
+    save(figure, path)
+
+
+def matrix(page, path):
+    entries = page.matrix_entries()
+    figure, axes = plt.subplots(figsize=(0.72 * len(entries) + 3.2, 0.27 * len(verdicts.CASES) + 1.2))
+    words = {"held": "", "missed": "missed", "diverged": "diverged", "late": "slow", "cannot": "cannot", "refused": "–", None: "–"}
+    for row, case in enumerate(verdicts.CASES):
+        for column, entry in enumerate(entries):
+            v = page.verdict(case, entry)
+            axes.add_patch(plt.Rectangle((column, row), 0.96, 0.9, color=COLOURS[v], lw=0))
+            axes.text(column + 0.48, row + 0.45, words[v], ha="center", va="center", fontsize=6.5,
+                      color="white" if v in ("missed", "diverged", "late") else "#555555")
+    axes.set_xlim(0, len(entries))
+    axes.set_ylim(len(verdicts.CASES), 0)
+    axes.set_xticks([i + 0.48 for i in range(len(entries))], [e.label.replace(", ", ",\n").replace(" (", "\n(") for e in entries], fontsize=7.5)
+    axes.xaxis.tick_top()
+    axes.set_yticks([i + 0.45 for i in range(len(verdicts.CASES))], [c[0] for c in verdicts.CASES], fontsize=7.5)
+    axes.tick_params(length=0)
+    for spine in axes.spines.values():
+        spine.set_visible(False)
+    save(figure, path)
+
+
+def thrown(page, path):
+    """Where boxes stop that are thrown at 2 m/s, over the direction."""
+    labels = ("ours", "ours, near-rigid", "MuJoCo", "DART", "Bullet", "ODE")
+    entries = [e for e in page.present("friction") if e.label in labels]
+    figure, axes = plt.subplots(figsize=(6.0, 3.2))
+    ends = []
+    for entry in entries:
+        points = [(a, m["off_percent"]) for a in plan.scenes.DIRECTIONS
+                  if not isinstance(m := page.measures(f"thrown_2_{a:g}", entry), str)]
+        if points:
+            line, = axes.plot(*zip(*points), "o:", ms=4, lw=0.7, color=INK.get(entry.label))
+            ends.append((points[-1][1], entry.label, line.get_color()))
+    ends.sort()
+    for y, (_, label, colour) in zip(apart([e[0] for e in ends], 5.5), ends):
+        axes.annotate(label, (308, y), color=colour, va="center", annotation_clip=False)
+    axes.axhline(0, color="#aaaaaa", lw=0.8, zorder=0)
+    axes.set_xlabel("direction of the throw [°]")
+    axes.set_ylabel("too far [%]")
+    axes.set_xticks(plan.scenes.DIRECTIONS, [f"{a:g}" for a in plan.scenes.DIRECTIONS], fontsize=7)
+    axes.set_title("a box thrown at 2 m/s, friction 0.5: from where Coulomb's law stops it", loc="left", fontsize=9)
+    save(figure, path)
+
+
+def draw(page, folder):
+    for scene in plan.SMOOTH:
+        smooth(page, scene, folder / f"{scene}.svg")
+    matrix(page, folder / "matrix.svg")
+    thrown(page, folder / "thrown.svg")

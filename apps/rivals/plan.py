@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the study runs: engines with their defaults and their documented best, scenes and steps."""
+from dataclasses import dataclass, field
+
+import scenes
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A column: an engine with settings."""
+    engine: str
+    label: str
+    settings: tuple = ()
+    role: str = "default"  # or best
+    source: str = ""       # of the advice
+    scenes: tuple = field(default=(), compare=False)  # kinds that it takes part in; none: all
+
+    @property
+    def key(self):
+        return " ".join((self.engine, *self.settings))
+
+
+# Scenes by the kind of table that they belong to. The kinds are never mixed.
+SMOOTH = ("chain_20", "humanoid_in_the_air")
+DRIFT = ("chain_10_long", "top", "free_body", "thrown_body")
+THROWN = tuple(f"thrown_{s:g}_{a:g}" for s in scenes.SPEEDS for a in scenes.DIRECTIONS)
+FRICTION = THROWN + ("slides_37", "creep_15", "creep_50", "creep_99", "creep_99_askew", "rolling")
+HOLD = ("mass_1000", "tower_10", "tower_20", "grip", "rope", "humanoid_falls", "pile_50", "capsules_27")
+SOFTNESS = ("drop",)
+KINDS = {"smooth": SMOOTH, "drift": DRIFT, "friction": FRICTION, "hold": HOLD, "softness": SOFTNESS}
+TIMED = ("tower_10", "tower_20", "pile_50", "capsules_27", "humanoid_falls", "mass_1000", "thrown_2_37", "chain_20",
+         "humanoid_in_the_air")
+
+CONTACT = ("friction", "hold", "softness")
+MOTION = ("smooth", "drift")
+
+ENTRIES = (
+    Entry("ours", "ours"),
+    Entry("ours", "ours, near-rigid", ("near_rigid=1",), "best", "docs/guide/contact.md", CONTACT),
+    Entry("ours", "ours, RK4", ("integrator=runge-kutta-4",), "best", "docs/guide/integrators.md", MOTION),
+    Entry("ours", "ours, Dormand-Prince 1e-5", ("integrator=dormand-prince", "integration_tolerance=1e-5"), "best",
+          "docs/guide/integrators.md", MOTION),
+    Entry("ours", "ours, Euler", ("integrator=semi-implicit-euler",), "gate", "", ("smooth",)),
+    Entry("mujoco", "MuJoCo"),
+    Entry("mujoco", "MuJoCo, elliptic, noslip", ("cone=elliptic", "impratio=10", "noslip=10"), "best",
+          "MuJoCo documentation, Modeling, Preventing slip", CONTACT),
+    Entry("mujoco", "MuJoCo, RK4", ("integrator=RK4",), "best", "MuJoCo documentation, Computation, Numerical integration",
+          MOTION),
+    Entry("dart", "DART"),
+    Entry("dart", "DART, PGS", ("solver=pgs",), "option", "DART's API reference, PgsBoxedLcpSolver", CONTACT),
+    Entry("bullet", "Bullet", ("preset=pybullet",), "best", "PyBullet's server, which sets it so"),
+    Entry("bullet", "Bullet, library", (), "default", "", CONTACT),
+    Entry("bullet", "Bullet, RK4", ("integrator=rk4",), "best", "btMultiBody::useRK4Integration", ("smooth", "drift")),
+    Entry("ode", "ODE"),
+    Entry("ode", "ODE, quick", ("step=quick",), "option", "Gazebo Classic's settings"),
+    Entry("simbody", "Simbody"),
+    Entry("simbody", "Simbody, 1e-5", ("accuracy=1e-5", "transition_velocity=0.001"), "best",
+          "Simbody's Integrator and CompliantContactSubsystem reference"),
+    Entry("mujoco_npm", "MuJoCo (npm)"),
+    Entry("mujoco_npm", "MuJoCo (npm), elliptic, noslip", ("cone=elliptic", "impratio=10", "noslip=10"), "best",
+          "MuJoCo documentation, Modeling, Preventing slip", CONTACT),
+    Entry("rapier_npm", "Rapier"),
+    Entry("jolt_npm", "Jolt"),
+)
+
+# Two codes without a common line, as exact as they come: what smooth scenes are judged by.
+REFERENCES = (Entry("simbody", "Simbody, 1e-12", ("accuracy=1e-12",), "reference"),
+              Entry("ours", "ours, Dormand-Prince 1e-13", ("integrator=dormand-prince", "integration_tolerance=1e-13"),
+                    "reference"))
+REFERENCE_STEP = 0.01
+
+# The same method in several engines gives the same digits, or a model is not the same.
+SAME_DIGITS = (("ours, Euler", "MuJoCo", "DART", "Bullet"), ("ours, RK4", "MuJoCo, RK4", "Bullet, RK4"))
+
+STEP = 0.002
+STEPS = (0.01, 0.005, 0.002, 0.001, 0.0005)
+SINGLE_PRECISION = ("rapier_npm", "jolt_npm")
+
+
+def kind_of(scene):
+    return next(kind for kind, names in KINDS.items() if scene in names)
+
+
+def takes_part(entry, scene):
+    return not entry.scenes or kind_of(scene) in entry.scenes
+
+
+def runs(quick=False):
+    """(scene, entry, step) of all runs, the references first."""
+    for scene in SMOOTH:
+        for entry in REFERENCES:
+            yield scene, entry, REFERENCE_STEP
+    for kind, names in KINDS.items():
+        for scene in names:
+            if quick and scene in THROWN and not scene.startswith("thrown_2_"):
+                continue
+            if quick and scene in ("tower_20", "pile_50", "capsules_27"):
+                continue
+            for entry in ENTRIES:
+                if not takes_part(entry, scene):
+                    continue
+                steps = (STEP,)
+                if kind == "smooth" and not quick and entry.engine != "simbody":
+                    steps = STEPS
+                if scene in ("thrown_2_37", "tower_10") and not quick:
+                    steps = (STEP, 0.01)
+                for h in steps:
+                    yield scene, entry, 0.01 if entry.engine == "simbody" and kind == "smooth" else h

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/rivals/scene.hpp"
+
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+namespace rivals {
+namespace {
+
+using nlohmann::json;
+
+double number(const json& j, std::size_t i) { return j.at(i).get<double>(); }
+Vector3d vector(const json& j) { return Vector3d(number(j, 0), number(j, 1), number(j, 2)); }
+Quaterniond quaternion(const json& j) {
+  return Quaterniond(number(j, 0), number(j, 1), number(j, 2), number(j, 3)).normalized();
+}
+
+Shape shape(const json& j) {
+  const std::string kind = j.at("kind");
+  Shape s{kind == "box"      ? ShapeKind::box
+          : kind == "sphere" ? ShapeKind::sphere
+                             : ShapeKind::capsule,
+          vector(j.at("size"))};
+  s.pose.linear() = quaternion(j.at("orientation")).toRotationMatrix();
+  s.pose.translation() = vector(j.at("position"));
+  return s;
+}
+
+Body body(const json& j) {
+  Body b{j.at("name"),
+         j.at("mass"),
+         vector(j.at("inertia")),
+         {vector(j.at("position")), quaternion(j.at("orientation")), vector(j.at("velocity")),
+          vector(j.at("angular_velocity"))},
+         {}};
+  for (const json& s : j.at("shapes")) b.shapes.push_back(shape(s));
+  return b;
+}
+
+Joint joint(const json& j) {
+  const std::string kind = j.at("kind");
+  Joint x{kind == "hinge"    ? JointKind::hinge
+          : kind == "slider" ? JointKind::slider
+          : kind == "ball"   ? JointKind::ball
+                             : JointKind::tie,
+          j.at("parent"),
+          j.at("child"),
+          vector(j.at("anchor")),
+          vector(j.at("axis")),
+          {},
+          j.at("force")};
+  if (!j.at("range").is_null()) x.range = {number(j.at("range"), 0), number(j.at("range"), 1)};
+  return x;
+}
+
+}  // namespace
+
+Isometry3d BodyState::pose() const {
+  Isometry3d X = Isometry3d::Identity();
+  X.linear() = orientation.toRotationMatrix();
+  X.translation() = position;
+  return X;
+}
+
+double Scene::mass() const {
+  double sum = 0.0;
+  for (const Body& b : bodies) sum += b.mass;
+  return sum;
+}
+
+Isometry3d Scene::startOf(int body) const {
+  return body < 0 ? Isometry3d::Identity() : bodies[static_cast<std::size_t>(body)].start.pose();
+}
+
+double Scene::jointSpeed(const Joint& joint) const {
+  const auto pointVelocity = [&](int body) -> std::pair<Vector3d, Vector3d> {
+    if (body < 0) return {Vector3d::Zero(), Vector3d::Zero()};
+    const BodyState& s = bodies[static_cast<std::size_t>(body)].start;
+    return {s.velocity + s.angularVelocity.cross(joint.anchor - s.position), s.angularVelocity};
+  };
+  const auto [v0, w0] = pointVelocity(joint.parent);
+  const auto [v1, w1] = pointVelocity(joint.child);
+  return joint.axis.dot(joint.kind == JointKind::slider ? v1 - v0 : w1 - w0);
+}
+
+const Joint* Scene::carrier(int body) const {
+  for (const Joint& j : joints)
+    if (j.child == body && j.kind != JointKind::tie) return &j;
+  return nullptr;
+}
+
+Scene parseScene(const std::string& text) {
+  const json j = json::parse(text);
+  Scene s{j.at("name"),
+          j.at("measure"),
+          vector(j.at("gravity")),
+          j.at("friction"),
+          j.at("ground"),
+          j.at("collide"),
+          j.at("duration"),
+          j.at("sample"),
+          {},
+          {}};
+  for (const json& b : j.at("bodies")) s.bodies.push_back(body(b));
+  for (const json& x : j.at("joints")) s.joints.push_back(joint(x));
+  return s;
+}
+
+Scene readScene(const std::string& path) {
+  std::ifstream file(path);
+  if (!file) throw std::runtime_error(path + ": cannot be read; ./dev rivals writes the scenes");
+  const std::string text(std::istreambuf_iterator<char>(file), {});
+  try {
+    return parseScene(text);
+  } catch (const json::exception& e) {
+    throw std::runtime_error(path + ": " + e.what());
+  }
+}
+
+}  // namespace rivals

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+/// softgauss's own part in the study beside other engines: it starts as the scene says, and moves
+/// as physics says. The other engines are looked at by the gate of ./dev rivals.
+
+#include <gtest/gtest.h>
+
+#include "apps/rivals/engine.hpp"
+#include "apps/rivals/judge/measures.hpp"
+
+namespace rivals {
+namespace {
+
+/// A floating box that carries a hinged one with a stop and a sliding one that is pushed, turned
+/// and moving: every kind of frame is in it. Nothing else acts, so that momentum stays.
+const char* const kScene =
+    R"({"name": "two", "measure": "smooth", "gravity": [0, 0, 0], "friction": 0.5,
+  "ground": false, "collide": false, "duration": 0.5, "sample": 0.05, "bodies": [
+  {"name": "a", "mass": 2, "inertia": [0.02, 0.03, 0.04], "position": [0.1, 0.2, 0.3],
+   "orientation": [0.8, 0.6, 0, 0], "velocity": [0.3, -0.1, 0.2], "angular_velocity": [0.5, 0.2, -0.4], "shapes": []},
+  {"name": "b", "mass": 1, "inertia": [0.01, 0.02, 0.03], "position": [0.1, 0.2, 0.8],
+   "orientation": [0.6, 0, 0, 0.8], "velocity": [0.55, -0.45, 0.2], "angular_velocity": [0.5, 1.0, -0.4], "shapes": []}],
+  "joints": [{"kind": "hinge", "parent": 0, "child": 1, "anchor": [0.1, 0.2, 0.55], "axis": [0, 1, 0],
+   "range": [-3, 3], "force": 0}]})";
+
+Scene hinged() {
+  Scene scene = parseScene(kScene);
+  // b as a point of a, and from the hinge on with its own spin.
+  BodyState& b = scene.bodies[1].start;
+  const BodyState& a = scene.bodies[0].start;
+  const Vector3d anchor = scene.joints[0].anchor;
+  b.velocity = a.velocity + a.angularVelocity.cross(anchor - a.position) +
+               b.angularVelocity.cross(b.position - anchor);
+  return scene;
+}
+
+std::unique_ptr<Engine> engineFor(const Scene& scene, double h,
+                                  const std::vector<std::string>& given) {
+  Settings settings(given);
+  std::unique_ptr<Engine> engine = makeEngine(scene, h, settings);
+  settings.expectAllTaken();
+  return engine;
+}
+
+TEST(RivalsOurs, StartsAsTheSceneSaysAndKeepsItsMomentum) {
+  const Scene scene = hinged();
+  const auto engine = engineFor(scene, 0.01, {"integrator=runge-kutta-4"});
+  EXPECT_NEAR(engine->mass(), scene.mass(), 1e-12);
+  Trajectory run{engine->state()};
+  EXPECT_LT(startError(scene, run), 1e-7);  // an angle of rounding: its cosine is off by 1e-15
+  const Energies start = energiesOf(scene, run.front());
+  EXPECT_NEAR(*engine->kineticEnergy(), start.kinetic, 1e-12);
+  for (int k = 0; k < 10; ++k) {
+    ASSERT_TRUE(engine->step(5));
+    run.push_back(engine->state());
+  }
+  const Energies end = energiesOf(scene, run.back());
+  EXPECT_LT((end.linear - start.linear).norm(), 1e-9);
+  EXPECT_LT((end.angular - start.angular).norm(), 1e-7);  // Runge and Kutta's, of order h⁴
+  EXPECT_LT(measure(scene, run).at("energy_percent"), 1e-5);
+}
+
+TEST(RivalsOurs, RefusesSettingsThatItDoesNotHave) {
+  EXPECT_THROW(engineFor(hinged(), 0.01, {"iterations=50"}), std::invalid_argument);
+  EXPECT_THROW(Settings({"near_rigid"}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace rivals
