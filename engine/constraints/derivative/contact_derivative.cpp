@@ -138,10 +138,7 @@ void ContactDerivative::setColumn(const Assembly& in, int j, bool ofPosition,
     column_.A[o] =
         cross(S, side.A - A) + cross(cross(turnsAgainst, S), side.turning - turnsAgainst);
   }
-  if (ofPosition)
-    column_.shift = shift.change(column_.moved[0], column_.moved[1]);
-  else
-    column_.shift = {Vector3::Zero(), Vector3::Zero(), Vector3::Zero(), 0.0};
+  if (ofPosition) column_.shift = shift.change(column_.moved[0], column_.moved[1]);
 }
 
 PointMotion ContactDerivative::biasChange(const ContactShift& shift, const Contact& c,
@@ -243,7 +240,7 @@ void ContactDerivative::addContact(const Assembly& in, const Contacts& contacts,
   if (bias) {
     bias_ = {bias->rate.linear, bias->rate.angular};
     column_ = {};
-    column_.shift = {Vector3::Zero(), Vector3::Zero(), Vector3::Zero(), 1.0};
+    column_.shift.distance = 1.0;
     byDistance = biasChange(shift, c, column_);
   }
   Vector6 inFrame;

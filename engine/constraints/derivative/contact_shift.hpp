@@ -34,8 +34,9 @@ struct PointMotion {
 class ContactShift {
  public:
   struct Change {
-    Vector3 p, n, turn;  ///< δp, δn of Contact::n_W, w
-    double distance;
+    Vector3 p = Vector3::Zero(), n = Vector3::Zero();  ///< δp, δn of Contact::n_W
+    Vector3 turn = Vector3::Zero();                    ///< w
+    double distance = 0.0;
   };
 
   /// Nothing where the pair of shapes has no closed form here.
