@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "softgauss/gdd/goals/functions.hpp"
 
+#include "softgauss/gdd/next_state.hpp"
+
 namespace softgauss::gdd {
 
 void FunctionGoal::addCost(const GoalContext& context, GoalCost& cost) const {
@@ -10,16 +12,16 @@ void FunctionGoal::addCost(const GoalContext& context, GoalCost& cost) const {
 }
 
 void ValueGoal::addCost(const GoalContext& context, GoalCost& cost) const {
-  const double h = context.model.options.timestep;
-  VectorX next = context.state.q;
-  integratePosition(context.model, context.state.v, h, next);
-  cost.addFunction(
-      [this, h, next, v = context.state.v](const VectorX& a, VectorX& gradient, MatrixX& hessian) {
-        const double V = value(next, v + h * a, gradient, hessian);
-        gradient *= weight * h;
-        hessian *= weight * h * h;
-        return weight * V;
-      });
+  const Eigen::Index n = context.model.nv;
+  cost.addFunction([this, n, next = NextState(context), slope = VectorX(2 * n),
+                    curvature = MatrixX(2 * n, 2 * n)](const VectorX& a, VectorX& gradient,
+                                                       MatrixX& hessian) mutable {
+    next.set(a);
+    const double V = value(next.q(), next.v(), slope, curvature);
+    gradient = weight * next.pulledBack(slope);
+    hessian = weight * next.pulledBack(curvature);
+    return weight * V;
+  });
 }
 
 }  // namespace softgauss::gdd

@@ -4,14 +4,14 @@
 /// Costs that the user writes: any smooth function of the acceleration, and value functions.
 ///
 ///   function   ℓ(a) = φ(a)
-///   value      ℓ(a) = w V(q ⊕ h v, v + h a)        equation (22) of the paper             (9.17)
-///              ∇ℓ = w h ∂V/∂v,   ∇²ℓ = w h² ∂²V/∂v²   at the next state
-/// The next state's q does not depend on a, so only derivatives in v are asked for. h is the time
-/// step. The next state is that of (19); the integrator's differs by damping (7.1).
+///   value      ℓ(a) = w V(q⁺, v⁺)        equation (22) of the paper                      (9.17)
+///              ∇ℓ = w Bᵀ∇V,   ∇²ℓ ≈ w Bᵀ∇²V B,   B = ∂(q⁺, v⁺)/∂a   at the next state
+/// The next state is that of the step, next_state.hpp: in the leapfrog q⁺ depends on a too, by
+/// ½ h² a. What the curvature leaves out is of the rotations of floating joints, of O(h³) ∇V.
 ///
 /// φ and V need not be quadratic, nor convex: see sequential_quadratic_solve.hpp for how they are
 /// minimised. Functions are called up to some hundreds of times a step; they must not throw. With
-/// them the step allocates.
+/// them the step allocates. A V that is quadratic is quadratic_value.hpp.
 
 #include <functional>
 
@@ -34,7 +34,8 @@ class FunctionGoal final : public Goal {
 
 class ValueGoal final : public Goal {
  public:
-  /// Returns V(q, v) and writes ∂V/∂v (nv) and ∂²V/∂v² (nv × nv, symmetric), which have their size.
+  /// Returns V(q, v) and writes its gradient (2 nv), by the tangent of q and by v, and its second
+  /// derivatives (2 nv × 2 nv, symmetric), which have their size.
   using Value = std::function<double(const VectorX& q, const VectorX& v, VectorX& gradient,
                                      MatrixX& hessian)>;
   Value value;

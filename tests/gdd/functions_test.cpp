@@ -211,7 +211,7 @@ Scene railScene(const VectorX& q, const VectorX& v) {
   return scene;
 }
 
-// With V of the Riccati equation of (19), greedy control is LQR: u = −K x.
+// With V of the Riccati equation of the step, greedy control is LQR: u = −K x. Goals act at mid-step.
 TEST(ValueGoal, WithTheRiccatiValueItIsLqr) {
   Random random(6);
   const Scene scene = railScene(random.vector(2, 1.0), random.vector(2, 1.0));
@@ -220,7 +220,7 @@ TEST(ValueGoal, WithTheRiccatiValueItIsLqr) {
   ASSERT_SMALL(scene.data->forces.c.norm(), 1e-14);
   MatrixX A = MatrixX::Identity(4, 4), B = MatrixX::Zero(4, 2);
   A.topRightCorner(2, 2) = h * MatrixX::Identity(2, 2);
-  B.bottomRows(2) = h * R;
+  B << 0.5 * h * h * R, h * R;
   const MatrixX Q = VectorX(Eigen::Vector4d(3.0, 5.0, 0.1, 0.2)).asDiagonal();
   MatrixX V = Q, K(2, 4);
   for (int i = 0; i < 20000; ++i) {
@@ -233,8 +233,8 @@ TEST(ValueGoal, WithTheRiccatiValueItIsLqr) {
   gdd::ValueGoal goal([&](const VectorX& q, const VectorX& v, VectorX& gradient, MatrixX& hessian) {
     VectorX x(4);
     x << q, v;
-    gradient = (V * x).tail(2);
-    hessian = V.bottomRightCorner(2, 2);
+    gradient = V * x;
+    hessian = V;
     return 0.5 * x.dot(V * x);
   });
   Expanded e(scene);
@@ -244,7 +244,7 @@ TEST(ValueGoal, WithTheRiccatiValueItIsLqr) {
       e.expansion.solve(e.solver, scene.model, e.cost, limits, *scene.data, WarmStart());
   EXPECT_EQ(report.status, gdd::GddStatus::converged);
   VectorX x(4);
-  x << scene.state.q, scene.state.v;
+  x << scene.state.q - 0.5 * h * scene.state.v, scene.state.v;
   const VectorX expected = -K * x;
   EXPECT_SMALL((e.expansion.force() - expected).norm() / expected.norm(), 1e-10);
 }
@@ -257,9 +257,15 @@ TEST(ValueGoal, HasTheChainRulesDerivatives) {
   };
   gdd::ValueGoal goal([&](const VectorX& q, const VectorX& v, VectorX& gradient, MatrixX& hessian) {
     const double e = std::exp(0.1 * v.sum()), c = 2.0 * std::cos(q.sum());
-    gradient = c * v + VectorX::Constant(v.size(), 0.1 * e);
-    hessian = MatrixX::Constant(v.size(), v.size(), 0.01 * e);
-    hessian.diagonal().array() += c;
+    const double s = std::sin(q.sum());
+    const Eigen::Index n = v.size();
+    gradient << VectorX::Constant(n, -s * v.squaredNorm()),
+        c * v + VectorX::Constant(n, 0.1 * e);
+    hessian.topLeftCorner(n, n).setConstant(-0.5 * c * v.squaredNorm());
+    hessian.topRightCorner(n, n) = VectorX::Ones(n) * (-2.0 * s * v).transpose();
+    hessian.bottomLeftCorner(n, n) = hessian.topRightCorner(n, n).transpose();
+    hessian.bottomRightCorner(n, n).setConstant(0.01 * e);
+    hessian.diagonal().tail(n).array() += c;
     return V(q, v);
   });
   goal.weight = 3.0;
@@ -269,7 +275,8 @@ TEST(ValueGoal, HasTheChainRulesDerivatives) {
   const VectorX a = random.vector(7, 50.0), d = random.vector(7, 1.0);
   const double h = arm.model.options.timestep;
   const auto direct = [&](const VectorX& x) {
-    return 3.0 * V(arm.state.q + h * arm.state.v, arm.state.v + h * x);
+    const VectorX v = arm.state.v + h * x;
+    return 3.0 * V(arm.state.q + 0.5 * h * v, v);
   };
   EXPECT_NEAR(cost.functionValue(a), direct(a), 1e-12 * std::abs(direct(a)));
   ASSERT_TRUE(cost.expand(arm.data->inertia.M, a, 0.0));

@@ -9,8 +9,8 @@
 
 namespace softgauss::test {
 
-double PendulumPlant::acceleration(double q, double v, double u) const {
-  return (u - gravity * std::sin(q) - damping * v) / felt();
+double PendulumPlant::acceleration(double middle, double v, double u) const {
+  return (u - gravity * std::sin(middle) - damping * v) / felt();
 }
 
 double PendulumPlant::running(double q, double v, double u) const {
@@ -39,8 +39,10 @@ PendulumValue::PendulumValue(const PendulumPlant &plant, int angles, int speeds,
         const double q = turn * j, v = -largest_ + step_ * i;
         double u = 0.0;
         backup(q, v, u);
-        const double next = v + plant_.h * plant_.acceleration(q, v, u);
-        nodes[j * speeds + i] = {plant_.running(q, v, u), angle(q + plant_.h * v), speed(next)};
+        const double middle = plant_.middle(q, v);
+        const double next = v + plant_.h * plant_.acceleration(middle, v, u);
+        nodes[j * speeds + i] = {plant_.running(q, v, u), angle(plant_.middle(middle, next)),
+                                 speed(next)};
       }
     for (int sweep = 0; sweep < kSweeps; ++sweep) {
       MatrixX V(speeds, angles);
@@ -98,30 +100,34 @@ PendulumValue::Stencil PendulumValue::speed(double v) const {
   return stencil((v + largest_) / step_, static_cast<int>(V_.rows()), false);
 }
 
-void PendulumValue::at(double q, double v, double &value, double &slope, double &curvature) const {
-  const Stencil angle_ = angle(q), speed_ = speed(v);
-  value = slope = curvature = 0.0;
-  for (int a = 0; a < 4; ++a) {
-    double y = 0.0;
-    for (int b = 0; b < 4; ++b) y += angle_.value[b] * V_(speed_.node[a], angle_.node[b]);
-    value += speed_.value[a] * y;
-    slope += speed_.slope[a] * y / step_;
-    curvature += speed_.curvature[a] * y / (step_ * step_);
-  }
+PendulumValue::Model PendulumValue::model(double q, double v) const {
+  const Stencil around = angle(q), along = speed(v);
+  const double dq = static_cast<double>(V_.cols()) / (2.0 * std::numbers::pi), dv = 1.0 / step_;
+  Model m;
+  for (int a = 0; a < 4; ++a)
+    for (int b = 0; b < 4; ++b) {
+      const double y = V_(along.node[a], around.node[b]);
+      m.value += along.value[a] * around.value[b] * y;
+      m.slope[0] += dq * along.value[a] * around.slope[b] * y;
+      m.slope[1] += dv * along.slope[a] * around.value[b] * y;
+      m.curvature(0, 0) += dq * dq * along.value[a] * around.curvature[b] * y;
+      m.curvature(1, 0) += dq * dv * along.slope[a] * around.slope[b] * y;
+      m.curvature(1, 1) += dv * dv * along.curvature[a] * around.value[b] * y;
+    }
+  m.curvature(0, 1) = m.curvature(1, 0);
+  return m;
 }
 
-double PendulumValue::at(double q, double v) const {
-  double value = 0.0, slope = 0.0, curvature = 0.0;
-  at(q, v, value, slope, curvature);
-  return value;
-}
+double PendulumValue::at(double q, double v) const { return model(q, v).value; }
 
 double PendulumValue::backup(double q, double v, double &u) const {
-  const double free = v + plant_.h * plant_.acceleration(q, v, 0.0);
+  const double middle = plant_.middle(q, v);
+  const double free = v + plant_.h * plant_.acceleration(middle, v, 0.0);
   const double felt = plant_.felt();
   const double price = felt / (plant_.h * plant_.h);  // ½ u²/M̂ = ½ price (v⁺ − free)²
-  const double next = q + plant_.h * v;
-  const auto cost = [&](double w) { return 0.5 * price * (w - free) * (w - free) + at(next, w); };
+  const auto cost = [&](double w) {
+    return 0.5 * price * (w - free) * (w - free) + at(plant_.middle(middle, w), w);
+  };
   // A mesh over controls of up to four times the weight, then golden section to its root.
   const double reach = 4.0 * plant_.h * plant_.gravity / plant_.M;
   constexpr int kMesh = 10;
@@ -145,13 +151,12 @@ double PendulumValue::backup(double q, double v, double &u) const {
   }
   // From there to rounding, by the sign of the slope.
   const auto slope = [&](double x) {
-    double value = 0.0, rises = 0.0, bends = 0.0;
-    at(next, x, value, rises, bends);
-    return price * (x - free) + rises;
+    const Model V = model(plant_.middle(middle, x), x);
+    return price * (x - free) + V.slope[1] + 0.5 * plant_.h * V.slope[0];
   };
-  const double middle = 0.5 * (low + high);
+  const double found = 0.5 * (low + high);
   for (double near = 1e-7 * reach; near < 1e-2 * reach; near *= 2.0) {
-    low = middle - near, high = middle + near;
+    low = found - near, high = found + near;
     if (slope(low) < 0.0 && slope(high) > 0.0) break;
   }
   if (slope(low) < 0.0 && slope(high) > 0.0)

@@ -3,8 +3,9 @@
 
 /// The optimal value function of a pendulum that is to stand upright, by value iteration on a grid.
 ///
-///   q⁺ = q + h v,   v⁺ = v + h (u − c)/M̂, M̂ = M + h d,   c = m g l sin q + d v (19) V(q, v) = p(q,
-///   v) + min_u ½ u²/M̂ + V(q⁺, v⁺),   p = κ (1 + cos q) + ½ κ_v v²           (21)
+///   q_m = q + ½ h v,   v⁺ = v + h (u − c)/M̂,   q⁺ = q_m + ½ h v⁺                           (6.2)
+///   M̂ = M + h d,   c = m g l sin q_m + d v
+///   V(q, v) = p(q, v) + min_u ½ u²/M̂ + V(q⁺, v⁺),   p = κ (1 + cos q) + ½ κ_v v²            (21)
 ///
 /// q = 0 hangs down. V is periodic in q and zero at rest upright. Between nodes it is a cubic in q
 /// times a cubic in v, with slopes by central differences (C¹), which is what the control acts on.
@@ -23,7 +24,9 @@ struct PendulumPlant {
   double angleCost = 20.0, speedCost = 0.1;  ///< κ, κ_v
 
   double felt() const { return M + h * damping; }  ///< damping is that of the step's end
-  double acceleration(double q, double v, double u) const;
+  double middle(double q, double v) const { return q + 0.5 * h * v; }  ///< q_m
+  /// At mid-step.
+  double acceleration(double middle, double v, double u) const;
   double running(double q, double v, double u) const;
 };
 
@@ -32,8 +35,13 @@ class PendulumValue {
   /// `angles` nodes around, an even number; `speeds` nodes over ± largest, an odd one.
   PendulumValue(const PendulumPlant& plant, int angles, int speeds, double largest);
 
-  /// V with its first two derivatives in v.
-  void at(double q, double v, double& value, double& slope, double& curvature) const;
+  /// V with its first two derivatives in (q, v).
+  struct Model {
+    double value = 0.0;
+    Eigen::Vector2d slope = Eigen::Vector2d::Zero();
+    Eigen::Matrix2d curvature = Eigen::Matrix2d::Zero();
+  };
+  Model model(double q, double v) const;
   double at(double q, double v) const;
   /// min_u of ½ u²/M̂ + V(q⁺, v⁺), from a mesh of v⁺ refined to rounding; `u`: where.
   double backup(double q, double v, double& u) const;

@@ -2,8 +2,9 @@
 /// The greedy control of the optimal value function is the optimal control
 /// (22).
 ///
-/// The system is that of (19), q⁺ = q + h v, v⁺ = v + h f(q, v, u); the running
-/// cost that of (20), ½ (u, 0)ᵀM⁻¹(u, 0) + p(q, v).
+/// The system is that of the leapfrog, q_m = q + ½ h v, v⁺ = v + h f(q_m, v, u),
+/// q⁺ = q_m + ½ h v⁺; the running cost that of (20), ½ (u, 0)ᵀM⁻¹(u, 0) + p(q, v).
+/// Goals act at q_m.
 
 #include <Eigen/Cholesky>
 #include <cmath>
@@ -105,12 +106,18 @@ struct Regulator {
     A.topRightCorner(n, n) = h * MatrixX::Identity(n, n);
     B = MatrixX::Zero(2 * n, m);
     R.resize(m, m);
+    // δa = −M̂⁻¹(K δq_m + D δv), of which q⁺ has ½ h² and v⁺ has h.
+    const auto adds = [&](auto &&column, const VectorX &a) {
+      column.head(n) += 0.5 * h * h * a;
+      column.tail(n) += h * a;
+    };
     for (int i = 0; i < n; ++i) {
-      A.col(i).tail(n) -= h * scene.model.dofs[i].stiffness * Minv.col(i);
-      A.col(n + i).tail(n) -= h * scene.model.dofs[i].damping * Minv.col(i);
+      const double k = scene.model.dofs[i].stiffness, d = scene.model.dofs[i].damping;
+      adds(A.col(i), -k * Minv.col(i));
+      adds(A.col(n + i), -(0.5 * h * k + d) * Minv.col(i));
     }
     for (int j = 0; j < m; ++j) {
-      B.col(j).tail(n) = h * Minv.col(actuated[j]);
+      adds(B.col(j), Minv.col(actuated[j]));
       for (int i = 0; i < m; ++i) R(i, j) = Minv(actuated[i], actuated[j]);
     }
     Q = MatrixX::Identity(2 * n, 2 * n);
@@ -133,15 +140,14 @@ struct Regulator {
         [this, n](const VectorX &q, const VectorX &v, VectorX &gradient, MatrixX &hessian) {
           VectorX x(2 * n);
           x << q, v;
-          const VectorX Sx = S * x;
-          gradient = Sx.tail(n);
-          hessian = S.bottomRightCorner(n, n);
-          return 0.5 * x.dot(Sx);
+          gradient = S * x;
+          hessian = S;
+          return 0.5 * x.dot(gradient);
         });
   }
 };
 
-/// Along a trajectory of (19): worst difference from −K x, over |K x|, and from
+/// Along a trajectory: worst difference from −K x, over |K x|, and from
 /// (21), over V.
 template <class Solver>
 std::pair<double, double> worstOnTrajectory(bool passive) {
@@ -153,7 +159,7 @@ std::pair<double, double> worstOnTrajectory(bool passive) {
   VectorX x = random.vector(2 * n, 1.0);
   double worstControl = 0.0, worstBellman = 0.0;
   for (int i = 0; i < 100; ++i) {
-    scene.state.q = x.head(n);
+    scene.state.q = x.head(n) + 0.5 * scene.model.options.timestep * x.tail(n);
     scene.state.v = x.tail(n);
     const VectorX all = greedy.control();
     EXPECT_EQ(greedy.report.status, gdd::GddStatus::converged);
@@ -205,9 +211,10 @@ PendulumPlant pendulumPlant() {
 gdd::ValueGoal goalOf(const PendulumValue &V) {
   return gdd::ValueGoal(
       [&V](const VectorX &q, const VectorX &v, VectorX &gradient, MatrixX &hessian) {
-        double value = 0.0;
-        V.at(q[0], v[0], value, gradient[0], hessian(0, 0));
-        return value;
+        const PendulumValue::Model model = V.model(q[0], v[0]);
+        gradient = model.slope;
+        hessian = model.curvature;
+        return model.value;
       });
 }
 
@@ -224,16 +231,16 @@ Swing swingUp(const PendulumPlant &plant, const PendulumValue &V, double q, doub
   Greedy<Solver> greedy(scene, goalOf(V));
   Swing swing;
   for (int i = 0; i < 300; ++i) {
-    scene.state.q[0] = q;
+    scene.state.q[0] = plant.middle(q, v);
     scene.state.v[0] = v;
     const double u = greedy.control()[0];
     double best = 0.0;
     V.backup(q, v, best);
     swing.worst = std::max(swing.worst, std::abs(u - best) / plant.gravity);
     swing.cost += plant.running(q, v, u);
-    const double a = plant.acceleration(q, v, u);
-    q += plant.h * v;
-    v += plant.h * a;
+    q = plant.middle(q, v);
+    v += plant.h * plant.acceleration(q, v, u);
+    q = plant.middle(q, v);
   }
   swing.left = std::hypot(std::remainder(q - std::numbers::pi, 2.0 * std::numbers::pi), v);
   return swing;
