@@ -28,11 +28,8 @@ SolveStatus ForwardDerivative::compute(const Model& model, const Input& input, c
   };
   solve(inverse_.q(), -1.0, q_);
   solve(inverse_.v(), -1.0, v_);
-  for (int j = 0; j < model.nv; ++j) {
-    column_ = VectorX::Unit(model.nv, j);
-    factor_.solve(column_);
-    tau_.col(j) = column_;
-  }
+  tau_.setIdentity();
+  solve(tau_, 1.0, tau_);
   return status;
 }
 

@@ -6,6 +6,11 @@
 
 namespace softgauss::planning {
 
+void ValueModel::mirror() {
+  for (Eigen::Index j = 1; j < slope.size(); ++j)
+    for (Eigen::Index i = 0; i < j; ++i) curvature(i, j) = curvature(j, i);
+}
+
 BoxProgram::BoxProgram(int m)
     : L_(MatrixX::Zero(m, m)),
       gradient_(VectorX::Zero(m)),
@@ -158,8 +163,7 @@ void BackwardPass::setValue(const MatrixX& Quu, const MatrixX& Qux, Feedback& f,
   value.curvature.triangularView<Eigen::Lower>() = Qxx_;
   value.curvature.triangularView<Eigen::Lower>() += transposed_;
   value.curvature.triangularView<Eigen::Lower>() += transposed_.transpose();
-  for (int j = 1; j < 2 * n_; ++j)
-    for (int i = 0; i < j; ++i) value.curvature(i, j) = value.curvature(j, i);
+  value.mirror();
 }
 
 bool BackwardPass::overAccelerations(const Knot& knot, const ValueModel& next,

@@ -31,6 +31,8 @@ struct ValueModel {
   MatrixX curvature;
   explicit ValueModel(int dofs = 0)
       : slope(VectorX::Zero(2 * dofs)), curvature(MatrixX::Zero(2 * dofs, 2 * dofs)) {}
+  /// Sets the upper triangle of the curvature from the lower one.
+  void mirror();
 };
 
 /// A feedback law of a knot.

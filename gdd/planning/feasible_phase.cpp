@@ -120,21 +120,22 @@ bool FeasiblePhase::pass(double alpha, bool goalDirected, Trajectory& y) {
 
 bool FeasiblePhase::take(const Trajectory& about, const std::vector<ValueModel>& values,
                          bool always) {
-  for (std::size_t t = 0; t < about.knots.size(); ++t) {
-    const Knot& from = about.knots[t];
-    Knot& to = reference_.knots[t];
-    to.q = from.q, to.v = from.v, to.a = from.a, to.tau = from.tau;
-    values_[t] = values[t];
-  }
+  reference_.copyMotion(about);
+  values_ = values;
   for (Feedback& f : feedback_) {
     f.k.setZero(), f.K.setZero(), f.slope.setZero(), f.diagonal.setZero();
   }
   if (!pass(1.0, true, trial_)) return false;
   if (has_ && !always && !(trial_.cost < x_.cost)) return false;
+  begin();
+  return true;
+}
+
+/// From the trajectory that was tried.
+void FeasiblePhase::begin() {
   std::swap(x_, trial_);
   has_ = fresh_ = true;
   rho_ = 0.0, growth_ = 1.0;
-  return true;
 }
 
 bool FeasiblePhase::rollOut(const VectorX& q, const VectorX& v,
@@ -147,18 +148,14 @@ bool FeasiblePhase::rollOut(const VectorX& q, const VectorX& v,
     reference_.knots[idx(t)].a.setZero();
   }
   if (!pass(0.0, false, trial_)) return false;
-  std::swap(x_, trial_);
-  has_ = fresh_ = true;
-  rho_ = 0.0, growth_ = 1.0;
+  begin();
   return true;
 }
 
 bool FeasiblePhase::backward() {
   backward_.begin();
-  ValueModel& end = values_.back();
-  cost_.expand(problem_, x_.knots.back(), problem_.knots, end);
-  for (Eigen::Index j = 1; j < end.slope.size(); ++j)
-    for (Eigen::Index i = 0; i < j; ++i) end.curvature(i, j) = end.curvature(j, i);
+  cost_.expand(problem_, x_.knots.back(), problem_.knots, values_.back());
+  values_.back().mirror();
   for (int t = problem_.knots - 1; t >= 0; --t) {
     const Knot& knot = x_.knots[idx(t)];
     cost_.expand(problem_, knot, t, knotCost_);
@@ -183,11 +180,7 @@ bool FeasiblePhase::iterate() {
   }
   bool moved = false;
   if (backward()) {
-    for (std::size_t t = 0; t < x_.knots.size(); ++t) {
-      Knot& to = reference_.knots[t];
-      const Knot& from = x_.knots[t];
-      to.q = from.q, to.v = from.v, to.a = from.a, to.tau = from.tau;
-    }
+    reference_.copyMotion(x_);
     alpha_ = 1.0;
     for (int length = 0; length < options_.lengths && !moved; ++length) {
       for (const bool goalDirected : {true, false}) {

@@ -52,6 +52,7 @@ class FeasiblePhase {
   double gap();
 
  private:
+  void begin();
   bool backward();
   bool pass(double alpha, bool goalDirected, Trajectory& y);
   bool solveGoal(int t, Knot& knot, double alpha);

@@ -79,11 +79,8 @@ bool InfeasiblePhase::linearise() {
 
 bool InfeasiblePhase::backward() {
   pass_.begin();
-  ValueModel& end = values_.back();
-  cost_.expand(problem_, x_.knots.back(), problem_.knots, end);
-  const auto n2 = end.slope.size();
-  for (Eigen::Index j = 1; j < n2; ++j)
-    for (Eigen::Index i = 0; i < j; ++i) end.curvature(i, j) = end.curvature(j, i);
+  cost_.expand(problem_, x_.knots.back(), problem_.knots, values_.back());
+  values_.back().mirror();
   for (int t = problem_.knots - 1; t >= 0; --t) {
     const Knot& knot = x_.knots[idx(t)];
     cost_.expand(problem_, knot, t, knotCost_);

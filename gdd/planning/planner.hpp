@@ -72,7 +72,7 @@ class Planner {
 
   /// From a state. `accelerations` (N of nv): where phase I begins; empty: at rest.
   const MotionPlan& solve(const VectorX& q, const VectorX& v, const PlanOptions& options = {},
-                    const std::vector<VectorX>& accelerations = {});
+                          const std::vector<VectorX>& accelerations = {});
   const MotionPlan& plan() const { return plan_; }
   const Model& model() const { return *model_; }
   /// Value models and feedback about the plan, of phase F.

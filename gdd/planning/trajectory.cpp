@@ -19,6 +19,13 @@ bool Trajectory::integrate(const PlanDynamics& dynamics) {
   return true;
 }
 
+void Trajectory::copyMotion(const Trajectory& from) {
+  for (std::size_t t = 0; t < knots.size(); ++t) {
+    const Knot& knot = from.knots[t];
+    knots[t].q = knot.q, knots[t].v = knot.v, knots[t].a = knot.a, knots[t].tau = knot.tau;
+  }
+}
+
 bool Trajectory::findForces(PlanDynamics& dynamics) {
   for (std::size_t t = 0; t + 1 < knots.size(); ++t)
     if (isRefused(dynamics.inverse(knots[t])) || !knots[t].tau.allFinite()) return false;

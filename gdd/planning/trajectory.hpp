@@ -34,6 +34,8 @@ class Trajectory {
   /// Sets q and v of all knots by the exact step from knots[0] by their accelerations. False where
   /// they are not finite.
   bool integrate(const PlanDynamics& dynamics);
+  /// q, v, a and tau of another; models stay.
+  void copyMotion(const Trajectory& from);
   /// Sets tau of all knots.
   bool findForces(PlanDynamics& dynamics);
 };

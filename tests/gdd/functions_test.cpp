@@ -211,7 +211,8 @@ Scene railScene(const VectorX& q, const VectorX& v) {
   return scene;
 }
 
-// With V of the Riccati equation of the step, greedy control is LQR: u = −K x. Goals act at mid-step.
+// With V of the Riccati equation of the step, greedy control is LQR: u = −K x. Goals act at
+// mid-step.
 TEST(ValueGoal, WithTheRiccatiValueItIsLqr) {
   Random random(6);
   const Scene scene = railScene(random.vector(2, 1.0), random.vector(2, 1.0));
@@ -259,8 +260,7 @@ TEST(ValueGoal, HasTheChainRulesDerivatives) {
     const double e = std::exp(0.1 * v.sum()), c = 2.0 * std::cos(q.sum());
     const double s = std::sin(q.sum());
     const Eigen::Index n = v.size();
-    gradient << VectorX::Constant(n, -s * v.squaredNorm()),
-        c * v + VectorX::Constant(n, 0.1 * e);
+    gradient << VectorX::Constant(n, -s * v.squaredNorm()), c * v + VectorX::Constant(n, 0.1 * e);
     hessian.topLeftCorner(n, n).setConstant(-0.5 * c * v.squaredNorm());
     hessian.topRightCorner(n, n) = VectorX::Ones(n) * (-2.0 * s * v).transpose();
     hessian.bottomLeftCorner(n, n) = hessian.topRightCorner(n, n).transpose();

@@ -8,6 +8,7 @@
 #include "softgauss/engine/step/step.hpp"
 #include "softgauss/gdd/goals/quadratic_value.hpp"
 #include "softgauss/gdd/planning/planner.hpp"
+#include "tests/gdd/rails.hpp"
 #include "tests/support/allocation_guard.hpp"
 #include "tests/support/finite_difference.hpp"
 #include "tests/support/matchers.hpp"
@@ -94,23 +95,8 @@ TEST(BoxProgram, IsAtItsMinimum) {
 
 // ---- A linear system ----------------------------------------------------------------------------
 
-/// Five masses on rails of all directions, one hanging from another, with springs and dampers.
-Model rails(double step) {
-  Random random(11);
-  ModelBuilder b("rails");
-  b.link(emptyLink("world"));
-  std::string parent = "world";
-  for (int i = 0; i < 5; ++i) {
-    const std::string name = "mass" + std::to_string(i);
-    b.link(boxLink(name, random.uniform(0.5, 3.0), Vector3(0.1, 0.1, 0.1)));
-    JointSpec joint = jointSpec("rail" + std::to_string(i), JointType::prismatic, parent, name, {},
-                                random.direction());
-    joint.damping = random.uniform(0.1, 2.0);
-    joint.stiffness = random.uniform(1.0, 30.0);
-    b.joint(joint);
-    if (i != 1) parent = name;
-  }
-  b.options.effects.remove(Effect::gravity);
+Model railsOf(double step) {
+  ModelBuilder b = rails();
   b.options = StepDerivative::bareStep(b.options);
   b.options.timestep = step;
   return b.build();
@@ -129,7 +115,7 @@ std::unique_ptr<StateCost> towards(const Model& model, const VectorX& q, double 
 TEST(Planner, OnALinearModelTheFirstIterationIsRiccatis) {
   constexpr double kStep = 0.02;
   constexpr int kKnots = 30;
-  const Model model = rails(kStep);
+  const Model model = railsOf(kStep);
   const int n = model.nv;
   Random random(3);
   const VectorX q = random.vector(n, 1.0), v = random.vector(n, 1.0);
@@ -278,7 +264,7 @@ TEST(Planner, RefusesWhatIsNotFinite) {
 // ---- The backward pass and the goal -------------------------------------------------------------
 
 TEST(BackwardPass, AllocatesNothing) {
-  const Model model = rails(0.02);
+  const Model model = railsOf(0.02);
   const int n = model.nv;
   PlanDynamics dynamics(model, nullptr);
   Knot knot(model, dynamics.step());

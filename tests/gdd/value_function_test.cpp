@@ -16,6 +16,7 @@
 #include "softgauss/gdd/goals/functions.hpp"
 #include "softgauss/gdd/sequential_quadratic_solve.hpp"
 #include "tests/gdd/pendulum_value.hpp"
+#include "tests/gdd/rails.hpp"
 #include "tests/gdd/solvers.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/scene.hpp"
@@ -57,30 +58,10 @@ template <class Solver>
 class ValueFunction : public testing::Test {};
 TYPED_TEST_SUITE(ValueFunction, GddSolvers);
 
-// ---- A linear system
-// ----------------------------------------------------------------------------
+// ---- A linear system ----------------------------------------------------------------------------
 
-/// Five masses on rails of all directions, one hanging from another, with
-/// springs and dampers: M is constant, c = K q + D_v v. Joint 3 is passive
-/// where `passive`.
 Scene railScene(bool passive) {
-  Random random(11);
-  ModelBuilder b("rails");
-  b.link(emptyLink("world"));
-  std::string parent = "world";
-  for (int i = 0; i < 5; ++i) {
-    const std::string name = "mass" + std::to_string(i);
-    b.link(boxLink(name, random.uniform(0.5, 3.0), Vector3(0.1, 0.1, 0.1)));
-    const Vector3 axis = random.direction();
-    JointSpec joint =
-        jointSpec("rail" + std::to_string(i), JointType::prismatic, parent, name, {}, axis);
-    joint.damping = random.uniform(0.1, 2.0);
-    joint.stiffness = random.uniform(1.0, 30.0);
-    if (passive && i == 3) joint.effort = 0.0;
-    b.joint(joint);
-    if (i != 1) parent = name;
-  }
-  b.options.effects.remove(Effect::gravity);
+  ModelBuilder b = rails(passive);
   b.options.timestep = 0.01;
   return Scene(b.build());
 }

@@ -89,9 +89,9 @@ struct OnHills {
   /// Steps until `seconds` from the start; keeps the deepest, and how fast the fastest arrived.
   template <class Control>
   void run(double seconds, Control&& control) {
+    std::vector<double> before = depths();
     while (sim.time() < seconds - 1e-9) {
       control();
-      const std::vector<double> before = depths();
       ASSERT_FALSE(isRefused(sim.step())) << sim.failure();
       const std::vector<double> after = depths();
       for (std::size_t i = 0; i < after.size(); ++i) {
@@ -99,6 +99,7 @@ struct OnHills {
         if (before[i] <= 0.0 && after[i] > 0.0)
           arrives = std::max(arrives, (after[i] - before[i]) / sim.model().options.timestep);
       }
+      before = after;
     }
   }
   void run(double seconds) {
