@@ -6,11 +6,9 @@
 
 namespace softgauss::planning {
 
-FeasiblePhase::FeasiblePhase(const Problem& problem, PlanDynamics& dynamics,
-                             const FeasibleOptions& options)
+FeasiblePhase::FeasiblePhase(const Problem& problem, PlanDynamics& dynamics)
     : problem_(problem),
       dynamics_(dynamics),
-      options_(options),
       cost_(problem),
       backward_(problem.model, problem.controlled),
       controller_(problem.model),
@@ -21,7 +19,7 @@ FeasiblePhase::FeasiblePhase(const Problem& problem, PlanDynamics& dynamics,
       feedback_(static_cast<std::size_t>(problem.knots),
                 Feedback(static_cast<int>(problem.controlled.size()), problem.model.nv)),
       knotCost_(problem.model.nv),
-      R_(problem.h() * problem.cost.effort),
+      R_(VectorX::Zero(problem.model.nv)),
       metric_(VectorX::Ones(problem.model.nv)),
       free_(VectorX::Zero(problem.model.nv)),
       dx_(VectorX::Zero(2 * problem.model.nv)),
@@ -32,8 +30,15 @@ FeasiblePhase::FeasiblePhase(const Problem& problem, PlanDynamics& dynamics,
   value_ = value.get();
   controller_.goals.push_back(std::move(value));
   controller_.controlCost = gdd::ControlCost::total;
-  controller_.limits.lower = problem.lower;
-  controller_.limits.upper = problem.upper;
+}
+
+void FeasiblePhase::reset(const FeasibleOptions& options) {
+  options_ = options;
+  cost_.begin(problem_);
+  R_ = problem_.h() * problem_.cost.effort;
+  controller_.limits.lower = problem_.lower;
+  controller_.limits.upper = problem_.upper;
+  has_ = false;
 }
 
 void FeasiblePhase::difference(const Knot& from, const Knot& to) {
@@ -46,7 +51,7 @@ void FeasiblePhase::difference(const Knot& from, const Knot& to) {
 /// One GDD solve at the state of `knot` for the value model of t + 1; sets its a and tau.
 bool FeasiblePhase::solveGoal(int t, Knot& knot, double alpha) {
   const Knot &old = reference_.knots[idx(t)], &next = reference_.knots[idx(t + 1)];
-  if (isRefused(dynamics_.stages(knot.q, knot.v))) return false;
+  if (isRefused(dynamics_.stages(knot))) return false;
   difference(old, knot);
   const Feedback& f = feedback_[idx(t)];
   du_.noalias() = f.K * dx_;
@@ -75,12 +80,12 @@ bool FeasiblePhase::solveGoal(int t, Knot& knot, double alpha) {
   warm.breakpoints.clear();
   warm.valid = warm.gddValid = true;
   controller_.begin();
-  const VectorX* a = controller_.apply(problem_.model, dynamics_.middle, dynamics_.data);
+  const VectorX* a = controller_.apply(problem_.model, dynamics_.middle, dynamics_.data());
   if (!a) return false;
   knot.tau = controller_.control;
   // What moves is what the controls cause.
   if (isRefused(dynamics_.forward(knot.tau, a))) return false;
-  knot.a = dynamics_.data.forward.a;
+  knot.a = dynamics_.data().forward.a;
   return true;
 }
 
@@ -96,20 +101,18 @@ bool FeasiblePhase::solveControls(int t, Knot& knot, double alpha) {
     knot.tau[i] = std::clamp(old.tau[i] + du_[static_cast<Eigen::Index>(j)], problem_.lower[i],
                              problem_.upper[i]);
   }
-  if (isRefused(dynamics_.stages(knot.q, knot.v)) || isRefused(dynamics_.forward(knot.tau, &old.a)))
+  if (isRefused(dynamics_.stages(knot)) || isRefused(dynamics_.forward(knot.tau, &old.a)))
     return false;
-  knot.a = dynamics_.data.forward.a;
+  knot.a = dynamics_.data().forward.a;
   return true;
 }
 
 bool FeasiblePhase::pass(double alpha, bool goalDirected, Trajectory& y) {
-  y.knots[0].q = reference_.knots[0].q;
-  y.knots[0].v = reference_.knots[0].v;
+  y.knots[0].copyState(reference_.knots[0]);
   for (int t = 0; t < problem_.knots; ++t) {
     Knot &knot = y.knots[idx(t)], &next = y.knots[idx(t + 1)];
     if (!(goalDirected ? solveGoal(t, knot, alpha) : solveControls(t, knot, alpha))) return false;
-    next.q = knot.q, next.v = knot.v;
-    dynamics_.move(knot.a, next.q, next.v);
+    dynamics_.move(knot, next);
     if (!next.q.allFinite() || !next.v.allFinite() ||
         next.v.cwiseAbs().maxCoeff() > options_.mostSpeed)
       return false;
@@ -138,10 +141,8 @@ void FeasiblePhase::begin() {
   rho_ = 0.0, growth_ = 1.0;
 }
 
-bool FeasiblePhase::rollOut(const VectorX& q, const VectorX& v,
-                            const std::vector<VectorX>& controls) {
-  reference_.knots[0].q = q;
-  reference_.knots[0].v = v;
+bool FeasiblePhase::rollOut(const Knot& start, const std::vector<VectorX>& controls) {
+  reference_.knots[0].copyState(start);
   for (Feedback& f : feedback_) f.k.setZero(), f.K.setZero();
   for (int t = 0; t < problem_.knots; ++t) {
     reference_.knots[idx(t)].tau = controls[idx(t)];
@@ -211,11 +212,10 @@ double FeasiblePhase::gap() {
   double worst = 0.0;
   for (int t = 0; t < problem_.knots; ++t) {
     const Knot& knot = x_.knots[idx(t)];
-    if (isRefused(dynamics_.stages(knot.q, knot.v)) ||
-        isRefused(dynamics_.forward(knot.tau, nullptr)))
+    if (isRefused(dynamics_.stages(knot)) || isRefused(dynamics_.forward(knot.tau, nullptr)))
       return kInfinity;
     const double size = std::max(1.0, knot.a.cwiseAbs().maxCoeff());
-    worst = std::max(worst, (dynamics_.data.forward.a - knot.a).cwiseAbs().maxCoeff() / size);
+    worst = std::max(worst, (dynamics_.data().forward.a - knot.a).cwiseAbs().maxCoeff() / size);
   }
   return worst;
 }

@@ -28,15 +28,16 @@ struct FeasibleOptions {
 
 class FeasiblePhase {
  public:
-  FeasiblePhase(const Problem& problem, PlanDynamics& dynamics,
-                const FeasibleOptions& options = {});
+  FeasiblePhase(const Problem& problem, PlanDynamics& dynamics);
 
+  /// Without a trajectory; what the problem asks for has perhaps changed.
+  void reset(const FeasibleOptions& options = {});
   /// A pass on these value models about any trajectory, which need not be feasible: what it gives
   /// is taken where it is finite and, unless `always`, better than what there is. False where not.
   bool take(const Trajectory& about, const std::vector<ValueModel>& values, bool always = false);
   /// The trajectory of these controls (nv, N of them), clamped, from a state. False where it is not
   /// finite.
-  bool rollOut(const VectorX& q, const VectorX& v, const std::vector<VectorX>& controls);
+  bool rollOut(const Knot& start, const std::vector<VectorX>& controls);
   /// One iteration; false where no step was found, which raises ρ for the next.
   bool iterate();
 

@@ -12,11 +12,9 @@ constexpr double kLeastRho = 1e-3, kMostRho = 1e8;
 
 }  // namespace
 
-InfeasiblePhase::InfeasiblePhase(const Problem& problem, PlanDynamics& dynamics,
-                                 const InfeasibleOptions& options)
+InfeasiblePhase::InfeasiblePhase(const Problem& problem, PlanDynamics& dynamics)
     : problem_(problem),
       dynamics_(dynamics),
-      options_(options),
       cost_(problem),
       pass_(problem.model, problem.controlled),
       x_(problem, dynamics),
@@ -58,10 +56,12 @@ double InfeasiblePhase::evaluate(Trajectory& x) {
   return L;
 }
 
-bool InfeasiblePhase::start(const Trajectory& x) {
+bool InfeasiblePhase::start(const Trajectory& x, const InfeasibleOptions& options) {
+  options_ = options;
+  cost_.begin(problem_);
   for (std::size_t t = 0; t < x_.knots.size(); ++t) x_.knots[t].a = x.knots[t].a;
-  x_.knots[0].q = trial_.knots[0].q = x.knots[0].q;
-  x_.knots[0].v = trial_.knots[0].v = x.knots[0].v;
+  x_.knots[0].copyState(x.knots[0]);
+  trial_.knots[0].copyState(x.knots[0]);
   mu_ = options_.mu * problem_.rootCost;
   for (VectorX& l : lambda_) l.setZero();
   rho_ = options_.rho, lastViolation_ = kInfinity, sinceUpdate_ = 0, fresh_ = true;

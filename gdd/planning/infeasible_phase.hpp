@@ -29,11 +29,10 @@ struct InfeasibleOptions {
 
 class InfeasiblePhase {
  public:
-  InfeasiblePhase(const Problem& problem, PlanDynamics& dynamics,
-                  const InfeasibleOptions& options = {});
+  InfeasiblePhase(const Problem& problem, PlanDynamics& dynamics);
 
   /// From knots[0] by the accelerations of `x`, with λ = 0. False where that is not finite.
-  bool start(const Trajectory& x);
+  bool start(const Trajectory& x, const InfeasibleOptions& options = {});
   /// One iteration; false where no step was found, which raises ρ for the next.
   bool iterate();
 

@@ -10,6 +10,7 @@ namespace softgauss::planning {
 Knot::Knot(const Model& model, const Transition& step)
     : q(model.q0),
       v(VectorX::Zero(model.nv)),
+      last(v),
       a(v),
       tau(v),
       G(MatrixX::Zero(model.nv, 2 * model.nv)),
@@ -17,28 +18,40 @@ Knot::Knot(const Model& model, const Transition& step)
       transition(step) {}
 
 PlanDynamics::PlanDynamics(const Model& m, ContactSource* contacts)
-    : model(m), data(m), middle(m), contacts_(contacts), step_(data, m), derivative_(m) {
+    : model(m),
+      middle(m),
+      data_(std::make_unique<Data>(m)),
+      contacts_(contacts),
+      step_(*data_, m),
+      derivative_(m) {
   input_.tau = VectorX::Zero(m.nv);
   input_.controlled = allTrees(m);
 }
 
-SolveStatus PlanDynamics::stages(const VectorX& q, const VectorX& v) {
-  middle.q = q;
-  middle.v = v;
+void PlanDynamics::restart(ContactSource* contacts) {
+  contacts_ = contacts;
+  data_ = std::make_unique<Data>(model);
+}
+
+SolveStatus PlanDynamics::stages(const Knot& knot) {
+  middle.q = knot.q;
+  middle.v = knot.v;
   middle.forgetLastStep();
-  step_.toMiddle(model, v, middle.q);
-  return computeStages(model, input_, middle, data, contacts_);
+  middle.a = knot.last;
+  middle.hasAcceleration = knot.hasLast;
+  step_.toMiddle(model, knot.v, middle.q);
+  return computeStages(model, input_, middle, *data_, contacts_);
 }
 
 SolveStatus PlanDynamics::inverse(Knot& knot) {
-  const SolveStatus status = stages(knot.q, knot.v);
-  return isRefused(status) ? status : inverseDynamics(model, knot.a, data, knot.tau);
+  const SolveStatus status = stages(knot);
+  return isRefused(status) ? status : inverseDynamics(model, knot.a, *data_, knot.tau);
 }
 
 SolveStatus PlanDynamics::linearise(Knot& knot) {
-  SolveStatus status = stages(knot.q, knot.v);
+  SolveStatus status = stages(knot);
   if (!isRefused(status))
-    status = derivative_.compute(model, input_, middle, knot.a, contacts_, data);
+    status = derivative_.compute(model, input_, middle, knot.a, contacts_, *data_);
   if (isRefused(status)) return status;
   knot.tau = derivative_.force();
   const int n = model.nv;
@@ -55,9 +68,15 @@ SolveStatus PlanDynamics::linearise(Knot& knot) {
   return status;
 }
 
+void PlanDynamics::move(const Knot& knot, Knot& next) const {
+  next.q = knot.q, next.v = knot.v;
+  step_.move(model, knot.a, next.q, next.v);
+  next.last = knot.a, next.hasLast = true;
+}
+
 SolveStatus PlanDynamics::forward(const VectorX& tau, const VectorX* guess) {
-  setAppliedForce(tau, data.forces);
-  return forwardDynamics(model, guess, data);
+  setAppliedForce(tau, data_->forces);
+  return forwardDynamics(model, guess, *data_);
 }
 
 }  // namespace softgauss::planning

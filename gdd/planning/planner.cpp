@@ -14,6 +14,10 @@ double now() {
   return std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
 }
 
+/// Of forward dynamics: two solves of one step from different starts differ by up to 3e-10 of the
+/// acceleration at the default of 1e-12 (a hopper), and by 5e-12 with this.
+constexpr double kTolerance = 1e-14;
+
 std::unique_ptr<Model> planned(const Model& model, const PlanSteps& steps) {
   if (!(steps.step > 0.0 && steps.step < kInfinity))
     throw ModelError({}, "plan", "step is " + std::to_string(steps.step) + " s, expected > 0");
@@ -23,6 +27,7 @@ std::unique_ptr<Model> planned(const Model& model, const PlanSteps& steps) {
   copy->options = StepDerivative::bareStep(model.options);
   copy->options.noSlip = false;
   copy->options.timestep = steps.step;
+  copy->options.tolerance = std::min(model.options.tolerance, kTolerance);
   return copy;
 }
 
@@ -47,37 +52,80 @@ std::string_view planStatusName(PlanStatus status) {
 Planner::Planner(const Model& model, const PlanSteps& steps, const Contacts& contacts)
     : rootCost(VectorX::Zero(model.nv)),
       model_(planned(model, steps)),
+      makesContacts_(contacts),
       contacts_(contacts ? contacts(*model_) : nullptr),
       knots_(steps.knots),
-      dynamics_(std::make_unique<PlanDynamics>(*model_, contacts_.get())) {
+      dynamics_(std::make_unique<PlanDynamics>(*model_, contacts_.get())),
+      problem_(problem()),
+      infeasible_(problem_, *dynamics_),
+      feasible_(problem_, *dynamics_),
+      begin_(problem_, *dynamics_),
+      kept_(begin_),
+      keptAccelerations_(idx(steps.knots), VectorX::Zero(model.nv)),
+      keptValues_(idx(steps.knots) + 1, ValueModel(model.nv)) {
   constexpr double kEffort = 0.01, kRoot = 100.0;
+  mechanisms_ = model_->options.mechanisms;
+  for (const Geometry& geometry : model_->geometries) own_.push_back(geometry.material);
+  for (const ContactPair& pair : model_->contactPairs) own_.push_back(pair.material);
   cost.effort = VectorX::Zero(model.nv);
   for (int i = 0; i < model.nv; ++i)
     (model.dofs[idx(i)].actuated ? cost.effort[i] : rootCost[i]) =
         model.dofs[idx(i)].actuated ? kEffort : kRoot * kEffort;
 }
 
+void Planner::setContacts(const PlanningContacts& contacts) {
+  contacts.check();
+  model_->options.mechanisms.remove(Mechanism::slipCorrection);
+  makeContacts([&](const Material& own, double share) { return contacts.material(own, share); });
+}
+
+void Planner::setOwnContacts() {
+  model_->options.mechanisms = mechanisms_;
+  makeContacts([](const Material& own, double) { return own; });
+}
+
+/// What finds contacts knows their margins, so that it is made anew.
+template <class F>
+void Planner::makeContacts(const F& material) {
+  auto own = own_.begin();
+  for (Geometry& geometry : model_->geometries) geometry.material = material(*own++, 0.5);
+  for (ContactPair& pair : model_->contactPairs) pair.material = material(*own++, 1.0);
+  if (makesContacts_) contacts_ = makesContacts_(*model_);
+  dynamics_->restart(contacts_.get());
+}
+
 Problem Planner::problem() {
-  Problem p{*model_, cost, knots_, rootCost, VectorX::Zero(model_->nv), VectorX::Zero(model_->nv),
+  Problem p{*model_,
+            cost,
+            knots_,
+            VectorX::Zero(model_->nv),
+            VectorX::Zero(model_->nv),
+            VectorX::Zero(model_->nv),
             {}};
   for (int i = 0; i < model_->nv; ++i) {
     const Dof& dof = model_->dofs[idx(i)];
     if (!dof.actuated) continue;
-    // A bound is kept by a price of a hundred times the effort at first.
-    p.rootCost[i] = 100.0 * cost.effort[i];
     p.lower[i] = dof.effortLower, p.upper[i] = dof.effortUpper;
     p.controlled.push_back(i);
   }
   return p;
 }
 
+void Planner::setPrices() {
+  problem_.rootCost = rootCost;
+  // A bound is kept by a price of a hundred times the effort at first.
+  for (const int i : problem_.controlled) problem_.rootCost[i] = 100.0 * cost.effort[i];
+}
+
 void Planner::runInfeasible(const PlanOptions& options, double start) {
   for (int i = 0; i < options.infeasible && now() - start < options.seconds; ++i) {
-    infeasible_->iterate();
+    const double before = now();
+    infeasible_.iterate();
+    plan_.infeasibleSeconds += now() - before;
     ++plan_.infeasible;
-    plan_.costs.push_back(infeasible_->lagrangian());
+    plan_.costs.push_back(infeasible_.lagrangian());
     if ((i + 1) % options.passEvery == 0 || i + 1 == options.infeasible)
-      feasible_->take(infeasible_->trajectory(), infeasible_->values());
+      feasible_.take(infeasible_.trajectory(), infeasible_.values());
   }
 }
 
@@ -85,14 +133,14 @@ void Planner::runFeasible(const PlanOptions& options, double start) {
   constexpr double kMostRho = 1e8, kSettled = 1e-2;
   plan_.status = PlanStatus::iterationLimit;
   for (int i = 0; i < options.feasible && now() - start < options.seconds; ++i) {
-    const double before = feasible_->trajectory().cost;
-    const bool moved = feasible_->iterate();
-    const double after = feasible_->trajectory().cost;
+    const double before = feasible_.trajectory().cost;
+    const bool moved = feasible_.iterate();
+    const double after = feasible_.trajectory().cost;
     ++plan_.feasible;
     plan_.costs.push_back(after);
-    plan_.certificate = feasible_->promised() / std::max(std::abs(before), 1e-300);
+    plan_.certificate = feasible_.promised() / std::max(std::abs(before), 1e-300);
     if (moved && before - after <= options.tolerance * std::abs(before) &&
-        feasible_->rho() < kSettled) {
+        feasible_.rho() < kSettled) {
       plan_.status = PlanStatus::converged;
       break;
     }
@@ -100,7 +148,7 @@ void Planner::runFeasible(const PlanOptions& options, double start) {
       plan_.status = PlanStatus::converged;
       break;
     }
-    if (feasible_->rho() > kMostRho) {
+    if (feasible_.rho() > kMostRho) {
       plan_.status = PlanStatus::noDescent;
       break;
     }
@@ -121,25 +169,127 @@ void Planner::publish(const Trajectory& x) {
 
 const MotionPlan& Planner::solve(const VectorX& q, const VectorX& v, const PlanOptions& options,
                                  const std::vector<VectorX>& accelerations) {
+  State state(*model_);
+  state.q = q, state.v = v;
+  return solve(state, options, accelerations);
+}
+
+const MotionPlan& Planner::solve(const State& state, const PlanOptions& options,
+                                 const std::vector<VectorX>& accelerations) {
   const double start = now();
-  plan_ = {};
-  problem_ = std::make_unique<Problem>(problem());
-  infeasible_ = std::make_unique<InfeasiblePhase>(*problem_, *dynamics_, options.inPhaseI);
-  feasible_ = std::make_unique<FeasiblePhase>(*problem_, *dynamics_, options.inPhaseF);
-  Trajectory begin(*problem_, *dynamics_);
-  begin.knots[0].q = q, begin.knots[0].v = v;
-  for (std::size_t t = 0; t < accelerations.size() && t + 1 < begin.knots.size(); ++t)
-    begin.knots[t].a = accelerations[t];
-  if (q.size() != model_->nq || v.size() != model_->nv || !infeasible_->start(begin)) return plan_;
-  runInfeasible(options, start);
-  if (!feasible_->hasTrajectory()) {
+  run(state, options, accelerations, false);
+  plan_.seconds = now() - start;
+  return plan_;
+}
+
+/// The state and the accelerations with which both phases begin. False where they do not fit.
+bool Planner::start(const State& state, const PlanOptions& options,
+                    const std::vector<VectorX>& accelerations) {
+  plan_.status = PlanStatus::refused;
+  plan_.infeasible = plan_.feasible = 0;
+  plan_.infeasibleSeconds = 0.0;
+  plan_.costs.clear();
+  setPrices();
+  feasible_.reset(options.inPhaseF);
+  Knot& first = begin_.knots[0];
+  if (state.q.size() != model_->nq || state.v.size() != model_->nv) return false;
+  first.q = state.q, first.v = state.v;
+  first.hasLast = state.hasAcceleration && state.a.size() == model_->nv;
+  if (first.hasLast) first.last = state.a;
+  for (std::size_t t = 0; t + 1 < begin_.knots.size(); ++t) {
+    VectorX& a = begin_.knots[t].a;
+    if (t < accelerations.size())
+      a = accelerations[t];
+    else
+      a.setZero();
+  }
+  return true;
+}
+
+void Planner::run(const State& state, const PlanOptions& options,
+                  const std::vector<VectorX>& accelerations, bool goesOn) {
+  const double begin = now();
+  if (!start(state, options, accelerations)) return;
+  if (!infeasible_.start(begin_, options.inPhaseI)) return;
+  if (goesOn) feasible_.take(kept_, keptValues_);
+  runInfeasible(options, begin);
+  finish(options, begin);
+}
+
+/// Phase F, and the plan.
+void Planner::finish(const PlanOptions& options, double begin) {
+  if (!feasible_.hasTrajectory()) {
     plan_.status = PlanStatus::infeasible;
-    publish(infeasible_->trajectory());
+    publish(infeasible_.trajectory());
     plan_.gap = kInfinity;
   } else {
-    runFeasible(options, start);
-    publish(feasible_->trajectory());
-    plan_.gap = feasible_->gap();
+    runFeasible(options, begin);
+    publish(feasible_.trajectory());
+    plan_.gap = feasible_.gap();
+  }
+}
+
+const MotionPlan& Planner::solveFeasible(const State& state, const PlanOptions& options,
+                                         const std::vector<VectorX>& accelerations) {
+  // Of errors of the next state: it is followed within some tenths of a second.
+  constexpr double kPosition = 1000.0, kVelocity = 10.0;
+  const double begin = now();
+  if (start(state, options, accelerations) && begin_.integrate(*dynamics_)) {
+    for (ValueModel& value : keptValues_) {
+      value.slope.setZero();
+      value.curvature.setZero();
+      value.curvature.diagonal().head(model_->nv).setConstant(kPosition);
+      value.curvature.diagonal().tail(model_->nv).setConstant(kVelocity);
+    }
+    for (Knot& knot : begin_.knots) knot.tau.setZero();
+    if (feasible_.take(begin_, keptValues_)) {
+      finish(options, begin);
+    } else {
+      plan_.status = PlanStatus::infeasible;
+      publish(begin_);
+      plan_.gap = plan_.cost = kInfinity;
+    }
+  }
+  plan_.seconds = now() - begin;
+  return plan_;
+}
+
+/// The plan, for the stages to come.
+void Planner::keep() {
+  kept_.copyMotion(feasible_.trajectory());
+  keptAccelerations_ = plan_.a;
+  keptValues_ = feasible_.values();
+}
+
+const MotionPlan& Planner::solve(const State& state, const Continuation& continuation,
+                                 const PlanOptions& options,
+                                 const std::vector<VectorX>& accelerations) {
+  constexpr double kShortest = 1.0 / 16.0;
+  const double start = now();
+  PlanOptions between = options;
+  between.infeasible = continuation.infeasible, between.feasible = continuation.feasible;
+  setContacts(continuation.contacts);
+  run(state, options, accelerations, false);
+  const double last = continuation.stages + 1.0;
+  double stage = 0.0, step = 1.0;
+  bool goesOn = feasible_.hasTrajectory();
+  if (goesOn) keep();
+  while (stage < last && plan_.status != PlanStatus::refused) {
+    const double next = std::min(stage + step, last), before = plan_.cost;
+    PlanningContacts contacts = continuation.contacts;
+    contacts.margin *= std::pow(continuation.factor, next);
+    next < last ? setContacts(contacts) : setOwnContacts();
+    if (!goesOn) keptAccelerations_ = plan_.a;
+    run(state, next < last ? between : options, keptAccelerations_, goesOn);
+    const bool found = feasible_.hasTrajectory();
+    if (goesOn && step > kShortest && !(found && plan_.cost <= continuation.lost * before)) {
+      step *= 0.5;
+      plan_.cost = before;
+      continue;
+    }
+    stage = next, step = std::min(1.0, 2.0 * step);
+    goesOn = found;
+    if (found) keep();
   }
   plan_.seconds = now() - start;
   return plan_;

@@ -18,6 +18,7 @@
 
 #include "softgauss/gdd/planning/feasible_phase.hpp"
 #include "softgauss/gdd/planning/infeasible_phase.hpp"
+#include "softgauss/gdd/planning/planning_contacts.hpp"
 
 namespace softgauss::planning {
 
@@ -29,11 +30,22 @@ struct PlanSteps {
 struct PlanOptions {
   int infeasible = 15;         ///< iterations of phase I, at most
   int feasible = 60;           ///< iterations of phase F, at most
-  int passEvery = 3;           ///< iterations of phase I from one feasible pass to the next
+  int passEvery = 1;           ///< iterations of phase I from one feasible pass to the next
   double tolerance = 1e-6;     ///< decrease of the cost, over it, at which phase F ends
-  double seconds = kInfinity;  ///< of wall time, after which the best feasible plan is taken
+  double seconds = kInfinity;  ///< of wall time in a stage; then the best feasible plan is taken
   InfeasibleOptions inPhaseI;
   FeasibleOptions inPhaseF;
+};
+
+/// From planning contacts to the model's own, margins falling by `factor` a stage. A stage in which
+/// the plan is lost, its cost more than `lost` times that of the one before, is repeated nearer to
+/// it, by half the way, and so on to 1/16.
+struct Continuation {
+  PlanningContacts contacts;  ///< of the first stage
+  int stages = 0;             ///< between the first and the last, on the model's own contacts
+  double factor = 0.95;
+  double lost = 2.0;
+  int infeasible = 5, feasible = 5;  ///< iterations in each stage but the first and the last
 };
 
 enum class PlanStatus {
@@ -55,6 +67,7 @@ struct MotionPlan {
   double certificate = 0.0;          ///< decrease that the last model promises still, over the cost
   int infeasible = 0, feasible = 0;  ///< iterations
   double seconds = 0.0;              ///< wall time
+  double infeasibleSeconds = 0.0;    ///< of it, in iterations of phase I, passes apart
   std::vector<double> costs;         ///< after each iteration: L of phase I, then J of phase F
 };
 
@@ -73,24 +86,56 @@ class Planner {
   /// From a state. `accelerations` (N of nv): where phase I begins; empty: at rest.
   const MotionPlan& solve(const VectorX& q, const VectorX& v, const PlanOptions& options = {},
                           const std::vector<VectorX>& accelerations = {});
+  /// The same from a state: a step after another one looks at its acceleration, where it slides.
+  const MotionPlan& solve(const State& state, const PlanOptions& options = {},
+                          const std::vector<VectorX>& accelerations = {});
+  /// On planning contacts first, then stage by stage to those of the model, where the plan ends.
+  /// `options` are those of the first and of the last stage.
+  const MotionPlan& solve(const State& state, const Continuation& continuation,
+                          const PlanOptions& options = {},
+                          const std::vector<VectorX>& accelerations = {});
+  /// Phase F alone, from what goal directed dynamics make of the accelerations where actuators can.
+  /// With plain controls alone (FeasibleOptions) that is iLQR over controls.
+  const MotionPlan& solveFeasible(const State& state, const PlanOptions& options = {},
+                                  const std::vector<VectorX>& accelerations = {});
+  /// What the next plan's contacts are: these, or the model's own.
+  void setContacts(const PlanningContacts& contacts);
+  void setOwnContacts();
+
   const MotionPlan& plan() const { return plan_; }
   const Model& model() const { return *model_; }
   /// Value models and feedback about the plan, of phase F.
-  const FeasiblePhase& feasible() const { return *feasible_; }
+  const FeasiblePhase& feasible() const { return feasible_; }
 
  private:
   Problem problem();
   void runInfeasible(const PlanOptions& options, double start);
   void runFeasible(const PlanOptions& options, double start);
   void publish(const Trajectory& x);
+  void setPrices();
+  bool start(const State& state, const PlanOptions& options,
+             const std::vector<VectorX>& accelerations);
+  void run(const State& state, const PlanOptions& options,
+           const std::vector<VectorX>& accelerations, bool goesOn);
+  void finish(const PlanOptions& options, double begin);
+  void keep();
+  template <class F>
+  void makeContacts(const F& material);
 
   std::unique_ptr<Model> model_;
+  Contacts makesContacts_;
+  MechanismSet mechanisms_ = MechanismSet::none();  ///< of the model's own contacts
+  std::vector<Material> own_;  ///< of the model's geometries, then of its pairs
   std::unique_ptr<ContactSource> contacts_;
   int knots_;
   std::unique_ptr<PlanDynamics> dynamics_;
-  std::unique_ptr<Problem> problem_;
-  std::unique_ptr<InfeasiblePhase> infeasible_;
-  std::unique_ptr<FeasiblePhase> feasible_;
+  Problem problem_;
+  InfeasiblePhase infeasible_;
+  FeasiblePhase feasible_;
+  Trajectory begin_;
+  Trajectory kept_;  ///< of the stage before, with its accelerations and value models
+  std::vector<VectorX> keptAccelerations_;
+  std::vector<ValueModel> keptValues_;
   MotionPlan plan_;
 };
 

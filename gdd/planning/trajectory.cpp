@@ -12,8 +12,7 @@ Trajectory::Trajectory(const Problem& problem, const PlanDynamics& dynamics)
 bool Trajectory::integrate(const PlanDynamics& dynamics) {
   for (std::size_t t = 0; t + 1 < knots.size(); ++t) {
     Knot& next = knots[t + 1];
-    next.q = knots[t].q, next.v = knots[t].v;
-    dynamics.move(knots[t].a, next.q, next.v);
+    dynamics.move(knots[t], next);
     if (!next.q.allFinite() || !next.v.allFinite()) return false;
   }
   return true;
@@ -22,7 +21,8 @@ bool Trajectory::integrate(const PlanDynamics& dynamics) {
 void Trajectory::copyMotion(const Trajectory& from) {
   for (std::size_t t = 0; t < knots.size(); ++t) {
     const Knot& knot = from.knots[t];
-    knots[t].q = knot.q, knots[t].v = knot.v, knots[t].a = knot.a, knots[t].tau = knot.tau;
+    knots[t].copyState(knot);
+    knots[t].a = knot.a, knots[t].tau = knot.tau;
   }
 }
 
@@ -32,8 +32,8 @@ bool Trajectory::findForces(PlanDynamics& dynamics) {
   return true;
 }
 
-TrajectoryCost::TrajectoryCost(const Problem& problem)
-    : state_(problem.model), kinematics_(problem.model) {
+void TrajectoryCost::begin(const Problem& problem) {
+  needsKinematics_ = false;
   for (const auto* terms : {&problem.cost.running, &problem.cost.final})
     for (const auto& term : *terms) needsKinematics_ = needsKinematics_ || term->needsKinematics();
 }

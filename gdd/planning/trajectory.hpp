@@ -11,7 +11,7 @@ namespace softgauss::planning {
 /// What is planned.
 struct Problem {
   const Model& model;  ///< with the options of a bare step; h is its timestep
-  PlanCost& cost;
+  const PlanCost& cost;
   int knots;             ///< N
   VectorX rootCost;      ///< (nv) of forces that no actuator causes: R where they are allowed
   VectorX lower, upper;  ///< (nv) of τ; 0 where no actuator pulls
@@ -43,7 +43,11 @@ class Trajectory {
 /// J, and its models knot by knot.
 class TrajectoryCost {
  public:
-  explicit TrajectoryCost(const Problem& problem);
+  explicit TrajectoryCost(const Problem& problem)
+      : state_(problem.model), kinematics_(problem.model) {}
+
+  /// To be called when the problem's terms have changed.
+  void begin(const Problem& problem);
 
   /// Of a knot's state, h times the running terms or the final ones.
   double value(const Problem& problem, const Knot& knot, int t);

@@ -17,7 +17,7 @@ namespace softgauss::io::detail {
 inline const std::vector<std::string> kSceneKeys = {
     "name",     "timestep", "gravity",   "ground",       "materials",
     "robots",   "objects",  "actuators", "constraints",  "pairs",
-    "wrenches", "options",  "goals",     "control_cost", "collision"};
+    "wrenches", "options",  "goals",     "control_cost", "collision", "plan"};
 
 /// Materials by name; "default" is there from the start.
 using Materials = std::map<std::string, Material>;
