@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/plan_benchmark/trials.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "apps/shared/interrupt.hpp"
+#include "softgauss/collision/scene_contacts.hpp"
+#include "softgauss/io/plan_task.hpp"
+#include "softgauss/io/simulation/scene.hpp"
+
+namespace softgauss::app {
+namespace {
+
+using namespace planning;
+
+/// Normal numbers that are the same with every standard library (Box and Muller).
+std::vector<VectorX> randomStart(const Model& model, int knots, double spread, unsigned seed) {
+  std::mt19937_64 bits(seed);
+  const auto uniform = [&] {
+    return (static_cast<double>(bits() >> 11) + 0.5) / 9007199254740992.0;
+  };
+  std::vector<VectorX> a(static_cast<std::size_t>(knots), VectorX::Zero(model.nv));
+  for (VectorX& knot : a)
+    for (double& x : knot) {
+      const double radius = std::sqrt(-2.0 * std::log(uniform()));
+      x = spread * radius * std::cos(2.0 * std::numbers::pi * uniform());
+    }
+  return a;
+}
+
+PlanOptions feasibleOptions(PlanMethod method, const TrialChoice& choice) {
+  PlanOptions options;
+  options.feasible = choice.iterations;
+  if (method == PlanMethod::ilqr) {
+    options.inPhaseF.goalDirected = false;
+    options.inPhaseF.lengths = 16;  // to 1e-6
+  }
+  return options;
+}
+
+}  // namespace
+
+std::string planMethodName(PlanMethod method) {
+  switch (method) {
+    case PlanMethod::ailqr:
+      return "AILQR";
+    case PlanMethod::feasible:
+      return "phase F";
+    case PlanMethod::ilqr:
+      return "iLQR";
+  }
+  return "";
+}
+
+std::vector<double> PlanTrials::costs() const {
+  std::vector<double> sorted;
+  for (const PlanTrial& trial : trials) sorted.push_back(trial.cost);
+  std::sort(sorted.begin(), sorted.end());
+  return sorted;
+}
+
+int PlanTrials::within(double best, double share) const {
+  return static_cast<int>(std::count_if(trials.begin(), trials.end(), [&](const PlanTrial& t) {
+    return t.cost <= best + share * std::abs(best);
+  }));
+}
+
+PlanTrials runTrials(const std::filesystem::path& file, PlanMethod method,
+                     const TrialChoice& choice) {
+  const auto scene = loadScene(file);
+  const io::PlanTask task = io::readPlanTask(file, scene->model, scene->initial);
+  Planner planner(scene->model, task.steps, [](const Model& model) {
+    return std::make_unique<collision::SceneContacts>(model);
+  });
+  task.setCosts(planner);
+  PlanTrials all{file.stem().string(), scene->model.nv, task.steps.knots, task.best, method, {}};
+  for (int i = 0; i < choice.starts && !interrupted(); ++i) {
+    const auto start = randomStart(scene->model, task.steps.knots, task.spread,
+                                   choice.seed + static_cast<unsigned>(i));
+    const MotionPlan& plan =
+        method == PlanMethod::ailqr
+            ? task.solve(planner, scene->initial, start)
+            : task.solveFeasible(planner, scene->initial, feasibleOptions(method, choice), start);
+    PlanTrial& trial = all.trials.emplace_back();
+    const bool found = plan.status != PlanStatus::infeasible && plan.status != PlanStatus::refused;
+    trial.cost = found ? plan.cost : kInfinity;
+    trial.rootForce = plan.rootForce, trial.gap = plan.gap;
+    trial.iterations = plan.infeasible + plan.feasible;
+    trial.seconds = plan.seconds;
+    if (plan.infeasible > 0) trial.iteration = plan.infeasibleSeconds / plan.infeasible;
+    trial.status = planStatusName(plan.status);
+  }
+  return all;
+}
+
+}  // namespace softgauss::app

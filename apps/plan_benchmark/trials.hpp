@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// A task of planning from random starts, by AILQR and by iLQR over controls.
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace softgauss::app {
+
+enum class PlanMethod {
+  ailqr,     ///< phases I and F
+  feasible,  ///< phase F alone: goal directed passes
+  ilqr       ///< phase F with plain controls and the derivatives of the step: iLQR
+};
+std::string planMethodName(PlanMethod method);
+
+/// One run.
+struct PlanTrial {
+  double cost = 0.0;
+  double rootForce = 0.0, gap = 0.0;
+  int iterations = 0;
+  double seconds = 0.0;    ///< of the plan
+  double iteration = 0.0;  ///< of one iteration of phase I [s], 0: none
+  std::string status;
+};
+
+struct PlanTrials {
+  std::string task;
+  int dofs = 0, knots = 0;
+  double bestKnown = 0.0;  ///< of the file; 0: none
+  PlanMethod method = PlanMethod::ailqr;
+  std::vector<PlanTrial> trials;
+
+  std::vector<double> costs() const;  ///< ascending
+  int within(double best, double share) const;
+};
+
+struct TrialChoice {
+  int starts = 8;
+  int iterations = 200;  ///< of phase F alone, and of iLQR, on each of the contacts
+  unsigned seed = 1;
+};
+
+/// Throws ModelError where the file is at fault.
+PlanTrials runTrials(const std::filesystem::path& file, PlanMethod method,
+                     const TrialChoice& choice);
+
+/// Tables of all tasks, for people.
+std::string planTables(const std::vector<PlanTrials>& all);
+
+}  // namespace softgauss::app
