@@ -170,12 +170,16 @@ PlanTask readPlan(const YamlMap& map, const Model& model, const State& start) {
   degrees.readWeights(map, "effort", task.effort);
   task.rootForce = 100.0 * task.effort;
   degrees.readWeights(map, "root_force", task.rootForce);
-  for (int i = 0; i < model.nv; ++i) {
-    const bool pulls = model.dofs[idx(i)].actuated;
-    (pulls ? task.rootForce : task.effort)[i] = 0.0;
-    if (!((pulls ? task.effort : task.rootForce)[i] > 0.0))
-      map.fail(pulls ? "effort" : "root_force", map.line(),
-               "found 0 for a degree of freedom, expected a weight > 0");
+  for (const bool pulls : {true, false}) {
+    VectorX &weights = pulls ? task.effort : task.rootForce,
+            &none = pulls ? task.rootForce : task.effort;
+    for (int i = 0; i < model.nv; ++i) {
+      if (model.dofs[idx(i)].actuated != pulls) continue;
+      none[i] = 0.0;
+      if (!(weights[i] > 0.0))
+        map.fail(pulls ? "effort" : "root_force", map.line(),
+                 "found 0 for a degree of freedom, expected a weight > 0");
+    }
   }
   task.q.push_back(start.q);
   task.v.push_back(VectorX::Zero(model.nv));

@@ -71,10 +71,12 @@ class Transition {
   void fromMiddle(Q& Gq, V& Gv) const {
     Gv.noalias() += Gq * D1_.asDiagonal();
     for (const Rotation& r : rotations_) {
-      const Eigen::Matrix<double, Eigen::Dynamic, 3> g = Gq.template middleCols<3>(r.dof);
-      Gv.template middleCols<3>(r.dof).noalias() +=
-          g * (r.middleByVelocity - D1_[r.dof] * Matrix3::Identity());
-      Gq.template middleCols<3>(r.dof).noalias() = g * r.middleByPosition;
+      const Matrix3 byVelocity = r.middleByVelocity - D1_[r.dof] * Matrix3::Identity();
+      for (Eigen::Index i = 0; i < Gq.rows(); ++i) {
+        const Eigen::RowVector3d g = Gq.row(i).template segment<3>(r.dof);
+        Gv.row(i).template segment<3>(r.dof) += g * byVelocity;
+        Gq.row(i).template segment<3>(r.dof) = g * r.middleByPosition;
+      }
     }
   }
   /// (q, v) moved on by a: q to q_m and on to q⁺, v to v⁺.

@@ -5,6 +5,7 @@
 #include "softgauss/engine/step/step.hpp"
 #include "softgauss/io/plan_task.hpp"
 #include "softgauss/io/simulation/scene.hpp"
+#include "tests/support/allocation_guard.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/random.hpp"
 
@@ -150,6 +151,41 @@ TEST(PlanningContacts, RefuseWhatIsOutOfRange) {
        {PlanningContacts{-1.0, 0.05, 1e-4, 0.9}, PlanningContacts{0.01, 0.0, 1e-4, 0.9},
         PlanningContacts{0.01, 0.05, 0.0, 0.9}, PlanningContacts{0.01, 0.05, 1e-4, 1.0}})
     EXPECT_THROW(hopper.planner.setContacts(bad), ModelError);
+}
+
+// After its first iterations, in which buffers grow with what touches.
+TEST(PlanningContacts, PhaseIAllocatesNothing) {
+  for (const char* name : {"hopper", "quadruped"}) {
+    PlannedTask planned(name);
+    Planner& planner = planned.planner;
+    planner.setContacts(planned.task.contacts->contacts);
+    const Model& model = planner.model();
+    const auto contacts = contactsOf(model);
+    PlanDynamics dynamics(model, contacts.get());
+    Problem problem{model,
+                    planner.cost,
+                    planned.task.steps.knots,
+                    planner.rootCost,
+                    VectorX::Zero(model.nv),
+                    VectorX::Zero(model.nv),
+                    {}};
+    for (int i = 0; i < model.nv; ++i)
+      if (problem.isControlled(i)) {
+        problem.controlled.push_back(i);
+        problem.lower[i] = model.dofs[idx(i)].effortLower;
+        problem.upper[i] = model.dofs[idx(i)].effortUpper;
+        problem.rootCost[i] = planner.cost.effort[i];
+      }
+    InfeasiblePhase phase(problem, dynamics);
+    Trajectory begin(problem, dynamics);
+    begin.knots[0].q = planned.scene->initial.q;
+    ASSERT_TRUE(phase.start(begin));
+    for (int i = 0; i < 10; ++i) phase.iterate();
+    ASSERT_TRUE(phase.start(begin));
+    const AllocationGuard guard;
+    for (int i = 0; i < 10; ++i) phase.iterate();
+    EXPECT_EQ(guard.count(), 0) << name;
+  }
 }
 
 // A planner that has planned before, on other contacts and another start, plans as a new one does.
