@@ -33,12 +33,12 @@ nlohmann::ordered_json json(const std::vector<app::PlanTrials>& all) {
                         {"gap", trial.gap},
                         {"iterations", trial.iterations},
                         {"seconds", trial.seconds},
-                        {"phase_i_iteration_s", trial.iteration},
                         {"status", trial.status}});
     out.push_back({{"task", t.task},
                    {"method", app::planMethodName(t.method)},
                    {"dof", t.dofs},
                    {"knots", t.knots},
+                   {"phase_i_iteration_s", t.iteration},
                    {"trials", trials}});
   }
   return out;

@@ -27,17 +27,16 @@ std::string planTables(const std::vector<PlanTrials>& all) {
     for (const PlanTrial& trial : t.trials) at->second = std::min(at->second, trial.cost);
   }
   std::string out =
-      fmt::format("{:<16}{:<9}{:>4}{:>4}{:>10}{:>10}{:>10}{:>10}{:>8} {:>8}{:>9}{:>10}{:>9}\n",
+      fmt::format("{:<16}{:<9}{:>4}{:>4}{:>10}{:>10}{:>10}{:>10}{:>7} {:>8}{:>9}{:>12}{:>9}\n",
                   "task", "method", "dof", "N", "known", "best", "median", "worst", "1 %", "10 %",
                   "plan ms", "phase I ms", "gap");
   for (const PlanTrials& t : all) {
     const std::vector<double> costs = t.costs();
     if (costs.empty()) continue;
     const double known = best[t.task];
-    double seconds = 0.0, iteration = 1e300, gap = 0.0, root = 0.0;
+    double seconds = 0.0, gap = 0.0, root = 0.0;
     for (const PlanTrial& trial : t.trials) {
       seconds += trial.seconds / static_cast<double>(t.trials.size());
-      if (trial.iteration > 0.0) iteration = std::min(iteration, trial.iteration);
       if (trial.cost < 1e300)
         gap = std::max(gap, trial.gap), root = std::max(root, trial.rootForce);
     }
@@ -45,11 +44,11 @@ std::string planTables(const std::vector<PlanTrials>& all) {
     const int near = t.within(known, kWithin);
     out += fmt::format(
         "{:<16}{:<9}{:>4}{:>4}{:>10.4g}{:>10.4g}{:>10.4g}{:>10.4g}{:>5}/{}{}"
-        "{:>6}/{}{:>9.1f}{:>10}{:>9.1g}{}\n",
+        "{:>6}/{}{:>9.1f}{:>12}{:>9.1g}{}\n",
         t.task, planMethodName(t.method), t.dofs, t.knots, known, costs.front(),
         costs[costs.size() / 2], costs.back(), near, costs.size(), mark(near >= kShare * count),
         t.within(known, 0.1), costs.size(), 1e3 * seconds,
-        iteration < 1e300 ? fmt::format("{:.3f}", 1e3 * iteration) : "", gap,
+        t.iteration > 0.0 ? fmt::format("{:.3f}", 1e3 * t.iteration) : "", gap,
         mark(gap <= kGap && root == 0.0));
   }
   return out + fmt::format(

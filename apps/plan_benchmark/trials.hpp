@@ -21,8 +21,7 @@ struct PlanTrial {
   double cost = 0.0;
   double rootForce = 0.0, gap = 0.0;
   int iterations = 0;
-  double seconds = 0.0;    ///< of the plan
-  double iteration = 0.0;  ///< of one iteration of phase I [s], 0: none
+  double seconds = 0.0;  ///< of the plan, of this thread
   std::string status;
 };
 
@@ -31,6 +30,7 @@ struct PlanTrials {
   int dofs = 0, knots = 0;
   double bestKnown = 0.0;  ///< of the file; 0: none
   PlanMethod method = PlanMethod::ailqr;
+  double iteration = 0.0;  ///< of one iteration of phase I, at rest and on [s]; 0: it has none
   std::vector<PlanTrial> trials;
 
   std::vector<double> costs() const;  ///< ascending

@@ -119,9 +119,7 @@ void Planner::setPrices() {
 
 void Planner::runInfeasible(const PlanOptions& options, double start) {
   for (int i = 0; i < options.infeasible && now() - start < options.seconds; ++i) {
-    const double before = now();
     infeasible_.iterate();
-    plan_.infeasibleSeconds += now() - before;
     ++plan_.infeasible;
     plan_.costs.push_back(infeasible_.lagrangian());
     if ((i + 1) % options.passEvery == 0 || i + 1 == options.infeasible)
@@ -187,7 +185,6 @@ bool Planner::start(const State& state, const PlanOptions& options,
                     const std::vector<VectorX>& accelerations) {
   plan_.status = PlanStatus::refused;
   plan_.infeasible = plan_.feasible = 0;
-  plan_.infeasibleSeconds = 0.0;
   plan_.costs.clear();
   setPrices();
   feasible_.reset(options.inPhaseF);

@@ -67,7 +67,6 @@ struct MotionPlan {
   double certificate = 0.0;          ///< decrease that the last model promises still, over the cost
   int infeasible = 0, feasible = 0;  ///< iterations
   double seconds = 0.0;              ///< wall time
-  double infeasibleSeconds = 0.0;    ///< of it, in iterations of phase I, passes apart
   std::vector<double> costs;         ///< after each iteration: L of phase I, then J of phase F
 };
 

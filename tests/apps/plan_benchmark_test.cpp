@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+/// plan_benchmark on small tasks: it repeats itself, plans are what actuators can do, and AILQR
+/// finds contacts where iLQR finds none.
+
+#include <nlohmann/json.hpp>
+
+#include "tests/apps/process.hpp"
+
+namespace softgauss::test {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json plans(const std::string& task, const char* starts) {
+  const io::TempFolder folder;
+  const std::string file = folder.path() / "plans.json";
+  const Outcome outcome = runProgram(
+      "plan_benchmark", {dataFile("plans/" + task + ".yaml"), "--starts", starts, "--json", file});
+  EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find(task), std::string::npos);
+  Json json = Json::parse(readFile(file));
+  for (Json& method : json) {
+    method.erase("phase_i_iteration_s");
+    for (Json& trial : method["trials"]) {
+      EXPECT_EQ(trial["root_force"], 0.0);
+      EXPECT_LE(trial["gap"], 1e-10);
+      trial.erase("seconds");
+    }
+  }
+  return json;
+}
+
+TEST(PlanBenchmark, SameSeedSameFigures) {
+  EXPECT_EQ(plans("acrobot", "2"), plans("acrobot", "2"));
+}
+
+// The wheel of the spinner is 82 mm away: standing still costs 48, and no change of a control is
+// felt there.
+TEST(PlanBenchmark, FindsContactsThatControlsAloneDoNot) {
+  const Json json = plans("spinner", "1");
+  ASSERT_EQ(json.size(), 3u);
+  EXPECT_EQ(json[0]["method"], "AILQR");
+  EXPECT_LT(json[0]["trials"][0]["cost"], 5.0);
+  EXPECT_EQ(json[2]["method"], "iLQR");
+  EXPECT_GT(json[2]["trials"][0]["cost"], 40.0);
+}
+
+TEST(PlanBenchmark, TellsWhatIsWrong) {
+  EXPECT_NE(runProgram("plan_benchmark", {"nowhere.yaml"}).exitCode, 0);
+  const Outcome outcome =
+      runProgram("plan_benchmark", {dataFile("scenes/two_arms.yaml"), "--starts", "1"});
+  EXPECT_EQ(outcome.exitCode, 2);
+  EXPECT_NE(outcome.err.find("plan"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace softgauss::test
