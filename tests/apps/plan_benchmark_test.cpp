@@ -9,19 +9,19 @@
 namespace softgauss::test {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using PlanJson = nlohmann::ordered_json;
 
-Json plans(const std::string& task, const char* starts) {
+PlanJson plans(const std::string& task, const char* starts) {
   const io::TempFolder folder;
   const std::string file = folder.path() / "plans.json";
   const Outcome outcome = runProgram(
       "plan_benchmark", {dataFile("plans/" + task + ".yaml"), "--starts", starts, "--json", file});
   EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
   EXPECT_NE(outcome.out.find(task), std::string::npos);
-  Json json = Json::parse(readFile(file));
-  for (Json& method : json) {
+  PlanJson json = PlanJson::parse(readFile(file));
+  for (PlanJson& method : json) {
     method.erase("phase_i_iteration_s");
-    for (Json& trial : method["trials"]) {
+    for (PlanJson& trial : method["trials"]) {
       EXPECT_EQ(trial["root_force"], 0.0);
       EXPECT_LE(trial["gap"], 1e-10);
       trial.erase("seconds");
@@ -37,7 +37,7 @@ TEST(PlanBenchmark, SameSeedSameFigures) {
 // The wheel of the spinner is 82 mm away: standing still costs 48, and no change of a control is
 // felt there.
 TEST(PlanBenchmark, FindsContactsThatControlsAloneDoNot) {
-  const Json json = plans("spinner", "1");
+  const PlanJson json = plans("spinner", "1");
   ASSERT_EQ(json.size(), 3u);
   EXPECT_EQ(json[0]["method"], "AILQR");
   EXPECT_LT(json[0]["trials"][0]["cost"], 5.0);

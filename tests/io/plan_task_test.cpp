@@ -14,12 +14,12 @@ io::PlanTask planOf(const SceneFolder& folder) {
   return io::readPlanTask(folder.file, model, scene.initialState(model));
 }
 
-std::string sceneWith(const std::string& plan) {
+std::string sceneThatPlans(const std::string& plan) {
   return "robots:\n  - {urdf: sample.urdf, position: [0, 0, 1], joints: {shoulder: 0.3}}\n" + plan;
 }
 
 TEST(PlanTask, HasTheWeightsAndTheTargetOfItsFile) {
-  const SceneFolder folder(sceneWith(R"(plan:
+  const SceneFolder folder(sceneThatPlans(R"(plan:
   step: 0.02
   knots: 10
   contacts: {margin: 0.02, d_min: 0.01, stages: 3, factor: 0.5, iterations: 7, end: planning}
@@ -78,7 +78,7 @@ TEST(PlanTask, TellsWhatIsWrongAndWhere) {
       {"plan: {iterations: {infeasible: 0}}\n", "infeasible"},
   };
   for (const auto& c : cases) {
-    const SceneFolder folder(sceneWith(c.plan));
+    const SceneFolder folder(sceneThatPlans(c.plan));
     try {
       planOf(folder);
       ADD_FAILURE() << c.plan;
