@@ -68,7 +68,7 @@ class Runner {
     if (options.reportError)
       errorEstimate_.emplace(model_, state_, outside_, !controller_.goals.empty());
     computeStages(model_, input_, state_, data_, &contacts_);
-    for (std::string& told : weakAtStart(model_, state_, controller_, data_))
+    for (std::string& told : startWarnings(model_, state_, controller_, data_))
       summary_.warnings.push_back(std::move(told));
     computeStages(model_, input_, state_, data_, &contacts_);
     const gdd::GoalContext start{model_, state_, data_};

@@ -244,6 +244,23 @@ TEST(Verdict, JointsThatCannotHoldTheStartAreToldWithBothFigures) {
   EXPECT_EQ(strong.json["warnings"].dump().find("cannot hold"), std::string::npos);
 }
 
+TEST(Verdict, AngleOfAPostureThatFitsInDegreesIsToldAtTheStart) {
+  const io::TempFolder folder;
+  const std::string robot = folder.write("arms.urdf", kTwoArms);
+  const auto warnings = [&](const std::string& goals) {
+    const Told run({robot, "--goals", folder.write("goals.yaml", "goals: [" + goals + "]\n"),
+                    "--duration", "0.01"});
+    return run.json["warnings"].dump();
+  };
+  const char* const told =
+      " sends elbow to 90, beyond its range -2.5 .. 2.5 (1.5708 rad if it is in degrees)";
+  for (const std::string kind : {"joint_posture", "posture"}) {
+    EXPECT_NE(warnings(kind + ": {joints: {elbow: 90}}").find(kind + told), std::string::npos)
+        << warnings(kind + ": {joints: {elbow: 90}}");
+    EXPECT_EQ(warnings(kind + ": {joints: {elbow: 2.6}}").find("degrees"), std::string::npos);
+  }
+}
+
 // Nothing stands or falls: what was reached is the first line, and the heading of the page.
 TEST(Verdict, OfAFixedRobotBeginsWithItsGoals) {
   const Told run({dataFile("robots/arm.urdf"), "--reach", "hand=0.5,0.3,0.5", "--duration", "2"});
