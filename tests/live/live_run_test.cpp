@@ -104,7 +104,9 @@ TEST(LiveRun, LetsGoWhatAPageHoldsThatIsGone) {
   };
   EXPECT_TRUE(isOn("drag 1"));
   for (const json& goal : status["goals"])
-    if (goal["name"] == "drag 1") EXPECT_EQ(goal["weight_default"], true) << goal;
+    if (goal["name"] == "drag 1") {
+      EXPECT_EQ(goal["weight_default"], true) << goal;
+    }
   EXPECT_FALSE(isOn("drag 2"));
   next.until([&](const json& s) { return s["steps"] > status["steps"].get<long>() + 50; });
   EXPECT_EQ(process.stop(), 130);
