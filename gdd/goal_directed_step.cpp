@@ -26,6 +26,16 @@ bool refuses(const AugmentedLagrangian&, const WarmStart& warm) {
 
 }  // namespace
 
+void GoalDirectedController::addCost(const Model& model, const State& state, Data& data,
+                                     GravityCompensation& holding, GoalCost& cost) const {
+  cost.clear(forceMetric);
+  if (controlCost == ControlCost::aboutGravity && limits.firstBad(model.nv) < 0)
+    cost.setFreeControl(holding.compute(model, state, limits, data));
+  for (const auto& goal : goals)
+    if (goal->actsAt(state.time)) goal->addCost({model, state, data}, cost);
+  if (motionLimits) motionLimits->addCost({model, state, data}, limits, cost);
+}
+
 template <class Solver>
 const VectorX* GoalDirectedController::solve(Solver& used, const Model& model, const State& state,
                                              Data& data) {
@@ -33,12 +43,7 @@ const VectorX* GoalDirectedController::solve(Solver& used, const Model& model, c
   const Clock::time_point start = Clock::now();
   // A disturbance is not the control's: it belongs to what the control has to cope with.
   data.forces.c -= data.forces.tau;
-  cost_.clear(forceMetric);
-  if (controlCost == ControlCost::aboutGravity && limits.firstBad(model.nv) < 0)
-    cost_.setFreeControl(holding_.compute(model, state, limits, data));
-  for (const auto& goal : goals)
-    if (goal->actsAt(state.time)) goal->addCost({model, state, data}, cost_);
-  if (motionLimits) motionLimits->addCost({model, state, data}, limits, cost_);
+  addCost(model, state, data, holding_, cost_);
   data.stats.invalidWarmStarts += refuses(used, state.warmstart);
   expansion.iterationsLeft = iterationBudget;
   report = solveOneSided(expansion, used, model, cost_, limits, data, state.warmstart, between_);

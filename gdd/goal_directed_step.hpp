@@ -70,6 +70,10 @@ class GoalDirectedController final : public StepControl {
   const VectorX* apply(const Model& model, const State& state, Data& data) noexcept override;
   bool acts() const noexcept override { return limits.open(); }
   void keep(WarmStart& warmstart) noexcept override;
+  /// cost ← that of the price of force, the goals that act and the motion limits, at the stages in
+  /// `data`, without an applied force in them.
+  void addCost(const Model& model, const State& state, Data& data, GravityCompensation& holding,
+               GoalCost& cost) const;
   /// Of the last GDD solve, before the final forward step (nv).
   const VectorX& acceleration() const { return expansion.acceleration(); }
 

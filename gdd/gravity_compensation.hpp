@@ -33,6 +33,8 @@ class GravityCompensation {
   const VectorX& compute(const Model& model, const State& state, const ControlLimits& limits,
                          Data& data);
 
+  const VectorX& force() const { return force_; }  ///< ĝ of the last compute() (nv)
+
  private:
   void setStatics(const Model& model, const State& state, const Data& data);
   bool findFree(const Model& model, const ControlLimits& limits);

@@ -42,6 +42,9 @@ ordered_json toJson(const GoalOutcome& goal) {
   json["reached_within"] = goal.met;
   json["reached"] = goal.isMet();
   json["reason"] = goal.reason;
+  json["held_back_by"] = ordered_json::array();
+  for (const GoalOutcome::Cause& cause : goal.causes)
+    json["held_back_by"].push_back({{"what", cause.what}, {"share", cause.share}});
   return json;
 }
 

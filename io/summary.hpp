@@ -23,6 +23,15 @@ namespace softgauss::io {
 /// How far a goal was from being met, in its own unit, from where it began to act to its own end or
 /// that of the run.
 struct GoalOutcome {
+  /// One of the things that hold it back.
+  struct Cause {
+    std::string what;    ///< e.g. "posture", "range of elbow"
+    double share = 0.0;  ///< of all that hold it back
+    template <class Archive>
+    void archive(Archive& a) {
+      a(what, share);
+    }
+  };
   std::string name;                     ///< e.g. "reach right_hand", "momentum (angular)"
   std::string unit = "m";               ///< of the errors
   double initialError = 0.0;            ///< where it began to act
@@ -35,10 +44,12 @@ struct GoalOutcome {
   bool yields = false;                  ///< others may outweigh it by design, as a posture's
   bool began = true;                    ///< it has acted, and had a figure
   std::string reason = {};              ///< why it was not met; empty where it was
+  std::vector<Cause> causes = {};       ///< the largest first, their shares add up to 1
 
   template <class Archive>
   void archive(Archive& a) {
-    a(initialError, finalError, bestError, bestTime, judgedAt, met, metSince, began, reason);
+    a(initialError, finalError, bestError, bestTime, judgedAt, met, metSince, began, reason,
+      causes);
   }
   bool isMet() const { return began && finalError <= met; }
   bool wasMet() const { return began && bestError <= met; }

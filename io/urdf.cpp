@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <map>
 #include <utility>
 
 #include "softgauss/engine/dynamics/coupled_mass.hpp"
@@ -77,6 +78,11 @@ class ShapeReader {
       builder.warning(fmt::format("{} not found, not shown: {}",
                                   detail::counted(missing_.size(), "visual mesh file"),
                                   detail::listed(missing_, 3)));
+    for (const auto& [package, folder] : byTheirEnd_)
+      builder.warning(
+          fmt::format("package '{}' is in none of the folders that are looked through: its files "
+                      "are taken from {}, by the ends of their paths",
+                      package, folder));
     for (const std::string& text : notShown_) builder.warning("not shown: " + text);
     std::vector<std::string> warnings;
     unsoundHulls_.appendTo(warnings);
@@ -84,8 +90,14 @@ class ShapeReader {
   }
 
  private:
+  detail::FoundFile find(const std::string& uri) {
+    detail::FoundFile found = finder_.find(uri);
+    if (!found.package.empty()) byTheirEnd_.emplace(found.package, found.folder.string());
+    return found;
+  }
+
   std::shared_ptr<const Mesh> mesh(const UrdfShape& shape) {
-    const detail::FoundFile found = finder_.find(shape.meshUri);
+    const detail::FoundFile found = find(shape.meshUri);
     std::error_code ignored;
     for (const std::string& place : found.searched)
       if (found.path.empty() && std::filesystem::exists(place, ignored))
@@ -102,7 +114,7 @@ class ShapeReader {
   }
 
   std::shared_ptr<const Mesh> visualMesh(const UrdfShape& shape) {
-    const detail::FoundFile found = finder_.find(shape.meshUri);
+    const detail::FoundFile found = find(shape.meshUri);
     if (found.path.empty()) {
       missing_.push_back(shape.meshUri);
       return nullptr;
@@ -125,6 +137,7 @@ class ShapeReader {
   MeshCache meshes_;
   const UrdfOptions& options_;
   std::vector<std::string> missing_, notShown_;
+  std::map<std::string, std::string> byTheirEnd_;  ///< package, folder of its files
   detail::UnsoundHulls unsoundHulls_;
 };
 

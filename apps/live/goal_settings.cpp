@@ -35,6 +35,8 @@ bool read(gdd::Goal& goal, GoalSettings& out) {
   if (!found) return false;
   out.weight = &found->weight;
   out.weightUnit = weightUnitOf(*found);
+  if constexpr (requires { found->defaultWeight; })
+    out.weightIsDefault = found->defaultWeight.isAt(found->weight);
   if constexpr (requires { found->stiffness; }) out.stiffness = &found->stiffness;
   if constexpr (requires { found->damping; }) out.damping = &found->damping;
   if constexpr (requires { found->rate; }) out.rate = &found->rate;

@@ -11,9 +11,10 @@ namespace softgauss::live {
 struct GoalSettings {
   double* weight = nullptr;
   const char* weightUnit = "";
-  double* stiffness = nullptr;  ///< [1/s²]
-  double* damping = nullptr;    ///< [1/s]
-  double* rate = nullptr;       ///< [1/s]
+  bool weightIsDefault = false;  ///< nobody has given it
+  double* stiffness = nullptr;   ///< [1/s²]
+  double* damping = nullptr;     ///< [1/s]
+  double* rate = nullptr;        ///< [1/s]
 };
 
 GoalSettings settingsOf(gdd::Goal& goal);

@@ -221,6 +221,7 @@ std::vector<Hands::GoalView> Hands::goals() const {
     view.damping = valueAt(s.damping);
     view.rate = valueAt(s.rate);
     view.weightUnit = s.weightUnit;
+    view.weightIsDefault = s.weightIsDefault;
     const auto* drag = dynamic_cast<const Drag*>(&goal);
     view.canBegin = drag && !drag->held();
     if (const auto* reach = drag ? &drag->reach : dynamic_cast<const gdd::Reach*>(&goal)) {
@@ -232,6 +233,7 @@ std::vector<Hands::GoalView> Hands::goals() const {
       if (reach->R_WTarget) {
         view.orientation = Eigen::Quaterniond(*reach->R_WTarget);
         view.rotationWeight = reach->rotationWeight;
+        view.rotationWeightIsDefault = reach->defaultRotationWeight.isAt(reach->rotationWeight);
       }
       if (drag && drag->line)
         view.duration = drag->line->duration;

@@ -58,7 +58,8 @@ class Hands {
     std::optional<double> weight, stiffness, damping, rate;
     std::optional<double> duration;  ///< of the minimum-jerk line by which it comes [s]
     const char* weightUnit = "";
-    std::optional<Vector3> point, target;  ///< of a goal that is a place
+    bool weightIsDefault = false, rotationWeightIsDefault = false;  ///< nobody has given it
+    std::optional<Vector3> point, target;                           ///< of a goal that is a place
     std::optional<Eigen::Quaterniond> orientation;
     std::optional<double> rotationWeight;  ///< of that
     std::optional<double> jerkStart;       ///< when the line of `duration` began [s]

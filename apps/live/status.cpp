@@ -20,6 +20,7 @@ ordered_json toJson(const Hands::GoalView& goal) {
   if (goal.end) json["end"] = *goal.end;
   if (!goal.link.empty()) json["link"] = goal.link;
   if (goal.weight) json["weight"] = *goal.weight, json["weight_unit"] = goal.weightUnit;
+  if (goal.weight && goal.weightIsDefault) json["weight_default"] = true;
   if (goal.stiffness) json["stiffness"] = *goal.stiffness;
   if (goal.damping) json["damping"] = *goal.damping;
   if (goal.rate) json["rate"] = *goal.rate;
@@ -28,6 +29,7 @@ ordered_json toJson(const Hands::GoalView& goal) {
   if (goal.target) json["target"] = toJson(*goal.target);
   if (const auto& q = goal.orientation) json["quaternion"] = {q->w(), q->x(), q->y(), q->z()};
   if (goal.rotationWeight) json["rotation_weight"] = *goal.rotationWeight;
+  if (goal.rotationWeightIsDefault) json["rotation_weight_default"] = true;
   if (goal.jerkStart) json["jerk_start"] = *goal.jerkStart;
   if (goal.consistent) json["metric"] = "consistent";
   return json;

@@ -50,7 +50,7 @@ _simulate_gdd() {
       return ;;
   esac
 
-  help=$("${COMP_WORDS[0]/#\~/$HOME}" --help 2>/dev/null)
+  help=$("${COMP_WORDS[0]/#\~/$HOME}" --help-all 2>/dev/null)
   if [[ $option == --* ]]; then
     # Of "  --base TEXT:{fixed,floating}  …" the choices; nothing of an option without a value.
     choices=$(sed -nE "s/^  (-[a-z],)?$option( [^{ ]*:)\{([^}]*)\}.*/\3/p" <<<"$help" | tr ',' ' ')

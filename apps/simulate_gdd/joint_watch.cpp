@@ -13,7 +13,6 @@ constexpr double kOften = 0.05;         // share of all steps
 constexpr double kAtEndAngle = 0.01;    // [rad] nearer is at the end of the range
 constexpr double kAtEndLength = 1e-3;   // [m]
 constexpr double kAtEndShare = 0.01;    // of the range, where that is less
-constexpr double kAtSpeed = 0.95;       // of the velocity limit
 constexpr double kTooFast = 1.05;       // of it: joints that are held to it stay below
 constexpr double kChatterShare = 0.05;  // of the bound
 constexpr double kLeastChatter = 0.01;  // [N m or N]
@@ -27,7 +26,7 @@ std::vector<WatchedControl> worstFirst(std::vector<WatchedControl> list) {
 }  // namespace
 
 JointWatch::JointWatch(const Model& model, const gdd::ControlLimits& limits)
-    : model_(model), fastest_(VectorX::Zero(model.nv)), fast_(VectorX::Zero(model.nv)) {
+    : model_(model), fastest_(VectorX::Zero(model.nv)) {
   for (int i = 0; i < model.nv; ++i) {
     const Dof& dof = model.dofs[i];
     if (!dof.actuated) continue;
@@ -72,12 +71,7 @@ void JointWatch::observe(const VectorX& tau, const VectorX& commands, const Stat
     see(controls_[joints + k], commands[static_cast<Eigen::Index>(k)], forget);
   v_ = state.v;
   q_ = state.q;
-  for (int i = 0; i < model_.nv; ++i) {
-    const double speed = std::abs(v_[i]);
-    fastest_[i] = std::max(fastest_[i], speed);
-    const bool atLimit = speed > kAtSpeed * model_.dofs[i].velocityLimit;
-    fast_[i] = forget * fast_[i] + (1.0 - forget) * (atLimit ? 1.0 : 0.0);
-  }
+  for (int i = 0; i < model_.nv; ++i) fastest_[i] = std::max(fastest_[i], std::abs(v_[i]));
   ++steps_;
 }
 
@@ -90,13 +84,6 @@ std::vector<std::string> JointWatch::saturatedNow(const std::vector<char>& count
   std::vector<std::string> names;
   for (const Control& control : controls_)
     if (concerns(control, counts) && control.recent > kOftenNow) names.push_back(control.name);
-  return names;
-}
-
-std::vector<std::string> JointWatch::atVelocityLimit(const std::vector<char>& counts) const {
-  std::vector<std::string> names;
-  for (int i = 0; i < model_.nv; ++i)
-    if (counts[i] && fast_[i] > kOftenNow) names.push_back(model_.jointNames[model_.dofs[i].body]);
   return names;
 }
 

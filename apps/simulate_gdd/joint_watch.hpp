@@ -40,18 +40,16 @@ class JointWatch {
   template <class Archive>
   void archive(Archive& a) {
     a.sized(controls_);
-    a(steps_, v_, q_, fastest_, fast_);
+    a(steps_, v_, q_, fastest_);
     if constexpr (Archive::kReads)
-      a.expect(fastest_.size() == model_.nv && fast_.size() == model_.nv &&
+      a.expect(fastest_.size() == model_.nv &&
                (steps_ == 0 || (steps_ > 0 && v_.size() == model_.nv && q_.size() == model_.nq)));
   }
 
   /// Those of the dofs for which `counts` (nv) is set that were at their bound in a fifth of the
   /// last half second.
   std::vector<std::string> saturatedNow(const std::vector<char>& counts) const;
-  /// The same of joints that moved at their velocity limit in a fifth of the last half second.
-  std::vector<std::string> atVelocityLimit(const std::vector<char>& counts) const;
-  /// The same of joints that are at an end of their range now.
+  /// Of joints that are at an end of their range now.
   std::vector<std::string> atRangeEnd(const std::vector<char>& counts) const;
   /// The fastest speed of these dofs [rad/s or m/s].
   double speed(const std::vector<char>& counts) const;
@@ -87,7 +85,6 @@ class JointWatch {
   long steps_ = 0;
   VectorX v_, q_;
   VectorX fastest_;  ///< (nv) largest |v| so far
-  VectorX fast_;     ///< (nv) share of recent steps at the velocity limit, exponentially weighted
 };
 
 }  // namespace softgauss::app

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// simulate_gdd: moves a URDF robot to its goals. Options and exit codes: simulate_gdd --help.
+/// simulate_gdd: moves a URDF robot to its goals. Options and exit codes: simulate_gdd --help-all
+/// and docs/reference/command_line.md.
 
 #include <fmt/format.h>
 
@@ -28,7 +29,9 @@ int runProgram(int argc, char** argv) {
     }
     return run(*options, *scene);
   } catch (const UsageError& error) {
-    tell(fmt::format("simulate_gdd: {}\nsimulate_gdd --help lists the options", error.what()));
+    tell(fmt::format(
+        "simulate_gdd: {}\nsimulate_gdd --help shows how to begin, --help-all all options",
+        error.what()));
     return kBadInput;
   } catch (const OutputError& error) {
     tell(fmt::format("simulate_gdd: {}", error.what()));

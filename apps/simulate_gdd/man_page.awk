@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# Makes the man page of simulate_gdd of what it prints for --help: one source for both.
-#   simulate_gdd --help | awk -v version=0.1.0 -f man_page.awk
+# Makes the man page of simulate_gdd of what it prints for --help-all: one source for both.
+#   simulate_gdd --help-all | awk -v version=0.1.0 -f man_page.awk
 
 function escaped(text) {
   gsub(/\\/, "\\e", text)

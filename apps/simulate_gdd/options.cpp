@@ -11,6 +11,7 @@
 #include "apps/simulate_gdd/checkpoint_options.hpp"
 #include "apps/simulate_gdd/command_line.hpp"
 #include "apps/simulate_gdd/live_options.hpp"
+#include "apps/simulate_gdd/short_help.hpp"
 #include "softgauss/io/inputs.hpp"
 #include "softgauss/io/names.hpp"
 
@@ -53,6 +54,9 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
   CLI::App app(
       "Simulates a robot under goal directed dynamics: at every step the controls are found that\n"
       "bring it nearer its goals, with the contact forces that then act.");
+  app.formatter(std::make_shared<ShortHelp>());
+  app.set_help_flag("-h,--help", "how to begin, and the options that most runs take");
+  app.set_help_all_flag("--help-all", "all options");
   app.set_version_flag("--version", std::string("softgauss ") + SOFTGAUSS_VERSION);
   std::string base = "automatic", ground, effects, without, zeroEffort = "passive", integrator,
               cone, solver, controlCost, compatibility, islands, posture, meshes, collision;

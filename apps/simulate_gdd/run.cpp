@@ -68,7 +68,7 @@ class Runner {
     if (options.reportError)
       errorEstimate_.emplace(model_, state_, outside_, !controller_.goals.empty());
     computeStages(model_, input_, state_, data_, &contacts_);
-    for (std::string& told : weakAtStart(model_, state_, controller_, data_))
+    for (std::string& told : startWarnings(model_, state_, controller_, data_))
       summary_.warnings.push_back(std::move(told));
     computeStages(model_, input_, state_, data_, &contacts_);
     const gdd::GoalContext start{model_, state_, data_};
@@ -231,7 +231,8 @@ class Runner {
     tallyCommands(controller_, summary_);
     // What is seen is the step's start, where the record is of.
     std::swap(data_.kinematics, kinematics_);
-    const SeenStep seen{record_, data_, touching_, state_, model_.options.timestep};
+    const SeenStep seen{record_, data_,    touching_, state_, model_.options.timestep,
+                        input_,  contacts_};
     for (const std::string& message : verdict_->observe(seen)) tellNow(message);
     record_.goalErrors = verdict_->goals().errors();
     replay_->addStep(record_, data_, touching_);
@@ -310,7 +311,7 @@ class Runner {
     last.constraints = data_.stats.rows;
     last.maxPenetration = data_.stats.maxPenetration;
     measure(last, data_.kinematics);
-    verdict_->finish({last, data_, touching_, state_, model_.options.timestep});
+    verdict_->finish({last, data_, touching_, state_, model_.options.timestep, input_, contacts_});
     last.goalErrors = verdict_->goals().errors();
     tables_.write(last, touching_);
     tables_.close();

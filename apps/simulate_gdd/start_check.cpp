@@ -6,18 +6,44 @@
 #include <cmath>
 
 #include "apps/simulate_gdd/names.hpp"
+#include "softgauss/gdd/goals/joints.hpp"
+#include "softgauss/gdd/goals/posture.hpp"
 #include "softgauss/gdd/gravity_compensation.hpp"
+#include "softgauss/io/detail/unit_mistakes.hpp"
 
 namespace softgauss::app {
 namespace {
 
 constexpr double kTold = 1.01;  // of the limit
 
-}  // namespace
+/// Hinges that a goal sends beyond their range to where degrees would be within it.
+std::vector<std::string> inDegrees(const Model& model,
+                                   const gdd::GoalDirectedController& controller) {
+  std::vector<std::string> found;
+  const auto look = [&](const gdd::Goal& goal, int body, double value) {
+    if (model.bodies[idx(body)].joint != JointKind::revolute) return;
+    for (const JointRange& range : model.ranges) {
+      if (range.body != body) continue;
+      const std::string meant = io::detail::radiansMeant(value, range.lower, range.upper);
+      if (!meant.empty())
+        found.push_back(fmt::format("{} sends {} to {:.6g}, beyond its range {:.6g} .. {:.6g}{}",
+                                    goal.name(), nameText(model.jointNames[idx(body)]), value,
+                                    range.lower, range.upper, meant));
+    }
+  };
+  for (const auto& goal : controller.goals) {
+    if (const auto* joints = dynamic_cast<const gdd::JointPosture*>(goal.get()))
+      for (const gdd::JointTarget& target : joints->targets) look(*goal, target.body, target.value);
+    if (const auto* posture = dynamic_cast<const gdd::Posture*>(goal.get()))
+      for (int b = 1; b < model.bodyCount(); ++b)
+        if (model.bodies[idx(b)].dofs == 1) look(*goal, b, posture->q[model.bodies[idx(b)].q]);
+  }
+  return found;
+}
 
+/// Joints that cannot hold the start against gravity.
 std::vector<std::string> weakAtStart(const Model& model, const State& state,
                                      const gdd::GoalDirectedController& controller, Data& data) {
-  if (controller.goals.empty()) return {};
   const gdd::ControlLimits& limits = controller.limits;
   gdd::GravityCompensation holding;
   VectorX y;
@@ -43,6 +69,16 @@ std::vector<std::string> weakAtStart(const Model& model, const State& state,
       fmt::format("cannot hold the start against gravity: {}; try another start, or efforts as "
                   "the robot has them",
                   listed(weak))};
+}
+
+}  // namespace
+
+std::vector<std::string> startWarnings(const Model& model, const State& state,
+                                       const gdd::GoalDirectedController& controller, Data& data) {
+  if (controller.goals.empty()) return {};
+  std::vector<std::string> warnings = weakAtStart(model, state, controller, data);
+  for (std::string& text : inDegrees(model, controller)) warnings.push_back(std::move(text));
+  return warnings;
 }
 
 }  // namespace softgauss::app

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// What a robot cannot do from the start: hold itself against gravity.
+/// What is told of a start: a robot cannot hold itself against gravity, goals are in degrees.
 
 #include <string>
 #include <vector>
@@ -11,10 +11,12 @@
 
 namespace softgauss::app {
 
-/// Actuated joints, and actuators, that need more than their limits allow to hold the robot where
-/// it is (8.6), by more than a hundredth: a warning, or none; none where no goal asks for it. The
-/// stages of `data` are computed for `state`, and have to be again.
-std::vector<std::string> weakAtStart(const Model& model, const State& state,
-                                     const gdd::GoalDirectedController& controller, Data& data);
+/// Warnings, none where there are no goals:
+/// actuated joints, and actuators, that need more than their limits allow to hold the robot where
+/// it is (8.6), by more than a hundredth;
+/// hinges that a posture sends beyond their range, to where degrees would be within it.
+/// The stages of `data` are computed for `state`, and have to be again.
+std::vector<std::string> startWarnings(const Model& model, const State& state,
+                                       const gdd::GoalDirectedController& controller, Data& data);
 
 }  // namespace softgauss::app

@@ -18,15 +18,32 @@ using io::figureText;
 using io::lengthText;
 
 constexpr double kMoving = 0.05;      // [m/s or rad/s] faster is still on its way
-constexpr double kToldForce = 0.1;    // [N] of a contact that keeps a link off
+constexpr double kHeld = 0.5;         // of a goal's pull: with less it is followed
 constexpr double kToldHeight = 1e-3;  // [m]
 constexpr double kDegrees = 180.0 / M_PI;
+const char* const kRanges = "ranges of its joints";
 
 std::vector<char> boltedTrees(const gdd::GoalContext& start) {
   std::vector<char> bolted;
   for (int t = 0; t < static_cast<int>(start.model.trees.size()); ++t)
     bolted.push_back(start.model.floats(t) && looksBolted(start.model, start.data.kinematics, t));
   return bolted;
+}
+
+/// Where single ranges hold, they have the share of those that are only known together.
+void nameRanges(std::vector<io::GoalOutcome::Cause>& causes) {
+  double single = 0.0, together = 0.0;
+  const auto isSingle = [](const io::GoalOutcome::Cause& c) {
+    return c.what.starts_with("range of ");
+  };
+  for (const io::GoalOutcome::Cause& c : causes) {
+    if (isSingle(c)) single += c.share;
+    if (c.what == kRanges) together += c.share;
+  }
+  if (single == 0.0 || together == 0.0) return;
+  std::erase_if(causes, [](const io::GoalOutcome::Cause& c) { return c.what == kRanges; });
+  for (io::GoalOutcome::Cause& c : causes)
+    if (isSingle(c)) c.share *= (single + together) / single;
 }
 
 }  // namespace
@@ -37,6 +54,7 @@ Verdict::Verdict(const gdd::GoalDirectedController& controller, const gdd::GoalC
       controller_(controller),
       baseOrigin_(baseOrigin),
       bolted_(boltedTrees(start)),
+      heldBack_(start.model, controller),
       goals_(controller.goals, start),
       joints_(start.model, controller.limits),
       standing_(start.model, start.data.kinematics),
@@ -48,7 +66,8 @@ std::vector<std::string> Verdict::observe(const SeenStep& step) {
   at_.v = r.v;
   at_.time = r.time;
   for (GoalRecord::Track* track : goals_.observe({model_, at_, step.data}, step.contacts))
-    if (!track->outcome.isMet()) track->outcome.reason = reasonOf(*track, step);
+    if (!track->outcome.isMet()) findReason(*track, step);
+  heldBack_.forget();
   joints_.observe(r.u, controller_.commands, step.after, step.length);
   standing_.observe(step.data.kinematics, step.contacts, r.time, step.length);
   return oddities_.observe(at_, r.time, r.energy, r.kineticEnergy);
@@ -69,8 +88,9 @@ void Verdict::finish(const SeenStep& end) {
                      ? fmt::format("it begins at {:.4g} s, after the end", track.goal->startTime)
                      : "no contact that it counts";
     else if (!o.isMet() && o.reason.empty())
-      o.reason = reasonOf(track, end);
+      findReason(track, end);
   }
+  heldBack_.forget();
 }
 
 std::vector<std::string> Verdict::lying(const Kinematics& k, double time) const {
@@ -115,7 +135,8 @@ std::vector<char> Verdict::dofsOf(const GoalRecord::Track& track) const {
   return counts;
 }
 
-std::string Verdict::reachReason(const GoalRecord::Track& track, const SeenStep& step) const {
+/// Of a base that is fixed, what no configuration of the chain reaches is a share of its own.
+std::string Verdict::reachReason(GoalRecord::Track& track, const SeenStep& step) const {
   const auto* reach = dynamic_cast<const gdd::Reach*>(track.goal);
   if (!reach || *track.last.what) return {};
   const int body = model_.frames[reach->frame].body;
@@ -125,77 +146,88 @@ std::string Verdict::reachReason(const GoalRecord::Track& track, const SeenStep&
   if (!isChain) return {};  // the link goes where its base goes
   const ReachLimit limit =
       reachLimit(model_, step.record.q, reach->frame, reach->p_FP, reach->p_WTarget);
-  const int tree = model_.bodies[body].tree;
-  const char* where = model_.floats(tree) ? " from where its base is" : "";
-  if (limit.freely > track.outcome.met)
+  const bool floats = model_.floats(model_.bodies[body].tree);
+  io::GoalOutcome& o = track.outcome;
+  const double left = std::max(o.finalError, limit.withinRanges);
+  const auto add = [&](const char* what, double length) {
+    if (!floats && length > o.met) o.causes.push_back({what, length / left});
+  };
+  add("reach of the chain", limit.freely);
+  add(kRanges, limit.withinRanges - limit.freely);
+  const char* where = floats ? " from where its base is" : "";
+  if (limit.freely > o.met)
     return fmt::format("out of reach of the chain by {}{}", lengthText(limit.freely), where);
-  if (limit.withinRanges > track.outcome.met)
+  if (limit.withinRanges > o.met)
     return fmt::format("the ranges of its joints keep it {} away{}", lengthText(limit.withinRanges),
                        where);
   return {};
 }
 
-/// What the chain of the goal's link, or what the joint that is farthest off carries, presses
-/// against, the hardest.
-std::string Verdict::contactReason(const GoalRecord::Track& track, const SeenStep& step) const {
-  const gdd::GoalError& figure = track.last;
-  if (figure.frame < 0 && figure.dof < 0) return {};
-  std::vector<char> inChain(model_.bodies.size(), 0);
-  if (figure.frame >= 0) {
-    for (int b = model_.frames[figure.frame].body; b > 0; b = model_.bodies[b].parent)
-      inChain[b] = model_.bodies[b].dofs == 1;
-  } else {
-    const int carried = model_.dofs[figure.dof].body;
-    for (int b = carried; b < model_.bodyCount(); ++b)
-      inChain[b] = b == carried || inChain[model_.bodies[b].parent];
+/// What opposes the goal, beside what its chain cannot reach. Empty where that is all, or where the
+/// robot is on its way.
+std::string Verdict::heldText(GoalRecord::Track& track, const SeenStep& step) {
+  io::GoalOutcome& o = track.outcome;
+  double out = 0.0;
+  for (const io::GoalOutcome::Cause& cause : o.causes) out += cause.share;
+  if (out > 0.0 && (1.0 - out) * o.finalError <= o.met) {
+    for (io::GoalOutcome::Cause& cause : o.causes) cause.share /= out;
+    return {};
   }
-  double most = kToldForce;
-  std::string text;
-  for (const Snapshot::ContactForce& c : step.contacts) {
-    const Geometry &a = model_.geometries[c.geometryA], &b = model_.geometries[c.geometryB];
-    if (inChain[a.body] == inChain[b.body] || !(c.normalForce() > most)) continue;
-    most = c.normalForce();
-    const Geometry &own = inChain[a.body] ? a : b, &other = inChain[a.body] ? b : a;
-    text = fmt::format("{} presses against {} with {:.3g} N", own.link,
-                       other.link == "world" ? other.name : other.link, most);
+  const HeldGoal held = heldBack_.of(track, step);
+  if (held.held < kHeld && joints_.speed(dofsOf(track)) > kMoving) {
+    o.causes.clear();
+    return {};
   }
-  return text;
+  if (held.causes.empty()) {
+    o.causes.clear();
+    return {};
+  }
+  for (const io::GoalOutcome::Cause& cause : held.causes)
+    o.causes.push_back({cause.what, (1.0 - out) * cause.share});
+  nameRanges(o.causes);
+  std::stable_sort(o.causes.begin(), o.causes.end(),
+                   [](const auto& a, const auto& b) { return a.share > b.share; });
+  if (held.singular) return "no joint brings it nearer from there";
+  return "held back by " + HeldBack::text(o.causes);
 }
 
-std::string Verdict::reasonOf(const GoalRecord::Track& track, const SeenStep& step) const {
+std::string Verdict::actuationReason(const GoalRecord::Track& track) const {
   const std::vector<char> counts = dofsOf(track);
+  for (int i = 0; i < model_.nv; ++i)
+    if (counts[i] && model_.dofs[i].actuated) return {};
+  if (controller_.limits.transmission != nullptr) return {};
+  return track.last.dof >= 0 ? "which is not actuated" : "no joint of it is actuated";
+}
+
+void Verdict::findReason(GoalRecord::Track& track, const SeenStep& step) {
+  io::GoalOutcome& o = track.outcome;
+  o.causes.clear();
   std::vector<std::string> parts;
-  for (const StandingOutcome& o : standing_.outcomes(step.data.kinematics, step.record.time))
-    if (o.fell || o.inAir)
+  bool lost = false;  // nothing that weighs is the reason
+  for (const StandingOutcome& s : standing_.outcomes(step.data.kinematics, step.record.time))
+    if (s.fell || s.inAir) {
       parts.push_back(
-          fmt::format("the robot of {} {}", o.base, o.fell ? "fell" : "touches nothing"));
+          fmt::format("the robot of {} {}", s.base, s.fell ? "fell" : "touches nothing"));
+      lost = true;
+    }
   if (const int dof = track.last.dof; dof >= 0)
     parts.push_back("farthest is " + nameText(model_.jointNames[model_.dofs[dof].body]));
   parts.push_back(reachReason(track, step));
   if (joints_.hasSeen()) {
-    const auto actuated = [&](int i) { return counts[i] && model_.dofs[i].actuated; };
-    bool any = false;
-    for (int i = 0; i < model_.nv; ++i) any = any || actuated(i);
-    if (!any && controller_.limits.transmission == nullptr)
-      parts.emplace_back(track.last.dof >= 0 ? "which is not actuated"
-                                             : "no joint of it is actuated");
-    if (const auto weak = joints_.saturatedNow(counts); !weak.empty())
-      parts.push_back("torque limits of " + listed(weak));
-    if (const auto fast = joints_.atVelocityLimit(counts); !fast.empty())
-      parts.push_back("velocity limits of " + listed(fast));
-    if (const auto ended = joints_.atRangeEnd(counts); !ended.empty())
-      parts.push_back("ranges of " + listed(ended));
-    parts.push_back(contactReason(track, step));
-    if (joints_.speed(counts) > kMoving)
-      parts.emplace_back(track.outcome.bestTime >= track.outcome.judgedAt
-                             ? "still on its way when the time was up"
-                             : "still moving when the time was up");
+    parts.push_back(actuationReason(track));
+    if (lost || !parts.back().empty())
+      o.causes.clear();
+    else
+      parts.push_back(heldText(track, step));
+    if (joints_.speed(dofsOf(track)) > kMoving)
+      parts.emplace_back(o.bestTime >= o.judgedAt ? "still on its way when the time was up"
+                                                  : "still moving when the time was up");
   }
   const auto said = std::count_if(parts.begin(), parts.end(),
                                   [](const std::string& part) { return !part.empty(); });
   if (said == (track.last.dof >= 0 ? 1 : 0))
     parts.emplace_back("other goals or the control cost outweigh it");
-  return joined(parts);
+  o.reason = joined(parts);
 }
 
 void Verdict::tellStanding(io::Summary& summary) const {

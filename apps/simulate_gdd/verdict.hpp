@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "apps/simulate_gdd/goal_record.hpp"
+#include "apps/simulate_gdd/held_back.hpp"
 #include "apps/simulate_gdd/joint_watch.hpp"
 #include "apps/simulate_gdd/oddities.hpp"
 #include "apps/simulate_gdd/standing.hpp"
@@ -23,7 +24,9 @@ struct SeenStep {
   const Data& data;              ///< kinematics of the start, accelerations of the step
   const std::vector<Snapshot::ContactForce>& contacts;  ///< with the forces of the step
   const State& after;
-  double length;  ///< [s]
+  double length;          ///< [s]
+  const Input& input;     ///< what acted besides the control
+  ContactSource& source;  ///< of contacts
 };
 
 class Verdict {
@@ -56,10 +59,11 @@ class Verdict {
             io::Summary& summary);
 
  private:
-  std::string reasonOf(const GoalRecord::Track& track, const SeenStep& step) const;
+  void findReason(GoalRecord::Track& track, const SeenStep& step);
   std::vector<char> dofsOf(const GoalRecord::Track& track) const;
-  std::string reachReason(const GoalRecord::Track& track, const SeenStep& step) const;
-  std::string contactReason(const GoalRecord::Track& track, const SeenStep& step) const;
+  std::string reachReason(GoalRecord::Track& track, const SeenStep& step) const;
+  std::string heldText(GoalRecord::Track& track, const SeenStep& step);
+  std::string actuationReason(const GoalRecord::Track& track) const;
   void tellStanding(io::Summary& summary) const;
   void tellGoals(io::Summary& summary) const;
   void tellControls(io::Summary& summary) const;
@@ -68,6 +72,7 @@ class Verdict {
   const gdd::GoalDirectedController& controller_;
   BaseOrigin baseOrigin_;
   std::vector<char> bolted_;  ///< (trees) looks as if it were to be bolted down
+  HeldBack heldBack_;
   GoalRecord goals_;
   JointWatch joints_;
   Standing standing_;

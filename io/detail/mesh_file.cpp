@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -28,8 +29,10 @@ char small(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + '
 std::string formatOf(const fs::path& file) {
   std::string extension = file.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(), small);
-  if (extension != ".stl" && extension != ".obj" && extension != ".dae")
-    failMesh(file, fmt::format("unknown format '{}', expected .stl, .obj or .dae", extension));
+  constexpr std::array<std::string_view, 5> kKnown = {".stl", ".obj", ".dae", ".gltf", ".glb"};
+  if (std::find(kKnown.begin(), kKnown.end(), extension) == kKnown.end())
+    failMesh(file, fmt::format("unknown format '{}', expected .stl, .obj, .dae, .gltf or .glb",
+                               extension));
   return extension;
 }
 
@@ -81,7 +84,7 @@ MeshFile loadMeshFile(const fs::path& path, std::uintmax_t largest) {
   file.text = readMeshBytes(path, largest);
   if (file.format == ".stl")
     prepareStl(file.text);
-  else if (file.text.starts_with(kByteOrderMark))
+  else if (file.format != ".glb" && file.text.starts_with(kByteOrderMark))
     file.text.erase(0, kByteOrderMark.size());
   return file;
 }

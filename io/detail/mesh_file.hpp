@@ -21,7 +21,7 @@ std::string readMeshBytes(const std::filesystem::path& path, std::uintmax_t larg
 
 struct MeshFile {
   std::filesystem::path path;
-  std::string format;  ///< ".stl", ".obj" or ".dae"
+  std::string format;  ///< ".stl", ".obj", ".dae", ".gltf" or ".glb"
   std::string text;    ///< without a byte-order mark; an ASCII STL in small letters
 };
 

@@ -118,7 +118,7 @@ class Collector {
       return std::nullopt;
     aiColor4D diffuse;
     if (material.Get(AI_MATKEY_COLOR_DIFFUSE, diffuse) != AI_SUCCESS) return std::nullopt;
-    float opacity = 1.0f;
+    float opacity = diffuse.a;  // as glTF has it; what the other formats say of it counts alone
     material.Get(AI_MATKEY_OPACITY, opacity);
     return Eigen::Vector4d(diffuse.r, diffuse.g, diffuse.b, opacity);
   }

@@ -3,8 +3,8 @@
 
 /// Triangles of a mesh file, by assimp.
 ///
-/// An STL is read in place: its size bounds time and memory. How long assimp takes for an OBJ or a
-/// DAE no check can tell, so it reads them in a child process that has limits.
+/// An STL is read in place: its size bounds time and memory. How long assimp takes for an OBJ, a
+/// DAE or a glTF no check can tell, so it reads them in a child process that has limits.
 
 #include "softgauss/engine/model/shape.hpp"
 #include "softgauss/io/detail/mesh_file.hpp"

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <string_view>
 #include <system_error>
+#include <utility>
 
 namespace softgauss::io::detail {
 namespace {
@@ -42,6 +43,17 @@ std::string plainUri(const std::string& uri) {
   return plain;
 }
 
+/// The package of a file and its path in there, both empty where it is of none.
+std::pair<std::string, std::string> inPackage(const std::string& uri) {
+  for (const std::string_view scheme : {"package://", "model://"}) {
+    if (!uri.starts_with(scheme)) continue;
+    const std::string rest = uri.substr(scheme.size());
+    const std::size_t slash = std::min(rest.find('/'), rest.size());
+    return {rest.substr(0, slash), rest.substr(std::min(slash + 1, rest.size()))};
+  }
+  return {};
+}
+
 std::vector<fs::path> rosPackagePath() {
   std::vector<fs::path> folders;
   const char* variable = std::getenv("ROS_PACKAGE_PATH");
@@ -71,22 +83,22 @@ ResourceFinder::ResourceFinder(const fs::path& urdf, const std::vector<fs::path>
 FoundFile ResourceFinder::find(const std::string& uri) const {
   FoundFile found = findAsWritten(uri);
   const std::string plain = plainUri(uri);
-  if (!found.path.empty() || plain == uri) return found;
-  FoundFile other = findAsWritten(plain);
-  other.searched.insert(other.searched.begin(), found.searched.begin(), found.searched.end());
-  return other;
+  if (found.path.empty() && plain != uri) {
+    FoundFile other = findAsWritten(plain);
+    other.searched.insert(other.searched.begin(), found.searched.begin(), found.searched.end());
+    found = std::move(other);
+  }
+  if (found.path.empty()) findByItsEnd(plain, found);
+  return found;
 }
 
 FoundFile ResourceFinder::findAsWritten(const std::string& uri) const {
-  for (const std::string_view package : {"package://", "model://"}) {
-    if (!uri.starts_with(package)) continue;
-    const std::string rest = uri.substr(package.size());
-    const std::size_t slash = std::min(rest.find('/'), rest.size());
-    return findInPackage(rest.substr(0, slash), rest.substr(std::min(slash + 1, rest.size())));
-  }
-  const std::string file = "file://";
+  if (const auto [package, path] = inPackage(uri); !package.empty())
+    return findInPackage(package, path);
   FoundFile found;
-  const fs::path path = uri.starts_with(file) ? uri.substr(file.size()) : uri;
+  fs::path path = uri;
+  for (const std::string_view file : {"file:", "file://"})
+    if (uri.starts_with(file) && uri.find("/") == 5) path = uri.substr(file.size());
   lookAt(path.is_absolute() ? path : (folder_ / path).lexically_normal(), found);
   return found;
 }
@@ -99,6 +111,31 @@ FoundFile ResourceFinder::findInPackage(const std::string& package, const std::s
     if (lookAt(folder / package / path, found)) return found;
   }
   return found;
+}
+
+/// Whether one of the folders is that of a package, or holds it.
+bool ResourceFinder::knows(const std::string& package) const {
+  std::error_code ignored;
+  return std::any_of(packagePaths_.begin(), packagePaths_.end(), [&](const fs::path& entry) {
+    const fs::path folder = entry.has_filename() ? entry : entry.parent_path();
+    return folder.filename() == package || fs::is_directory(folder / package, ignored);
+  });
+}
+
+void ResourceFinder::findByItsEnd(const std::string& uri, FoundFile& found) const {
+  const auto [package, path] = inPackage(uri);
+  if (package.empty() || knows(package)) return;
+  for (std::string_view end = path; !end.empty();) {
+    for (const fs::path& entry : packagePaths_) {
+      if (!isFile(entry / end)) continue;
+      found.path = (entry / end).lexically_normal();
+      found.package = package;
+      found.folder = entry.has_filename() ? entry : entry.parent_path();
+      return;
+    }
+    const std::size_t slash = end.find('/');
+    end = slash == std::string_view::npos ? std::string_view() : end.substr(slash + 1);
+  }
 }
 
 }  // namespace softgauss::io::detail

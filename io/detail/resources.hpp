@@ -19,6 +19,8 @@ namespace softgauss::io::detail {
 struct FoundFile {
   std::filesystem::path path;         ///< empty if not found
   std::vector<std::string> searched;  ///< paths tried, in order
+  std::string package;                ///< that has no folder, where the file was found by its end
+  std::filesystem::path folder;       ///< in which that end is
 };
 
 class ResourceFinder {
@@ -31,6 +33,10 @@ class ResourceFinder {
  private:
   FoundFile findAsWritten(const std::string& uri) const;
   FoundFile findInPackage(const std::string& package, const std::string& path) const;
+
+  /// Where the longest end of a package's path is a file.
+  void findByItsEnd(const std::string& uri, FoundFile& found) const;
+  bool knows(const std::string& package) const;
 
   std::filesystem::path folder_;                     ///< of the URDF
   std::vector<std::filesystem::path> packagePaths_;  ///< 1. to 3.

@@ -45,7 +45,7 @@ Names allNames() {
 /// Of the program's groups "Scene" and "Simulation".
 Names ofTheProgram() {
   Names names;
-  std::istringstream lines(simulate({"--help"}).out);
+  std::istringstream lines(simulate({"--help-all"}).out);
   std::string line, group;
   const std::regex heading("^([A-Z][a-z]+):?$"), option("^ +--([a-z0-9-]+)");
   for (std::smatch match; std::getline(lines, line);) {

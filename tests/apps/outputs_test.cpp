@@ -206,7 +206,7 @@ TEST(SummaryFile, HasTheKeysOfTheInterfaceAndNoOthers) {
   ASSERT_EQ(j["goals"].size(), 1u) << "damping is no place to be";
   EXPECT_EQ(keysOf(j["goals"][0]),
             (Keys{"name", "unit", "initial_error_m", "final_error_m", "best_error_m", "best_time_s",
-                  "judged_at_s", "reached_within", "reached", "reason"}));
+                  "judged_at_s", "reached_within", "reached", "reason", "held_back_by"}));
 }
 
 TEST(SummaryFile, TellsTheRun) {

@@ -3,6 +3,8 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <regex>
+#include <sstream>
 
 #include "softgauss/engine/model/model.hpp"
 #include "tests/apps/process.hpp"
@@ -11,13 +13,13 @@ namespace softgauss::test {
 namespace {
 
 TEST(Run, HelpAndVersionAreDone) {
-  for (const char* option : {"--help", "--version"}) {
+  for (const char* option : {"--help", "--help-all", "--version"}) {
     const Outcome outcome = simulate({option});
     EXPECT_EQ(outcome.exitCode, 0);
     EXPECT_NE(outcome.out, "");
     EXPECT_EQ(outcome.err, "");
   }
-  const std::string help = simulate({"--help"}).out;
+  const std::string help = simulate({"--help-all"}).out;
   for (const char* option : {"--base",
                              "--base-height",
                              "--ground",
@@ -48,6 +50,24 @@ TEST(Run, HelpAndVersionAreDone) {
                              "--plot",
                              "--version"})
     EXPECT_NE(help.find(option), std::string::npos) << option;
+}
+
+// Five commands, then options that there are, on a screen of 40 lines of 100 characters.
+TEST(Run, HelpFitsAScreenAndBeginsWithExamples) {
+  const std::string help = simulate({"--help"}).out, all = simulate({"--help-all"}).out;
+  std::istringstream lines(help);
+  int count = 0, examples = 0;
+  for (std::string line; std::getline(lines, line); ++count) {
+    EXPECT_LE(line.size(), 100u) << line;
+    if (!line.starts_with("  simulate_gdd ")) continue;
+    ++examples;
+    EXPECT_LT(count, 8) << line;
+  }
+  EXPECT_LE(count, 40);
+  EXPECT_EQ(examples, 5);
+  const std::regex option("--[a-z0-9-]+");
+  for (std::sregex_iterator it(help.begin(), help.end(), option), end; it != end; ++it)
+    EXPECT_TRUE(std::regex_search(all, std::regex(it->str() + "[^a-z0-9-]"))) << it->str();
 }
 
 TEST(Run, EveryRobotOfTheProjectRuns) {

@@ -248,12 +248,14 @@ async function testGoals() {
     page.waitForEvent('download'),
     page.getByRole('button', { name: 'Save as goals.yaml' }).click(),
   ]);
+  // A weight is in the file where somebody has given it.
   const path = join(folder, 'live_task_goals.yaml');
   await file.saveAs(path);
   const lines = readFileSync(path, 'utf8').split('\n').filter((line) => line.startsWith('  - '));
   const kept = goals.filter(({ name, acts }) => acts && /^(reach|damping)/.test(name));
   assert.equal(lines.length, kept.length, lines.join('\n'));
   assert.match(lines[0], /quaternion: .*(start|end): /);
+  kept.forEach((goal, i) => assert.equal(/[{ ]weight: /.test(lines[i]), !goal.weight_default, lines[i]));
   const read = spawnSync(simulator, [join(data, 'robots/picker.urdf'), '--goals', path, '--duration', '0.01', '--quiet']);
   assert.equal(read.status, 0, read.stderr.toString());
   await page.close();

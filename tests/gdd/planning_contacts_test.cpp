@@ -39,7 +39,7 @@ struct PlannedTask {
   }
 
   std::string file;
-  std::unique_ptr<Scene> scene;
+  std::unique_ptr<softgauss::Scene> scene;
   io::PlanTask task;
   Planner planner;
 };

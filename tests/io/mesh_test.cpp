@@ -170,9 +170,73 @@ TEST(Collada, UnitScalesUpAxisDoesNotTurnNodesMoveAndLinesAreLeftOut) {
   }
 }
 
+/// The corner tetrahedron as glTF 2 in a node that moves it by 1 m along x, red glass; its numbers
+/// are in `buffer`, 48 bytes of corners and 24 of indices.
+std::string gltf(const std::string& buffer) {
+  return R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+  "nodes": [{"mesh": 0, "translation": [1, 0, 0]}],
+  "materials": [{"name": "glass", "pbrMetallicRoughness": {"baseColorFactor": [0.8, 0.1, 0.2, 0.5]}}],
+  "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1, "material": 0}]}],
+  "accessors": [
+    {"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 1]},
+    {"bufferView": 1, "componentType": 5123, "count": 12, "type": "SCALAR"}],
+  "bufferViews": [{"buffer": 0, "byteOffset": 0, "byteLength": 48},
+    {"buffer": 0, "byteOffset": 48, "byteLength": 24}],
+  "buffers": [{)" +
+         buffer + R"("byteLength": 72}]})";
+}
+
+std::string gltfNumbers() {
+  const float corners[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+  const std::uint16_t indices[12] = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
+  return std::string(reinterpret_cast<const char*>(corners), sizeof corners) +
+         std::string(reinterpret_cast<const char*>(indices), sizeof indices);
+}
+
+/// One file of both: a header, the JSON, the numbers.
+std::string glb() {
+  std::string json = gltf("");
+  json.resize((json.size() + 3) / 4 * 4, ' ');
+  const std::string numbers = gltfNumbers();
+  std::string bytes;
+  const auto append = [&](std::size_t value) {
+    const auto word = static_cast<std::uint32_t>(value);
+    bytes.append(reinterpret_cast<const char*>(&word), 4);
+  };
+  bytes += "glTF";
+  append(2);
+  append(12 + 8 + json.size() + 8 + numbers.size());
+  append(json.size());
+  bytes += "JSON" + json;
+  append(numbers.size());
+  bytes += std::string("BIN\0", 4) + numbers;
+  return bytes;
+}
+
+// With its numbers beside it and within it; axes stay as they are.
+TEST(Gltf, IsReadWithItsNodesAndColours) {
+  const TempFolder folder;
+  folder.write("t.bin", gltfNumbers());
+  for (const auto& file :
+       {folder.write("t.gltf", gltf("\"uri\": \"t.bin\", ")), folder.write("T.GLB", glb())}) {
+    const Mesh mesh = readMesh(file);
+    ASSERT_EQ(mesh.vertices.size(), 4u) << file;
+    ASSERT_EQ(mesh.triangles.size(), 4u) << file;
+    EXPECT_NEAR(volume(mesh), 1.0 / 6.0, 1e-6) << file;
+    EXPECT_EQ(mesh.vertices[0], Vector3(1, 0, 0)) << file;
+    ASSERT_EQ(mesh.parts.size(), 1u) << file;
+    EXPECT_TRUE(mesh.parts[0].rgba.isApprox(Eigen::Vector4d(0.8, 0.1, 0.2, 0.5), 1e-6))
+        << mesh.parts[0].rgba.transpose();
+  }
+  EXPECT_NE(errorOfMesh("a.gltf", gltf("\"uri\": \"none.bin\", ")).find("a.gltf: mesh: "),
+            std::string::npos);
+  EXPECT_NE(errorOfMesh("a.glb", "glTF").find("a.glb: mesh: "), std::string::npos);
+}
+
 TEST(Mesh, ThatCannotBeUsedIsNamed) {
   EXPECT_NE(errorOfMesh("a.stl", "nonsense").find("a.stl: mesh: "), std::string::npos);
-  EXPECT_NE(errorOfMesh("a.step", "").find("expected .stl, .obj or .dae"), std::string::npos);
+  EXPECT_NE(errorOfMesh("a.step", "").find("expected .stl, .obj, .dae, .gltf or .glb"),
+            std::string::npos);
   EXPECT_NE(errorOfMesh("a.obj", "v 0 0 0\nv 1 0 0\nl 1 2\n").find("a.obj: mesh: "),
             std::string::npos);
   EXPECT_NE(errorOfMesh("a.obj", "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n").find("a.obj: mesh: "),

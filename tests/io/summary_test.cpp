@@ -105,7 +105,7 @@ TEST(Summary, HasTheKeysOfTheInterfaceInOrder) {
     EXPECT_EQ(keysOf(json[key]), (Keys{"p50", "p95", "max"})) << key;
   EXPECT_EQ(keysOf(json["goals"][0]),
             (Keys{"name", "unit", "initial_error_m", "final_error_m", "best_error_m", "best_time_s",
-                  "judged_at_s", "reached_within", "reached", "reason"}));
+                  "judged_at_s", "reached_within", "reached", "reason", "held_back_by"}));
   EXPECT_EQ(keysOf(json["origin"]),
             (Keys{"command_line", "commit", "compiler", "processor", "files"}));
   EXPECT_EQ(keysOf(json["energy_J"]), (Keys{"initial", "final"}));

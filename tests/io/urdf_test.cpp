@@ -225,6 +225,34 @@ TEST(UrdfMesh, MayBeNamedAsAModelByPercentsAndByBackslashes) {
   EXPECT_THROW(found("a%"), ModelError);
 }
 
+// A clone in a folder of another name: the longest end of the path that is a file counts, and one
+// line says so. A package that is there is not left for another's files.
+TEST(UrdfMesh, OfAPackageWithoutAFolderIsFoundByTheEndOfItsPath) {
+  const TempFolder folder;
+  folder.write("clone-of-it/visual/t.stl", kTriangle);
+  folder.write("clone-of-it/meshes/visual/t.stl", kTriangle);
+  folder.write("clone-of-it/urdf/t.stl", kTriangle);
+  const auto loadMesh = [&](const std::string& uri) {
+    return loadUrdf(folder.write(
+        "clone-of-it/urdf/r.urdf",
+        with(kSampleUrdf, "<box size=\"0.2 0.4 0.6\"/>", "<mesh filename=\"" + uri + "\"/>")));
+  };
+  const auto file = [&](const Model& m) { return m.geometries[0].shape.mesh->file; };
+  const std::string clone = folder.path() / "clone-of-it";
+  const Model m = loadMesh("package://my_robot/meshes/visual/t.stl");
+  EXPECT_EQ(file(m), clone + "/meshes/visual/t.stl");
+  EXPECT_EQ(std::count(m.warnings.begin(), m.warnings.end(),
+                       "package 'my_robot' is in none of the folders that are looked through: its "
+                       "files are taken from " +
+                           clone + ", by the ends of their paths"),
+            1);
+  EXPECT_EQ(file(loadMesh("package://my_robot/assets/visual/t.stl")), clone + "/visual/t.stl");
+  EXPECT_EQ(file(loadMesh("package://my_robot/assets%2Fvisual/t.stl")), clone + "/visual/t.stl");
+  EXPECT_EQ(file(loadMesh("file:" + clone + "/urdf/t.stl")), clone + "/urdf/t.stl");
+  EXPECT_THROW(loadMesh("package://clone-of-it/assets/t.stl"), ModelError);
+  EXPECT_THROW(loadMesh("package://my_robot/meshes/u.stl"), ModelError);
+}
+
 TEST(UrdfMesh, PackagePathsAreSoughtInOrder) {
   const TempFolder folder;
   folder.write("a/pkg/t.stl", kTriangle);

@@ -103,6 +103,10 @@ TEST(LiveRun, LetsGoWhatAPageHoldsThatIsGone) {
     return false;
   };
   EXPECT_TRUE(isOn("drag 1"));
+  for (const json& goal : status["goals"])
+    if (goal["name"] == "drag 1") {
+      EXPECT_EQ(goal["weight_default"], true) << goal;
+    }
   EXPECT_FALSE(isOn("drag 2"));
   next.until([&](const json& s) { return s["steps"] > status["steps"].get<long>() + 50; });
   EXPECT_EQ(process.stop(), 130);
@@ -203,6 +207,7 @@ TEST(LiveRun, DraggedPointsComeByMinimumJerk) {
   };
   EXPECT_EQ(drag(held)["duration"], 0.6);
   EXPECT_EQ(drag(held)["weight_unit"], "kg");
+  EXPECT_FALSE(drag(held).contains("weight_default"));
   // Another place while it is under way: it comes there all the same. The posture holds back a
   // hundredth of what it would at 1e4 kg, 33 mm.
   EXPECT_EQ(page.ask("\"move\": {\"target\": [0.45, 0.25, 0.5]}"), "");

@@ -2,8 +2,9 @@
 // The goals in force as a file that simulate_gdd --goals reads. The others stand in it as comments.
 
 const list = (vector) => `[${vector.join(', ')}]`;
+// A weight that nobody has given is left out: the goal then weighs beside others as it does here.
 const numbers = (goal, ...keys) =>
-  keys.filter((key) => key in goal).map((key) => `${key}: ${goal[key]}`);
+  keys.filter((key) => key in goal && !goal[`${key}_default`]).map((key) => `${key}: ${goal[key]}`);
 
 function jerkOf({ duration, jerk_start: start }) {
   if (!duration) return [];
