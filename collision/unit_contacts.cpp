@@ -65,8 +65,8 @@ std::unique_ptr<ContactSource> UnitContacts::within(const SubModel& island) {
   return std::make_unique<SceneContacts>(island.model, std::move(pairs), meshes_);
 }
 
-void UnitContacts::place(int tree, std::span<const Transform> X_WB) noexcept {
-  neighbours_->place(tree, X_WB);
+void UnitContacts::place(int tree, const TreeMotionView& bodies) noexcept {
+  neighbours_->place(tree, bodies);
 }
 
 void UnitContacts::findTouching(const std::vector<int>& awake, const std::vector<int>& groupOf,

@@ -24,7 +24,7 @@ class UnitContacts final : public IslandContacts {
   ~UnitContacts() override;
 
   std::unique_ptr<ContactSource> within(const SubModel& island) override;
-  void place(int tree, std::span<const Transform> X_WB) noexcept override;
+  void place(int tree, const TreeMotionView& bodies) noexcept override;
   void findTouching(const std::vector<int>& awake, const std::vector<int>& groupOf,
                     std::vector<std::pair<int, int>>& touching) noexcept override;
 

@@ -31,7 +31,7 @@ struct AugmentedLagrangianOptions {
   double penalty = 1e5;  ///< ρᵢ = penalty · 1/(1/(M⁻¹)ᵢᵢ + added), M⁻¹ at q0 [-]
   double gradientTolerance = 1e-8;    ///< scaled ∇Φ, see Report::stationarity
   double violationTolerance = 1e-10;  ///< distance of y from its limits, as force, over max(1, |c|)
-  int maxIterations = 50;
+  int maxIterations = 150;
   int maxDualUpdates = 100;
 };
 

@@ -115,7 +115,6 @@ Summary::Summary(const Model& model)
       impedanceRatio_(model.options.impedanceRatio),
       exactDiagonal_(model.options.exactDiagonal),
       noSlip_(model.options.noSlip),
-      nearRigid_(model.options.hasRowLaw()),
       stepDoubling_(model.options.stepDoubling),
       tolerance_(model.options.tolerance) {
   for (std::size_t m = 0; m < std::size(kMechanismNames); ++m) {
@@ -208,7 +207,6 @@ std::string Summary::json() const {
         {"impedance_ratio", impedanceRatio_},
         {"exact_diagonal", exactDiagonal_},
         {"no_slip", noSlip_},
-        {"near_rigid", nearRigid_},
         {"without", without_},
         {"gdd_solver", gddSolver},
         {"control_cost", controlCost}}},

@@ -256,7 +256,7 @@ class Summary {
   double timestep_ = 0.0;
   std::string cone_;
   double impedanceRatio_ = 1.0;
-  bool exactDiagonal_ = false, noSlip_ = false, nearRigid_ = false, stepDoubling_ = false;
+  bool exactDiagonal_ = false, noSlip_ = false, stepDoubling_ = false;
   std::vector<std::string> without_;          ///< mechanisms left out
   std::vector<std::size_t> mechanismsInUse_;  ///< in the order of Mechanism
   double tolerance_ = 0.0;

@@ -134,7 +134,6 @@ class Simulation:
         compatibility: Literal["none", "mujoco"] = ...,
         step_doubling: bool = ...,
         no_slip: bool = ...,
-        near_rigid: bool = ...,
         exact_diagonal: bool = ...,
         effects: Literal["auto", "none"] | Sequence[str] = ...,
         without: Sequence[str] = ...,

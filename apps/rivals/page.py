@@ -151,7 +151,7 @@ class Page:
 
     WORDS = {"held": "held", "missed": RED + "missed", "diverged": RED + "diverged", "late": RED + "too slow", "cannot": "cannot",
              "refused": "refused", None: "–"}
-    MATRIX = ("ours", "ours, near-rigid", "MuJoCo", "MuJoCo (npm)", "DART", "Bullet", "ODE", "ODE, quick", "Simbody", "Rapier", "Jolt")
+    MATRIX = ("ours", "ours, elliptic", "MuJoCo", "MuJoCo (npm)", "DART", "Bullet", "ODE", "ODE, quick", "Simbody", "Rapier", "Jolt")
 
     def matrix_entries(self):
         labels = {e.label: e for e in plan.ENTRIES if e.key in {k[1] for k in self.runs}}

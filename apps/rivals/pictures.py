@@ -11,7 +11,7 @@ import plan
 import verdicts
 
 matplotlib.rcParams.update({"font.size": 9, "svg.hashsalt": "softgauss", "svg.fonttype": "none", "axes.spines.top": False, "axes.spines.right": False})
-INK = {"ours": "#0b6e75", "ours, near-rigid": "#e07b39", "ours, RK4": "#5fb3b3", "ours, Dormand-Prince 1e-5": "#e07b39"}
+INK = {"ours": "#0b6e75", "ours, elliptic": "#e07b39", "ours, RK4": "#5fb3b3", "ours, Dormand-Prince 1e-5": "#e07b39"}
 COLOURS = {"held": "#7fbf8e", "missed": "#d9534f", "diverged": "#8c2d2a", "late": "#b0763f", "cannot": "#d8d8d8",
            "refused": "#ffffff", None: "#ffffff"}
 # At most six curves a picture, each labelled at its end.
@@ -77,7 +77,7 @@ def matrix(page, path):
 
 def thrown(page, path):
     """Where boxes stop that are thrown at 2 m/s, over the direction."""
-    labels = ("ours", "ours, near-rigid", "MuJoCo", "DART", "Bullet", "ODE")
+    labels = ("ours", "ours, elliptic", "MuJoCo", "DART", "Bullet", "ODE")
     entries = [e for e in page.present("friction") if e.label in labels]
     figure, axes = plt.subplots(figsize=(6.0, 3.2))
     ends = []

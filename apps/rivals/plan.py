@@ -36,7 +36,7 @@ MOTION = ("smooth", "drift")
 
 ENTRIES = (
     Entry("ours", "ours"),
-    Entry("ours", "ours, near-rigid", ("near_rigid=1",), "best", "docs/guide/contact.md", CONTACT),
+    Entry("ours", "ours, elliptic", ("cone=elliptic",), "best", "docs/guide/contact.md", CONTACT),
     Entry("ours", "ours, RK4", ("integrator=runge-kutta-4",), "best", "docs/guide/integrators.md", MOTION),
     Entry("ours", "ours, Dormand-Prince 1e-5", ("integrator=dormand-prince", "integration_tolerance=1e-5"), "best",
           "docs/guide/integrators.md", MOTION),

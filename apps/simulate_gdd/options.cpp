@@ -191,11 +191,6 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
                "friction without creep, by a second solve bounded by the first; inverse\ndynamics "
                "then differ from the control by the summary's physics_violation")
       ->group(simulation);
-  app.add_flag(
-         "--near-rigid", options.nearRigid,
-         "contacts, limits and joint friction without a softness of their own are\nnear-rigid "
-         "and begin before they touch; not yet for piles (docs/limits.md)")
-      ->group(simulation);
   app.add_option("--without", without,
                  "mechanisms of the step to leave out, by name, for "
                  "comparisons\n(docs/stability.md has a table of them)")

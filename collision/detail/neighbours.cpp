@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "softgauss/collision/tunnelling.hpp"
 #include "softgauss/engine/constraints/contact.hpp"
 #include "softgauss/engine/core/index.hpp"
 
@@ -11,8 +12,9 @@ Neighbours::Neighbours(const Model& model, const Units& units, PreparedMeshes& m
     : set_(model, meshes),
       units_(units),
       parts_(idx(units.size())),
-      X_WB_(model.trees.size()),
+      bodies_(model.trees.size()),
       centre_(model.geometries.size(), Vector3::Zero()),
+      way_(model.geometries.size(), 0.0),
       X_WG_(model.geometries.size()),
       posed_(idx(units.size()), 0),
       box_(idx(units.size())),
@@ -27,14 +29,24 @@ Neighbours::Neighbours(const Model& model, const Units& units, PreparedMeshes& m
     parts_[idx(units.ofTree[idx(tree)])].push_back(
         {g, tree, geometry.body - model.trees[idx(tree)].rootBody,
          geometry.X_BG * set_.centreInG[idx(g)],
-         set_.isPlane(g) ? kInfinity : set_.radius[idx(g)] + marginShares[idx(g)]});
+         set_.isPlane(g) ? kInfinity : set_.radius[idx(g)] + marginShares[idx(g)],
+         extentOf(geometry.shape, set_.hull[idx(g)].get(), set_.surface[idx(g)].get()).lever});
   }
 }
 
-void Neighbours::place(int tree, std::span<const Transform> X_WB) noexcept {
-  X_WB_[idx(tree)] = X_WB;
+void Neighbours::place(int tree, const TreeMotionView& bodies) noexcept {
+  bodies_[idx(tree)] = bodies;
   const int unit = units_.ofTree[idx(tree)];
   if (moved_.empty() || moved_.back() != unit) moved_.push_back(unit);
+}
+
+double Neighbours::wayOf(const Part& part, const Vector3& centre) const {
+  const Options& options = set_.model.options;
+  if (!options.hasRowLaw()) return 0.0;
+  const TreeMotionView& tree = bodies_[idx(part.tree)];
+  const Motion& V = tree.V[idx(part.bodyInTree)];
+  const Vector3 v = V.linear + V.angular.cross(centre - *tree.p_WO);
+  return options.timestep * (v.norm() + V.angular.norm() * part.lever);
 }
 
 void Neighbours::measure(int unit) {
@@ -43,7 +55,9 @@ void Neighbours::measure(int unit) {
   for (const Part& part : parts_[idx(unit)]) {
     const Vector3 centre = pose(part) * part.centreInB;
     centre_[idx(part.geometry)] = centre;
-    box.add(centre, part.radius);
+    const double way = wayOf(part, centre);
+    way_[idx(part.geometry)] = way;
+    box.add(centre, part.radius + way);
   }
   posed_[idx(unit)] = 0;
 }
@@ -91,12 +105,13 @@ const std::vector<Neighbours::Row>& Neighbours::rowsOf(int i, int j) {
 bool Neighbours::touch(int i, int j) {
   for (const Row& row : rowsOf(i, j)) {
     const Vector3 &a = centre_[idx(row.a)], &b = centre_[idx(row.b)];
-    if (!row.plane && !((b - a).squaredNorm() < row.reach * row.reach)) continue;
+    const double way = way_[idx(row.a)] + way_[idx(row.b)], reach = row.reach + way;
+    if (!row.plane && !((b - a).squaredNorm() < reach * reach)) continue;
     poseParts(i), poseParts(j);
     const Transform &X_WA = X_WG_[idx(row.a)], &X_WB = X_WG_[idx(row.b)];
-    if (row.plane && !(X_WA.R.col(2).dot(b - X_WA.p) < row.reach)) continue;
+    if (row.plane && !(X_WA.R.col(2).dot(b - X_WA.p) < reach)) continue;
     // A pair whose test fails says nothing; within an island it is counted.
-    if (set_.test(row.a, X_WA, row.b, X_WB, row.margin, test_) && test_.found.count > 0)
+    if (set_.test(row.a, X_WA, row.b, X_WB, row.margin + way, test_) && test_.found.count > 0)
       return true;
   }
   return false;

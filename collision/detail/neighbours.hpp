@@ -12,6 +12,7 @@
 #include "softgauss/collision/detail/box.hpp"
 #include "softgauss/collision/detail/geometry_set.hpp"
 #include "softgauss/collision/filter.hpp"
+#include "softgauss/engine/islands/island_contacts.hpp"
 #include "softgauss/engine/islands/units.hpp"
 
 namespace softgauss::collision::detail {
@@ -20,7 +21,7 @@ class Neighbours {
  public:
   Neighbours(const Model& model, const Units& units, PreparedMeshes& meshes);
 
-  void place(int tree, std::span<const Transform> X_WB) noexcept;
+  void place(int tree, const TreeMotionView& bodies) noexcept;
   /// As IslandContacts::findTouching().
   void findTouching(const std::vector<int>& awake, const std::vector<int>& groupOf,
                     std::vector<std::pair<int, int>>& touching) noexcept;
@@ -34,6 +35,7 @@ class Neighbours {
     int bodyInTree = 0;
     Vector3 centreInB = Vector3::Zero();  ///< of the bounding sphere [m]
     double radius = 0.0;                  ///< of it, with the part of the margin that it brings [m]
+    double lever = 0.0;                   ///< of its points about the centre [m]
   };
   struct Row {
     int a = 0, b = 0;     ///< geometries, as in GeometryPair
@@ -44,9 +46,12 @@ class Neighbours {
   using UnitPair = std::pair<int, int>;
 
   const Transform& pose(const Part& part) const {
-    return X_WB_[static_cast<std::size_t>(part.tree)][static_cast<std::size_t>(part.bodyInTree)];
+    return bodies_[static_cast<std::size_t>(part.tree)]
+        .X_WB[static_cast<std::size_t>(part.bodyInTree)];
   }
-  /// Centres and box of a unit, now.
+  /// How far its points go within the step, where rows begin before they touch (3.16) [m].
+  double wayOf(const Part& part, const Vector3& centre) const;
+  /// Centres, ways and box of a unit, now.
   void measure(int unit);
   /// Poses of its geometries, unless they are known.
   void poseParts(int unit);
@@ -57,16 +62,17 @@ class Neighbours {
 
   const GeometrySet set_;
   const Units& units_;
-  std::vector<std::vector<Part>> parts_;          ///< (units)
-  std::vector<std::span<const Transform>> X_WB_;  ///< (trees)
-  std::vector<Vector3> centre_;                   ///< (geometries) of bounding spheres, world
-  std::vector<Transform> X_WG_;                   ///< (geometries)
-  std::vector<std::uint8_t> posed_;               ///< (units) X_WG_ is that of now
-  std::vector<Box> box_, fat_;                    ///< (units) in the world
-  std::vector<std::vector<int>> near_;            ///< (units) whose fat boxes overlap its own
-  std::map<UnitPair, std::vector<Row>> rows_;     ///< of pairs that have been near
-  std::vector<int> moved_;                        ///< placed since the last findTouching()
-  std::vector<std::uint8_t> awake_;               ///< (units) scratch
+  std::vector<std::vector<Part>> parts_;       ///< (units)
+  std::vector<TreeMotionView> bodies_;         ///< (trees)
+  std::vector<Vector3> centre_;                ///< (geometries) of bounding spheres, world
+  std::vector<double> way_;                    ///< (geometries) wayOf() [m]
+  std::vector<Transform> X_WG_;                ///< (geometries)
+  std::vector<std::uint8_t> posed_;            ///< (units) X_WG_ is that of now
+  std::vector<Box> box_, fat_;                 ///< (units) in the world
+  std::vector<std::vector<int>> near_;         ///< (units) whose fat boxes overlap its own
+  std::map<UnitPair, std::vector<Row>> rows_;  ///< of pairs that have been near
+  std::vector<int> moved_;                     ///< placed since the last findTouching()
+  std::vector<std::uint8_t> awake_;            ///< (units) scratch
   PairTest test_;
   std::int64_t searches_ = 0;
 };

@@ -53,7 +53,7 @@ struct SceneContacts::Scene {
   bool moved() const;
   void findNear();
   void sweep();
-  /// How far each shape goes in a step, where rows begin before they touch (3.17).
+  /// How far each shape goes in a step, where rows begin before they touch (3.16).
   void setWays(const Kinematics& kinematics, double timestep);
   /// By how much nearer a pair may be at the end of the step [m].
   double wayOf(const Row& row) const {

@@ -28,16 +28,6 @@ struct Assembly {
   bool usesStiction(int bodyA, int bodyB = 0) const {
     return model.options.uses(Mechanism::stiction) && !isControlled(bodyA, bodyB);
   }
-  /// Whether a row may take a velocity sooner than its damping does: goals have to know what is
-  /// answered within the step.
-  bool mayCapDampingTime(int bodyA, int bodyB = 0) const {
-    return model.options.uses(Mechanism::contactDampingTime) &&
-           model.options.integrator == Integrator::leapfrog && !isControlled(bodyA, bodyB);
-  }
-  /// The parts of a step are short for what the damping of contacts and limits is made for.
-  bool isSubstep(int bodyA, int bodyB = 0) const {
-    return model.options.outerTimestep > 0.0 && mayCapDampingTime(bodyA, bodyB);
-  }
   /// How far v lies behind q [s]: half a step where positions drift to mid-step first. A distance
   /// that changes by J v there has changed by J v − lag J̇ v where the step began (4.5).
   double velocityLag() const {

@@ -154,20 +154,6 @@ double stickingShare(const Options& options, const Touch& touch, double load,
          fallsOff(alongTangents.norm(), kHeld * touch.mu() * load);
 }
 
-/// The longest time over which a contact takes the velocity of its bodies [s] (3.15): a part of a
-/// step; else as long as its normal and levers hold, turning by Options::substepAngle, and so long
-/// that what it carries gives it no more mass than it has without, which is 1/b over the load's
-/// share.
-double horizonOf(const Assembly& in, const Contact& contact, const Touch& touch, double damping) {
-  const Options& options = in.model.options;
-  if (options.hasRowLaw() || !in.mayCapDampingTime(contact.bodyA, contact.bodyB)) return kInfinity;
-  if (in.isSubstep(contact.bodyA, contact.bodyB)) return options.timestep;
-  const double rate = contactRotationRate(in.model, in.kinematics, contact);
-  double longest = rate > 0.0 ? options.substepAngle / rate : kInfinity;
-  if (touch.supportsOthers) longest = std::min(longest, 1.0 / (damping * touch.loadStiffening));
-  return std::max(options.timestep, longest);
-}
-
 }  // namespace
 
 Material mixMaterials(const Material& a, const Material& b) {
@@ -242,9 +228,7 @@ std::optional<Touch> touchAt(const Assembly& in, int i) {
   touch.softness =
       contactSoftness(material, touch.frictionDim, touch.distance, weight, model.options);
   if (apart) touch.softness = beginning(touch.softness, model.options);
-  if (!model.options.hasRowLaw() && model.options.uses(Mechanism::referenceClamp) &&
-      !material.spring && (isSprung(model, c.bodyA) || isSprung(model, c.bodyB)))
-    touch.softness = withoutVirtualMass(touch.softness, model.options.rowTimestep());
+  in.count(Mechanism::nearRigid, model.options.hasRowLaw() && !material.spring);
   const bool bounces = material.spring && !surface.spring;
   in.count(Mechanism::referenceClamp, bounces || touch.softness.bounded);
   if (touch.frictionDim > 0) {
@@ -313,22 +297,16 @@ Softness ContactBlocks::soften(const Assembly& in, const Touch& touch,
                                const FrameVector& velocity) {
   const Softness& soft = touch.softness;
   const Contact& contact = in.contacts.contacts[contactsWithRows_.back().contact];
-  const auto held = [&](const Softness& s) {
-    if (touch.spring) return s;
-    const double horizon = horizonOf(in, contact, touch, s.damping);
-    in.count(Mechanism::contactDampingTime, s.damping * horizon < 1.0);
-    return withDampingTime(s, horizon);
-  };
   if (!touch.supportsOthers || touch.frictionDim == 0 ||
       !in.usesStiction(contact.bodyA, contact.bodyB))
-    return held(soft);
-  if (!(soft.damping * soft.damping >= 4.0 * soft.stiffness)) return held(soft);  // it bounces
+    return soft;
+  if (!(soft.damping * soft.damping >= 4.0 * soft.stiffness)) return soft;  // it bounces
   ContactSpeeds speeds{slipSpeed(touch, velocity), std::abs(velocity[0])};
   speeds.weight = creepUnderWeight(in.model.options, touch);
   speeds.creep = speeds.weight - soft.stiffness * touch.distance / soft.damping;
   contactsWithRows_.back().regularisationScale = speeds.regularisationScale();
   in.count(Mechanism::stiction, contactsWithRows_.back().regularisationScale < 1.0);
-  return held(stiffened(soft, contactsWithRows_.back().regularisationScale));
+  return stiffened(soft, contactsWithRows_.back().regularisationScale);
 }
 
 Slip ContactBlocks::slipOf(const Assembly& in, const Touch& touch, const Softness& soft,

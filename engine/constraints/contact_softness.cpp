@@ -52,6 +52,15 @@ std::optional<ReferenceSpring> underdampedReference(const Impedance& p, const Op
   return ReferenceSpring{K, B};
 }
 
+std::optional<Softness> bouncingSoftness(const Impedance& p, double inverseInertia,
+                                         const Options& options) {
+  const std::optional<ReferenceSpring> reference = underdampedReference(p, options);
+  if (!reference) return std::nullopt;
+  const double t = timeToStepEnd(options), K = reference->stiffness;
+  const double B = std::max(0.0, reference->damping - t * K);
+  return implicitSpringDamper(K / inverseInertia, B / inverseInertia, t, options);
+}
+
 Material effectiveMaterial(const Material& pair, double mass, const Options& options) {
   if (pair.spring || !options.uses(Mechanism::referenceClamp) || !(mass > 0.0)) return pair;
   const std::optional<ReferenceSpring> reference = underdampedReference(pair.impedance, options);
@@ -85,7 +94,9 @@ Softness contactSoftness(const Material& pair, int frictionDim, double distance,
   }
   if (options.hasRowLaw()) {
     const Softness s = rowLaw(pair.impedance, distance, weight, options);
-    return edges ? s.hardened(options.impedanceRatio / (2.0 * frictionDim)) : s;
+    return edges ? edgeOf(s, pair.impedance, frictionDim, pair.slidingFriction,
+                          options.impedanceRatio)
+                 : s;
   }
   const double mu = edges ? pair.slidingFriction : 0.0;
   Softness s = softnessAt(pair.impedance, distance, weight * (1.0 + mu * mu), options);
@@ -96,27 +107,6 @@ Softness contactSoftness(const Material& pair, int frictionDim, double distance,
     scale *= 2.0 / (mu * mu * (1.0 + mu * mu));
   s.R *= scale;
   s.perInertia *= scale;
-  return s;
-}
-
-bool isSprung(const Model& model, int body) {
-  const int t = model.bodies[body].tree;
-  if (t < 0 || !model.options.effects.has(Effect::spring)) return false;
-  const auto first = model.dofs.begin() + model.trees[t].firstDof;
-  return std::any_of(first, model.dofs.begin() + model.trees[t].dofEnd,
-                     [](const Dof& dof) { return dof.stiffness != 0.0; });
-}
-
-Softness withoutVirtualMass(Softness s, double timestep) {
-  constexpr double kSomeMass = 1e-6;  // of a row without spring and damper
-  const double mass = timestep * std::max(s.damping, timestep * s.stiffness);
-  if (!(mass < 1.0)) return s;
-  const double less = 1.0 / std::max(mass, kSomeMass);
-  s.bounded = true;
-  s.R *= less;
-  s.perInertia *= less;
-  s.stiffness *= less;
-  s.damping *= less;
   return s;
 }
 

@@ -13,14 +13,6 @@
 /// What bounces, a reference of an impedance that is at most half damped, is such a spring too, of
 /// the mass that the two trees have by themselves (3.11): a reference pushes whatever mass is
 /// behind it, so that a light body that is pressed in as it bounces would throw up a heavy one.
-///
-/// The force of a reference, f = −D (y + b ẏ + k d r), is that of a spring D k d, a damper D b, and
-/// a mass D that moves with the contact while it lasts: what comes in with the speed ẏ is given
-/// ½ D ẏ². The damper takes it, where nothing else does. A joint's spring does: the foot of a
-/// sprung leg comes in alone, and is then pushed out under the load that the spring has come to. So
-/// rows that come and go on trees with sprung joints have the least mass that the step can follow,
-///   (R, k d, b) ← (R, k d, b)/μ,   μ = h max(b, h k d) < 1                             (3.7)
-/// which is the same spring and damper, with the mass μ D.
 
 #include <optional>
 
@@ -49,6 +41,10 @@ double reducedMass(const Model& model, int bodyA, int bodyB);
 /// else nothing.
 std::optional<ReferenceSpring> underdampedReference(const Impedance& p, const Options& options);
 
+/// The row (3.14) of that spring on what has the inverse inertia A.
+std::optional<Softness> bouncingSoftness(const Impedance& p, double inverseInertia,
+                                         const Options& options);
+
 /// What a step takes for the surface of a pair of this reduced mass [kg]: itself or, where it
 /// bounces, its spring (3.11).
 Material effectiveMaterial(const Material& pair, double mass, const Options& options);
@@ -62,12 +58,6 @@ int frictionDim(const Material& pair, const EffectSet& effects);
 /// measured from the margin, `weight` is w_A + w_B [1/kg].
 Softness contactSoftness(const Material& pair, int frictionDim, double distance, double weight,
                          const Options& options);
-
-/// Whether a joint that moves the tree of a body has a spring.
-bool isSprung(const Model& model, int body);
-
-/// The row with the same spring and damper, and the least mass (3.7).
-Softness withoutVirtualMass(Softness s, double timestep);
 
 /// One contact that holds still under a load along its normal.
 struct ContactAtRest {

@@ -31,11 +31,10 @@ void DryFriction::assemble(const Assembly& in) {
       const Dof& dof = model.dofs[i];
       if (dof.dryFriction == 0.0) continue;
       const double rate = in.state.v[i];
-      Softness soft =
-          model.options.hasRowLaw()
-              ? implicitDamper(kNearRigid / model.options.timestep, in.weights.dof[i],
-                               model.options)
-              : softnessAt(dof.frictionImpedance, 0.0, in.weights.dof[i], model.options);
+      const double A = in.weights.dof[i];
+      Softness soft = model.options.hasRowLaw()
+                          ? frictionLaw(dof.frictionImpedance, A, model.options)
+                          : softnessAt(dof.frictionImpedance, 0.0, A, model.options);
       if (in.usesStiction(dof.body)) harden(soft, std::abs(rate), dof.dryFriction);
       dof_.push_back(i);
       reference.push_back(soft.referenceAcceleration(rate, 0.0));

@@ -18,11 +18,8 @@ Softness equalitySoftness(const Impedance& p, double distance, double inverseIne
                           const Options& options) {
   const Softness s = softnessAt(p, distance, inverseInertia, options);
   if (!holdsAtStepsEnd(options)) return s;
-  const std::optional<ReferenceSpring> reference = underdampedReference(p, options);
-  const double rest = timeToStepEnd(options);
-  if (!reference) return implicitSpringDamper(s, rest, options);
-  const double K = reference->stiffness, B = std::max(0.0, reference->damping - rest * K);
-  return implicitSpringDamper(K / inverseInertia, B / inverseInertia, rest, options);
+  if (const auto bounces = bouncingSoftness(p, inverseInertia, options)) return *bounces;
+  return implicitSpringDamper(s, timeToStepEnd(options), options);
 }
 
 Softness equalitySoftness(const Assembly& in, const Impedance& p, double distance,

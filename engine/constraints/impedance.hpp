@@ -172,13 +172,4 @@ inline Softness implicitSpringDamper(const Softness& s, double t, const Options&
   return atEnd;
 }
 
-/// The row with the same spring K = k d/R and damper B = b/R that takes its velocity within
-/// `horizon` T [s], f = −K r − B (ẋ + T ẍ), where 1/b is longer: its mass is D = T B in place of
-/// B/b (3.15).
-inline Softness withDampingTime(const Softness& s, double horizon) {
-  if (!(s.damping * horizon < 1.0)) return s;
-  const double less = s.damping * horizon;  // D of the row over D of s
-  return {s.R / less, s.perInertia / less, s.stiffness / less, 1.0 / horizon, s.bounded};
-}
-
 }  // namespace softgauss

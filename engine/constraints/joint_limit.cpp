@@ -23,36 +23,24 @@ double borneInertia(const Assembly& in, int body) {
   return inertia;
 }
 
-/// Harder where the joint carries far more than it feels (5.4). Of what is sprung the springs
-/// press and not the inertia, and a harder row has more mass to give them (3.7).
+/// Harder where the joint carries far more than it feels (5.4).
 Softness limitSoftness(const Assembly& in, const JointRange& range, double r) {
   constexpr double kOfCarried = 0.2;
   const Options& options = in.model.options;
+  const Impedance& p = range.impedance;
   const double weight = in.weights.dof[in.model.bodies[range.body].v];
-  if (options.hasRowLaw()) {
-    if (const auto spring = underdampedReference(range.impedance, options)) {
-      const double t = timeToStepEnd(options), K = spring->stiffness / weight;
-      return implicitSpringDamper(K, std::max(0.0, spring->damping / weight - t * K), t, options);
-    }
-    const double A = options.uses(Mechanism::supportedMass)
-                         ? cappedInverseMass(weight, kOfCarried * borneInertia(in, range.body))
-                         : weight;
-    in.count(Mechanism::supportedMass, A < weight);
-    return r >= 0.0 ? beginning(rowLaw(range.impedance, 0.0, A, options), options)
-                    : rowLaw(range.impedance, r, A, options);
-  }
-  const auto softness = [&](double A) { return softnessAt(range.impedance, r, A, options); };
-  Softness soft = softness(weight);
-  if (isSprung(in.model, range.body)) {
-    if (options.uses(Mechanism::referenceClamp))
-      soft = withoutVirtualMass(soft, options.rowTimestep());
-  } else if (options.uses(Mechanism::supportedMass)) {
-    const double loaded = cappedInverseMass(weight, kOfCarried * borneInertia(in, range.body));
-    soft = softness(loaded);
-    in.count(Mechanism::supportedMass, loaded < weight);
-  }
+  if (options.hasRowLaw())
+    if (const auto bounces = bouncingSoftness(p, weight, options)) return *bounces;
+  const double A = options.uses(Mechanism::supportedMass)
+                       ? cappedInverseMass(weight, kOfCarried * borneInertia(in, range.body))
+                       : weight;
+  in.count(Mechanism::supportedMass, A < weight);
+  in.count(Mechanism::nearRigid, options.hasRowLaw());
+  if (options.hasRowLaw())
+    return r < 0.0 ? rowLaw(p, r, A, options) : beginning(rowLaw(p, 0.0, A, options), options);
+  const Softness soft = softnessAt(p, r, A, options);
   in.count(Mechanism::referenceClamp, soft.bounded);
-  return in.isSubstep(range.body) ? implicitSpringDamper(soft, 0.0, options) : soft;
+  return soft;
 }
 
 }  // namespace

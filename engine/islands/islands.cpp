@@ -131,9 +131,10 @@ void Islands::place(const Island& island) {
   if (!contacts_) return;
   for (std::size_t t = 0; t < island.part.trees.size(); ++t) {
     const Tree& tree = island.part.model.trees[t];
-    contacts_->place(island.part.trees[t],
-                     std::span(island.data.kinematics.X_WB)
-                         .subspan(idx(tree.rootBody), idx(tree.bodyEnd - tree.rootBody)));
+    const Kinematics& k = island.data.kinematics;
+    const auto from = idx(tree.rootBody), count = idx(tree.bodyEnd - tree.rootBody);
+    contacts_->place(island.part.trees[t], {std::span(k.X_WB).subspan(from, count),
+                                            std::span(k.V).subspan(from, count), &k.p_WO[t]});
   }
 }
 

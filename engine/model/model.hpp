@@ -164,12 +164,9 @@ struct Options {
   double substepAngle = 0.1;
   /// h of the step that this one is a part of, whose rows and stiff springs it keeps; 0: of none.
   double outerTimestep = 0.0;
-  /// softgauss's is beyond MuJoCo's by (5.1), (5.6), (4.9), (5.7), (5.8), (3.5), (3.11), and the
-  /// curvature of couplings (4.6).
+  /// softgauss's is beyond MuJoCo's by (3.15), (3.5), (3.11), (4.9), (5.1), (5.6), (5.7), (5.8),
+  /// and the curvature of couplings (4.6).
   ConstraintModel constraintModel = ConstraintModel::softgauss;
-  /// Contacts, limits and friction whose stiffness is not given are near-rigid and begin before
-  /// they touch (3.16), of integrators of one solve.
-  bool nearRigid = false;
   /// Of softgauss's `constraintModel` and the leapfrog, which mechanisms may be used.
   MechanismSet mechanisms = MechanismSet::all();
   bool exactDiagonal = false;  ///< see constraints/exact_diagonal.hpp
@@ -189,10 +186,12 @@ struct Options {
     return integrator == Integrator::semiImplicitEuler || integrator == Integrator::leapfrog ||
            integrator == Integrator::implicit;
   }
-  /// Rows are near-rigid springs and dampers of the step's end, (3.16).
+  /// Contacts, limits and joint friction are springs and dampers at the step's end, near-rigid
+  /// where no stiffness is given, and begin before they touch (3.15). The second problem of noSlip
+  /// is made for soft ones.
   bool hasRowLaw() const {
-    return constraintModel == ConstraintModel::softgauss && nearRigid && isSingleSolve() &&
-           !stepDoubling;
+    return uses(Mechanism::nearRigid) && integrator == Integrator::leapfrog && !stepDoubling &&
+           !noSlip;
   }
   /// Contacts slide by Coulomb's law (5.8). It needs the last acceleration, which the leapfrog has;
   /// the second problem of noSlip bounds friction by itself.

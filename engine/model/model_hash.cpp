@@ -48,11 +48,10 @@ class Hasher {
   void add(const Options& o) {
     const auto& [timestep, gravity, effects, integrator, integrationTolerance, stepDoubling,
                  implicitInSolve, cone, impedanceRatio, substepAngle, outerTimestep,
-                 constraintModel, nearRigid, mechanisms, exactDiagonal, noSlip,
-                 maxIterations, tolerance] = o;
+                 constraintModel, mechanisms, exactDiagonal, noSlip, maxIterations, tolerance] = o;
     (*this)(timestep, gravity, effects, integrator, integrationTolerance, stepDoubling,
             implicitInSolve, cone, impedanceRatio, substepAngle, outerTimestep, constraintModel,
-            nearRigid, mechanisms, exactDiagonal, noSlip, maxIterations, tolerance);
+            mechanisms, exactDiagonal, noSlip, maxIterations, tolerance);
   }
   void add(const Body& b) {
     const auto& [joint, massless, parent, q, v, dofs, tree, robot, subtreeEnd, X_PB, axis, mass,

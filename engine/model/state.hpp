@@ -77,7 +77,7 @@ struct Input {
   VectorX tau;  ///< generalised applied force (nv) [N or N m]; empty: none
   std::vector<ExternalWrench> wrenches;
   /// (trees) 1: a control acts on the tree; empty: on none. Friction of such a tree is as soft at
-  /// rest as in motion, as MuJoCo's, and creeps under load: (5.6), (5.7) and (3.15) are left out of
+  /// rest as in motion, as MuJoCo's, and creeps under load: (5.6) and (5.7) are left out of
   /// its rows. What sticks hard does not answer its control, so goals see it like this. All other
   /// rows are as they are without a control, bit for bit.
   std::vector<std::uint8_t> controlled;

@@ -69,7 +69,7 @@ IntegrationKeys readIntegration(const YamlMap& map, Options& options) {
 IntegrationKeys readOptions(const YamlMap& map, Options& options,
                             std::optional<gdd::GddSolver>& solver) {
   map.expectOnly({"integrator", "integration_tolerance", "step_doubling", "cone", "no_slip",
-                  "near_rigid", "exact_diagonal", "tolerance", "max_iterations", "impedance_ratio",
+                  "exact_diagonal", "tolerance", "max_iterations", "impedance_ratio",
                   "effects", "without", "compatibility", "gdd_solver"});
   // First, for an integrator that is named counts.
   if (const auto* entry = map.find("compatibility"))
@@ -83,7 +83,6 @@ IntegrationKeys readOptions(const YamlMap& map, Options& options,
                  ? gdd::GddSolver::activeSet
                  : gdd::GddSolver::augmentedLagrangian;
   if (const auto* entry = map.find("no_slip")) options.noSlip = map.boolean(*entry);
-  if (const auto* entry = map.find("near_rigid")) options.nearRigid = map.boolean(*entry);
   if (const auto* entry = map.find("exact_diagonal")) options.exactDiagonal = map.boolean(*entry);
   map.read("tolerance", options.tolerance, Range::notNegative);
   if (const auto* entry = map.find("max_iterations")) {

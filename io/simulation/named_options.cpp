@@ -191,7 +191,6 @@ const std::vector<NamedOption>& NamedOption::all() {
       {"step_doubling", "true or false", false, true, setFlag<&O::stepDoubling>},
       {"cone", "one of pyramidal, elliptic", false, true, setCone},
       {"no_slip", "true or false", false, true, setFlag<&O::noSlip>},
-      {"near_rigid", "true or false", false, true, setFlag<&O::nearRigid>},
       {"exact_diagonal", "true or false", false, true, setFlag<&O::exactDiagonal>},
       {"effects", "auto, none or a list of effects", false, true, setEffects},
       {"without", "a list of mechanisms", false, true, setWithout},

@@ -30,7 +30,6 @@ void setOptions(const SimulationOptions& options, Options& o) {
   if (options.timestep) o.timestep = *options.timestep;
   if (options.exactDiagonal) o.exactDiagonal = true;
   if (options.noSlip) o.noSlip = true;
-  if (options.nearRigid) o.nearRigid = true;
   if (options.mechanisms) o.mechanisms = *options.mechanisms;
   if (options.cone) o.cone = *options.cone;
   if (options.effects) o.effects = *options.effects;

@@ -305,7 +305,7 @@ TEST(Batch, AListTakesThePlaceOfAGrid) {
 TEST(Batch, OptionsRangesAndWeightsAreTaken) {
   const auto errorOf = [](const std::string& reach) {
     const Batch batch("model: " + dataFile("robots/arm.urdf") +
-                      "\nduration: 2\nnear_rigid: true\nq0: {shoulder_yaw: 0.1}\n"
+                      "\nduration: 2\nexact_diagonal: true\nq0: {shoulder_yaw: 0.1}\n"
                       "without: [supported_mass]\nposture: 1000\nreach: {hand: " +
                       reach + "}\nvary:\n  upper:elbow_pitch: [2]\n  q:elbow_pitch: [0.7]\n");
     const Outcome outcome = batch.run("out");
@@ -344,7 +344,7 @@ TEST(Batch, MistakesAreToldWithFileLineAndKey) {
       {model + "vary:\n  q:elbow_pitch: [0, 5]\n", 4,
        "outside the joint's range -1.5 .. 0.6, in run 1"},
       {model + "vary:\n  upper:elbow_pitch: [0.2]\n  q:elbow_pitch: [0.5]\n", 5, "-1.5 .. 0.2"},
-      {model + "near_rigid: 3\n", 3, "found '3', expected true or false"},
+      {model + "no_slip: 3\n", 3, "found '3', expected true or false"},
       {model + "cone: round\n", 3, "one of pyramidal, elliptic"},
       {model + "q0: {elbow_pitch: much}\n", 3, "joints and their positions"},
       {"model: " + dataFile("robots/arm.urdf") + "\nreach: {hand: {weight: 3}}\n", 2, "target"},

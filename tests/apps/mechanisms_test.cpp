@@ -38,7 +38,6 @@ TEST(Mechanisms, ActWhereASceneCallsForThem) {
   const std::string thrown =
       folder.write("thrown.yaml",
                    "ground: 0\n"
-                   "options: {near_rigid: true}\n"
                    "objects:\n"
                    "  - {name: cube, box: {size: [0.1, 0.1, 0.1]}, mass: 1, position: [0, 0, 0.05],\n"
                    "     velocity: [3, 0, 0]}\n");
@@ -49,7 +48,7 @@ TEST(Mechanisms, ActWhereASceneCallsForThem) {
                                                      {"substepping", hard("top_on_tip")},
                                                      {"tree_substepping", hard("tumbling")},
                                                      {"implicit_equalities", hard("rope")},
-                                                     {"contact_damping_time", hard("coin")},
+                                                     {"near_rigid", hard("coin")},
                                                      {"contact_bias_acceleration", hard("sphere")},
                                                      {"reference_clamp", bouncing},
                                                      {"supported_mass", hard("boxes_1000_on_1")},

@@ -41,7 +41,7 @@ TEST(GddBehaviour, ArmClosesMostOfTheDistance) {
 // friction.
 TEST(GddBehaviour, ArmWithDryFrictionClosesMostOfTheDistance) {
   RobotScene r("arm");
-  for (Dof& dof : r.model.dofs) dof.dryFriction = 1.0;
+  for (Dof& dof : r.model.dofs) dof.dryFriction = 2.0;
   const Vector3 target(0.5, 0.3, 0.5);
   r.addReach("hand", target);
   r.addDamping();

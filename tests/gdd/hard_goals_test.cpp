@@ -51,26 +51,33 @@ class Course {
   RobotScene& r_;
 };
 
+// The end of a range stops its joint within a step, but for 1/31, and the hand feels it: for
+// each of two joints it is off by Δv/(e ω), what it has lost in that step and the reach's ω = 10
+// rad/s, and by the 2 mm of a way of 677 mm that the control cost leaves.
 TEST(HardGoals, ArmFollowsAMovingPlaceThroughTheEndsOfItsJoints) {
   RobotScene r("arm");
   r.state.q[0] = -1.3;
   r.controller.goals = io::readGoals(
       std::string(SOFTGAUSS_SOURCE_DIR) + "/data/goals/arm_through_limits.yaml", r.model, r.state);
   const Vector3 from = r.position("hand"), to(0.236, 0.297, 0.6);
+  const double h = r.model.options.timestep;
   Course course(r);
-  double worst = 0.0;
+  double worst = 0.0, lost = 0.0;
+  Vector3 last = from, way = Vector3::Zero();
   for (int i = 0; i < 1500; ++i) {
     course.step();
+    lost = std::max(lost, (course.hand - last - way).norm() / h);
+    way = course.hand - last;
+    last = course.hand;
     const double s = std::min(r.state.time / 2.0, 1.0);
     const Vector3 place = from + (to - from) * s * s * s * (10.0 - 15.0 * s + 6.0 * s * s);
     worst = std::max(worst, (course.hand - place).norm());
   }
   EXPECT_GT(course.timeAtLimit, 0.3) << "it is to meet the ends of its ranges";
   EXPECT_EQ(r.data.constraints.jointLimit.rowCount(), 0) << "and to leave them";
-  // Limits are soft: at 2 rad/s a joint goes 2 · 0.02 s/e past its end, 0.02 s their time constant.
-  EXPECT_LT(course.beyond, 0.03);
-  // The control cost leaves 2 mm of a way of 677 mm.
-  EXPECT_SMALL(worst, 0.003);
+  EXPECT_LT(course.beyond, 0.05 * 2.0 * 0.02 + 1e-3);  // at 2 rad/s, and pressed
+  EXPECT_SMALL(worst, 0.002 + 2.0 * lost / (M_E * 10.0));
+  EXPECT_LT(lost, 0.2);
 }
 
 // Even 10 % of the torques cannot hold the arm up; 30 % can.

@@ -100,12 +100,12 @@ TEST(Bystanders, HaveTheRowsOfAPassiveScene) {
   const PyramidalContact& rows = controlled.constraints.contact;
   const PyramidalContact& asPassive = passive.constraints.contact;
   ASSERT_EQ(rows.rowCount(), asPassive.rowCount());
-  int same = 0, softer = 0;
+  int same = 0;
   for (int i = 0; i < rows.rowCount(); ++i) {
     const ContactRows& of = rows.contactsWithRows()[static_cast<std::size_t>(rows.contactOfRow(i))];
     const std::size_t row = static_cast<std::size_t>(i);
     if (soft(of.bodyA, of.bodyB)) {
-      softer += rows.D[row] < asPassive.D[row];
+      EXPECT_LE(rows.D[row], asPassive.D[row]);  // what sticks is hardened by (5.7)
     } else {
       EXPECT_EQ(rows.D[row], asPassive.D[row]);
       EXPECT_EQ(rows.reference[row], asPassive.reference[row]);
@@ -113,7 +113,6 @@ TEST(Bystanders, HaveTheRowsOfAPassiveScene) {
     }
   }
   EXPECT_GT(same, 0);
-  EXPECT_GT(softer, 0);
   ASSERT_EQ(controlled.constraints.dryFriction.rowCount(), 1);
   EXPECT_EQ(controlled.constraints.dryFriction.D[0], passive.constraints.dryFriction.D[0]);
 }

@@ -132,10 +132,10 @@ TEST(GoalsOfIslands, AgreeWithTheJointSolve) {
       controlGap = std::max(controlGap, (crowd.controller.control - u).cwiseAbs().maxCoeff() /
                                             std::max(1.0, u.cwiseAbs().maxCoeff()));
     }
-    // Seen: 2e-14 by solver 2, whose steps end on the same cell; 5e-11 by solver 1, which stops
-    // where its own gradient is small.
-    EXPECT_SMALL(gap, 1e-10);
-    EXPECT_SMALL(controlGap, 1e-9);
+    // Solver 2 stops where what is promised is 1e-12 of the objective, solver 1 where its own
+    // gradient is small: where contacts are near-rigid, flat directions make 1e-8 and 5e-8 of that.
+    EXPECT_SMALL(gap, 2e-8);
+    EXPECT_SMALL(controlGap, 1e-7);
   }
 }
 

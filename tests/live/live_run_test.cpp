@@ -123,9 +123,9 @@ TEST(LiveRun, LetsGoWhatAPageHoldsThatIsGone) {
 TEST(LiveRun, PausesBeforeAStepThatIsRefused) {
   // Whatever is asked for: the state stays, and the run goes on from it or from before.
   const std::string hard[] = {
-      "\"push\": {\"link\": \"hand\", \"point\": [0, 0, 0], \"force\": [1e6, 0, 0]}",
+      "\"push\": {\"link\": \"hand\", \"point\": [0, 0, 1e6], \"force\": [1e6, 0, 0]}",
       "\"push\": {\"link\": \"hand\", \"point\": [1e6, 1e6, 1e6], \"force\": [1e6, 1e6, -1e6]}",
-      "\"push\": {\"link\": \"hand\", \"point\": [0, 0, 0], \"torque\": [1e6, 1e6, 1e6]}"};
+      "\"push\": {\"link\": \"hand\", \"point\": [1e6, 0, 0], \"force\": [0, 0, 1e6]}"};
   const io::TempFolder folder;
   const auto file = [&](const char* name) { return (folder.path() / name).string(); };
   LiveProcess process({kArm, "--record", file("hard.yaml"), "--summary", file("live.json")});

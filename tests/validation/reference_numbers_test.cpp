@@ -59,8 +59,7 @@ TEST(SlidingSphere, IsWhereTheReferenceIsAfter100Steps) {
 Scene limitedPendulum() {
   Model model = pendulum(0.5, 1.0, 0.05, 0.01, 0.05).build();
   model.options.tolerance = 1e-15;
-  model.options.implicitInSolve = false;  // MuJoCo's damping follows the solve
-  model.options.integrator = Integrator::semiImplicitEuler;
+  model.options.useMujocoModel();
   model.dofs[0].dryFriction = 0.1;
   JointRange range;
   range.body = 1;

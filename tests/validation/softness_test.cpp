@@ -116,7 +116,9 @@ TEST(Softness, RestDepthIsThePredictedOne) {
             const ContactAtRest rest = r.predicted(mass);
             // From there it would stay; so from above.
             r.scene.state.q[r.up] -= 0.5 * rest.depth;
-            r.scene.steps(3000);
+            // Near-rigid pyramids of little friction go with the time constant n e τ = 0.9 s (3.17).
+            const bool slow = form.material.impedance == Impedance{} && !form.material.spring;
+            r.scene.steps(slow ? 8000 : 3000);
             ASSERT_EQ(r.scene.data->stats.contacts, r.contacts);
             EXPECT_SMALL(r.depth() / rest.depth - 1.0, 1e-6);
             const double closed = form.closedDepth(mass, r.contacts);

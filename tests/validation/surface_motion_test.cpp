@@ -165,6 +165,8 @@ TEST(SurfaceMotion, OnAConvexMeshIsThatOnItsHull) {
             bodyOn(boxLink("body", 1.0, half), shape, fixed, 0.6,
                    {Eigen::AngleAxisd(0.4, Vector3(1, 2, 3).normalized()).toRotationMatrix(),
                     Vector3(0.1, 0.05, ground == table ? 0.25 : 0.62)}));
+        // Which points of a face begin before they touch differs between the two.
+        s.model.options.mechanisms.remove(Mechanism::nearRigid);
         // At 0.18 m/s and more a body meets an edge of the boulder along which the directions of an
         // edge and of a face separate alike, to 1e-9 m; hull and mesh choose differently there.
         s.state.v << 0.15, 0.1, 0.0, 0.5, -0.3, 0.8;

@@ -32,7 +32,6 @@ void apply(Settings& settings, double h, sg::Options& o) {
   o.cone = settings.word("cone", "pyramidal") == "elliptic" ? sg::Cone::elliptic : o.cone;
   o.impedanceRatio = settings.number("impedance_ratio", o.impedanceRatio);
   o.noSlip = settings.flag("no_slip");
-  o.nearRigid = settings.number("near_rigid", o.nearRigid ? 1.0 : 0.0) != 0.0;
   if (settings.word("compatibility", "") == "mujoco") o.useMujocoModel();
 }
 

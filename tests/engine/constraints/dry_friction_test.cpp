@@ -10,6 +10,9 @@
 namespace softgauss::test {
 namespace {
 
+/// R of friction on 2 kg whose softness nobody gave: d = dMin = 0.9 where there is no depth.
+constexpr double kSoft = 0.1 / 0.9 * 0.5;
+
 /// A slide along x without gravity: mass 2, dry friction 3.
 Scene slide(double speed, double force) {
   ModelBuilder builder("slide");
@@ -32,9 +35,23 @@ TEST(DryFriction, RowIsThatOfTheDof) {
   ASSERT_EQ(rows.rowCount(), 1);
   EXPECT_EQ(rows.dof(0), 0);
   EXPECT_EQ(rows.limit[0], 3.0);
-  // d = dMin at r = 0, w = 1/m, b = 2/(dMax tc).
-  EXPECT_SMALL(1.0 / rows.D[0] - 0.1 / 0.9 * 0.5, 1e-15);
-  EXPECT_SMALL(rows.reference[0] + 2.0 / (0.95 * 0.02) * 0.7, 1e-12);
+  // It leaves 1/(1 + κ) of what moves 1/A = m, and stops within the step.
+  EXPECT_SMALL(1.0 / rows.D[0] - kSoft, 1e-15);
+  EXPECT_SMALL(rows.reference[0] + 0.7 / s.model.options.timestep, 1e-12);
+}
+
+// A softness that is given is B = b/R: d = dMin at r = 0, A = 1/m, b = 2/(dMax tc).
+TEST(DryFriction, HasTheDampingOfItsImpedance) {
+  for (const double timestep : {0.0005, 0.002, 0.01}) {
+    Scene s = slide(0.7, 0.0);
+    s.model.options.timestep = timestep;
+    s.model.dofs[0].frictionImpedance.timeConstant = 0.05;
+    s.stages();
+    const double b = 2.0 / (0.95 * 0.05), R = 0.1 / 0.9 * 0.5;
+    const DryFriction& rows = s.data->constraints.dryFriction;
+    EXPECT_SMALL(rows.D[0] * R / (timestep * b) - 1.0, 1e-12);
+    EXPECT_SMALL(rows.D[0] * rows.reference[0] / (b / R * 0.7) + 1.0, 1e-12);
+  }
 }
 
 TEST(DryFriction, SlidingFeelsTheLimitAgainstItsMotion) {
@@ -59,12 +76,12 @@ TEST(DryFriction, StopsASlideAfterItsStoppingDistance) {
 // A load below the limit is held, without creep, or, where it is as soft as in motion, with the
 // creep that softness needs; one above it is not.
 TEST(DryFriction, HoldsALoadBelowItsLimitAndSlidesAboveIt) {
-  const double R = 0.1 / 0.9 * 0.5, b = 2.0 / (0.95 * 0.02);
   Scene held = slide(0.0, 2.0);
   held.steps(500);
-  EXPECT_SMALL(held.state.v[0], 1e-8 * R * 2.0 / b);
+  EXPECT_SMALL(held.state.v[0], 1e-8 * kSoft * 2.0 * held.model.options.timestep);
   EXPECT_SMALL(held.data->constraints.dryFriction.f[0] + 2.0, 1e-9);
 
+  const double R = 0.1 / 0.9 * 0.5, b = 2.0 / (0.95 * 0.02);
   Scene soft = slide(0.0, 2.0);
   soft.model.options.constraintModel = ConstraintModel::mujoco;
   soft.steps(500);
@@ -79,7 +96,7 @@ TEST(DryFriction, HoldsALoadBelowItsLimitAndSlidesAboveIt) {
 // (5.6): R falls with the speed below twice the creep of the limit, down to 10⁻⁹; goals may have
 // it soft again.
 TEST(DryFriction, HardensAsItComesToRest) {
-  const double R = 0.1 / 0.9 * 0.5, b = 2.0 / (0.95 * 0.02), slow = 2.0 * 3.0 * R / b;
+  const double R = kSoft, slow = 2.0 * 3.0 * R * 0.002;
   for (const double share : {0.0, 1e-12, 1e-3, 0.5, 1.0, 2.0}) {
     Scene s = slide(-share * slow, 0.0);
     DryFriction& rows = s.data->constraints.dryFriction;

@@ -45,15 +45,13 @@ Row firstRow(Scene& scene, bool soft) {
 // that the depth makes stays as it was.
 TEST(Stiction, HardensAsItSlowsDownUnderTheSameForce) {
   constexpr double kMu = 0.8;
-  const double b = 2.0 / (0.95 * 0.02);
   for (const Cone cone : {Cone::pyramidal, Cone::elliptic}) {
     Scene scene = twoBalls(cone);
-    for (const Mechanism other : {Mechanism::contactDampingTime, Mechanism::slipCorrection})
-      scene.model.options.mechanisms.remove(other);  // (3.15) and (5.8) have their own tests
+    scene.model.options.mechanisms.remove(Mechanism::slipCorrection);  // it has its own tests
+    const double b = 1.0 / scene.model.options.timestep;
     const Row soft = firstRow(scene, true);
     const double edges = cone == Cone::pyramidal ? 4.0 : 1.0;
-    const double square = cone == Cone::pyramidal ? kMu * kMu : 0.0;
-    const double A = 1.0 / (soft.D * soft.perInertia * (1.0 + square));
+    const double A = 1.0 / (soft.D * soft.perInertia);
     const double w = 9.81 / (soft.D * edges * A * b), u = soft.reference / b + w;
     EXPECT_GT(u, 1e-4);
     for (const double share : {0.0, 1e-9, 1e-3, 0.5, 1.0, 3.0})
@@ -69,22 +67,6 @@ TEST(Stiction, HardensAsItSlowsDownUnderTheSameForce) {
         const double depthHard = hard.reference - same.reference + soft.reference;
         EXPECT_SMALL(hard.D * depthHard / (soft.D * soft.reference) - 1.0, 1e-9) << share << slides;
       }
-  }
-}
-
-// (3.15): what a contact carries gives it a spring and a damper, and no mass. What moves fast does
-// not stick.
-TEST(Stiction, ALoadGivesNoMass) {
-  for (const Cone cone : {Cone::pyramidal, Cone::elliptic}) {
-    Scene scene = twoBalls(cone);
-    scene.state.v[2] = -1.0;
-    const Row loaded = firstRow(scene, false), withMass = firstRow(scene, true);
-    scene.model.options.mechanisms.remove(Mechanism::supportedMass);
-    const Row alone = firstRow(scene, true);
-    EXPECT_GT(withMass.D, 1.5 * alone.D);
-    EXPECT_SMALL(loaded.D / alone.D - 1.0, 1e-12);
-    // The same spring and damper: D (−b ẋ − k r).
-    EXPECT_SMALL(loaded.D * loaded.reference / (withMass.D * withMass.reference) - 1.0, 1e-12);
   }
 }
 
@@ -134,7 +116,7 @@ TEST(Stiction, InverseRecoversTheForce) {
   int sticking = 0;
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
     Scene scene = randomScene(seed, 12);
-    scene.state.v *= 1e-5;
+    scene.state.v *= 1e-6;
     ASSERT_EQ(scene.stages(), SolveStatus::converged);
     scene.forward();
     double stiffest = 0.0;

@@ -222,8 +222,8 @@ TEST(SupportedMass, HardensTies) {
 
 /// D of all rows of contacts, with loads or without.
 std::vector<double> stiffnesses(Scene& scene, bool carried) {
-  scene.model.options.constraintModel =
-      carried ? ConstraintModel::softgauss : ConstraintModel::mujoco;
+  scene.model.options.mechanisms = MechanismSet::all();
+  if (!carried) scene.model.options.mechanisms.remove(Mechanism::supportedMass);
   scene.stages();
   return scene.data->constraints.contact.D;
 }

@@ -177,15 +177,19 @@ TEST(Newton, OfTheEngineTakesNoIterationWithoutRows) {
 TEST(Newton, OfTheEngineTakesNoIterationFromTheSolution) {
   int iterations = 0;
   for (int seed = 0; seed < 40; ++seed) {
-    Scene s = randomScene(seed, 8);
-    s.forward();
-    s.state.warmstart.a = s.data->forward.a;
-    s.state.warmstart.valid = true;
-    s.forward();
-    // M a computed anew differs by rounding from M a carried along the iterations, which is at
-    // times more than the tolerance.
-    EXPECT_LE(s.data->forward.report.iterations, 1) << "seed " << seed;
-    iterations += s.data->forward.report.iterations;
+    for (const bool rigid : {true, false}) {
+      Scene s = randomScene(seed, 8);
+      if (!rigid) s.model.options.mechanisms.remove(Mechanism::nearRigid);
+      s.stages();
+      s.forward();
+      s.state.warmstart.a = s.data->forward.a;
+      s.state.warmstart.valid = true;
+      s.forward();
+      // M a computed anew differs by rounding from M a carried along the iterations, which is at
+      // times more than the tolerance, more often the stiffer rows are.
+      EXPECT_LE(s.data->forward.report.iterations, 1) << "seed " << seed;
+      if (!rigid) iterations += s.data->forward.report.iterations;
+    }
   }
   EXPECT_LE(iterations, 10);
 }

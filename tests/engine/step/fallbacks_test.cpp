@@ -138,7 +138,8 @@ TEST(Fallbacks, AFrictionThatIsKeptSoftIsCounted) {
   int kept = 0;
   for (int seed = 0; seed < 20; ++seed) {
     Scene s = lawScene(seed);
-    s.model.options.mechanisms.remove(Mechanism::slipCorrection);  // noSlip goes without
+    for (const Mechanism m : {Mechanism::slipCorrection, Mechanism::nearRigid})
+      s.model.options.mechanisms.remove(m);  // noSlip goes without
     s.stages();
     ASSERT_EQ(s.forward(), SolveStatus::converged);
     const VectorX soft = s.data->forward.a;

@@ -128,7 +128,7 @@ TEST(InverseDerivative, OfLimitsAndDryFriction) {
         options.dryFriction = true;
         options.geometries = false;
         Scene s = randomScene(seed, 0, options);
-        s.model.options.nearRigid = nearRigid;
+        if (!nearRigid) s.model.options.mechanisms.remove(Mechanism::nearRigid);
         if (controlled) s.input.controlled = allTrees(s.model);
         Random random(seed);
         expectDerivative(s, random.vector(s.model.nv, 1.0), count);
@@ -263,7 +263,7 @@ TEST(InverseDerivative, OfContactsThatFollowTheirSlip) {
   for (const Cone cone : {Cone::pyramidal, Cone::elliptic}) {
     expectContacts(
         closedForms(),
-        [&](Scene& s) { s.model.options.cone = cone, s.model.options.nearRigid = true; }, material,
+        [&](Scene& s) { s.model.options.cone = cone; }, material,
         0.5);
   }
 }

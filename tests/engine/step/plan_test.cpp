@@ -164,6 +164,7 @@ TEST(Plan, RowsBeginBelowTheMargin) {
   ModelBuilder builder = bareChain();
   onJoint(builder, [](JointSpec& j) { limit(j, 0.125); });
   Scene s = moving(builder);
+  s.state.v.setZero();
   s.state.q[2] = 0.125;
   s.stages();
   EXPECT_EQ(s.data->stats.rows, 0);

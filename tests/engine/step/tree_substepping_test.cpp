@@ -180,7 +180,7 @@ TEST(TreeSubstepping, AWobbleOnARimDiesOut) {
   s.state.v << 0.0244458, 0.0244458, 0.00020758, -0.770629, 5.809943, 2.267628;
   s.state.q.tail<4>().normalize();
   int parts = 0;
-  for (int i = 0; i < 50; ++i) {
+  for (int i = 0; i < 200; ++i) {
     s.step();
     parts = std::max(parts, s.data->stats.parts);
   }
