@@ -42,12 +42,6 @@ struct Figure {
   /// From a state; `start` is what it was in the first state.
   std::function<double(Stage&, double start)> value;
   std::function<double(Stage&)> start = {};
-  std::string missed = {};            ///< why our engine is known to miss it; else empty
-  std::string missedWhenCoarse = {};  ///< why with the longer of kSteps alone; else empty
-
-  bool isMissedAt(double timestep) const {
-    return !missed.empty() || (timestep > kSteps[0] && !missedWhenCoarse.empty());
-  }
 };
 
 struct HardCase {
