@@ -144,8 +144,6 @@ Figure speedAtRest(double bound) {
           }};
 }
 
-/// Known not to be held, and why.
-
 }  // namespace
 
 std::vector<HardCase> hardCases() {

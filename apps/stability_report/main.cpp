@@ -146,9 +146,8 @@ bool report(const Request& request) {
     }
     for (std::size_t f = 0; f < hard.figures.size(); ++f) {
       const Figure& figure = hard.figures[f];
-      std::string row = fmt::format("| {} | {} [{}] | {:g}", f == 0 ? hard.title : "", figure.name,
-                                    figure.unit, figure.bound);
-      row += " |";
+      std::string row = fmt::format("| {} | {} [{}] | {:g} |", f == 0 ? hard.title : "",
+                                    figure.name, figure.unit, figure.bound);
       for (const Outcome& outcome : all) row += " " + cell(outcome, f) + " |";
       fmt::print("{}\n", row);
       table += row + "\n";
