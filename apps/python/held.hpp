@@ -33,7 +33,7 @@ void seeSignals();
 
 class Held {
  public:
-  explicit Held(Simulation loaded) : sim_(std::move(loaded)) {}
+  explicit Held(Simulation loaded) : sim_(std::move(loaded)), goalsOfFile_(sim_.goals.size()) {}
 
   /// For who keeps the interpreter's lock. Throws std::runtime_error while another thread steps.
   Simulation& sim();
@@ -45,6 +45,8 @@ class Held {
   void clearGoals();
   /// How often goals were cleared: a goal is there as long as this is what it was at its coming.
   unsigned long goalsCleared() const { return goalsCleared_; }
+  /// Whether its goals are those of its file.
+  bool hasGoalsOfFile() { return goalsCleared_ == 0 && sim().goals.size() == goalsOfFile_; }
 
   template <class F>
   auto alone(F&& f) {
@@ -54,6 +56,7 @@ class Held {
 
  private:
   Simulation sim_;
+  std::size_t goalsOfFile_;
   Pushes pushes_;
   unsigned long goalsCleared_ = 0;
   std::atomic<bool> busy_ = false;

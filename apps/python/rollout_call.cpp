@@ -92,7 +92,9 @@ void RolloutCall::readParameters(const py::object& parameters) {
 }
 
 void RolloutCall::readGoals(const py::object& goals, const py::object& targets) {
-  if (goals.is_none()) {
+  const bool none =
+      py::isinstance<py::sequence>(goals) && !py::isinstance<py::str>(goals) && py::len(goals) == 0;
+  if (goals.is_none() || none) {
     if (!targets.is_none()) throw py::type_error("rollout: found targets without goals");
     return;
   }

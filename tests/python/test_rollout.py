@@ -49,6 +49,20 @@ def test_the_bits_are_the_same_for_any_number_of_threads():
     assert not np.array_equal(one.q[0], one.q[1])
 
 
+def test_goals_of_the_simulation_are_not_lost_in_silence():
+    sim = softgauss.Simulation(HUMANOID)
+    rollout = softgauss.Rollout(sim)
+    rollout.run(2, runs=1)
+    sim.goals.posture()
+    with pytest.raises(ValueError, match="goals of the simulation"):
+        rollout.run(2, runs=1)
+    rollout.run(2, runs=1, goals={"posture": {}})
+    rollout.run(2, runs=1, goals=[])
+    sim.goals.clear()
+    with pytest.raises(ValueError, match="goals of the simulation"):
+        rollout.run(2, runs=1)
+
+
 def test_a_run_is_what_a_simulation_does():
     sim = softgauss.Simulation(HUMANOID)
     sim.goals.add({"posture": {}})
