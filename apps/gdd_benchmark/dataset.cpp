@@ -41,6 +41,7 @@ std::unique_ptr<Robot> loadRobot(const std::string& folder, const std::string& n
   robot->model = builder.geometry(plane).build();
   robot->contacts = std::make_unique<collision::SceneContacts>(robot->model);
   robot->initial = State(robot->model);
+  gdd::ControlLimits(robot->model).markControlled(robot->model, robot->input.controlled);
   if (!held) standOnGround(robot->model, robot->initial);
   if (hand) {  // lengths by the sizes, 0.37 m against 1.58 m
     robot->deviate = 0.12;
@@ -124,7 +125,7 @@ Dataset recordRun(const Robot& robot, SolverUnderTest& recorder, int records, do
   while (dataset.records.size() < wanted && !interrupted()) {
     progress.show(static_cast<long>(dataset.records.size()), records);
     recording.begin();
-    if (isRefused(step(model, {}, state, data, robot.contacts.get(), &recording)))
+    if (isRefused(step(model, robot.input, state, data, robot.contacts.get(), &recording)))
       throw std::runtime_error(
           fmt::format("{}, goal weight {:g} kg: the recording became non-finite at t = {:.6g} s",
                       robot.name, dataset.weight, state.time));

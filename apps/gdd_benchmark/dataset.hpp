@@ -25,6 +25,7 @@ struct Robot {
   Model model;
   std::unique_ptr<collision::SceneContacts> contacts;
   State initial;
+  Input input;  ///< no force; its trees are those that goals control
   double deviate = 0.5;      ///< σ of the operator's targets [m]
   double lowest = 0.1;       ///< least z of a target [m]
   double weightScale = 1.0;  ///< weight of its goals over that of the humanoid's [-]

@@ -84,7 +84,7 @@ class KinkFinder {
 
  private:
   void pose(const Record& record) {
-    computeStages(model_, {}, record.state, data_, robot_.contacts.get());
+    computeStages(model_, robot_.input, record.state, data_, robot_.contacts.get());
     poseProblem(dataset_.goals[record.goal], {model_, record.state, data_}, cost_);
     guess_ = record.acceleration;
     if (!massFactor_.compute(data_.inertia.M))

@@ -76,7 +76,7 @@ class Replayer {
     model_.options.timestep = record.timestep;
     model_.options.outerTimestep = record.outerTimestep;
     Clock::time_point clock = Clock::now();
-    computeStages(model_, {}, record.state, data_, robot_.contacts.get());
+    computeStages(model_, robot_.input, record.state, data_, robot_.contacts.get());
     times.stages = lap(clock);
     if (first) result_.rows.push_back(data_.stats.rows);
     const long runners = static_cast<long>(solvers_.size()) + 1;
