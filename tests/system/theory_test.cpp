@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The theory says where each of its equations comes from, and every decision is in the index.
+/// The theory says where each of its equations comes from, every decision is in the index, and what
+/// pages call by name is in the code.
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cctype>
 #include <fstream>
 #include <iterator>
 #include <regex>
 #include <set>
 #include <sstream>
+#include <utility>
 
 #include "tests/system/source_rules.hpp"
 
@@ -96,6 +99,58 @@ TEST(Theory, CitesLiteratureThatIsListed) {
       for (const std::string& cited : matchesIn(wholeText(file), citation))
         for (const std::string& name : matchesIn(cited, key))
           EXPECT_EQ(keys.count(name), 1u) << file.path << ": [" << name << "]";
+}
+
+/// Words of the files that are code.
+std::vector<std::set<std::string>> wordsOfCode() {
+  std::vector<std::set<std::string>> all;
+  for (const SourceFile& file : tree()) {
+    if (!file.isCode()) continue;
+    std::set<std::string>& words = all.emplace_back();
+    for (const std::string& line : file.lines) {
+      std::string word;
+      for (const char c : line + "\n") {
+        if (std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_') {
+          word += c;
+        } else if (!word.empty()) {
+          words.insert(std::exchange(word, {}));
+        }
+      }
+    }
+  }
+  return all;
+}
+
+// `Scope::name` is in a file that has both words, `name()` in any. Decisions tell what was, the
+// page on rivals what others have; `mine` is the reader's.
+TEST(Docs, NameWhatIsInTheCode) {
+  const std::vector<std::set<std::string>> files = wordsOfCode();
+  const auto together = [&](const std::string& a, const std::string& b) {
+    return std::any_of(files.begin(), files.end(), [&](const std::set<std::string>& words) {
+      return words.count(a) == 1 && words.count(b) == 1;
+    });
+  };
+  const std::regex scoped(R"(\b((?:[A-Za-z]\w*::)+[A-Za-z]\w*))"), last(R"((\w+)::(\w+)$)");
+  const std::regex called(R"(`(?:\w+[.:])*([A-Za-z]\w*)\(\)`)");
+  std::size_t seen = 0;
+  for (const SourceFile& file : filesBelow("docs/")) {
+    if (!file.path.ends_with(".md") || file.path.starts_with("docs/decisions/") ||
+        file.path == "docs/rivals.md")
+      continue;
+    const std::string text = wholeText(file);
+    for (const std::string& name : matchesIn(text, scoped)) {
+      std::smatch parts;
+      if (name.starts_with("std::") || name.ends_with("::mine")) continue;
+      ASSERT_TRUE(std::regex_search(name, parts, last));
+      EXPECT_TRUE(together(parts[1], parts[2])) << file.path << ": " << name;
+      ++seen;
+    }
+    for (const std::string& name : matchesIn(text, called)) {
+      EXPECT_TRUE(together(name, name)) << file.path << ": " << name << "()";
+      ++seen;
+    }
+  }
+  EXPECT_GT(seen, 50u);
 }
 
 TEST(Decisions, AreInTheIndex) {
