@@ -120,8 +120,9 @@ std::string softnessText(const Model& model, const ExplainContext& context) {
   std::string out;
   for (const Group& group : groupsOf(model, context)) {
     detail::TextTable table;
-    table.row({"on one contact", "sinks [mm]", "[N/m]", "[N s/m]", "creeps [mm/s per N]",
-               "up to [N]", "impedance", "reference [1/s²], [1/s]"});
+    table.row({"on one contact", "sinks [mm]", "[N/m]", "[N s/m]",
+               "under goals creeps [mm/s per N]", "up to [N]", "impedance",
+               "reference [1/s²], [1/s]"});
     const bool both = group.least.sinks < group.most.sinks;
     for (const Rest* rest : {&group.least, both ? &group.most : nullptr}) {
       if (!rest) continue;

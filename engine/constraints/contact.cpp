@@ -100,6 +100,17 @@ double slipNumber(const Options& options, const Touch& touch, double slip, doubl
   return stopped > 0.0 ? slip / stopped : (slip > 0.0 ? kInfinity : 0.0);
 }
 
+/// m (5.12): what friction changes this slip by, over what it changes a slide by.
+double mobilityOf(const Assembly& in, const Contact& c, const Touch& touch, const Slip& slip) {
+  if (slip.dim <= 2) return 1.0;
+  const double turns = in.weights.rotation[c.bodyA] + in.weights.rotation[c.bodyB];
+  double m = 0.0;
+  for (int k = 0; k < slip.dim; ++k)
+    m += std::pow(slip.direction[k] * touch.friction[k] / touch.mu(), 2.0) *
+         (k < 2 ? 1.0 : turns / touch.inverseMass);
+  return m;
+}
+
 /// Whether slip may push the bodies of a contact apart: nothing glides whose centre of mass cannot
 /// move.
 bool mayGlide(const Assembly& in, const Contact& c) {
@@ -217,9 +228,10 @@ std::optional<Touch> touchAt(const Assembly& in, int i) {
   touch.frictionDim = frictionDim(material, model.options.effects);
   double weight = weightAt(in, c.bodyA, c.p_WC) + weightAt(in, c.bodyB, c.p_WC);
   double load = in.load ? in.load->mass(model, c.bodyA, c.bodyB) : 0.0;
-  touch.spring = material.spring.has_value();
+  touch.nearRigid =
+      model.options.hasRowLaw() && !material.spring && material.impedance == Impedance{};
   touch.supportsOthers =
-      load > 0.0 && !touch.spring;  // springs keep their penetration at rest and bounce
+      load > 0.0 && !material.spring;  // springs keep their penetration at rest and bounce
   if (in.load) load = std::max(load, in.load->contactShare(model, c.bodyA, c.bodyB));
   if (!material.spring) touch.loadStiffening = std::max(1.0, load * weight);
   in.count(Mechanism::supportedMass, load * weight > 1.0);
@@ -297,14 +309,16 @@ Softness ContactBlocks::soften(const Assembly& in, const Touch& touch,
                                const FrameVector& velocity) {
   const Softness& soft = touch.softness;
   const Contact& contact = in.contacts.contacts[contactsWithRows_.back().contact];
-  if (!touch.supportsOthers || touch.frictionDim == 0 ||
-      !in.usesStiction(contact.bodyA, contact.bodyB))
+  // What stands alone on a softness that is given creeps as that says.
+  if (!(touch.nearRigid || touch.supportsOthers) || touch.distance >= 0.0 ||
+      touch.frictionDim == 0 || !in.usesStiction(contact.bodyA, contact.bodyB))
     return soft;
   if (!(soft.damping * soft.damping >= 4.0 * soft.stiffness)) return soft;  // it bounces
   ContactSpeeds speeds{slipSpeed(touch, velocity), std::abs(velocity[0])};
   speeds.weight = creepUnderWeight(in.model.options, touch);
   speeds.creep = speeds.weight - soft.stiffness * touch.distance / soft.damping;
-  contactsWithRows_.back().regularisationScale = speeds.regularisationScale();
+  contactsWithRows_.back().regularisationScale =
+      speeds.regularisationScale(touch.supportsOthers ? kCarries : kAlone);
   in.count(Mechanism::stiction, contactsWithRows_.back().regularisationScale < 1.0);
   return stiffened(soft, contactsWithRows_.back().regularisationScale);
 }
@@ -318,13 +332,16 @@ Slip ContactBlocks::slipOf(const Assembly& in, const Touch& touch, const Softnes
   slip.damping = options.timestep * soft.damping;
   slip.asked = soft.damping * slipSpeed(touch, moves.velocity);
   if (!(slip.asked > 0.0)) return slip;
-  if (!mayGlide(in, in.contacts.contacts[contactsWithRows_.back().contact])) return slip;
-  slip.share =
-      std::min(1.0, kSure * slipNumber(options, touch, slip.asked / (soft.damping * touch.mu()),
-                                       -soft.stiffness * touch.distance));
-  in.count(Mechanism::slipCorrection, slip.share == 1.0);
+  const Contact& contact = in.contacts.contacts[contactsWithRows_.back().contact];
+  if (!mayGlide(in, contact)) return slip;
   for (int k = 0; k < slip.dim; ++k)
     slip.direction[k] = -touch.friction[k] * soft.damping * moves.velocity[k + 1] / slip.asked;
+  const double m = mobilityOf(in, contact, touch, slip);
+  slip.asksFor = std::clamp(1.0 / m, 1.0, 2.0 * slip.dim);
+  slip.share =
+      std::min(1.0, kSure * slipNumber(options, touch, slip.asked / (m * soft.damping * touch.mu()),
+                                       -soft.stiffness * touch.distance));
+  in.count(Mechanism::slipCorrection, slip.share == 1.0);
   if (!in.state.hasAcceleration) return slip;
   double last[6];
   jacobian_.multiply(jacobian_.size() - 1, in.state.a, last);

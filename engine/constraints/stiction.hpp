@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// Heaps come to rest: contacts that carry others harden where they stick.
+/// Contacts that stick harden, until nothing is left to creep by.
 ///
 /// A soft friction force needs a slip of its reference to exist, and at rest that is a speed: under
-/// a load that it holds a contact creeps. A body that stands alone glides slowly; in a heap each
-/// takes others along, until one tips. So where a contact carries other trees (L > 0 in (5.1)) its
-/// rows harden as it slows down (5.7). With n rows that push along the normal, s = |(μ_k ẏ_k)|,
+/// a load that it holds a contact creeps. So rows of contacts harden as they slow down (5.7). With
+/// n rows that push along the normal, s = |(μ_k ẏ_k)|,
 ///   w = g R/(n A b),   u = k d |r|/b + w       creep by the weight it is made for, and its depth's
 ///   ρ = clamp(max(s/(c_t u), |ẏ_n|/(c_n w)), ρ_min, 1)
 ///   R ← ρ R,   k d ← ρ k d
 /// A row pushes with f = −D (y + b ẏ + k d r). So D k d |r|, the force of what is at rest, stays as
 /// it was, and the speed that a load needs falls by ρ: under one that creeps by c u at ρ = 1,
-/// ṡ = −b s (1 − c/c_t), and at rest nothing is left to creep by. ρ depends on q and v alone, so
-/// the inverse (1.2) stays explicit; what moves faster is as it was, bit for bit.
+/// ṡ = −b s (1 − c/c_t), and at rest nothing is left to creep by. What slides by less than c_t u
+/// meets Coulomb's force, whatever its speed. ρ depends on q and v alone, so the inverse (1.2)
+/// stays explicit; what moves faster is as it was, bit for bit.
 ///
 /// Along the normal a contact then keeps its depth where that is off by less than c_n of the depth
 /// under its own weight; where it has farther to go it is as soft as before. What bounces is left
@@ -25,6 +25,18 @@
 
 namespace softgauss {
 
+/// How far a contact may be hardened, and off its depth.
+struct Hardening {
+  double settled;  ///< c_n
+  double least;    ///< ρ_min
+};
+/// A contact that carries no other tree lies as deep as its load asks, to 0.1 %. The matrix that
+/// solver 1 factors has ρ⁻².
+inline constexpr Hardening kAlone{0.001, 1e-4};
+/// One that does: creep of one contact moves others along their normals. With 0.05 a heap of 200
+/// takes ten seconds to rest, with 0.1 two or three. Towers sink by so much more (decision 0030).
+inline constexpr Hardening kCarries{0.06, 1e-5};
+
 /// How fast a contact moves, and how fast it creeps by its softness [m/s].
 struct ContactSpeeds {
   double tangential = 0.0;  ///< s
@@ -33,16 +45,13 @@ struct ContactSpeeds {
   double weight = 0.0;      ///< w
 
   /// ρ.
-  double regularisationScale() const {
+  double regularisationScale(const Hardening& most) const {
     // The last edge of a pyramid of n edges creeps at ((n − 2) τ/(1 − τ) − 1) u under the share τ
     // of what friction holds: by 200 u at 99 % with condim 3, 96 % with condim 6.
     constexpr double kTangential = 200.0;
-    // Creep of one contact moves others along their normals: with 0.05 a heap of 200 takes ten
-    // seconds to rest, with 0.1 two or three. Towers sink by so much more (decision 0030).
-    constexpr double kNormal = 0.06;
-    constexpr double kLeast = 1e-5;
-    const double scale = std::max(tangential / (kTangential * creep), normal / (kNormal * weight));
-    return scale < 1.0 ? std::max(kLeast, scale) : 1.0;  // also NaN
+    const double scale =
+        std::max(tangential / (kTangential * creep), normal / (most.settled * weight));
+    return scale < 1.0 ? std::max(most.least, scale) : 1.0;  // also NaN
   }
 };
 

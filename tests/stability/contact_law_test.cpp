@@ -81,9 +81,8 @@ TEST(ContactLaw, NothingPassesAThinWall) {
         }
 }
 
-// A box on a slope of 15° creeps by the speed that its friction needs of (3.17), μ = 1: along a
-// pyramid's tangent as along an elliptic cone, v = g sin θ h/κ.
-TEST(ContactLaw, ABoxOnASlopeHardlyCreeps) {
+// A box on a slope of 15° comes to rest: what sticks hardens until nothing is left to creep by.
+TEST(ContactLaw, ABoxOnASlopeDoesNotCreep) {
   const double slope = 15.0 * M_PI / 180.0;
   const Matrix3 R = Eigen::AngleAxisd(slope, Vector3::UnitY()).toRotationMatrix();
   for (const Cone cone : kCones)
@@ -94,8 +93,61 @@ TEST(ContactLaw, ABoxOnASlopeHardlyCreeps) {
               {R, R * Vector3(0.0, 0.0, 0.05)});
       Trial t("box on 15 deg", with(builder, h, cone));
       t.run(4.0);
-      const double creep = t.state.v.head<3>().norm();
-      t.expect("creeps", creep, 1.001 * kGravity * std::sin(slope) * h / 30.0 / 4.0, "m/s");
+      t.expect("creeps", t.state.v.head<3>().norm(), 1e-6, "m/s");
+    }
+}
+
+/// A ball of 1 kg that rolls or spins, with moments of friction of 2 mm and 4 mm.
+Model rollingBall(double h, Cone cone) {
+  Model model = with(ballAbove(0.1, 1.0, 0.0), h, cone).build();
+  for (Geometry& geometry : model.geometries) {
+    geometry.material.condim = 6;
+    geometry.material.slidingFriction = 1.0;
+    geometry.material.rollingFriction = 0.002;
+    geometry.material.torsionalFriction = 0.004;
+  }
+  return model;
+}
+
+/// Time from which on |v_i| stays below 1/1000 of what it was, within 6 s [s], and the ball's way
+/// [m].
+std::pair<double, double> stops(Trial& t, int dof) {
+  const double from = std::abs(t.state.v[dof]);
+  const Vector3 begun = t.origin("ball");
+  double stopped = 0.0;
+  t.run(6.0, [&] {
+    if (std::abs(t.state.v[dof]) > 1e-3 * from) stopped = t.state.time;
+  });
+  return {stopped, (t.origin("ball") - begun).norm()};
+}
+
+// Rolling friction is Coulomb's: a ball slows down by a = 5/7 c g/R, whatever its speed, rolls by
+// v²/2a = 0.892 m and stops after v/a = 3.57 s. Cones keep that at any step. Along a pyramid the
+// edges that roll share the load with those that slide, 1.5 %, and with the last speed: what is
+// missing grows with the step (docs/limits.md).
+TEST(ContactLaw, ABallRollsAsFarAsCoulombLets) {
+  constexpr double kSpeed = 0.5, kSlows = 5.0 / 7.0 * 0.002 * kGravity / 0.1;
+  constexpr double kWay = kSpeed * kSpeed / (2.0 * kSlows), kTime = kSpeed / kSlows;
+  for (const Cone cone : kCones)
+    for (const double h : kLawSteps) {
+      Trial t("rolling ball", rollingBall(h, cone));
+      t.state.v[0] = kSpeed;
+      t.state.v[4] = kSpeed / 0.1;
+      const auto [time, way] = stops(t, 0);
+      const bool pyramid = cone == Cone::pyramidal;
+      t.expect("way", std::abs(way / kWay - 1.0), pyramid ? 0.02 + 3.0 * h : 2e-3, "of it");
+      t.expect("time", std::abs(time / kTime - 1.0), pyramid ? 0.02 + 20.0 * h : 5e-3, "of it");
+    }
+}
+
+// So is torsional friction: ω̇ = c g/(2/5 R²).
+TEST(ContactLaw, ABallSpinsAsLongAsCoulombLets) {
+  constexpr double kSpin = 20.0, kTime = kSpin * 0.4 * 0.01 / (0.004 * kGravity);
+  for (const Cone cone : kCones)
+    for (const double h : kLawSteps) {
+      Trial t("spinning ball", rollingBall(h, cone));
+      t.state.v[5] = kSpin;
+      t.expect("time", std::abs(stops(t, 5).first / kTime - 1.0), 2e-3 + 2.0 * h, "of it");
     }
 }
 

@@ -36,14 +36,14 @@ struct Watched {
   }
 };
 
-// A sphere that rests on its depth r stores m g |r|.
+// A sphere that rests on its depth r stores m g |r|; it rests within 0.1 % of its depth (5.7).
 TEST(EnergyWatch, WhatRestsStoresItsWeightOverItsDepth) {
   Watched w(sphereOnPlane(0.1, 2.0, 0.5));
   w.watch.begin(w.state, w.input);
   w.run(3.0);
   const double depth = 0.1 - w.state.q[2];
   EXPECT_GT(depth, 1e-5);
-  EXPECT_SMALL(w.watch.stored(w.state, w.input) / (2.0 * 9.81 * depth) - 1.0, 1e-6);
+  EXPECT_SMALL(w.watch.stored(w.state, w.input) / (2.0 * 9.81 * depth) - 1.0, 1e-3);
 }
 
 // A heap that has fallen by centimetres and rests: what it has lost, joules, does not come back,

@@ -136,7 +136,12 @@ TEST(HollowBodies, AChairStandsOnItsLegs) {
     // Which four of sixteen corners carry changes with the depths: it rocks by microns, on a box at
     // up to 2.4 mm/s.
     EXPECT_SMALL(s.state.v.cwiseAbs().maxCoeff(), 3e-3) << onBox;
-    EXPECT_SMALL((carried(s) - Vector3(0, 0, 4.0 * kGravity)).norm() / (4.0 * kGravity), 0.01);
+    Vector3 mean = Vector3::Zero();
+    for (int i = 0; i < 100; ++i) {
+      s.step();
+      mean += 0.01 * carried(s);
+    }
+    EXPECT_SMALL((mean - Vector3(0, 0, 4.0 * kGravity)).norm() / (4.0 * kGravity), 0.01);
   }
 }
 

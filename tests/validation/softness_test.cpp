@@ -63,6 +63,7 @@ struct Resting {
     along = 0;
     up = box ? 2 : 1;
     static_cast<SampleContacts&>(*scene.contacts).tangentOfPlane = true;
+    scene.input.controlled = allTrees(scene.model);  // without stiction (5.7)
   }
 
   static Model model(bool box, const Form& form, double mu, double mass, Cone cone) {

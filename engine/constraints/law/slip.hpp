@@ -19,11 +19,17 @@
 /// *Pyramids*: the n edges push by m_e ≥ 0 that add up to n p, whatever slides, and no edge asks
 /// for more than stops the body within the step:
 ///
-///   m_e = max(0, p ± σ û_k − λ),   Σ m_e = n p,   κ = max(1, h b max m_e/p)
+///   m_e = max(0, p ± γ σ û_k − λ),   Σ m_e = n p,   κ = max(γ, h b max m_e/p)
 ///   D ← κ D,   a_ref,e = m_e/κ ± t û_k                                                   (5.9)
 ///
 /// so that in fast slip the leading edge has the stiffness n D of all. Where p ≤ 0 it asks for n p,
-/// κ = max(1, n h b). The tangents turn with the slip: friction points against it.
+/// κ = max(γ, n h b). The tangents turn with the slip: friction points against it. Rolling and
+/// spinning are slow in the units of the normal, and friction slows them little; γ asks as hard as
+/// for a slide:
+///
+///   m = Σ (û_k μ_k/μ)² A_k/A,   γ = clamp(1/m, 1, n)                                     (5.12)
+///
+/// A_k = A of sliding, and the inverse inertia of turning.
 ///
 /// *Elliptic cones* of ratio μ̂ slide where σ > μ̂² max(0, p). They have 1/(1 + μ̂²) of their normal
 /// stiffness there, so that
@@ -32,7 +38,7 @@
 ///
 /// makes the normal force D max(0, p − y_n). All this counts min(1, 30 V) times, V the slip over
 /// what friction stops within the row's horizon (5.11), so that forces are between the two: what
-/// creeps sticks, and answers s by itself.
+/// sticks answers s by itself.
 
 #include <algorithm>
 #include <array>
@@ -48,6 +54,7 @@ struct Slip {
   double asked = 0.0;    ///< |s| [m/s²]
   double met = 0.0;      ///< t [m/s²]
   double share = 0.0;    ///< min(1, 30 V), how much the law counts
+  double asksFor = 1.0;  ///< γ
   double damping = 0.0;  ///< h b [-]
 
   double left() const { return asked - met; }  ///< σ
@@ -80,17 +87,19 @@ inline double levelPyramid(const Slip& slip, double push, double* asks) {
   double q[10];
   int lead = 0;
   for (int e = 0; e < n; ++e) {
-    q[e] = push + along(e) * slip.left();
+    q[e] = push + slip.asksFor * along(e) * slip.left();
     if (q[e] > q[lead]) lead = e;
   }
   const bool presses = push > 0.0;
   const double level =
       presses ? std::max(0.0, detail::waterLevel(q, n, n * push)) : q[lead] - n * push;
-  const double kappa = std::max(1.0, slip.damping * (presses ? (q[lead] - level) / push : n));
+  const double kappa =
+      std::max(slip.asksFor, slip.damping * (presses ? (q[lead] - level) / push : n));
   const double harder = 1.0 + slip.share * (kappa - 1.0);
   for (int e = 0; e < n; ++e) {
     const double met = slip.share * along(e) * slip.met;
-    const double pushes = asks[e] - met - slip.share * level;
+    const double more = (slip.asksFor - 1.0) * along(e) * slip.left() - level;
+    const double pushes = asks[e] - met + slip.share * more;
     asks[e] = (pushes > 0.0 || e == lead ? pushes / harder : pushes) + met;
   }
   return harder;
