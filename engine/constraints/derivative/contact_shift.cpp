@@ -13,6 +13,8 @@ bool isFace(const Shape& shape, const Transform& X_WG, const Vector3& n_W) {
          (X_WG.R.transpose() * n_W).cwiseAbs().maxCoeff() > kAligned;
 }
 
+bool isRound(ShapeKind kind) { return kind == ShapeKind::sphere || kind == ShapeKind::capsule; }
+
 /// Shapes that touch a plane with a point of theirs, or of a rim or ball of theirs.
 bool touchesPlanes(ShapeKind kind) {
   return kind != ShapeKind::plane && kind != ShapeKind::triangles;
@@ -46,20 +48,43 @@ void ContactShift::setRim(const Model& model, const Kinematics& k, const Contact
   fromCentre_ = 0.5 * d_ * n_ - centre_;
 }
 
+/// The core of a ball or capsule, and whether the contact slides along it.
+ContactShift::Core ContactShift::coreOf(const Shape& shape, const Transform& X_WG,
+                                        const Vector3& p_WC, const Vector3& fromContact) {
+  constexpr double kInside = 1.0 - 1e-9;  // an end is met but for rounding
+  Core core;
+  core.centre = fromContact;
+  if (shape.kind != ShapeKind::capsule) return core;
+  core.axis = X_WG.R.col(2);
+  const double along = core.axis.dot(p_WC + fromContact - X_WG.p);
+  core.slides = std::abs(along) < kInside * shape.halfLength;
+  return core;
+}
+
+bool ContactShift::setRound(const Geometry& A, const Transform& X_WA, const Geometry& B,
+                            const Transform& X_WB, const Contact& c) {
+  constexpr double kAlongside = 0.02;  // sine²: beside each other they touch at more than a point
+  round_ = true;
+  n_ = c.n_W;
+  radius_ = A.shape.radius;
+  coreA_ = coreOf(A.shape, X_WA, c.p_WC, -(A.shape.radius + 0.5 * d_) * n_);
+  coreB_ = coreOf(B.shape, X_WB, c.p_WC, (B.shape.radius + 0.5 * d_) * n_);
+  apart_ = d_ + A.shape.radius + B.shape.radius;
+  cosine_ = coreA_.axis.dot(coreB_.axis);
+  const bool capsules = A.shape.kind == B.shape.kind && A.shape.kind == ShapeKind::capsule;
+  if (capsules && 1.0 - cosine_ * cosine_ < kAlongside) return false;
+  setTangent(c, Wish::world);
+  return true;
+}
+
 std::optional<ContactShift> ContactShift::of(const Model& model, const Kinematics& k,
                                              const Contact& c) {
   const Geometry &A = model.geometries[c.geometryA], &B = model.geometries[c.geometryB];
   const ShapeKind kindA = A.shape.kind, kindB = B.shape.kind;
   ContactShift s;
   s.d_ = c.distance;
-  if (kindA == ShapeKind::sphere && kindB == ShapeKind::sphere) {
-    s.spheres_ = true;
-    s.n_ = c.n_W;
-    s.radius_ = A.shape.radius;
-    s.centreA_ = k.X_WB[A.body] * A.X_BG.p - c.p_WC;
-    s.centreB_ = k.X_WB[B.body] * B.X_BG.p - c.p_WC;
-    s.apart_ = (s.centreB_ - s.centreA_).norm();
-    s.setTangent(c, Wish::world);
+  if (isRound(kindA) && isRound(kindB)) {
+    if (!s.setRound(A, k.X_WB[A.body] * A.X_BG, B, k.X_WB[B.body] * B.X_BG, c)) return std::nullopt;
     return s;
   }
   const bool planeA = kindA == ShapeKind::plane, planeB = kindB == ShapeKind::plane;
@@ -108,11 +133,28 @@ double ContactShift::spin(const Change& change, const PointMotion& A, const Poin
   return (wished.dot(t2_) - contactNormal_.dot(wished_) * change.n.dot(t2_)) / wishedLength_;
 }
 
+std::pair<Vector3, Vector3> ContactShift::centresMove(const PointMotion& A,
+                                                      const PointMotion& B) const {
+  const Vector3 &a = coreA_.axis, &b = coreB_.axis, g = apart_ * n_;
+  Vector3 cA = A.linear + A.angular.cross(coreA_.centre),
+          cB = B.linear + B.angular.cross(coreB_.centre);
+  const double rA = A.angular.cross(a).dot(g) + a.dot(cB - cA),
+               rB = B.angular.cross(b).dot(g) + b.dot(cB - cA);
+  double s = coreA_.slides ? rA : 0.0, t = coreB_.slides ? -rB : 0.0;
+  if (coreA_.slides && coreB_.slides) {
+    const double sine2 = 1.0 - cosine_ * cosine_;
+    s = (rA - cosine_ * rB) / sine2;
+    t = (cosine_ * rA - rB) / sine2;
+  }
+  cA += s * a, cB += t * b;
+  return {cA, cB};
+}
+
 ContactShift::Change ContactShift::change(const PointMotion& A, const PointMotion& B) const {
   Change c;
-  if (spheres_) {
-    const Vector3 cA = A.linear + A.angular.cross(centreA_),
-                  cB = B.linear + B.angular.cross(centreB_), apart = cB - cA;
+  if (round_) {
+    const auto [cA, cB] = centresMove(A, B);
+    const Vector3 apart = cB - cA;
     c.distance = n_.dot(apart);
     c.n = (apart - n_ * c.distance) / apart_;
     c.p = cA + (radius_ + 0.5 * d_) * c.n + 0.5 * c.distance * n_;

@@ -19,6 +19,7 @@
 ///   s = (δt̂·t₂ − (n·t̂)(δn·t₂))/|u|
 
 #include <optional>
+#include <utility>
 
 #include "softgauss/engine/constraints/contact_set.hpp"
 #include "softgauss/engine/dynamics/kinematics.hpp"
@@ -44,7 +45,7 @@ class ContactShift {
 
   Change change(const PointMotion& A, const PointMotion& B) const;
 
-  bool hasFlat() const { return !spheres_; }
+  bool hasFlat() const { return !round_; }
   bool flatIsA() const { return flatIsA_; }
   /// ν for a turning by `angular` of O against F.
   Vector3 along(const Vector3& angular) const;
@@ -52,21 +53,35 @@ class ContactShift {
   /// d by dDistance.
   Vector3 alongChange(const Vector3& angular, const Vector3& dAngular, const Vector3& dn,
                       const PointMotion& moved, const Vector3& dp, double dDistance) const;
-  const Vector3& normal() const { return n_; }  ///< n̂; of spheres n
+  const Vector3& normal() const { return n_; }  ///< n̂; where both are round n
   double distance() const { return d_; }
 
  private:
   enum class Wish { world, ofA, ofB };
+  /// What a ball or capsule is about: a point or a segment.
+  struct Core {
+    Vector3 centre = Vector3::Zero();  ///< the point nearest to the other, c − p
+    Vector3 axis = Vector3::Zero();
+    bool slides = false;  ///< c is no end of it
+  };
+  static Core coreOf(const Shape& shape, const Transform& X_WG, const Vector3& p_WC,
+                     const Vector3& fromContact);
+  /// False where the two lie alongside.
+  bool setRound(const Geometry& A, const Transform& X_WA, const Geometry& B, const Transform& X_WB,
+                const Contact& c);
+  /// δc of both.
+  std::pair<Vector3, Vector3> centresMove(const PointMotion& A, const PointMotion& B) const;
   void setTangent(const Contact& c, Wish carriedBy);
   void setRim(const Model& model, const Kinematics& k, const Contact& c, int geometry);
   double spin(const Change& change, const PointMotion& A, const PointMotion& B) const;
 
-  bool spheres_ = false, flatIsA_ = true, rim_ = false;
+  bool round_ = false, flatIsA_ = true, rim_ = false;
   Vector3 n_ = Vector3::UnitZ();
   double d_ = 0.0;
-  double radius_ = 0.0;  ///< ρ of O, or of A where both are spheres
+  double radius_ = 0.0;  ///< ρ of O, or of A where both are round
   double apart_ = 1.0;   ///< L
-  Vector3 centreA_ = Vector3::Zero(), centreB_ = Vector3::Zero();   ///< c − p of two spheres
+  double cosine_ = 0.0;  ///< of the angle between two cores
+  Core coreA_, coreB_;
   Vector3 axis_ = Vector3::UnitZ(), fromCentre_ = Vector3::Zero();  ///< of a rim: a, s of (4.10)
   Vector3 centre_ = Vector3::Zero();  ///< of a rim: its cylinder's centre less p
   Wish wish_ = Wish::world;
