@@ -16,8 +16,11 @@ namespace softgauss::gdd {
 
 class NextState {
  public:
-  /// Of the step of the model, or of one of `timestep` [s] from the same q_m, where it is not 0.
-  NextState(const GoalContext& context, double timestep = 0.0);
+  /// Of the step of the model, or of one of `timestep` [s] from the same state, where it is not 0.
+  NextState(const GoalContext& context, double timestep = 0.0) { begin(context, timestep); }
+  NextState() = default;
+  /// The same, in the memory it has.
+  void begin(const GoalContext& context, double timestep = 0.0);
 
   /// q⁺ and v⁺ of a, and B there.
   void set(const VectorX& a);
@@ -27,18 +30,22 @@ class NextState {
   VectorX pulledBack(const VectorX& y) const;
   /// (B; h 1)ᵀ Y (B; h 1) of a symmetric Y (2 nv × 2 nv).
   MatrixX pulledBack(const MatrixX& Y) const;
+  /// The same; `once` is work space.
+  void pullBack(const VectorX& y, VectorX& x) const;
+  void pullBack(const MatrixX& Y, MatrixX& once, MatrixX& X) const;
 
  private:
   struct Rotation {
     int dof;
     Matrix3 B = Matrix3::Identity();
   };
-  /// Y ← (columns of) Y (B; h 1), Y (rows × 2 nv).
-  MatrixX multiplied(const MatrixX& Y) const;
+  /// X ← Y (B; h 1), Y (rows × 2 nv).
+  template <class Matrix>
+  void multiply(const Matrix& Y, MatrixX& X) const;
 
-  const Model* model_;
+  const Model* model_ = nullptr;
   VectorX middle_, velocity_;
-  double h_;
+  double h_ = 0.0;
   VectorX D2_;
   std::vector<Rotation> rotations_;
   VectorX q_, v_, drift_;

@@ -140,7 +140,7 @@ void readTarget(const YamlMap& map, const Model& model, const Degrees& degrees, 
 
 PlanTask readPlan(const YamlMap& map, const Model& model, const State& start) {
   map.expectOnly({"step", "knots", "contacts", "iterations", "running", "final", "effort",
-                  "root_force", "target", "spread", "best"});
+                  "root_force", "target", "spread", "best", "search"});
   PlanTask task;
   map.read("step", task.steps.step, Range::positive);
   map.read("spread", task.spread, Range::notNegative);
@@ -153,6 +153,12 @@ PlanTask readPlan(const YamlMap& map, const Model& model, const State& start) {
     iterations.read("rho", task.options.inPhaseI.rho, Range::notNegative);
     task.options.infeasible = readCount(iterations, "infeasible", 1, task.options.infeasible);
     task.options.feasible = readCount(iterations, "feasible", 0, task.options.feasible);
+  }
+  if (const auto* entry = map.find("search")) {
+    const YamlMap search = map.map(*entry);
+    search.expectOnly({"tries", "reach"});
+    task.search.tries = readCount(search, "tries", 0, task.search.tries);
+    search.read("reach", task.search.reach, Range::positive);
   }
   const Degrees degrees(model);
   const auto readState = [&](const char* key, PlanTask::StateWeights& weights) {
@@ -208,12 +214,16 @@ void PlanTask::setCosts(planning::Planner& planner) const {
 
 const planning::MotionPlan& PlanTask::solve(planning::Planner& planner, const State& start,
                                             const std::vector<VectorX>& accelerations) const {
-  if (contacts && endsOnOwnContacts) return planner.solve(start, *contacts, options, accelerations);
-  if (contacts)
-    planner.setContacts(contacts->contacts);
-  else
-    planner.setOwnContacts();
-  return planner.solve(start, options, accelerations);
+  if (contacts && endsOnOwnContacts) {
+    planner.solve(start, *contacts, options, accelerations);
+  } else {
+    if (contacts)
+      planner.setContacts(contacts->contacts);
+    else
+      planner.setOwnContacts();
+    planner.solve(start, options, accelerations);
+  }
+  return search.tries > 0 ? planner.search(start, search, options) : planner.plan();
 }
 
 const planning::MotionPlan& PlanTask::solveFeasible(

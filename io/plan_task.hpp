@@ -13,6 +13,7 @@
 ///     final: {position: {base_position: 400, base_rotation: 100, all: 10}, velocity: 1}
 ///     effort: 2e-4                     # of u [1/(N² m² s)]
 ///     root_force: 0.02                 # of forces that nobody causes, in phase I
+///     search: {tries: 40, reach: 0.5}  # better plans near the one that is found
 ///     spread: 0.1                      # of random starts, for plan_benchmark
 ///     best: 3.8                        # least cost that is known, for plan_benchmark
 ///     target: {joints: {wheel: 2}, move: [0.4, 0, 0], steady: true}
@@ -35,6 +36,7 @@ struct PlanTask {
   planning::PlanSteps steps;
   planning::PlanOptions options;
   std::optional<planning::Continuation> contacts;
+  planning::PlanSearch search;
   bool endsOnOwnContacts = true;  ///< else on the planning ones
   struct StateWeights {
     VectorX position, velocity;  ///< (nv)

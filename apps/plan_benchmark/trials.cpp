@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
-#include <random>
 
 #include "apps/shared/cpu_time.hpp"
 #include "apps/shared/interrupt.hpp"
@@ -17,18 +15,11 @@ namespace {
 
 using namespace planning;
 
-/// Normal numbers that are the same with every standard library (Box and Muller).
 std::vector<VectorX> randomStart(const Model& model, int knots, double spread, unsigned seed) {
-  std::mt19937_64 bits(seed);
-  const auto uniform = [&] {
-    return (static_cast<double>(bits() >> 11) + 0.5) / 9007199254740992.0;
-  };
+  NormalNumbers random(seed);
   std::vector<VectorX> a(static_cast<std::size_t>(knots), VectorX::Zero(model.nv));
   for (VectorX& knot : a)
-    for (double& x : knot) {
-      const double radius = std::sqrt(-2.0 * std::log(uniform()));
-      x = spread * radius * std::cos(2.0 * std::numbers::pi * uniform());
-    }
+    for (double& x : knot) x = spread * random.next();
   return a;
 }
 

@@ -4,7 +4,6 @@
 #include <limits>
 
 #include "softgauss/engine/core/rotation.hpp"
-#include "softgauss/gdd/next_state.hpp"
 
 namespace softgauss::gdd {
 
@@ -17,37 +16,46 @@ QuadraticValue::QuadraticValue(const Model& model)
 void QuadraticValue::addCost(const GoalContext& context, GoalCost& cost) const {
   const Model& model = context.model;
   const int n = model.nv;
+  Work& w = work_;
   if (freeControl.size() == n) cost.setFreeControl(freeControl);
   const WarmStart& warm = context.state.warmstart;
-  VectorX a = VectorX::Zero(n);
   if (about.size() == n)
-    a = about;
+    w.a = about;
   else if (warm.gddValid && warm.gddA.size() == n)
-    a = warm.gddA;
-  NextState next(context, timestep);
-  next.set(a);
-  VectorX e(2 * n);
-  e << positionDifference(model, q, next.q()), next.v() - v;
-  VectorX s = slope + curvature * e;
-  MatrixX H = curvature;
+    w.a = warm.gddA;
+  else
+    w.a.setZero(n);
+  w.next.begin(context, timestep);
+  w.next.set(w.a);
+  w.difference.resize(n), w.e.resize(2 * n);
+  positionDifference(model, q, w.next.q(), w.difference);
+  w.e.head(n) = w.difference;
+  w.e.tail(n) = w.next.v() - v;
+  w.s = slope;
+  w.s.noalias() += curvature * w.e;
+  w.H = curvature;
   for (const Body& body : model.bodies) {
     if (body.joint != JointKind::floating) continue;
     const int i = body.v + 3;
     Matrix3 J;  // J_r⁻¹(e)
-    for (int k = 0; k < 3; ++k) J.col(k) = rotationRate(e.segment<3>(i), Vector3::Unit(k));
-    s.segment<3>(i) = J.transpose() * s.segment<3>(i).eval();
-    H.middleCols<3>(i) = H.middleCols<3>(i).eval() * J;
-    H.middleRows<3>(i) = J.transpose() * H.middleRows<3>(i).eval();
+    for (int k = 0; k < 3; ++k) J.col(k) = rotationRate(w.e.segment<3>(i), Vector3::Unit(k));
+    w.s.segment<3>(i) = J.transpose() * Vector3(w.s.segment<3>(i));
+    for (Eigen::Index k = 0; k < 2 * n; ++k)
+      w.H.block<1, 3>(k, i) = Eigen::RowVector3d(w.H.block<1, 3>(k, i)) * J;
+    for (Eigen::Index k = 0; k < 2 * n; ++k)
+      w.H.block<3, 1>(i, k) = J.transpose() * Vector3(w.H.block<3, 1>(i, k));
   }
-  const VectorX down = next.pulledBack(s);
-  MatrixX K = next.pulledBack(H);
+  w.next.pullBack(w.s, w.down);
+  w.next.pullBack(w.H, w.once, w.K);
   constexpr double kRaised = 1e-10, kSmallest = 1e-14;
-  K.diagonal().array() += kRaised * K.trace() / n + kSmallest;
-  const Eigen::LLT<MatrixX> factor(K);
-  const MatrixX L = factor.matrixU();
-  VectorX y = L * a - factor.matrixL().solve(down);
-  if (factor.info() != Eigen::Success) y.setConstant(std::numeric_limits<double>::quiet_NaN());
-  cost.addRows(L, 1.0, y);
+  w.K.diagonal().array() += kRaised * w.K.trace() / n + kSmallest;
+  w.factor.compute(w.K);
+  w.L = w.factor.matrixU();
+  w.factor.matrixL().solveInPlace(w.down);
+  w.y.noalias() = w.L * w.a;
+  w.y -= w.down;
+  if (w.factor.info() != Eigen::Success) w.y.setConstant(std::numeric_limits<double>::quiet_NaN());
+  cost.addRows(w.L, 1.0, w.y);
 }
 
 }  // namespace softgauss::gdd

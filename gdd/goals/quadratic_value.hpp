@@ -15,7 +15,7 @@
 
 #include <Eigen/Cholesky>
 
-#include "softgauss/gdd/goal.hpp"
+#include "softgauss/gdd/next_state.hpp"
 
 namespace softgauss::gdd {
 
@@ -37,6 +37,16 @@ class QuadraticValue final : public Goal {
   /// Throws nothing; a V that is not finite, or an H that is not as it is to be, adds a cost that
   /// is not finite, and the solve refuses it.
   void addCost(const GoalContext& context, GoalCost& cost) const override;
+
+ private:
+  /// What addCost() writes to, kept so that it allocates once.
+  struct Work {
+    NextState next;
+    VectorX a, difference, e, s, y, down;
+    MatrixX H, once, K, L;
+    Eigen::LLT<MatrixX> factor;
+  };
+  mutable Work work_;
 };
 
 }  // namespace softgauss::gdd

@@ -16,9 +16,11 @@ FeasiblePhase::FeasiblePhase(const Problem& problem, PlanDynamics& dynamics)
       trial_(x_),
       reference_(x_),
       values_(static_cast<std::size_t>(problem.knots) + 1, ValueModel(problem.model.nv)),
+      shifted_(values_),
       feedback_(static_cast<std::size_t>(problem.knots),
                 Feedback(static_cast<int>(problem.controlled.size()), problem.model.nv)),
       knotCost_(problem.model.nv),
+      along_(VectorX::Zero(problem.model.nv)),
       R_(VectorX::Zero(problem.model.nv)),
       metric_(VectorX::Ones(problem.model.nv)),
       free_(VectorX::Zero(problem.model.nv)),
@@ -76,7 +78,7 @@ bool FeasiblePhase::solveGoal(int t, Knot& knot, double alpha) {
   WarmStart& warm = dynamics_.middle.warmstart;
   warm.a = warm.gddA = old.a;
   warm.control = control_;
-  warm.multipliers = VectorX::Zero(problem_.model.nv);
+  warm.multipliers.setZero(problem_.model.nv);
   warm.breakpoints.clear();
   warm.valid = warm.gddValid = true;
   controller_.begin();
@@ -108,7 +110,6 @@ bool FeasiblePhase::solveControls(int t, Knot& knot, double alpha) {
 }
 
 bool FeasiblePhase::pass(double alpha, bool goalDirected, Trajectory& y) {
-  y.knots[0].copyState(reference_.knots[0]);
   for (int t = 0; t < problem_.knots; ++t) {
     Knot &knot = y.knots[idx(t)], &next = y.knots[idx(t + 1)];
     if (!(goalDirected ? solveGoal(t, knot, alpha) : solveControls(t, knot, alpha))) return false;
@@ -125,14 +126,52 @@ bool FeasiblePhase::take(const Trajectory& about, const std::vector<ValueModel>&
                          bool always) {
   reference_.copyMotion(about);
   values_ = values;
-  for (Feedback& f : feedback_) {
-    f.k.setZero(), f.K.setZero(), f.slope.setZero(), f.diagonal.setZero();
-  }
+  forgetFeedback();
+  trial_.knots[0].copyState(reference_.knots[0]);
   if (!pass(1.0, true, trial_)) return false;
   if (has_ && !always && !(trial_.cost < x_.cost)) return false;
   begin();
   return true;
 }
+
+void FeasiblePhase::forgetFeedback() {
+  for (Feedback& f : feedback_) {
+    f.k.setZero(), f.K.setZero(), f.slope.setZero(), f.diagonal.setZero();
+  }
+}
+
+bool FeasiblePhase::shift(double share, const Knot& start) {
+  const auto last = static_cast<std::size_t>(problem_.knots);
+  const auto mix = [share](auto& to, const auto& from, const auto& next) {
+    to = (1.0 - share) * from + share * next;
+  };
+  for (std::size_t t = 0; t <= last; ++t) {
+    const std::size_t t1 = std::min(t + 1, last), t2 = std::min(t + 1, last - 1);
+    const Knot &from = x_.knots[t], &next = x_.knots[t1];
+    Knot& to = reference_.knots[t];
+    to.copyState(from);
+    positionDifference(problem_.model, from.q, next.q, along_);
+    integratePosition(problem_.model, along_, share, to.q);
+    mix(to.v, from.v, next.v);
+    mix(shifted_[t].slope, values_[t].slope, values_[t1].slope);
+    mix(shifted_[t].curvature, values_[t].curvature, values_[t1].curvature);
+    if (t == last) continue;
+    mix(to.a, from.a, x_.knots[t2].a);
+    mix(to.tau, from.tau, x_.knots[t2].tau);
+  }
+  forgetFeedback();
+  values_.swap(shifted_);
+  trial_.knots[0].copyState(start);
+  rho_ = 0.0;
+  if (!pass(1.0, true, trial_)) {
+    values_.swap(shifted_);
+    return false;
+  }
+  begin();
+  return true;
+}
+
+bool FeasiblePhase::refresh() { return (!fresh_ || linearise()) && backward(); }
 
 /// From the trajectory that was tried.
 void FeasiblePhase::begin() {
@@ -141,9 +180,17 @@ void FeasiblePhase::begin() {
   rho_ = 0.0, growth_ = 1.0;
 }
 
+void FeasiblePhase::adopt(const Trajectory& x, const std::vector<ValueModel>& values) {
+  trial_.copyMotion(x);
+  values_ = values;
+  cost_.evaluate(problem_, trial_);
+  begin();
+}
+
 bool FeasiblePhase::rollOut(const Knot& start, const std::vector<VectorX>& controls) {
   reference_.knots[0].copyState(start);
-  for (Feedback& f : feedback_) f.k.setZero(), f.K.setZero();
+  forgetFeedback();
+  trial_.knots[0].copyState(start);
   for (int t = 0; t < problem_.knots; ++t) {
     reference_.knots[idx(t)].tau = controls[idx(t)];
     reference_.knots[idx(t)].a.setZero();
@@ -168,20 +215,24 @@ bool FeasiblePhase::backward() {
   return true;
 }
 
+bool FeasiblePhase::linearise() {
+  for (int t = 0; t < problem_.knots; ++t) {
+    Knot& knot = x_.knots[idx(t)];
+    control_ = knot.tau;  // what was applied; g is it to rounding
+    if (isRefused(dynamics_.linearise(knot))) return false;
+    knot.tau = control_;
+  }
+  fresh_ = false;
+  return true;
+}
+
 bool FeasiblePhase::iterate() {
   constexpr double kArmijo = 1e-4, kShorter = 0.4, kLeastRho = 1e-3, kNoRho = 1e-8;
-  if (fresh_) {
-    for (int t = 0; t < problem_.knots; ++t) {
-      Knot& knot = x_.knots[idx(t)];
-      control_ = knot.tau;  // what was applied; g is it to rounding
-      if (isRefused(dynamics_.linearise(knot))) return false;
-      knot.tau = control_;
-    }
-    fresh_ = false;
-  }
+  if (fresh_ && !linearise()) return false;
   bool moved = false;
   if (backward()) {
     reference_.copyMotion(x_);
+    trial_.knots[0].copyState(x_.knots[0]);
     alpha_ = 1.0;
     for (int length = 0; length < options_.lengths && !moved; ++length) {
       for (const bool goalDirected : {true, false}) {

@@ -35,9 +35,17 @@ class FeasiblePhase {
   /// A pass on these value models about any trajectory, which need not be feasible: what it gives
   /// is taken where it is finite and, unless `always`, better than what there is. False where not.
   bool take(const Trajectory& about, const std::vector<ValueModel>& values, bool always = false);
+  /// A feasible trajectory with its value models, found before.
+  void adopt(const Trajectory& x, const std::vector<ValueModel>& values);
   /// The trajectory of these controls (nv, N of them), clamped, from a state. False where it is not
   /// finite.
   bool rollOut(const Knot& start, const std::vector<VectorX>& controls);
+  /// Moves the trajectory and its value models on by a share of a knot, in [0, 1], and makes a
+  /// feasible one of them from `start`. False where it is not finite: then nothing has changed but
+  /// what a pass has tried.
+  bool shift(double share, const Knot& start);
+  /// Value models and feedback about the trajectory as it is. False where no control has a minimum.
+  bool refresh();
   /// One iteration; false where no step was found, which raises ρ for the next.
   bool iterate();
 
@@ -55,6 +63,8 @@ class FeasiblePhase {
  private:
   void begin();
   bool backward();
+  bool linearise();
+  void forgetFeedback();
   bool pass(double alpha, bool goalDirected, Trajectory& y);
   bool solveGoal(int t, Knot& knot, double alpha);
   bool solveControls(int t, Knot& knot, double alpha);
@@ -68,9 +78,10 @@ class FeasiblePhase {
   gdd::GoalDirectedController controller_;
   gdd::QuadraticValue* value_;
   Trajectory x_, trial_, reference_;
-  std::vector<ValueModel> values_;
+  std::vector<ValueModel> values_, shifted_;
   std::vector<Feedback> feedback_;
   ValueModel knotCost_;
+  VectorX along_;
   VectorX R_, metric_, free_, dx_, dq_, du_, control_;
   double rho_ = 0.0, growth_ = 1.0, alpha_ = 0.0, promised_ = 0.0;
   bool has_ = false, fresh_ = true;

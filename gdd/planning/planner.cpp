@@ -75,7 +75,8 @@ Planner::Planner(const Model& model, const PlanSteps& steps, const Contacts& con
 
 void Planner::setContacts(const PlanningContacts& contacts) {
   contacts.check();
-  model_->options.mechanisms.remove(Mechanism::slipCorrection);
+  for (const Mechanism m : {Mechanism::slipCorrection, Mechanism::nearRigid})
+    model_->options.mechanisms.remove(m);
   makeContacts([&](const Material& own, double share) { return contacts.material(own, share); });
 }
 
@@ -117,8 +118,13 @@ void Planner::setPrices() {
   for (const int i : problem_.controlled) problem_.rootCost[i] = 100.0 * cost.effort[i];
 }
 
+bool Planner::mayGoOn(const PlanOptions& options, double start) {
+  if (progress && !plan_.costs.empty() && !progress(plan_)) stopped_ = true;
+  return !stopped_ && now() - start < options.seconds;
+}
+
 void Planner::runInfeasible(const PlanOptions& options, double start) {
-  for (int i = 0; i < options.infeasible && now() - start < options.seconds; ++i) {
+  for (int i = 0; i < options.infeasible && mayGoOn(options, start); ++i) {
     infeasible_.iterate();
     ++plan_.infeasible;
     plan_.costs.push_back(infeasible_.lagrangian());
@@ -130,7 +136,7 @@ void Planner::runInfeasible(const PlanOptions& options, double start) {
 void Planner::runFeasible(const PlanOptions& options, double start) {
   constexpr double kMostRho = 1e8, kSettled = 1e-2;
   plan_.status = PlanStatus::iterationLimit;
-  for (int i = 0; i < options.feasible && now() - start < options.seconds; ++i) {
+  for (int i = 0; i < options.feasible && mayGoOn(options, start); ++i) {
     const double before = feasible_.trajectory().cost;
     const bool moved = feasible_.iterate();
     const double after = feasible_.trajectory().cost;
@@ -186,6 +192,7 @@ bool Planner::start(const State& state, const PlanOptions& options,
   plan_.status = PlanStatus::refused;
   plan_.infeasible = plan_.feasible = 0;
   plan_.costs.clear();
+  stopped_ = false;
   setPrices();
   feasible_.reset(options.inPhaseF);
   Knot& first = begin_.knots[0];
@@ -258,6 +265,8 @@ void Planner::keep() {
   keptValues_ = feasible_.values();
 }
 
+void Planner::takeKept() { feasible_.adopt(kept_, keptValues_); }
+
 const MotionPlan& Planner::solve(const State& state, const Continuation& continuation,
                                  const PlanOptions& options,
                                  const std::vector<VectorX>& accelerations) {
@@ -271,7 +280,7 @@ const MotionPlan& Planner::solve(const State& state, const Continuation& continu
   double stage = 0.0, step = 1.0;
   bool goesOn = feasible_.hasTrajectory();
   if (goesOn) keep();
-  while (stage < last && plan_.status != PlanStatus::refused) {
+  while (stage < last && !stopped_ && plan_.status != PlanStatus::refused) {
     const double next = std::min(stage + step, last), before = plan_.cost;
     PlanningContacts contacts = continuation.contacts;
     contacts.margin *= std::pow(continuation.factor, next);

@@ -18,6 +18,7 @@
 
 #include "softgauss/gdd/planning/feasible_phase.hpp"
 #include "softgauss/gdd/planning/infeasible_phase.hpp"
+#include "softgauss/gdd/planning/plan_search.hpp"
 #include "softgauss/gdd/planning/planning_contacts.hpp"
 
 namespace softgauss::planning {
@@ -79,7 +80,10 @@ class Planner {
   Planner(const Model& model, const PlanSteps& steps, const Contacts& contacts = {});
   Planner(const Planner&) = delete;
 
-  PlanCost cost;     ///< none; effort is 0.01 on every actuated dof
+  PlanCost cost;  ///< none; effort is 0.01 on every actuated dof
+  /// Called with the plan's figures so far after each iteration; where it says false, planning ends
+  /// with the best feasible plan there is.
+  std::function<bool(const MotionPlan&)> progress;
   VectorX rootCost;  ///< (nv) at first, of forces that no actuator causes; a hundred times effort
 
   /// From a state. `accelerations` (N of nv): where phase I begins; empty: at rest.
@@ -93,6 +97,9 @@ class Planner {
   const MotionPlan& solve(const State& state, const Continuation& continuation,
                           const PlanOptions& options = {},
                           const std::vector<VectorX>& accelerations = {});
+  /// From the plan there is, on the contacts there are, to better ones near it (plan_search.hpp).
+  const MotionPlan& search(const State& state, const PlanSearch& search,
+                           const PlanOptions& options = {});
   /// Phase F alone, from what goal directed dynamics make of the accelerations where actuators can.
   /// With plain controls alone (FeasibleOptions) that is iLQR over controls.
   const MotionPlan& solveFeasible(const State& state, const PlanOptions& options = {},
@@ -100,6 +107,14 @@ class Planner {
   /// What the next plan's contacts are: these, or the model's own.
   void setContacts(const PlanningContacts& contacts);
   void setOwnContacts();
+
+  /// For who goes on with a feasible plan (receding_horizon.hpp): FeasiblePhase::shift(), iterate()
+  /// and refresh(). plan() stays. False where there is none, or where they are.
+  bool moveOn(double share, const Knot& start) {
+    return feasible_.hasTrajectory() && feasible_.shift(share, start);
+  }
+  bool improve() { return feasible_.iterate(); }
+  bool refresh() { return feasible_.hasTrajectory() && feasible_.refresh(); }
 
   const MotionPlan& plan() const { return plan_; }
   const Model& model() const { return *model_; }
@@ -110,6 +125,7 @@ class Planner {
   Problem problem();
   void runInfeasible(const PlanOptions& options, double start);
   void runFeasible(const PlanOptions& options, double start);
+  bool mayGoOn(const PlanOptions& options, double start);
   void publish(const Trajectory& x);
   void setPrices();
   bool start(const State& state, const PlanOptions& options,
@@ -118,6 +134,7 @@ class Planner {
            const std::vector<VectorX>& accelerations, bool goesOn);
   void finish(const PlanOptions& options, double begin);
   void keep();
+  void takeKept();
   template <class F>
   void makeContacts(const F& material);
 
@@ -136,6 +153,7 @@ class Planner {
   std::vector<VectorX> keptAccelerations_;
   std::vector<ValueModel> keptValues_;
   MotionPlan plan_;
+  bool stopped_ = false;
 };
 
 }  // namespace softgauss::planning

@@ -139,9 +139,11 @@ TEST(PlanningContacts, LeaveTheModelAsItWas) {
   EXPECT_EQ(model.geometries[0].material.margin, 0.01);
   EXPECT_EQ(model.geometries[0].material.impedance.dMin, 1e-3);
   EXPECT_FALSE(model.options.uses(Mechanism::slipCorrection));
+  EXPECT_FALSE(model.options.uses(Mechanism::nearRigid));
   hopper.planner.setOwnContacts();
   EXPECT_EQ(model.geometries[0].material, own);
   EXPECT_TRUE(model.options.uses(Mechanism::slipCorrection));
+  EXPECT_TRUE(model.options.uses(Mechanism::nearRigid));
   EXPECT_EQ(hopper.scene->model.geometries[0].material, own);
 }
 
@@ -186,6 +188,21 @@ TEST(PlanningContacts, PhaseIAllocatesNothing) {
     for (int i = 0; i < 10; ++i) phase.iterate();
     EXPECT_EQ(guard.count(), 0) << name;
   }
+}
+
+// A search keeps what is better, on the scene's own contacts, and is what its seed makes it.
+TEST(PlanningContacts, ASearchFindsBetterPlansAndTheSameAgain) {
+  PlannedTask spinner("spinner"), again("spinner");
+  const PlanSearch search = spinner.task.search;
+  EXPECT_GT(search.tries, 0);
+  spinner.task.search.tries = again.task.search.tries = 0;
+  const double before = spinner.solve().cost;
+  again.solve();
+  const MotionPlan& plan = spinner.planner.search(spinner.scene->initial, search);
+  expectWithinWhatActuatorsDo(spinner.planner.model(), plan);
+  EXPECT_LT(plan.cost, before);
+  EXPECT_EQ(spinner.planner.feasible().trajectory().cost, plan.cost);
+  EXPECT_EQ(plan.q, again.planner.search(again.scene->initial, search).q);
 }
 
 // A planner that has planned before, on other contacts and another start, plans as a new one does.
