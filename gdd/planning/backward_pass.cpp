@@ -183,17 +183,40 @@ bool BackwardPass::overAccelerations(const Knot& knot, const ValueModel& next,
   constexpr double kRounding = 1e-12;
   f.slope = Qa_;
   f.diagonal = Qaa_.diagonal();
+  root_ = rho * f.diagonal;
+  root_.array() += kRounding * f.diagonal.maxCoeff();
   raised_ = Qaa_;
-  raised_.diagonal() += rho * f.diagonal;
-  raised_.diagonal().array() += kRounding * f.diagonal.maxCoeff();
+  raised_.diagonal() += root_;
   factor_.compute(raised_);
   if (factor_.info() != Eigen::Success) return false;
+  setValueOfFactor(rho > 0.0, f, value);
+  return value.slope.allFinite() && value.curvature.allFinite();
+}
+
+/// V_t where L Lᵀ = Q_aa + E, E = diag(root_), of which KᵀE K is rounding unless raised by ρ. With
+/// Y = L⁻¹Q_ax and y = L⁻¹Q_a, K = −L⁻ᵀY and k = −L⁻ᵀy, what setValue() gives is Q_xx − YᵀY − KᵀE K
+/// and Q_x − Yᵀy − KᵀE k.
+void BackwardPass::setValueOfFactor(bool raised, Feedback& f, ValueModel& value) {
+  const auto L = factor_.matrixL();
   f.k = -Qa_;
   f.K = -Qax_;
-  factor_.solveInPlace(f.k);
-  factor_.solveInPlace(f.K);
-  setValue(Qaa_, Qax_, f, value);
-  return value.slope.allFinite() && value.curvature.allFinite();
+  L.solveInPlace(f.k);
+  L.solveInPlace(f.K);
+  value.slope = Qx_;
+  value.slope.noalias() -= f.K.transpose() * f.k;
+  Qxx_.selfadjointView<Eigen::Lower>().rankUpdate(f.K.transpose(), -1.0);
+  factor_.matrixU().solveInPlace(f.k);
+  factor_.matrixU().solveInPlace(f.K);
+  Qk_ = root_.cwiseProduct(f.k);
+  linear_ += f.k.dot(Qa_);
+  quadratic_ -= 0.5 * (f.k.dot(Qa_) + f.k.dot(Qk_));
+  value.slope.noalias() -= f.K.transpose() * Qk_;
+  if (raised) {
+    QK_.noalias() = root_.cwiseSqrt().asDiagonal() * f.K;
+    Qxx_.selfadjointView<Eigen::Lower>().rankUpdate(QK_.transpose(), -1.0);
+  }
+  value.curvature.triangularView<Eigen::Lower>() = Qxx_;
+  value.mirror();
 }
 
 bool BackwardPass::overControls(const Knot& knot, const ValueModel& next, const ValueModel& state,

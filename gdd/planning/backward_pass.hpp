@@ -89,6 +89,7 @@ class BackwardPass {
   void withoutForces(const Knot& knot, const ValueModel& next, const ValueModel& state);
   /// V_t of Q, k and K.
   void setValue(const MatrixX& Quu, const MatrixX& Qux, Feedback& feedback, ValueModel& value);
+  void setValueOfFactor(bool raised, Feedback& feedback, ValueModel& value);
 
   int n_;
   std::vector<int> controlled_;

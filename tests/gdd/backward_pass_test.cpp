@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "softgauss/gdd/planning/backward_pass.hpp"
+
+#include "softgauss/engine/step/forward_derivative.hpp"
+#include "tests/support/matchers.hpp"
+#include "tests/support/scene.hpp"
+
+namespace softgauss::test {
+namespace {
+
+using namespace planning;
+
+/// Random numbers where a pass looks.
+struct RandomPass {
+  RandomPass(int seed, const Model& m)
+      : model(m), dynamics(model, nullptr), knot(model, dynamics.step()), next(m.nv), cost(m.nv) {
+    Random random(seed);
+    const State at = randomState(model, random);
+    const auto square = [&](ValueModel& value) {
+      MatrixX root(2 * model.nv, 2 * model.nv);
+      for (double& x : root.reshaped()) x = random.uniform(-1.0, 1.0);
+      value.curvature = root * root.transpose();
+      value.slope = random.vector(2 * model.nv, 1.0);
+    };
+    knot.q = at.q, knot.v = at.v, knot.a = random.vector(model.nv, 1.0);
+    square(next), square(cost);
+    w = random.vector(model.nv, 1.0);
+    // Far above the 1e-12 by which Q_aa is raised.
+    W = VectorX::Constant(model.nv, 0.1) + random.vector(model.nv, 1.0).cwiseAbs();
+  }
+  const Model& model;
+  PlanDynamics dynamics;
+  Knot knot;
+  ValueModel next, cost;
+  VectorX w, W;
+};
+
+// Of k + K δx, at any δx and ρ, V is what Q(δx, k + K δx) is worth, where ρ raises Q for k and K
+// alone: (P.4), multiplied out.
+TEST(BackwardPass, ValueIsThatOfTheFeedback) {
+  for (int seed = 0; seed < 10; ++seed) {
+    ModelBuilder builder = randomFloatingTree(seed);
+    builder.options = StepDerivative::bareStep(builder.options);
+    builder.options.timestep = 0.02;
+    const Model model = builder.build();
+    const int n = model.nv;
+    for (const double rho : {0.0, 0.3}) {
+      RandomPass r(seed, model);
+      ASSERT_EQ(r.dynamics.linearise(r.knot), SolveStatus::converged);
+      BackwardPass pass(model, {});
+      Feedback f(n, n);
+      ValueModel value(n);
+      ASSERT_TRUE(pass.overAccelerations(r.knot, r.next, r.cost, r.w, r.W, rho, f, value));
+      const MatrixX cost = r.cost.curvature.selfadjointView<Eigen::Lower>();
+      // As functions of δx and δa.
+      const auto Q = [&](const VectorX& dx, const VectorX& da) {
+        VectorX after(2 * n);
+        r.knot.transition.next(dx, da, after);
+        const VectorX dtau = r.knot.G * dx + r.knot.P * da;
+        return r.cost.slope.dot(dx) + 0.5 * dx.dot(cost * dx) + r.next.slope.dot(after) +
+               0.5 * after.dot(r.next.curvature * after) + r.w.dot(dtau) +
+               0.5 * dtau.dot(r.W.asDiagonal() * dtau);
+      };
+      Random random(seed + 7);
+      const double none = Q(VectorX::Zero(2 * n), f.k);
+      EXPECT_NEAR(none, pass.linear() + pass.quadratic(), 1e-8 * std::abs(none));
+      for (int i = 0; i < 5; ++i) {
+        const VectorX dx = random.vector(2 * n, 1.0);
+        const double expected = Q(dx, f.k + f.K * dx) - none;
+        EXPECT_NEAR(value.slope.dot(dx) + 0.5 * dx.dot(value.curvature * dx), expected,
+                    1e-8 * std::max(1.0, std::abs(Q(dx, VectorX::Zero(n)))))
+            << seed << ' ' << rho;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace softgauss::test
