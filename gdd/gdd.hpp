@@ -24,5 +24,6 @@
 #include "softgauss/gdd/goals/posture.hpp"
 #include "softgauss/gdd/goals/quadratic_value.hpp"
 #include "softgauss/gdd/goals/reach.hpp"
+#include "softgauss/gdd/goals/standing_balance.hpp"
 #include "softgauss/gdd/goals/virtual_damping.hpp"
 #include "softgauss/gdd/motion_limits.hpp"

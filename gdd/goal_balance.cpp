@@ -10,6 +10,7 @@
 #include "softgauss/engine/step/inverse.hpp"
 #include "softgauss/gdd/goals/posture.hpp"
 #include "softgauss/gdd/goals/reach.hpp"
+#include "softgauss/gdd/goals/standing_balance.hpp"
 
 namespace softgauss::gdd {
 namespace {
@@ -103,6 +104,15 @@ void GoalBalance::listTerms(double time) {
   }
 }
 
+void GoalBalance::findWaiting(const State& state) {
+  for (Term& term : terms_)
+    for (int i = 0; i < goalCount(); ++i)
+      if (const auto* balance = dynamic_cast<const StandingBalance*>(terms_[idx(i)].goal);
+          balance && balance != term.goal &&
+          balance->holdsBack({model_, state, data_}, controller_.goals, *term.goal))
+        term.waitsFor = i;
+}
+
 int GoalBalance::find(const Goal& goal, const std::string& name) const {
   int found = -1;
   for (int i = 0; i < goalCount(); ++i) {
@@ -116,7 +126,10 @@ int GoalBalance::find(const Goal& goal, const std::string& name) const {
 /// ∇ℓ_k at a, for the rows as they were last evaluated; leaves the goal's prices in cost_.
 VectorX GoalBalance::slopeOf(const Term& term, const State& state, const VectorX& a) {
   cost_.clear();
-  (term.own ? *term.own : *term.goal).addCost({model_, state, data_}, cost_);
+  if (term.own)
+    term.own->addCost({model_, state, data_}, cost_);
+  else
+    addCostAmong(controller_.goals, *term.goal, {model_, state, data_}, cost_);
   if (cost_.hasSides()) cost_.chooseSides(a);
   VectorX Ma(model_.nv), slope = VectorX::Zero(model_.nv);
   if (cost_.hasFunctions() && !cost_.expand(data_.inertia.M, a, 0.0)) return slope;
@@ -259,6 +272,7 @@ bool GoalBalance::solve(const Input& input, const State& state, ContactSource* c
   listTerms(state.time);
   findStillSlopes(held, state, contacts);
   if (isRefused(computeStages(model_, held, state, data_, contacts))) return false;
+  findWaiting(state);
   if (!findAcceleration(state)) return false;
   inverseDynamicsJacobian(data_, P_);
   if (!factor_.compute(P_) || !massFactor_.compute(data_.inertia.hat())) return false;
@@ -339,6 +353,11 @@ void GoalBalance::split(const Goal& goal, int dof, VectorX& slope, VectorX& othe
 Opposition GoalBalance::against(int i, int dof) {
   Opposition result;
   const Term& goal = terms_[idx(i)];
+  if (goal.waitsFor >= 0) {
+    result.held = 1.0;
+    result.opponents.push_back({Kind::goal, goal.waitsFor, -1, 1.0});
+    return result;
+  }
   VectorX slope = goal.slope, still = goal.still, others, stillOthers;
   split(*goal.goal, dof, slope, others);
   split(*goal.goal, dof, still, stillOthers);

@@ -3,6 +3,8 @@
 
 #include <chrono>
 
+#include "softgauss/gdd/goals/standing_balance.hpp"
+
 namespace softgauss::gdd {
 
 GoalDirectedController::GoalDirectedController(const Model& model)
@@ -32,7 +34,7 @@ void GoalDirectedController::addCost(const Model& model, const State& state, Dat
   if (controlCost == ControlCost::aboutGravity && limits.firstBad(model.nv) < 0)
     cost.setFreeControl(holding.compute(model, state, limits, data));
   for (const auto& goal : goals)
-    if (goal->actsAt(state.time)) goal->addCost({model, state, data}, cost);
+    if (goal->actsAt(state.time)) addCostAmong(goals, *goal, {model, state, data}, cost);
   if (motionLimits) motionLimits->addCost({model, state, data}, limits, cost);
 }
 

@@ -140,6 +140,7 @@ class Simulation:
         zero_effort: Literal["passive", "unlimited"] = ...,
         most_dofs: int = ...,
         ignore_velocity_limits: bool = ...,
+        no_balance: bool = ...,
         package_paths: Sequence[Path] = ...,
         without_goals: bool = ...,
     ) -> None: ...

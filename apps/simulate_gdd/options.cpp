@@ -143,6 +143,9 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
              "all joints and the base seek the initial posture; --posture=WEIGHT [-], default "
              "1000")
           ->group(goals);
+  app.add_flag("--no-balance", options.noBalance,
+               "beside --reach a robot that stands is not kept standing")
+      ->group(goals);
   app.add_option("--goals", options.goals, "a .yaml file of goals, see docs/reference/goals.md")
       ->group(goals);
   app.add_option("--torques", options.torques,

@@ -58,6 +58,10 @@ void setUp(const SimulateOptions& options, const Scene& scene,
   }
   for (const std::string& link : options.hold)
     controller.goals.push_back(std::make_unique<gdd::Hold>(scene.model, link));
+  const bool fromFile = scene.hasGoals || !options.goals.empty();  // they hold what they say
+  if (!fromFile && (!options.reach.empty() || options.acted()))
+    for (std::unique_ptr<gdd::Goal>& goal : balanceOf(scene, options))
+      controller.goals.push_back(std::move(goal));
   if (options.hasOwnGoals())
     for (std::unique_ptr<gdd::Goal>& goal : regularisers(scene.initial.q, options.posture))
       controller.goals.push_back(std::move(goal));

@@ -96,4 +96,10 @@ std::vector<std::unique_ptr<gdd::Goal>> regularisers(const VectorX& q,
   return goals;
 }
 
+std::vector<std::unique_ptr<gdd::Goal>> balanceOf(const Scene& scene,
+                                                  const SimulationOptions& options) {
+  if (options.noBalance) return {};
+  return gdd::StandingBalance::ofRobotsThatStand(scene.model, scene.initial, *scene.contacts);
+}
+
 }  // namespace softgauss

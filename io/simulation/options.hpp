@@ -44,6 +44,7 @@ struct SimulationOptions {
   std::vector<std::filesystem::path> packagePaths;
   double largestMesh = 64.0;  ///< [MB]
   bool visualMeshes = false;  ///< read the meshes of visuals too
+  bool noBalance = false;     ///< robots that stand are not kept standing beside a reach
   bool withoutGoals = false;  ///< the goals of the file are left out
 };
 

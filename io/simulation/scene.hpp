@@ -88,6 +88,11 @@ void addGoals(const std::filesystem::path& file, const Scene& scene,
 std::vector<std::unique_ptr<gdd::Goal>> regularisers(const VectorX& q,
                                                      std::optional<double> postureWeight);
 
+/// What keeps the robots of a scene standing that stand at its start, beside goals that are given
+/// one by one: nothing with `noBalance`.
+std::vector<std::unique_ptr<gdd::Goal>> balanceOf(const Scene& scene,
+                                                  const SimulationOptions& options);
+
 /// Why the last step was refused: what does not fit the model, or what became non-finite, when, and
 /// what touches deepest.
 std::string failureText(const Model& model, const State& state, const Data& data);

@@ -40,7 +40,8 @@ void SimulationParts::restart(bool otherModel) {
   grid = {};
   if (otherModel || !data) data = std::make_unique<Data>(scene->model);
   controller = std::make_unique<gdd::GoalDirectedController>(scene->model);
-  hasRegularisers = false;
+  hasRegularisers = hasBalance = false;
+  regularisers = 0;
   setUpControl(*scene, options, *controller);
 }
 

@@ -13,7 +13,7 @@ void SimulationGoals::expectLink(const std::string& goal, const std::string& lin
 
 gdd::Goal& SimulationGoals::add(std::unique_ptr<gdd::Goal> goal) {
   auto& goals = parts_->controller->goals;
-  const std::size_t place = goals.size() - (parts_->hasRegularisers ? 2 : 0);
+  const std::size_t place = goals.size() - parts_->regularisers;
   gdd::Goal& added =
       **goals.insert(goals.begin() + static_cast<std::ptrdiff_t>(place), std::move(goal));
   weighDefaults();
@@ -26,12 +26,29 @@ void SimulationGoals::weighDefaults() {
 
 gdd::Goal& SimulationGoals::addOwn(std::unique_ptr<gdd::Goal> goal) {
   gdd::Goal& added = add(std::move(goal));
-  if (!parts_->hasRegularisers)
-    for (auto& regulariser : regularisers(parts_->scene->initial.q, std::nullopt))
-      parts_->controller->goals.push_back(std::move(regulariser));
-  parts_->hasRegularisers = true;
+  addRegularisers(std::nullopt);
   weighDefaults();
   return added;
+}
+
+void SimulationGoals::addRegularisers(std::optional<double> postureWeight) {
+  if (parts_->hasRegularisers) return;
+  parts_->hasRegularisers = true;
+  for (auto& goal : regularisers(parts_->scene->initial.q, postureWeight)) {
+    parts_->controller->goals.push_back(std::move(goal));
+    ++parts_->regularisers;
+  }
+}
+
+/// Between the goals that were asked for and the posture.
+void SimulationGoals::addBalance() {
+  if (parts_->hasBalance) return;
+  parts_->hasBalance = true;
+  auto& goals = parts_->controller->goals;
+  for (auto& goal : balanceOf(*parts_->scene, parts_->options)) {
+    goals.insert(goals.end() - static_cast<std::ptrdiff_t>(parts_->regularisers), std::move(goal));
+    ++parts_->regularisers;
+  }
 }
 
 gdd::Reach& SimulationGoals::reach(const std::string& link, const Vector3& p_WTarget,
@@ -47,7 +64,10 @@ gdd::Reach& SimulationGoals::reach(const std::string& link, const Vector3& p_WTa
     }
   auto goal = std::make_unique<gdd::Reach>(parts_->scene->model, link, p_WTarget, p_LP);
   if (weight) goal->weight = *weight, goal->defaultWeight.giveUp();
-  return static_cast<gdd::Reach&>(addOwn(std::move(goal)));
+  gdd::Goal& added = addOwn(std::move(goal));
+  addBalance();
+  weighDefaults();
+  return static_cast<gdd::Reach&>(added);
 }
 
 gdd::Hold& SimulationGoals::hold(const std::string& link) {
@@ -57,11 +77,7 @@ gdd::Hold& SimulationGoals::hold(const std::string& link) {
 
 gdd::Posture& SimulationGoals::posture(double weight) {
   auto& goals = parts_->controller->goals;
-  if (!parts_->hasRegularisers) {
-    for (auto& regulariser : regularisers(parts_->scene->initial.q, weight))
-      goals.push_back(std::move(regulariser));
-    parts_->hasRegularisers = true;
-  }
+  addRegularisers(weight);
   auto& posture = static_cast<gdd::Posture&>(*goals[goals.size() - 2]);
   posture.weight = weight;
   posture.isRegulariser = false;
@@ -88,7 +104,8 @@ std::vector<gdd::Goal*> SimulationGoals::addAll(io::GoalFile asked) {
 
 void SimulationGoals::clear() {
   parts_->controller->goals.clear();
-  parts_->hasRegularisers = false;
+  parts_->hasRegularisers = parts_->hasBalance = false;
+  parts_->regularisers = 0;
 }
 
 std::size_t SimulationGoals::size() const { return parts_->controller->goals.size(); }

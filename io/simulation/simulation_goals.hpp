@@ -27,8 +27,9 @@ class NameError : public std::runtime_error {
 struct SimulationParts;
 
 /// Reach, hold and posture come with virtual damping and, without a posture of their own, a weak
-/// one about the start, as they do on the command line of simulate_gdd. The first goal of all
-/// makes the leapfrog the integrator, where nobody has named one.
+/// one about the start, as they do on the command line of simulate_gdd; a reach of a robot that
+/// stands comes with balance too. The first goal of all makes the leapfrog the integrator, where
+/// nobody has named one.
 class SimulationGoals {
  public:
   explicit SimulationGoals(SimulationParts& parts) : parts_(&parts) {}
@@ -62,6 +63,8 @@ class SimulationGoals {
  private:
   std::vector<gdd::Goal*> addAll(io::GoalFile asked);
   gdd::Goal& addOwn(std::unique_ptr<gdd::Goal> goal);
+  void addRegularisers(std::optional<double> postureWeight);
+  void addBalance();
   void expectLink(const std::string& goal, const std::string& link) const;
 
   SimulationParts* parts_;

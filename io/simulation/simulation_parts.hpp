@@ -24,7 +24,8 @@ struct SimulationParts {
   State state;
   std::unique_ptr<Data> data;
   std::unique_ptr<gdd::GoalDirectedController> controller;
-  bool hasRegularisers = false;
+  bool hasRegularisers = false, hasBalance = false;
+  std::size_t regularisers = 0;  ///< the last of the goals
   Input input;
   Input applied;  ///< with the wrenches of the scene
   Input held;     ///< of solve()

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Balance of a robot that stands: what a reach comes with, so that the robot goes on standing.
+///
+/// The support is the convex hull of the points on which the links stand that stood at the start
+/// and have not left the ground, but for those that a goal lifts. Let m be its middle, n·p ≤ h one
+/// of its edges, and λ = 0.75. The capture point ξ = x + ẋ/ω₀ (balance.hpp) is kept within
+/// n·ξ ≤ b = n·m + λ (h − n·m):
+///   ½ w max(0, n·ẍ + ω₀ (n·ẋ + β (n·ξ − b)))²,  that is  n·ξ̇ ≤ −β (n·ξ − b)
+/// Within the support it asks for nothing, and ξ comes to its edge no faster than at the rate β.
+///
+/// A goal lifts a link that stands where it seeks a place for a body of its leg that is farther
+/// than 1 cm away, and as long as the link is off the ground then; a leg is what moves one such
+/// link and no other. Until the link has left the ground, the goal waits for ξ to be in the rest of
+/// the support, shrunk to 0.9: what is to be lifted is unloaded first. Where fewer than two links
+/// would be left to stand on, it waits for ever: to stand on one leg is no matter of defaults; so
+/// does what would press a link into the ground. As long as a goal lifts something, base and links
+/// on the ground are held too, the base in height and orientation by a spring-damper to where it
+/// was at the start, and the robot's angular momentum is damped, lest arms swing for what the feet
+/// cannot do.
+///
+/// Its weight is 30 times that of a reach: where both cannot be, the robot stands.
+
+#include "softgauss/engine/step/contact_source.hpp"
+#include "softgauss/gdd/goal.hpp"
+#include "softgauss/gdd/goals/default_weight.hpp"
+
+namespace softgauss::gdd {
+
+class StandingBalance final : public Goal {
+ public:
+  using Goals = std::vector<std::unique_ptr<Goal>>;
+  struct Foot {                 ///< a link on which the robot stood at the start
+    int body = 0;               ///< of the link
+    std::vector<int> leg;       ///< bodies that move it and no other foot
+    std::vector<Vector3> p_BP;  ///< points on which it stood, in the body's frame [m]
+    double height = 0.0;        ///< of the lowest of them then, upwards [m]
+  };
+
+  int robot = 0;                ///< Body::robot
+  int base = 0;                 ///< its root body
+  std::vector<Foot> feet;       ///< at least one
+  Transform X_WBase;            ///< where the base was at the start
+  double weight = 0.0;          ///< w [kg]; default 75 × the robot's mass
+  DefaultWeight defaultWeight;  ///< of w
+  double rate = 10.0;           ///< β [1/s]
+  double stiffness = 100.0;     ///< of the base [1/s²]
+  double damping = 20.0;        ///< of the base, and of links on the ground [1/s]
+
+  /// One for each robot of the model that stands in `start`: its base floats, joints of it are
+  /// driven, and its centre of mass is over what touches the world where it is lowered by 5 mm.
+  static Goals ofRobotsThatStand(const Model& model, const State& start, ContactSource& contacts);
+
+  std::string name() const override { return "balance"; }
+  void weighBeside(double posture) override { defaultWeight.setBeside(posture, weight); }
+  /// As one goal among others, which may lift links.
+  void addCost(const GoalContext& context, const Goals& others, GoalCost& cost) const;
+  void addCost(const GoalContext& context, GoalCost& cost) const override {
+    addCost(context, {}, cost);
+  }
+  /// Whether another goal has to wait until what it lifts is unloaded.
+  bool holdsBack(const GoalContext& context, const Goals& others, const Goal& goal) const;
+  std::unique_ptr<Goal> within(const Model& whole, const SubModel& island) const override;
+
+ private:
+  StandingBalance(const Model& model, int tree, const Kinematics& start);
+  bool lifts(const GoalContext& context, const Goal& goal, const Foot& foot) const;
+  bool presses(const GoalContext& context, const Goal& goal, const Foot& foot,
+               const Vector3& up) const;
+  bool isSought(const GoalContext& context, const Goals& others, const Foot& foot) const;
+  bool isLifted(const GoalContext& context, const Goals& others, const Foot& foot) const;
+  void keepUp(const GoalContext& context, const Vector3& up, GoalCost& cost) const;
+};
+
+/// Adds the cost of a goal that acts now as one among others: nothing where a balance holds it
+/// back.
+void addCostAmong(const std::vector<std::unique_ptr<Goal>>& goals, const Goal& goal,
+                  const GoalContext& context, GoalCost& cost);
+
+}  // namespace softgauss::gdd
