@@ -107,10 +107,9 @@ void GoalBalance::listTerms(double time) {
 void GoalBalance::findWaiting(const State& state) {
   for (Term& term : terms_)
     for (int i = 0; i < goalCount(); ++i)
-      if (const auto* balance = dynamic_cast<const StandingBalance*>(terms_[idx(i)].goal);
-          balance && balance != term.goal &&
-          balance->holdsBack({model_, state, data_}, controller_.goals, *term.goal))
-        term.waitsFor = i;
+      if (const auto* balance = dynamic_cast<const StandingBalance*>(terms_[idx(i)].goal))
+        if (balance->holdsBack({model_, state, data_}, controller_.goals, *term.goal))
+          term.waitsFor = i;
 }
 
 int GoalBalance::find(const Goal& goal, const std::string& name) const {
@@ -351,13 +350,9 @@ void GoalBalance::split(const Goal& goal, int dof, VectorX& slope, VectorX& othe
 }
 
 Opposition GoalBalance::against(int i, int dof) {
-  Opposition result;
   const Term& goal = terms_[idx(i)];
-  if (goal.waitsFor >= 0) {
-    result.held = 1.0;
-    result.opponents.push_back({Kind::goal, goal.waitsFor, -1, 1.0});
-    return result;
-  }
+  if (goal.waitsFor >= 0) return {{{Kind::goal, goal.waitsFor, -1, 1.0}}, 1.0};
+  Opposition result;
   VectorX slope = goal.slope, still = goal.still, others, stillOthers;
   split(*goal.goal, dof, slope, others);
   split(*goal.goal, dof, still, stillOthers);
@@ -367,17 +362,14 @@ Opposition GoalBalance::against(int i, int dof) {
     wish = VectorX::Unit(model_.nv, dof) * (sign * inertia_[dof]);
   }
   const VectorX free = wish.cwiseQuotient(inertia_);
-  if (wish.dot(free) < kSingular * goal.most) {
-    result.singular = dof < 0;
-    return result;
-  }
+  result.singular = dof < 0 && wish.dot(free) < kSingular * goal.most;
+  if (wish.dot(free) < kSingular * goal.most) return result;
   const VectorX d = direction(wish);
   const double pull = -slope.dot(d);
   if (!(wish.dot(d) > kPulls * wish.dot(free)) || !(pull > 0.0)) return result;
   result.held = 1.0;
   if (still.size() > 0)
     if (const double atRest = -still.dot(d); atRest > pull) result.held = pull / atRest;
-
   const ControlLimits& limits = controller_.limits;
   VectorX Pd(model_.nv), whole, own;
   P_.multiply(d, Pd);

@@ -80,6 +80,9 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
          "--base-height", options.baseHeight,
          "initial height of a floating root [m]; default: its lowest point touches the ground")
       ->group(scene);
+  app.add_flag("--no-balance", options.noBalance,
+               "beside --reach a robot that stands is not kept standing")
+      ->group(scene);
   app.add_option("--ground", ground,
                  "height of the ground plane [m] or none; default: 0 for a floating base")
       ->group(scene);
@@ -143,9 +146,6 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
              "all joints and the base seek the initial posture; --posture=WEIGHT [-], default "
              "1000")
           ->group(goals);
-  app.add_flag("--no-balance", options.noBalance,
-               "beside --reach a robot that stands is not kept standing")
-      ->group(goals);
   app.add_option("--goals", options.goals, "a .yaml file of goals, see docs/reference/goals.md")
       ->group(goals);
   app.add_option("--torques", options.torques,

@@ -299,7 +299,7 @@ void StandingBalance::keepUp(const GoalContext& context, const Vector3& up, Goal
     const Eigen::Matrix<double, 1, 1> wished(stiffness * up.dot(X_WBase.p - X.p) -
                                              damping * up.dot(rows.velocity.head<3>()) -
                                              up.dot(rows.bias.head<3>()));
-    cost.workspace().rows.row(0) = up.transpose() * rows.J.topRows<3>();
+    cost.workspace().rows.row(0).noalias() = up.transpose() * rows.J.topRows<3>();
     cost.addRows(cost.workspace().rows.topRows(1), weight, wished);
   }
   for (const Foot& foot : feet) {
@@ -329,15 +329,16 @@ void StandingBalance::addCost(const GoalContext& context, const Goals& others,
   computeCentroidal(context.model, context.data.kinematics, context.data.inertia, robot, c);
   const double omega = swayRate(context.model, up.dot(c.p_WC) - support.height());
   if (omega == 0.0) return;
-  if (lifted)  // else arms and trunk swing for what the feet cannot do
-    cost.addRows(c.A.bottomRows<3>(), weight / (c.mass * c.mass * kSwing),
-                 -rate * c.momentum.tail<3>() - c.bias.tail<3>());
+  if (lifted) {  // else arms and trunk swing for what the feet cannot do
+    const Vector3 slows = -rate * c.momentum.tail<3>() - c.bias.tail<3>();
+    cost.addRows(c.A.bottomRows<3>(), weight / (c.mass * c.mass * kSwing), slows);
+  }
   for (const Support::Edge& edge : support) {
     const double v = edge.n.dot(c.v_WC);
     const double beyond = edge.n.dot(c.p_WC) + v / omega - support.bound(edge, kWithin);
     const double most = -omega * (v + rate * beyond);  // of n·ẍ
     if (most > kNoEdge) continue;
-    cost.workspace().dofs = -(c.A.topRows<3>().transpose() * edge.n) / c.mass;
+    cost.workspace().dofs.noalias() = c.A.topRows<3>().transpose() * (edge.n / -c.mass);
     cost.addOneSided(cost.workspace().dofs, weight, edge.n.dot(c.bias.head<3>()) / c.mass - most);
   }
 }
