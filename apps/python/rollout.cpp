@@ -25,8 +25,7 @@ class HeldRollout {
     if (arguments.goals.is_none() && !held_.hasGoalsOfFile())
       throw py::value_error(
           "rollout: found other goals of the simulation than its file's, which runs would not "
-          "have, "
-          "expected goals=… in run(); goals=[] for those of the file alone");
+          "have, expected goals=… in run(); goals=[] for those of the file alone");
     return call.run(rollout_);
   }
   const Rollout& rollout() const { return rollout_; }
@@ -107,9 +106,8 @@ void bindRollout(py::module_& m) {
   bindStates(m);
   py::class_<HeldRollout>(m, "Rollout", "Runs a simulation's scene many times on all cores.")
       .def(py::init<Held&, int>(), py::arg("sim"), py::arg("threads") = 0, py::keep_alive<1, 2>(),
-           "threads 0: as many as the machine has. Runs have the goals of the simulation's file "
-           "and\n"
-           "those that run() is given. Where the simulation was given others, run() asks for them.")
+           "threads 0: as many as the machine has. Runs have the goals of the simulation's file\n"
+           "and those of run(). Where the simulation was given others, run() asks for them.")
       .def(
           "run",
           [](HeldRollout& r, long steps, const py::object& runs, const py::object& q0,
