@@ -61,7 +61,21 @@ bool GaussNewtonHessian::factorize(const Data& data, const TreeFactor& massFacto
     forces.setJacobian(data.constraints, n);
     forces.addCurvature(H_);
   }
-  return n == 0 || factor_.compute(H_);
+  return factorizeRounded();
+}
+
+/// P M̂⁻¹ P squares the stiffness of contacts over the inertia: beyond 10¹⁶ rounding takes the
+/// smallest pivots. A share of the diagonal, as small as serves, gives them back; the direction
+/// stays one of descent.
+bool GaussNewtonHessian::factorizeRounded() {
+  constexpr double kLeast = 1e-15, kMost = 1e-9;
+  const int n = H_.size();
+  if (n == 0 || factor_.compute(H_)) return true;
+  for (double share = kLeast; share < kMost; share *= 10.0) {
+    for (int i = 0; i < n; ++i) row_[i] = share * H_.row(i)[i];
+    if (factor_.compute(H_, row_.data())) return true;
+  }
+  return false;
 }
 
 void GaussNewtonHessian::addReflectedContacts(const Data& data, const TreeFactor& massFactor) {

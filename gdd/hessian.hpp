@@ -27,7 +27,7 @@ class GaussNewtonHessian {
   /// G and P = M̂ + G of the cell in which the rows were last evaluated.
   void setCell(Data& data);
   /// Factors H, with ∇²ℓ of contact forces in this cell. `massFactor` is of M̂, `boundCurvature` ψ″
-  /// of every coordinate. Returns false when H is not positive definite.
+  /// of every coordinate. Returns false when H is not positive definite, rounding apart.
   bool factorize(const Data& data, const TreeFactor& massFactor, const VectorX& boundCurvature,
                  const ControlLimits& limits, GoalCost& cost, ContactForceTerms& forces);
   /// x ← H⁻¹ x.
@@ -37,6 +37,7 @@ class GaussNewtonHessian {
 
  private:
   void addReflectedContacts(const Data& data, const TreeFactor& massFactor);
+  bool factorizeRounded();
   void addForceTerms(const VectorX& boundCurvature, const ControlLimits& limits,
                      const ControlCostTerm& controlCost);
   void addForceRow(int dof, double curvature);

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "softgauss/engine/constraints/contact_set.hpp"
 #include "softgauss/engine/constraints/inverse_weight.hpp"
@@ -51,6 +52,8 @@ struct Assembly {
   const VectorX* midstepVelocity = nullptr;       ///< null: State::v
   const SupportedMass* load = nullptr;            ///< null: no row knows of a load
   MechanismCounts* acted = nullptr;               ///< null: nobody counts
+  bool columns = true;  ///< whether blocks list the dofs that move them (BlockJacobian)
+  const std::vector<Motion>* lastMotion = nullptr;  ///< (bodies) by State::a, without columns
 };
 
 }  // namespace softgauss

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "softgauss/engine/core/check.hpp"
 #include "softgauss/engine/dynamics/jacobian.hpp"
 
 namespace softgauss {
@@ -22,17 +23,24 @@ int commonDof(const Model& model, int i, int j) {
 }  // namespace
 
 void BlockJacobian::clear() {
+  bodies_.clear();
   blocks_.clear();
   segments_.clear();
   values_.clear();
 }
 
 void BlockJacobian::add(const Model& model, const Kinematics& k, const TreeSparsity& tree,
-                        const RelativeMotion& m) {
+                        const RelativeMotion& m, bool columns) {
+  bodies_.add(model, k, m);
   JacobianBlock block;
   block.dim = m.linearDim + m.angularDim;
   block.value = static_cast<int>(values_.size());
   block.segment = static_cast<int>(segments_.size());
+  if (!columns) {
+    block.segmentEnd = -1;
+    blocks_.push_back(block);
+    return;
+  }
 
   const int lastA = model.lastDof(m.bodyA), lastB = model.lastDof(m.bodyB);
   const int common = commonDof(model, lastA, lastB);
@@ -91,6 +99,7 @@ void BlockJacobian::add(const Model& model, const Kinematics& k, const TreeSpars
 
 void BlockJacobian::multiply(int i, const VectorX& a, double* y) const {
   const JacobianBlock& block = blocks_[i];
+  SOFTGAUSS_ASSERT(block.segmentEnd >= 0);
   if (block.dim == 3) {  // most contacts: three sums at a time wait less for one another
     const double *J0 = values_.data() + block.value, *J1 = J0 + block.columns,
                  *J2 = J1 + block.columns;
@@ -116,6 +125,7 @@ void BlockJacobian::multiply(int i, const VectorX& a, double* y) const {
 
 void BlockJacobian::addTransposed(int i, const double* f, VectorX& tau) const {
   const JacobianBlock& block = blocks_[i];
+  SOFTGAUSS_ASSERT(block.segmentEnd >= 0);
   for (int d = 0; d < block.dim; ++d) {
     if (f[d] == 0.0) continue;
     const double* J = values_.data() + block.value + d * block.columns;
@@ -126,6 +136,7 @@ void BlockJacobian::addTransposed(int i, const double* f, VectorX& tau) const {
 
 void BlockJacobian::addCurvature(int i, const double* H, TreeMatrix& P) {
   const JacobianBlock& block = blocks_[i];
+  SOFTGAUSS_ASSERT(block.segmentEnd >= 0);
   const int n = block.columns, dim = block.dim;
   const double* J = values_.data() + block.value;
   double* HJ = scratch_.data();

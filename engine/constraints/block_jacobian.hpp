@@ -10,62 +10,65 @@
 /// two branches below them appear. The dofs are a few ranges (segments), each row of J is stored
 /// without gaps.
 
+///
+/// The same rows are forces on bodies too (body_rows.hpp): what takes a BodyMotion, a BodyForce or
+/// an ArticulatedFactor in place of joint vectors and matrices works with these.
+
 #include <vector>
 
-#include "softgauss/engine/core/index.hpp"
-#include "softgauss/engine/core/memory.hpp"
-#include "softgauss/engine/dynamics/kinematics.hpp"
-#include "softgauss/engine/dynamics/tree_matrix.hpp"
+#include "softgauss/engine/constraints/body_rows.hpp"
 
 namespace softgauss {
 
-/// What a block measures of the motion of body B as seen from body A: first the velocity of a point
-/// of B less that of a point of A, along columns of `linear`, then the relative angular velocity,
-/// along columns of `angular`; world axes.
-struct RelativeMotion {
-  int bodyA = 0, bodyB = 0;
-  Vector3 p_WA = Vector3::Zero();  ///< the point of A
-  Vector3 p_WB = Vector3::Zero();  ///< the point of B
-  Matrix3 linear = Matrix3::Identity();
-  int linearDim = 0;  ///< columns used
-  Matrix3 angular = Matrix3::Identity();
-  int angularDim = 0;
-};
-
 struct JacobianBlock {
-  int dim = 0;      ///< rows
-  int columns = 0;  ///< entries of a row
-  int value = 0;    ///< first coefficient
-  int segment = 0;  ///< first segment
-  int segmentEnd = 0;
+  int dim = 0;           ///< rows
+  int columns = 0;       ///< entries of a row
+  int value = 0;         ///< first coefficient
+  int segment = 0;       ///< first segment
+  int segmentEnd = 0;    ///< −1: the block has no columns
   bool couples = false;  ///< both branches have dofs
 };
 
 class BlockJacobian {
  public:
   void clear();
+  /// Without `columns`, only what is on bodies works: nothing that takes vectors or matrices of
+  /// dofs.
   void add(const Model& model, const Kinematics& k, const TreeSparsity& tree,
-           const RelativeMotion& motion);
+           const RelativeMotion& motion, bool columns = true);
 
   int size() const { return static_cast<int>(blocks_.size()); }
   const JacobianBlock& block(int i) const { return blocks_[idx(i)]; }
 
   /// y ← J_i a.
   void multiply(int i, const VectorX& a, double* y) const;
+  void multiply(int i, const BodyMotion& a, double* y) const { bodies_.multiply(i, a.body, y); }
   /// tau ← tau + J_iᵀ f.
   void addTransposed(int i, const double* f, VectorX& tau) const;
+  void addTransposed(int i, const double* f, BodyForce& tau) const {
+    bodies_.addTransposed(i, f, tau.body);
+  }
   /// P ← P + J_iᵀ H J_i for a symmetric (dim × dim) H, row-major.
   void addCurvature(int i, const double* H, TreeMatrix& P);
+  void addCurvature(int i, const double* H, ArticulatedFactor& P) const {
+    bodies_.addCurvature(i, H, P);
+  }
   /// Row `row` of block i, dense.
   void denseRow(int i, int row, Eigen::Ref<Eigen::RowVectorXd> J) const;
 
   /// Appends the dof sets of blocks that couple two branches.
   void appendCouplings(std::vector<Segment>& segments, std::vector<int>& setEnd) const;
 
+  /// Appends the pairs of bodies that blocks couple.
+  void appendPairs(std::vector<std::pair<int, int>>& pairs) const { bodies_.appendPairs(pairs); }
+
   /// Memory held [bytes].
-  std::size_t bytes() const { return bytesOfAll(blocks_, segments_, values_, scratch_); }
+  std::size_t bytes() const {
+    return bodies_.bytes() + bytesOfAll(blocks_, segments_, values_, scratch_);
+  }
 
  private:
+  BodyRows bodies_;
   std::vector<JacobianBlock> blocks_;
   std::vector<Segment> segments_;
   std::vector<double> values_;

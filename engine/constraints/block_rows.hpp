@@ -22,13 +22,17 @@ struct Offset {
 
 class BlockRows : public ScalarRows<Quadratic> {
  public:
-  void multiply(const VectorX& a, std::vector<double>& y) const {
+  /// `Acceleration`, `Forces`, `Curvature`: as BlockJacobian takes them.
+  template <class Acceleration>
+  void multiply(const Acceleration& a, std::vector<double>& y) const {
     for (int i = 0; i < jacobian_.size(); ++i) jacobian_.multiply(i, a, y.data() + 3 * i);
   }
-  void addTransposed(const std::vector<double>& y, VectorX& tau) const {
+  template <class Forces>
+  void addTransposed(const std::vector<double>& y, Forces& tau) const {
     for (int i = 0; i < jacobian_.size(); ++i) jacobian_.addTransposed(i, y.data() + 3 * i, tau);
   }
-  void addCurvature(TreeMatrix& P) {
+  template <class Curvature>
+  void addCurvature(Curvature& P) {
     for (int i = 0; i < jacobian_.size(); ++i) {
       const double* d = h.data() + 3 * i;
       const double H[9] = {d[0], 0.0, 0.0, 0.0, d[1], 0.0, 0.0, 0.0, d[2]};
@@ -44,6 +48,7 @@ class BlockRows : public ScalarRows<Quadratic> {
   void appendCouplings(std::vector<Segment>& segments, std::vector<int>& setEnd) const {
     jacobian_.appendCouplings(segments, setEnd);
   }
+  void appendPairs(std::vector<std::pair<int, int>>& pairs) const { jacobian_.appendPairs(pairs); }
 
   std::size_t bytes() const { return ScalarRows::bytes() + jacobian_.bytes(); }
 

@@ -67,7 +67,7 @@ void ConnectionRows::assemble(const Assembly& in) {
       const Softness soft = equalitySoftness(
           in, c.impedance, offset.r.norm(), equalityInverseMass(in, c.impedance, c.bodyA, c.bodyB));
       const RelativeMotion motion = offsetMotion(c.bodyA, offset.p_WA, c.bodyB, offset.p_WB);
-      jacobian_.add(model, in.kinematics, in.tree, motion);
+      jacobian_.add(model, in.kinematics, in.tree, motion, in.columns);
       pushRows(offset, soft);
     }
   }

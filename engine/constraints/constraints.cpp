@@ -26,6 +26,11 @@ void Constraints::assemble(const Assembly& given) {
     load_.assemble(in.model, in.kinematics, in.contacts, in.weights);
     in.load = &load_;
   }
+  if (!in.columns && in.state.hasAcceleration && in.contacts.size() > 0) {
+    lastMotion_.resize(in.model.bodies.size());
+    moveBodies(in.model, in.kinematics, in.state.a, lastMotion_);
+    in.lastMotion = &lastMotion_;
+  }
   active_ = RowKinds::none();
   visitThese(*this, planned_, [&](auto& c, int kind) {
     // Without contacts there is nothing to look at, but old rows to drop.
@@ -34,7 +39,7 @@ void Constraints::assemble(const Assembly& given) {
     c.assemble(in);
     if (c.rowCount() > 0) active_.insert(kind);
   });
-  if (active_.empty()) {
+  if (active_.empty() || !in.columns) {
     sparsity_ = &in.tree;
     return;
   }
@@ -60,8 +65,8 @@ void Constraints::couple(const TreeSparsity& tree) {
   sparsity_ = &coupled_;
 }
 
-void Constraints::connectionForces(const Model& model, std::span<const std::uint8_t> trees,
-                                   VectorX& forces) {
+void Constraints::connectionForces(const Model& model, const Kinematics& k,
+                                   std::span<const std::uint8_t> trees, VectorX& forces) {
   const auto numbers = 9 * static_cast<Eigen::Index>(model.connections.size());
   if (forces.size() != numbers) forces.setZero(numbers);
   if (!active_.has(RowKind::connection)) {
@@ -69,7 +74,10 @@ void Constraints::connectionForces(const Model& model, std::span<const std::uint
     return;
   }
   rowForces_.setZero(model.nv);
-  addForce(rowForces_);
+  bodyForces_.assign(model.bodies.size(), Force{});
+  BodyForce force{rowForces_, bodyForces_};
+  addForce(force);
+  addBodyForces(model, k, bodyForces_, rowForces_);
   const auto treeOf = [&](int body) { return model.bodies[static_cast<std::size_t>(body)].tree; };
   const auto onTree = [&](int body) -> Vector3 {
     const int tree = treeOf(body);
@@ -95,18 +103,6 @@ int Constraints::rowCount() const {
   return rows;
 }
 
-void Constraints::setResidual(const VectorX& a) {
-  visit([&](auto& c) {
-    c.multiply(a, c.x);
-    for (std::size_t i = 0; i < c.x.size(); ++i) c.x[i] -= c.reference[i];
-  });
-  if (active_.has(RowKind::ellipticCone)) ellipticContact.clearBreakpointPlacement();
-}
-
-void Constraints::setRay(const VectorX& d) {
-  visit([&](auto& c) { c.multiply(d, c.dx); });
-}
-
 double Constraints::evaluate(bool& cellChanged) {
   double cost = 0.0;
   visit([&](auto& c) { cost += c.evaluate(cellChanged); });
@@ -129,10 +125,6 @@ void Constraints::advance(double alpha) {
   visit([&](auto& c) { c.advance(alpha); });
 }
 
-void Constraints::addForce(VectorX& tau) const {
-  visit([&](const auto& c) { c.addTransposed(c.f, tau); });
-}
-
 void Constraints::setForceRate() {
   visit([](auto& c) { c.setForceRate(); });
 }
@@ -144,8 +136,10 @@ void Constraints::addForceRate(VectorX& tau) {
   });
 }
 
-void Constraints::addCurvature(TreeMatrix& P) {
-  visit([&](auto& c) { c.addCurvature(P); });
+void Constraints::appendPairs(std::vector<std::pair<int, int>>& pairs) const {
+  visit([&](const auto& c) {
+    if constexpr (requires { c.appendPairs(pairs); }) c.appendPairs(pairs);
+  });
 }
 
 void Constraints::findCrossings(std::vector<Crossing>& crossings) const {

@@ -103,7 +103,8 @@ class Constraints {
   void assemble(const Assembly& in);
   /// forces ← those of the rows' present f, as State::connectionForces; of connections of these
   /// trees (1) alone, unless `trees` is empty.
-  void connectionForces(const Model& model, std::span<const std::uint8_t> trees, VectorX& forces);
+  void connectionForces(const Model& model, const Kinematics& k,
+                        std::span<const std::uint8_t> trees, VectorX& forces);
   int rowCount() const;
   /// Kinds that may make rows, and those that have some in this step.
   RowKinds planned() const { return planned_; }
@@ -115,10 +116,20 @@ class Constraints {
   /// Pattern of P = M + Jᵀ∇²s J: the trees', or with fill-in where rows couple branches.
   const TreeSparsity& sparsity() const { return *sparsity_; }
 
-  /// x ← J a − a_ref.
-  void setResidual(const VectorX& a);
+  /// x ← J a − a_ref, a of joints or of joints and bodies (BodyMotion).
+  template <class Acceleration>
+  void setResidual(const Acceleration& a) {
+    visit([&](auto& c) {
+      c.multiply(a, c.x);
+      for (std::size_t i = 0; i < c.x.size(); ++i) c.x[i] -= c.reference[i];
+    });
+    if (active_.has(RowKind::ellipticCone)) ellipticContact.clearBreakpointPlacement();
+  }
   /// dx ← J d.
-  void setRay(const VectorX& d);
+  template <class Acceleration>
+  void setRay(const Acceleration& d) {
+    visit([&](auto& c) { c.multiply(d, c.dx); });
+  }
   /// Forces and curvatures at x; returns the cost s(x) and whether any row changed its piece.
   double evaluate(bool& cellChanged);
   /// Adds the derivatives of s(x + α dx) in α.
@@ -126,12 +137,26 @@ class Constraints {
   /// Whether s is one quadratic on the ray up to α = 1: no row changes its piece, no cone bends.
   bool staysInCell() const;
   void advance(double alpha);
-  void addForce(VectorX& tau) const;
+  /// tau ← tau + Jᵀf, tau of joints or of joints and bodies (BodyForce).
+  template <class Forces>
+  void addForce(Forces& tau) const {
+    visit([&](const auto& c) { c.addTransposed(c.f, tau); });
+  }
   /// df ← −∇²s dx: the rates of the rows' forces along the ray, at the present residual.
   void setForceRate();
   /// Adds the rate of that force along the ray, −Jᵀ∇²s dx.
   void addForceRate(VectorX& tau);
-  void addCurvature(TreeMatrix& P);
+  /// P ← P + Jᵀ∇²s J.
+  template <class Curvature>
+  void addCurvature(Curvature& P) {
+    visit([&](auto& c) {
+      if constexpr (requires { c.addCurvature(P); }) c.addCurvature(P);
+    });
+  }
+  /// Whether all rows act on bodies or on single joints, so that an ArticulatedFactor may be given.
+  bool actOnBodies() const { return !active_.has(RowKind::coupling); }
+  /// Appends the pairs of bodies that rows couple.
+  void appendPairs(std::vector<std::pair<int, int>>& pairs) const;
   /// Whether s is a sum of piecewise quadratics at present, so that findCrossings() is complete.
   bool piecewiseQuadratic() const { return ellipticContact.rowCount() == 0; }
   /// All breakpoints ahead on the ray, α ≥ 0, unordered.
@@ -204,7 +229,9 @@ class Constraints {
   MechanismCounts acted_;
   const TreeSparsity* sparsity_ = nullptr;
   TreeSparsity coupled_;
-  VectorX rowForces_;  ///< (nv) Jᵀf
+  VectorX rowForces_;               ///< (nv) Jᵀf
+  std::vector<Force> bodyForces_;   ///< (bodies) scratch of it
+  std::vector<Motion> lastMotion_;  ///< (bodies) Assembly::lastMotion
   std::vector<Segment> couplings_, lastCouplings_;
   std::vector<int> couplingEnd_, lastCouplingEnd_;
 };

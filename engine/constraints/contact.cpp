@@ -278,7 +278,7 @@ ContactBlocks::BlockMotion ContactBlocks::addBlock(const Assembly& in, int i, co
   motion.linear = motion.angular = R_WC;
   motion.linearDim = touch.frictionDim > 0 ? 3 : 1;
   motion.angularDim = std::max(0, touch.frictionDim - 2);
-  jacobian_.add(model, in.kinematics, in.tree, motion);
+  jacobian_.add(model, in.kinematics, in.tree, motion, in.columns);
 
   BlockMotion moves;
   moves.velocity = inFrame(R_WC, touch.frictionDim, slips);
@@ -344,7 +344,11 @@ Slip ContactBlocks::slipOf(const Assembly& in, const Touch& touch, const Softnes
   in.count(Mechanism::slipCorrection, slip.share == 1.0);
   if (!in.state.hasAcceleration) return slip;
   double last[6];
-  jacobian_.multiply(jacobian_.size() - 1, in.state.a, last);
+  const int block = jacobian_.size() - 1;
+  if (in.lastMotion)
+    jacobian_.multiply(block, BodyMotion{in.state.a, *in.lastMotion}, last);
+  else
+    jacobian_.multiply(block, in.state.a, last);
   for (int k = 0; k < slip.dim; ++k)
     slip.met += slip.direction[k] * touch.friction[k] * (last[k + 1] + moves.bias[k + 1]);
   const double leaves = last[0] + moves.bias[0];

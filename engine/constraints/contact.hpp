@@ -88,6 +88,7 @@ class ContactBlocks {
   void appendCouplings(std::vector<Segment>& segments, std::vector<int>& setEnd) const {
     jacobian_.appendCouplings(segments, setEnd);
   }
+  void appendPairs(std::vector<std::pair<int, int>>& pairs) const { jacobian_.appendPairs(pairs); }
   /// Velocities ẏ, or forces and moments, in the frame of a contact.
   using FrameVector = std::array<double, 6>;
   /// Block i: from a to y of contact i.

@@ -15,6 +15,8 @@
 #include "softgauss/engine/constraints/assembly.hpp"
 #include "softgauss/engine/constraints/rows.hpp"
 #include "softgauss/engine/core/index.hpp"
+#include "softgauss/engine/dynamics/articulated_factor.hpp"
+#include "softgauss/engine/dynamics/body_motion.hpp"
 
 namespace softgauss {
 
@@ -26,6 +28,13 @@ class DryFriction : public ScalarRows<Huber> {
   }
   void addTransposed(const std::vector<double>& y, VectorX& tau) const {
     for (std::size_t i = 0; i < dof_.size(); ++i) tau[dof_[i]] += y[i];
+  }
+  void multiply(const BodyMotion& a, std::vector<double>& y) const { multiply(a.joint, y); }
+  void addTransposed(const std::vector<double>& y, BodyForce& tau) const {
+    addTransposed(y, tau.joint);
+  }
+  void addCurvature(ArticulatedFactor& P) {
+    for (std::size_t i = 0; i < dof_.size(); ++i) P.addJoint(dof_[i], h[i]);
   }
   void addCurvature(TreeMatrix& P) {
     for (std::size_t i = 0; i < dof_.size(); ++i) P.row(dof_[i])[dof_[i]] += h[i];

@@ -35,7 +35,8 @@ void EllipticContact::assemble(const Assembly& in) {
   indexRows(reference.size());
 }
 
-void EllipticContact::multiply(const VectorX& a, std::vector<double>& y) const {
+template <class Acceleration>
+void EllipticContact::multiply(const Acceleration& a, std::vector<double>& y) const {
   for (std::size_t i = 0; i < contactsWithRows_.size(); ++i)
     jacobian_.multiply(static_cast<int>(i), a, y.data() + contactsWithRows_[i].row);
 }
@@ -115,13 +116,15 @@ int EllipticContact::frameCurvature(int i, double* H) const {
   return cones_[i].dim;
 }
 
-void EllipticContact::addTransposed(const std::vector<double>& y, VectorX& tau) const {
+template <class Forces>
+void EllipticContact::addTransposed(const std::vector<double>& y, Forces& tau) const {
   for (int i = 0; i < static_cast<int>(contactsWithRows_.size()); ++i)
     if (zones_[i] != ConeZone::top)
       jacobian_.addTransposed(i, y.data() + contactsWithRows_[i].row, tau);
 }
 
-void EllipticContact::addCurvature(TreeMatrix& P) {
+template <class Curvature>
+void EllipticContact::addCurvature(Curvature& P) {
   for (std::size_t i = 0; i < contactsWithRows_.size(); ++i) {
     double force[EllipticCone::kMaxDim], H[EllipticCone::kMaxDim * EllipticCone::kMaxDim];
     ConeZone zone;
@@ -202,5 +205,13 @@ void EllipticContact::placeAtBreakpoint(int row, int breakpoint, bool stiffSide)
   zones_[i] = static_cast<ConeZone>(stiffSide ? breakpoint : breakpoint + 1);
   placed_[i] = true;
 }
+
+using Numbers = std::vector<double>;
+template void EllipticContact::multiply(const VectorX&, Numbers&) const;
+template void EllipticContact::multiply(const BodyMotion&, Numbers&) const;
+template void EllipticContact::addTransposed(const Numbers&, VectorX&) const;
+template void EllipticContact::addTransposed(const Numbers&, BodyForce&) const;
+template void EllipticContact::addCurvature(TreeMatrix&);
+template void EllipticContact::addCurvature(ArticulatedFactor&);
 
 }  // namespace softgauss

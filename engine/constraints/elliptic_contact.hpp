@@ -27,13 +27,17 @@ class EllipticContact : public ContactBlocks {
 
   int rowCount() const { return static_cast<int>(x.size()); }
   void assemble(const Assembly& in);
-  void multiply(const VectorX& a, std::vector<double>& y) const;
+  /// `Acceleration`, `Forces`, `Curvature`: as BlockJacobian takes them.
+  template <class Acceleration>
+  void multiply(const Acceleration& a, std::vector<double>& y) const;
   double evaluate(bool& cellChanged);
   void along(double alpha, Jet& sum) const;
   void advance(double alpha);
   void setForceRate();  ///< df ← −∇²s(x) dx
-  void addTransposed(const std::vector<double>& y, VectorX& tau) const;
-  void addCurvature(TreeMatrix& P);
+  template <class Forces>
+  void addTransposed(const std::vector<double>& y, Forces& tau) const;
+  template <class Curvature>
+  void addCurvature(Curvature& P);
   void addRow(int i, double scale, VectorX& y) const;
 
   // Breakpoints, where a contact changes its zone (elliptic_cone.hpp). Their row is the contact's

@@ -149,7 +149,7 @@ void GeometricStiffness::addRows(const Assembly& in, const ConnectionForce& pull
   motion.bodyB = pull.body;
   motion.angularDim = 3;
   motion.angular = frameFromNormal(pull.a_W.normalized());
-  jacobian_.add(in.model, in.kinematics, in.tree, motion);
+  jacobian_.add(in.model, in.kinematics, in.tree, motion, in.columns);
   Offset turns{};
   turns.r = turns.bias = Vector3::Zero();
   turns.rate = motion.angular.transpose() *

@@ -17,6 +17,7 @@
 
 #include "softgauss/engine/constraints/assembly.hpp"
 #include "softgauss/engine/constraints/rows.hpp"
+#include "softgauss/engine/dynamics/body_motion.hpp"
 
 namespace softgauss {
 
@@ -25,6 +26,10 @@ class CouplingRows : public ScalarRows<Quadratic> {
   void assemble(const Assembly& in);
   void multiply(const VectorX& a, std::vector<double>& y) const;
   void addTransposed(const std::vector<double>& y, VectorX& tau) const;
+  void multiply(const BodyMotion& a, std::vector<double>& y) const { multiply(a.joint, y); }
+  void addTransposed(const std::vector<double>& y, BodyForce& tau) const {
+    addTransposed(y, tau.joint);
+  }
   void addCurvature(TreeMatrix& P);
   /// y ← y + scale · (row i of J)ᵀ.
   void addRow(int i, double scale, VectorX& y) const;

@@ -47,7 +47,8 @@ void PyramidalContact::assemble(const Assembly& in) {
   indexRows(reference.size());
 }
 
-void PyramidalContact::multiply(const VectorX& a, std::vector<double>& y) const {
+template <class Acceleration>
+void PyramidalContact::multiply(const Acceleration& a, std::vector<double>& y) const {
   for (std::size_t i = 0; i < contactsWithRows_.size(); ++i) {
     double frame[6];
     jacobian_.multiply(static_cast<int>(i), a, frame);
@@ -68,7 +69,8 @@ ContactBlocks::FrameVector PyramidalContact::inFrame(int i, const std::vector<do
   return frame;
 }
 
-void PyramidalContact::addTransposed(const std::vector<double>& y, VectorX& tau) const {
+template <class Forces>
+void PyramidalContact::addTransposed(const std::vector<double>& y, Forces& tau) const {
   for (int i = 0; i < static_cast<int>(contactsWithRows_.size()); ++i) {
     const FrameVector frame = inFrame(i, y);
     if (frame != FrameVector{}) jacobian_.addTransposed(i, frame.data(), tau);
@@ -93,7 +95,8 @@ int PyramidalContact::frameCurvature(int i, double* H) const {
   return dim;
 }
 
-void PyramidalContact::addCurvature(TreeMatrix& P) {
+template <class Curvature>
+void PyramidalContact::addCurvature(Curvature& P) {
   double H[36];
   for (int i = 0; i < static_cast<int>(contactsWithRows_.size()); ++i) {
     frameCurvature(i, H);
@@ -117,5 +120,13 @@ ContactBlocks::FrameVector PyramidalContact::breakpointInFrame(int row, int) con
 void PyramidalContact::addRow(int row, double scale, VectorX& y) const {
   jacobian_.addTransposed(contactOfRow_[row], rowInFrame(row, scale).data(), y);
 }
+
+using Numbers = std::vector<double>;
+template void PyramidalContact::multiply(const VectorX&, Numbers&) const;
+template void PyramidalContact::multiply(const BodyMotion&, Numbers&) const;
+template void PyramidalContact::addTransposed(const Numbers&, VectorX&) const;
+template void PyramidalContact::addTransposed(const Numbers&, BodyForce&) const;
+template void PyramidalContact::addCurvature(TreeMatrix&);
+template void PyramidalContact::addCurvature(ArticulatedFactor&);
 
 }  // namespace softgauss

@@ -21,9 +21,13 @@ class PyramidalContact : public ScalarRows<HalfQuadratic>, public ContactBlocks 
   static constexpr Cone kCone = Cone::pyramidal;
 
   void assemble(const Assembly& in);
-  void multiply(const VectorX& a, std::vector<double>& y) const;
-  void addTransposed(const std::vector<double>& y, VectorX& tau) const;
-  void addCurvature(TreeMatrix& P);
+  /// `Acceleration`, `Forces`, `Curvature`: as BlockJacobian takes them.
+  template <class Acceleration>
+  void multiply(const Acceleration& a, std::vector<double>& y) const;
+  template <class Forces>
+  void addTransposed(const std::vector<double>& y, Forces& tau) const;
+  template <class Curvature>
+  void addCurvature(Curvature& P);
   /// y ← y + scale · (row i of J)ᵀ.
   void addRow(int i, double scale, VectorX& y) const;
 

@@ -50,7 +50,7 @@ void WeldRows::assemble(const Assembly& in) {
       RelativeMotion motion = offsetMotion(weld.bodyA, point.p_WA, weld.bodyB, point.p_WB);
       const Softness linear =
           softness(equalityInverseMass(in, weld.impedance, weld.bodyA, weld.bodyB));
-      jacobian_.add(model, k, in.tree, motion);
+      jacobian_.add(model, k, in.tree, motion, in.columns);
       pushRows(point, linear);
 
       // Bodies that slide only cannot be turned back.
@@ -63,7 +63,7 @@ void WeldRows::assemble(const Assembly& in) {
       motion.angularDim = 3;
       motion.angular = turn.J_r.transpose();
       const Softness angular = softness(weight);
-      jacobian_.add(model, k, in.tree, motion);
+      jacobian_.add(model, k, in.tree, motion, in.columns);
       pushRows(turn, angular);
     }
   }

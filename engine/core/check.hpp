@@ -50,8 +50,14 @@ inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 }  // namespace softgauss
 
 #if defined(SOFTGAUSS_CHECKED) && SOFTGAUSS_CHECKED
+namespace softgauss {
+inline constexpr bool kChecked = true;
+}
 #define SOFTGAUSS_ASSERT(condition) \
   ((condition) ? (void)0 : ::softgauss::detail::assertionFailed(#condition, __FILE__, __LINE__))
 #else
+namespace softgauss {
+inline constexpr bool kChecked = false;  ///< in checked builds: what is not computed is NaN
+}
 #define SOFTGAUSS_ASSERT(condition) ((void)0)
 #endif

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "softgauss/engine/core/check.hpp"
+
 namespace softgauss {
 
 MassMatrix::MassMatrix(const Model& model)
@@ -13,7 +15,7 @@ MassMatrix::MassMatrix(const Model& model)
   forceScale = motionScale = added = VectorX::Zero(model.nv);
 }
 
-void computeMassMatrix(const Model& model, const Kinematics& k, MassMatrix& stage) {
+void computeMassMatrix(const Model& model, const Kinematics& k, MassMatrix& stage, bool whole) {
   const int bodies = model.bodyCount();
 
   // Inertia of each body in the coordinates of its tree.
@@ -34,12 +36,15 @@ void computeMassMatrix(const Model& model, const Kinematics& k, MassMatrix& stag
     const Dof& dof = model.dofs[i];
     const Force F = stage.composite[dof.body] * k.S[i];
     double* row = stage.M.row(i);
-    for (const Segment* s = stage.sparsity.begin(i); s != stage.sparsity.end(i); ++s)
-      for (int j = s->begin; j < s->end; ++j) row[j] = dot(k.S[j], F);
+    for (const Segment* s = stage.sparsity.begin(i);
+         (whole || kChecked) && s != stage.sparsity.end(i); ++s)
+      for (int j = s->begin; j < s->end; ++j) row[j] = whole ? dot(k.S[j], F) : kNaN;
+    row[i] = dot(k.S[i], F);
     if (armature) row[i] += dof.armature;
     stage.motionScale[i] = 1.0 / std::sqrt(row[i]);
   }
   stage.forceScale = stage.motionScale;
+  stage.whole = whole;
   stage.added.setZero();
   stage.anyAdded = false;
 }

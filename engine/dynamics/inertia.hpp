@@ -20,10 +20,11 @@ struct MassMatrix {
   std::vector<Inertia> body;       ///< (bodies) inertia of each body alone, about O
   std::vector<Inertia> composite;  ///< (bodies) of its subtree
   TreeSparsity sparsity;
-  TreeMatrix M;         ///< (nv × nv)
+  TreeMatrix M;  ///< (nv × nv); off its diagonal where `whole`
+  bool whole = false;
   VectorX motionScale;  ///< (nv) 1/√M_ii
   VectorX added;        ///< (nv) what implicit forces add to the diagonal (implicit_forces.hpp)
-  TreeMatrix Mhat;      ///< M + diag(added), where anyAdded
+  TreeMatrix Mhat;      ///< M + diag(added), where anyAdded; as whole as M
   bool anyAdded = false;
   VectorX forceScale;  ///< (nv) 1/√M̂_ii: forces so scaled share one unit
 
@@ -36,6 +37,8 @@ struct MassMatrix {
   MassMatrix& operator=(const MassMatrix&) = delete;
 };
 
-void computeMassMatrix(const Model& model, const Kinematics& kinematics, MassMatrix& stage);
+/// `whole`: else the diagonal of M alone, in O(n), which is all that a solve on bodies needs.
+void computeMassMatrix(const Model& model, const Kinematics& kinematics, MassMatrix& stage,
+                       bool whole = true);
 
 }  // namespace softgauss

@@ -44,7 +44,7 @@ std::vector<double> rotorLevers(const Model& model) {
 
 /// Velocity of a link's centre of mass, and of its radius of gyration [m/s].
 Motion linkVelocity(const Islands::Island& island, int b) {
-  const Kinematics& k = island.data.kinematics;
+  const Kinematics& k = island.end;
   const Body& body = island.part.model.bodies[idx(b)];
   const Motion& V = k.V[idx(b)];
   const Vector3 com = k.X_WB[idx(b)] * body.com - k.p_WO[idx(body.tree)];
@@ -66,6 +66,7 @@ Islands::Island::Island(const Model& whole, std::vector<int> ofUnits, const std:
       control(controls ? controls->within(part) : nullptr),
       state(part.model),
       data(part.model),
+      end(part.model),
       gyration(gyrationRadii(part.model)),
       rotor(rotorLevers(part.model)),
       rest(part.model.bodies.size()) {}
@@ -148,7 +149,6 @@ void Islands::wake(Island& island) {
   if (island.awake) return;
   island.part.gather(model_, state_, island.state);
   island.awake = true;
-  island.posed = false;
   island.resting = 0.0;
   awake_.push_back(&island);
 }
@@ -209,13 +209,7 @@ void Islands::wakeWhatIsControlled() {
   }
 }
 
-void Islands::pose(Island& island) {
-  const bool drifts = island.data.plan.drifts;
-  if (!island.posed || drifts) poseForStep(island.part.model, island.state, island.data);
-  island.posed = !drifts;
-}
-
-/// One step of an island, and the poses where it ends: while its memory is at hand.
+/// One step of an island.
 SolveStatus Islands::take(Island& island, const Input& input) {
   Input& part = island.input;
   if (input.tau.size() > 0) {
@@ -237,24 +231,17 @@ SolveStatus Islands::take(Island& island, const Input& input) {
   const Model& model = island.part.model;
   State& state = island.state;
   island.controlled = island.control && island.control->acts(state_.time);
-  if (island.controlled) {
-    const SolveStatus status =
-        island.control->step(part, state, island.data, island.contacts.get());
-    if (isRefused(status)) return status;
-    computeKinematics(model, state, island.data.kinematics);
-    return status;
-  }
+  if (island.controlled)
+    return island.control->step(part, state, island.data, island.contacts.get());
   if (island.control) island.control->release();
   const SolveStatus status =
       softgauss::step(model, part, state, island.data, island.contacts.get(), nullptr, true);
-  if (isRefused(status)) return status;
-  if (controls_) {  // a control that comes to act starts from there
+  if (controls_ && !isRefused(status)) {  // a control that comes to act starts from there
     state.warmstart.gddA = state.warmstart.a;
     state.warmstart.multipliers.setZero();
     state.warmstart.control.setZero();
     state.warmstart.breakpoints.clear();
   }
-  computeKinematics(model, state, island.data.kinematics);
   return status;
 }
 
@@ -266,7 +253,7 @@ SolveStatus Islands::step(const Input& input) noexcept {
   wakeWhatIsPushed(input);
   wakeWhatIsControlled();
   if (islandStats_.wakeups > 0) refreshLists();
-  for (Island* island : awake_) pose(*island);
+  for (Island* island : awake_) poseForStep(island->part.model, island->state, island->data);
   part();
   join();
   for (Island* island : awake_)
@@ -299,10 +286,7 @@ SolveStatus Islands::fail(const Island& island) {
     stats_.badDof += model_.trees[idx(island.part.trees[idx(tree)])].firstDof -
                      island.part.model.trees[idx(tree)].firstDof;
   }
-  for (Island* other : awake_) {
-    other->part.gather(model_, state_, other->state);
-    other->posed = false;
-  }
+  for (Island* other : awake_) other->part.gather(model_, state_, other->state);
   return stats_.status;
 }
 
@@ -310,6 +294,7 @@ SolveStatus Islands::fail(const Island& island) {
 /// thousandth of Sleep::speed are rounding.
 bool Islands::rests(Island& island) const {
   const Model& model = island.part.model;
+  computeKinematics(model, island.state, island.end);
   const bool begins = island.resting == 0.0;
   double fastest = 0.0, change = 0.0;
   for (int b = 1; b < model.bodyCount(); ++b) {

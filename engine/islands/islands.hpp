@@ -101,8 +101,8 @@ class Islands {
   /// Of the last step; sleepers have none (nv).
   const VectorX& acceleration() const { return acceleration_; }
 
-  /// An island, as the last step has left it. State and kinematics are those of the step's end, the
-  /// rest of the data is that of its start.
+  /// An island, as the last step has left it. The state is that of the step's end, the data that of
+  /// its solve.
   struct Island {
     Island(const Model& whole, std::vector<int> ofUnits, const std::vector<int>& trees,
            IslandContacts* contacts, IslandControls* controls);
@@ -113,6 +113,7 @@ class Islands {
     std::unique_ptr<IslandControl> control;   ///< null: nothing controls any
     State state;
     Data data;
+    Kinematics end;  ///< of `state`, where it may rest
     Input input;
     std::vector<double> gyration;  ///< (bodies) radius of gyration [m]
     std::vector<double> rotor;     ///< (dofs) speed of the tree that armature makes of v [m]
@@ -122,7 +123,6 @@ class Islands {
     double resting = 0.0;          ///< [s]
     bool active = false;           ///< part of the scene now
     bool awake = false;
-    bool posed = false;       ///< data.kinematics is that of `state`
     bool controlled = false;  ///< in its last step
     std::int64_t lastUse = 0;
   };
@@ -144,7 +144,6 @@ class Islands {
   void refreshLists();
   void wakeWhatIsPushed(const Input& input);
   void wakeWhatIsControlled();
-  void pose(Island& island);
   SolveStatus take(Island& island, const Input& input);
   void part();
   void join();

@@ -25,7 +25,7 @@ void Islands::makeIslands(const std::vector<Island*>& old, UnionFind& sets) {
     Island& island = find(group);
     if (island.active) continue;  // as it was
     activate(island);
-    pose(island);
+    poseForStep(island.part.model, island.state, island.data);
     ++islandStats_.regroups;
   }
   refreshLists();

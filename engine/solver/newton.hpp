@@ -74,18 +74,18 @@ concept NewtonObjective = requires(O o, VectorX& g, VectorX& d, double alpha) {
   o.advance(d, alpha);
 };
 
-/// `factored`: the objective has a factor already, and says whether it is of its cell.
+/// From a point whose scaled gradient `residual`, and gradient g, are known.
 template <NewtonObjective Objective>
-NewtonReport minimize(Objective& objective, double tolerance, int maxIterations, VectorX& g,
-                      VectorX& d, bool factored = false) {
+NewtonReport minimize(Objective& objective, double tolerance, int maxIterations, double residual,
+                      VectorX& g, VectorX& d) {
   /// Where rounding ends progress before the tolerance: this much is still called converged.
   constexpr double kRoundingFloor = 1e3;
   constexpr int kSlowSteps = 3;
   NewtonReport report;
   double previous = kInfinity;
   int slowSteps = 0;
-  for (;;) {
-    report.residual = objective.gradient(g);
+  bool factored = false;
+  for (report.residual = residual;; report.residual = objective.gradient(g)) {
     if (!std::isfinite(report.residual)) {
       report.status = SolveStatus::notFinite;
       return report;
@@ -125,6 +125,12 @@ NewtonReport minimize(Objective& objective, double tolerance, int maxIterations,
     objective.advance(d, search.alpha);
     previous = report.residual;
   }
+}
+
+template <NewtonObjective Objective>
+NewtonReport minimize(Objective& objective, double tolerance, int maxIterations, VectorX& g,
+                      VectorX& d) {
+  return minimize(objective, tolerance, maxIterations, objective.gradient(g), g, d);
 }
 
 }  // namespace softgauss

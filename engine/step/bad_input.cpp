@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "softgauss/engine/step/bad_input.hpp"
 
+#include <algorithm>
 #include <cstdio>
 
 namespace softgauss {
@@ -100,6 +101,25 @@ BadInput findBadQuaternion(const Model& model, const VectorX& q) noexcept {
       return {BadInputKind::quaternion, b, length, 1.0};
   }
   return {};
+}
+
+bool isFinite(const Input& input, const State& state) noexcept {
+  if (!state.q.allFinite() || !state.v.allFinite() || !input.tau.allFinite()) return false;
+  return std::all_of(input.wrenches.begin(), input.wrenches.end(), [&](const ExternalWrench& w) {
+    return w.F_Bo_W.force.allFinite() && w.F_Bo_W.moment.allFinite();
+  });
+}
+
+int firstBadDof(const Model& model, const Input& input, const State& state) noexcept {
+  for (const Body& body : model.bodies) {
+    const int coordinates = body.dofs == 6 ? 7 : body.dofs;
+    const bool bad =
+        !state.q.segment(body.q, coordinates).allFinite() ||
+        !state.v.segment(body.v, body.dofs).allFinite() ||
+        (input.tau.size() == model.nv && !input.tau.segment(body.v, body.dofs).allFinite());
+    if (bad) return body.v;
+  }
+  return -1;
 }
 
 std::string describe(const Model& model, const BadInput& bad) {

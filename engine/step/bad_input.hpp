@@ -46,6 +46,11 @@ BadInput findBadInput(const Model& model, const Input& input, const State& state
 /// Of the quaternions in q (nq) alone.
 BadInput findBadQuaternion(const Model& model, const VectorX& q) noexcept;
 
+/// Whether neither has a NaN or an infinity.
+bool isFinite(const Input& input, const State& state) noexcept;
+/// The first dof whose position, velocity or applied force is not finite, −1 if none is.
+int firstBadDof(const Model& model, const Input& input, const State& state) noexcept;
+
 /// "State::q: found 3 numbers, expected 19".
 std::string describe(const Model& model, const BadInput& bad);
 

@@ -15,18 +15,19 @@
 #include "softgauss/engine/forces/forces.hpp"
 #include "softgauss/engine/solver/newton.hpp"
 #include "softgauss/engine/step/bad_input.hpp"
+#include "softgauss/engine/step/body_objective.hpp"
 
 namespace softgauss {
 
 /// Stage written by forwardDynamics().
 struct ForwardSolution {
   VectorX a;              ///< continuous-time acceleration of (1.1) (nv)
-  VectorX Ma;             ///< M a
+  VectorX Ma;             ///< M a, where no row acts or minimizeGauss() has solved
   VectorX gradient;       ///< M a + c − τ − Jᵀf, the residual force [N, N m]
   TreeFactor factor;      ///< of P = M + Jᵀ∇²s J in the last cell, or of M
-  TreeFactor massFactor;  ///< of M, or of M + h D where damping follows the solve
+  TreeFactor massFactor;  ///< of M̂, of minimizeGauss()
   NewtonReport report;
-  bool massFactored = false;  ///< massFactor is that of the present M, alone
+  bool massFactored = false;  ///< massFactor is that of the present M̂
   bool cellFactored = false;  ///< `factor` is of the cell of the solution
 
   VectorX direction, Md, scale, start;  ///< scratch
@@ -117,6 +118,7 @@ struct Data {
   ExactDiagonal exactDiagonal;
   NoSlipFriction noSlipFriction;  ///< with Options::noSlip: friction of the last solve, else empty
   ForwardSolution forward;
+  BodySolution bodies;      ///< of the same solve, on bodies
   VectorX midstepVelocity;  ///< (nv) of mid-step, predicted: v′ of (6.2), of the leapfrog
   VectorX acceleration;     ///< discrete, (v⁺ − v)/h (nv)
   std::unique_ptr<SubstepWorkspace> parts;         ///< of the leapfrog, else null

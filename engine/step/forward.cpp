@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "softgauss/engine/core/check.hpp"
 #include "softgauss/engine/step/gauss_objective.hpp"
 #include "softgauss/engine/step/no_slip.hpp"
 
@@ -16,14 +17,98 @@ int firstNotFinite(const VectorX& x) {
   return -1;
 }
 
-/// Without rows the minimiser is M⁻¹(τ − c): no iteration, no residual. False where M is singular.
-bool solveSmooth(Data& data) {
+bool hasRows(const Data& data) { return !kBuiltRows.empty() && !data.constraints.active().empty(); }
+
+/// x ← M̂⁻¹ x by the factor that goals go on from.
+bool solveByTree(const Model& model, Data& data, VectorX& x) {
+  SOFTGAUSS_ASSERT(data.inertia.whole || data.plan.diagonal);
+  if (data.plan.diagonal && !hasRows(data)) return solveMass(model, data, nullptr, x);
+  ForwardSolution& s = data.forward;
+  if (!s.massFactored && !s.massFactor.compute(data.inertia.hat())) {
+    data.stats.badDof = s.massFactor.failedRow();
+    return false;
+  }
+  s.massFactored = true;
+  s.massFactor.solve(x);
+  return true;
+}
+
+/// Newton's method from `guess` or, where that is far away, from the unconstrained acceleration if
+/// it costs less; `solveInertia` is x ← M̂⁻¹ x and false where M̂ is singular, and names the dof.
+template <class Objective, class SolveInertia>
+void solveRows(const Model& model, const VectorX* guess, Data& data, Objective& objective,
+               SolveInertia&& solveInertia) {
+  /// A gradient at the guess that is no larger than the forces themselves: it is near.
+  constexpr double kNear = 1.0;
+  ForwardSolution& s = data.forward;
+  const bool warm = data.constraints.rowCount() > 0 && guess && guess->allFinite();
+  double residual = kInfinity, warmCost = kInfinity;
+  if (warm) {
+    warmCost = objective.moveTo(*guess);
+    residual = objective.gradient(s.gradient);
+  }
+  if (!(residual <= kNear)) {
+    // Without rows the minimiser is M⁻¹(τ − c).
+    s.start = data.forces.net;
+    if (!solveInertia(s.start)) {
+      s.report.status = SolveStatus::notFinite;
+      return;
+    }
+    const double smoothCost = objective.moveTo(s.start);
+    if (warm && warmCost <= smoothCost) objective.moveTo(*guess);
+    residual = objective.gradient(s.gradient);
+  }
+  s.report = minimize(objective, model.options.tolerance,
+                      mostIterations(model.options.maxIterations, data.constraints.rowCount()),
+                      residual, s.gradient, s.direction);
+  s.cellFactored = s.report.factorizations > 0 && !objective.cellChanged();
+  data.stats.roundingLimitedSolves += s.report.roundingLimited;
+  if (s.report.status == SolveStatus::notFinite) data.stats.badDof = firstNotFinite(s.a);
+}
+
+/// Without rows the minimiser is M⁻¹(τ − c): no iteration, no residual.
+template <class SolveInertia>
+void solveSmooth(Data& data, SolveInertia&& solveInertia) {
   ForwardSolution& s = data.forward;
   s.Ma = s.a = data.forces.net;
   s.gradient.setZero();
-  if (!solveMass(data, nullptr, s.a)) return false;
-  if (!s.a.allFinite()) s.report.status = SolveStatus::notFinite;
-  return true;
+  const bool solved = solveInertia(s.a);
+  if (solved && s.a.allFinite()) return;
+  s.report.status = SolveStatus::notFinite;
+  if (solved) data.stats.badDof = firstNotFinite(s.a);
+}
+
+/// Whether there is something to solve for; else, what is wrong with the input is in the report.
+bool begin(const Model& model, const VectorX* guess, Data& data) {
+  ForwardSolution& s = data.forward;
+  s.report = {};
+  s.cellFactored = false;
+  data.stats.invalidWarmStarts += guess && !guess->allFinite();
+  if (model.nv == 0) return false;
+  if (guess && guess->size() != model.nv) {
+    data.stats.refuse(model, {BadInputKind::warmStart, -1, static_cast<double>(guess->size()),
+                              static_cast<double>(model.nv)});
+    s.report.status = data.stats.status;
+    return false;
+  }
+  if (data.forces.net.allFinite()) return true;
+  data.stats.badDof = firstNotFinite(data.forces.net);
+  s.report.status = SolveStatus::notFinite;
+  return false;
+}
+
+/// (1.1) by a solver that solveInertia() belongs to; `makeObjective` is called where rows act.
+template <class MakeObjective, class SolveInertia>
+SolveStatus minimizeBy(const Model& model, const VectorX* guess, Data& data,
+                       MakeObjective&& makeObjective, SolveInertia&& solveInertia) {
+  if (!begin(model, guess, data)) return data.forward.report.status;
+  if (hasRows(data)) {
+    auto objective = makeObjective();
+    solveRows(model, guess, data, objective, solveInertia);
+  } else {
+    solveSmooth(data, solveInertia);
+  }
+  return data.forward.report.status;
 }
 
 }  // namespace
@@ -33,8 +118,7 @@ int mostIterations(int option, int rows) {
   return option * std::max(1, rows / kRows);
 }
 
-bool solveMass(Data& data, const VectorX* diagonal, VectorX& x) {
-  ForwardSolution& s = data.forward;
+bool solveMass(const Model& model, Data& data, const VectorX* diagonal, VectorX& x) {
   const TreeMatrix& M = data.inertia.hat();
   if (data.plan.diagonal) {
     for (int i = 0; i < M.size(); ++i) {
@@ -47,77 +131,33 @@ bool solveMass(Data& data, const VectorX* diagonal, VectorX& x) {
     }
     return true;
   }
+  BodySolution& s = data.bodies;
   if (diagonal || !s.massFactored) {
-    s.massFactored = !diagonal;
-    if (!s.massFactor.compute(M, diagonal ? diagonal->data() : nullptr)) {
-      s.massFactored = false;
-      data.stats.badDof = s.massFactor.failedRow();
+    s.massFactor.begin(model, data.inertia);
+    for (int i = 0; diagonal && i < model.nv; ++i) s.massFactor.addJoint(i, (*diagonal)[i]);
+    const bool factored = s.massFactor.factor(model, data.kinematics);
+    s.massFactored = factored && !diagonal;
+    if (!factored) {
+      data.stats.badDof = s.massFactor.failedJoint();
       return false;
     }
   }
-  s.massFactor.solve(x);
+  s.massFactor.solve(model, data.kinematics, x, s.ray);
   return true;
 }
 
 SolveStatus minimizeGauss(const Model& model, const VectorX* guess, Data& data) noexcept {
-  ForwardSolution& s = data.forward;
-  s.report = {};
-  s.cellFactored = false;
-  data.stats.invalidWarmStarts += guess && !guess->allFinite();
-  if (model.nv == 0) return SolveStatus::converged;
-  if (guess && guess->size() != model.nv) {
-    data.stats.refuse(model, {BadInputKind::warmStart, -1, static_cast<double>(guess->size()),
-                              static_cast<double>(model.nv)});
-    return s.report.status = data.stats.status;
-  }
-  const auto notFinite = [&] {
-    data.stats.badDof = firstNotFinite(data.forces.net);
-    s.report.status = SolveStatus::notFinite;
-    return s.report.status;
-  };
-  const auto notPositive = [&] {  // solveMass() has named the dof
-    s.report.status = SolveStatus::notFinite;
-    return s.report.status;
-  };
-  const auto finish = [&] {
-    data.stats.roundingLimitedSolves += s.report.roundingLimited;
-    if (s.report.status == SolveStatus::notFinite) data.stats.badDof = firstNotFinite(s.a);
-    return s.report.status;
-  };
-  if (!data.forces.net.allFinite()) return notFinite();
-
-  if (kBuiltRows.empty() || data.constraints.active().empty()) {
-    if (!solveSmooth(data)) return notPositive();
-    return finish();
-  }
-
-  GaussObjective objective(data.inertia, data.forces.net, data.constraints, s);
-  // A warm start that solves the problem already (after GDD, at rest) ends it here.
-  const bool warm = data.constraints.rowCount() > 0 && guess && guess->allFinite();
-  double warmCost = kInfinity;
-  if (warm) {
-    warmCost = objective.moveTo(*guess);
-    s.report.residual = objective.gradient(s.gradient);
-    if (s.report.residual <= model.options.tolerance) return finish();
-  }
-  // Without rows the minimiser is M⁻¹(τ − c).
-  if (!s.massFactored && !s.massFactor.compute(data.inertia.hat())) {
-    data.stats.badDof = s.massFactor.failedRow();
-    return notPositive();
-  }
-  s.massFactored = true;
-  s.start = data.forces.net;
-  s.massFactor.solve(s.start);
-  const double smoothCost = objective.moveTo(s.start);
-  if (warm && warmCost <= smoothCost) objective.moveTo(*guess);
-  s.report = minimize(objective, model.options.tolerance,
-                      mostIterations(model.options.maxIterations, data.constraints.rowCount()),
-                      s.gradient, s.direction);
-  s.cellFactored = s.report.factorizations > 0 && !objective.cellChanged();
-  return finish();
+  return minimizeBy(
+      model, guess, data,
+      [&] { return GaussObjective(data.inertia, data.forces.net, data.constraints, data.forward); },
+      [&](VectorX& x) { return solveByTree(model, data, x); });
 }
 
 SolveStatus forwardDynamics(const Model& model, const VectorX* guess, Data& data) noexcept {
+  if (!model.options.noSlip && data.constraints.actOnBodies())
+    return minimizeBy(
+        model, guess, data, [&] { return BodyObjective(model, data); },
+        [&](VectorX& x) { return solveMass(model, data, nullptr, x); });
   const SolveStatus status = minimizeGauss(model, guess, data);
   if (!model.options.noSlip || isRefused(status)) return status;
   removeSlip(model, data);

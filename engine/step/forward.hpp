@@ -6,7 +6,8 @@
 ///   a = argmin  ½ aᵀM a + aᵀ(c − τ) + s(J a − a_ref)                                 (1.1)
 ///
 /// The objective is strictly convex and piecewise quadratic; its gradient is the inverse dynamics
-/// minus τ (1.2) and its curvature is P = M + Jᵀ∇²s J (1.3).
+/// minus τ (1.2) and its curvature is P = M + Jᵀ∇²s J (1.3). Newton's method needs neither M nor J:
+/// rows are forces on bodies (body_objective.hpp).
 
 #include "softgauss/engine/step/data.hpp"
 
@@ -16,7 +17,8 @@ namespace softgauss {
 /// Starts from `guess` (null: none) or the unconstrained acceleration, whichever costs less.
 SolveStatus forwardDynamics(const Model& model, const VectorX* guess, Data& data) noexcept;
 
-/// (1.1) itself: forwardDynamics() without the second solve of Options::noSlip.
+/// (1.1) with M, J and P, whose factor is left in data.forward: for couplings of joints, for
+/// Options::noSlip, without its second solve, and for goals, which go on from there.
 SolveStatus minimizeGauss(const Model& model, const VectorX* guess, Data& data) noexcept;
 
 /// Of Newton's iterations: a step ends in another cell or at the minimum, and the more rows, the
@@ -24,9 +26,9 @@ SolveStatus minimizeGauss(const Model& model, const VectorX* guess, Data& data) 
 /// fall on each other, with 4,210 rows, have needed more than 100.)
 int mostIterations(int option, int rows);
 
-/// x ← (M + diagonal)⁻¹ x, `diagonal` null for M alone, whose factor is used where the last solve
+/// x ← (M̂ + diagonal)⁻¹ x, `diagonal` null for M̂ alone, whose factor is used where the last solve
 /// left it. False where a pivot is not positive.
-bool solveMass(Data& data, const VectorX* diagonal, VectorX& x);
+bool solveMass(const Model& model, Data& data, const VectorX* diagonal, VectorX& x);
 
 /// forwardDynamics() from the warm start of a state.
 inline SolveStatus forwardDynamics(const Model& model, const State& state, Data& data) noexcept {

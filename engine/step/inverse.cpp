@@ -11,21 +11,23 @@ SolveStatus inverseDynamics(const Model& model, const VectorX& a, Data& data, Ve
   }
   if (!a.allFinite()) return data.stats.status = SolveStatus::notFinite;
   bool changed = false;
-  data.constraints.setResidual(a);
+  BodySolution& s = data.bodies;
+  s.moveTo(model, data.kinematics, data.inertia, a);
+  data.constraints.setResidual(BodyMotion{a, s.A});
   data.constraints.evaluate(changed);
-  // −τ = −M a − c + Jᵀf, as addForce() adds.
-  VectorX& Ma = data.forward.Md;
-  data.inertia.hat().multiply(a, Ma);
-  tau = -Ma - data.forces.c;
-  data.constraints.addForce(tau);
+  // −τ = −c − M a + Jᵀf
+  tau = -data.forces.c;
+  s.addForces(model, data.kinematics, data.constraints, a, tau);
   tau = -tau;
   return SolveStatus::converged;
 }
 
-void inverseDynamicsJacobian(Data& data, TreeMatrix& P) {
+bool inverseDynamicsJacobian(Data& data, TreeMatrix& P) {
+  if (!data.inertia.whole) return false;
   P.resize(data.constraints.sparsity());
   P.assign(data.inertia.hat());
   data.constraints.addCurvature(P);
+  return true;
 }
 
 }  // namespace softgauss

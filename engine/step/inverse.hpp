@@ -15,7 +15,8 @@ namespace softgauss {
 /// it, and notFinite where a is not finite; tau is then as it was.
 SolveStatus inverseDynamics(const Model& model, const VectorX& a, Data& data, VectorX& tau);
 
-/// P ← curvature of the cell that the rows were last evaluated in.
-void inverseDynamicsJacobian(Data& data, TreeMatrix& P);
+/// P ← curvature of the cell that the rows were last evaluated in. Of stages that computeStages()
+/// has made; false, with P as it was, after a step on bodies, which leaves no matrices.
+bool inverseDynamicsJacobian(Data& data, TreeMatrix& P);
 
 }  // namespace softgauss

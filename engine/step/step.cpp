@@ -29,26 +29,6 @@ double lap(Clock::time_point& last) {
   return seconds;
 }
 
-bool finite(const Input& input, const State& state) {
-  if (!state.q.allFinite() || !state.v.allFinite() || !input.tau.allFinite()) return false;
-  return std::all_of(input.wrenches.begin(), input.wrenches.end(), [&](const ExternalWrench& w) {
-    return w.F_Bo_W.force.allFinite() && w.F_Bo_W.moment.allFinite();
-  });
-}
-
-/// The first dof whose position, velocity or applied force is not finite, −1 if none is.
-int firstBadDof(const Model& model, const Input& input, const State& state) {
-  for (const Body& body : model.bodies) {
-    const int coordinates = body.dofs == 6 ? 7 : body.dofs;
-    const bool bad =
-        !state.q.segment(body.q, coordinates).allFinite() ||
-        !state.v.segment(body.v, body.dofs).allFinite() ||
-        (input.tau.size() == model.nv && !input.tau.segment(body.v, body.dofs).allFinite());
-    if (bad) return body.v;
-  }
-  return -1;
-}
-
 /// Where a step that failed went wrong: the dof of the first force that is not finite, or else of
 /// what is largest.
 int worstDof(const Model& model, const Data& data, const State& state) {
@@ -80,6 +60,7 @@ Data::Data(const Model& model, Evaluation)
       forces(model, plan),
       constraints(plan.rows),
       exactDiagonal(model.options.exactDiagonal ? model.nv : 0),
+      bodies(model),
       midstepVelocity(VectorX::Zero(plan.drifts ? model.nv : 0)),
       acceleration(VectorX::Zero(model.nv)),
       derivative(isImplicit(model.options.integrator) ? std::make_unique<VelocityDerivative>(model)
@@ -142,16 +123,23 @@ void computeForces(const Model& model, const Input& input, const State& state, D
   data.stats.times.kinematics += lap(clock);
 }
 
+/// Whether M and J are matrices: the solve is not on bodies, goals act, or M is differentiated.
+bool needsMatrices(const Model& model, const Data& data, const Given& given) {
+  return given.control || model.options.noSlip || model.options.exactDiagonal || data.derivative ||
+         data.plan.rows.has(RowKind::coupling);
+}
+
 void assembleRows(const Model& model, const Input& input, const State& state, Data& data,
-                  Clock::time_point& clock) {
+                  Clock::time_point& clock, bool matrices) {
   if (kBuiltRows.empty() || data.plan.rows.empty()) return;
   Assembly assembly{model,           state,        data.kinematics,
                     data.contacts,   data.weights, data.inertia.sparsity,
                     input.controlled};
+  assembly.columns = matrices;
   if (data.plan.drifts && predictsMidstepVelocity(model, state))
     assembly.midstepVelocity = &data.midstepVelocity;
   data.constraints.assemble(assembly);
-  // A mass matrix that cannot be factored is found, and reported, by the solve.
+  // What cannot be factored is found by the solve.
   if (model.options.exactDiagonal && !data.constraints.active().empty())
     data.exactDiagonal.apply(data.inertia.M, data.constraints);
   if (model.options.noSlip) data.noSlipFriction.clear();
@@ -162,20 +150,20 @@ void assembleRows(const Model& model, const Input& input, const State& state, Da
 
 /// computeStages(); `clock` is when the last stage ended. A clock is read only after what has run.
 SolveStatus computeStages(const Model& model, const Input& input, const State& state, Data& data,
-                          ContactSource* contacts, Clock::time_point& clock,
-                          bool posed = false) noexcept {
+                          ContactSource* contacts, Clock::time_point& clock, bool posed = false,
+                          bool matrices = true) noexcept {
   SOFTGAUSS_ASSERT(data.plan.fits(model));
   data.stats = {};
-  if (!finite(input, state)) {
+  if (!isFinite(input, state)) {
     data.stats.status = SolveStatus::notFinite;
     data.stats.badDof = firstBadDof(model, input, state);
     return data.stats.status;
   }
   clock = Clock::now();
   if (!posed) computeKinematics(model, state, data.kinematics);
-  computeMassMatrix(model, data.kinematics, data.inertia);
+  computeMassMatrix(model, data.kinematics, data.inertia, matrices);
   if (data.plan.inSolve) addImplicitInertia(model, data);
-  data.forward.massFactored = false;
+  data.forward.massFactored = data.bodies.massFactored = false;
   computeForces(model, input, state, data, clock);
 
   if (looksForContacts(data, contacts)) {
@@ -189,7 +177,7 @@ SolveStatus computeStages(const Model& model, const Input& input, const State& s
   } else {
     data.contacts.clear();
   }
-  assembleRows(model, input, state, data, clock);
+  assembleRows(model, input, state, data, clock, matrices);
   return SolveStatus::converged;
 }
 
@@ -273,7 +261,9 @@ Tried tryStep(const Model& model, const Given& given, const State& start, int mo
   StepStats& stats = data.stats;
   const bool drifts = data.plan.drifts, resolves = drifts && !model.options.stepDoubling;
   if (drifts) driftBefore(model, data, state);
-  if (isRefused(computeStages(model, given.input, state, data, given.contacts, clock, posed)))
+  const bool matrices = needsMatrices(model, data, given);
+  if (isRefused(
+          computeStages(model, given.input, state, data, given.contacts, clock, posed, matrices)))
     return Tried::refused;
   const VectorX* aim = nullptr;
   for (bool again = false;; again = true) {
@@ -289,7 +279,7 @@ Tried tryStep(const Model& model, const Given& given, const State& start, int mo
     state.warmstart.a = data.forward.a;  // nearer than the last step's
     state.warmstart.valid = true;
     computeForces(model, given.input, state, data, clock);
-    assembleRows(model, given.input, state, data, clock);
+    assembleRows(model, given.input, state, data, clock, matrices);
   }
   SolveStatus moved = integrate(model, given, start, data, state);
   if (!isRefused(moved) && resolves && data.parts->substepSelection.anyFree) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 #include "softgauss/engine/constraints/contact_rotation.hpp"
 #include "softgauss/engine/core/memory.hpp"
@@ -54,7 +55,7 @@ SubstepSelection::SubstepSelection(const Model& model)
       velocity_(change_),
       bias_(change_),
       alone_(change_),
-      Mx_(change_) {
+      midstep_(change_) {
   const auto tie = [&](int body) {
     if (model.bodies[body].tree >= 0) hasEquality_[model.bodies[body].tree] = 1;
   };
@@ -64,7 +65,7 @@ SubstepSelection::SubstepSelection(const Model& model)
 
 std::size_t SubstepSelection::bytes() const {
   return bytesOfAll(coriolisChange, free, hasEquality_, touched_, change_, velocity_, bias_, alone_,
-                    Mx_);
+                    midstep_);
 }
 
 void SubstepSelection::findTouched(const Model& model, const Data& data) {
@@ -73,9 +74,11 @@ void SubstepSelection::findTouched(const Model& model, const Data& data) {
     for (const int body : {c.bodyA, c.bodyB})
       if (model.bodies[body].tree >= 0) touched_[model.bodies[body].tree] = 1;
   velocity_.setZero();
+  // Of joints; rows of bodies are those of connections and welds. Weights that differ, lest two
+  // rows of a joint cancel.
   data.constraints.visitAllButContacts([&](const auto& c) {
-    // Weights that differ, lest two rows of a joint cancel.
-    for (int i = 0; i < c.rowCount(); ++i) c.addRow(i, 1.0 + i, velocity_);
+    if constexpr (!std::is_base_of_v<BlockRows, std::remove_cvref_t<decltype(c)>>)
+      for (int i = 0; i < c.rowCount(); ++i) c.addRow(i, 1.0 + i, velocity_);
   });
   for (std::size_t t = 0; t < model.trees.size(); ++t) {
     const Tree& tree = model.trees[t];
@@ -87,15 +90,13 @@ void SubstepSelection::findTouched(const Model& model, const Data& data) {
 /// How far tree t turns in a step by Δb, `change_` being M⁻¹Δb and `a` the acceleration that made
 /// it: (6.4).
 double SubstepSelection::coriolisChangeBy(const Model& model, int t, const State& state,
-                                          const VectorX& a, const Data& data) {
+                                          const VectorX& a, Data& data) {
   const double h = model.options.timestep;
   const Tree& tree = model.trees[t];
   const double turned = h * coriolisChangeRate(model, tree, data, state.v, a, change_);
   if (!isPassive(tree, hasEquality_[t], data, state.v, state.a, h)) return turned;
   const auto square = [&](const VectorX& x) {
-    data.inertia.M.multiply(x, Mx_);
-    const int first = tree.firstDof, dofs = tree.dofEnd - first;
-    return x.segment(first, dofs).dot(Mx_.segment(first, dofs));
+    return twiceKineticEnergy(model, tree, data.kinematics, data.inertia, x, data.bodies.ray);
   };
   const double moving = square(state.v) + h * h * square(a);
   return std::max(turned, h * energyRate(square(change_), moving));
@@ -106,7 +107,7 @@ void SubstepSelection::findCoriolisChanges(const Model& model, const State& stat
   computeBiasAt(model, data.kinematics, data.inertia, state.v, data.forces.work, bias_);
   ++data.forces.calls.coriolis;
   change_ = data.forces.bias - bias_;
-  if (!solveMass(data, nullptr, change_)) return;  // the solve will say so
+  if (!solveMass(model, data, nullptr, change_)) return;  // the solve will say so
   for (int t = 0; t < static_cast<int>(model.trees.size()); ++t)
     coriolisChange[t] = coriolisChangeBy(model, t, state, state.a, data);
 }
@@ -120,11 +121,11 @@ bool SubstepSelection::findAlone(const Model& model, Data& data) {
   alone_.setZero();
   bias(alone_, change_);
   alone_ = change_ - data.forces.bias;
-  if (!solveMass(data, nullptr, alone_)) return false;
-  Mx_ = data.midstepVelocity + 0.5 * model.options.timestep * alone_;
-  bias(Mx_, change_);
+  if (!solveMass(model, data, nullptr, alone_)) return false;
+  midstep_ = data.midstepVelocity + 0.5 * model.options.timestep * alone_;
+  bias(midstep_, change_);
   change_ -= data.forces.bias;
-  return solveMass(data, nullptr, change_);
+  return solveMass(model, data, nullptr, change_);
 }
 
 /// A control acts on the tree, or applied forces that change its motion by more than a thousandth.

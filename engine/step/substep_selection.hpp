@@ -53,7 +53,7 @@ class SubstepSelection {
 
  private:
   double coriolisChangeBy(const Model& model, int tree, const State& state, const VectorX& a,
-                          const Data& data);
+                          Data& data);
   void findCoriolisChanges(const Model& model, const State& state, Data& data);
   bool findAlone(const Model& model, Data& data);
   void findTouched(const Model& model, const Data& data);
@@ -62,7 +62,7 @@ class SubstepSelection {
 
   std::vector<std::uint8_t> hasEquality_;          ///< (trees) 1: connections or welds hold it
   std::vector<std::uint8_t> touched_;              ///< (trees) 1: there are rows of it
-  VectorX change_, velocity_, bias_, alone_, Mx_;  ///< (nv) scratch
+  VectorX change_, velocity_, bias_, alone_, midstep_;  ///< (nv) scratch
 };
 
 }  // namespace softgauss

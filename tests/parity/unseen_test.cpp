@@ -42,8 +42,10 @@ TEST_P(ParityScene, PruningIsNotSeen) {
       const SolveStatus status = step(model, input, state, data, &pruned);
       ASSERT_EQ(step(model, input, same, other, &all), status);
       ASSERT_EQ(hash(state), hash(same)) << "at t = " << t;
-      if (integrator == Integrator::rungeKutta4 && status == SolveStatus::notFinite)
-        break;  // joint damping of the fingers is too stiff for it
+      // Joint damping of the fingers is too stiff for it: it blows up.
+      if (integrator == Integrator::rungeKutta4 &&
+          (status == SolveStatus::notFinite || state.v.cwiseAbs().maxCoeff() > 1e50))
+        break;
       ASSERT_EQ(status, SolveStatus::converged);
     }
   }

@@ -117,8 +117,7 @@ double EnergyWatch::offset(const State& state, const Input& input) {
   for (const Tree& tree : model_.trees)
     if (model_.isFree(tree.rootBody)) force.segment<3>(tree.firstDof).setZero();
   VectorX a = force;
-  data_.forward.massFactored = false;
-  solveMass(data_, nullptr, a);
+  solveMass(model_, data_, nullptr, a);
   back_ = state;
   computeKinematics(model_, back_, kinematics_);
   return 2.0 * leastTurn(model_.options) * turning(state) + 0.125 * h * h * force.dot(a) +

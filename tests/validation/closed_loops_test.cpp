@@ -126,7 +126,10 @@ TEST(Weld, CarriesWhatItWelds) {
   EXPECT_SMALL((s.state.q.head<3>() - Vector3(-0.1, 0, 0.7)).norm(), 2e-3);
   EXPECT_SMALL(s.state.q.segment<3>(4).norm(), 2e-3);
   VectorX force = VectorX::Zero(6);
-  s.data->constraints.weld.addTransposed(s.data->constraints.weld.f, force);
+  std::vector<Force> onBodies(s.model.bodies.size());
+  BodyForce all{force, onBodies};
+  s.data->constraints.weld.addTransposed(s.data->constraints.weld.f, all);
+  addBodyForces(s.model, s.data->kinematics, onBodies, force);
   VectorX weight(6);
   weight << 0, 0, 2.0 * 9.81, 0, 0, 0;
   EXPECT_APPROX(force, weight, 1e-6);

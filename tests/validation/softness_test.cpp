@@ -190,22 +190,34 @@ Material referred(double omega, double zeta) {
   return m;
 }
 
-/// Speed after a bounce over that before: a ball at 1 m/s without gravity on what is rigid, or as
-/// soft as it. The first step in the ground begins `phase` of a step's way deep.
-double bounce(const Material& surface, double omega, double timestep, double phase, Cone cone) {
+/// Speed after a bounce over that before: a ball at `speed` [m/s] on what is rigid, or as soft as
+/// it, without gravity or with. The first step in the ground begins `phase` of a step's way deep.
+double bounce(const Material& surface, double omega, double timestep, double phase, Cone cone,
+              double speed = 1.0, bool gravity = false) {
   ModelBuilder builder = sphereOnPlane(kRadius, kBallMass, 0.7);
   builder.options.timestep = timestep;
-  builder.options.gravity.setZero();
+  if (!gravity) builder.options.gravity.setZero();
   builder.options.cone = cone;
   Model model = builder.build();
   for (Geometry& g : model.geometries)
     if (g.body != 0 || !surface.spring) g.material = surface;
   Scene s(std::move(model), std::make_shared<SampleContacts>());
-  s.state.q[2] = kRadius + (1.0 - phase) * timestep;
-  s.state.v[2] = -1.0;
+  s.state.q[2] = kRadius + (1.0 - phase) * timestep * speed;
+  s.state.v[2] = -speed;
   const int most = static_cast<int>(10.0 / (omega * timestep));
   for (int i = 0; i < most && !(s.state.v[2] > 0.0 && s.state.q[2] > kRadius); ++i) s.step();
-  return s.state.v[2];
+  return s.state.v[2] / speed;
+}
+
+/// ζ of the recipe: what leaves e when gravity has taken 3.5 ζ g/(ω v), less a quarter of ω h.
+double recipe(double e, double omega, double timestep, double speed) {
+  const double gravity = 9.81 / (omega * speed);
+  double low = 0.0, high = 1.0;
+  for (int i = 0; i < 60; ++i) {
+    const double zeta = 0.5 * (low + high);
+    (restitution(zeta) - 3.5 * zeta * gravity > e ? low : high) = zeta;
+  }
+  return low - 0.25 * omega * timestep;
 }
 
 // The recipe of docs/guide/contact.md: the damping ratio of the wish, less what the step itself
@@ -231,6 +243,26 @@ TEST(Softness, BouncesByTheRecipe) {
       EXPECT_LT(mean, wish);
     }
   EXPECT_SMALL(restitution(0.1222) - 0.7, 1e-3);
+}
+
+// Gravity keeps a ball in contact longer, which takes 3.5 ζ g/(ω v) of its bounce (the solution of
+// m x″ = −k x − c x′ − m g, without pull, is met by it to 0.005 while g/(ω v) is below 0.1).
+TEST(Softness, BouncesByTheRecipeInGravity) {
+  const double omega = 50.0, speed = 3.1;  // from half a metre
+  for (const Cone cone : kCones)
+    for (const double e : {0.3, 0.5, 0.8})
+      for (const double phase : {0.05, 0.35, 0.65, 0.95}) {
+        SCOPED_TRACE(e);
+        const double fine = 1e-5, coarse = 0.002;
+        EXPECT_SMALL(bounce(sprung(omega, recipe(e, omega, fine, speed)), omega, fine, phase, cone,
+                            speed, true) -
+                         e,
+                     0.01);
+        EXPECT_SMALL(bounce(sprung(omega, recipe(e, omega, coarse, speed)), omega, coarse, phase,
+                            cone, speed, true) -
+                         e,
+                     0.025);
+      }
 }
 
 // A reference that is less than half damped is that spring, by the recipe (3.11).

@@ -40,10 +40,10 @@ void addImplicitInertia(const Model& model, Data& data) {
     if (isStiffSpring(model, data, spring)) inertia.added[spring.dof] += h * h * spring.stiffness;
   inertia.anyAdded = (inertia.added.array() != 0.0).any();
   if (!inertia.anyAdded) return;
-  inertia.Mhat.assign(inertia.M);
+  if (inertia.whole) inertia.Mhat.assign(inertia.M);
   for (int i = 0; i < model.nv; ++i) {
     double& pivot = inertia.Mhat.row(i)[i];
-    pivot += inertia.added[i];
+    pivot = inertia.M.row(i)[i] + inertia.added[i];
     inertia.forceScale[i] = 1.0 / std::sqrt(pivot);
   }
 }

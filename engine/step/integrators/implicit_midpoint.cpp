@@ -109,7 +109,7 @@ class Part {
     // Q = M a + b + K (q̄ − q_s)
     s_.data.inertia.M.multiply(v, s_.phi);
     const double twiceKinetic = v.dot(s_.phi);
-    double power = v.dot(s_.data.forward.Ma) + v.dot(s_.data.forces.bias);
+    double power = s_.phi.dot(s_.data.forward.a) + v.dot(s_.data.forces.bias);
     for (const Plan::Spring& spring : s_.data.plan.springs)
       power += v[spring.dof] * spring.stiffness * (s_.state.q[spring.q] - spring.reference);
     const double scale = before.kinetic + after.kinetic + std::abs(before.potential) +

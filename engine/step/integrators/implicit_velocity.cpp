@@ -15,13 +15,13 @@ bool implicitVelocity(const Model& model, Data& data, State& state) {
   if (data.constraints.active().empty())
     net = s.Ma;
   else
-    data.inertia.hat().multiply(s.a, net);
+    data.bodies.multiplyMass(model, data.kinematics, data.inertia, s.a, net);
   const bool diagonal = data.plan.hasDamping() || anyStiffSpring(model, data);
   if (diagonal) setImplicitForces(model, state, data, net);
   const VectorX* added = diagonal ? &s.Md : nullptr;
   if (data.plan.coriolis && data.derivative->factorize(model, data, h, added))
     data.derivative->solve(model, net);
-  else if (!solveMass(data, added, net))
+  else if (!solveMass(model, data, added, net))
     return false;
   s.start = state.v + h * data.acceleration;
   if (tooFast(model, s.start)) return false;

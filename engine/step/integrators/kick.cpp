@@ -17,7 +17,7 @@ bool tooFast(const Model& model, const VectorX& v) {
 void keepConnectionForces(const Model& model, Data& data, State& state,
                           std::span<const std::uint8_t> trees) {
   if (data.plan.rows.has(RowKind::geometricStiffness))
-    data.constraints.connectionForces(model, trees, state.connectionForces);
+    data.constraints.connectionForces(model, data.kinematics, trees, state.connectionForces);
 }
 
 }  // namespace softgauss

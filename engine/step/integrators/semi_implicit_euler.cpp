@@ -16,9 +16,9 @@ bool semiImplicitEuler(const Model& model, Data& data, State& state) {
     if (data.constraints.active().empty())
       net = s.Ma;
     else
-      data.inertia.hat().multiply(s.a, net);
+      data.bodies.multiplyMass(model, data.kinematics, data.inertia, s.a, net);
     setImplicitForces(model, state, data, net);
-    if (!solveMass(data, &s.Md, net)) return false;
+    if (!solveMass(model, data, &s.Md, net)) return false;
   }
   s.start = state.v + h * data.acceleration;
   if (tooFast(model, s.start)) return false;

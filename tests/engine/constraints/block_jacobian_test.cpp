@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "softgauss/engine/constraints/block_jacobian.hpp"
 
+#include "softgauss/engine/dynamics/body_motion.hpp"
 #include "softgauss/engine/dynamics/jacobian.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/scene.hpp"
@@ -80,6 +81,29 @@ TEST(BlockJacobian, MultipliesAndTransposesAsDense) {
       const VectorX f = random.vector(dim, 1.0);
       VectorX tau = a;
       p.J.addTransposed(i, f.data(), tau);
+      EXPECT_APPROX(tau, a + p.dense[i].transpose() * f, 1e-14);
+    }
+  }
+}
+
+TEST(BlockJacobian, MultipliesAndTransposesByBodies) {
+  for (int seed = 0; seed < 30; ++seed) {
+    const Probe p(seed);
+    Random random(seed);
+    const VectorX a = random.vector(p.model.nv, 1.0);
+    std::vector<Motion> A(p.model.bodies.size());
+    moveBodies(p.model, p.k, a, A);
+    for (int i = 0; i < p.J.size(); ++i) {
+      const int dim = p.J.block(i).dim;
+      VectorX y(dim);
+      p.J.multiply(i, BodyMotion{a, A}, y.data());
+      EXPECT_APPROX(y, p.dense[i] * a, 1e-14);
+      const VectorX f = random.vector(dim, 1.0);
+      VectorX tau = a;
+      std::vector<Force> F(p.model.bodies.size());
+      BodyForce force{tau, F};
+      p.J.addTransposed(i, f.data(), force);
+      addBodyForces(p.model, p.k, F, tau);
       EXPECT_APPROX(tau, a + p.dense[i].transpose() * f, 1e-14);
     }
   }

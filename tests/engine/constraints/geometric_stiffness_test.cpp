@@ -122,7 +122,10 @@ TEST(GeometricStiffness, KeepsMomentum) {
     }
     ++holds;
     VectorX tau = VectorX::Zero(s.model.nv);
-    swing.addTransposed(swing.f, tau);
+    std::vector<Force> F(s.model.bodies.size());
+    BodyForce onBodies{tau, F};
+    swing.addTransposed(swing.f, onBodies);
+    addBodyForces(s.model, s.data->kinematics, F, tau);
     Vector3 force = Vector3::Zero(), moment = Vector3::Zero();
     for (int b = 1; b < s.model.bodyCount(); ++b) {
       const auto on = tau.segment<6>(s.model.bodies[b].v);
@@ -137,7 +140,9 @@ TEST(GeometricStiffness, KeepsMomentum) {
         turn = std::max(turn, (one.angular - other.angular).norm());
     const double h = s.model.options.timestep, most = 0.1 + std::pow(4.0 * h * turn, 4);
     std::vector<double> rate(swing.reference.size());  // a_ref = −b J v
-    swing.multiply(before, rate);
+    std::vector<Motion> V(s.model.bodies.size());
+    moveBodies(s.model, s.data->kinematics, before, V);
+    swing.multiply(BodyMotion{before, V}, rate);
     for (std::size_t i = 0; i < rate.size(); ++i) {
       EXPECT_LE(swing.reference[i] * rate[i], 0.0);
       EXPECT_LE(h * std::abs(swing.reference[i]), most * (1.0 + 1e-9) * std::abs(rate[i]))

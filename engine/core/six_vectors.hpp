@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Six-vectors and 6 × 6 matrices as plain numbers, for inner loops. A Motion or a Force is its six
+/// numbers, the angular part first; a row of a matrix is six numbers and two zeros, so that it is
+/// two whole vectors of four. For functions marked with SOFTGAUSS_VECTOR_CLONES, into which all but
+/// the first four are inlined.
+
+#include "softgauss/engine/core/spatial.hpp"
+#include "softgauss/engine/core/vector_kernels.hpp"
+
+namespace softgauss {
+
+static_assert(sizeof(Motion) == 6 * sizeof(double) && sizeof(Force) == sizeof(Motion));
+
+inline const double* numbers(const Motion& V) { return reinterpret_cast<const double*>(&V); }
+inline double* numbers(Motion& V) { return reinterpret_cast<double*>(&V); }
+inline const double* numbers(const Force& F) { return reinterpret_cast<const double*>(&F); }
+inline double* numbers(Force& F) { return reinterpret_cast<double*>(&F); }
+
+inline constexpr int kSixRow = 8;               ///< numbers of a row
+inline constexpr int kSixMatrix = 6 * kSixRow;  ///< numbers of a matrix
+
+/// x·y of six.
+[[gnu::always_inline]] inline double dotSix(const double* x, const double* y) {
+  return ((x[0] * y[0] + x[2] * y[2]) + x[4] * y[4]) + ((x[1] * y[1] + x[3] * y[3]) + x[5] * y[5]);
+}
+
+/// y ← y + c x of six.
+[[gnu::always_inline]] inline void addSix(double c, const double* __restrict x,
+                                          double* __restrict y) {
+  for (int k = 0; k < 6; ++k) y[k] += c * x[k];
+}
+
+/// Four numbers that are treated apart: the same bits on every processor.
+using Four [[gnu::vector_size(32), gnu::aligned(8), gnu::may_alias]] = double;
+
+/// A row of eight.
+struct Row {
+  Four low, high;
+};
+
+[[gnu::always_inline]] inline Row loadRow(const double* x) {
+  return {*reinterpret_cast<const Four*>(x), *reinterpret_cast<const Four*>(x + 4)};
+}
+
+/// y ← y + c x.
+[[gnu::always_inline]] inline void addRow(double c, const Row& x, double* y) {
+  *reinterpret_cast<Four*>(y) += c * x.low;
+  *reinterpret_cast<Four*>(y + 4) += c * x.high;
+}
+
+/// y ← Aᵀ s, a row of eight.
+[[gnu::always_inline]] inline void combineRows(const double* s, const double* A, double* y) {
+  Four low = s[0] * *reinterpret_cast<const Four*>(A);
+  Four high = s[0] * *reinterpret_cast<const Four*>(A + 4);
+  for (int r = 1; r < 6; ++r) {
+    low += s[r] * *reinterpret_cast<const Four*>(A + kSixRow * r);
+    high += s[r] * *reinterpret_cast<const Four*>(A + kSixRow * r + 4);
+  }
+  *reinterpret_cast<Four*>(y) = low;
+  *reinterpret_cast<Four*>(y + 4) = high;
+}
+
+/// A ← A + c x yᵀ; y is a row of eight.
+[[gnu::always_inline]] inline void addOuter(double c, const double* x, const double* y, double* A) {
+  const Row row = loadRow(y);
+  for (int r = 0; r < 6; ++r) addRow(c * x[r], row, A + kSixRow * r);
+}
+
+/// A ← A + B + c x xᵀ; x is a row of eight.
+[[gnu::always_inline]] inline void addUpdated(const double* B, double c, const double* x,
+                                              double* A) {
+  const Row row = loadRow(x);
+  for (int r = 0; r < 6; ++r) {
+    const double scale = c * x[r];
+    const Row Br = loadRow(B + kSixRow * r);
+    double* Ar = A + kSixRow * r;
+    *reinterpret_cast<Four*>(Ar) += Br.low + scale * row.low;
+    *reinterpret_cast<Four*>(Ar + 4) += Br.high + scale * row.high;
+  }
+}
+
+/// A ← A + B.
+[[gnu::always_inline]] inline void addMatrix(const double* __restrict B, double* __restrict A) {
+  addScaled(1.0, B, kSixMatrix, A);
+}
+
+/// A ← A + Bᵀ.
+[[gnu::always_inline]] inline void addTransposedMatrix(const double* __restrict B,
+                                                       double* __restrict A) {
+  for (int r = 0; r < 6; ++r)
+    for (int c = 0; c < 6; ++c) A[kSixRow * r + c] += B[kSixRow * c + r];
+}
+
+/// A ← the matrix of an inertia.
+[[gnu::always_inline]] inline void setInertia(const Inertia& I, double* A) {
+  const double x = I.h.x(), y = I.h.y(), z = I.h.z(), m = I.mass;
+  const double rows[kSixMatrix] = {I.I_O.xx, I.I_O.xy, I.I_O.xz, 0.0, -z,  y,   0.0, 0.0,  //
+                                   I.I_O.xy, I.I_O.yy, I.I_O.yz, z,   0.0, -x,  0.0, 0.0,  //
+                                   I.I_O.xz, I.I_O.yz, I.I_O.zz, -y,  x,   0.0, 0.0, 0.0,  //
+                                   0.0,      z,        -y,       m,   0.0, 0.0, 0.0, 0.0,  //
+                                   -z,       0.0,      x,        0.0, m,   0.0, 0.0, 0.0,  //
+                                   y,        -x,       0.0,      0.0, 0.0, m,   0.0, 0.0};
+  for (int i = 0; i < kSixMatrix; ++i) A[i] = rows[i];
+}
+
+}  // namespace softgauss

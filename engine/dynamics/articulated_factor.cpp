@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "softgauss/engine/dynamics/articulated_factor.hpp"
+
+#include <algorithm>
+
+#include "softgauss/engine/core/six_vectors.hpp"
+#include "softgauss/engine/core/vector_clones.hpp"
+
+namespace softgauss {
+namespace {
+
+using Coupling = EliminationOrder::Coupling;
+using Passing = EliminationOrder::Passing;
+
+/// The arrays of the factor that an elimination reads and writes.
+struct Elimination {
+  double *inertia, *block;
+  const Coupling* couplings;  ///< of the body
+  int count;
+  const int* pairBlocks;
+
+  double* I(int body) const { return inertia + kSixMatrix * body; }
+  double* K(int b) const { return block + kSixMatrix * b; }
+};
+
+/// U and V of a joint axis S of `body`.
+[[gnu::always_inline]] inline void project(const Elimination& e, int body, const double* S,
+                                           double* U, double* V) {
+  combineRows(S, e.I(body), U);
+  for (int c = 0; c < e.count; ++c) combineRows(S, e.K(e.couplings[c].block), V + kSixRow * c);
+}
+
+/// Minimises the joint out; `last`: the one next to the parent, to which the inertia passes at
+/// once.
+[[gnu::always_inline]] inline void eliminate(const Elimination& e, int body, int parent, bool last,
+                                             double inversePivot, const double* U,
+                                             const double* V) {
+  const bool used = !last || parent != 0;  // what is left of the body's own blocks
+  if (!last)
+    addOuter(-inversePivot, U, U, e.I(body));
+  else if (parent != 0)
+    addUpdated(e.I(body), -inversePivot, U, e.I(parent));
+  const int* pair = e.pairBlocks;
+  for (int c = 0; c < e.count; ++c) {
+    const double* Vc = V + kSixRow * c;
+    if (used) addOuter(-inversePivot, U, Vc, e.K(e.couplings[c].block));
+    addOuter(-inversePivot, Vc, Vc, e.I(e.couplings[c].body));
+    for (int d = c + 1; d < e.count; ++d)
+      addOuter(-inversePivot, Vc, V + kSixRow * d, e.K(*pair++));
+  }
+}
+
+[[gnu::always_inline]] inline void pass(const Elimination& e, const Passing& p) {
+  const double* K = e.K(p.from);
+  double* to = p.to == Passing::To::inertia ? e.I(p.target) : e.K(p.target);
+  if (p.to != Passing::To::transposedBlock) addMatrix(K, to);
+  if (p.to != Passing::To::block) addTransposedMatrix(K, to);
+}
+
+/// What all eliminations share.
+struct Arrays {
+  const Model& model;
+  const EliminationOrder& order;
+  const Motion* S;
+  const double* diagonal;
+  double *inertia, *block, *U, *V, *inversePivot;
+  const int* firstV;
+};
+
+/// −1, or the joint whose pivot is not positive.
+SOFTGAUSS_VECTOR_CLONES int eliminateAll(const Arrays& a) {
+  for (const EliminationOrder::Step& step : a.order.steps()) {
+    const Body& body = a.model.bodies[idx(step.body)];
+    const Elimination e{a.inertia, a.block, a.order.couplings(step), step.couplings,
+                        a.order.pairBlocks(step)};
+    double* V = a.V + a.firstV[step.body];
+    for (int i = body.v + body.dofs - 1; i >= body.v; --i, V += kSixRow * step.couplings) {
+      const double* S = numbers(a.S[i]);
+      double* U = a.U + kSixRow * i;
+      project(e, step.body, S, U, V);
+      const double pivot = dotSix(S, U) + a.diagonal[i];
+      if (!(pivot > 0.0)) return i;
+      a.inversePivot[i] = 1.0 / pivot;
+      eliminate(e, step.body, body.parent, i == body.v, a.inversePivot[i], U, V);
+    }
+    for (int p = step.passing; p < step.passingEnd; ++p) pass(e, a.order.passings()[idx(p)]);
+  }
+  return -1;
+}
+
+/// A ← A + Lᵀ H R for `dim` rows of eight.
+SOFTGAUSS_VECTOR_CLONES void addProduct(int dim, const double* L, const double* H, const double* R,
+                                        double* A) {
+  for (int d = 0; d < dim; ++d) {
+    double HR[kSixRow] = {};
+    for (int e = 0; e < dim; ++e) addScaled(H[d * dim + e], R + kSixRow * e, kSixRow, HR);
+    addOuter(1.0, L + kSixRow * d, HR, A);
+  }
+}
+
+}  // namespace
+
+ArticulatedFactor::ArticulatedFactor(const Model& model)
+    : order_(model),
+      diagonal_(idx(model.nv)),
+      inertia_(idx(kSixMatrix) * model.bodies.size()),
+      U_(idx(kSixRow * model.nv)),
+      inversePivot_(idx(model.nv)),
+      firstV_(model.bodies.size()),
+      u_(idx(model.nv)),
+      p_(model.bodies.size()) {
+  std::vector<std::pair<int, int>> none;
+  order_.find(none);
+}
+
+void ArticulatedFactor::begin(const Model& model, const MassMatrix& inertia) {
+  for (int b = 1; b < model.bodyCount(); ++b) {
+    double* I = inertia_.data() + kSixMatrix * b;
+    if (model.bodies[idx(b)].massless)
+      std::fill_n(I, kSixMatrix, 0.0);
+    else
+      setInertia(inertia.body[idx(b)], I);
+  }
+  const bool armature = model.options.effects.has(Effect::armature);
+  for (int i = 0; i < model.nv; ++i)
+    diagonal_[idx(i)] = (armature ? model.dofs[idx(i)].armature : 0.0) + inertia.added[i];
+  if (order_.blocks() == 0) return;
+  block_.assign(idx(kSixMatrix * order_.blocks()), 0.0);
+  int numbers = 0;
+  for (const EliminationOrder::Step& step : order_.steps()) {
+    firstV_[idx(step.body)] = numbers;
+    numbers += kSixRow * step.couplings * model.bodies[idx(step.body)].dofs;
+  }
+  V_.resize(idx(numbers));
+}
+
+void ArticulatedFactor::addRows(const BodyPair& pair, const double* H) {
+  const auto inertiaOf = [&](int body) { return inertia_.data() + kSixMatrix * body; };
+  if (pair.bodyA != 0) addProduct(pair.dim, pair.WA, H, pair.WA, inertiaOf(pair.bodyA));
+  if (pair.bodyB != 0) addProduct(pair.dim, pair.WB, H, pair.WB, inertiaOf(pair.bodyB));
+  if (pair.bodyA == 0 || pair.bodyB == 0) return;
+  if (order_.isBefore(pair.bodyA, pair.bodyB))
+    addProduct(pair.dim, pair.WA, H, pair.WB,
+               block_.data() + kSixMatrix * order_.block(pair.bodyA, pair.bodyB));
+  else
+    addProduct(pair.dim, pair.WB, H, pair.WA,
+               block_.data() + kSixMatrix * order_.block(pair.bodyB, pair.bodyA));
+}
+
+bool ArticulatedFactor::factor(const Model& model, const Kinematics& k) {
+  const Arrays arrays{model,         order_,    k.S.data(), diagonal_.data(),     inertia_.data(),
+                      block_.data(), U_.data(), V_.data(),  inversePivot_.data(), firstV_.data()};
+  failedJoint_ = eliminateAll(arrays);
+  return failedJoint_ < 0;
+}
+
+void ArticulatedFactor::solve(const Model& model, const Kinematics& k, VectorX& x,
+                              std::vector<Motion>& A) {
+  const auto VOf = [&](const EliminationOrder::Step& step, int i) {
+    const Body& body = model.bodies[idx(step.body)];
+    return V_.data() + firstV_[idx(step.body)] +
+           kSixRow * step.couplings * (body.v + body.dofs - 1 - i);
+  };
+  std::fill(p_.begin(), p_.end(), Force{});
+  for (const EliminationOrder::Step& step : order_.steps()) {
+    const Body& body = model.bodies[idx(step.body)];
+    const Coupling* coupling = order_.couplings(step);
+    double* p = numbers(p_[idx(step.body)]);
+    for (int i = body.v + body.dofs - 1; i >= body.v; --i) {
+      const double u = (x[i] - dotSix(numbers(k.S[idx(i)]), p)) * inversePivot_[idx(i)];
+      u_[idx(i)] = u;
+      addSix(u, U_.data() + kSixRow * i, p);
+      const double* V = VOf(step, i);
+      for (int c = 0; c < step.couplings; ++c)
+        addSix(u, V + kSixRow * c, numbers(p_[idx(coupling[c].body)]));
+    }
+    if (body.parent != 0) p_[idx(body.parent)] += p_[idx(step.body)];
+  }
+  for (std::size_t s = order_.steps().size(); s-- > 0;) {
+    const EliminationOrder::Step& step = order_.steps()[s];
+    const Body& body = model.bodies[idx(step.body)];
+    const Coupling* coupling = order_.couplings(step);
+    Motion moves = A[idx(body.parent)];
+    for (int i = body.v; i < body.v + body.dofs; ++i) {
+      double sum = dotSix(U_.data() + kSixRow * i, numbers(moves));
+      const double* V = VOf(step, i);
+      for (int c = 0; c < step.couplings; ++c)
+        sum += dotSix(V + kSixRow * c, numbers(A[idx(coupling[c].body)]));
+      x[i] = u_[idx(i)] - inversePivot_[idx(i)] * sum;
+      addSix(x[i], numbers(k.S[idx(i)]), numbers(moves));
+    }
+    A[idx(step.body)] = moves;
+  }
+}
+
+}  // namespace softgauss

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// The objective of (1.1) on bodies, in O(n + rows): what gauss_objective.hpp computes from M, J
+/// and P by two sweeps for each gradient and ray, and P⁻¹ by articulated bodies.
+
+#include <vector>
+
+#include "softgauss/engine/constraints/constraints.hpp"
+
+namespace softgauss {
+
+/// Memory of it.
+struct BodySolution {
+  ArticulatedFactor massFactor;            ///< of M̂, or with a diagonal that follows the solve
+  bool massFactored = false;               ///< massFactor is that of the present M̂, alone
+  ArticulatedFactor factor;                ///< of P = M̂ + Jᵀ∇²s J
+  std::vector<Motion> A;                   ///< (bodies) by the present a
+  std::vector<Motion> ray;                 ///< (bodies) by the search direction d
+  std::vector<Force> IA, Iray;             ///< (bodies) I A and that of the ray
+  std::vector<Force> force;                ///< (bodies) scratch
+  VectorX diagonal;                        ///< (nv) armature and MassMatrix::added
+  std::vector<std::pair<int, int>> pairs;  ///< scratch: bodies that rows couple
+
+  BodySolution() = default;
+  explicit BodySolution(const Model& model);
+  /// A and I A of the joint acceleration a.
+  void moveTo(const Model& model, const Kinematics& k, const MassMatrix& inertia, const VectorX& a);
+  /// y ← M̂ x.
+  void multiplyMass(const Model& model, const Kinematics& k, const MassMatrix& inertia,
+                    const VectorX& x, VectorX& y);
+  /// tau ← tau − M̂ a + Jᵀf of the present a and f.
+  void addForces(const Model& model, const Kinematics& k, const Constraints& rows, const VectorX& a,
+                 VectorX& tau);
+
+ private:
+  void findDiagonal(const Model& model, const MassMatrix& inertia);
+};
+
+struct Data;
+
+/// A NewtonObjective. Reads the stages of `data` up to constraints; a and its scratch vectors are
+/// those of Data::forward.
+class BodyObjective {
+ public:
+  BodyObjective(const Model& model, Data& data);
+
+  /// Moves to a; returns the cost.
+  double moveTo(const VectorX& a);
+  double gradient(VectorX& g);
+  bool cellChanged() const { return changed_; }
+  bool factorize();
+  /// The joint whose pivot was not positive.
+  int failedJoint() const { return s_.factor.failedJoint(); }
+  void direction(const VectorX& g, VectorX& d);
+  bool staysInCell() const { return newFactor_ && rows_.staysInCell(); }
+  Jet along(double alpha) const;
+  void advance(const VectorX& d, double alpha);
+
+ private:
+  const Model& model_;
+  Data& data_;
+  Constraints& rows_;
+  BodySolution& s_;
+  bool changed_ = true;
+  bool fresh_ = false;
+  bool newFactor_ = false;  ///< no step has been taken with it
+  double slope_ = 0.0, curvature_ = 0.0;
+};
+
+}  // namespace softgauss

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "softgauss/engine/step/body_objective.hpp"
+
+#include "softgauss/engine/step/forward.hpp"
+#include "softgauss/engine/step/inverse.hpp"
+#include "tests/support/matchers.hpp"
+#include "tests/support/scene.hpp"
+
+namespace softgauss::test {
+namespace {
+
+/// lawScene() without couplings of joints, which bodies alone cannot express.
+Scene bodyScene(std::uint64_t seed, Cone cone) {
+  Scene s = lawScene(seed, 1 + static_cast<int>(seed % 12));
+  s.model.couplings.clear();
+  s.model.options.cone = cone;
+  s.data = std::make_unique<Data>(s.model);
+  EXPECT_EQ(s.stages(), SolveStatus::converged);
+  return s;
+}
+
+/// Forces of all rows.
+VectorX rowForces(const Constraints& rows) {
+  VectorX f(rows.rowCount());
+  Eigen::Index row = 0;
+  rows.visit([&](const auto& c) {
+    for (const double force : c.f) f[row++] = force;
+  });
+  return f;
+}
+
+/// Iterations by matrices and on bodies. Both solves end where the scaled gradient is 10⁻¹²: forces
+/// of stiff rows agree as closely as that says.
+std::pair<int, int> compare(Cone cone, std::uint64_t seed) {
+  Scene s = bodyScene(seed, cone);
+  const auto solve = [&](auto&& solver) {
+    EXPECT_EQ(solver(s.model, nullptr, *s.data), SolveStatus::converged) << "seed " << seed;
+    return std::tuple(s.data->forward.a, rowForces(s.data->constraints),
+                      s.data->forward.report.iterations);
+  };
+  const auto [a, f, iterations] = solve(minimizeGauss);
+  const auto [onBodies, forces, steps] =
+      solve([](const Model& model, const VectorX* guess, Data& d) {
+        return forwardDynamics(model, guess, d);
+      });
+  EXPECT_APPROX(onBodies, a, 1e-12) << "seed " << seed;
+  EXPECT_APPROX(forces, f, 1e-11) << "seed " << seed;
+  return {iterations, steps};
+}
+
+/// Rounding decides whether the last step is within the tolerance, so single scenes may take a step
+/// more or less; together they take as many.
+void compareAll(Cone cone) {
+  int iterations = 0, onBodies = 0;
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    const auto [matrices, bodies] = compare(cone, seed);
+    iterations += matrices, onBodies += bodies;
+  }
+  EXPECT_SMALL(onBodies - iterations, 0.02 * iterations);
+}
+
+TEST(BodyObjective, SolvesAsMatricesDo) { compareAll(Cone::pyramidal); }
+
+TEST(BodyObjective, SolvesEllipticConesAsMatricesDo) { compareAll(Cone::elliptic); }
+
+TEST(BodyObjective, HasTheGradientOfMatrices) {
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    Scene s = bodyScene(seed, Cone::pyramidal);
+    Random random(seed);
+    const VectorX a = random.vector(s.model.nv, 10.0);
+    BodyObjective objective(s.model, *s.data);
+    objective.moveTo(a);
+    VectorX g;
+    objective.gradient(g);
+    VectorX expected = s.data->inertia.hat().dense() * a - s.data->forces.net;
+    bool changed = false;
+    s.data->constraints.setResidual(a);
+    s.data->constraints.evaluate(changed);
+    VectorX force = VectorX::Zero(s.model.nv);
+    s.data->constraints.addForce(force);
+    EXPECT_APPROX(g, expected - force, 1e-12) << "seed " << seed;
+    VectorX tau;
+    inverseDynamics(s.model, a, *s.data, tau);
+    EXPECT_APPROX(tau, g + s.data->forces.net + s.data->forces.c, 1e-12) << "seed " << seed;
+  }
+}
+
+}  // namespace
+}  // namespace softgauss::test
