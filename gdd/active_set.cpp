@@ -209,7 +209,11 @@ void ActiveSet::finish(const ControlLimits& limits, const GoalCost& cost, Data& 
     data.constraints.setResidual(path_.a);
     data.constraints.evaluate(changed);
     computeResidual(data);
-    if (k == kCorrections || residual_.cwiseAbs().maxCoeff() <= kRounding * scale) break;
+    if (residual_.cwiseAbs().maxCoeff() <= kRounding * scale) break;
+    if (k == kCorrections) {  // rows that were crossed have cost P⁻¹ digits
+      if (cell_.isFresh() || !cell_.enter(data)) break;
+      k = 0;
+    }
     cell_.solve(residual_);
     path_.a += residual_;
   }

@@ -77,7 +77,8 @@ GoalBalance::GoalBalance(const Model& model, const GoalDirectedController& contr
       cost_(model.nv),
       activeSet_(model),
       augmentedLagrangian_(model),
-      expansion_(model) {
+      expansion_(model),
+      holding_(model) {
   activeSet_.options = controller.activeSet.options;
   activeSet_.options.longestSearchWait = 0;  // the minimum where the run is, no other
   augmentedLagrangian_.options = controller.augmentedLagrangian.options;

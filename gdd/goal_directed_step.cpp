@@ -14,6 +14,7 @@ GoalDirectedController::GoalDirectedController(const Model& model)
       expansion(model),
       control(VectorX::Zero(model.nv)),
       cost_(model.nv),
+      holding_(model),
       coordinates_(VectorX::Zero(model.nv)) {}
 
 namespace {

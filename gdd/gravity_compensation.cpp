@@ -3,6 +3,9 @@
 
 namespace softgauss::gdd {
 
+GravityCompensation::GravityCompensation(const Model& model)
+    : factor_(model), motions_(model.bodies.size()) {}
+
 /// force ← c(q, 0).
 void GravityCompensation::setStatics(const Model& model, const State& state, const Data& data) {
   const SmoothForces& smooth = data.forces;
@@ -41,33 +44,34 @@ void GravityCompensation::setFall(const Model& model, const Data& data) {
 void GravityCompensation::stand(const Model& model, const ControlLimits& limits, Data& data) {
   constexpr double kStiffer = 1e4;  // κ: rows at rest have carried the weight that this leaves over
   Constraints& rows = data.constraints;
-  P_.resize(rows.sparsity());
-  P_.setZero();
-  if (rows.rowCount() > 0) {
+  pairs_.clear();
+  rows.appendPairs(pairs_);
+  factor_.couple(pairs_);
+  factor_.begin(model, data.inertia, kStiffer);
+  const bool any = rows.rowCount() > 0;
+  if (any) {
     bool changed = false;
     setFall(model, data);
     rows.setResidual(x_);
     rows.evaluate(changed);
-    rows.addCurvature(P_);
-    P_.add(P_, kStiffer - 1.0);
-  }
-  P_.add(data.inertia.hat());
-
-  masked_.resize(rows.sparsity());
-  masked_.assign(P_);
-  for (int i = 0; i < masked_.size(); ++i) {
-    double* row = masked_.row(i);
-    for (const Segment* s = rows.sparsity().begin(i); s != rows.sparsity().end(i); ++s)
-      for (int j = s->begin; j < s->end; ++j)
-        if (!free_[i] || !free_[j]) row[j] = i == j ? 1.0 : 0.0;
+    rows.addCurvature(factor_);
   }
   x_.setZero(force_.size());
   for (int i = 0; i < x_.size(); ++i)
-    if (free_[i]) x_[i] = (limits.lower[i] == limits.upper[i] ? limits.lower[i] : 0.0) - force_[i];
-  if (!factor_.compute(masked_)) return;  // not finite: the solver will say so
-  factor_.solve(x_);
-  Px_.resize(x_.size());
-  P_.multiply(x_, Px_);
+    if (free_[i])
+      x_[i] = (limits.lower[i] == limits.upper[i] ? limits.lower[i] : 0.0) - force_[i];
+    else
+      factor_.lock(i);
+  if (!factor_.factor(model, data.kinematics)) return;  // not finite: the solver will say so
+  factor_.solve(model, data.kinematics, x_, motions_);
+
+  Px_.setZero(force_.size());
+  if (any) {
+    rows.setRay(x_);
+    rows.addForceRate(Px_);  // −G x
+  }
+  force_ -= kStiffer * Px_;
+  data.inertia.hat().multiply(x_, Px_);
   force_ += Px_;
 }
 

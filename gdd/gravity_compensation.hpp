@@ -20,6 +20,9 @@
 /// c(q, 0) = c − (b(q, v) − b(q, 0)) − D v, and b(q, 0) is the weight of the links behind each dof:
 ///   b_i = S_iᵀ I^c_b(i) (0, −gravity)
 
+#include <utility>
+#include <vector>
+
 #include "softgauss/engine/step/data.hpp"
 #include "softgauss/gdd/problem.hpp"
 
@@ -27,6 +30,8 @@ namespace softgauss::gdd {
 
 class GravityCompensation {
  public:
+  explicit GravityCompensation(const Model& model);
+
   /// ĝ (nv) [N, N m], from data.forces, without an applied force in it. Leaves the rows evaluated
   /// in the fall. A dof is of z where no actuator acts on it, root forces that a price allows
   /// included, or where the box fixes it; ĝ is there what the box fixes, or 0.
@@ -41,11 +46,12 @@ class GravityCompensation {
   void setFall(const Model& model, const Data& data);
   void stand(const Model& model, const ControlLimits& limits, Data& data);
 
-  VectorX force_;           ///< c(q, 0), then ĝ
-  VectorX x_, Px_;          ///< (nv)
-  std::vector<char> free_;  ///< of z
-  TreeMatrix P_, masked_;   ///< P, and with the identity in place of all that is not P_zz
-  TreeFactor factor_;
+  VectorX force_;                           ///< c(q, 0), then ĝ
+  VectorX x_, Px_;                          ///< (nv)
+  std::vector<char> free_;                  ///< of z
+  ArticulatedFactor factor_;                ///< of P_zz: what is not of z is locked
+  std::vector<Motion> motions_;             ///< (bodies) by x
+  std::vector<std::pair<int, int>> pairs_;  ///< scratch: bodies that rows couple
 };
 
 }  // namespace softgauss::gdd

@@ -45,7 +45,7 @@ std::vector<std::string> inDegrees(const Model& model,
 std::vector<std::string> weakAtStart(const Model& model, const State& state,
                                      const gdd::GoalDirectedController& controller, Data& data) {
   const gdd::ControlLimits& limits = controller.limits;
-  gdd::GravityCompensation holding;
+  gdd::GravityCompensation holding(model);
   VectorX y;
   limits.coordinates(holding.compute(model, state, limits, data), y);
   std::vector<std::string> weak;

@@ -149,12 +149,8 @@ class Constraints {
   /// P ← P + Jᵀ∇²s J.
   template <class Curvature>
   void addCurvature(Curvature& P) {
-    visit([&](auto& c) {
-      if constexpr (requires { c.addCurvature(P); }) c.addCurvature(P);
-    });
+    visit([&](auto& c) { c.addCurvature(P); });
   }
-  /// Whether all rows act on bodies or on single joints, so that an ArticulatedFactor may be given.
-  bool actOnBodies() const { return !active_.has(RowKind::coupling); }
   /// Appends the pairs of bodies that rows couple.
   void appendPairs(std::vector<std::pair<int, int>>& pairs) const;
   /// Whether s is a sum of piecewise quadratics at present, so that findCrossings() is complete.

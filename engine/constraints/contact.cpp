@@ -213,23 +213,33 @@ bool beginsNow(const Assembly& in, const Contact& c, double distance) {
   return begins(distance, rate, in.model.options);
 }
 
-std::optional<Touch> touchAt(const Assembly& in, int i) {
+/// pair ← that of the contact, where it is not so already.
+void findPair(const Model& model, const Contact& c, PairSurface& pair) {
+  if (pair.geometryA == c.geometryA && pair.geometryB == c.geometryB) return;
+  const Material surface = pairMaterial(model, c.geometryA, c.geometryB);
+  pair.geometryA = c.geometryA, pair.geometryB = c.geometryB;
+  pair.material = effectiveMaterial(surface, reducedMass(model, c.bodyA, c.bodyB), model.options);
+  pair.bounces = pair.material.spring && !surface.spring;
+  pair.nearRigid =
+      model.options.hasRowLaw() && !pair.material.spring && pair.material.impedance == Impedance{};
+  pair.frictionDim = frictionDim(pair.material, model.options.effects);
+}
+
+std::optional<Touch> touchAt(const Assembly& in, int i, PairSurface& pair) {
   const Model& model = in.model;
   const Contact& c = in.contacts.contacts[i];
   if (model.bodies[c.bodyA].dofs == 0 && model.bodies[c.bodyB].dofs == 0) return std::nullopt;
-  const Material surface = pairMaterial(model, c.geometryA, c.geometryB);
-  const Material material =
-      effectiveMaterial(surface, reducedMass(model, c.bodyA, c.bodyB), model.options);
+  findPair(model, c, pair);
+  const Material& material = pair.material;
   Touch touch;
   touch.distance = c.distance - material.margin;
   // NaN makes rows, so that the solve reports it.
   const bool apart = touch.distance >= touchingWithin(model.options, c.p_WC);
   if (apart && (material.spring || !beginsNow(in, c, touch.distance))) return std::nullopt;
-  touch.frictionDim = frictionDim(material, model.options.effects);
+  touch.frictionDim = pair.frictionDim;
   double weight = weightAt(in, c.bodyA, c.p_WC) + weightAt(in, c.bodyB, c.p_WC);
   double load = in.load ? in.load->mass(model, c.bodyA, c.bodyB) : 0.0;
-  touch.nearRigid =
-      model.options.hasRowLaw() && !material.spring && material.impedance == Impedance{};
+  touch.nearRigid = pair.nearRigid;
   touch.supportsOthers =
       load > 0.0 && !material.spring;  // springs keep their penetration at rest and bounce
   if (in.load) load = std::max(load, in.load->contactShare(model, c.bodyA, c.bodyB));
@@ -241,8 +251,7 @@ std::optional<Touch> touchAt(const Assembly& in, int i) {
       contactSoftness(material, touch.frictionDim, touch.distance, weight, model.options);
   if (apart) touch.softness = beginning(touch.softness, model.options);
   in.count(Mechanism::nearRigid, model.options.hasRowLaw() && !material.spring);
-  const bool bounces = material.spring && !surface.spring;
-  in.count(Mechanism::referenceClamp, bounces || touch.softness.bounded);
+  in.count(Mechanism::referenceClamp, pair.bounces || touch.softness.bounded);
   if (touch.frictionDim > 0) {
     const double mu = material.slidingFriction;
     const double spin = std::max(material.torsionalFriction, kSmallestFriction);

@@ -57,8 +57,18 @@ struct Touch {
   double mu() const { return friction[0]; }  ///< of sliding; 0 when frictionless
 };
 
+/// What all contacts of two geometries share. They are neighbours in the set.
+struct PairSurface {
+  int geometryA = -1, geometryB = -1;
+  Material material;       ///< as it acts on their masses
+  bool bounces = false;    ///< the material is the spring of a reference
+  bool nearRigid = false;  ///< nobody gave it a softness
+  int frictionDim = 0;
+};
+
 /// Contact i of the scene; nothing where it makes no rows: its bodies cannot move, or are apart.
-std::optional<Touch> touchAt(const Assembly& in, int i);
+/// `pair` is that of the contact before, and becomes this one's.
+std::optional<Touch> touchAt(const Assembly& in, int i, PairSurface& pair);
 
 /// A contact that made rows.
 struct ContactRows {

@@ -13,8 +13,9 @@ void EllipticContact::assemble(const Assembly& in) {
   perInertia_.clear();
   reference.clear();
   if (options.cone == Cone::elliptic) {
+    PairSurface pair;
     for (int i = 0; i < in.contacts.size(); ++i) {
-      const std::optional<Touch> touch = touchAt(in, i);
+      const std::optional<Touch> touch = touchAt(in, i, pair);
       if (!touch || touch->frictionDim == 0) continue;
       const BlockMotion moves = addBlock(in, i, *touch, static_cast<int>(reference.size()));
       Softness soft = soften(in, *touch, moves.velocity);

@@ -93,6 +93,14 @@ void CouplingRows::addCurvature(TreeMatrix& P) {
   }
 }
 
+void CouplingRows::addCurvature(ArticulatedFactor& P) {
+  for (std::size_t i = 0; i < pairs_.size(); ++i)
+    if (pairs_[i].leader == pairs_[i].follower)
+      P.addJoint(pairs_[i].follower, h[i]);
+    else
+      P.addJoints({pairs_[i].follower, pairs_[i].leader, pairs_[i].slope}, h[i]);
+}
+
 void CouplingRows::addRow(int i, double scale, VectorX& y) const {
   y[pairs_[i].follower] += scale;
   y[pairs_[i].leader] -= scale * pairs_[i].slope;

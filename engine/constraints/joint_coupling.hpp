@@ -17,6 +17,7 @@
 
 #include "softgauss/engine/constraints/assembly.hpp"
 #include "softgauss/engine/constraints/rows.hpp"
+#include "softgauss/engine/dynamics/articulated_factor.hpp"
 #include "softgauss/engine/dynamics/body_motion.hpp"
 
 namespace softgauss {
@@ -31,6 +32,7 @@ class CouplingRows : public ScalarRows<Quadratic> {
     addTransposed(y, tau.joint);
   }
   void addCurvature(TreeMatrix& P);
+  void addCurvature(ArticulatedFactor& P);
   /// y ← y + scale · (row i of J)ᵀ.
   void addRow(int i, double scale, VectorX& y) const;
   /// Pairs of dofs on different branches.

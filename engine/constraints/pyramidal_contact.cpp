@@ -22,8 +22,9 @@ void PyramidalContact::assemble(const Assembly& in) {
   const Options& options = in.model.options;
   clearBlocks();
   clearRows();
+  PairSurface pair;
   for (int i = 0; i < in.contacts.size(); ++i) {
-    const std::optional<Touch> touch = touchAt(in, i);
+    const std::optional<Touch> touch = touchAt(in, i, pair);
     if (!touch || (touch->frictionDim > 0 && options.cone != Cone::pyramidal)) continue;
     const BlockMotion moves = addBlock(in, i, *touch, static_cast<int>(reference.size()));
     double velocity[10], bias[10];

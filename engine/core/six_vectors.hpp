@@ -44,28 +44,35 @@ struct Row {
   return {*reinterpret_cast<const Four*>(x), *reinterpret_cast<const Four*>(x + 4)};
 }
 
+[[gnu::always_inline]] inline void storeRow(const Row& x, double* y) {
+  *reinterpret_cast<Four*>(y) = x.low;
+  *reinterpret_cast<Four*>(y + 4) = x.high;
+}
+
+/// c x.
+[[gnu::always_inline]] inline Row scaled(double c, const Row& x) { return {c * x.low, c * x.high}; }
+
 /// y ← y + c x.
-[[gnu::always_inline]] inline void addRow(double c, const Row& x, double* y) {
-  *reinterpret_cast<Four*>(y) += c * x.low;
-  *reinterpret_cast<Four*>(y + 4) += c * x.high;
+[[gnu::always_inline]] inline void addRow(double c, const Row& x, Row& y) {
+  y.low += c * x.low;
+  y.high += c * x.high;
 }
 
 /// y ← Aᵀ s, a row of eight.
 [[gnu::always_inline]] inline void combineRows(const double* s, const double* A, double* y) {
-  Four low = s[0] * *reinterpret_cast<const Four*>(A);
-  Four high = s[0] * *reinterpret_cast<const Four*>(A + 4);
-  for (int r = 1; r < 6; ++r) {
-    low += s[r] * *reinterpret_cast<const Four*>(A + kSixRow * r);
-    high += s[r] * *reinterpret_cast<const Four*>(A + kSixRow * r + 4);
-  }
-  *reinterpret_cast<Four*>(y) = low;
-  *reinterpret_cast<Four*>(y + 4) = high;
+  Row sum = scaled(s[0], loadRow(A));
+  for (int r = 1; r < 6; ++r) addRow(s[r], loadRow(A + kSixRow * r), sum);
+  storeRow(sum, y);
 }
 
 /// A ← A + c x yᵀ; y is a row of eight.
 [[gnu::always_inline]] inline void addOuter(double c, const double* x, const double* y, double* A) {
   const Row row = loadRow(y);
-  for (int r = 0; r < 6; ++r) addRow(c * x[r], row, A + kSixRow * r);
+  for (int r = 0; r < 6; ++r) {
+    Row sum = loadRow(A + kSixRow * r);
+    addRow(c * x[r], row, sum);
+    storeRow(sum, A + kSixRow * r);
+  }
 }
 
 /// A ← A + B + c x xᵀ; x is a row of eight.
@@ -73,11 +80,10 @@ struct Row {
                                               double* A) {
   const Row row = loadRow(x);
   for (int r = 0; r < 6; ++r) {
-    const double scale = c * x[r];
-    const Row Br = loadRow(B + kSixRow * r);
-    double* Ar = A + kSixRow * r;
-    *reinterpret_cast<Four*>(Ar) += Br.low + scale * row.low;
-    *reinterpret_cast<Four*>(Ar + 4) += Br.high + scale * row.high;
+    Row sum = loadRow(B + kSixRow * r);
+    addRow(c * x[r], row, sum);
+    addRow(1.0, loadRow(A + kSixRow * r), sum);
+    storeRow(sum, A + kSixRow * r);
   }
 }
 

@@ -5,6 +5,7 @@
 
 #include "softgauss/engine/core/six_vectors.hpp"
 #include "softgauss/engine/core/vector_clones.hpp"
+#include "softgauss/engine/dynamics/body_motion.hpp"
 
 namespace softgauss {
 namespace {
@@ -88,13 +89,37 @@ SOFTGAUSS_VECTOR_CLONES int eliminateAll(const Arrays& a) {
   return -1;
 }
 
-/// A ← A + Lᵀ H R for `dim` rows of eight.
-SOFTGAUSS_VECTOR_CLONES void addProduct(int dim, const double* L, const double* H, const double* R,
-                                        double* A) {
+/// A ← A + c Lᵀ H R for rows of eight, at most six.
+template <int dim>
+[[gnu::always_inline]] inline void addProductOf(double c, const double* L, const double* H,
+                                                const double* R, double* A) {
+  Row HR[dim];
   for (int d = 0; d < dim; ++d) {
-    double HR[kSixRow] = {};
-    for (int e = 0; e < dim; ++e) addScaled(H[d * dim + e], R + kSixRow * e, kSixRow, HR);
-    addOuter(1.0, L + kSixRow * d, HR, A);
+    HR[d] = scaled(c * H[d * dim], loadRow(R));
+    for (int e = 1; e < dim; ++e) addRow(c * H[d * dim + e], loadRow(R + kSixRow * e), HR[d]);
+  }
+  for (int r = 0; r < 6; ++r) {
+    Row sum = loadRow(A + kSixRow * r);
+    for (int d = 0; d < dim; ++d) addRow(L[kSixRow * d + r], HR[d], sum);
+    storeRow(sum, A + kSixRow * r);
+  }
+}
+
+SOFTGAUSS_VECTOR_CLONES void addProduct(int dim, double c, const double* L, const double* H,
+                                        const double* R, double* A) {
+  switch (dim) {
+    case 1:
+      return addProductOf<1>(c, L, H, R, A);
+    case 2:
+      return addProductOf<2>(c, L, H, R, A);
+    case 3:
+      return addProductOf<3>(c, L, H, R, A);
+    case 4:
+      return addProductOf<4>(c, L, H, R, A);
+    case 5:
+      return addProductOf<5>(c, L, H, R, A);
+    case 6:
+      return addProductOf<6>(c, L, H, R, A);
   }
 }
 
@@ -108,12 +133,15 @@ ArticulatedFactor::ArticulatedFactor(const Model& model)
       inversePivot_(idx(model.nv)),
       firstV_(model.bodies.size()),
       u_(idx(model.nv)),
-      p_(model.bodies.size()) {
+      p_(model.bodies.size()),
+      motions_(model.bodies.size()) {
   std::vector<std::pair<int, int>> none;
   order_.find(none);
 }
 
-void ArticulatedFactor::begin(const Model& model, const MassMatrix& inertia) {
+void ArticulatedFactor::begin(const Model& model, const MassMatrix& inertia, double rowScale) {
+  rowScale_ = rowScale;
+  pairs_.clear();
   for (int b = 1; b < model.bodyCount(); ++b) {
     double* I = inertia_.data() + kSixMatrix * b;
     if (model.bodies[idx(b)].massless)
@@ -136,26 +164,59 @@ void ArticulatedFactor::begin(const Model& model, const MassMatrix& inertia) {
 
 void ArticulatedFactor::addRows(const BodyPair& pair, const double* H) {
   const auto inertiaOf = [&](int body) { return inertia_.data() + kSixMatrix * body; };
-  if (pair.bodyA != 0) addProduct(pair.dim, pair.WA, H, pair.WA, inertiaOf(pair.bodyA));
-  if (pair.bodyB != 0) addProduct(pair.dim, pair.WB, H, pair.WB, inertiaOf(pair.bodyB));
+  const auto add = [&](const double* L, const double* R, double* A) {
+    addProduct(pair.dim, rowScale_, L, H, R, A);
+  };
+  if (pair.bodyA != 0) add(pair.WA, pair.WA, inertiaOf(pair.bodyA));
+  if (pair.bodyB != 0) add(pair.WB, pair.WB, inertiaOf(pair.bodyB));
   if (pair.bodyA == 0 || pair.bodyB == 0) return;
   if (order_.isBefore(pair.bodyA, pair.bodyB))
-    addProduct(pair.dim, pair.WA, H, pair.WB,
-               block_.data() + kSixMatrix * order_.block(pair.bodyA, pair.bodyB));
+    add(pair.WA, pair.WB, block_.data() + kSixMatrix * order_.block(pair.bodyA, pair.bodyB));
   else
-    addProduct(pair.dim, pair.WB, H, pair.WA,
-               block_.data() + kSixMatrix * order_.block(pair.bodyB, pair.bodyA));
+    add(pair.WB, pair.WA, block_.data() + kSixMatrix * order_.block(pair.bodyB, pair.bodyA));
 }
 
 bool ArticulatedFactor::factor(const Model& model, const Kinematics& k) {
   const Arrays arrays{model,         order_,    k.S.data(), diagonal_.data(),     inertia_.data(),
                       block_.data(), U_.data(), V_.data(),  inversePivot_.data(), firstV_.data()};
   failedJoint_ = eliminateAll(arrays);
-  return failedJoint_ < 0;
+  return failedJoint_ < 0 && (pairs_.empty() || factorPairs(model, k));
+}
+
+bool ArticulatedFactor::factorPairs(const Model& model, const Kinematics& k) {
+  const auto count = static_cast<Eigen::Index>(pairs_.size());
+  X_.resize(model.nv, count);
+  S_.resize(count, count);
+  for (Eigen::Index c = 0; c < count; ++c) {
+    const PairRow& pair = pairs_[static_cast<std::size_t>(c)];
+    x_.setZero(model.nv);
+    x_[pair.first] = 1.0;
+    x_[pair.second] -= pair.slope;
+    solveTree(model, k, x_, motions_);
+    X_.col(c) = x_;
+    for (Eigen::Index r = 0; r < count; ++r) S_(r, c) = pairs_[static_cast<std::size_t>(r)].of(x_);
+    S_(c, c) += pair.inverseCurvature;
+  }
+  pairFactor_.compute(S_);
+  if (pairFactor_.info() == Eigen::Success) return true;
+  failedJoint_ = pairs_.front().first;
+  return false;
 }
 
 void ArticulatedFactor::solve(const Model& model, const Kinematics& k, VectorX& x,
                               std::vector<Motion>& A) {
+  solveTree(model, k, x, A);
+  if (pairs_.empty()) return;
+  y_.resize(static_cast<Eigen::Index>(pairs_.size()));
+  for (std::size_t r = 0; r < pairs_.size(); ++r)
+    y_[static_cast<Eigen::Index>(r)] = pairs_[r].of(x);
+  pairFactor_.solveInPlace(y_);
+  x.noalias() -= X_ * y_;
+  moveBodies(model, k, x, A);
+}
+
+void ArticulatedFactor::solveTree(const Model& model, const Kinematics& k, VectorX& x,
+                                  std::vector<Motion>& A) {
   const auto VOf = [&](const EliminationOrder::Step& step, int i) {
     const Body& body = model.bodies[idx(step.body)];
     return V_.data() + firstV_[idx(step.body)] +

@@ -16,7 +16,11 @@
 /// made stiffer; that soft equality rows of one body come in so is known from constrained
 /// articulated-body algorithms (Sathya and Carpentier, 2025). Here the rows' law is one-sided, has
 /// knees or bends, and Newton's method asks for P⁻¹ of each of its cells.
+///
+/// Rows C of two joints anywhere, of curvature H, come in afterwards, by Woodbury's formula:
+///   P⁻¹ b = x₀ − X (H⁻¹ + C X)⁻¹ C x₀,     x₀ = P₀⁻¹ b,   X = P₀⁻¹ Cᵀ
 
+#include <Eigen/Cholesky>
 #include <vector>
 
 #include "softgauss/engine/dynamics/elimination_order.hpp"
@@ -33,6 +37,12 @@ struct BodyPair {
   const double* WB = nullptr;
 };
 
+/// A row of two joints: y = a_first − slope a_second.
+struct JointPair {
+  int first = 0, second = 0;  ///< dofs
+  double slope = 0.0;
+};
+
 class ArticulatedFactor {
  public:
   ArticulatedFactor() = default;
@@ -42,10 +52,16 @@ class ArticulatedFactor {
   void couple(std::vector<std::pair<int, int>>& pairs) { order_.find(pairs); }
 
   /// Begins anew with the inertias of the bodies, and the armature and MassMatrix::added of the
-  /// joints.
-  void begin(const Model& model, const MassMatrix& inertia);
+  /// joints. What is added then counts `rowScale` times.
+  void begin(const Model& model, const MassMatrix& inertia, double rowScale = 1.0);
   /// Adds h to the diagonal of joint i.
-  void addJoint(int i, double h) { diagonal_[idx(i)] += h; }
+  void addJoint(int i, double h) { diagonal_[idx(i)] += rowScale_ * h; }
+  /// Joint i does not move: x_i is 0.
+  void lock(int i) { diagonal_[idx(i)] = kInfinity; }
+  /// Adds a row of two joints with curvature h > 0.
+  void addJoints(const JointPair& pair, double h) {
+    pairs_.push_back({pair, 1.0 / (rowScale_ * h)});
+  }
   /// Adds rows of symmetric curvature H (dim × dim, row-major).
   void addRows(const BodyPair& pair, const double* H);
   /// False where a pivot is not positive, that of failedJoint().
@@ -56,7 +72,15 @@ class ArticulatedFactor {
   int failedJoint() const { return failedJoint_; }
 
  private:
+  struct PairRow : JointPair {
+    double inverseCurvature = 0.0;
+    double of(const VectorX& x) const { return x[first] - slope * x[second]; }
+  };
+  bool factorPairs(const Model& model, const Kinematics& k);
+  void solveTree(const Model& model, const Kinematics& k, VectorX& x, std::vector<Motion>& A);
+
   EliminationOrder order_;
+  double rowScale_ = 1.0;
   int failedJoint_ = -1;
   std::vector<double> diagonal_;      ///< (nv) d
   std::vector<double> inertia_;       ///< (bodies × 48) I, then those of articulated bodies
@@ -67,6 +91,12 @@ class ArticulatedFactor {
   std::vector<int> firstV_;           ///< (bodies) where those of a body begin
   std::vector<double> u_;             ///< (nv) scratch of solve()
   std::vector<Force> p_;              ///< (bodies) scratch of solve()
+
+  std::vector<PairRow> pairs_;      ///< C, H⁻¹
+  MatrixX X_, S_;                   ///< (nv × pairs), (pairs × pairs) H⁻¹ + C X
+  Eigen::LLT<MatrixX> pairFactor_;  ///< of S
+  VectorX x_, y_;                   ///< (nv), (pairs) scratch
+  std::vector<Motion> motions_;     ///< (bodies) scratch
 };
 
 }  // namespace softgauss

@@ -154,7 +154,7 @@ SolveStatus minimizeGauss(const Model& model, const VectorX* guess, Data& data) 
 }
 
 SolveStatus forwardDynamics(const Model& model, const VectorX* guess, Data& data) noexcept {
-  if (!model.options.noSlip && data.constraints.actOnBodies())
+  if (!model.options.noSlip)
     return minimizeBy(
         model, guess, data, [&] { return BodyObjective(model, data); },
         [&](VectorX& x) { return solveMass(model, data, nullptr, x); });

@@ -125,8 +125,7 @@ void computeForces(const Model& model, const Input& input, const State& state, D
 
 /// Whether M and J are matrices: the solve is not on bodies, goals act, or M is differentiated.
 bool needsMatrices(const Model& model, const Data& data, const Given& given) {
-  return given.control || model.options.noSlip || model.options.exactDiagonal || data.derivative ||
-         data.plan.rows.has(RowKind::coupling);
+  return given.control || model.options.noSlip || model.options.exactDiagonal || data.derivative;
 }
 
 void assembleRows(const Model& model, const Input& input, const State& state, Data& data,

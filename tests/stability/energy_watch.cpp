@@ -19,12 +19,13 @@ void forEachSoft(const Model& model, const State& state, const Data& data, F&& f
   const Constraints& rows = data.constraints;
   const Assembly in{model,         state,        data.kinematics,
                     data.contacts, data.weights, data.inertia.sparsity};
+  PairSurface pair;
   rows.visitContacts([&](const auto& c) {
     for (std::size_t i = 0; i < c.contactsWithRows().size(); ++i) {
       const int end =
           i + 1 < c.contactsWithRows().size() ? c.contactsWithRows()[i + 1].row : c.rowCount();
       f(c, c.contactsWithRows()[i].row, end - c.contactsWithRows()[i].row,
-        touchAt(in, c.contactsWithRows()[i].contact)->softness);
+        touchAt(in, c.contactsWithRows()[i].contact, pair)->softness);
     }
   });
   const auto softness = [&](const Impedance& p) {

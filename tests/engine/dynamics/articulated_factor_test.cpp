@@ -67,6 +67,20 @@ struct Elimination {
     J.add(model, k, inertia.sparsity, m);
   }
 
+  /// Rows of two joints anywhere.
+  void addPairs(Random& random, int count, double stiffness) {
+    for (int i = 0; i < count; ++i) {
+      const int first = random.index(model.nv), second = random.index(model.nv);
+      if (first == second) continue;
+      const double slope = random.uniform(-2.0, 2.0), h = random.uniform(0.1, 1.0) * stiffness;
+      factor.addJoints({first, second, slope}, h);
+      VectorX row = VectorX::Zero(model.nv);
+      row[first] = 1.0;
+      row[second] = -slope;
+      P += h * row * row.transpose();
+    }
+  }
+
   /// |P x − b| over what rounding of P x is measured by, and whether the bodies move as x says.
   void check(std::uint64_t seed, double tolerance) {
     ASSERT_TRUE(factor.factor(model, k)) << "seed " << seed;
@@ -119,6 +133,36 @@ TEST(ArticulatedFactor, SolvesAsDenseWhereRowsAreStiff) {
 TEST(ArticulatedFactor, SolvesAsDenseForFreeBodiesThatTouch) {
   for (int seed = 0; seed < 20; ++seed)
     Elimination(freeBodies(20, seed), seed, 40, 10.0).check(seed, 1e-12);
+}
+
+TEST(ArticulatedFactor, SolvesAsDenseWithRowsOfTwoJoints) {
+  for (const double stiffness : {1.0, 1e4, 1e8})
+    for (int seed = 0; seed < 40; ++seed) {
+      Elimination e(randomForest(seed).build(), seed, seed % 5, 1.0);
+      Random random(seed);
+      e.addPairs(random, 1 + seed % 6, stiffness);
+      e.check(seed, 1e-12);
+    }
+}
+
+// A locked joint is one of infinite inertia: the others move as if it were not there.
+TEST(ArticulatedFactor, LeavesLockedJointsOut) {
+  for (int seed = 0; seed < 40; ++seed) {
+    Elimination e(randomForest(seed).build(), seed, seed % 5, 1.0);
+    VectorX x = Random(seed).vector(e.model.nv, 1.0), expected = x;
+    MatrixX P = e.P;
+    for (int i = seed % 2; i < e.model.nv; i += 2) {
+      e.factor.lock(i);
+      P.row(i).setZero();
+      P.col(i).setZero();
+      P(i, i) = 1.0;
+      expected[i] = 0.0;
+    }
+    ASSERT_TRUE(e.factor.factor(e.model, e.k));
+    std::vector<Motion> A(e.model.bodies.size());
+    e.factor.solve(e.model, e.k, x, A);
+    EXPECT_APPROX(x, P.llt().solve(expected), 1e-10) << "seed " << seed;
+  }
 }
 
 TEST(ArticulatedFactor, SolvesAsDenseForALongChain) {

@@ -9,10 +9,9 @@
 namespace softgauss::test {
 namespace {
 
-/// lawScene() without couplings of joints, which bodies alone cannot express.
+/// lawScene(), couplings of joints included.
 Scene bodyScene(std::uint64_t seed, Cone cone) {
   Scene s = lawScene(seed, 1 + static_cast<int>(seed % 12));
-  s.model.couplings.clear();
   s.model.options.cone = cone;
   s.data = std::make_unique<Data>(s.model);
   EXPECT_EQ(s.stages(), SolveStatus::converged);
