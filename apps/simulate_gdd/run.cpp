@@ -72,7 +72,7 @@ class Runner {
       summary_.warnings.push_back(std::move(told));
     computeStages(model_, input_, state_, data_, &contacts_);
     const gdd::GoalContext start{model_, state_, data_};
-    verdict_.emplace(controller_, start, passive, scene.baseOrigin);
+    verdict_.emplace(controller_, start, passive, scene.bases);
     replay_.emplace(options, scene, controller_.goals, start);
     summary_.warnings.insert(summary_.warnings.end(), replay_->warnings().begin(),
                              replay_->warnings().end());
