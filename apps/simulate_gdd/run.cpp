@@ -57,7 +57,7 @@ class Runner {
     setUp(options, scene, controller_);
     const bool passive =
         controller_.goals.empty() && options.torques.empty() && scene.wrenches.empty();
-    company_.emplace(options, model_, state_, stages_, controller_);
+    company_.emplace(options, scene, state_, stages_, controller_);
     tellOrigin(scene);
     const std::vector<io::EffectNote> notes = io::effectNotes(model_, scene.wrenches);
     summary_.effects = io::effectsOn(notes);
