@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdio>
 #include <map>
+#include <set>
 #include <utility>
 
 namespace softgauss::collision {
@@ -46,6 +47,32 @@ LinkPair linkPair(const Model& model, const Geometry& a, const Geometry& b) {
   if (links[1] < links[0]) std::swap(links[0], links[1]);
   return links;
 }
+
+/// Whether geometries are never to be tested, as Model::apart names their links.
+class Apart {
+ public:
+  explicit Apart(const Model& model) {
+    if (model.apart.empty()) return;
+    std::map<std::string, int> links;
+    const auto link = [&](const std::string& name) {
+      return links.emplace(name, static_cast<int>(links.size())).first->second;
+    };
+    for (const auto& [a, b] : model.apart) pairs_.insert(std::minmax({link(a), link(b)}));
+    for (const Geometry& g : model.geometries) {
+      const auto found = links.find(g.link);
+      link_.push_back(found == links.end() ? -1 : found->second);
+    }
+  }
+  bool has(int a, int b) const {
+    if (link_.empty()) return false;
+    const int i = link_[static_cast<std::size_t>(a)], j = link_[static_cast<std::size_t>(b)];
+    return i >= 0 && j >= 0 && pairs_.count(std::minmax({i, j})) > 0;
+  }
+
+ private:
+  std::set<std::pair<int, int>> pairs_;
+  std::vector<int> link_;  ///< of each geometry, −1: in no pair
+};
 
 /// For each geometry the first one behind it that is of another body.
 std::vector<int> endsOfRuns(const Model& model) {
@@ -106,6 +133,7 @@ PairFilter makePairFilter(const Model& model, const InitialDistance& initialDist
   std::vector<GeometryPair> candidates;
   const int count = static_cast<int>(model.geometries.size());
   const std::vector<int> runEnds = endsOfRuns(model);
+  const Apart apart(model);
   for (int i = 0; i < count; ++i) {
     for (int j = i + 1; j < count; ++j) {
       const Geometry& a = model.geometries[static_cast<std::size_t>(i)];
@@ -121,6 +149,12 @@ PairFilter makePairFilter(const Model& model, const InitialDistance& initialDist
       if (oneRobot && adjacentThroughParents(parents, a.body, b.body)) {
         ExcludedPair& pair = entry(a, b);
         pair.reason = ExclusionReason::adjacent;
+        ++pair.geometryPairs;
+        continue;
+      }
+      if (apart.has(i, j)) {
+        ExcludedPair& pair = entry(a, b);
+        pair.reason = ExclusionReason::disabled;
         ++pair.geometryPairs;
         continue;
       }
@@ -165,6 +199,8 @@ std::string describe(const ExcludedPair& pair) {
   std::string text = pair.linkA + " – " + pair.linkB + ": ";
   if (pair.reason == ExclusionReason::adjacent) {
     text += "joined by a joint";
+  } else if (pair.reason == ExclusionReason::disabled) {
+    text += "never tested, as the SRDF says";
   } else {
     char depth[48];
     std::snprintf(depth, sizeof depth, "overlap by %.3g mm at the start", 1e3 * pair.depth);
@@ -179,7 +215,8 @@ std::optional<std::string> baseWarning(const PairFilter& filter) {
   std::string told;
   int count = 0;
   for (const ExcludedPair& pair : filter.excluded)
-    if (pair.withBase && ++count <= kMostTold) told += (count > 1 ? "; " : "") + describe(pair);
+    if (pair.withBase && pair.reason != ExclusionReason::disabled && ++count <= kMostTold)
+      told += (count > 1 ? "; " : "") + describe(pair);
   if (count == 0) return std::nullopt;
   if (count > kMostTold)
     told += " and " + std::to_string(count - kMostTold) + " more, which --explain lists";

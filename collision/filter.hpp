@@ -15,6 +15,7 @@
 ///              Designers let the shapes of neighbouring links run into each other; a contact there
 ///              would push the robot apart from the first step on. All geometries of two such links
 ///              are left out, since the ones beside the overlap mean as little;
+///   disabled   Model::apart names their links;
 ///   effect     the effect that the pair belongs to is switched off: self_collision (one robot),
 ///              ground_contact (one side fixed to the world), object_contact (two robots).
 
@@ -35,7 +36,7 @@ struct GeometryPair {
   bool operator==(const GeometryPair&) const = default;
 };
 
-enum class ExclusionReason : std::uint8_t { adjacent, overlapsInitially };
+enum class ExclusionReason : std::uint8_t { adjacent, overlapsInitially, disabled };
 
 /// Two links whose geometries never collide.
 struct ExcludedPair {

@@ -15,6 +15,7 @@
 #include "softgauss/io/detail/scene_constraints.hpp"
 #include "softgauss/io/detail/scene_options.hpp"
 #include "softgauss/io/detail/scene_parts.hpp"
+#include "softgauss/io/detail/scene_srdf.hpp"
 #include "softgauss/io/detail/text.hpp"
 #include "softgauss/io/detail/unit_mistakes.hpp"
 
@@ -196,7 +197,7 @@ class SceneReader {
     map.expectOnly(std::vector<std::string>{"name", "urdf", "base"} + detail::kPoseKeys +
                    std::vector<std::string>{"velocity", "angular_velocity", "on_ground", "joints",
                                             "joint_velocities", "joint_parameters", "material",
-                                            "materials", "collide_as"});
+                                            "materials", "collide_as", "srdf", "state"});
     const std::size_t robots = top_.find("robots")->value.items.size();
     const std::string name = ownName(map, robots == 1);
     const YamlMap::Entry& urdf = map.required("urdf", "the name of a URDF file");
@@ -225,10 +226,10 @@ class SceneReader {
       expectNames(joints, contents.scalarJoints, "joint of one degree of freedom");
       detail::readJointParameters(joints, robot);
     }
+    const std::string prefix = name.empty() ? "" : name + "/";
+    detail::readSrdfKeys(map, file, contents, prefix, robot, scene_);
     robot.X_WRoot = readPose(map);
     scene_.builder.add(robot, name);
-
-    const std::string prefix = name.empty() ? "" : name + "/";
     for (const std::string& link : contents.linkNames) {
       const auto own = options.linkMaterials.find(link);
       surfaces_[prefix + link] =

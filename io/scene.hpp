@@ -18,6 +18,7 @@
 #include "softgauss/engine/model/state.hpp"
 #include "softgauss/gdd/goal_directed_step.hpp"
 #include "softgauss/io/actuators.hpp"
+#include "softgauss/io/srdf.hpp"
 #include "softgauss/io/urdf.hpp"
 #include "softgauss/io/wrenches.hpp"
 
@@ -64,6 +65,8 @@ struct SceneFile {
   /// Of scalar joints [rad or m]; what follows another and is not here is where its leader has it.
   std::vector<JointValue> positions;
   std::vector<JointValue> velocities;  ///< of scalar joints [rad/s or m/s]
+  std::vector<RobotSrdf> srdfs;    ///< states in which robots start are placed before `positions`
+  std::vector<std::string> notes;  ///< on SRDFs that no key names
 
   IntegrationKeys integration;
   std::vector<TimedWrench> wrenches;
@@ -78,8 +81,9 @@ struct SceneFile {
 
   /// The state in which it starts, but for the heights of what stands on the ground. `model` was
   /// built by `builder`. Throws ModelError where a position lies outside its joint's range, or is
-  /// that of a joint which follows another elsewhere.
-  State initialState(const Model& model) const;
+  /// that of a joint which follows another elsewhere. What does not fit of a state of an SRDF is
+  /// reported in `warnings`.
+  State initialState(const Model& model, std::vector<std::string>* warnings = nullptr) const;
 };
 
 /// Of the options, `base` and the materials are not read: the file says. Throws ModelError.

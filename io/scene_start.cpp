@@ -13,8 +13,12 @@
 
 namespace softgauss::io {
 
-State SceneFile::initialState(const Model& model) const {
+State SceneFile::initialState(const Model& model, std::vector<std::string>* warnings) const {
   State state(model);
+  for (const RobotSrdf& robot : srdfs)
+    if (!robot.state.empty())
+      for (std::string& warning : placeState(model, robot.srdf, robot.state, robot.prefix, state.q))
+        if (warnings) warnings->push_back(std::move(warning));
   std::map<int, const JointRange*> ranges;
   for (const JointRange& range : model.ranges) ranges[range.body] = &range;
   for (const auto& [joint, value, where, element] : positions) {

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apps/live/keyframes.hpp"
+
 namespace softgauss::live {
 namespace {
 
@@ -39,6 +41,7 @@ std::optional<T> maybe(const FieldValue* value) {
 std::vector<EventType> makeTypes() {
   using K = FieldKind;
   const Field force{"force", K::vector, false, -kStrongest, kStrongest, "N"};
+  const Field slot{"slot", K::number, true, 1.0, Keyframes::kSlots, "of nine"};
   const Field torque{"torque", K::vector, false, -kStrongest, kStrongest, "N m"};
   return {
       {EventKind::grab,
@@ -91,12 +94,15 @@ std::vector<EventType> makeTypes() {
         option("rate", "1/s")}},
       {EventKind::joint,
        "joint",
-       "a joint of a paused run is put there",
+       "a joint of a paused run is put there, else postures seek it there",
        {name("joint", K::joint), {"position", K::number, true, -kFarthest, kFarthest, "rad or m"}}},
       {EventKind::effect,
        "effect",
        "an effect is switched",
        {name("effect", K::effect), {"on", K::boolean, true, 0, 0, ""}}},
+      {EventKind::state, "state", "the run is put into a state", {name("state", K::state)}},
+      {EventKind::store, "store", "the state is kept", {slot}},
+      {EventKind::recall, "recall", "the run is put into a state that was kept", {slot}},
   };
 }
 
@@ -151,6 +157,8 @@ std::string expectedOf(const Field& field) {
       return "the name of a joint of one degree of freedom";
     case FieldKind::effect:
       return "the name of an effect";
+    case FieldKind::state:
+      return "the name of a state of the robot's SRDF";
     case FieldKind::number:
       return fmt::format("a number {} [{}]", range, field.unit);
     case FieldKind::boolean:
@@ -169,7 +177,8 @@ std::string problemOf(const Field& field, const FieldValue& value) {
   std::string found;
   if (std::holds_alternative<std::string>(value)) {
     fits = field.kind == FieldKind::link || field.kind == FieldKind::goal ||
-           field.kind == FieldKind::joint || field.kind == FieldKind::effect;
+           field.kind == FieldKind::joint || field.kind == FieldKind::effect ||
+           field.kind == FieldKind::state;
     found = "a text";
   } else if (const auto* x = std::get_if<double>(&value)) {
     fits = field.kind == FieldKind::number && within(*x);

@@ -33,7 +33,10 @@ enum class EventKind {
   factor,
   goal,
   joint,
-  effect
+  effect,
+  state,
+  store,
+  recall
 };
 
 /// What a field holds.
@@ -42,6 +45,7 @@ enum class FieldKind {
   goal,    ///< the name of a goal
   joint,   ///< the name of a joint of one degree of freedom
   effect,  ///< the name of an effect that can be switched
+  state,   ///< the name of a state of an SRDF
   number,
   boolean,
   vector  ///< three numbers

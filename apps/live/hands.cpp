@@ -23,7 +23,7 @@ std::optional<double> valueAt(const double* place) {
 
 }  // namespace
 
-Hands::Hands(const RunParts& run, bool passive)
+Hands::Hands(const RunParts& run, bool passive, Keyframes::Named states)
     : run_(run), rewind_(run.state, run.model.options.timestep) {
   if (!passive) {
     for (int i = 1; i <= kDrags; ++i) {
@@ -34,6 +34,8 @@ Hands::Hands(const RunParts& run, bool passive)
   }
   for (const auto& goal : run_.controller.goals) starts_.push_back(goal->startTime);
   names_ = std::make_unique<Names>(run_.model, run_.controller.goals);
+  keyframes_ = std::make_unique<Keyframes>(std::move(states), run_.controller);
+  names_->states = keyframes_->names();
 }
 
 std::string Hands::apply(const Event& event) {
@@ -68,6 +70,7 @@ std::string Hands::apply(const Event& event) {
       stepsLeft_ += static_cast<long>(event.number("count"));
       return "";
     case EventKind::reset:
+      keyframes_->reset();
       goTo(rewind_.reset());
       return "";
     case EventKind::back:
@@ -87,6 +90,13 @@ std::string Hands::apply(const Event& event) {
     case EventKind::effect:
       setEffect(event);
       return "";
+    case EventKind::state:
+      keyframes_->goTo(event.text("state"), run_.model, run_.state);
+      jumped_ = true;
+      return "";
+    case EventKind::store:
+    case EventKind::recall:
+      return keyframe(event);
   }
   return "";
 }
@@ -175,9 +185,26 @@ void Hands::switchGoal(std::size_t index, bool on) {
 /// As simulate_gdd has set them up; postures, their weights and drags come and go here.
 void Hands::weighDefaults() { gdd::weighDefaults(run_.model, run_.controller.goals); }
 
+std::string Hands::keyframe(const Event& event) {
+  const double number = event.number("slot");
+  const int slot = static_cast<int>(number);
+  if (slot != number) return fmt::format("'slot': found {}, expected a whole number", number);
+  if (event.kind == EventKind::store) {
+    keyframes_->store(slot, run_.state);
+    return "";
+  }
+  if (!keyframes_->recall(slot, run_.model, run_.state))
+    return fmt::format("nothing is stored in {}, expected one of what was stored", slot);
+  jumped_ = true;
+  return "";
+}
+
 std::string Hands::setJoint(const Event& event) {
-  if (!paused()) return "joints are put somewhere where the run is paused";
   const JointName& joint = names_->joint(event.text("joint"));
+  if (!paused())
+    return keyframes_->seek(run_.model, joint.body, event.number("position"))
+               ? ""
+               : "no posture could seek it; joints are put somewhere where the run is paused";
   const Body& body = run_.model.bodies[joint.body];
   State& state = run_.state;
   state.q[body.q] = event.number("position");

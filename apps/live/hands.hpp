@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "apps/live/drag.hpp"
+#include "apps/live/keyframes.hpp"
 #include "apps/live/names.hpp"
 #include "apps/live/rewind.hpp"
 
@@ -29,7 +30,8 @@ struct RunParts {
 class Hands {
  public:
   /// Gives the controller goals that begin when somebody takes hold; none to a passive run.
-  Hands(const RunParts& run, bool passive);
+  /// `states` are those to which the run can be put by name.
+  Hands(const RunParts& run, bool passive, Keyframes::Named states = {});
 
   const Names& names() const { return *names_; }
 
@@ -66,6 +68,7 @@ class Hands {
     bool consistent = false;               ///< metric
   };
   std::vector<GoalView> goals() const;
+  const Keyframes& keyframes() const { return *keyframes_; }
   const std::string& holding() const { return holding_; }  ///< name of the drag, or empty
   bool pushes() const { return push_.has_value(); }
 
@@ -76,6 +79,7 @@ class Hands {
   std::string push(const Event& event);
   std::string setGoal(const Event& event);
   std::string setJoint(const Event& event);
+  std::string keyframe(const Event& event);
   void setEffect(const Event& event);
   void goTo(const Rewind::Place& place);
   void switchGoal(std::size_t index, bool on);
@@ -92,6 +96,7 @@ class Hands {
   std::vector<Drag*> drags_;
   std::vector<double> starts_;  ///< of goals that are switched off
   std::unique_ptr<Names> names_;
+  std::unique_ptr<Keyframes> keyframes_;
   Rewind rewind_;
   std::optional<Push> push_;
   std::string holding_;

@@ -67,6 +67,9 @@ std::string Names::problem(FieldKind kind, const std::string& name) const {
     case FieldKind::effect:
       known = &effects;
       break;
+    case FieldKind::state:
+      known = &states;
+      break;
     case FieldKind::joint:
       for (const JointName& joint : joints) jointNames.push_back(joint.name);
       known = &jointNames;

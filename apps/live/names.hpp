@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// Names that events may hold: links, goals, joints and effects of a run.
+/// Names that events may hold: links, goals, joints, effects and states of a run.
 ///
 /// A table that does not change while the run goes on, so that what answers pages may read it
 /// beside the simulation.
@@ -28,6 +28,7 @@ class Names {
   std::string modelName;
   std::vector<std::string> links, goals, effects;  ///< goals: distinct, in the controller's order
   std::vector<JointName> joints;
+  std::vector<std::string> states;  ///< to which the run can be put
 
   /// Why no event can hold the name, "found 'hnd', expected …"; empty where it can.
   std::string problem(FieldKind kind, const std::string& name) const;

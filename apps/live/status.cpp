@@ -15,24 +15,24 @@ using nlohmann::ordered_json;
 ordered_json toJson(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
 
 ordered_json toJson(const Hands::GoalView& goal) {
-  ordered_json json = {{"name", goal.name}, {"on", goal.on}, {"acts", goal.acts}};
-  if (goal.start) json["start"] = *goal.start;
-  if (goal.end) json["end"] = *goal.end;
-  if (!goal.link.empty()) json["link"] = goal.link;
-  if (goal.weight) json["weight"] = *goal.weight, json["weight_unit"] = goal.weightUnit;
-  if (goal.weight && goal.weightIsDefault) json["weight_default"] = true;
-  if (goal.stiffness) json["stiffness"] = *goal.stiffness;
-  if (goal.damping) json["damping"] = *goal.damping;
-  if (goal.rate) json["rate"] = *goal.rate;
-  if (goal.duration) json["duration"] = *goal.duration;
-  if (goal.point) json["point"] = toJson(*goal.point);
-  if (goal.target) json["target"] = toJson(*goal.target);
-  if (const auto& q = goal.orientation) json["quaternion"] = {q->w(), q->x(), q->y(), q->z()};
-  if (goal.rotationWeight) json["rotation_weight"] = *goal.rotationWeight;
-  if (goal.rotationWeightIsDefault) json["rotation_weight_default"] = true;
-  if (goal.jerkStart) json["jerk_start"] = *goal.jerkStart;
-  if (goal.consistent) json["metric"] = "consistent";
-  return json;
+  ordered_json out = {{"name", goal.name}, {"on", goal.on}, {"acts", goal.acts}};
+  if (goal.start) out["start"] = *goal.start;
+  if (goal.end) out["end"] = *goal.end;
+  if (!goal.link.empty()) out["link"] = goal.link;
+  if (goal.weight) out["weight"] = *goal.weight, out["weight_unit"] = goal.weightUnit;
+  if (goal.weight && goal.weightIsDefault) out["weight_default"] = true;
+  if (goal.stiffness) out["stiffness"] = *goal.stiffness;
+  if (goal.damping) out["damping"] = *goal.damping;
+  if (goal.rate) out["rate"] = *goal.rate;
+  if (goal.duration) out["duration"] = *goal.duration;
+  if (goal.point) out["point"] = toJson(*goal.point);
+  if (goal.target) out["target"] = toJson(*goal.target);
+  if (const auto& q = goal.orientation) out["quaternion"] = {q->w(), q->x(), q->y(), q->z()};
+  if (goal.rotationWeight) out["rotation_weight"] = *goal.rotationWeight;
+  if (goal.rotationWeightIsDefault) out["rotation_weight_default"] = true;
+  if (goal.jerkStart) out["jerk_start"] = *goal.jerkStart;
+  if (goal.consistent) out["metric"] = "consistent";
+  return out;
 }
 
 }  // namespace
@@ -53,7 +53,7 @@ std::string statusMessage(const Status& status, const Hands& hands) {
   for (const GoalError& e : status.errors)
     errors.push_back({{"name", e.name}, {"unit", e.unit}, {"value", e.value}});
   const io::StepRecord& r = status.record;
-  const ordered_json json = {
+  const ordered_json out = {
       {"status",
        {{"time", status.time},
         {"steps", status.steps},
@@ -79,26 +79,29 @@ std::string statusMessage(const Status& status, const Hands& hands) {
         {"at_limits", status.atLimits},
         {"errors", errors},
         {"joints", status.joints},
+        {"targets", status.targets},
+        {"stored", hands.keyframes().stored()},
         {"pages", status.pages},
         {"holding", hands.holding()},
         {"goals", goals}}}};
-  return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+  return out.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
 
 std::string liveHeader(const Names& names, const std::string& token, bool passive, double weight) {
   ordered_json joints = ordered_json::array();
   for (const JointName& joint : names.joints) {
-    ordered_json json = {{"name", joint.name}, {"unit", joint.turns ? "rad" : "m"}};
-    if (std::isfinite(joint.lower)) json["lower"] = joint.lower;
-    if (std::isfinite(joint.upper)) json["upper"] = joint.upper;
-    joints.push_back(json);
+    ordered_json out = {{"name", joint.name}, {"unit", joint.turns ? "rad" : "m"}};
+    if (std::isfinite(joint.lower)) out["lower"] = joint.lower;
+    if (std::isfinite(joint.upper)) out["upper"] = joint.upper;
+    joints.push_back(out);
   }
-  const ordered_json json = {{"path", token.empty() ? "/run" : "/run?token=" + token},
-                             {"passive", passive},
-                             {"weight", weight},
-                             {"joints", joints},
-                             {"effects", names.effects}};
-  return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+  const ordered_json out = {{"path", token.empty() ? "/run" : "/run?token=" + token},
+                            {"passive", passive},
+                            {"weight", weight},
+                            {"joints", joints},
+                            {"effects", names.effects},
+                            {"states", names.states}};
+  return out.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
 
 }  // namespace softgauss::live

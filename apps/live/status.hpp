@@ -53,7 +53,8 @@ struct Status {
   std::vector<std::string> saturated;  ///< controls at their bounds
   std::vector<std::string> atLimits;   ///< joints at an end of their range
   std::vector<GoalError> errors;
-  std::vector<double> joints;  ///< positions, in the order of Names::joints
+  std::vector<double> joints;   ///< positions, in the order of Names::joints
+  std::vector<double> targets;  ///< where a posture seeks them; empty: nowhere
   int pages = 0;
 };
 

@@ -12,6 +12,8 @@ std::optional<OptionValue> optionValue(const py::handle& given) {
   if (py::isinstance<py::bool_>(given)) return OptionValue(given.cast<bool>());
   if (py::isinstance<py::str>(given)) return OptionValue(given.cast<std::string>());
   try {
+    if (py::hasattr(given, "__fspath__"))
+      return OptionValue(given.attr("__fspath__")().cast<std::string>());
     if (py::hasattr(given, "keys")) return OptionValue(given.cast<std::map<std::string, double>>());
     if (py::isinstance<py::sequence>(given)) {
       std::vector<std::string> words;

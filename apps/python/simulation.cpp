@@ -119,16 +119,17 @@ void bindByName(HeldClass& sim) {
 }  // namespace
 
 void bindSimulation(py::module_&, HeldClass& sim) {
-  sim.def(
-      py::init([](const std::filesystem::path& file, const py::kwargs& options) {
-        return std::make_unique<Held>(Simulation::load(file, optionsFrom(options)));
-      }),
-      py::arg("file"),
-      "A .urdf file, or a .yaml scene with its own goals. Options are those of simulate_gdd:\n"
-      "base, base_height, ground, q0, timestep, integrator, integration_tolerance,\n"
-      "step_doubling, cone, no_slip, exact_diagonal, effects, without, zero_effort,\n"
-      "ignore_velocity_limits, no_balance, gdd_solver, control_cost, meshes, collision,\n"
-      "compatibility, package_paths, most_dofs; and without_goals. Raises ModelError and OptionError.");
+  sim.def(py::init([](const std::filesystem::path& file, const py::kwargs& options) {
+            return std::make_unique<Held>(Simulation::load(file, optionsFrom(options)));
+          }),
+          py::arg("file"),
+          "A .urdf file, or a .yaml scene with its own goals. Options are those of simulate_gdd:\n"
+          "base, base_height, ground, q0, srdf, state, timestep, integrator,\n"
+          "integration_tolerance, step_doubling, cone, no_slip, exact_diagonal, effects, without, "
+          "zero_effort,\n"
+          "ignore_velocity_limits, no_balance, gdd_solver, control_cost, meshes, collision,\n"
+          "compatibility, package_paths, most_dofs; and without_goals. Raises ModelError and "
+          "OptionError.");
   sim.def_property_readonly(
       "goals", py::cpp_function([](Held& h) { return GoalList{h}; }, py::keep_alive<0, 1>()),
       "What the controller seeks; without goals robots are passive.");

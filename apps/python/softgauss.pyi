@@ -124,6 +124,8 @@ class Simulation:
         ground: float | None = ...,
         timestep: float = ...,
         q0: Mapping[str, float] = ...,
+        srdf: Path = ...,
+        state: str = ...,
         integrator: str = ...,
         integration_tolerance: float = ...,
         cone: Literal["pyramidal", "elliptic"] = ...,

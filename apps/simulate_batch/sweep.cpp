@@ -159,10 +159,13 @@ class SweepReader {
     if (!option.set(valueOf(entry.value), o))
       top_.fail(entry,
                 fmt::format("found {}, expected {}", entry.value.described(), option.expected));
-    if (option.name != std::string("package_paths")) return;
     // As every other name of a file in the sweep.
-    for (std::filesystem::path& folder : o.packagePaths)
-      if (folder.is_relative()) folder = std::filesystem::path(top_.file()).parent_path() / folder;
+    const auto ofTheSweep = [&](std::filesystem::path& path) {
+      if (path.is_relative()) path = std::filesystem::path(top_.file()).parent_path() / path;
+    };
+    if (option.name == std::string("srdf") && o.srdf != "none") ofTheSweep(o.srdf);
+    if (option.name == std::string("package_paths"))
+      for (std::filesystem::path& folder : o.packagePaths) ofTheSweep(folder);
   }
 
   /// LINK: [x, y, z], or {target: [x, y, z], point: [x, y, z], weight: …}.

@@ -6,18 +6,19 @@
 
 #include "apps/simulate_gdd/live_run.hpp"
 #include "apps/simulate_gdd/play_run.hpp"
+#include "softgauss/io/simulation/named_states.hpp"
 #include "softgauss/io/simulation/time_grid.hpp"
 
 namespace softgauss::app {
 
-Company::Company(const SimulateOptions& options, Model& model, State& state,
+Company::Company(const SimulateOptions& options, Scene& scene, State& state,
                  std::optional<Data>& data, gdd::GoalDirectedController& controller)
-    : options_(options), model_(model), state_(state), controller_(controller) {
-  steps_ = std::isfinite(options.duration) ? stepsIn(options.duration, model.options.timestep)
+    : options_(options), model_(scene.model), state_(state), controller_(controller) {
+  steps_ = std::isfinite(options.duration) ? stepsIn(options.duration, model_.options.timestep)
                                            : std::numeric_limits<long>::max();
   if (options.acted())
-    hands_.emplace(live::RunParts{model, state, instant_, data, controller},
-                   controller.goals.empty());
+    hands_.emplace(live::RunParts{scene.model, state, instant_, data, controller},
+                   controller.goals.empty(), namedStates(scene));
 }
 
 void Company::join(const Scene& scene, const gdd::GoalContext& start) {

@@ -16,7 +16,7 @@ namespace softgauss::app {
 class Company {
  public:
   /// The parts of the run outlive it. Where somebody is to act, the controller gets goals for that.
-  Company(const SimulateOptions& options, Model& model, State& state, std::optional<Data>& data,
+  Company(const SimulateOptions& options, Scene& scene, State& state, std::optional<Data>& data,
           gdd::GoalDirectedController& controller);
 
   /// Lets them begin. The stages of the initial state are in `start`. Throws UsageError,

@@ -207,9 +207,14 @@ void LiveRun::showStatus() {
   status_.effectsOff.clear();
   for (const std::string& effect : hands_.names().effects)
     if (!model_.options.effects.has(*effectFromName(effect))) status_.effectsOff.push_back(effect);
+  const VectorX* sought = hands_.keyframes().sought();
   status_.joints.clear();
-  for (const live::JointName& joint : hands_.names().joints)
-    status_.joints.push_back(state_.q[model_.bodies[joint.body].q]);
+  status_.targets.clear();
+  for (const live::JointName& joint : hands_.names().joints) {
+    const int at = model_.bodies[joint.body].q;
+    status_.joints.push_back(state_.q[at]);
+    if (sought) status_.targets.push_back((*sought)[at]);
+  }
   status_.pages = server_->pages();
   server_->publishStatus(std::make_shared<const std::string>(live::statusMessage(status_, hands_)));
   status_.certified = true;

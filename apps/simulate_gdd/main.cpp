@@ -19,6 +19,8 @@ int runProgram(int argc, char** argv) {
     if (!options) return kDone;
     const auto scene = loadScene(*options);
     std::FILE* const report = options->writesToStandardOutput() ? stderr : stdout;
+    if (!options->quiet)
+      for (const std::string& note : scene->notes) print(report, note + "\n");
     if (options->explain) {
       print(report, explainScene(*scene));
       return kDone;

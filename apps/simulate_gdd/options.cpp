@@ -90,6 +90,13 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
       ->delimiter(',')
       ->allow_extra_args(false)
       ->group(scene);
+  app.add_option("--state", options.state,
+                 "start in a state (group_state) of the SRDF, by name; --q0 comes on top")
+      ->group(scene);
+  app.add_option("--srdf", options.srdf,
+                 "SRDF with states and links that never collide, or none; default: that of\n"
+                 "the URDF's package")
+      ->group(scene);
   app.add_option("--effects", effects,
                  "the effects to simulate: auto, none, a list, or no_NAME,… for all but those")
       ->group(scene);
@@ -346,9 +353,11 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
   finishCheckpointOptions(app, options);
   checkOutputs(options, {});
   if (options.isScene())
-    for (const auto& [option, given] : {std::pair{"--base", !base.empty() && base != "automatic"},
-                                        std::pair{"--base-height", options.baseHeight.has_value()},
-                                        std::pair{"--ground", !ground.empty()}})
+    for (const auto& [option, given] :
+         {std::pair{"--base", !base.empty() && base != "automatic"},
+          std::pair{"--base-height", options.baseHeight.has_value()},
+          std::pair{"--state", !options.state.empty()}, std::pair{"--srdf", !options.srdf.empty()},
+          std::pair{"--ground", !ground.empty()}})
       if (given)
         throw UsageError(fmt::format("{} is for a URDF; a scene file says it itself", option));
   const bool hasGoals = options.hasGoals();

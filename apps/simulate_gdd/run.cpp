@@ -57,7 +57,7 @@ class Runner {
     setUp(options, scene, controller_);
     const bool passive =
         controller_.goals.empty() && options.torques.empty() && scene.wrenches.empty();
-    company_.emplace(options, model_, state_, stages_, controller_);
+    company_.emplace(options, scene, state_, stages_, controller_);
     tellOrigin(scene);
     const std::vector<io::EffectNote> notes = io::effectNotes(model_, scene.wrenches);
     summary_.effects = io::effectsOn(notes);
@@ -72,7 +72,7 @@ class Runner {
       summary_.warnings.push_back(std::move(told));
     computeStages(model_, input_, state_, data_, &contacts_);
     const gdd::GoalContext start{model_, state_, data_};
-    verdict_.emplace(controller_, start, passive, scene.baseOrigin);
+    verdict_.emplace(controller_, start, passive, scene.bases);
     replay_.emplace(options, scene, controller_.goals, start);
     summary_.warnings.insert(summary_.warnings.end(), replay_->warnings().begin(),
                              replay_->warnings().end());

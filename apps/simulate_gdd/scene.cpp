@@ -83,10 +83,14 @@ std::string explainScene(const Scene& scene) {
   context.costs = tryEffects(scene);
   context.materials = scene.materials;
   for (const collision::ExcludedPair& pair : filter.excluded) {
-    const bool adjacent = pair.reason == collision::ExclusionReason::adjacent;
-    context.filtered.push_back(
-        {pair.linkA, pair.linkB, adjacent ? "joined by a joint" : "overlap at the start",
-         adjacent ? std::string() : fmt::format("by {:.2g} mm", 1e3 * pair.depth)});
+    using Reason = collision::ExclusionReason;
+    context.filtered.push_back({pair.linkA, pair.linkB,
+                                pair.reason == Reason::adjacent   ? "joined by a joint"
+                                : pair.reason == Reason::disabled ? "never tested, as the SRDF says"
+                                                                  : "overlap at the start",
+                                pair.reason == Reason::overlapsInitially
+                                    ? fmt::format("by {:.2g} mm", 1e3 * pair.depth)
+                                    : std::string()});
   }
   Kinematics kinematics(scene.model);
   computeKinematics(scene.model, scene.initial, kinematics);

@@ -46,13 +46,20 @@ void nameRanges(std::vector<io::GoalOutcome::Cause>& causes) {
     if (isSingle(c)) c.share *= (single + together) / single;
 }
 
+bool reaches(const gdd::GoalDirectedController& controller) {
+  return std::any_of(controller.goals.begin(), controller.goals.end(), [](const auto& goal) {
+    return dynamic_cast<const gdd::Reach*>(goal.get()) != nullptr;
+  });
+}
+
 }  // namespace
 
 Verdict::Verdict(const gdd::GoalDirectedController& controller, const gdd::GoalContext& start,
-                 bool passive, BaseOrigin baseOrigin)
+                 bool passive, const BaseNotes& bases)
     : model_(start.model),
       controller_(controller),
-      baseOrigin_(baseOrigin),
+      baseOrigin_(bases.origin),
+      straightKnees_(reaches(controller) ? bases.straightKnees : ""),
       bolted_(boltedTrees(start)),
       heldBack_(start.model, controller),
       goals_(controller.goals, start),
@@ -339,6 +346,7 @@ void Verdict::tell(const std::string& ending, const std::vector<std::string>& ba
       for (const StandingOutcome& o : stood_)
         if (o.fell && bolted_[t] && o.base == model_.bodyNames[model_.trees[t].rootBody])
           summary.verdict.emplace_back("base", boltAdvice(o.base, baseOrigin_));
+  if (fell() && !straightKnees_.empty()) summary.verdict.emplace_back("knees", straightKnees_);
   tellGoals(summary);
   if (summary.verdict.empty())
     summary.verdict.emplace_back(summary.outcome,

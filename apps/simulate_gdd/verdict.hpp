@@ -33,7 +33,7 @@ class Verdict {
  public:
   /// `start`: the initial state, whose stages are computed. `passive`: nothing drives the scene.
   Verdict(const gdd::GoalDirectedController& controller, const gdd::GoalContext& start,
-          bool passive, BaseOrigin baseOrigin);
+          bool passive, const BaseNotes& bases);
 
   /// Returns what is to be told at once.
   std::vector<std::string> observe(const SeenStep& step);
@@ -71,6 +71,7 @@ class Verdict {
   const Model& model_;
   const gdd::GoalDirectedController& controller_;
   BaseOrigin baseOrigin_;
+  std::string straightKnees_;
   std::vector<char> bolted_;  ///< (trees) looks as if it were to be bolted down
   HeldBack heldBack_;
   GoalRecord goals_;

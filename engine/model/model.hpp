@@ -224,6 +224,8 @@ struct Model {
   std::vector<Frame> frames;
   std::vector<Geometry> geometries;
   std::vector<ContactPair> contactPairs;  ///< ordered by (geometryA, geometryB)
+  /// Links, by name, whose shapes are never tested against each other.
+  std::vector<std::pair<std::string, std::string>> apart;
   std::vector<Visual> visuals;
   std::vector<std::string> warnings;  ///< what a user should know about how it was read
 

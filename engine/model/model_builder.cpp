@@ -34,6 +34,11 @@ ModelBuilder& ModelBuilder::pair(PairSpec spec) {
   pairs_.push_back(std::move(spec));
   return *this;
 }
+
+ModelBuilder& ModelBuilder::keepApart(std::string linkA, std::string linkB) {
+  apart_.emplace_back(std::move(linkA), std::move(linkB));
+  return *this;
+}
 ModelBuilder& ModelBuilder::connect(ConnectSpec spec) {
   connections_.push_back(std::move(spec));
   return *this;
@@ -358,6 +363,7 @@ Model ModelBuilder::build() const {
     model.visuals.push_back({spec.link, at.body, at.X_BL * spec.X_LG, spec.shape, spec.rgba});
   }
   detail::addContactPairs(model, pairs_);
+  model.apart = apart_;
   detail::addConnections(model, connections_);
   detail::addWelds(model, welds_);
   detail::addCouplings(model, joints_, couplings_);

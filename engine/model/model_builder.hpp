@@ -121,6 +121,8 @@ class ModelBuilder {
   ModelBuilder& connect(ConnectSpec spec);
   ModelBuilder& weld(WeldSpec spec);
   ModelBuilder& couple(CouplingSpec spec);
+  /// Shapes of the two links are never tested against each other; names that are none do no harm.
+  ModelBuilder& keepApart(std::string linkA, std::string linkB);
   ModelBuilder& visual(VisualSpec spec);
   ModelBuilder& warning(std::string text);
   /// Puts another description beside this one, its links, joints and geometries called prefix/name
@@ -129,6 +131,7 @@ class ModelBuilder {
   /// link fixed at X_WRoot.
   ModelBuilder& add(const ModelBuilder& other, const std::string& prefix);
 
+  const std::string& name() const { return name_; }
   /// The joint of that name, to be changed; null where there is none.
   JointSpec* findJoint(const std::string& name);
   /// Links that are no joint's child, in the order in which they were given.
@@ -160,6 +163,7 @@ class ModelBuilder {
   std::vector<ConnectSpec> connections_;
   std::vector<WeldSpec> welds_;
   std::vector<CouplingSpec> couplings_;
+  std::vector<std::pair<std::string, std::string>> apart_;
   std::vector<VisualSpec> visuals_;
   std::vector<std::string> warnings_;
 };

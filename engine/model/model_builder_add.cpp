@@ -63,6 +63,7 @@ ModelBuilder& ModelBuilder::add(const ModelBuilder& other, const std::string& pr
     pair.geometryB = own(pair.geometryB);
     pairs_.push_back(std::move(pair));
   }
+  for (const auto& [linkA, linkB] : other.apart_) keepApart(linkName(linkA), linkName(linkB));
   const auto tie = [&](const auto& specs, auto& all) {
     for (auto spec : specs) {
       spec.linkA = linkName(spec.linkA);

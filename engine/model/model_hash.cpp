@@ -134,12 +134,13 @@ class Hasher {
 
 std::uint64_t hash(const Model& model) {
   const auto& [name, options, bodies, bodyNames, jointNames, trees, dofs, ranges, connections,
-               welds, couplings, frames, geometries, contactPairs, visuals, warnings, nq, nv, q0] =
-      model;
+               welds, couplings, frames, geometries, contactPairs, apart, visuals, warnings, nq, nv,
+               q0] = model;
   (void)visuals, (void)warnings;
   Hasher hasher;
   hasher(name, options, bodies, bodyNames, jointNames, trees, dofs, ranges, connections, welds,
          couplings, frames, geometries, contactPairs, nq, nv, q0);
+  for (const auto& [linkA, linkB] : apart) hasher(linkA, linkB);
   return hasher.value();
 }
 

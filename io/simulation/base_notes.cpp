@@ -9,6 +9,7 @@
 #include "softgauss/collision/lowest_point.hpp"
 #include "softgauss/io/detail/text.hpp"
 #include "softgauss/io/figure_text.hpp"
+#include "softgauss/io/simulation/stance_notes.hpp"
 
 namespace softgauss {
 namespace {
@@ -152,8 +153,9 @@ bool looksBolted(const Model& model, const Kinematics& start, int tree) {
 }
 
 BaseNotes baseNotes(const Model& model, const State& start, ContactSource& contacts,
-                    BaseOrigin origin) {
+                    BaseOrigin origin, const std::string& otherStart) {
   BaseNotes notes;
+  notes.origin = origin;
   Kinematics k(model);
   computeKinematics(model, start, k);
   notes.lines = floatingLines(model, k, origin);
@@ -176,6 +178,7 @@ BaseNotes baseNotes(const Model& model, const State& start, ContactSource& conta
   computeKinematics(model, lowered, below);
   ContactSet touching;
   contacts.detect(model, below, touching);
+  std::vector<std::string> knees;
   const bool heavy =
       model.options.gravity.norm() > 0.0 && model.options.effects.has(Effect::gravity);
   for (int t = 0; t < static_cast<int>(model.trees.size()); ++t) {
@@ -187,7 +190,16 @@ BaseNotes baseNotes(const Model& model, const State& start, ContactSource& conta
     else if (heavy && isRobot(model, t, origin))
       if (auto warning = supportWarning(model, k, t, touching, origin))
         notes.warnings.push_back(std::move(*warning));
+    if (!heavy || !isRobot(model, t, origin)) continue;
+    if (auto stance = standingWarning(model, k, t, touching))
+      notes.stances.push_back(
+          fmt::format("{} {}; another start: {}", model.bodyNames[root], *stance, otherStart));
+    for (std::string& knee : straightKnees(model, k, t, touching)) knees.push_back(std::move(knee));
   }
+  if (!knees.empty())
+    notes.straightKnees = fmt::format(
+        "straight at the start: {}; a bent leg can lower the base, a straight one cannot: {}",
+        io::detail::listed(knees, kMostNames), otherStart);
   return notes;
 }
 

@@ -26,14 +26,18 @@ enum class BaseOrigin {
 bool looksBolted(const Model& model, const Kinematics& start, int tree);
 
 struct BaseNotes {
+  BaseOrigin origin = BaseOrigin::convention;
   std::vector<std::string> lines;     ///< one a robot, or one for many
   std::vector<std::string> warnings;  ///< where a base can hardly be meant to float
+  std::vector<std::string> stances;   ///< where a robot can hardly be meant to stand so
+  std::string straightKnees;          ///< on which robots stand, and what bends them; or nothing
 };
 
 /// `contacts` is asked what touches where the robots are lowered by 5 mm: their support. A robot is
-/// a floating tree, of a scene one of more than one body, or the fixed one of a URDF.
+/// a floating tree, of a scene one of more than one body, or the fixed one of a URDF. `otherStart`
+/// says how a user starts elsewhere.
 BaseNotes baseNotes(const Model& model, const State& start, ContactSource& contacts,
-                    BaseOrigin origin);
+                    BaseOrigin origin, const std::string& otherStart);
 
 /// What to try where a floating base fell that looks bolted down.
 std::string boltAdvice(const std::string& base, BaseOrigin origin);

@@ -19,6 +19,14 @@ bool setFlag(const V& value, O& o) {
   return given != nullptr;
 }
 
+template <auto member>
+bool setText(const V& value, O& o) {
+  const auto* given = std::get_if<std::string>(&value);
+  if (!given || given->empty()) return false;
+  o.*member = *given;
+  return true;
+}
+
 template <std::optional<double> O::*member>
 bool setNumber(const V& value, O& o) {
   const double* given = std::get_if<double>(&value);
@@ -185,6 +193,8 @@ const std::vector<NamedOption>& NamedOption::all() {
       {"base_height", "a number", true, false, setNumber<&O::baseHeight>},
       {"ground", "a height [m] or none", true, false, setGround},
       {"q0", "joints and their positions", false, false, setStart},
+      {"srdf", "a file, or none", true, false, setText<&O::srdf>},
+      {"state", "the name of a state of the SRDF", true, false, setText<&O::state>},
       {"timestep", "a number above 0", false, false, setTimestep},
       {"integrator", integrators.c_str(), false, true, setIntegrator},
       {"integration_tolerance", "a number above 0", false, true, setTolerance},

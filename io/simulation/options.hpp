@@ -25,8 +25,12 @@ struct SimulationOptions {
   bool groundIsDefault = true;          ///< 0 for a floating base, none for a fixed one
   std::optional<double> timestep;       ///< absent: the file's own, or 0.002 [s]
   std::vector<std::pair<std::string, double>> q0;  ///< joints and where they start [rad or m]
-  std::optional<MechanismSet> mechanisms;          ///< absent: the file's own, or all
-  std::optional<EffectSet> effects;                ///< absent: the file's own, or all
+  /// Of a URDF, that holds states and links which never collide; empty: the one of its package,
+  /// `none`: none.
+  std::filesystem::path srdf;
+  std::string state;                       ///< of the SRDF, in which it starts; q0 comes on top
+  std::optional<MechanismSet> mechanisms;  ///< absent: the file's own, or all
+  std::optional<EffectSet> effects;        ///< absent: the file's own, or all
   bool zeroEffortIsUnlimited = false;
   bool ignoreVelocityLimits = false;  ///< goals alone decide how fast joints move
   int mostDofs = 2000;                ///< more take minutes to load and gigabytes to hold

@@ -2,6 +2,7 @@
 #include "softgauss/io/simulation/scene.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <set>
 
@@ -56,11 +57,41 @@ bool standsOnItsRoot(const SimulationOptions& options, const Model& model) {
   return !model.trees.empty() && model.floats(0) && looksBolted(model, k, 0);
 }
 
+/// Reads the SRDF of the URDF, if there is one. What it keeps apart never collides.
+void readSrdfOf(const SimulationOptions& options, Scene& scene, ModelBuilder& builder) {
+  io::SrdfChoice choice{options.srdf, options.state, true, "--srdf FILE"};
+  // MuJoCo knows no SRDF.
+  choice.search = builder.options.constraintModel == ConstraintModel::softgauss;
+  std::vector<std::string> warnings;
+  io::Srdf srdf = io::chooseSrdf(scene.file, builder.name(), choice, {scene.file.string(), 0},
+                                 fmt::format("state '{}'", options.state), warnings);
+  for (std::string& warning : warnings) builder.warning(std::move(warning));
+  if (srdf.file.empty()) return;
+  scene.contents.files.push_back(srdf.file);
+  for (const auto& [linkA, linkB] : srdf.apartAmong(scene.contents.linkNames))
+    builder.keepApart(linkA, linkB);
+  if (options.srdf.empty())
+    scene.notes.push_back(describe(srdf, scene.contents.linkNames, "--state"));
+  scene.srdfs.push_back({std::move(srdf), options.state, ""});
+}
+
+/// The joints at the start.
+void placeJoints(const SimulationOptions& options, Scene& scene) {
+  scene.initial = State(scene.model);
+  for (const io::RobotSrdf& robot : scene.srdfs)
+    if (!robot.state.empty())
+      for (std::string& warning :
+           io::placeState(scene.model, robot.srdf, robot.state, "", scene.initial.q))
+        scene.model.warnings.push_back(std::move(warning));
+  setJointPositions(scene.model, options.q0, scene.initial);
+}
+
 /// A robot alone, as the options say.
 void loadRobot(const SimulationOptions& options, Scene& scene) {
   ModelBuilder builder = io::readUrdf(scene.file, urdfOptions(options), &scene.contents);
   setOptions(options, builder.options);
   setErrorControl(options, {}, builder.options);
+  readSrdfOf(options, scene, builder);
   if (options.base != BaseKind::automatic) scene.baseOrigin = BaseOrigin::option;
   if (options.guessBase) scene.baseOrigin = BaseOrigin::guess;
   scene.model = builder.build();
@@ -77,8 +108,7 @@ void loadRobot(const SimulationOptions& options, Scene& scene) {
     addGround(builder, *scene.ground, {});
     scene.model = builder.build();
   }
-  scene.initial = State(scene.model);
-  setJointPositions(scene.model, options.q0, scene.initial);
+  placeJoints(options, scene);
   if (options.baseHeight) {
     for (const Tree& tree : scene.model.trees)
       if (scene.model.bodies[tree.rootBody].joint == JointKind::floating)
@@ -107,10 +137,12 @@ void loadSceneFile(const SimulationOptions& options, Scene& scene) {
   if (!options.timestep) scene.timestepWhere = file.timestepWhere;
   scene.collisionWhere = file.collisionWhere;
   scene.materials = file.materials;
+  scene.srdfs = file.srdfs;
+  scene.notes = file.notes;
   scene.wrenches = file.wrenches;
   scene.actuators = file.actuators;
   scene.schedule = io::WrenchSchedule(scene.model, file.wrenches);
-  scene.initial = file.initialState(scene.model);
+  scene.initial = file.initialState(scene.model, &scene.model.warnings);
   setJointPositions(scene.model, options.q0, scene.initial);
   if (!scene.ground) return;
   std::vector<std::string> standing;
@@ -159,6 +191,17 @@ void prepareContacts(const SimulationOptions& options, Scene& scene) {
     scene.model.warnings.push_back(std::move(*told));
 }
 
+/// How a user has robots start elsewhere.
+std::string otherStart(const Scene& scene) {
+  std::vector<std::string> states;
+  for (const io::RobotSrdf& robot : scene.srdfs)
+    for (const std::string& state : robot.srdf.stateNames())
+      if (state != robot.state) states.push_back(state);
+  const bool isFile = isSceneFile(scene.file);
+  if (states.empty()) return isFile ? "the key 'joints'" : "--q0 JOINT=VALUE";
+  return fmt::format("{} {}", isFile ? "the key 'state':" : "--state", fmt::join(states, ", "));
+}
+
 }  // namespace
 
 bool isSceneFile(const std::filesystem::path& file) {
@@ -185,7 +228,9 @@ std::unique_ptr<Scene> loadScene(const std::filesystem::path& file,
         throw ModelError(place.first, place.second, error.what());
     throw;
   }
-  scene->bases = baseNotes(scene->model, scene->initial, *scene->contacts, scene->baseOrigin);
+  scene->bases = baseNotes(scene->model, scene->initial, *scene->contacts, scene->baseOrigin,
+                           otherStart(*scene));
+  for (const std::string& stance : scene->bases.stances) scene->model.warnings.push_back(stance);
   addStepWarnings(*scene);
   return scene;
 }

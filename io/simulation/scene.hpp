@@ -17,6 +17,7 @@
 #include "softgauss/io/scene.hpp"
 #include "softgauss/io/simulation/base_notes.hpp"
 #include "softgauss/io/simulation/options.hpp"
+#include "softgauss/io/srdf.hpp"
 #include "softgauss/io/wrenches.hpp"
 
 namespace softgauss {
@@ -26,6 +27,8 @@ struct SceneParts {
   std::filesystem::path file;
   Model model;
   io::UrdfContents contents;
+  std::vector<io::RobotSrdf> srdfs;
+  std::vector<std::string> notes;  ///< what is reported before the first step, beside warnings
   State initial;
   std::optional<double> ground;  ///< height of the ground plane [m]
   /// Surfaces by name.

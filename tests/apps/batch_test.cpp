@@ -324,6 +324,24 @@ TEST(Batch, OptionsRangesAndWeightsAreTaken) {
   EXPECT_GT(errorOf("{target: [0.5, 0.2, 0.5], weight: 50}"), 0.1);  // the posture outweighs it
 }
 
+// The SRDF is found from the folder of the sweep, as its other files are.
+TEST(Batch, AStateOfAnSrdfIsAStart) {
+  const auto table = [](const std::string& start) {
+    const io::TempFolder folder;
+    folder.write("arm.srdf",
+                 "<robot name='arm'><group_state name='up' group='arm'>"
+                 "<joint name='elbow_pitch' value='0.4'/></group_state></robot>");
+    const std::string sweep = folder.write(
+        "sweep.yaml", "model: " + dataFile("robots/arm.urdf") + "\nduration: 0.1\npassive: true\n" +
+                          start + "\nvary: {mass:hand: [1]}\nmeasure: [hand.x]\n");
+    const std::string out = folder.path() / "out";
+    const Outcome outcome = runProgram("simulate_batch", {sweep, "--out", out, "--quiet"});
+    EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+    return readFile(out + "/runs.csv");
+  };
+  EXPECT_EQ(table("srdf: arm.srdf\nstate: up"), table("q0: {elbow_pitch: 0.4}"));
+}
+
 TEST(Batch, MistakesAreToldWithFileLineAndKey) {
   const std::string model = "model: " + dataFile("robots/arm.urdf") + "\npassive: true\n";
   const std::tuple<std::string, int, std::string> cases[] = {

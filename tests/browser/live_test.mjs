@@ -9,6 +9,7 @@ import { spawnSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { LiveProcess } from './live_process.mjs';
+import { testStates } from './live_states.mjs';
 import { Browser } from './pages.mjs';
 
 const [folder, chromium, simulator, data] = process.argv.slice(2);
@@ -284,6 +285,7 @@ try {
   await testHumanoid();
   await testArm();
   await testGoals();
+  await testStates({ browser, simulator, folder, data, status, until, stepsMore, distance });
   await testLooks();
 } catch (error) {
   LiveProcess.killAll();

@@ -252,3 +252,20 @@ TEST(Filter, LimbsOfAFixedBaseAreOneRobot) {
     EXPECT_TRUE(makePairFilter(model, distance).pairs.empty());
   }
 }
+
+TEST(Filter, LinksThatAreKeptApartAreOutEachWayAndTold) {
+  ModelBuilder builder;
+  addRow(builder, "a", 5, 0.3);
+  builder.keepApart("a4", "a0").keepApart("a1", "a3").keepApart("a0", "nothing");
+  const Model model = builder.build();
+  const SceneContacts scene(model);
+  EXPECT_FALSE(tests(model, scene.filter(), "a0", "a4"));
+  EXPECT_FALSE(tests(model, scene.filter(), "a3", "a1"));
+  EXPECT_TRUE(tests(model, scene.filter(), "a0", "a2"));
+  EXPECT_TRUE(tests(model, scene.filter(), "a0", "a3"));
+  const ExcludedPair* pair = findExcluded(scene.filter(), "a0", "a4");
+  ASSERT_NE(pair, nullptr);
+  EXPECT_EQ(pair->reason, ExclusionReason::disabled);
+  EXPECT_EQ(pair->geometryPairs, 1);
+  EXPECT_NE(describe(*pair).find("never tested"), std::string::npos) << describe(*pair);
+}

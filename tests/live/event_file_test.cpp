@@ -18,7 +18,9 @@ class LiveEventFile : public testing::Test {
   LiveEventFile()
       : model(io::readUrdf(SOFTGAUSS_SOURCE_DIR "/data/robots/arm.urdf", {}).build()),
         names(model, goals),
-        link(names.links.back()) {}
+        link(names.links.back()) {
+    names.states = {"half sitting"};
+  }
 
   std::string problemOf(const std::string& text) const {
     const std::string file = (folder.path() / "events.yaml").string();
@@ -64,6 +66,9 @@ TEST_F(LiveEventFile, GivesBackEveryKindBitForBit) {
           break;
         case FieldKind::effect:
           e.fields.emplace_back(field.name, names.effects.at(0));
+          break;
+        case FieldKind::state:
+          e.fields.emplace_back(field.name, names.states.at(0));
           break;
         case FieldKind::goal:
           e.fields.emplace_back(field.name, std::string());

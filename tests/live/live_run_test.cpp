@@ -9,6 +9,7 @@
 #include "tests/apps/process.hpp"
 #include "tests/io/temp_folder.hpp"
 #include "tests/live/live_process.hpp"
+#include "tests/simulation/quadruped.hpp"
 
 namespace softgauss::test {
 namespace {
@@ -118,6 +119,80 @@ TEST(LiveRun, LetsGoWhatAPageHoldsThatIsGone) {
   EXPECT_EQ(again.exitCode, 0) << again.err;
   EXPECT_EQ(summaryOf(file("again.json"))["state_hash"],
             summaryOf(file("live.json"))["state_hash"]);
+}
+
+/// Position or target of a joint in a status, by its place among the joints.
+double jointOf(const json& status, const char* key, std::size_t i) { return status[key][i]; }
+
+TEST(LiveRun, GoesToStatesAndToWhatWasStored) {
+  const QuadrupedPackage package;
+  const auto file = [&](const char* name) { return (package.folder.path() / name).string(); };
+  const std::vector<std::string> run = {package.urdf, "--state", "standing", "--timestep", "0.004"};
+  std::vector<std::string> live = run;
+  live.insert(live.end(), {"--record", file("states.yaml"), "--summary", file("live.json")});
+  LiveProcess process(live);
+  Client page(process.port());
+  // Joints are those of the URDF in their order: hip and knee of FL, FR, RL, RR.
+  json status = page.until([](const json& s) { return s["steps"] > 50; });
+  ASSERT_EQ(status["joints"].size(), 8u);
+  EXPECT_EQ(jointOf(status, "targets", 1), -1.4);
+  EXPECT_EQ(page.ask("\"store\": {\"slot\": 3}"), "");
+  EXPECT_EQ(page.ask("\"pause\": {\"on\": true}"), "");
+  EXPECT_EQ(page.ask("\"state\": {\"state\": \"kneeling\"}"), "");
+  status = page.until([](const json& s) { return s["stored"] == json({3}) && s["paused"]; });
+  for (std::size_t knee = 1; knee < 8; knee += 2) {
+    EXPECT_EQ(jointOf(status, "joints", knee), -2.5);
+    EXPECT_EQ(jointOf(status, "targets", knee), -2.5) << "what holds a posture holds the state";
+  }
+  EXPECT_EQ(page.ask("\"recall\": {\"slot\": 3}"), "");
+  status = page.until([](const json& s) { return s["joints"][1] > -2.0; });
+  // It stood: within what it had sunk by then of the state.
+  for (std::size_t knee = 1; knee < 8; knee += 2)
+    EXPECT_NEAR(jointOf(status, "joints", knee), -1.4, 0.02);
+
+  const auto refused = [&](const char* what, const char* why) {
+    const std::string answer = page.ask(what);
+    EXPECT_NE(answer.find(why), std::string::npos) << answer;
+  };
+  refused("\"recall\": {\"slot\": 2}", "nothing is stored in 2");
+  refused("\"recall\": {\"slot\": 0}", "slot");
+  refused("\"store\": {\"slot\": 10}", "slot");
+  refused("\"store\": {\"slot\": 1.5}", "whole number");
+  refused("\"state\": {\"state\": \"stending\"}", "did you mean 'standing'?");
+
+  // A joint of a running run is sought by the posture, as far as the other legs let it.
+  EXPECT_EQ(jointOf(status, "targets", 2), 0.7) << "postures too are as they were";
+  EXPECT_EQ(page.ask("\"pause\": {\"on\": false}"), "");
+  EXPECT_EQ(page.ask("\"joint\": {\"joint\": \"FR_hip\", \"position\": 0.8}"), "");
+  status = page.until([](const json& s) { return s["joints"][2] > 0.71; });
+  EXPECT_EQ(jointOf(status, "targets", 2), 0.8);
+  EXPECT_EQ(page.ask("\"reset\": {}"), "");
+  status = page.until([](const json& s) { return s["targets"][2] == 0.7; });
+  const long steps = status["steps"];
+  page.until([&](const json& s) { return s["steps"] > steps + 50; });
+  EXPECT_EQ(process.stop(), 130);
+
+  std::vector<std::string> again = run;
+  again.insert(again.end(),
+               {"--play", file("states.yaml"), "--summary", file("again.json"), "--quiet"});
+  const Outcome outcome = simulate(again);
+  EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+  EXPECT_EQ(summaryOf(file("again.json"))["state_hash"],
+            summaryOf(file("live.json"))["state_hash"]);
+}
+
+// Torques alone, or nothing: there is no posture that could seek a joint.
+TEST(LiveRun, JointsOfARunWithoutPostureMoveWhereItIsPaused) {
+  LiveProcess process({kArm, "--passive"});
+  Client page(process.port());
+  const json status = page.until([](const json& s) { return s["steps"] > 10; });
+  EXPECT_TRUE(status["targets"].empty());
+  const std::string joint = "\"joint\": {\"joint\": \"elbow_pitch\", \"position\": 0.4}";
+  const std::string answer = page.ask(joint);
+  EXPECT_NE(answer.find("paused"), std::string::npos) << answer;
+  EXPECT_EQ(page.ask("\"pause\": {\"on\": true}"), "");
+  EXPECT_EQ(page.ask(joint), "");
+  EXPECT_EQ(process.stop(), 130);
 }
 
 TEST(LiveRun, PausesBeforeAStepThatIsRefused) {
@@ -241,7 +316,8 @@ TEST(LiveRun, IsLeftAloneByWhoOnlyWatchesOrIsRefused) {
     EXPECT_NE(
         writer.ask("\"grab\": {\"link\": \"nobody\", \"point\": [0,0,0], \"target\": [0,0,0]}"),
         "");
-    EXPECT_NE(writer.ask("\"joint\": {\"joint\": \"elbow_pitch\", \"position\": 0.1}"), "");
+    EXPECT_NE(writer.ask("\"joint\": {\"joint\": \"elbow_pitch\", \"position\": 9}"), "");
+    EXPECT_NE(writer.ask("\"advance\": {\"count\": 1}"), "") << "of a run that goes on";
     EXPECT_NE(writer.ask("\"move\": {\"target\": [0, 0, 0]}"), "");
     exchange(process.port(), std::string(1000, '\xff'), 0.05);
   }

@@ -352,3 +352,21 @@ def test_a_reach_follows_the_posture_beside_it(arm):
     goal.weight = 7.0
     posture.weight = 300.0
     assert goal.weight == 7.0
+
+
+def test_a_state_of_an_srdf_is_a_start(tmp_path):
+    srdf = tmp_path / "arm.srdf"
+    srdf.write_text(
+        "<robot name='arm'><group_state name='up' group='arm'>"
+        "<joint name='elbow_pitch' value='0.4'/></group_state>"
+        "<disable_collisions link1='hand' link2='upper_arm'/></robot>"
+    )
+    by_state = softgauss.Simulation(ROBOTS / "arm.urdf", srdf=srdf, state="up")
+    by_position = softgauss.Simulation(ROBOTS / "arm.urdf", q0={"elbow_pitch": 0.4})
+    assert np.array_equal(by_state.q, by_position.q)
+    with pytest.raises(softgauss.ModelError, match="did you mean 'up'"):
+        softgauss.Simulation(ROBOTS / "arm.urdf", srdf=str(srdf), state="upp")
+    with pytest.raises(softgauss.ModelError, match="no SRDF in the package"):
+        softgauss.Simulation(ROBOTS / "arm.urdf", state="up")
+    with pytest.raises(softgauss.OptionError, match="a scene file says it itself"):
+        softgauss.Simulation(SCENES / "two_arms.yaml", state="up")

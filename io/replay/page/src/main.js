@@ -118,7 +118,7 @@ function start(run, begun, pageText) {
     new BesideRun(byId('beside'), stage);
   }
   const handle = stage && link ? new Handle(run, link, stage, selection, settings) : null;
-  listenToKeys({ clock, settings, selection, layout, plots, stage, run });
+  listenToKeys({ clock, link, settings, selection, layout, plots, stage });
 
   let firstFrame = null;
   let hasImages = false;

@@ -23,6 +23,14 @@ export class Clock extends Emitter {
     this.emit('time', clamped);
   }
 
+  toStart() {
+    this.seek(this.run.start);
+  }
+
+  toEnd() {
+    this.seek(this.run.end);
+  }
+
   play() {
     if (this.playing || this.run.end === this.run.start) return;
     if (this.time >= this.run.end) this.seek(this.run.start);

@@ -2,6 +2,7 @@
 // Every key of the page. Keys typed into a field, and those a focused widget needs, are left alone.
 
 import { byId } from './dom.js';
+import { keyframe } from '../live/keyframes.js';
 import { toggleDialog } from '../panels/dialogs.js';
 
 /**
@@ -18,13 +19,13 @@ function releaseAfterPointer() {
   });
 }
 
-export function listenToKeys({ clock, settings, selection, layout, plots, stage, run }) {
+export function listenToKeys({ clock, link, settings, selection, layout, plots, stage }) {
   const actions = {
     ' ': () => clock.toggle(),
     ArrowLeft: (event) => clock.step(event.shiftKey ? -10 : -1),
     ArrowRight: (event) => clock.step(event.shiftKey ? 10 : 1),
-    Home: () => clock.seek(run.start),
-    End: () => clock.seek(run.end),
+    Home: () => clock.toStart(),
+    End: () => clock.toEnd(),
     '[': () => clock.faster(-1),
     ']': () => clock.faster(1),
     l: () => clock.setLoop(!clock.loop),
@@ -49,7 +50,9 @@ export function listenToKeys({ clock, settings, selection, layout, plots, stage,
     Escape: () => selection.select(null),
   };
   releaseAfterPointer();
-  for (let digit = 1; digit <= 9; ++digit) actions[digit] = () => plots?.toggle(digit - 1);
+  for (let digit = 1; digit <= 9; ++digit)
+    actions[digit] = ({ shiftKey }) =>
+      link ? keyframe(link, digit, shiftKey) : plots?.toggle(digit - 1);
 
   document.addEventListener('keydown', (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey || event.defaultPrevented) return;
@@ -62,7 +65,9 @@ export function listenToKeys({ clock, settings, selection, layout, plots, stage,
     if (target.matches('select') && !['[', ']', '?'].includes(event.key)) return;
     if (target.matches('[type=range]:not(.timeline)') && /^(Arrow|Home|End)/.test(event.key))
       return;
-    const action = actions[event.key];
+    // With shift a digit's key is another character, and which one is the keyboard's affair.
+    const digit = link && event.shiftKey ? event.code.match(/^Digit([1-9])$/)?.[1] : null;
+    const action = actions[digit ?? event.key];
     if (!action) return;
     event.preventDefault();
     action(event);

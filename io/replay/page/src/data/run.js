@@ -22,6 +22,25 @@ export function contactNames(run, frame) {
   return names;
 }
 
+/** The largest contact force of a frame [N]; 0 without contact. */
+export function largestForce({ contactStart, contactForce }, frame) {
+  let most = 0;
+  for (let c = contactStart[frame]; c < contactStart[frame + 1]; ++c)
+    most = Math.max(
+      most,
+      Math.hypot(contactForce[3 * c], contactForce[3 * c + 1], contactForce[3 * c + 2]) || 0,
+    );
+  return most;
+}
+
+/**
+ * The largest force of a frame, of which four fifths of the frames with contact have no more: a
+ * blow is short, a grip is not. Undefined without any.
+ */
+export function typicalForce(largest) {
+  return [...largest].sort((a, b) => a - b)[Math.floor(0.8 * largest.length)];
+}
+
 export class Run {
   constructor({ header, array }) {
     this.header = header;

@@ -48,8 +48,14 @@ export class LiveClock extends Emitter {
     return this.playing ? this.pause() : this.link.tell({ advance: { count } });
   }
 
+  /** The one place in time that a live run has besides the present is its start. */
+  toStart() {
+    return this.link.tell({ reset: {} });
+  }
+  toEnd() {}
+
   seek(time) {
-    if (time <= 0) this.link.tell({ reset: {} });
+    if (time <= 0) this.toStart();
   }
 
   /** One notch faster or slower. */

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a live run has in place of plots: figures, goals, the world, and joints of a paused run.
+// What a live run has in place of plots: figures, goals, states, the world, and joints.
 
 import { element } from '../app/dom.js';
 import { withRun } from '../app/own_text.js';
@@ -8,6 +8,7 @@ import { packRun } from '../data/pack.js';
 import { numberField, section, switchField } from './fields.js';
 import { figures } from './figures.js';
 import { goalList } from './goal_list.js';
+import { states } from './keyframes.js';
 import { Recorder } from './recorder.js';
 
 function world(link, run) {
@@ -50,12 +51,18 @@ function joints(link, run) {
     const value = element('output', { class: 'quiet' });
     return { slider, value, unit, node: element('label', { class: 'joint-slider' }, element('span', { title: name }, name), slider, value) };
   });
-  const hint = element('p', { class: 'quiet' }, 'Pause the run to move its joints.');
+  const hint = element('p', { class: 'quiet' });
   link.on('status', (status) => {
-    hint.hidden = status.paused;
+    const canMove = status.paused || status.targets.length > 0;
+    hint.textContent = status.paused
+      ? 'The run is paused: joints are put where the sliders are.'
+      : canMove
+        ? 'The posture seeks where the sliders are.'
+        : 'Pause the run to move its joints.';
     rows.forEach(({ slider, value, unit }, i) => {
-      slider.disabled = !status.paused;
-      if (document.activeElement !== slider) slider.value = status.joints[i];
+      slider.disabled = !canMove;
+      const at = status.paused || !canMove ? status.joints[i] : status.targets[i];
+      if (document.activeElement !== slider) slider.value = at;
       value.textContent = `${status.joints[i].toFixed(3)} ${unit}`;
     });
   });
@@ -119,6 +126,7 @@ export function livePanel(host, link, run, settings, pageText) {
       write,
       goalList(link, run, settings),
       saveReplay(run, new Recorder(run, link), pageText),
+      states(link, run),
       figures(link),
       world(link, run),
       joints(link, run),

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // A run as it goes: the one frame that is newest, in the form of a recorded run.
 
-import { Run } from '../data/run.js';
+import { Run, largestForce, typicalForce } from '../data/run.js';
 
 const MOST_CONTACTS = 512; // that are drawn
+const LATELY = 300; // frames: five seconds
 
 export class LiveRun extends Run {
   constructor(payload) {
@@ -11,8 +12,8 @@ export class LiveRun extends Run {
     this.live = this.header.live;
     this.steps = 0;
     this.paused = false;
-    // Arrows are scaled by the weight of all that moves.
-    this.typicalForce = this.live.weight;
+    this.typicalForce = this.live.weight; // until something touches
+    this.lately = []; // the largest force of each of the last frames with contact [N]
   }
 
   /** Takes a message of the server, in the layout of docs/reference/live.md. False: it is none. */
@@ -42,7 +43,17 @@ export class LiveRun extends Run {
     this.contactForce = next(Float32Array, 3 * contacts);
     this.contactGeometry = next(Uint32Array, 2 * contacts);
     this.contactStart = [0, Math.min(contacts, MOST_CONTACTS)];
+    if (!this.paused) this.#weighContacts();
     return true;
+  }
+
+  /** What arrows are scaled by follows what acts, as it is of the whole run in a replay. */
+  #weighContacts() {
+    const most = largestForce(this, 0);
+    if (most > 0) this.lately.push(most);
+    if (this.lately.length > LATELY) this.lately.shift();
+    const typical = typicalForce(this.lately);
+    if (typical > 0) this.typicalForce *= (typical / this.typicalForce) ** 0.05;
   }
 
   mostContacts() {

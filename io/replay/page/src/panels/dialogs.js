@@ -41,6 +41,7 @@ const LIVE_KEYS = [
   ['←', 'one second back'],
   ['home', 'to the start'],
   ['[ ]', 'slower, faster'],
+  ['1 … 9', 'to a stored state; with shift the state is stored'],
 ];
 const LIVE_POINTER = [
   ['drag a link', 'pulls the point that you hold'],

@@ -5,7 +5,7 @@
 // Between frames a contact moves with its body.
 
 import { Group } from 'three';
-import { contactNames } from '../data/run.js';
+import { contactNames, largestForce, typicalForce } from '../data/run.js';
 import {
   add,
   conjugate,
@@ -35,33 +35,20 @@ export class Contacts {
     this.points.add(this.pressed.group, this.margin.group, this.mark.group);
     this.group = new Group();
     this.group.add(this.forces.group, this.points);
-    this.unit = (0.22 * size) / (run.typicalForce ?? this.#typicalLargest());
+    this.size = size;
+    this.typical = run.typicalForce === undefined ? this.#typicalLargest() : null;
     this.scale = 1;
   }
 
   /** Metres of arrow for each newton. */
   get metresPerNewton() {
-    return this.unit * this.scale;
+    return (0.22 * this.size * this.scale) / (this.typical ?? this.run.typicalForce);
   }
 
-  /**
-   * The largest force of a frame, of which four fifths of the frames with contact have no more: a
-   * blow is short, a grip is not.
-   */
+  /** Of a recorded run. */
   #typicalLargest() {
-    const { contactStart, contactForce, frames } = this.run;
-    const largest = [];
-    for (let i = 0; i < frames; ++i) {
-      let most = 0;
-      for (let c = contactStart[i]; c < contactStart[i + 1]; ++c)
-        most = Math.max(
-          most,
-          Math.hypot(contactForce[3 * c], contactForce[3 * c + 1], contactForce[3 * c + 2]) || 0,
-        );
-      if (most > 0) largest.push(most);
-    }
-    largest.sort((a, b) => a - b);
-    return largest[Math.floor(0.8 * largest.length)] || 1;
+    const frames = Array.from({ length: this.run.frames }, (_, i) => largestForce(this.run, i));
+    return typicalForce(frames.filter((most) => most > 0)) || 1;
   }
 
   update(time, poses) {

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// States to which a run can be put: some by name, and nine that are stored on the way.
+///
+/// A run that is put into a state by name is at rest in it, and what holds a posture, or a robot
+/// upright, holds that state from then on; one that is put into a stored state moves as it did, and
+/// postures and balances seek what they sought then. Its time goes on.
+
+#include <array>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "softgauss/gdd/goal_directed_step.hpp"
+#include "softgauss/gdd/goals/posture.hpp"
+#include "softgauss/gdd/goals/standing_balance.hpp"
+
+namespace softgauss::live {
+
+class Keyframes {
+ public:
+  static constexpr int kSlots = 9;
+  using Named = std::vector<std::pair<std::string, VectorX>>;  ///< q (nq)
+
+  Keyframes(Named named, const gdd::GoalDirectedController& controller);
+
+  void store(int slot, const State& state);
+  /// Whether there is a state to put the run into.
+  bool recall(int slot, const Model& model, State& state);
+  void goTo(const std::string& name, const Model& model, State& state);
+  /// Postures are again as they were at the start.
+  void reset();
+  /// Postures seek a place for a joint, by the body it carries; whether there is one.
+  bool seek(const Model& model, int body, double position);
+  /// What the first posture seeks (nq); null where there is none.
+  const VectorX* sought() const;
+
+  std::vector<std::string> names() const;
+  std::vector<int> stored() const;  ///< slots, from 1 on
+
+ private:
+  struct Kept {
+    VectorX q, v;
+    std::vector<VectorX> postures;  ///< what they sought
+    std::vector<Transform> bases;   ///< where balances held them
+  };
+  static void put(const Kept& kept, const Model& model, State& state);
+  /// Postures and balances seek a configuration.
+  void hold(const Model& model, const VectorX& q);
+
+  Named named_;
+  std::vector<std::pair<gdd::Posture*, VectorX>> postures_;  ///< and what they sought at the start
+  std::vector<std::pair<gdd::StandingBalance*, Transform>> bases_;  ///< the same of balances
+  std::array<std::optional<Kept>, kSlots> slots_;
+};
+
+}  // namespace softgauss::live
