@@ -105,6 +105,41 @@ void readContacts(const YamlMap& map, PlanTask& task) {
     task.endsOnOwnContacts = map.choice(*end, {"own", "planning"}) == "own";
 }
 
+void readSteps(const YamlMap& map, const Model& model, PlanTask& task) {
+  constexpr double kLongest = 1.0, kMostNumbers = 5e7;  // some gigabytes
+  map.read("step", task.steps.step, Range::positive);
+  if (task.steps.step > kLongest)
+    map.fail(*map.find("step"),
+             fmt::format("found {}, expected at most {} s", task.steps.step, kLongest));
+  task.steps.knots = readCount(map, "knots", 1, task.steps.knots);
+  const double square = static_cast<double>(model.nv) * model.nv;
+  if (task.steps.knots * square > kMostNumbers)
+    map.fail("knots", map.line(),
+             fmt::format("found {}, expected at most {:.0f} of {} degrees of freedom, for memory",
+                         task.steps.knots, kMostNumbers / square, model.nv));
+}
+
+/// From which it is planned anew while it is acted out.
+void readReceding(const YamlMap& map, PlanTask& task) {
+  map.expectOnly({"rate", "iterations", "contacts", "keep"});
+  if (const auto* entry = map.find("keep")) task.mpc.keepsEnd = map.boolean(*entry);
+  if (const auto* entry = map.find("contacts"))
+    task.recedesOnOwnContacts = map.choice(*entry, {"own", "planning"}) == "own";
+  planning::HorizonOptions& mpc = task.mpc;
+  double rate = 1.0 / mpc.period;
+  if (const auto* entry = map.find("rate")) {
+    rate = map.number(*entry, Range::positive);
+    // Rounding of 1/h.
+    if (rate * task.steps.step < 1.0 - 1e-9)
+      map.fail(*entry,
+               fmt::format("found {} a second, expected at least {:.6g}, once a step of the "
+                           "plan",
+                           rate, 1.0 / task.steps.step));
+  }
+  mpc.period = std::min(1.0 / rate, task.steps.step);
+  mpc.iterations = readCount(map, "iterations", 0, mpc.iterations);
+}
+
 void readTarget(const YamlMap& map, const Model& model, const Degrees& degrees, const State& start,
                 PlanTask& task) {
   map.expectOnly({"joints", "position", "rpy", "move", "steady"});
@@ -140,12 +175,11 @@ void readTarget(const YamlMap& map, const Model& model, const Degrees& degrees, 
 
 PlanTask readPlan(const YamlMap& map, const Model& model, const State& start) {
   map.expectOnly({"step", "knots", "contacts", "iterations", "running", "final", "effort",
-                  "root_force", "target", "spread", "best", "search"});
+                  "root_force", "target", "spread", "best", "search", "mpc"});
   PlanTask task;
-  map.read("step", task.steps.step, Range::positive);
+  readSteps(map, model, task);
   map.read("spread", task.spread, Range::notNegative);
   map.read("best", task.best, Range::positive);
-  task.steps.knots = readCount(map, "knots", 1, task.steps.knots);
   if (const auto* entry = map.find("contacts")) readContacts(map.map(*entry), task);
   if (const auto* entry = map.find("iterations")) {
     const YamlMap iterations = map.map(*entry);
@@ -160,6 +194,8 @@ PlanTask readPlan(const YamlMap& map, const Model& model, const State& start) {
     task.search.tries = readCount(search, "tries", 0, task.search.tries);
     search.read("reach", task.search.reach, Range::positive);
   }
+  task.mpc.period = std::min(task.mpc.period, task.steps.step);
+  if (const auto* entry = map.find("mpc")) readReceding(map.map(*entry), task);
   const Degrees degrees(model);
   const auto readState = [&](const char* key, PlanTask::StateWeights& weights) {
     weights.position = weights.velocity = VectorX::Zero(model.nv);
@@ -249,7 +285,8 @@ PlanTask readPlanTask(const std::filesystem::path& file, const Model& model, con
                                  root.described()));
   const YamlMap top(path, "", "", root);
   top.expectOnly(detail::kSceneKeys);
-  const YamlMap plan = top.map(top.required("plan", "a map of what is planned"));
+  const YamlMap plan =
+      top.map(top.required("plan", "a map of what is planned, as in data/plans/acrobot.yaml"));
   return readPlan(plan, model, start);
 }
 

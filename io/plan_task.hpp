@@ -14,6 +14,8 @@
 ///     effort: 2e-4                     # of u [1/(N² m² s)]
 ///     root_force: 0.02                 # of forces that nobody causes, in phase I
 ///     search: {tries: 40, reach: 0.5}  # better plans near the one that is found
+///     mpc: {rate: 50, iterations: 0, contacts: own, keep: true}   # planned anew [1/s], with
+///                      # phase F beside each pass, on these contacts; the final terms are kept
 ///     spread: 0.1                      # of random starts, for plan_benchmark
 ///     best: 3.8                        # least cost that is known, for plan_benchmark
 ///     target: {joints: {wheel: 2}, move: [0.4, 0, 0], steady: true}
@@ -28,7 +30,7 @@
 #include <optional>
 
 #include "softgauss/engine/model/state.hpp"
-#include "softgauss/gdd/planning/planner.hpp"
+#include "softgauss/gdd/planning/receding_horizon.hpp"
 
 namespace softgauss::io {
 
@@ -37,7 +39,9 @@ struct PlanTask {
   planning::PlanOptions options;
   std::optional<planning::Continuation> contacts;
   planning::PlanSearch search;
-  bool endsOnOwnContacts = true;  ///< else on the planning ones
+  planning::HorizonOptions mpc = {.period = 0.02, .keepsEnd = true};
+  bool recedesOnOwnContacts = true;  ///< else on the planning ones, 5 mm apart at most
+  bool endsOnOwnContacts = true;     ///< else on the planning ones
   struct StateWeights {
     VectorX position, velocity;  ///< (nv)
   };

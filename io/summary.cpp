@@ -59,6 +59,22 @@ ordered_json toJson(const RunOrigin& origin) {
           {"files", files}};
 }
 
+ordered_json toJson(const PlanOutcome& plan) {
+  ordered_json json = {{"status", plan.status},           {"outcome", plan.outcome},
+                       {"planned_cost", plan.planned},    {"planned_final_cost", plan.finalPlanned},
+                       {"iterations", plan.iterations},   {"planning_s", plan.seconds},
+                       {"root_force", plan.rootForce},    {"gap", plan.gap},
+                       {"certificate", plan.certificate}, {"cost", plan.cost},
+                       {"running_cost", plan.running},    {"effort_cost", plan.effort},
+                       {"final_cost", plan.final}};
+  if (plan.ticks > 0)
+    json["ticks"] = {{"count", plan.ticks},
+                     {"failed", plan.failedTicks},
+                     {"p50_ms", plan.tickMs.percentile(0.5)},
+                     {"p999_ms", plan.tickMs.percentile(0.999)}};
+  return json;
+}
+
 }  // namespace
 
 double Series::percentile(double share) const {
@@ -268,6 +284,7 @@ std::string Summary::json() const {
     summary["error"] = {{"position_m", error.position},
                         {"orientation_rad", error.orientation},
                         {"of", error.ofSteps ? "steps, added up" : "the run"}};
+  if (plan) summary["plan"] = toJson(*plan);
   // Names come from files: bytes that are no UTF-8 are replaced, not refused.
   return summary.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }

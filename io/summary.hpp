@@ -186,6 +186,18 @@ struct Series {
   double mean() const;
 };
 
+/// A plan, and what became of it (planning::MotionPlan).
+struct PlanOutcome {
+  std::string status, outcome;               ///< as planned; "carried out", "lost", "cut short"
+  double planned = 0.0, finalPlanned = 0.0;  ///< cost, and of it that of the final terms
+  int iterations = 0;
+  double seconds = 0.0;  ///< of planning
+  double rootForce = 0.0, gap = 0.0, certificate = 0.0;
+  double cost = 0.0, running = 0.0, effort = 0.0, final = 0.0;  ///< of the motion, and its parts
+  int ticks = 0, failedTicks = 0;                               ///< of one that recedes
+  Series tickMs;
+};
+
 class Summary {
  public:
   explicit Summary(const Model& model);
@@ -239,6 +251,7 @@ class Summary {
   MechanismActs mechanismActs{};
   IslandOutcomes islands;
   ErrorOutcome error;
+  std::optional<PlanOutcome> plan;
   std::vector<std::string> warnings;  ///< preset to the model's
 
   double simulatedSeconds() const { return endTime_ - startTime_; }

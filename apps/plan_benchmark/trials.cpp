@@ -102,7 +102,7 @@ PlanTrials runTrials(const std::filesystem::path& file, PlanMethod method,
     const bool found = plan.status != PlanStatus::infeasible && plan.status != PlanStatus::refused;
     trial.cost = found ? plan.cost : kInfinity;
     trial.rootForce = plan.rootForce, trial.gap = plan.gap;
-    trial.iterations = plan.infeasible + plan.feasible;
+    trial.iterations = plan.iterations;
     trial.seconds = cpuSeconds() - begin;
     trial.status = planStatusName(plan.status);
   }

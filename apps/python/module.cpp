@@ -57,5 +57,6 @@ PYBIND11_MODULE(softgauss, m) {
   softgauss::python::bindControl(m, sim);
   softgauss::python::bindDynamics(sim);
   softgauss::python::bindRollout(m);
+  softgauss::python::bindPlans(m);
   softgauss::python::bindEnvironments(m);
 }

@@ -23,5 +23,6 @@ void bindDynamics(HeldClass& sim);  ///< forward, inverse, Jacobians
 void bindControl(py::module_& m, HeldClass& sim);
 void bindSimulation(py::module_& m, HeldClass& sim);
 void bindRollout(py::module_& m);
+void bindPlans(py::module_& m);
 
 }  // namespace softgauss::python

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "apps/simulate_gdd/live_run.hpp"
+#include "apps/simulate_gdd/plan_run.hpp"
 #include "apps/simulate_gdd/play_run.hpp"
 #include "softgauss/io/simulation/named_states.hpp"
 #include "softgauss/io/simulation/time_grid.hpp"
@@ -27,6 +28,7 @@ void Company::join(const Scene& scene, const gdd::GoalContext& start) {
     if (!std::isfinite(options_.duration)) steps_ = play->steps();
     companion_ = std::move(play);
   }
+  if (options_.planControl) companion_ = std::make_unique<PlanRun>(*options_.planControl, state_);
 #ifdef SOFTGAUSS_WITH_LIVE
   if (options_.live)
     companion_ = std::make_unique<LiveRun>(options_, scene, *hands_, controller_, start);

@@ -32,7 +32,7 @@ class Company {
   Next next(Back&& back) {
     if (companion_) {
       if (!companion_->before(taken_)) return Next::interrupted;
-      if (hands_->jumped()) back(state_.time);
+      if (hands_ && hands_->jumped()) back(state_.time);
     }
     return taken_ < steps_ ? Next::step : Next::end;
   }
@@ -55,7 +55,10 @@ class Company {
   void finish() {
     if (companion_) companion_->finish(taken_);
   }
-  bool present() const { return companion_ != nullptr; }
+  void conclude(io::Summary& summary) {
+    if (companion_) companion_->conclude(summary);
+  }
+  bool acts() const { return options_.acted(); }  ///< on the run, but for the control
   /// Of a run on which nobody acts.
   template <class Archive>
   void archive(Archive& a) {

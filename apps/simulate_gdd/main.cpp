@@ -8,6 +8,7 @@
 
 #include "apps/shared/standard_streams.hpp"
 #include "apps/simulate_gdd/accuracy.hpp"
+#include "apps/simulate_gdd/plan_run.hpp"
 #include "apps/simulate_gdd/run.hpp"
 
 namespace softgauss::app {
@@ -15,19 +16,28 @@ namespace {
 
 int runProgram(int argc, char** argv) {
   try {
-    const auto options = parseCommandLine(argc, argv);
+    auto options = parseCommandLine(argc, argv);
     if (!options) return kDone;
     const auto scene = loadScene(*options);
     std::FILE* const report = options->writesToStandardOutput() ? stderr : stdout;
     if (!options->quiet)
       for (const std::string& note : scene->notes) print(report, note + "\n");
+    if (options->plan || options->mpc) readPlan(*options, *scene);
     if (options->explain) {
       print(report, explainScene(*scene));
+      if (options->planControl) print(report, explainPlan(*options->planControl));
       return kDone;
     }
     if (options->accuracy) {
       const std::string choice = chooseAccuracy(*options, *scene);
       if (!options->quiet) print(report, choice + "\n");
+    }
+    if (options->planControl) {
+      if (!makePlan(*options)) {
+        tell("simulate_gdd: interrupted while it planned: nothing was run");
+        return kInterrupted;
+      }
+      if (!options->quiet) print(report, planText(*options->planControl));
     }
     return run(*options, *scene);
   } catch (const UsageError& error) {
@@ -44,6 +54,9 @@ int runProgram(int argc, char** argv) {
   } catch (const ModelError& error) {
     tell(error.what());
     return kBadInput;
+  } catch (const PlanError& error) {
+    tell(fmt::format("simulate_gdd: {}", error.what()));
+    return kCannotContinue;
   } catch (const std::exception& error) {
     tell(fmt::format("simulate_gdd: internal error: {}", error.what()));
     return kInternalError;

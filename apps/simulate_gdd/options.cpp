@@ -11,6 +11,7 @@
 #include "apps/simulate_gdd/checkpoint_options.hpp"
 #include "apps/simulate_gdd/command_line.hpp"
 #include "apps/simulate_gdd/live_options.hpp"
+#include "apps/simulate_gdd/plan_options.hpp"
 #include "apps/simulate_gdd/short_help.hpp"
 #include "softgauss/io/inputs.hpp"
 #include "softgauss/io/names.hpp"
@@ -159,6 +160,7 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
                  "a .csv file of controls (columns time_s, u:<joint>) instead of goals")
       ->group(goals);
   app.add_flag("--passive", options.passive, "no goals, no controls")->group(goals);
+  addPlanOptions(app, options);
 
   const char* const simulation = "Simulation";
   app.add_option("--duration", options.duration, "simulated time [s], default 2")
@@ -350,6 +352,7 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
   if (!options.viewWith.empty() && options.view.empty() && !options.live)
     throw UsageError("--view-with is for a page, expected --view or --live too");
   finishLiveOptions(app, options);
+  finishPlanOptions(app, options);
   finishCheckpointOptions(app, options);
   checkOutputs(options, {});
   if (options.isScene())

@@ -11,6 +11,7 @@
 
 #include "softgauss/engine/islands/islands.hpp"
 #include "softgauss/io/simulation/options.hpp"
+#include "softgauss/io/simulation/plan_control.hpp"
 #include "softgauss/io/simulation/scene.hpp"
 
 namespace softgauss::app {
@@ -35,6 +36,9 @@ struct SimulateOptions : SimulationOptions {
   bool hasOwnGoals() const { return !reach.empty() || !hold.empty() || posture; }
   bool hasGoals() const { return hasOwnGoals() || !goals.empty(); }  ///< or of --goals
   bool passive = false;
+  bool plan = false, mpc = false;            ///< what the scene's key plan asks for
+  std::shared_ptr<PlanControl> planControl;  ///< of it, once it is read
+  bool hasDuration = false;                  ///< it was typed
   std::filesystem::path goals, torques;
   bool reportError = false;
   std::optional<double> accuracy;  ///< that a setting is to be chosen for [m]

@@ -35,6 +35,16 @@ void RunProgress::showTrial(int trial, const std::string& setting, double share,
   std::fflush(stderr);
 }
 
+void RunProgress::showPlan(bool feasible, int iterations, double cost, double rootForce,
+                           double elapsed) {
+  if (!visible_ || elapsed - lastShown_ < 0.1) return;
+  lastShown_ = elapsed;
+  print(stderr, fmt::format("\rplanning: {} iterations, phase {}: cost {:.6g}, root force {:.3g}   "
+                            "{:.0f} s \033[K",
+                            iterations, feasible ? "F" : "I", cost, rootForce, elapsed));
+  std::fflush(stderr);
+}
+
 void RunProgress::clear() {
   if (!visible_ || lastShown_ < 0.0) return;
   print(stderr, "\r\033[K");

@@ -14,6 +14,8 @@ class RunProgress {
   void show(double simulated, double elapsed);
   /// Of a trial before the run: which one it is, what it tries, and how far it is.
   void showTrial(int trial, const std::string& setting, double share, double elapsed);
+  /// Of planning: the phase, the iterations so far, the cost and the root force left.
+  void showPlan(bool feasible, int iterations, double cost, double rootForce, double elapsed);
   void clear();
 
  private:

@@ -55,10 +55,36 @@ std::string runBeside(const SimulateOptions& options) {
   return options.viewWith.empty() ? std::string() : io::runInPage(options.viewWith);
 }
 
+std::string planBeside(const PlanControl& plan, const Scene& scene) {
+  const planning::MotionPlan& planned = plan.planner().plan();
+  const Model& model = scene.model;
+  Data data(model);
+  State state = scene.initial;
+  io::StepRecord record;
+  record.a = record.u = VectorX::Zero(model.nv);
+  computeKinematics(model, state, data.kinematics);
+  io::Recording recording(model, {}, {model, state, data});
+  recording.command = "the plan";
+  for (std::size_t t = 0; t < planned.q.size(); ++t) {
+    const bool last = t + 1 == planned.q.size();
+    state.q = record.q = planned.q[t];
+    state.v = record.v = planned.v[t];
+    record.time = static_cast<double>(t) * plan.task().steps.step;
+    record.isEnd = last;
+    if (!last) record.a = planned.a[t], record.u = planned.tau[t];
+    computeKinematics(model, state, data.kinematics);
+    last ? recording.finish(record, data) : recording.addStep(record, data, {});
+  }
+  return io::runText(recording, "softgauss");
+}
+
 Replay::Replay(const SimulateOptions& options, const Scene& scene,
                const std::vector<std::unique_ptr<gdd::Goal>>& goals, const gdd::GoalContext& start)
     : view_(options.view), drawing_(options.plot) {
-  if (!options.view.empty()) page_.emplace(options.view, runBeside(options));
+  if (!options.view.empty())
+    page_.emplace(options.view, options.planControl && options.viewWith.empty()
+                                    ? planBeside(*options.planControl, scene)
+                                    : runBeside(options));
   if (!options.plot.empty()) plot_.emplace(options.plot);
   if (!page_ && !plot_) return;
   recording_.emplace(scene.model, goals, start);

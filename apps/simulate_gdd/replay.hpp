@@ -25,6 +25,9 @@ std::map<const Mesh*, io::MeshImages> visualImages(const Model& model,
 /// The run of --view-with, or nothing. Throws ModelError.
 std::string runBeside(const SimulateOptions& options);
 
+/// A plan as a run that goes from knot to knot, to be shown beside the one that acts it out.
+std::string planBeside(const PlanControl& plan, const Scene& scene);
+
 class Replay {
  public:
   /// The stages of the initial state are in `start`. Throws ModelError when an output cannot be

@@ -169,8 +169,7 @@ class Runner {
   bool step() {
     isWhole_ = false;
     record_.time = state_.time;
-    record_.q = state_.q;
-    record_.v = state_.v;
+    record_.q = state_.q, record_.v = state_.v;
     computeKinematics(model_, state_, kinematics_);
     company_->beginWrenches(input_);
     outside_.at(model_, state_, kinematics_, input_);
@@ -322,11 +321,12 @@ class Runner {
     if (islands_) summary_.islands = islands_->outcomes();
     if (errorEstimate_) summary_.error = errorEstimate_->outcome();
     verdict_->tell(reason, baseWarnings_, summary_);
+    company_->conclude(summary_);
     if (!options_.summary.empty()) outputErrors_.attempt([&] { summary_.write(options_.summary); });
     for (std::string& error : replay_->finish(last, data_, summary_, reason))
       outputErrors_.add(std::move(error));
     if (!options_.quiet) print(told(), replay_->written() + summary_.table(options_.details));
-    if (!options_.quiet && company_->present())
+    if (!options_.quiet && company_->acts())
       print(told(), fmt::format("state hash: {}\n", summary_.stateHash));
   }
 

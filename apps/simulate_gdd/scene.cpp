@@ -26,7 +26,7 @@ void checkLinks(const SimulateOptions& options, const Model& model) {
 SimulationOptions loadOptions(const SimulateOptions& options) {
   SimulationOptions load = options;
   load.visualMeshes = !options.view.empty() || options.live;
-  load.withoutGoals = options.passive || !options.torques.empty();
+  load.withoutGoals = options.passive || !options.torques.empty() || options.plan || options.mpc;
   return load;
 }
 

@@ -32,6 +32,7 @@ Goals:
   --hold LINK                      the link stays where and as it is
   --posture[=W]                    all joints and the base seek the initial posture
   --goals FILE.yaml                goals with times and weights (docs/reference/goals.md)
+  --plan, --mpc                    plan the motion that a scene asks for, once or again and again
   --passive                        no goals, no controls
   --torques FILE.csv               controls instead of goals
 Simulation:

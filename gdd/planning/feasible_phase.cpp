@@ -20,7 +20,6 @@ FeasiblePhase::FeasiblePhase(const Problem& problem, PlanDynamics& dynamics)
       feedback_(static_cast<std::size_t>(problem.knots),
                 Feedback(static_cast<int>(problem.controlled.size()), problem.model.nv)),
       knotCost_(problem.model.nv),
-      along_(VectorX::Zero(problem.model.nv)),
       R_(VectorX::Zero(problem.model.nv)),
       metric_(VectorX::Ones(problem.model.nv)),
       free_(VectorX::Zero(problem.model.nv)),
@@ -140,24 +139,16 @@ void FeasiblePhase::forgetFeedback() {
   }
 }
 
-bool FeasiblePhase::shift(double share, const Knot& start) {
-  const auto last = static_cast<std::size_t>(problem_.knots);
-  const auto mix = [share](auto& to, const auto& from, const auto& next) {
-    to = (1.0 - share) * from + share * next;
-  };
-  for (std::size_t t = 0; t <= last; ++t) {
-    const std::size_t t1 = std::min(t + 1, last), t2 = std::min(t + 1, last - 1);
-    const Knot &from = x_.knots[t], &next = x_.knots[t1];
-    Knot& to = reference_.knots[t];
-    to.copyState(from);
-    positionDifference(problem_.model, from.q, next.q, along_);
-    integratePosition(problem_.model, along_, share, to.q);
-    mix(to.v, from.v, next.v);
-    mix(shifted_[t].slope, values_[t].slope, values_[t1].slope);
-    mix(shifted_[t].curvature, values_[t].curvature, values_[t1].curvature);
+bool FeasiblePhase::shift(int knots, const Knot& start) {
+  const int last = problem_.knots;
+  for (int t = 0; t <= last; ++t) {
+    const int from = std::min(t + knots, last);
+    reference_.knots[idx(t)].copyState(x_.knots[idx(from)]);
+    shifted_[idx(t)].slope = values_[idx(from)].slope;
+    shifted_[idx(t)].curvature = values_[idx(from)].curvature;
     if (t == last) continue;
-    mix(to.a, from.a, x_.knots[t2].a);
-    mix(to.tau, from.tau, x_.knots[t2].tau);
+    const Knot& move = x_.knots[idx(std::min(from, last - 1))];
+    reference_.knots[idx(t)].a = move.a, reference_.knots[idx(t)].tau = move.tau;
   }
   forgetFeedback();
   values_.swap(shifted_);

@@ -40,10 +40,10 @@ class FeasiblePhase {
   /// The trajectory of these controls (nv, N of them), clamped, from a state. False where it is not
   /// finite.
   bool rollOut(const Knot& start, const std::vector<VectorX>& controls);
-  /// Moves the trajectory and its value models on by a share of a knot, in [0, 1], and makes a
-  /// feasible one of them from `start`. False where it is not finite: then nothing has changed but
-  /// what a pass has tried.
-  bool shift(double share, const Knot& start);
+  /// Moves the trajectory and its value models on by some knots, and makes a feasible one of them
+  /// from `start`. False where it is not finite: then nothing has changed but what a pass has
+  /// tried.
+  bool shift(int knots, const Knot& start);
   /// Value models and feedback about the trajectory as it is. False where no control has a minimum.
   bool refresh();
   /// One iteration; false where no step was found, which raises ρ for the next.
@@ -81,7 +81,6 @@ class FeasiblePhase {
   std::vector<ValueModel> values_, shifted_;
   std::vector<Feedback> feedback_;
   ValueModel knotCost_;
-  VectorX along_;
   VectorX R_, metric_, free_, dx_, dq_, du_, control_;
   double rho_ = 0.0, growth_ = 1.0, alpha_ = 0.0, promised_ = 0.0;
   bool has_ = false, fresh_ = true;

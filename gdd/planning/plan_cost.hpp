@@ -5,6 +5,9 @@
 ///
 ///   J = Σ_t h [p(q_t, v_t) + ½ τ_tᵀR τ_t] + p_N(q_N, v_N)                                  (P.3)
 ///
+/// Where a plan that has moved on keeps its end, the knots from the end of the first one on have
+/// h p_N too: what was to be reached by then is to be kept.
+///
 /// p and p_N are sums of terms ½ rᵀW r of residuals r(q, v), W diagonal. Their models are those of
 /// Gauss and Newton: slope Jᵀ W r and curvature Jᵀ W J, J by the tangent of q and by v, so that no
 /// curvature is negative.
@@ -21,7 +24,7 @@ struct KnotView {
   const Model& model;
   const VectorX& q;
   const VectorX& v;
-  int knot = 0;                            ///< 0 … N
+  int knot = 0;                            ///< 0 … N, and by how many the plan has moved on
   const Kinematics* kinematics = nullptr;  ///< at q and v, where the term asks for them
 };
 
@@ -120,6 +123,8 @@ struct PlanCost {
   std::vector<std::unique_ptr<CostTerm>> running;  ///< counted h times at every knot but the last
   std::vector<std::unique_ptr<CostTerm>> final;
   VectorX effort;  ///< R (nv) of actuated dofs [1/(N² s), 1/(N² m² s)]
+  bool keepsEnd = false;
+  int passed = 0;  ///< knots by which the plan has moved on: targets of running terms go on by them
 };
 
 }  // namespace softgauss::planning

@@ -42,11 +42,12 @@ const MotionPlan& Planner::search(const State& state, const PlanSearch& search,
     const double sigma = search.reach * std::pow(kLeast, random.uniform());
     addSmoothMotion(random, sigma, model_->options.timestep, a);
     const MotionPlan& found = solve(state, options, a);
-    best.seconds += found.seconds;
+    best.seconds += found.seconds, best.iterations += found.iterations;
     if (!feasible_.hasTrajectory() || !(found.cost < best.cost)) continue;
     const double seconds = best.seconds;
+    const int iterations = best.iterations;
     best = found;
-    best.seconds = seconds;
+    best.seconds = seconds, best.iterations = iterations;
     keep();
   }
   plan_ = best;

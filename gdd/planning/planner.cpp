@@ -126,8 +126,10 @@ bool Planner::mayGoOn(const PlanOptions& options, double start) {
 void Planner::runInfeasible(const PlanOptions& options, double start) {
   for (int i = 0; i < options.infeasible && mayGoOn(options, start); ++i) {
     infeasible_.iterate();
-    ++plan_.infeasible;
-    plan_.costs.push_back(infeasible_.lagrangian());
+    ++plan_.infeasible, ++plan_.iterations;
+    plan_.cost = infeasible_.lagrangian();
+    plan_.rootForce = infeasible_.trajectory().rootForce;
+    plan_.costs.push_back(plan_.cost);
     if ((i + 1) % options.passEvery == 0 || i + 1 == options.infeasible)
       feasible_.take(infeasible_.trajectory(), infeasible_.values());
   }
@@ -140,7 +142,8 @@ void Planner::runFeasible(const PlanOptions& options, double start) {
     const double before = feasible_.trajectory().cost;
     const bool moved = feasible_.iterate();
     const double after = feasible_.trajectory().cost;
-    ++plan_.feasible;
+    ++plan_.feasible, ++plan_.iterations;
+    plan_.cost = after, plan_.rootForce = 0.0;
     plan_.costs.push_back(after);
     plan_.certificate = feasible_.promised() / std::max(std::abs(before), 1e-300);
     if (moved && before - after <= options.tolerance * std::abs(before) &&
@@ -181,6 +184,7 @@ const MotionPlan& Planner::solve(const VectorX& q, const VectorX& v, const PlanO
 const MotionPlan& Planner::solve(const State& state, const PlanOptions& options,
                                  const std::vector<VectorX>& accelerations) {
   const double start = now();
+  plan_.iterations = 0;
   run(state, options, accelerations, false);
   plan_.seconds = now() - start;
   return plan_;
@@ -238,6 +242,7 @@ const MotionPlan& Planner::solveFeasible(const State& state, const PlanOptions& 
   // Of errors of the next state: it is followed within some tenths of a second.
   constexpr double kPosition = 1000.0, kVelocity = 10.0;
   const double begin = now();
+  plan_.iterations = 0;
   if (start(state, options, accelerations) && begin_.integrate(*dynamics_)) {
     for (ValueModel& value : keptValues_) {
       value.slope.setZero();
@@ -275,6 +280,7 @@ const MotionPlan& Planner::solve(const State& state, const Continuation& continu
   PlanOptions between = options;
   between.infeasible = continuation.infeasible, between.feasible = continuation.feasible;
   setContacts(continuation.contacts);
+  plan_.iterations = 0;
   run(state, options, accelerations, false);
   const double last = continuation.stages + 1.0;
   double stage = 0.0, step = 1.0;

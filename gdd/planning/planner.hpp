@@ -66,9 +66,11 @@ struct MotionPlan {
   double rootForce = 0.0;            ///< largest force where nobody pulls [N, N m]
   double gap = 0.0;                  ///< FeasiblePhase::gap()
   double certificate = 0.0;          ///< decrease that the last model promises still, over the cost
-  int infeasible = 0, feasible = 0;  ///< iterations
+  int infeasible = 0, feasible = 0;  ///< iterations of the last stage, phase by phase
+  int iterations = 0;                ///< of all stages and tries
   double seconds = 0.0;              ///< wall time
-  std::vector<double> costs;         ///< after each iteration: L of phase I, then J of phase F
+  /// Of the last stage, after each iteration: L of phase I, then J of phase F.
+  std::vector<double> costs;
 };
 
 class Planner {
@@ -81,8 +83,9 @@ class Planner {
   Planner(const Planner&) = delete;
 
   PlanCost cost;  ///< none; effort is 0.01 on every actuated dof
-  /// Called with the plan's figures so far after each iteration; where it says false, planning ends
-  /// with the best feasible plan there is.
+  /// Called between iterations with the plan's figures so far: the cost, of phase I its Lagrangian,
+  /// the root force left and the iterations; where it says false, planning ends with the best
+  /// feasible plan there is.
   std::function<bool(const MotionPlan&)> progress;
   VectorX rootCost;  ///< (nv) at first, of forces that no actuator causes; a hundred times effort
 
@@ -104,14 +107,18 @@ class Planner {
   /// With plain controls alone (FeasibleOptions) that is iLQR over controls.
   const MotionPlan& solveFeasible(const State& state, const PlanOptions& options = {},
                                   const std::vector<VectorX>& accelerations = {});
+  /// What finds contacts as plans do, for their model as it is; null where nothing collides.
+  std::unique_ptr<ContactSource> contactsFor(const Model& model) const {
+    return makesContacts_ ? makesContacts_(model) : nullptr;
+  }
   /// What the next plan's contacts are: these, or the model's own.
   void setContacts(const PlanningContacts& contacts);
   void setOwnContacts();
 
   /// For who goes on with a feasible plan (receding_horizon.hpp): FeasiblePhase::shift(), iterate()
   /// and refresh(). plan() stays. False where there is none, or where they are.
-  bool moveOn(double share, const Knot& start) {
-    return feasible_.hasTrajectory() && feasible_.shift(share, start);
+  bool moveOn(int knots, const Knot& start) {
+    return feasible_.hasTrajectory() && feasible_.shift(knots, start);
   }
   bool improve() { return feasible_.iterate(); }
   bool refresh() { return feasible_.hasTrajectory() && feasible_.refresh(); }

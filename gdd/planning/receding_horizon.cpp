@@ -6,12 +6,22 @@
 #include <cmath>
 
 namespace softgauss::planning {
+namespace {
+
+constexpr double kRounding = 1e-6;  // of a step of the plan: that near a knot is there
+
+}  // namespace
+
+RecedingHorizon::Prediction::Prediction(const Planner& planner)
+    : model(planner.model()),
+      contacts(planner.contactsFor(model)),
+      data(model),
+      controller(model),
+      goal(nullptr),
+      state(model) {}
 
 RecedingHorizon::RecedingHorizon(Planner& planner, const HorizonOptions& options)
-    : planner_(planner),
-      options_(options),
-      start_(planner.feasible().trajectory().knots[0]),
-      along_(VectorX::Zero(planner.model().nv)) {
+    : planner_(planner), options_(options), start_(planner.feasible().trajectory().knots[0]) {
   const double h = planner.model().options.timestep;
   if (!(options.period >= 0.0 && options.period <= h))
     throw ModelError({}, "receding horizon",
@@ -21,36 +31,69 @@ RecedingHorizon::RecedingHorizon(Planner& planner, const HorizonOptions& options
     throw ModelError({}, "receding horizon", "expected iterations ≥ 0 and seconds > 0");
 }
 
-void RecedingHorizon::attach(gdd::GoalDirectedController& controller) {
+gdd::QuadraticValue* RecedingHorizon::addGoal(gdd::GoalDirectedController& controller) const {
   const Model& model = planner_.model();
   auto goal = std::make_unique<gdd::QuadraticValue>(model);
   goal->timestep = model.options.timestep;
   goal->freeControl = VectorX::Zero(model.nv);
-  goal_ = goal.get();
+  gdd::QuadraticValue* const added = goal.get();
   controller.goals.push_back(std::move(goal));
   controller.controlCost = gdd::ControlCost::total;
   VectorX price = VectorX::Ones(model.nv);
   for (int i = 0; i < model.nv; ++i)
     if (model.dofs[idx(i)].actuated) price[i] = model.options.timestep * planner_.cost.effort[i];
   controller.forceMetric = gdd::ForceMetric::diagonal(price);
+  return added;
+}
+
+void RecedingHorizon::attach(gdd::GoalDirectedController& controller) {
+  goal_ = addGoal(controller);
 }
 
 bool RecedingHorizon::begin(const State& state) {
   report_ = {};
+  planner_.cost.passed = first_ = 0;
+  planner_.cost.keepsEnd = options_.keepsEnd;
   if (!planner_.refresh()) return false;
   begun_ = state.time;
-  due_ = options_.period > 0.0 ? begun_ + options_.period : kInfinity;
+  due_ = kInfinity;
+  if (options_.period > 0.0) {
+    due_ = begun_ + options_.period;
+    prediction_ = std::make_unique<Prediction>(planner_);
+    prediction_->goal = addGoal(prediction_->controller);
+  }
   report_.cost = planner_.feasible().trajectory().cost;
   return true;
 }
 
+double RecedingHorizon::knotAt(double time) const {
+  return (time - begun_) / planner_.model().options.timestep;
+}
+
 void RecedingHorizon::update(const State& state) {
-  constexpr double kRounding = 1e-9;
-  if (state.time >= due_ - kRounding) {
+  if (state.time >= due_ - kRounding * options_.period) {
     tick(state);
     due_ += options_.period;
   }
-  setGoal(state.time);
+  if (goal_) setGoal(state.time, *goal_);
+}
+
+/// The state at the next knot, or at that which is now, as the plan's start.
+bool RecedingHorizon::predict(const State& state) {
+  Prediction& p = *prediction_;
+  p.state.q = state.q, p.state.v = state.v, p.state.time = state.time;
+  p.state.forgetLastStep();
+  p.state.a = state.a, p.state.hasAcceleration = state.hasAcceleration;
+  const double at = knotAt(state.time), left = std::ceil(at - kRounding) - at;
+  if (left > kRounding) {
+    p.model.options.timestep = left * planner_.model().options.timestep;
+    setGoal(state.time, *p.goal);
+    if (isRefused(p.controller.step(p.model, {}, p.state, p.data, p.contacts.get()))) return false;
+  }
+  start_.q = p.state.q, start_.v = p.state.v;
+  start_.hasLast = p.state.hasAcceleration && p.state.a.size() == start_.last.size();
+  if (start_.hasLast) start_.last = p.state.a;
+  return true;
 }
 
 void RecedingHorizon::tick(const State& state) {
@@ -58,43 +101,37 @@ void RecedingHorizon::tick(const State& state) {
   const auto start = Clock::now();
   const auto taken = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
   ++report_.ticks;
-  start_.q = state.q, start_.v = state.v;
-  start_.hasLast = state.hasAcceleration && state.a.size() == start_.last.size();
-  if (start_.hasLast) start_.last = state.a;
-  const double passed = (state.time - begun_) / planner_.model().options.timestep;
-  if (planner_.moveOn(std::min(passed, 1.0), start_)) {
-    begun_ = state.time;
+  const int next = static_cast<int>(std::ceil(knotAt(state.time) - kRounding));
+  planner_.cost.passed = next;
+  if (predict(state) && planner_.moveOn(next - first_, start_)) {
+    first_ = next;
     for (int i = 0; i < options_.iterations && taken() < options_.seconds; ++i) planner_.improve();
     if (!planner_.refresh()) ++report_.failed;
     report_.cost = planner_.feasible().trajectory().cost;
   } else {
     ++report_.failed;
+    planner_.cost.passed = first_;
   }
-  report_.seconds += taken();
-  report_.longest = std::max(report_.longest, taken());
+  report_.last = taken();
+  report_.seconds += report_.last;
+  report_.longest = std::max(report_.longest, report_.last);
 }
 
-void RecedingHorizon::setGoal(double time) {
-  if (!goal_) return;
-  const Model& model = planner_.model();
+/// Beyond the plan's end its last model is the goal, a step of the plan on. R stays as it is, and V
+/// is over r/h in its place.
+void RecedingHorizon::setGoal(double time, gdd::QuadraticValue& goal) const {
   const FeasiblePhase& plan = planner_.feasible();
   const std::vector<Knot>& knots = plan.trajectory().knots;
   const auto last = static_cast<double>(knots.size() - 1);
-  const double at = std::clamp((time - begun_) / model.options.timestep, 0.0, last);
-  const double whole = std::floor(at), share = at - whole;
-  const auto index = [&](double knot) { return static_cast<std::size_t>(std::min(knot, last)); };
-  const auto between = [share](auto& to, const auto& from, const auto& next) {
-    to = (1.0 - share) * from + share * next;
-  };
-  const std::size_t from = index(whole + 1.0), next = index(whole + 2.0);
-  goal_->q = knots[from].q;
-  positionDifference(model, knots[from].q, knots[next].q, along_);
-  integratePosition(model, along_, share, goal_->q);
-  between(goal_->v, knots[from].v, knots[next].v);
-  between(goal_->slope, plan.values()[from].slope, plan.values()[next].slope);
-  between(goal_->curvature, plan.values()[from].curvature, plan.values()[next].curvature);
-  const auto move = [&](double knot) { return std::min(index(knot), knots.size() - 2); };
-  between(goal_->about, knots[move(whole)].a, knots[move(whole + 1.0)].a);
+  const double at = knotAt(time) - first_;
+  const double next = std::min(std::floor(at + kRounding) + 1.0, last);
+  const double left = at < last - kRounding ? next - at : 1.0;
+  const auto knot = static_cast<std::size_t>(std::max(next, 0.0));
+  goal.timestep = left * planner_.model().options.timestep;
+  goal.q = knots[knot].q, goal.v = knots[knot].v;
+  goal.slope = plan.values()[knot].slope / left;
+  goal.curvature = plan.values()[knot].curvature / left;
+  goal.about = knots[knot > 0 ? knot - 1 : 0].a;
 }
 
 }  // namespace softgauss::planning

@@ -8,12 +8,21 @@
 ///   horizon.begin(state);                     // the planner has a feasible plan from here
 ///   for (;;) { horizon.update(state);  controller.step(model, input, state, data, &contacts); }
 ///
-/// A step of the simulator, however fine, has the goal (22) of a step of the plan: V where the plan
-/// is one of its steps later, between two knots by both of theirs, with the controls at the plan's
-/// price. Every `period` the plan moves on by as much and begins at the state that there is: one
+/// Knots stay where they are in time. A step of the simulator, however fine, has the goal (22) of
+/// what is left of a step of the plan, r ≤ h: with the state after r, controls at r times the
+/// plan's price, and V of the knot that comes then,
+///
+///   min ½ r uᵀR u + V_{t+1}(q⁺, v⁺)                                                         (P.9)
+///
+/// On the plan that is the plan's own control, at every instant; and for r → 0 it is
+/// u = −R⁻¹ (∂v̇/∂u)ᵀ ∂V/∂v, optimal control in continuous time.
+///
+/// Every `period` it is planned anew: the state that there is is taken to the next knot by one step
+/// of r towards V, and from there on goes the plan, moved on by a knot where one has passed: one
 /// goal directed pass, iterations of phase F, and the value models about what they give. It stops
 /// in time where seconds or iterations are used up, for each is a feasible plan. A tick that fails
 /// leaves the plan before, on which the goal goes on. Without a period nothing is planned anew.
+/// Targets go by the time since begin() (PlanCost::passed).
 
 #include "softgauss/gdd/planning/planner.hpp"
 
@@ -22,12 +31,14 @@ namespace softgauss::planning {
 struct HorizonOptions {
   double period = 0.0;         ///< from tick to tick [s], at most a step of the plan; 0: no ticks
   int iterations = 0;          ///< of phase F in a tick, beside its pass, at most
+  bool keepsEnd = false;       ///< final terms count from the first plan's end on (PlanCost)
   double seconds = kInfinity;  ///< of wall time, after which a tick begins no other iteration
 };
 
 struct HorizonReport {
   int ticks = 0, failed = 0;
   double seconds = 0.0, longest = 0.0;  ///< of all ticks, of the longest [s]
+  double last = 0.0;                    ///< of the last one [s]
   double cost = 0.0;                    ///< of the plan there is
 };
 
@@ -46,16 +57,31 @@ class RecedingHorizon {
   const HorizonReport& report() const { return report_; }
 
  private:
+  /// One goal directed step of what is left of a step of the plan.
+  struct Prediction {
+    explicit Prediction(const Planner& planner);
+    Model model;
+    std::unique_ptr<ContactSource> contacts;
+    Data data;
+    gdd::GoalDirectedController controller;
+    gdd::QuadraticValue* goal;
+    State state;
+  };
+
+  gdd::QuadraticValue* addGoal(gdd::GoalDirectedController& controller) const;
   void tick(const State& state);
-  void setGoal(double time);
+  bool predict(const State& state);
+  void setGoal(double time, gdd::QuadraticValue& goal) const;
+  double knotAt(double time) const;
 
   Planner& planner_;
   HorizonOptions options_;
   gdd::QuadraticValue* goal_ = nullptr;  ///< of the controller
+  std::unique_ptr<Prediction> prediction_;
   HorizonReport report_;
   Knot start_;
-  VectorX along_;
-  double begun_ = 0.0;  ///< when the plan there is begins
+  double begun_ = 0.0;  ///< when the first plan began
+  int first_ = 0;       ///< knot since then at which the plan there is begins
   double due_ = kInfinity;
 };
 

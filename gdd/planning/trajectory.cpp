@@ -43,18 +43,25 @@ KnotView TrajectoryCost::view(const Problem& problem, const Knot& knot, int t) {
     state_.q = knot.q, state_.v = knot.v;
     computeKinematics(problem.model, state_, kinematics_);
   }
-  return {problem.model, knot.q, knot.v, t, needsKinematics_ ? &kinematics_ : nullptr};
+  const int at = t < problem.knots ? t + problem.cost.passed : t;
+  return {problem.model, knot.q, knot.v, at, needsKinematics_ ? &kinematics_ : nullptr};
+}
+
+template <class F>
+void TrajectoryCost::forTerms(const Problem& problem, int t, const F& f) {
+  const bool last = t == problem.knots;
+  if (!last)
+    for (const auto& term : problem.cost.running) f(*term, problem.h());
+  const bool kept = problem.cost.keepsEnd && t + problem.cost.passed >= problem.knots;
+  if (last || kept)
+    for (const auto& term : problem.cost.final) f(*term, last ? 1.0 : problem.h());
 }
 
 double TrajectoryCost::value(const Problem& problem, const Knot& knot, int t) {
   const KnotView at = view(problem, knot, t);
   double cost = 0.0;
-  if (t == problem.knots) {
-    for (const auto& term : problem.cost.final) cost += term->value(at);
-    return cost;
-  }
-  for (const auto& term : problem.cost.running) cost += term->value(at);
-  return problem.h() * cost;
+  forTerms(problem, t, [&](CostTerm& term, double scale) { cost += scale * term.value(at); });
+  return cost;
 }
 
 double TrajectoryCost::expand(const Problem& problem, const Knot& knot, int t, ValueModel& model) {
@@ -62,10 +69,9 @@ double TrajectoryCost::expand(const Problem& problem, const Knot& knot, int t, V
   model.slope.setZero();
   model.curvature.setZero();
   double cost = 0.0;
-  const bool last = t == problem.knots;
-  const double scale = last ? 1.0 : problem.h();
-  for (const auto& term : last ? problem.cost.final : problem.cost.running)
-    cost += scale * term->expand(at, scale, model.slope, model.curvature);
+  forTerms(problem, t, [&](CostTerm& term, double scale) {
+    cost += scale * term.expand(at, scale, model.slope, model.curvature);
+  });
   return cost;
 }
 

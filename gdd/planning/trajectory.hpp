@@ -49,7 +49,7 @@ class TrajectoryCost {
   /// To be called when the problem's terms have changed.
   void begin(const Problem& problem);
 
-  /// Of a knot's state, h times the running terms or the final ones.
+  /// Of a knot's state, h times the running terms, and of the last one the final ones (P.3).
   double value(const Problem& problem, const Knot& knot, int t);
   /// Its slope and curvature (lower triangle).
   double expand(const Problem& problem, const Knot& knot, int t, ValueModel& model);
@@ -57,6 +57,9 @@ class TrajectoryCost {
   void evaluate(const Problem& problem, Trajectory& trajectory);
 
  private:
+  /// f(term, scale) of all that count at a knot.
+  template <class F>
+  void forTerms(const Problem& problem, int t, const F& f);
   KnotView view(const Problem& problem, const Knot& knot, int t);
   State state_;
   Kinematics kinematics_;

@@ -3,7 +3,7 @@
 
 /// The instants of a run that a replay shows: at most 60 a second, in bounded memory.
 ///
-/// Arrays in the layout of docs/reference/replay.md. Positions are single precision relative to
+/// Arrays in the layout of docs/replay_format.md. Positions are single precision relative to
 /// `origin`, which lies near the scene, so they are good to a micrometre however far out the scene
 /// is. A long run drops every second frame whenever the track is full.
 

@@ -298,6 +298,10 @@ std::string replayPayload(const Recording& recording, const std::string& generat
   return payloadOf(recording, generator, "");
 }
 
+std::string runText(const Recording& recording, const std::string& generator) {
+  return base64(deflated(replayPayload(recording, generator)));
+}
+
 std::string livePage(const Recording& recording, const std::string& generator,
                      const std::string& live, const std::string& beside) {
   // A page in a file may ask nothing of any network; this one talks to where it came from.

@@ -4,7 +4,7 @@
 /// The replay page: one HTML file that shows a run in any browser, offline.
 ///
 /// A template made from io/replay/page/ with the run put in: a JSON header and typed arrays,
-/// compressed by zlib, in base64. The layout is that of docs/reference/replay.md.
+/// compressed by zlib, in base64. The layout is that of docs/replay_format.md.
 
 #include <filesystem>
 #include <string>
@@ -22,6 +22,9 @@ std::string replayPayload(const Recording& recording, const std::string& generat
 /// (docs/reference/live.md). `beside`: a run of runInPage(), or empty.
 std::string livePage(const Recording& recording, const std::string& generator,
                      const std::string& live, const std::string& beside = {});
+
+/// The run as it stands in a page, to be shown beside another.
+std::string runText(const Recording& recording, const std::string& generator);
 
 /// The run that a replay page holds, as it stands there, to be shown beside another. Throws
 /// ModelError where the file is no such page, its run is damaged or of another format.

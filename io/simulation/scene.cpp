@@ -119,6 +119,9 @@ void loadRobot(const SimulationOptions& options, Scene& scene) {
 }
 
 void loadSceneFile(const SimulationOptions& options, Scene& scene) {
+  if (!options.state.empty() || !options.srdf.empty())
+    throw OptionError(fmt::format("{} is for a URDF; a scene file says it itself",
+                                  options.state.empty() ? "srdf" : "state"));
   io::SceneFile file = io::readScene(scene.file, urdfOptions(options));
   setOptions(options, file.builder.options);
   std::vector<std::string> warnings =

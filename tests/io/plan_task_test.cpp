@@ -29,6 +29,7 @@ TEST(PlanTask, HasTheWeightsAndTheTargetOfItsFile) {
   effort: 0.1
   root_force: {base_position: 7, base_rotation: 8}
   target: {joints: {shoulder: 0.7}, move: [1, 0, 0], steady: true}
+  mpc: {rate: 100, iterations: 2, contacts: planning, keep: false}
 )"));
   const Model model = folder.read().builder.build();
   const io::PlanTask task = planOf(folder);
@@ -40,6 +41,10 @@ TEST(PlanTask, HasTheWeightsAndTheTargetOfItsFile) {
   EXPECT_EQ(task.contacts->stages, 3);
   EXPECT_EQ(task.contacts->infeasible, 7);
   EXPECT_FALSE(task.endsOnOwnContacts);
+  EXPECT_NEAR(task.mpc.period, 0.01, 1e-15);
+  EXPECT_EQ(task.mpc.iterations, 2);
+  EXPECT_FALSE(task.recedesOnOwnContacts);
+  EXPECT_FALSE(task.mpc.keepsEnd);
   EXPECT_EQ(task.options.infeasible, 4);
   EXPECT_EQ(task.options.inPhaseI.rho, 0.1);
   const Body& shoulder = model.bodies[idx(model.findJoint("shoulder"))];
@@ -76,6 +81,10 @@ TEST(PlanTask, TellsWhatIsWrongAndWhere) {
       {"plan: {target: {joints: {elbw: 1}}}\n", "elbw"},
       {"plan: {contacts: {d_min: 1}}\n", "less than 1"},
       {"plan: {iterations: {infeasible: 0}}\n", "infeasible"},
+      {"plan: {step: 2}\n", "at most 1 s"},
+      {"plan: {knots: 100001}\n", "from 1 to 100000"},
+      {"plan: {mpc: {rate: 19}}\n", "at least 20"},
+      {"plan: {mpc: {rate: 50, contacts: none}}\n", "planning"},
   };
   for (const auto& c : cases) {
     const SceneFolder folder(sceneThatPlans(c.plan));

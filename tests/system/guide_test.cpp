@@ -127,11 +127,11 @@ const NameSet kPlainWords = {
     "pick",       "place",    "program",    "pushes",     "reach",    "reached",  "reaches",
     "reading",    "refuses",  "repeat",     "rest",       "results",  "run",      "runs",
     "say",        "shakes",   "simulation", "sinks",      "slide",    "slow",     "slowly",
-    "small",      "solver",   "something",  "stand",      "state",    "summary",  "surfaces",
-    "swing",      "take",     "ten",        "that",       "the",      "through",  "time",
-    "to",         "too",      "try",        "two",        "under",    "uses",     "walk",
-    "wall",       "warnings", "ways",       "what",       "when",     "where",    "which",
-    "without",    "wrong",    "your"};
+    "small",      "solver",   "something",  "stand",      "state",    "suffice",  "summary",
+    "surfaces",   "swing",    "take",       "ten",        "that",     "the",      "through",
+    "time",       "to",       "too",        "try",        "two",      "under",    "uses",
+    "walk",       "wall",     "warnings",   "ways",       "what",     "when",     "where",
+    "which",      "without",  "wrong",      "your"};
 
 NameSet headingWords(const SourceFile& page) {
   static const std::regex heading("#+ (.*)");

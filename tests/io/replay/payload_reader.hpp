@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// Reads what a replay page holds, as docs/reference/replay.md has it.
+/// Reads what a replay page holds, as docs/replay_format.md has it.
 
 #include <gtest/gtest.h>
 #include <zlib.h>
@@ -53,7 +53,7 @@ inline std::string payloadOfPage(const std::string& page) {
   return inflated(fromBase64(std::string_view(page).substr(begin, page.find('<', begin) - begin)));
 }
 
-/// The header and the arrays of a payload, read as docs/reference/replay.md has it.
+/// The header and the arrays of a payload, read as docs/replay_format.md has it.
 class PayloadReader {
  public:
   explicit PayloadReader(std::string bytes) : bytes_(std::move(bytes)) {

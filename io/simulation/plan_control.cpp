@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "softgauss/io/simulation/plan_control.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace softgauss {
+namespace {
+
+using planning::PlanStatus;
+
+/// Planning contacts of a receding plan are near enough to those of the scene.
+io::PlanTask made(io::PlanTask task, bool recedes) {
+  constexpr double kMargin = 0.005;  // [m]
+  if (recedes && task.contacts && !task.recedesOnOwnContacts) {
+    task.endsOnOwnContacts = false;
+    task.contacts->contacts.margin = std::min(task.contacts->contacts.margin, kMargin);
+  }
+  return task;
+}
+
+const Scene& checked(const Scene& scene) {
+  if (!scene.actuators.empty())
+    throw ModelError(scene.actuators[0].where, "key 'plan'",
+                     fmt::format("the scene has the actuator '{}', and plans know the motors of "
+                                 "joints alone; expected none",
+                                 scene.actuators[0].name));
+  if (scene.throughFcl)
+    throw ModelError(scene.collisionWhere, "key 'plan'",
+                     "plans touch by the own collision detection, expected no fcl");
+  return scene;
+}
+
+}  // namespace
+
+PlanControl::PlanControl(const Scene& scene, io::PlanTask task, bool receding)
+    : scene_(checked(scene)),
+      task_(made(std::move(task), receding)),
+      recedes_(receding),
+      meshes_(scene.contacts->meshes()),
+      planner_(scene.model, task_.steps,
+               [this](const Model& model) {
+                 return std::make_unique<collision::SceneContacts>(
+                     model, collision::SceneContacts::kBroadphasePairs, true, &meshes_);
+               }),
+      horizon_(planner_, receding ? task_.mpc : planning::HorizonOptions{}),
+      kinematics_(scene.model) {
+  task_.setCosts(planner_);
+}
+
+const planning::MotionPlan& PlanControl::solve() {
+  plan_ = task_.solve(planner_, scene_.initial);
+  if (plan_.status == PlanStatus::refused)
+    throw PlanError(
+        "no plan was found: its start, its cost or the motion from rest is not finite; try a "
+        "shorter plan.step, smaller weights or a start without overlaps");
+  if (plan_.status == PlanStatus::infeasible)
+    throw PlanError(fmt::format(
+        "no plan was found that the actuators can cause: after {} iterations forces of {:.3g} N or "
+        "N m are left that nobody causes; try more plan.iterations.infeasible, gentler "
+        "plan.contacts, a longer plan or a smaller plan.effort",
+        plan_.iterations, plan_.rootForce));
+  return plan_;
+}
+
+void PlanControl::attach(gdd::GoalDirectedController& controller) {
+  controller.goals.clear();
+  controller.motionLimits.reset();
+  horizon_.attach(controller);
+}
+
+void PlanControl::begin(const State& state) {
+  cost_ = {};
+  end_.reset();
+  counted_ = 0, due_ = 0.0;
+  begun_ = state.time;
+  if (!horizon_.begin(state))
+    throw PlanError("the plan has no value model, for some control of it has no least cost");
+}
+
+void PlanControl::update(const State& state) {
+  const double h = task_.steps.step;
+  const auto isDue = [&] { return state.time >= begun_ + h * double(counted_) - kRounding; };
+  for (; isDue() && (recedes_ || counted_ < task_.steps.knots); ++counted_)
+    due_ += h * sumOf(planner_.cost.running, state, counted_);
+  if (!recedes_ && !end_ && hasEnded(state.time)) end_ = state;
+  horizon_.update(state);
+}
+
+void PlanControl::addStep(const VectorX& control, double seconds) {
+  cost_.running += due_;
+  due_ = 0.0;
+  if (!end_) cost_.effort += 0.5 * seconds * task_.effort.dot(control.cwiseAbs2());
+}
+
+double PlanControl::sumOf(const std::vector<std::unique_ptr<planning::CostTerm>>& terms,
+                          const State& state, int knot) {
+  computeKinematics(scene_.model, state, kinematics_);
+  double sum = 0.0;
+  for (const auto& term : terms)
+    sum += term->value({scene_.model, state.q, state.v, knot, &kinematics_});
+  return sum;
+}
+
+double PlanControl::finalCost(const State& state) {
+  return sumOf(planner_.cost.final, state, task_.steps.knots);
+}
+
+MotionCost PlanControl::cost(const State& state) {
+  MotionCost cost = cost_;
+  cost.final = finalCost(end_ ? *end_ : state);
+  return cost;
+}
+
+std::pair<int, double> PlanControl::farthest(const State& state) const {
+  const VectorX& aim = recedes_ ? task_.q.back() : plan_.q.back();
+  const VectorX off = positionDifference(scene_.model, aim, (end_ ? *end_ : state).q);
+  Eigen::Index dof = 0;
+  const double most = off.cwiseAbs().maxCoeff(&dof);
+  return {static_cast<int>(dof), most};
+}
+
+}  // namespace softgauss

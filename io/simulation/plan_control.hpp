@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// The plan of a scene, made and acted out in its simulator.
+///
+///   PlanControl control(scene, io::readPlanTask(file, scene.model, scene.initial), receding);
+///   control.solve();
+///   control.attach(controller);
+///   control.begin(state);
+///   for (;;) { control.update(state);  controller.step(…);  control.addStep(controller.control,
+///   h); }
+///
+/// What the motion has cost is the plan's own sum (P.3): the terms of states at its knots, those of
+/// control all along, final ones where the plan ends. A receding one is made anew at the rate of
+/// the task, on the scene's own contacts; where the task says so, on planning contacts, with a
+/// margin of at most 5 mm.
+
+#include <optional>
+
+#include "softgauss/io/plan_task.hpp"
+#include "softgauss/io/simulation/scene.hpp"
+
+namespace softgauss {
+
+/// There is no plan that the actuators can cause. what() says what is left, and what to try.
+class PlanError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// What a motion has cost.
+struct MotionCost {
+  double running = 0.0;  ///< of states, up to now
+  double effort = 0.0;
+  double final = 0.0;  ///< at the plan's end, or now where it has not come or recedes
+  double total() const { return running + effort + final; }
+};
+
+class PlanControl {
+ public:
+  /// The scene must outlive this. Throws ModelError where plans cannot have what it has.
+  PlanControl(const Scene& scene, io::PlanTask task, bool receding);
+  PlanControl(const PlanControl&) = delete;
+
+  /// Plans from the scene's start. Throws PlanError.
+  const planning::MotionPlan& solve();
+  /// Gives the controller the goal, the price of control and bounds of the plan. What its goals
+  /// were is no more, nor are velocity limits, which plans do not know.
+  void attach(gdd::GoalDirectedController& controller);
+  /// The plan begins now.
+  void begin(const State& state);
+  /// Before a step from `state`: plans anew where it is time, and sets the goal.
+  void update(const State& state);
+  /// A step by this control (nv) was taken.
+  void addStep(const VectorX& control, double seconds);
+
+  /// Up to `state`.
+  MotionCost cost(const State& state);
+  double finalCost(const State& state);  ///< of the final terms there
+  /// How far `state` is from the plan's end, or a receding one's target: the degree of freedom that
+  /// is farthest, and by how much [m, rad].
+  std::pair<int, double> farthest(const State& state) const;
+  bool hasEnded(double time) const { return time >= begun_ + duration() - kRounding; }
+  double duration() const { return task_.steps.knots * task_.steps.step; }  ///< of the plan [s]
+
+  bool recedes() const { return recedes_; }
+  const io::PlanTask& task() const { return task_; }
+  planning::Planner& planner() { return planner_; }
+  const planning::Planner& planner() const { return planner_; }
+  const planning::HorizonReport& report() const { return horizon_.report(); }
+
+ private:
+  static constexpr double kRounding = 1e-9;  // [s]
+  double sumOf(const std::vector<std::unique_ptr<planning::CostTerm>>& terms, const State& state,
+               int knot);
+
+  const Scene& scene_;
+  io::PlanTask task_;
+  bool recedes_;
+  collision::PreparedMeshes meshes_;
+  planning::Planner planner_;
+  planning::RecedingHorizon horizon_;
+  planning::MotionPlan plan_;  ///< the first
+  Kinematics kinematics_;
+  MotionCost cost_;
+  std::optional<State> end_;  ///< where the plan has ended
+  int counted_ = 0;           ///< knots
+  double due_ = 0.0;          ///< their cost that no step has followed yet
+  double begun_ = 0.0;        ///< [s]
+};
+
+}  // namespace softgauss

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+/// --plan and --mpc as a user runs them. What is refused is in tests/bad_input.
+
+#include <nlohmann/json.hpp>
+
+#include "tests/apps/process.hpp"
+
+namespace softgauss::test {
+namespace {
+
+std::string task(const std::string& name) { return dataFile("plans/" + name + ".yaml"); }
+
+TEST(PlanRun, PlansActsOutAndTells) {
+  const io::TempFolder folder;
+  const std::string log = folder.path() / "log.csv", file = folder.path() / "summary.json",
+                    page = folder.path() / "page.html";
+  const Outcome outcome =
+      simulate({task("cart_pole"), "--plan", "--log", log, "--summary", file, "--view", page});
+  EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+  for (const char* says : {"planned 60 knots of 0.05 s", "root force 0",
+                           "\nplanned:", "\ncarried out:", "farthest from the plan's end is"})
+    EXPECT_NE(outcome.out.find(says), std::string::npos) << says << "\n" << outcome.out;
+  EXPECT_EQ(outcome.err, "");  // no terminal, no progress
+  // As long as the plan, in steps of the simulator.
+  EXPECT_EQ(Csv(readFile(log)).rows.size(), 1501u);
+  EXPECT_GT(readFile(page).size(), 100000u);
+  const auto plan = nlohmann::json::parse(readFile(file))["plan"];
+  EXPECT_EQ(plan["outcome"], "carried out");
+  EXPECT_EQ(plan["root_force"], 0.0);
+  EXPECT_LE(plan["gap"], 1e-10);
+  EXPECT_NEAR(plan["cost"], plan["planned_cost"], 0.02 * plan["planned_cost"].get<double>());
+  EXPECT_NEAR(plan["cost"].get<double>(),
+              plan["running_cost"].get<double>() + plan["effort_cost"].get<double>() +
+                  plan["final_cost"].get<double>(),
+              1e-12);
+  EXPECT_FALSE(plan.contains("ticks"));
+}
+
+// Translucent, beside the run: what a page holds for --view-with.
+TEST(PlanRun, ShowsThePlanInThePage) {
+  const io::TempFolder folder;
+  const std::string page = folder.path() / "page.html";
+  const auto bytes = [&](const std::string& option) {
+    EXPECT_EQ(simulate({task("cart_pole"), option, "--duration", "0.1", "--view", page}).exitCode,
+              0);
+    return readFile(page).size();
+  };
+  EXPECT_GT(bytes("--plan"), bytes("--passive") + 3000u);
+}
+
+TEST(PlanRun, PlansAnewWhileItRuns) {
+  const io::TempFolder folder;
+  const std::string file = folder.path() / "summary.json";
+  const Outcome outcome =
+      simulate({task("cart_pole"), "--mpc", "--duration", "1", "--summary", file});
+  EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("\nplanned anew:"), std::string::npos) << outcome.out;
+  const auto ticks = nlohmann::json::parse(readFile(file))["plan"]["ticks"];
+  EXPECT_GE(ticks["count"], 49);
+  EXPECT_EQ(ticks["failed"], 0);
+  EXPECT_GT(ticks["p999_ms"], 0.0);
+  EXPECT_GE(ticks["p999_ms"], ticks["p50_ms"]);
+}
+
+TEST(PlanRun, GivesTheSameBitsAgain) {
+  const io::TempFolder folder;
+  std::string hashes[2];
+  for (std::string& hash : hashes) {
+    const std::string file = folder.path() / "summary.json";
+    EXPECT_EQ(simulate({task("hopper"), "--mpc", "--duration", "0.3", "--summary", file}).exitCode,
+              0);
+    hash = nlohmann::json::parse(readFile(file))["state_hash"];
+  }
+  EXPECT_EQ(hashes[0], hashes[1]);
+}
+
+TEST(PlanRun, IsJudgedByWhatIsMissing) {
+  const Outcome cut = simulate({task("cart_pole"), "--plan", "--duration", "1"});
+  EXPECT_NE(cut.out.find("\ncut short:"), std::string::npos) << cut.out;
+  // By steps of first order, as long as the plan's, the pole does not get up.
+  const Outcome lost = simulate(
+      {task("cart_pole"), "--plan", "--timestep", "0.05", "--integrator", "semi-implicit-euler"});
+  EXPECT_NE(lost.out.find("\nlost:"), std::string::npos) << lost.out;
+}
+
+TEST(PlanRun, IsExplained) {
+  const Outcome outcome = simulate({task("hopper"), "--mpc", "--explain"});
+  EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("plan: 40 knots of 0.05 s, planned anew 50 times a second"),
+            std::string::npos)
+      << outcome.out;
+  EXPECT_EQ(outcome.out.find("planned 40 knots"), std::string::npos);
+}
+
+TEST(PlanRun, EndsWithCodeThreeWhereThereIsNoPlan) {
+  const io::TempFolder folder;
+  const std::string text = "robots:\n  - {urdf: " + dataFile("plans/cart_pole.urdf") +
+                           ", joint_velocities: {hinge: 1e5}}\nplan: {knots: 10}\n";
+  const Outcome outcome = simulate({folder.write("fast.yaml", text), "--plan"});
+  EXPECT_EQ(outcome.exitCode, 3) << outcome.out;
+  EXPECT_NE(outcome.err.find("no plan was found"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("try"), std::string::npos) << outcome.err;
+}
+
+}  // namespace
+}  // namespace softgauss::test
