@@ -205,6 +205,8 @@ Material pairMaterial(const Model& model, int geometryA, int geometryB) {
   return mixMaterials(inUse(first.material), inUse(second.material));
 }
 
+namespace {
+
 /// Whether bodies that are apart touch by the end of the step.
 bool beginsNow(const Assembly& in, const Contact& c, double distance) {
   if (!in.model.options.hasRowLaw()) return false;
@@ -224,6 +226,8 @@ void findPair(const Model& model, const Contact& c, PairSurface& pair) {
       model.options.hasRowLaw() && !pair.material.spring && pair.material.impedance == Impedance{};
   pair.frictionDim = frictionDim(pair.material, model.options.effects);
 }
+
+}  // namespace
 
 std::optional<Touch> touchAt(const Assembly& in, int i, PairSurface& pair) {
   const Model& model = in.model;

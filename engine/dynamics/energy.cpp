@@ -4,16 +4,16 @@
 namespace softgauss {
 namespace {
 
-struct BodyMotion {
+struct CenterMotion {
   Vector3 p_WC;  ///< centre of mass
   Vector3 v_WC;
   Vector3 omega;
   Vector3 H_C;  ///< angular momentum about the centre of mass
 };
 
-BodyMotion bodyMotion(const Model& model, const Kinematics& k, int b) {
+CenterMotion centerMotion(const Model& model, const Kinematics& k, int b) {
   const Body& body = model.bodies[b];
-  BodyMotion m;
+  CenterMotion m;
   m.p_WC = k.X_WB[b] * body.com;
   m.v_WC = pointVelocity(model, k, b, m.p_WC);
   m.omega = k.V[b].angular;
@@ -29,7 +29,7 @@ Energy computeEnergy(const Model& model, const Kinematics& k, const VectorX& q, 
   for (int b = 1; b < model.bodyCount(); ++b) {
     const Body& body = model.bodies[b];
     if (body.massless) continue;
-    const BodyMotion m = bodyMotion(model, k, b);
+    const CenterMotion m = centerMotion(model, k, b);
     e.kinetic += 0.5 * body.mass * m.v_WC.squaredNorm() + 0.5 * m.omega.dot(m.H_C);
     if (gravity) e.potential -= body.mass * model.options.gravity.dot(m.p_WC);
   }
@@ -49,7 +49,7 @@ Momentum computeMomentum(const Model& model, const Kinematics& k) {
   for (int b = 1; b < model.bodyCount(); ++b) {
     const Body& body = model.bodies[b];
     if (body.massless) continue;
-    const BodyMotion m = bodyMotion(model, k, b);
+    const CenterMotion m = centerMotion(model, k, b);
     sum.linear += body.mass * m.v_WC;
     sum.angular += m.p_WC.cross(body.mass * m.v_WC) + m.H_C;
   }
