@@ -102,13 +102,21 @@ struct Row {
 /// A ← the matrix of an inertia.
 [[gnu::always_inline]] inline void setInertia(const Inertia& I, double* A) {
   const double x = I.h.x(), y = I.h.y(), z = I.h.z(), m = I.mass;
-  const double rows[kSixMatrix] = {I.I_O.xx, I.I_O.xy, I.I_O.xz, 0.0, -z,  y,   0.0, 0.0,  //
-                                   I.I_O.xy, I.I_O.yy, I.I_O.yz, z,   0.0, -x,  0.0, 0.0,  //
-                                   I.I_O.xz, I.I_O.yz, I.I_O.zz, -y,  x,   0.0, 0.0, 0.0,  //
-                                   0.0,      z,        -y,       m,   0.0, 0.0, 0.0, 0.0,  //
-                                   -z,       0.0,      x,        0.0, m,   0.0, 0.0, 0.0,  //
-                                   y,        -x,       0.0,      0.0, 0.0, m,   0.0, 0.0};
-  for (int i = 0; i < kSixMatrix; ++i) A[i] = rows[i];
+  for (int i = 0; i < kSixMatrix; ++i) A[i] = 0.0;
+  const auto set = [A](int r, int c, double value) {
+    A[kSixRow * r + c] = A[kSixRow * c + r] = value;
+  };
+  set(0, 0, I.I_O.xx), set(0, 1, I.I_O.xy), set(0, 2, I.I_O.xz);
+  set(1, 1, I.I_O.yy), set(1, 2, I.I_O.yz), set(2, 2, I.I_O.zz);
+  set(0, 4, -z), set(0, 5, y), set(1, 3, z), set(1, 5, -x), set(2, 3, -y), set(2, 4, x);
+  set(3, 3, m), set(4, 4, m), set(5, 5, m);
+}
+
+/// y ← a × b of three.
+[[gnu::always_inline]] inline void crossThree(const double* a, const double* b, double* y) {
+  y[0] = a[1] * b[2] - a[2] * b[1];
+  y[1] = a[2] * b[0] - a[0] * b[2];
+  y[2] = a[0] * b[1] - a[1] * b[0];
 }
 
 }  // namespace softgauss

@@ -25,11 +25,14 @@ void computeSmoothForces(const Model& model, const Plan& plan, const State& stat
     ++calls.spring;
     addSprings(plan.springs, state.q, stage.c);
   }
-  if (plan.hasExternalWrench())
+  if (plan.hasExternalWrench()) {
+    stage.push.setZero();
     for (const ExternalWrench& wrench : input.wrenches) {
       ++calls.externalWrench;
-      addExternalWrench(model, k, wrench, stage.c);
+      addExternalWrench(model, k, wrench, stage.push);
     }
+    stage.c -= stage.push;
+  }
   if (input.tau.size() == model.nv)
     stage.tau = input.tau;
   else

@@ -24,6 +24,7 @@ struct SmoothForces {
   VectorX bias;  ///< b (nv)
   VectorX c;     ///< (nv)
   VectorX tau;   ///< applied, as Input::tau (nv)
+  VectorX push;  ///< of wrenches, in c (nv)
   VectorX net;   ///< τ − c: M a_s
   RneaWorkspace work;
   Calls calls;
@@ -33,6 +34,7 @@ struct SmoothForces {
       : bias(VectorX::Zero(model.nv)),
         c(VectorX::Zero(model.nv)),
         tau(VectorX::Zero(model.nv)),
+        push(VectorX::Zero(model.nv)),
         net(VectorX::Zero(model.nv)),
         work(model, plan.gravity || plan.coriolis, plan.drifts) {}
 };

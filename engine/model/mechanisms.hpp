@@ -40,7 +40,7 @@ inline constexpr MechanismName kMechanismNames[] = {
     {Mechanism::substepping, "substepping",
      "the step is divided into substeps where bodies rotate far"},
     {Mechanism::treeSubstepping, "tree_substepping",
-     "free trees that rotate far are integrated in substeps of their own"},
+     "trees that move freely are integrated in substeps of their own"},
     {Mechanism::implicitEqualities, "implicit_equalities",
      "connections, welds and couplings are implicit spring-dampers"},
     {Mechanism::nearRigid, "near_rigid",

@@ -284,7 +284,7 @@ Tried tryStep(const Model& model, const Given& given, const State& start, int mo
   if (!isRefused(moved) && resolves && data.parts->substepSelection.anyFree) {
     SubstepWorkspace& p = *data.parts;
     const bool finite =
-        p.treeSubstepping.integrate(model, given.input, p.substepSelection, start, data, state) &&
+        p.treeSubstepping.integrate(model, p.substepSelection, start, data, state) &&
         state.v.allFinite();
     if (!finite) moved = SolveStatus::notFinite;
   }

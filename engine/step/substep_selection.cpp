@@ -12,8 +12,6 @@
 
 namespace softgauss {
 
-const double SubstepSelection::kTreeSubstepThreshold = 1e-4;
-
 namespace {
 
 double contactRate(const Model& model, const Data& data) {
@@ -94,7 +92,7 @@ double SubstepSelection::coriolisChangeBy(const Model& model, int t, const State
   const double h = model.options.timestep;
   const Tree& tree = model.trees[t];
   const double turned = h * coriolisChangeRate(model, tree, data, state.v, a, change_);
-  if (!isPassive(tree, hasEquality_[t], data, state.v, state.a, h)) return turned;
+  if (!isPassive(model, tree, hasEquality_[t], data, state.v, state.a)) return turned;
   const auto square = [&](const VectorX& x) {
     return twiceKineticEnergy(model, tree, data.kinematics, data.inertia, x, data.bodies.ray);
   };
@@ -138,42 +136,58 @@ bool SubstepSelection::driven(const Model& model, const Data& data, const State&
   return drives(tree, data, state.v, state.a, model.options.timestep);
 }
 
+/// Trees that are followed by themselves, but for those that need too many parts.
+void SubstepSelection::findFree(const Model& model, const Data& data, const State& state,
+                                bool controlled) {
+  findTouched(model, data);
+  for (std::size_t t = 0; t < model.trees.size(); ++t) {
+    free[t] = !touched_[t] && !stopsWithin(model, model.trees[t], data) &&
+              !movesEvenly(model, model.trees[t], state.v) &&
+              !driven(model, data, state, static_cast<int>(t), controlled);
+    anyFree = anyFree || free[t];
+  }
+}
+
+/// The fastest of (6.3) of all trees that are not free.
+double SubstepSelection::partRate(const Model& model, const State& state, Data& data) {
+  constexpr double kLeast = 1e-4;  // of turn
+  const double h = model.options.timestep, angle = model.options.substepAngle;
+  if (state.hasAcceleration) findCoriolisChanges(model, state, data);
+  double rate = std::max(contactRate(model, data), tieRate(model, state, data));
+  const auto rateOf = [&](std::size_t t) { return 4.0 * std::sqrt(2.0 * coriolisChange[t]) / h; };
+  bool alone = false;
+  for (std::size_t t = 0; t < model.trees.size(); ++t) {
+    if (free[t] || !(coriolisChange[t] > kLeast)) continue;
+    const int tree = static_cast<int>(t);
+    const bool tooMany = !(h * rateOf(t) <= kMaxDivisions * angle);
+    if (tooMany && model.options.uses(Mechanism::treeSubstepping) && !touched_[t] &&
+        !stopsWithin(model, model.trees[t], data)) {
+      free[t] = 1, anyFree = true;
+      continue;
+    }
+    if (h * rateOf(t) > angle) {
+      if (!alone) alone = findAlone(model, data);
+      if (alone)
+        coriolisChange[t] =
+            std::min(coriolisChange[t], coriolisChangeBy(model, tree, state, state.a, data));
+    }
+    rate = std::max(rate, rateOf(t));
+  }
+  return rate;
+}
+
 void SubstepSelection::find(const Model& model, const State& state, bool controlled, Data& data) {
   parts = 1;
   anyFree = false;
   std::fill(free.begin(), free.end(), 0);
   std::fill(coriolisChange.begin(), coriolisChange.end(), 0.0);
-  if (!data.plan.coriolis || model.options.substepAngle == kInfinity ||
-      !mayRotateFar(model, data, state.v, state.a))
-    return;
-  const double h = model.options.timestep;
-  if (state.hasAcceleration) findCoriolisChanges(model, state, data);
-  double rate = std::max(contactRate(model, data), tieRate(model, state, data));
-  const auto rateOf = [&](std::size_t t) { return 4.0 * std::sqrt(2.0 * coriolisChange[t]) / h; };
-  bool touchedKnown = false, alone = false;
-  for (std::size_t t = 0; t < model.trees.size(); ++t) {
-    if (!(coriolisChange[t] > kTreeSubstepThreshold)) continue;
-    if (!touchedKnown) findTouched(model, data), touchedKnown = true;
-    const int tree = static_cast<int>(t);
-    double ofTree = rateOf(t);
-    const bool mayFollow = model.options.uses(Mechanism::treeSubstepping) && !touched_[t] &&
-                           !dampingStops(model.trees[t], data, h);
-    const bool tooMany = !(h * ofTree <= kMaxDivisions * model.options.substepAngle);
-    if (mayFollow && (tooMany || !driven(model, data, state, tree, controlled))) {
-      free[t] = 1, anyFree = true;
-      continue;
-    }
-    if (h * ofTree > model.options.substepAngle) {
-      if (!alone) alone = findAlone(model, data);
-      if (alone)
-        coriolisChange[t] =
-            std::min(coriolisChange[t], coriolisChangeBy(model, tree, state, state.a, data));
-      ofTree = rateOf(t);
-    }
-    rate = std::max(rate, ofTree);
-  }
+  if (!data.plan.coriolis || model.options.substepAngle == kInfinity) return;
+  if (model.options.uses(Mechanism::treeSubstepping)) findFree(model, data, state, controlled);
+  if (!mayRotateFar(model, data, free, state.v, state.a)) return;
+  const double rate = partRate(model, state, data);
   if (!model.options.uses(Mechanism::substepping)) return;
-  const double needed = std::ceil(h * rate / model.options.substepAngle - 1e-9);
+  const double needed =
+      std::ceil(model.options.timestep * rate / model.options.substepAngle - 1e-9);
   parts = needed < kMaxDivisions ? std::max(1, static_cast<int>(needed)) : kMaxDivisions;
 }
 

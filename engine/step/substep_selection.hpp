@@ -19,10 +19,11 @@
 ///
 /// A part that comes to need more than two itself has the step begin again, in so many more.
 ///
-/// A tree that no row acts on, and no control, needs no parts: it is followed by itself
-/// (tree_substepping.hpp), from where its turn exceeds kTreeSubstepThreshold, and so is one that
-/// would need more than kMaxDivisions. With an infinite substepAngle no step is divided and no tree
-/// is followed.
+/// A tree that no row acts on, no control and no force to speak of, needs no parts: it is followed
+/// by itself (tree_substepping.hpp), whatever the step, so that its error falls with the step; and
+/// so is one without rows that would need more than kMaxDivisions. What a joint's damping or spring
+/// ends within the step is left to the solve. With an infinite substepAngle no step is divided and
+/// no tree is followed.
 
 #include <cstdint>
 #include <vector>
@@ -35,7 +36,6 @@ struct Data;
 
 class SubstepSelection {
  public:
-  static const double kTreeSubstepThreshold;
   static constexpr int kMaxDivisions = 400;
 
   int parts = 1;
@@ -57,11 +57,13 @@ class SubstepSelection {
   void findCoriolisChanges(const Model& model, const State& state, Data& data);
   bool findAlone(const Model& model, Data& data);
   void findTouched(const Model& model, const Data& data);
+  void findFree(const Model& model, const Data& data, const State& state, bool controlled);
+  double partRate(const Model& model, const State& state, Data& data);
   bool driven(const Model& model, const Data& data, const State& state, int tree,
               bool controlled) const;
 
-  std::vector<std::uint8_t> hasEquality_;          ///< (trees) 1: connections or welds hold it
-  std::vector<std::uint8_t> touched_;              ///< (trees) 1: there are rows of it
+  std::vector<std::uint8_t> hasEquality_;               ///< (trees) 1: connections or welds hold it
+  std::vector<std::uint8_t> touched_;                   ///< (trees) 1: there are rows of it
   VectorX change_, velocity_, bias_, alone_, midstep_;  ///< (nv) scratch
 };
 

@@ -3,7 +3,7 @@
 
 #include <Eigen/Cholesky>
 
-#include "softgauss/engine/dynamics/aba.hpp"
+#include "softgauss/engine/dynamics/tree_acceleration.hpp"
 #include "tests/laws/law_measures.hpp"
 #include "tests/support/finite_difference.hpp"
 #include "tests/support/matchers.hpp"
@@ -25,7 +25,20 @@ VectorX treeTorque(const Scene& s, const VectorX& vdot) {
 }
 
 VectorX abaAcceleration(const Scene& s, const VectorX& tau) {
-  return articulatedBodyAcceleration(s.model, s.data->kinematics, s.data->inertia, tau);
+  TreeAcceleration aba(s.model);
+  const EffectSet& effects = s.model.options.effects;
+  VectorX angle = VectorX::Zero(s.model.nv), vdot(s.model.nv);
+  for (const Body& body : s.model.bodies)
+    if (body.dofs == 1) angle[body.v] = s.state.q[body.q];
+  for (const Tree& tree : s.model.trees) {
+    aba.take(s.model, tree);
+    aba.compute(
+        {s.data->kinematics.X_WB[tree.rootBody].R, angle.data(), s.state.v.data(), tau.data(),
+         effects.has(Effect::gravity) ? s.model.options.gravity : Vector3::Zero(),
+         effects.has(Effect::coriolis)},
+        vdot.data());
+  }
+  return vdot;
 }
 
 TEST(Rnea, InvertsAba) {

@@ -50,7 +50,10 @@ double leastTurn(const Options& options) {
   return 0.5 * std::pow(0.25 * options.substepAngle, 2.0);
 }
 
-/// √(2 K) by its largest part, as sub-steps have it: max_i (|v_i| + h |a_i|) √M_ii.
+/// What a sub-step may be off by for each second of the step, relative to the speed (6.7) [1/s].
+constexpr double kFollowed = 1e-5;
+
+/// √(2 K) by its largest part: max_i (|v_i| + h |a_i|) √M_ii.
 double speed(const Model& model, const State& state, const Data& data) {
   const VectorX v = state.v.cwiseAbs() + model.options.timestep * data.acceleration.cwiseAbs();
   return v.cwiseQuotient(data.inertia.motionScale).maxCoeff();
@@ -183,8 +186,8 @@ double EnergyWatch::check(const State& state, const Input& input, const Data& da
   if (leapfrog_) {
     const double K = turning(back_);
     limit_ += std::pow(2.0 * leastTurn(model_.options), 1.5) / 12.0 * K * data.stats.parts +
-              TreeMotion::kTolerance * data.stats.substeps * speed(model_, state, data) *
-                  std::sqrt(2.0 * K);
+              kFollowed * model_.options.timestep * data.stats.substeps *
+                  speed(model_, state, data) * std::sqrt(2.0 * K);
   }
   const double rounding =
       1e3 * std::numeric_limits<double>::epsilon() * (std::abs(E) + std::abs(work));

@@ -29,8 +29,8 @@
 /// Where M turns, by less than kTurn = ½ (h ω)² of the velocity in a part of a step, 2 kTurn K
 /// more, and ε = (h ω)³ K/12 of the third order in each part, K without the way of free bodies. A
 /// tree that is followed by itself keeps its energy to the tolerance of its sub-steps: each may put
-/// kTolerance of the tree's speed u = max_i (|v_i| + h |a_i|) √M_ii into a dof, and
-/// |(M v)_i| ≤ √(2 K M_ii), so that ε = kTolerance u √(2 K).
+/// δ = 10⁻⁵ h/s of the tree's speed u = max_i (|v_i| + h |a_i|) √M_ii into a dof, and
+/// |(M v)_i| ≤ √(2 K M_ii), so that ε = δ u √(2 K).
 
 #include <cstdint>
 #include <vector>

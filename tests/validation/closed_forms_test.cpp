@@ -71,8 +71,10 @@ double ellipticK(double k) {
   return M_PI / (2.0 * a);
 }
 
+/// By the leapfrog alone, which would else have it followed.
 Scene swinging(double amplitude, double h) {
   ModelBuilder builder = pendulum(0.5, 1.3, 0.05);
+  builder.options.mechanisms.remove(Mechanism::treeSubstepping);
   builder.options.timestep = h;
   Scene s(builder.build());
   s.state.q[0] = amplitude;

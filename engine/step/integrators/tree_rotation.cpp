@@ -4,25 +4,43 @@
 #include <algorithm>
 #include <cmath>
 
+#include "softgauss/engine/step/integrators/implicit_forces.hpp"
+
 namespace softgauss {
+
 bool drives(const Tree& tree, const Data& data, const VectorX& v, const VectorX& a, double h) {
   double most = 0.0;
   for (int i = tree.firstDof; i < tree.dofEnd; ++i)
-    most = std::max(most, std::abs(data.forces.tau[i]) * data.inertia.motionScale[i]);
+    most = std::max(
+        most, std::abs(data.forces.tau[i] + data.forces.push[i]) * data.inertia.motionScale[i]);
   return h * most > 1e-3 * treeSpeed(tree, data, v, a, h);
 }
 
-bool dampingStops(const Tree& tree, const Data& data, double h) {
-  if (!data.plan.hasDamping()) return false;
-  for (int i = tree.firstDof; i < tree.dofEnd; ++i)
-    if (h * data.plan.damping[i] * std::pow(data.inertia.motionScale[i], 2.0) > 1.0) return true;
-  return false;
+bool stopsWithin(const Model& model, const Tree& tree, const Data& data) {
+  const auto inTree = [&](int dof) { return dof >= tree.firstDof && dof < tree.dofEnd; };
+  const double h = model.options.timestep;
+  if (data.plan.hasDamping())
+    for (int i = tree.firstDof; i < tree.dofEnd; ++i)
+      if (h * data.plan.damping[i] * std::pow(data.inertia.motionScale[i], 2.0) > 1.0) return true;
+  return std::any_of(data.plan.springs.begin(), data.plan.springs.end(), [&](const auto& spring) {
+    return inTree(spring.dof) && isStiffSpring(model, data, spring);
+  });
 }
 
-bool isPassive(const Tree& tree, bool tied, const Data& data, const VectorX& v, const VectorX& a,
-               double h) {
+bool movesEvenly(const Model& model, const Tree& tree, const VectorX& v) {
+  const Body& body = model.bodies[idx(tree.rootBody)];
+  if (!model.isFree(tree.rootBody)) return false;
+  const Symmetric3& I = body.I_Bcm;
+  const bool ball = body.com.isZero(0.0) && I.xx == I.yy && I.yy == I.zz && I.xy == 0.0 &&
+                    I.xz == 0.0 && I.yz == 0.0;
+  return ball || v.segment<3>(body.v + 3).isZero(0.0);
+}
+
+bool isPassive(const Model& model, const Tree& tree, bool tied, const Data& data, const VectorX& v,
+               const VectorX& a) {
   const bool isSingle = tree.bodyEnd == tree.rootBody + 1;
-  return !tied && !isSingle && !drives(tree, data, v, a, h) && !dampingStops(tree, data, h);
+  return !tied && !isSingle && !drives(tree, data, v, a, model.options.timestep) &&
+         !stopsWithin(model, tree, data);
 }
 
 double coriolisChangeRate(const Model& model, const Tree& tree, const Data& data, const VectorX& v,
@@ -67,14 +85,16 @@ double treeSpeed(const Tree& tree, const Data& data, const VectorX& v, const Vec
   return speed;
 }
 
-bool mayRotateFar(const Model& model, const Data& data, const VectorX& v, const VectorX& a) {
+bool mayRotateFar(const Model& model, const Data& data, const std::vector<std::uint8_t>& free,
+                  const VectorX& v, const VectorX& a) {
   const double h = model.options.timestep, fast = 0.003 / h;
-  for (const Motion& V : data.kinematics.V)
-    if (V.angular.squaredNorm() > fast * fast) return true;
-  for (const Tree& tree : model.trees) {
+  for (std::size_t t = 0; t < model.trees.size(); ++t) {
+    if (free[t]) continue;
+    const Tree& tree = model.trees[t];
     double slides = 0.0, lightest = kInfinity;
     for (int b = tree.rootBody; b < tree.bodyEnd; ++b) {
-      const Body& body = model.bodies[b];
+      if (data.kinematics.V[idx(b)].angular.squaredNorm() > fast * fast) return true;
+      const Body& body = model.bodies[idx(b)];
       const bool floats = body.joint == JointKind::floating;
       for (int i = body.v + (floats ? 3 : 0); i < body.v + (floats ? 6 : 1); ++i) {
         const double ends = std::abs(v[i] + h * a[i]);

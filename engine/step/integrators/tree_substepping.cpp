@@ -5,26 +5,21 @@
 #include <cmath>
 
 #include "softgauss/engine/core/memory.hpp"
-#include "softgauss/engine/forces/external_wrench.hpp"
 #include "softgauss/engine/step/data.hpp"
 #include "softgauss/engine/step/integrators/tree_rotation.hpp"
 
 namespace softgauss {
 
 TreeSubstepping::TreeSubstepping(const Model& model)
-    : held_(VectorX::Zero(model.nv)), pushed_(held_), motion_(model) {}
+    : held_(VectorX::Zero(model.nv)), motion_(model) {}
 
-std::size_t TreeSubstepping::bytes() const { return bytesOfAll(held_, pushed_) + motion_.bytes(); }
+std::size_t TreeSubstepping::bytes() const { return bytesOfAll(held_) + motion_.bytes(); }
 
-bool TreeSubstepping::integrate(const Model& model, const Input& input,
-                                const SubstepSelection& substepSelection, const State& start,
-                                Data& data, State& end) {
+bool TreeSubstepping::integrate(const Model& model, const SubstepSelection& substepSelection,
+                                const State& start, Data& data, State& end) {
   const double h = model.options.timestep;
-  pushed_.setZero();
-  if (data.plan.hasExternalWrench())
-    for (const ExternalWrench& wrench : input.wrenches)
-      addExternalWrench(model, data.kinematics, wrench, pushed_);
-  held_ = data.forces.tau - pushed_;
+  const SmoothForces& forces = data.forces;
+  held_ = forces.tau + forces.push;
   for (std::size_t t = 0; t < model.trees.size(); ++t) {
     if (!substepSelection.free[t]) continue;
     const Tree& tree = model.trees[t];
@@ -33,16 +28,12 @@ bool TreeSubstepping::integrate(const Model& model, const Input& input,
     Vector3 inWorld = Vector3::Zero();
     int coordinates = dofs;
     if (root.joint == JointKind::floating) {  // wrenches keep their direction in the world
-      inWorld = -(data.kinematics.X_WB[tree.rootBody].R * pushed_.segment<3>(root.v + 3));
-      held_.segment<3>(root.v + 3) = data.forces.tau.segment<3>(root.v + 3);
+      inWorld = data.kinematics.X_WB[tree.rootBody].R * forces.push.segment<3>(root.v + 3);
+      held_.segment<3>(root.v + 3) = forces.tau.segment<3>(root.v + 3);
       ++coordinates;
     }
-    motion_.start(model, start, tree);
-    const double firstStep = h * std::min(1.0, 0.2 / std::sqrt(substepSelection.coriolisChange[t]));
-    const double speed =
-        motion_.speed(model, data.plan, tree, held_, inWorld, data.inertia.motionScale, h);
-    const TreeMotion::Outcome outcome = motion_.run(model, data.plan, tree, held_, inWorld,
-                                                    data.inertia.motionScale, speed, h, firstStep);
+    const TreeMotion::Outcome outcome =
+        motion_.run(model, data.plan, tree, start, held_, inWorld, data.inertia.motionScale, h);
     data.stats.substeps += motion_.substeps();
     if (outcome == TreeMotion::Outcome::notFinite) return false;
     if (outcome == TreeMotion::Outcome::limit) {
