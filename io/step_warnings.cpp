@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "softgauss/engine/constraints/contact.hpp"
+#include "softgauss/engine/constraints/contact_softness.hpp"
 #include "softgauss/engine/constraints/inverse_weight.hpp"
 #include "softgauss/engine/constraints/supported_mass.hpp"
 #include "softgauss/engine/core/index.hpp"
@@ -63,8 +64,8 @@ void joints(const Model& model, const InverseWeights& weights, std::vector<std::
   }
 }
 
-/// What a step does not follow of a reference (3.5): what it counts as instead or, where it is
-/// taken as it is, that it grows.
+/// What a step does not follow of a reference: a bounce that is too fast (3.5) or, where rows are
+/// explicit, one that grows.
 void reference(const Impedance& p, const std::string& what, const Options& options,
                std::vector<std::string>& out) {
   const double h = options.timestep;
@@ -77,26 +78,17 @@ void reference(const Impedance& p, const std::string& what, const Options& optio
         fmt::format("{}: its time constant of {:g} s is clamped to {:g} s, two steps; try a step "
                     "of {:.2g} s",
                     what, p.timeConstant, 2.0 * h, 0.5 * p.timeConstant));
-  if (options.constraintModel == ConstraintModel::mujoco) {
+  if (!options.hasRowLaw()) {
     if (h * h * K + 2.0 * h * B > 4.0)
       out.push_back(
           fmt::format("{}: its reference of {:g}/s² and {:g}/s grows in steps of {:g} s; try a "
                       "step below {:.2g} s, or lower numbers",
                       what, K, B, h, K > 0.0 ? (std::sqrt(B * B + 4.0 * K) - B) / K : 2.0 / B));
-  } else if (!p.direct) {
-    if (tc * p.dampingRatio < 2.0 * h)
-      out.push_back(fmt::format(
-          "{}: its damping ratio of {:g} is clamped to {:g} with a time constant of {:g} s, as it "
-          "would oscillate by more than half a radian in a step of {:g} s; try a step of {:.2g} s",
-          what, p.dampingRatio, 2.0 * h / tc, tc, h, 0.5 * p.timeConstant * p.dampingRatio));
-  } else if (const ReferenceSpring s = clampToTimestep(given, h);
-             s.stiffness < K * (1.0 - 1e-9) || s.damping < B * (1.0 - 1e-9)) {
-    out.push_back(
-        fmt::format("{}: its reference of {:g}/s² and {:g}/s is clamped to {:g}/s² and {:g}/s in "
-                    "steps of {:g} s; "
-                    "try a step of {:.2g} s, or lower numbers",
-                    what, K, B, s.stiffness, s.damping, h,
-                    std::min(1.0 / B, std::max(0.5 / std::sqrt(K), B / K))));
+  } else if (const double most = kFastestBounce / (h * h); B * B <= K && K > most * (1.0 + 1e-9)) {
+    out.push_back(fmt::format(
+        "{}: its spring of {:g}/s² is clamped to {:g}/s², as it would swing by more than half a "
+        "radian in a step of {:g} s; try a step of {:.2g} s",
+        what, K, most, h, std::sqrt(kFastestBounce / K)));
   }
 }
 

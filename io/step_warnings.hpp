@@ -9,7 +9,8 @@
 ///   spring       h √(k w_i) > 1          it swings by more than a radian in a step
 ///   damping      h d w_i > 100           it stops the joint within the step, whatever drives it
 ///   effort       h² u w_i > π            it turns by half a turn in the first step
-///   reference    what a step of h does not follow counts as what it does (3.5); as MuJoCo has it
+///   reference    a bounce too fast for the step is clamped (3.5); where rows are
+///   explicit
 ///                it is taken as it is, and grows where h² K + 2 h B > 4
 ///   time constant below 2 h              (3.2): it counts as 2 h
 ///   light body   h ω > 1   between its equality constraints it swings by more than a radian a step

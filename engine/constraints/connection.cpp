@@ -64,8 +64,9 @@ void ConnectionRows::assemble(const Assembly& in) {
   if (model.options.effects.has(Effect::equality)) {
     for (const Connection& c : model.connections) {
       const PointOffset offset(in, c.bodyA, c.p_AP, c.bodyB, c.p_BP);
-      const Softness soft = equalitySoftness(
-          in, c.impedance, offset.r.norm(), equalityInverseMass(in, c.impedance, c.bodyA, c.bodyB));
+      const Softness soft =
+          equalitySoftness(c.impedance, offset.r.norm(),
+                           equalityInverseMass(in, c.impedance, c.bodyA, c.bodyB), model.options);
       const RelativeMotion motion = offsetMotion(c.bodyA, offset.p_WA, c.bodyB, offset.p_WB);
       jacobian_.add(model, in.kinematics, in.tree, motion, in.columns);
       pushRows(offset, soft);

@@ -221,7 +221,6 @@ void findPair(const Model& model, const Contact& c, PairSurface& pair) {
   const Material surface = pairMaterial(model, c.geometryA, c.geometryB);
   pair.geometryA = c.geometryA, pair.geometryB = c.geometryB;
   pair.material = effectiveMaterial(surface, reducedMass(model, c.bodyA, c.bodyB), model.options);
-  pair.bounces = pair.material.spring && !surface.spring;
   pair.nearRigid =
       model.options.hasRowLaw() && !pair.material.spring && pair.material.impedance == Impedance{};
   pair.frictionDim = frictionDim(pair.material, model.options.effects);
@@ -255,7 +254,6 @@ std::optional<Touch> touchAt(const Assembly& in, int i, PairSurface& pair) {
       contactSoftness(material, touch.frictionDim, touch.distance, weight, model.options);
   if (apart) touch.softness = beginning(touch.softness, model.options);
   in.count(Mechanism::nearRigid, model.options.hasRowLaw() && !material.spring);
-  in.count(Mechanism::referenceClamp, pair.bounces || touch.softness.bounded);
   if (touch.frictionDim > 0) {
     const double mu = material.slidingFriction;
     const double spin = std::max(material.torsionalFriction, kSmallestFriction);

@@ -61,7 +61,6 @@ struct Touch {
 struct PairSurface {
   int geometryA = -1, geometryB = -1;
   Material material;       ///< as it acts on their masses
-  bool bounces = false;    ///< the material is the spring of a reference
   bool nearRigid = false;  ///< nobody gave it a softness
   int frictionDim = 0;
 };

@@ -41,15 +41,15 @@ double reducedMass(const Model& model, int bodyA, int bodyB) {
 
 std::optional<ReferenceSpring> underdampedReference(const Impedance& p, const Options& options) {
   constexpr double kRounding = 1e-12;
-  // (3.5) damps more, never less.
   if (!p.direct && p.dampingRatio > 0.5 * (1.0 + kRounding)) return std::nullopt;
   // k d = K d/d_max², b = B/d_max.
-  const Softness s =
-      softnessAt(p, 0.0, 1.0, options.rowTimestep(), options.uses(Mechanism::referenceClamp));
+  const Softness s = softnessAt(p, 0.0, 1.0, options.rowTimestep());
   const double dMax = std::clamp(p.dMax, 1e-4, 0.9999);
-  const double K = s.stiffness * dMax * dMax / impedanceAt(p, 0.0), B = s.damping * dMax;
+  const double h = options.rowTimestep(), B = s.damping * dMax;
+  const double K =
+      std::min(s.stiffness * dMax * dMax / impedanceAt(p, 0.0), kFastestBounce / (h * h));
   if (!(B * B <= K * (1.0 + kRounding))) return std::nullopt;
-  return ReferenceSpring{K, B};
+  return ReferenceSpring{K, std::max(B, h * h * K * std::sqrt(K) / 8.0)};
 }
 
 std::optional<Softness> bouncingSoftness(const Impedance& p, double inverseInertia,
@@ -62,7 +62,8 @@ std::optional<Softness> bouncingSoftness(const Impedance& p, double inverseInert
 }
 
 Material effectiveMaterial(const Material& pair, double mass, const Options& options) {
-  if (pair.spring || !options.uses(Mechanism::referenceClamp) || !(mass > 0.0)) return pair;
+  if (pair.spring || options.constraintModel == ConstraintModel::mujoco || !(mass > 0.0))
+    return pair;
   const std::optional<ReferenceSpring> reference = underdampedReference(pair.impedance, options);
   if (!reference) return pair;
   const double K = reference->stiffness, B = reference->damping;
@@ -99,7 +100,8 @@ Softness contactSoftness(const Material& pair, int frictionDim, double distance,
                  : s;
   }
   const double mu = edges ? pair.slidingFriction : 0.0;
-  Softness s = softnessAt(pair.impedance, distance, weight * (1.0 + mu * mu), options);
+  Softness s =
+      softnessAt(pair.impedance, distance, weight * (1.0 + mu * mu), options.rowTimestep());
   if (!edges) return s;
   double scale = 2.0 * mu * mu / options.impedanceRatio;
   // (4.9): a friction above 1 makes no contact softer than one of 1.

@@ -37,7 +37,10 @@ ContactSpring inSeries(const ContactSpring& a, const ContactSpring& b);
 /// body moves.
 double reducedMass(const Model& model, int bodyA, int bodyB);
 
-/// K and B of the reference that a step follows (3.5), where it is at most half damped, B² ≤ K;
+/// h² K of the fastest spring that a step lets bounce (3.5): half a radian.
+inline constexpr double kFastestBounce = 0.25;
+
+/// K and B, as (3.5) lets them bounce, of a reference that is at most half damped, B² ≤ K;
 /// else nothing.
 std::optional<ReferenceSpring> underdampedReference(const Impedance& p, const Options& options);
 

@@ -34,7 +34,7 @@ void DryFriction::assemble(const Assembly& in) {
       const double A = in.weights.dof[i];
       Softness soft = model.options.hasRowLaw()
                           ? frictionLaw(dof.frictionImpedance, A, model.options)
-                          : softnessAt(dof.frictionImpedance, 0.0, A, model.options);
+                          : softnessAt(dof.frictionImpedance, 0.0, A, model.options.rowTimestep());
       if (in.usesStiction(dof.body)) harden(soft, std::abs(rate), dof.dryFriction);
       dof_.push_back(i);
       reference.push_back(soft.referenceAcceleration(rate, 0.0));

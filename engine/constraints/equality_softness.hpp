@@ -4,7 +4,6 @@
 /// How soft connections, welds and couplings are. In the leapfrog they hold at the step's end
 /// (3.14).
 
-#include "softgauss/engine/constraints/assembly.hpp"
 #include "softgauss/engine/constraints/impedance.hpp"
 
 namespace softgauss {
@@ -13,8 +12,5 @@ namespace softgauss {
 /// that bounces has the spring of its reference on what it moves (3.11), else the one of its row.
 Softness equalitySoftness(const Impedance& p, double distance, double inverseInertia,
                           const Options& options);
-/// The same of the options of `in`, which counts it.
-Softness equalitySoftness(const Assembly& in, const Impedance& p, double distance,
-                          double inverseInertia);
 
 }  // namespace softgauss

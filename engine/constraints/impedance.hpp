@@ -11,11 +11,11 @@
 ///   a_ref  = −b ẋ − k d r            so that ẍ + b ẋ + k d r = 0 where the row is hard
 /// The force at acceleration x̂ is f = D (a_ref − x̂) with D = 1/R.
 ///
-/// A step follows a reference, K = k dMax² and B = b dMax, that returns nothing faster than it came
-/// (3.5). tc is at least 2h, as MuJoCo's is, so that h B ≤ 1. Beyond that, where it is asked for:
-///   tc ζ ≥ 2h,   or, given directly,   h B ≤ 1,  h² K ≤ max(¼, h B);      h B ≥ (h² K)^1.5/8
-/// The first is half a radian a step, the last what a body brings that arrives within a step.
-/// And of the row, whatever shares its load: h b ≤ 1.1 (3.6).
+/// tc is at least two steps, as MuJoCo's is. As rows of the leapfrog the spring K = k d/R and the
+/// damper B = b/R hold at the end of the step (3.14), whatever they are, and nothing is returned
+/// faster than it came; what bounces is bounded by the step (contact_softness.hpp, 3.5).
+/// Other integrators, and `--compatibility mujoco`, take them where the step begins, as MuJoCo
+/// does: there a stiff and little damped reference needs a short step.
 
 #include <algorithm>
 #include <cmath>
@@ -32,7 +32,6 @@ struct Softness {
   double perInertia = 0.0;  ///< R per inverse inertia A; 0 where A has no part in it [-]
   double stiffness = 0.0;   ///< k d [1/s²]
   double damping = 0.0;     ///< b [1/s]
-  bool bounded = false;     ///< by what a step can follow, Mechanism::referenceClamp
 
   double referenceAcceleration(double velocity, double distance) const {
     return -damping * velocity - stiffness * distance;
@@ -82,64 +81,24 @@ inline Impedance mixImpedances(const Impedance& p, const Impedance& q, double sh
   return m;
 }
 
-/// The reference that a step of h follows in place of one that is given directly (3.5).
-inline ReferenceSpring clampToTimestep(ReferenceSpring s, double timestep) {
-  const double h = timestep;
-  s.damping = std::min(s.damping, 1.0 / h);
-  s.stiffness = std::min(s.stiffness, std::max(0.25 / (h * h), s.damping / h));
-  s.damping = std::max(s.damping, h * h * s.stiffness * std::sqrt(s.stiffness) / 8.0);
-  return s;
-}
-
-/// `inverseInertia` is A; `clampReference` bounds the reference by what steps of `timestep` follow
-/// (3.5), else the time constant alone, as MuJoCo does.
+/// `inverseInertia` is A. The time constant is at least two steps.
 inline Softness softnessAt(const Impedance& p, double distance, double inverseInertia,
-                           double timestep, bool clampReference = false) {
+                           double timestep) {
   const double d = impedanceAt(p, distance);
   const double dMax = std::clamp(p.dMax, 1e-4, 0.9999);
   Softness s;
   s.perInertia = (1.0 - d) / d;
   s.R = std::max(kSmallestRegulariser, s.perInertia * inverseInertia);
   if (p.direct) {
-    const ReferenceSpring reference =
-        clampReference ? clampToTimestep(*p.direct, timestep) : *p.direct;
-    s.stiffness = reference.stiffness * d / (dMax * dMax);
-    s.damping = reference.damping / dMax;
+    s.stiffness = p.direct->stiffness * d / (dMax * dMax);
+    s.damping = p.direct->damping / dMax;
     return s;
   }
-  const double least = 2.0 * timestep;
-  const double tc = std::max(p.timeConstant, least);
-  double root = dMax * tc * p.dampingRatio;
+  const double tc = std::max(p.timeConstant, 2.0 * timestep);
+  const double root = dMax * tc * p.dampingRatio;
   s.damping = 2.0 / (dMax * tc);
-  if (clampReference) {
-    root = std::max(root, dMax * least);
-    const double x = dMax / root;  // √K
-    s.damping = std::max(s.damping, timestep * timestep * x * x * x / (8.0 * dMax));
-  }
   s.stiffness = d / (root * root);
   return s;
-}
-
-/// The row with the same spring k d/R and damper b/R that takes ẋ at most 1.1 times in a step,
-/// whatever it moves (3.6): 1.1, that time constants of two steps stay as MuJoCo's where d_max is
-/// at least 0.91.
-inline Softness limitDampingPerStep(Softness s, double timestep) {
-  constexpr double kMost = 1.1;
-  const double adds = std::max(1.0, timestep * s.damping / kMost);
-  s.R = std::max(kSmallestRegulariser, s.R / adds);
-  s.perInertia /= adds;
-  s.stiffness /= adds;
-  s.damping /= adds;
-  s.bounded = adds > 1.0;
-  return s;
-}
-
-/// The same by the options of a model: in `--compatibility mujoco` rows are as MuJoCo's.
-inline Softness softnessAt(const Impedance& p, double distance, double inverseInertia,
-                           const Options& options) {
-  const double h = options.rowTimestep();
-  if (!options.uses(Mechanism::referenceClamp)) return softnessAt(p, distance, inverseInertia, h);
-  return limitDampingPerStep(softnessAt(p, distance, inverseInertia, h, true), h);
 }
 
 /// From where positions are taken to the step's end [s]: the leapfrog takes them at mid-step.
@@ -168,7 +127,6 @@ inline Softness implicitSpringDamper(const Softness& s, double t, const Options&
   if (!(s.damping > 0.0)) return s;
   Softness atEnd = implicitSpringDamper(s.stiffness / s.R, s.damping / s.R, t, options);
   atEnd.perInertia = s.perInertia * (atEnd.R / s.R);
-  atEnd.bounded = s.bounded;
   return atEnd;
 }
 

@@ -61,7 +61,8 @@ void CouplingRows::assemble(const Assembly& in) {
         rate -= pair.slope * in.state.v[leader.v];
         if (model.options.constraintModel == ConstraintModel::softgauss) pair.bend = c.curvature(q);
       }
-      const Softness soft = equalitySoftness(in, c.impedance, r, coupledWeight(in, c, pair.slope));
+      const Softness soft =
+          equalitySoftness(c.impedance, r, coupledWeight(in, c, pair.slope), model.options);
       const double turning = -pair.bend * std::pow(in.coriolisVelocity()[pair.leader], 2.0);
       pairs_.push_back(pair);
       rate -= in.velocityLag() * turning;

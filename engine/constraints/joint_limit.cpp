@@ -38,9 +38,7 @@ Softness limitSoftness(const Assembly& in, const JointRange& range, double r) {
   in.count(Mechanism::nearRigid, options.hasRowLaw());
   if (options.hasRowLaw())
     return r < 0.0 ? rowLaw(p, r, A, options) : beginning(rowLaw(p, 0.0, A, options), options);
-  const Softness soft = softnessAt(p, r, A, options);
-  in.count(Mechanism::referenceClamp, soft.bounded);
-  return soft;
+  return softnessAt(p, r, A, options.rowTimestep());
 }
 
 }  // namespace

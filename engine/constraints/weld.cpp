@@ -45,7 +45,7 @@ void WeldRows::assemble(const Assembly& in) {
       const RotationOffset turn(in, weld, X_WA.R, X_WB.R);
       const double distance = std::hypot(point.r.norm(), turn.r.norm());
       const auto softness = [&](double weight) {
-        return equalitySoftness(in, weld.impedance, distance, weight);
+        return equalitySoftness(weld.impedance, distance, weight, model.options);
       };
       RelativeMotion motion = offsetMotion(weld.bodyA, point.p_WA, weld.bodyB, point.p_WB);
       const Softness linear =

@@ -164,7 +164,7 @@ struct Options {
   double substepAngle = 0.1;
   /// h of the step that this one is a part of, whose rows and stiff springs it keeps; 0: of none.
   double outerTimestep = 0.0;
-  /// softgauss's is beyond MuJoCo's by (3.15), (3.5), (3.11), (4.9), (5.1), (5.6), (5.7), (5.8),
+  /// softgauss's is beyond MuJoCo's by (3.15), (3.11), (4.9), (5.1), (5.6), (5.7), (5.8),
   /// and the curvature of couplings (4.6).
   ConstraintModel constraintModel = ConstraintModel::softgauss;
   /// Of softgauss's `constraintModel` and the leapfrog, which mechanisms may be used.

@@ -145,11 +145,10 @@ TEST(StepWarnings, NameTheSurfaceThatIsFasterThanTheStep) {
   };
   const Impedance fast{0.001}, bouncy{0.02, 0.1};
   expectOne(of(fast), "surface of '", "is clamped to 0.004 s");
-  expectOne(of(bouncy), "is clamped to 0.2 with", "try a step of 0.001 s");
-  expectOne(of(direct(2e6, 100.0)), "surface of '",
-            "is clamped to 62500/s² and 100/s in steps of 0.002 s");
+  expectOne(of(bouncy), "is clamped to 62500/s²", "try a step of 0.001 s");
+  expectOne(of(direct(2e6, 100.0)), "surface of '", "its spring of 2e+06/s² is clamped");
   EXPECT_TRUE(of(direct(62499.0, 0.0)).empty());
-  EXPECT_TRUE(of(direct(249e3, 499.0)).empty());
+  EXPECT_TRUE(of(direct(251e3, 502.0)).empty());  // more than half damped: no bounce is lost
   model.options.constraintModel = ConstraintModel::mujoco;
   EXPECT_TRUE(of(bouncy).empty());
   expectOne(of(Impedance{0.02, 0.04}), "surface of '", "grows in steps of 0.002 s");

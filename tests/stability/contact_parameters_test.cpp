@@ -105,7 +105,7 @@ TEST(ContactParameters, ImpedancesUpToOne) {
 }
 
 // Down to next to nothing: what rests on four corners or carries a heap takes a velocity more often
-// than once where the reference is made for a row by itself (3.6). Boxes dropped, and stacked
+// than once where the reference is made for a row by itself. Boxes dropped, and stacked
 // with masses as given.
 TEST(ContactParameters, ImpedancesFromNextToNothing) {
   const std::vector<std::vector<double>> stacks = {{1}, {1, 1000}, {1000, 1}, {1, 1, 1, 1, 1}};

@@ -30,7 +30,7 @@ void forEachSoft(const Model& model, const State& state, const Data& data, F&& f
   });
   const auto softness = [&](const Impedance& p) {
     return model.options.hasRowLaw() ? rowLaw(p, 0.0, 1.0, model.options)
-                                     : softnessAt(p, 0.0, 1.0, model.options);
+                                     : softnessAt(p, 0.0, 1.0, model.options.rowTimestep());
   };
   const auto tie = [&](const Impedance& p) { return equalitySoftness(p, 0.0, 1.0, model.options); };
   for (int i = 0; i < rows.jointLimit.rowCount(); ++i)

@@ -60,7 +60,7 @@ inline Softness rowLaw(const Impedance& p, double distance, double inverseInerti
     tau = std::max(tau, 2.0 * p.timeConstant * p.dampingRatio * p.dampingRatio);
     K = kNearRigid / (A * h * (lead + tau));
   } else {
-    const Softness s = softnessAt(p, distance, A, h, true);
+    const Softness s = softnessAt(p, distance, A, h);
     K = s.stiffness / s.R;
     const double B = s.damping / s.R;
     if (!(K > 0.0)) return implicitDamper(std::min(B * A, kHardest / h), A, options);
@@ -88,7 +88,7 @@ inline Softness edgeOf(const Softness& s, const Impedance& p, int frictionDim, d
 /// is that of the default impedance at no depth, 9 (3.7); harder, goals would find fewer of their
 /// global minima, and what sticks is hardened by (5.6) anyway.
 inline Softness frictionLaw(const Impedance& p, double inverseInertia, const Options& options) {
-  const Softness s = softnessAt(p, 0.0, 1.0, options.rowTimestep(), true);
+  const Softness s = softnessAt(p, 0.0, 1.0, options.rowTimestep());
   const double kappa =
       p == Impedance{} ? 1.0 / s.R : std::min(kHardest, options.timestep * s.damping / s.R);
   return implicitDamper(kappa / options.timestep, inverseInertia, options);

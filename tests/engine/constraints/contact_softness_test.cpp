@@ -179,7 +179,7 @@ TEST(ContactSpring, WhatBouncesIsASpringOfItsOwnMass) {
     mujoco.constraintModel = ConstraintModel::mujoco;
     EXPECT_EQ(effectiveMaterial(pair, mass, mujoco), pair);
   }
-  // Faster than a step follows: K as in (3.5).
+  // Faster than a step lets bounce: K as in (3.5).
   pair.impedance.dampingRatio = 0.05, pair.impedance.timeConstant = 0.02;
   const Material fast = effectiveMaterial(pair, mass, options);
   ASSERT_TRUE(fast.spring);

@@ -224,8 +224,7 @@ TEST(Equality, ForceIsThatOfTheStepsEnd) {
       s.state.v[0] = speed;
       const double before = s.state.q[0] + 0.5 * h * speed;  // where the step takes its rows
       s.step();
-      const Softness soft =
-          softnessAt({}, std::abs(before), s.data->weights.dof[0], s.model.options);
+      const Softness soft = softnessAt({}, std::abs(before), s.data->weights.dof[0], h);
       const double K = soft.stiffness / soft.R, B = soft.damping / soft.R;
       const double end = -K * s.state.q[0] - B * s.state.v[0];
       EXPECT_SMALL(s.data->constraints.coupling.f[0] / end - 1.0, 1e-10) << h << ", " << speed;

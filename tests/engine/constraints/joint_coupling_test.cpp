@@ -66,7 +66,7 @@ double givesWay(double force, double A, double timestep) {
   double low = 0.0, high = 1e3;
   for (int i = 0; i < 200; ++i) {
     const double r = 0.5 * (low + high);
-    const Softness s = softnessAt({}, r, A, timestep, true);
+    const Softness s = softnessAt({}, r, A, timestep);
     (s.stiffness * r / s.R < force ? low : high) = r;
   }
   return high;
