@@ -6,7 +6,7 @@
 /// with its own contact points and ours with MuJoCo's too, and their steps, forward and
 /// inverse dynamics are timed in turns, at the tolerances that each has by default. At last both
 /// run freely for a second from the same state. Whole runs of either are timed besides, of ours by
-/// MuJoCo's model and by the default one.
+/// MuJoCo's model and by the default one. With --table many scenes are timed instead, by default.
 
 #include <fmt/format.h>
 
@@ -15,19 +15,21 @@
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <regex>
 
 #include "apps/compare_mujoco/mjcf.hpp"
 #include "apps/compare_mujoco/mujoco.hpp"
+#include "apps/compare_mujoco/report.hpp"
+#include "apps/compare_mujoco/robot.hpp"
+#include "apps/compare_mujoco/speed_table.hpp"
 #include "apps/compare_mujoco/step_duel.hpp"
 #include "apps/compare_mujoco/urdf_copy.hpp"
 #include "apps/compare_mujoco/urdf_reading.hpp"
 #include "apps/shared/wall_clock.hpp"
-#include "softgauss/collision/lowest_point.hpp"
 #include "softgauss/collision/scene_contacts.hpp"
 #include "softgauss/engine/engine.hpp"
 #include "softgauss/io/nearest_rank.hpp"
 #include "softgauss/io/simulation/time_grid.hpp"
-#include "softgauss/io/urdf.hpp"
 
 namespace {
 
@@ -35,58 +37,15 @@ using namespace softgauss;
 using app::Mujoco;
 using Json = nlohmann::ordered_json;
 
-constexpr double kControlShare = 0.05;  ///< of the effort limit that the controls swing by
-constexpr double kFreeRun = 1.0;        ///< [s]
+constexpr double kFreeRun = 1.0;  ///< [s]
 
 struct Arguments {
-  std::string model, base = "automatic", json, copy;
-  double duration = 2.0, timestep = 0.002;
-  std::vector<std::filesystem::path> packagePaths;
+  app::RobotFile robot;
+  std::string json, copy;
+  double duration = 2.0;
+  app::TableOptions speeds;
+  std::string table, picture;  ///< files of --table
 };
-
-Model loadModel(const Arguments& arguments, bool likeMujoco = true) {
-  io::UrdfOptions options;
-  options.packagePaths = arguments.packagePaths;
-  options.base = arguments.base == "fixed"      ? BaseKind::fixed
-                 : arguments.base == "floating" ? BaseKind::floating
-                                                : BaseKind::automatic;
-  ModelBuilder builder = io::readUrdf(arguments.model, options);
-  builder.options.timestep = arguments.timestep;
-  builder.options.useMujocoModel(likeMujoco);
-  Model model = builder.build();
-  const auto floats = [](const Body& body) { return body.joint == JointKind::floating; };
-  if (std::none_of(model.bodies.begin(), model.bodies.end(), floats)) return model;
-  GeometrySpec plane;
-  plane.name = "ground";
-  plane.link = "world";
-  plane.shape = Shape::plane();
-  return builder.geometry(plane).build();
-}
-
-/// Floating bases stand on the ground.
-State initialState(const Model& model) {
-  State state(model);
-  Kinematics k(model);
-  computeKinematics(model, state, k);
-  for (int t = 0; t < static_cast<int>(model.trees.size()); ++t) {
-    const Body& root = model.bodies[model.trees[t].rootBody];
-    const double lowest = collision::lowestPoint(model, k, t);
-    if (root.joint == JointKind::floating && std::isfinite(lowest)) state.q[root.q + 2] -= lowest;
-  }
-  return state;
-}
-
-/// Controls that swing, each joint at its own pace.
-VectorX controlAt(const Model& model, double time) {
-  VectorX tau = VectorX::Zero(model.nv);
-  for (int i = 0; i < model.nv; ++i) {
-    const Dof& dof = model.dofs[static_cast<std::size_t>(i)];
-    if (!dof.actuated) continue;
-    const double effort = std::isfinite(dof.effortUpper) ? dof.effortUpper : 10.0;
-    tau[i] = kControlShare * effort * std::sin((3.0 + 0.7 * (i % 7)) * time + i);
-  }
-  return tau;
-}
 
 double percentile(std::vector<double> values, double share) {
   if (values.empty()) return 0.0;
@@ -118,11 +77,11 @@ double difference(const VectorX& a, const VectorX& b) {
 class Comparison {
  public:
   explicit Comparison(const Arguments& arguments)
-      : model_(loadModel(arguments)),
+      : model_(app::loadRobot(arguments.robot, true)),
         contacts_(model_),
         data_(model_),
         mujoco_(app::mjcfOf(model_, contacts_.filter())),
-        initial_(initialState(model_)) {
+        initial_(app::standingState(model_)) {
     if (mujoco_.nq() != model_.nq || mujoco_.nv() != model_.nv)
       throw std::runtime_error(
           fmt::format("MuJoCo has {} positions and {} velocities, ours {} and {}", mujoco_.nq(),
@@ -135,7 +94,7 @@ class Comparison {
     const auto steps = static_cast<int>(stepsIn(duration, model_.options.timestep));
     State state = initial_;
     for (int i = 0; i < steps; ++i) {
-      const VectorX tau = controlAt(model_, state.time);
+      const VectorX tau = app::swingingControl(model_, state.time);
       compareAccelerations(state, tau);
       timeForwardAndInverse(state, tau);
       timeStep(state, tau);
@@ -239,7 +198,7 @@ class Comparison {
     theirs.set(state, VectorX::Zero(model_.nv));
     theirs.setWarmStart(VectorX::Zero(model_.nv));
     for (int i = 0; i < steps; ++i) {
-      input_.tau = controlAt(model_, state.time);
+      input_.tau = app::swingingControl(model_, state.time);
       step(model_, input_, state, data_, &contacts_);
       theirs.setForce(input_.tau);
       theirs.step();
@@ -264,72 +223,15 @@ class Comparison {
   int equalContacts_ = 0;
 };
 
-/// Whether MuJoCo reads the same robot in the URDF.
-void printReading(const Json& reading) {
-  if (reading.contains("refused")) {
-    fmt::print("  the URDF as MuJoCo reads it: {}\n", reading["refused"].get<std::string>());
-    return;
-  }
-  fmt::print("  the URDF as MuJoCo reads it: ");
-  for (const auto& difference : reading["differs"])
-    fmt::print("\n    {}", difference.get<std::string>());
-  if (reading.contains("bodies")) {
-    fmt::print("{} bodies, {} of {} shapes; largest differences\n", reading["bodies"].get<int>(),
-               reading["shapes"].get<int>(), reading["shapes_ours"].get<int>());
-    int column = 0;
-    for (const auto& [name, value] : reading.items())
-      if (value.is_number_float())
-        fmt::print("    {:<20}{:>8.1e}{}", name, value.get<double>(), ++column % 3 ? "" : "\n");
-    if (column % 3) fmt::print("\n");
-  }
-  for (const auto& left : reading["not_read"])
-    fmt::print("    not so in MuJoCo: {}\n", left.get<std::string>());
-}
-
-void print(const Json& result) {
-  fmt::print("{}, {} dof, {} steps, {}\n", result["model"].get<std::string>(),
-             result["dof"].get<int>(), result["steps"].get<int>(),
-             result["mujoco_build"].get<std::string>());
-  fmt::print("  {:<28}{:>10}{:>10}{:>10}\n", "[µs]", "ours", "MuJoCo", "ratio");
-  for (const auto& [name, key] : {std::pair{"step", "step_us"},
-                                  {"forward dynamics", "forward_us"},
-                                  {"inverse dynamics", "inverse_us"}}) {
-    const Json& d = result[key];
-    fmt::print("  {:<28}{:>10.3g}{:>10.3g}{:>10.2f}\n", name, d["ours"].get<double>(),
-               d["mujoco"].get<double>(), d["ratio"].get<double>());
-  }
-  for (const auto& [mode, d] : result["run_step_us"].items())
-    fmt::print("  {:<28}{:>10.3g}{:>10.3g}{:>10.2f}\n", "step of a run, " + mode,
-               d["ours"].get<double>(), d["mujoco"].get<double>(), d["ratio"].get<double>());
-  fmt::print("  {:<28}{:>10}{:>10}{:>10}\n", "relative difference", "p50", "p95", "max");
-  for (const auto& [name, key] :
-       {std::pair{"acceleration", "acceleration_difference"},
-        {"  with the same contacts", "acceleration_difference_same_contacts"},
-        {"inverse dynamics", "inverse_difference"},
-        {"  with the same contacts", "inverse_difference_same_contacts"}}) {
-    const Json& d = result[key];
-    fmt::print("  {:<28}{:>10.2g}{:>10.2g}{:>10.2g}\n", name, d["p50"].get<double>(),
-               d["p95"].get<double>(), d["max"].get<double>());
-  }
-  fmt::print("  MuJoCo's forces balance to {:.1e}\n",
-             result["mujoco_imbalance"]["max"].get<double>());
-  fmt::print("  state after 1 s: {:.2g} rad or m; contacts equal in {} steps\n",
-             result["state_difference_after_1s"].get<double>(),
-             result["contacts"]["steps_with_equal_numbers"].get<int>());
-  printReading(result["urdf_reading"]);
-  if (const std::string warning = result["mujoco_warning"]; !warning.empty())
-    fmt::print("  MuJoCo warns: {}\n", warning);
-}
-
 /// Whole runs by MuJoCo's model and by ours.
 Json timeModes(const Arguments& arguments) {
   constexpr int kRounds = 7;
   Json modes;
   for (const bool likeMujoco : {true, false}) {
-    const Model model = loadModel(arguments, likeMujoco);
+    const Model model = app::loadRobot(arguments.robot, likeMujoco);
     const app::StepTimes times =
-        app::timeSteps(model, initialState(model), arguments.duration, kRounds,
-                       [&](double time) { return controlAt(model, time); });
+        app::timeSteps(model, app::standingState(model), arguments.duration, kRounds,
+                       [&](double time) { return app::swingingControl(model, time); });
     modes[likeMujoco ? "compatibility" : "default"] = {
         {"ours", times.ours}, {"mujoco", times.mujoco}, {"ratio", times.ours / times.mujoco}};
   }
@@ -338,7 +240,7 @@ Json timeModes(const Arguments& arguments) {
 
 Json compare(const Arguments& arguments) {
   Comparison comparison(arguments);
-  const app::UrdfCopy copy = app::copyUrdf(arguments.model, comparison.model());
+  const app::UrdfCopy copy = app::copyUrdf(arguments.robot.file, comparison.model());
   if (!arguments.copy.empty()) app::writeCopy(copy, arguments.copy);
   Json result = comparison.run(arguments.duration);
   result["mujoco_build"] = app::mujocoBuild();
@@ -347,33 +249,55 @@ Json compare(const Arguments& arguments) {
   return result;
 }
 
-}  // namespace
+void write(const std::string& file, const std::string& text) {
+  if (!(std::ofstream(file) << text << std::flush))
+    throw ModelError({file, 0}, "output", "cannot be written");
+}
 
-int main(int argc, char** argv) {
-  Arguments arguments;
-  CLI::App app("The same model in softgauss and in MuJoCo: differences and times");
-  app.add_option("MODEL", arguments.model, "a .urdf file")->required();
-  app.add_option("--base", arguments.base, "fixed or floating")
-      ->check(CLI::IsMember({"fixed", "floating"}));
-  app.add_option("--duration", arguments.duration, "compared time [s], default 2")
-      ->check(CLI::PositiveNumber);
-  app.add_option("--timestep", arguments.timestep, "step [s], default 0.002")
-      ->check(CLI::Range(1e-6, 1.0));
-  app.add_option("--json", arguments.json, "write the figures to this file too");
-  app.add_option("--write-copy", arguments.copy,
-                 "write the URDF as MuJoCo reads it, with its meshes, into this folder");
-  app.add_option("--package-path", arguments.packagePaths,
-                 "where package://NAME/… is looked for first; repeatable");
+Json tableOfSpeeds(const Arguments& arguments) {
+  Json speeds = app::measureSpeeds(arguments.speeds);
+  const std::string text = app::speedMarkdown(speeds);
+  fmt::print("{}", text);
+  if (!arguments.table.empty()) write(arguments.table, text);
+  if (!arguments.picture.empty()) app::drawSpeeds(speeds, arguments.picture);
+  return speeds;
+}
+
+/// What is wrong with a regular expression, or nothing.
+std::string checkPattern(const std::string& text) {
   try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
+    const std::regex pattern(text);
+    return {};
+  } catch (const std::regex_error& error) {
+    return fmt::format("'{}' is no regular expression: {}", text, error.what());
   }
+}
+
+void addTableOptions(CLI::App& app, bool& table, Arguments& arguments) {
+  app::TableOptions& speeds = arguments.speeds;
+  CLI::Option* const flag = app.add_flag("--table", table, "time many scenes in both engines");
+  for (CLI::Option* option :
+       {app.add_option("--out", arguments.table, "write the table to this Markdown file too"),
+        app.add_option("--picture", arguments.picture,
+                       "draw time against size into this .svg file, with gnuplot"),
+        app.add_option("--only", speeds.filter, "regular expression of the rows that are measured")
+            ->check(checkPattern),
+        app.add_option("--rounds", speeds.rounds, "of which the least time counts, default 20")
+            ->check(CLI::Range(1, 1000)),
+        app.add_option("--robots", speeds.robots, "folder of humanoid.urdf, hand.urdf, arm.urdf")
+            ->check(CLI::ExistingDirectory),
+        app.add_option("--mujoco-flags", speeds.mujocoFlags,
+                       "how MuJoCo was compiled, for the heading"),
+        app.add_flag("--quick", speeds.quick, "one round, without the large scenes")})
+    option->needs(flag);
+}
+
+/// Does what is asked for; the exit code.
+int run(const Arguments& arguments, bool table) {
   try {
-    const Json result = compare(arguments);
-    print(result);
-    if (!arguments.json.empty() && !(std::ofstream(arguments.json) << result.dump(2) << '\n'))
-      throw ModelError({arguments.json, 0}, "json", "cannot be written");
+    const Json result = table ? tableOfSpeeds(arguments) : compare(arguments);
+    if (!table) app::printComparison(result);
+    if (!arguments.json.empty()) write(arguments.json, result.dump(2) + '\n');
   } catch (const ModelError& error) {
     fmt::print(stderr, "{}\n", error.what());
     return 2;
@@ -385,4 +309,39 @@ int main(int argc, char** argv) {
     return 1;
   }
   return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Arguments arguments;
+  app::RobotFile& robot = arguments.robot;
+  std::vector<std::string> models;
+  bool table = false;
+  CLI::App app("The same model in softgauss and in MuJoCo: differences and times");
+  app.add_option("MODEL", models, "a .urdf file; with --table any number, timed besides");
+  app.add_option("--base", robot.base, "fixed or floating")
+      ->check(CLI::IsMember({"fixed", "floating"}));
+  app.add_option("--duration", arguments.duration, "compared time [s], default 2")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--timestep", robot.timestep, "step [s], default 0.002")
+      ->check(CLI::Range(1e-6, 1.0));
+  app.add_option("--json", arguments.json, "write the figures to this file too");
+  app.add_option("--write-copy", arguments.copy,
+                 "write the URDF as MuJoCo reads it, with its meshes, into this folder");
+  app.add_option("--package-path", robot.packagePaths,
+                 "where package://NAME/… is looked for first; repeatable");
+  addTableOptions(app, table, arguments);
+  try {
+    app.parse(argc, argv);
+    if (!table && models.size() != 1)
+      throw CLI::ValidationError("MODEL", "expected one, unless there is --table");
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  for (const std::string& model : models) {
+    robot.file = model;
+    arguments.speeds.extra.push_back(robot);
+  }
+  return run(arguments, table);
 }

@@ -32,6 +32,13 @@ Mujoco::Mujoco(const std::string& mjcf) : memory_(std::make_unique<Memory>()) {
 Mujoco::~Mujoco() = default;
 
 std::string Mujoco::version() { return mj_versionString(); }
+std::string Mujoco::withRoom(std::string mjcf) {
+#if mjVERSION_HEADER >= 300
+  const std::size_t size = mjcf.find("<size ");
+  mjcf.replace(size, mjcf.find("/>", size) - size, "<size memory=\"2G\"");
+#endif
+  return mjcf;
+}
 int Mujoco::nq() const { return memory_->model->nq; }
 int Mujoco::nv() const { return memory_->model->nv; }
 void Mujoco::setTolerance(double tolerance) { memory_->model->opt.tolerance = tolerance; }

@@ -19,6 +19,9 @@ class Mujoco {
   ~Mujoco();
 
   static std::string version();
+  /// The description with memory for thousands of contacts, where the library takes what it needs
+  /// of it; otherwise as it is.
+  static std::string withRoom(std::string mjcf);
 
   int nq() const;
   int nv() const;

@@ -3,24 +3,14 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <regex>
+#include <utility>
 
+#include "apps/shared/fitted_power.hpp"
 #include "softgauss/collision/lowest_point.hpp"
 #include "softgauss/io/urdf.hpp"
 
 namespace softgauss::app {
-namespace {
-
-void addGround(ModelBuilder& builder) {
-  GeometrySpec plane;
-  plane.name = "ground";
-  plane.link = "world";
-  plane.shape = Shape::plane();
-  builder.geometry(plane);
-}
-
-}  // namespace
 
 Model humanoids(const std::string& robots, int count) {
   ModelBuilder one = io::readUrdf(robots + "/humanoid.urdf");
@@ -80,21 +70,16 @@ std::vector<Rung> scaling(const std::string& robots) {
 }
 
 std::map<std::string, double> exponents(const std::map<std::string, double>& figures) {
-  struct Sums {
-    double n = 0, x = 0, y = 0, xx = 0, xy = 0;
-  };
   static const std::regex name("scaling_([a-z]+)_([0-9]+)[.]in_turn[.]us");
-  std::map<std::string, Sums> sums;
+  std::map<std::string, std::vector<std::pair<double, double>>> points;
   for (const auto& [key, us] : figures) {
     std::smatch match;
-    if (!std::regex_match(key, match, name) || !(us > 0.0)) continue;
-    const double x = std::log(std::stod(match[2])), y = std::log(us);
-    Sums& s = sums[match[1]];
-    s.n += 1, s.x += x, s.y += y, s.xx += x * x, s.xy += x * y;
+    if (std::regex_match(key, match, name) && us > 0.0)
+      points[match[1]].emplace_back(std::stod(match[2]), us);
   }
   std::map<std::string, double> result;
-  for (const auto& [what, s] : sums)
-    if (s.n > 1) result[what] = (s.n * s.xy - s.x * s.y) / (s.n * s.xx - s.x * s.x);
+  for (const auto& [what, measured] : points)
+    if (measured.size() > 1) result[what] = fittedPower(measured);
   return result;
 }
 

@@ -8,6 +8,14 @@
 
 namespace softgauss::app {
 
+void addGround(ModelBuilder& builder) {
+  GeometrySpec plane;
+  plane.name = "ground";
+  plane.link = "world";
+  plane.shape = Shape::plane();
+  builder.geometry(plane);
+}
+
 std::unique_ptr<Scene> makeScene(Model model) {
   auto scene = std::make_unique<Scene>();
   scene->model = std::move(model);
@@ -18,13 +26,7 @@ std::unique_ptr<Scene> makeScene(Model model) {
 }
 
 std::unique_ptr<Scene> makeScene(ModelBuilder builder, bool ground) {
-  if (ground) {
-    GeometrySpec plane;
-    plane.name = "ground";
-    plane.link = "world";
-    plane.shape = Shape::plane();
-    builder.geometry(plane);
-  }
+  if (ground) addGround(builder);
   std::unique_ptr<Scene> scene = makeScene(builder.build());
   const Body& root = scene->model.bodies[scene->model.trees.front().rootBody];
   if (ground && root.joint == JointKind::floating) {
@@ -38,7 +40,7 @@ std::unique_ptr<Scene> makeRobot(const std::string& folder, const std::string& n
   return makeScene(io::readUrdf(folder + "/" + name + ".urdf"), ground);
 }
 
-std::unique_ptr<Scene> makeChain(int links) {
+ModelBuilder chain(int links) {
   ModelBuilder builder("chain");
   LinkSpec link;
   link.name = "world";
@@ -61,8 +63,10 @@ std::unique_ptr<Scene> makeChain(int links) {
     builder.joint(joint);
     link = next;
   }
-  return makeScene(std::move(builder), false);
+  return builder;
 }
+
+std::unique_ptr<Scene> makeChain(int links) { return makeScene(chain(links), false); }
 
 void addReach(Scene& scene, const std::string& link, const Vector3& target) {
   scene.controller = std::make_unique<gdd::GoalDirectedController>(scene.model);

@@ -43,6 +43,9 @@ struct Scene {
   const StepStats& stats() const { return islands ? islands->stats() : data->stats; }
 };
 
+/// The plane z = 0.
+void addGround(ModelBuilder& builder);
+
 /// At rest; with `ground`, a floating root stands on the plane z = 0.
 std::unique_ptr<Scene> makeScene(ModelBuilder builder, bool ground);
 
@@ -52,6 +55,7 @@ std::unique_ptr<Scene> makeScene(Model model);
 std::unique_ptr<Scene> makeRobot(const std::string& folder, const std::string& name, bool ground);
 
 /// A chain of n links of 0.1 m and 0.1 kg on hinges of alternating axes, hanging sideways.
+ModelBuilder chain(int links);
 std::unique_ptr<Scene> makeChain(int links);
 
 /// Cubes of 0.2 m and 1 kg, free, `spacing` apart in rows of five, their centres at `height` [m].

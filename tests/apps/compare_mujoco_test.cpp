@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "tests/apps/process.hpp"
 #include "tests/io/sample_urdf.hpp"
@@ -70,6 +71,74 @@ TEST(CompareMujoco, TellsWhatMujocoReadsOtherwise) {
   const std::string text = readFile(copy + "/robot.urdf");
   EXPECT_NE(text.find("type=\"floating\""), std::string::npos) << text;
   EXPECT_NE(text.find("<link name=\"world\"/>"), std::string::npos) << text;
+}
+
+// Each row of the table has two times, of steps that end at about the same state: MuJoCo's error is
+// of first order, and its contacts are softer.
+TEST(CompareMujoco, TableTimesTheSameMotionOfBoth) {
+  if (!std::filesystem::exists(kProgram)) GTEST_SKIP() << "built without MuJoCo";
+  const io::TempFolder folder;
+  const std::string figures = folder.path() / "figures.json", table = folder.path() / "table.md";
+  ASSERT_EQ(run("--table --quick --robots " + dataFile("robots") + " --json " + figures +
+                " --out " + table + " " + folder.write("sample.urdf", io::kSampleUrdf).string()),
+            0);
+  const auto json = nlohmann::json::parse(readFile(figures));
+  const std::string text = readFile(table);
+  std::set<std::string> names;
+  for (const auto& row : json["rows"]) {
+    const std::string name = row["name"];
+    names.insert(name.substr(0, name.find(" (")));
+    EXPECT_FALSE(row.contains("refused")) << row;
+    for (const char* key : {"mujoco_us", "ours_us", "ratio"})
+      EXPECT_GT(row.value(key, 0.0), 0.0) << name;
+    EXPECT_LT(row.value("apart_m", 0.0), 1e-2) << name;
+    EXPECT_NE(text.find("| " + name + " | "), std::string::npos) << name;
+  }
+  for (const char* name :
+       {"humanoid moving", "humanoid at rest", "humanoid held by torques", "hand", "arm",
+        "chain of 30 links on the ground", "chain of 10 links swinging freely",
+        "chain of 10 links swinging, at equal error", "27 capsules that fall apart", "pile of 10",
+        "10 boxes at rest", "inverse dynamics, arm", "arm reaching, with its control",
+        "sample held by torques", "sample swung by torques"})
+    EXPECT_TRUE(names.contains(name)) << name;
+  ASSERT_FALSE(json["curves"].empty());
+  EXPECT_EQ(json["curves"][0]["sizes"], nlohmann::json({10, 30}));
+  EXPECT_GT(json["curves"][0]["ours_exponent"], 0.0);
+  EXPECT_NE(text.find("MuJoCo "), std::string::npos);
+}
+
+// Where the engines part there is no figure but the reason: two hinges that are whirled.
+TEST(CompareMujoco, TableHasNoFigureWhereMotionsPart) {
+  if (!std::filesystem::exists(kProgram)) GTEST_SKIP() << "built without MuJoCo";
+  const io::TempFolder folder;
+  std::string urdf = "<robot name=\"whip\"><link name=\"world\"/>";
+  for (const std::string parent : {"world", "a"}) {
+    const std::string name = parent == "a" ? "b" : "a";
+    urdf += "<link name=\"" + name +
+            "\"><inertial><origin xyz=\"0.3 0 0\"/><mass value=\"0.1\"/><inertia ixx=\"1e-3\" "
+            "ixy=\"0\" ixz=\"0\" iyy=\"1e-3\" iyz=\"0\" izz=\"1e-3\"/></inertial></link><joint "
+            "name=\"to_" +
+            name + "\" type=\"continuous\"><parent link=\"" + parent + "\"/><child link=\"" + name +
+            "\"/><origin xyz=\"0.3 0 0\"/><axis xyz=\"0 1 0\"/><limit effort=\"100\" "
+            "velocity=\"1000\"/></joint>";
+  }
+  const std::string file = folder.write("whip.urdf", urdf + "</robot>");
+  const std::string figures = folder.path() / "figures.json";
+  ASSERT_EQ(run("--table --quick --only swung " + file + " --robots " + dataFile("robots") +
+                " --json " + figures),
+            0);
+  const auto rows = nlohmann::json::parse(readFile(figures))["rows"];
+  ASSERT_EQ(rows.size(), 1u);
+  EXPECT_FALSE(rows[0].contains("ours_us"));
+  EXPECT_NE(rows[0].value("refused", "").find("the engines part"), std::string::npos) << rows;
+}
+
+TEST(CompareMujoco, TableRefusesWhatItCannotRead) {
+  if (!std::filesystem::exists(kProgram)) GTEST_SKIP() << "built without MuJoCo";
+  EXPECT_EQ(run("--table no_such_robot.urdf --robots " + dataFile("robots")), 2);
+  EXPECT_EQ(run("--table --only '(' --robots " + dataFile("robots")), 2);
+  EXPECT_EQ(run("--quick " + dataFile("robots/arm.urdf")), 2);
+  EXPECT_EQ(run(""), 2);
 }
 
 TEST(CompareMujoco, RefusesWhatItCannotRead) {
