@@ -69,10 +69,7 @@ void joints(const Model& model, const InverseWeights& weights, std::vector<std::
 void reference(const Impedance& p, const std::string& what, const Options& options,
                std::vector<std::string>& out) {
   const double h = options.timestep;
-  const double tc = std::max(p.timeConstant, 2.0 * h);
-  const ReferenceSpring given =
-      p.direct ? *p.direct : ReferenceSpring{1.0 / std::pow(tc * p.dampingRatio, 2), 2.0 / tc};
-  const double K = given.stiffness, B = given.damping;
+  const auto [K, B] = referenceOf(p, h);
   if (!p.direct && p.timeConstant < 2.0 * h)
     out.push_back(
         fmt::format("{}: its time constant of {:g} s is clamped to {:g} s, two steps; try a step "

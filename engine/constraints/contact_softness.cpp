@@ -39,15 +39,18 @@ double reducedMass(const Model& model, int bodyA, int bodyB) {
   return lighter * heavier / (lighter + heavier);
 }
 
+ReferenceSpring referenceOf(const Impedance& p, double timestep) {
+  if (p.direct) return *p.direct;
+  const double tc = std::max(p.timeConstant, 2.0 * timestep);
+  return {1.0 / std::pow(tc * p.dampingRatio, 2.0), 2.0 / tc};
+}
+
 std::optional<ReferenceSpring> underdampedReference(const Impedance& p, const Options& options) {
   constexpr double kRounding = 1e-12;
   if (!p.direct && p.dampingRatio > 0.5 * (1.0 + kRounding)) return std::nullopt;
-  // k d = K d/d_max², b = B/d_max.
-  const Softness s = softnessAt(p, 0.0, 1.0, options.rowTimestep());
-  const double dMax = std::clamp(p.dMax, 1e-4, 0.9999);
-  const double h = options.rowTimestep(), B = s.damping * dMax;
-  const double K =
-      std::min(s.stiffness * dMax * dMax / impedanceAt(p, 0.0), kFastestBounce / (h * h));
+  const double h = options.rowTimestep();
+  const auto [stiffness, B] = referenceOf(p, h);
+  const double K = std::min(stiffness, kFastestBounce / (h * h));
   if (!(B * B <= K * (1.0 + kRounding))) return std::nullopt;
   return ReferenceSpring{K, std::max(B, h * h * K * std::sqrt(K) / 8.0)};
 }

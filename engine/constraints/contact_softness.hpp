@@ -37,6 +37,9 @@ ContactSpring inSeries(const ContactSpring& a, const ContactSpring& b);
 /// body moves.
 double reducedMass(const Model& model, int bodyA, int bodyB);
 
+/// K and B of an impedance, its time constant at least two steps (3.2).
+ReferenceSpring referenceOf(const Impedance& p, double timestep);
+
 /// h² K of the fastest spring that a step lets bounce (3.5): half a radian.
 inline constexpr double kFastestBounce = 0.25;
 

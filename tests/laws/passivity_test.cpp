@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <ostream>
@@ -69,6 +70,14 @@ Model finished(ModelBuilder builder, double timestep) {
   return builder.build();
 }
 
+double largestForce(const Data& data) {
+  double largest = 0.0;
+  data.constraints.visit([&](const auto& c) {
+    for (const double f : c.f) largest = std::max(largest, std::abs(f));
+  });
+  return largest;
+}
+
 // 400 sequences of 200 steps each. 1e-9 is above the rounding of 200 sums.
 TEST_P(Passivity, NothingComesInByARow) {
   const Kind& kind = GetParam();
@@ -100,7 +109,10 @@ TEST_P(Passivity, NothingComesInByARow) {
         given += std::max(0.0, spring() - stored);
         const SolveStatus status = on ? step(model, {}, state, with, &contacts)
                                       : step(without, {}, state, free, &contacts);
-        ASSERT_EQ(status, SolveStatus::converged);
+        // Runs that are given much reach 10⁴ m/s: what is left is then rounding of their forces.
+        ASSERT_TRUE(status == SolveStatus::converged ||
+                    (on && with.stats.residual <= 1e-15 * largestForce(with)))
+            << statusName(status) << ", residual " << with.stats.residual;
         held += on && with.stats.rows > 0;
         stored = spring();
         worst = std::max(worst, (motion() - given) / given);

@@ -75,9 +75,10 @@ class Mujoco final : public Engine {
     return 0.5 * Mv.dot(Eigen::Map<const Eigen::VectorXd>(data_->qvel, model_->nv));
   }
   Eigen::MatrixXd massMatrix() override {
-    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> M(model_->nv,
-                                                                             model_->nv);
-    mj_fullM(model_, M.data(), data_->qM);
+    const Eigen::MatrixXd unit = Eigen::MatrixXd::Identity(model_->nv, model_->nv);
+    Eigen::MatrixXd M(model_->nv, model_->nv);
+    for (int i = 0; i < model_->nv; ++i)
+      mj_mulM(model_, data_, M.col(i).data(), unit.col(i).data());
     return M;
   }
 
