@@ -100,14 +100,14 @@ double SubstepSelection::coriolisChangeBy(const Model& model, int t, const State
   return std::max(turned, h * energyRate(square(change_), moving));
 }
 
-/// turn of every tree, of Δb = b(q, v′) − b(q, v) with v′ the velocity of turning.
+/// turn of every tree that is not free, of Δb = b(q, v′) − b(q, v) with v′ the velocity of turning.
 void SubstepSelection::findCoriolisChanges(const Model& model, const State& state, Data& data) {
   computeBiasAt(model, data.kinematics, data.inertia, state.v, data.forces.work, bias_);
   ++data.forces.calls.coriolis;
   change_ = data.forces.bias - bias_;
   if (!solveMass(model, data, nullptr, change_)) return;  // the solve will say so
   for (int t = 0; t < static_cast<int>(model.trees.size()); ++t)
-    coriolisChange[t] = coriolisChangeBy(model, t, state, state.a, data);
+    if (!free[t]) coriolisChange[t] = coriolisChangeBy(model, t, state, state.a, data);
 }
 
 /// change_ ← M⁻¹Δb of v″ = v′ + ½ h alone_, alone_ = −M⁻¹c with the Coriolis forces c(q, v′).
