@@ -10,7 +10,6 @@
 #include "softgauss/engine/constraints/contact.hpp"
 #include "softgauss/engine/constraints/contact_softness.hpp"
 #include "softgauss/engine/constraints/inverse_weight.hpp"
-#include "softgauss/engine/constraints/no_slip_friction.hpp"
 #include "softgauss/engine/constraints/supported_mass.hpp"
 #include "softgauss/engine/core/index.hpp"
 #include "softgauss/io/detail/text.hpp"
@@ -116,7 +115,6 @@ std::string formOf(const Material& pair) {
 std::string softnessText(const Model& model, const ExplainContext& context) {
   const double gravity = model.options.gravity.norm();
   if (context.pairs.empty() || gravity == 0.0) return {};
-  const double stiffer = model.options.noSlip ? NoSlipFriction::kStiffer : 1.0;
   std::string out;
   for (const Group& group : groupsOf(model, context)) {
     detail::TextTable table;
@@ -135,7 +133,7 @@ std::string softnessText(const Model& model, const ExplainContext& context) {
       table.row({fmt::format("'{}', {:.4g} kg", restingBody(model, *rest), rest->mass),
                  fmt::format("{:.4g}", 1e3 * at.depth), fmt::format("{:.4g}", at.stiffness),
                  fmt::format("{:.4g}", at.damping),
-                 rubs ? fmt::format("{:.4g}", 1e3 * at.mobility / stiffer) : "slides",
+                 rubs ? fmt::format("{:.4g}", 1e3 * at.mobility) : "slides",
                  rubs ? fmt::format("{:.4g}", at.stickForce) : "-",
                  possible ? fmt::format("{:.4g}", d) : "-",
                  possible ? fmt::format("{:.4g}, {:.4g}", at.equivalent.direct->stiffness,

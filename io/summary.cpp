@@ -130,7 +130,6 @@ Summary::Summary(const Model& model)
       cone_(model.options.cone == Cone::elliptic ? "elliptic" : "pyramidal"),
       impedanceRatio_(model.options.impedanceRatio),
       exactDiagonal_(model.options.exactDiagonal),
-      noSlip_(model.options.noSlip),
       stepDoubling_(model.options.stepDoubling),
       tolerance_(model.options.tolerance) {
   for (std::size_t m = 0; m < std::size(kMechanismNames); ++m) {
@@ -222,7 +221,6 @@ std::string Summary::json() const {
         {"cone", cone_},
         {"impedance_ratio", impedanceRatio_},
         {"exact_diagonal", exactDiagonal_},
-        {"no_slip", noSlip_},
         {"without", without_},
         {"gdd_solver", gddSolver},
         {"control_cost", controlCost}}},
@@ -255,7 +253,6 @@ std::string Summary::json() const {
        {{"short_solves", fallbacks.unconvergedSolves},
         {"rounded_solves", fallbacks.roundingLimitedSolves},
         {"refused_guesses", fallbacks.invalidWarmStarts},
-        {"kept_slips", fallbacks.noSlipFallbacks},
         {"abandoned_trees", fallbacks.abandonedTrees},
         {"held_swings", fallbacks.stabilisedBodies},
         {"jumps", fallbacks.minimumStepsAccepted},

@@ -78,7 +78,6 @@ struct Fallbacks {
   long unconvergedSolves = 0;      ///< stalled or at the iteration limit
   long roundingLimitedSolves = 0;  ///< ended by rounding, within 10³ of the tolerance
   long invalidWarmStarts = 0;      ///< warm starts that were not finite
-  long noSlipFallbacks = 0;        ///< no_slip: second solves that failed
   long abandonedTrees = 0;         ///< not followed through the step
   long stabilisedBodies = 0;       ///< bodies that swing too fast between connections, held
   long minimumStepsAccepted = 0;   ///< shortest parts of a step, taken in spite of their estimate
@@ -86,7 +85,7 @@ struct Fallbacks {
 
   template <class Archive>
   void archive(Archive& a) {
-    a(unconvergedSolves, roundingLimitedSolves, invalidWarmStarts, noSlipFallbacks, abandonedTrees,
+    a(unconvergedSolves, roundingLimitedSolves, invalidWarmStarts, abandonedTrees,
       stabilisedBodies, minimumStepsAccepted, possibleTunnelling);
   }
 };
@@ -269,7 +268,7 @@ class Summary {
   double timestep_ = 0.0;
   std::string cone_;
   double impedanceRatio_ = 1.0;
-  bool exactDiagonal_ = false, noSlip_ = false, stepDoubling_ = false;
+  bool exactDiagonal_ = false, stepDoubling_ = false;
   std::vector<std::string> without_;          ///< mechanisms left out
   std::vector<std::size_t> mechanismsInUse_;  ///< in the order of Mechanism
   double tolerance_ = 0.0;

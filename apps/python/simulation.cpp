@@ -125,7 +125,7 @@ void bindSimulation(py::module_&, HeldClass& sim) {
           py::arg("file"),
           "A .urdf file, or a .yaml scene with its own goals. Options are those of simulate_gdd:\n"
           "base, base_height, ground, q0, srdf, state, timestep, integrator,\n"
-          "integration_tolerance, step_doubling, cone, no_slip, exact_diagonal, effects, without, "
+          "integration_tolerance, step_doubling, cone, exact_diagonal, effects, without, "
           "zero_effort,\n"
           "ignore_velocity_limits, no_balance, gdd_solver, control_cost, meshes, collision,\n"
           "compatibility, package_paths, most_dofs; and without_goals. Raises ModelError and "

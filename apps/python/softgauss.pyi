@@ -194,7 +194,6 @@ class Simulation:
         collision: Literal["own", "fcl"] = ...,
         compatibility: Literal["none", "mujoco"] = ...,
         step_doubling: bool = ...,
-        no_slip: bool = ...,
         exact_diagonal: bool = ...,
         effects: Literal["auto", "none"] | Sequence[str] = ...,
         without: Sequence[str] = ...,

@@ -199,10 +199,6 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
   app.add_flag("--exact-diagonal", options.exactDiagonal,
                "softness of constraints from the present inertia, not from constants of the model")
       ->group(simulation);
-  app.add_flag("--no-slip", options.noSlip,
-               "friction without creep, by a second solve bounded by the first; inverse\ndynamics "
-               "then differ from the control by the summary's physics_violation")
-      ->group(simulation);
   app.add_option("--without", without,
                  "mechanisms of the step to leave out, by name, for "
                  "comparisons\n(docs/stability.md has a table of them)")

@@ -317,7 +317,6 @@ class Runner {
     summary_.finish(last);
     tellSolver();
     tellUnseen();
-    tellNoSlip();
     if (islands_) summary_.islands = islands_->outcomes();
     if (errorEstimate_) summary_.error = errorEstimate_->outcome();
     verdict_->tell(reason, baseWarnings_, summary_);
@@ -342,14 +341,6 @@ class Runner {
           fmt::format("active-set does not know elliptic cones: {} steps with such contacts were "
                       "solved by augmented-lagrangian",
                       stepsWithCones_));
-  }
-
-  /// The second solve of sticking contacts comes after that of the goals.
-  void tellNoSlip() {
-    if (!model_.options.noSlip || controller_.goals.empty()) return;
-    summary_.warnings.push_back(
-        "--no-slip changes the acceleration that goals were solved for: see `realised` in the "
-        "summary for how far the motion is from it");
   }
 
   /// A step that is not divided sees nothing of what begins and ends within it.

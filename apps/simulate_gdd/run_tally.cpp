@@ -11,7 +11,6 @@ void tally(const StepStats& stats, bool countsParts, io::Summary& summary) {
   f.unconvergedSolves += stats.unconvergedSolves;
   f.roundingLimitedSolves += stats.roundingLimitedSolves;
   f.invalidWarmStarts += stats.invalidWarmStarts;
-  f.noSlipFallbacks += stats.noSlipFallbacks;
   f.abandonedTrees += stats.abandonedTrees;
   f.stabilisedBodies += stats.stabilisedBodies;
   f.minimumStepsAccepted += stats.minimumStepsAccepted;

@@ -170,7 +170,6 @@ struct Options {
   /// Of softgauss's `constraintModel` and the leapfrog, which mechanisms may be used.
   MechanismSet mechanisms = MechanismSet::all();
   bool exactDiagonal = false;  ///< see constraints/exact_diagonal.hpp
-  bool noSlip = false;         ///< friction without creep (step/no_slip.hpp)
   int maxIterations = 400;     ///< Newton
   double tolerance = 1e-12;    ///< Newton: scaled gradient, see solver/newton.hpp
 
@@ -187,17 +186,13 @@ struct Options {
            integrator == Integrator::implicit;
   }
   /// Contacts, limits and joint friction are springs and dampers at the step's end, near-rigid
-  /// where no stiffness is given, and begin before they touch (3.15). The second problem of noSlip
-  /// is made for soft ones.
+  /// where no stiffness is given, and begin before they touch (3.15).
   bool hasRowLaw() const {
-    return uses(Mechanism::nearRigid) && integrator == Integrator::leapfrog && !stepDoubling &&
-           !noSlip;
+    return uses(Mechanism::nearRigid) && integrator == Integrator::leapfrog && !stepDoubling;
   }
-  /// Contacts slide by Coulomb's law (5.8). It needs the last acceleration, which the leapfrog has;
-  /// the second problem of noSlip bounds friction by itself.
+  /// Contacts slide by Coulomb's law (5.8). It needs the last acceleration, which the leapfrog has.
   bool correctsSlip() const {
-    return uses(Mechanism::slipCorrection) && integrator == Integrator::leapfrog && !stepDoubling &&
-           !noSlip;
+    return uses(Mechanism::slipCorrection) && integrator == Integrator::leapfrog && !stepDoubling;
   }
   bool uses(Mechanism m) const {
     return constraintModel == ConstraintModel::softgauss && mechanisms.has(m);

@@ -11,7 +11,6 @@
 
 #include "softgauss/engine/constraints/constraints.hpp"
 #include "softgauss/engine/constraints/exact_diagonal.hpp"
-#include "softgauss/engine/constraints/no_slip_friction.hpp"
 #include "softgauss/engine/forces/forces.hpp"
 #include "softgauss/engine/solver/newton.hpp"
 #include "softgauss/engine/step/bad_input.hpp"
@@ -71,7 +70,6 @@ struct StepStats {
   int unconvergedSolves = 0;      ///< ended stalled or at the iteration limit
   int roundingLimitedSolves = 0;  ///< ended by rounding, within 10³ of the tolerance
   int invalidWarmStarts = 0;      ///< warm starts that are not finite: the solve began without
-  int noSlipFallbacks = 0;        ///< Options::noSlip: the second solve failed, the first stands
   int possibleTunnelling = 0;  ///< parts in which shapes may have passed through each other unseen
   int badDof = -1;             ///< with SolveStatus::notFinite: the first dof that is not finite
   BadInput badInput;           ///< with SolveStatus::badInput: what does not fit the model
@@ -116,7 +114,6 @@ struct Data {
   ContactSet contacts;
   Constraints constraints;
   ExactDiagonal exactDiagonal;
-  NoSlipFriction noSlipFriction;  ///< with Options::noSlip: friction of the last solve, else empty
   ForwardSolution forward;
   BodySolution bodies;      ///< of the same solve, on bodies
   VectorX midstepVelocity;  ///< (nv) of mid-step, predicted: v′ of (6.2), of the leapfrog

@@ -6,7 +6,6 @@
 
 #include "softgauss/engine/core/check.hpp"
 #include "softgauss/engine/step/gauss_objective.hpp"
-#include "softgauss/engine/step/no_slip.hpp"
 
 namespace softgauss {
 namespace {
@@ -154,16 +153,9 @@ SolveStatus minimizeGauss(const Model& model, const VectorX* guess, Data& data) 
 }
 
 SolveStatus forwardDynamics(const Model& model, const VectorX* guess, Data& data) noexcept {
-  if (!model.options.noSlip)
-    return minimizeBy(
-        model, guess, data, [&] { return BodyObjective(model, data); },
-        [&](VectorX& x) { return solveMass(model, data, nullptr, x); });
-  const SolveStatus status = minimizeGauss(model, guess, data);
-  if (!model.options.noSlip || isRefused(status)) return status;
-  removeSlip(model, data);
-  if (data.forward.report.status == SolveStatus::notFinite)
-    data.stats.badDof = firstNotFinite(data.forward.a);
-  return data.forward.report.status;
+  return minimizeBy(
+      model, guess, data, [&] { return BodyObjective(model, data); },
+      [&](VectorX& x) { return solveMass(model, data, nullptr, x); });
 }
 
 }  // namespace softgauss

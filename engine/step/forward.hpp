@@ -17,8 +17,7 @@ namespace softgauss {
 /// Starts from `guess` (null: none) or the unconstrained acceleration, whichever costs less.
 SolveStatus forwardDynamics(const Model& model, const VectorX* guess, Data& data) noexcept;
 
-/// (1.1) with M, J and P, whose factor is left in data.forward: for Options::noSlip, without its
-/// second solve, and for goals, which go on from there.
+/// (1.1) with M, J and P, whose factor is left in data.forward: for goals, which go on from there.
 SolveStatus minimizeGauss(const Model& model, const VectorX* guess, Data& data) noexcept;
 
 /// Of Newton's iterations: a step ends in another cell or at the minimum, and the more rows, the

@@ -53,12 +53,12 @@ Options StepDerivative::bareStep(Options options) {
 SolveStatus StepDerivative::compute(const Model& model, const Input& input, const State& state,
                                     ContactSource* contacts, Data& data) {
   const Options& o = model.options;
-  if (o.integrator != Integrator::leapfrog || o.stepDoubling || o.noSlip ||
+  if (o.integrator != Integrator::leapfrog || o.stepDoubling ||
       o.uses(Mechanism::midpointVelocity) || o.uses(Mechanism::substepping) ||
       o.uses(Mechanism::treeSubstepping))
     throw ModelError({}, "step derivative",
                      "the step is not bare, expected a model with options of "
-                     "StepDerivative::bareStep() and without no_slip");
+                     "StepDerivative::bareStep()");
   middle_ = state;
   middle_.forgetLastStep();
   transition_.toMiddle(model, middle_.v, middle_.q);

@@ -7,13 +7,11 @@
 
 namespace softgauss {
 
-/// The objective of (1.1) as the Newton solver sees it; `Rows` is what holds the penalty s:
-/// Constraints, or another set with its operations.
-template <class Rows>
+/// The objective of (1.1) by M, J and P, for goals; body_objective.hpp needs none of them.
 class GaussObjective {
  public:
   /// `net`: τ − c, and what else is constant.
-  GaussObjective(const MassMatrix& inertia, const VectorX& net, Rows& rows,
+  GaussObjective(const MassMatrix& inertia, const VectorX& net, Constraints& rows,
                  ForwardSolution& solution)
       : M_(inertia.hat()), net_(net), rows_(rows), s_(solution) {
     // The largest of the smooth forces, in their common unit, sets the scale.
@@ -21,9 +19,6 @@ class GaussObjective {
     const double largest = std::max(1.0, net_.cwiseProduct(s_.scale).cwiseAbs().maxCoeff());
     s_.scale /= largest;
   }
-
-  /// The factor in the solution is of the cell in which the rows are.
-  void keepFactor() { changed_ = false; }
 
   /// Moves to a; returns the cost.
   double moveTo(const VectorX& a) {
@@ -86,13 +81,13 @@ class GaussObjective {
  private:
   const TreeMatrix& M_;
   const VectorX& net_;
-  Rows& rows_;
+  Constraints& rows_;
   ForwardSolution& s_;
   bool changed_ = true;
   bool fresh_ = false;
   bool newFactor_ = false;  ///< no step has been taken with it
   double slope_ = 0.0, curvature_ = 0.0;
 };
-static_assert(NewtonObjective<GaussObjective<Constraints>>);
+static_assert(NewtonObjective<GaussObjective>);
 
 }  // namespace softgauss

@@ -42,9 +42,7 @@ void contactForces(const Data& data, std::vector<Snapshot::ContactForce>& contac
                                                    cones.contactsWithRows()[k].contact);
     const Contact& c = data.contacts.contacts[pyramid ? pyramids.contactsWithRows()[i].contact
                                                       : cones.contactsWithRows()[k].contact];
-    const Vector3 force = data.noSlipFriction.rowCount() > 0
-                              ? data.noSlipFriction.force(pyramid ? i : pyramidCount + k)
-                              : (pyramid ? pyramids.force(i) : cones.force(k));
+    const Vector3 force = pyramid ? pyramids.force(i) : cones.force(k);
     contacts.push_back({c.geometryA, c.geometryB, c.p_WC, c.n_W, force});
     ++(pyramid ? i : k);
   }

@@ -95,7 +95,7 @@ void StepStats::add(const StepStats& other) {
         &StepStats::substeps, &StepStats::repeats, &StepStats::evaluations, &StepStats::rejections,
         &StepStats::minimumStepsAccepted, &StepStats::tunnellingSplits,
         &StepStats::unconvergedSolves, &StepStats::roundingLimitedSolves,
-        &StepStats::invalidWarmStarts, &StepStats::noSlipFallbacks, &StepStats::possibleTunnelling})
+        &StepStats::invalidWarmStarts, &StepStats::possibleTunnelling})
     this->*count += other.*count;
   acted.add(other.acted);
   badDof = std::max(badDof, other.badDof);
@@ -125,7 +125,7 @@ void computeForces(const Model& model, const Input& input, const State& state, D
 
 /// Whether M and J are matrices: the solve is not on bodies, goals act, or M is differentiated.
 bool needsMatrices(const Model& model, const Data& data, const Given& given) {
-  return given.control || model.options.noSlip || model.options.exactDiagonal || data.derivative;
+  return given.control || model.options.exactDiagonal || data.derivative;
 }
 
 void assembleRows(const Model& model, const Input& input, const State& state, Data& data,
@@ -141,7 +141,6 @@ void assembleRows(const Model& model, const Input& input, const State& state, Da
   // What cannot be factored is found by the solve.
   if (model.options.exactDiagonal && !data.constraints.active().empty())
     data.exactDiagonal.apply(data.inertia.M, data.constraints);
-  if (model.options.noSlip) data.noSlipFriction.clear();
   data.stats.rows = data.constraints.rowCount();
   data.stats.stabilisedBodies = data.constraints.geometricStiffness.heldBodies();
   data.stats.times.rows += lap(clock);

@@ -25,7 +25,6 @@ std::unique_ptr<Model> planned(const Model& model, const PlanSteps& steps) {
     throw ModelError({}, "plan", "knots are " + std::to_string(steps.knots) + ", expected ≥ 1");
   auto copy = std::make_unique<Model>(model);
   copy->options = StepDerivative::bareStep(model.options);
-  copy->options.noSlip = false;
   copy->options.timestep = steps.step;
   copy->options.tolerance = std::min(model.options.tolerance, kTolerance);
   return copy;

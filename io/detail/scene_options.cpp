@@ -68,9 +68,9 @@ IntegrationKeys readIntegration(const YamlMap& map, Options& options) {
 
 IntegrationKeys readOptions(const YamlMap& map, Options& options,
                             std::optional<gdd::GddSolver>& solver) {
-  map.expectOnly({"integrator", "integration_tolerance", "step_doubling", "cone", "no_slip",
-                  "exact_diagonal", "tolerance", "max_iterations", "impedance_ratio",
-                  "effects", "without", "compatibility", "gdd_solver"});
+  map.expectOnly({"integrator", "integration_tolerance", "step_doubling", "cone", "exact_diagonal",
+                  "tolerance", "max_iterations", "impedance_ratio", "effects", "without",
+                  "compatibility", "gdd_solver"});
   // First, for an integrator that is named counts.
   if (const auto* entry = map.find("compatibility"))
     options.useMujocoModel(map.choice(*entry, {"none", "mujoco"}) == "mujoco");
@@ -82,7 +82,6 @@ IntegrationKeys readOptions(const YamlMap& map, Options& options,
     solver = map.choice(*entry, {"active-set", "augmented-lagrangian"}) == "active-set"
                  ? gdd::GddSolver::activeSet
                  : gdd::GddSolver::augmentedLagrangian;
-  if (const auto* entry = map.find("no_slip")) options.noSlip = map.boolean(*entry);
   if (const auto* entry = map.find("exact_diagonal")) options.exactDiagonal = map.boolean(*entry);
   map.read("tolerance", options.tolerance, Range::notNegative);
   if (const auto* entry = map.find("max_iterations")) {

@@ -200,7 +200,6 @@ const std::vector<NamedOption>& NamedOption::all() {
       {"integration_tolerance", "a number above 0", false, true, setTolerance},
       {"step_doubling", "true or false", false, true, setFlag<&O::stepDoubling>},
       {"cone", "one of pyramidal, elliptic", false, true, setCone},
-      {"no_slip", "true or false", false, true, setFlag<&O::noSlip>},
       {"exact_diagonal", "true or false", false, true, setFlag<&O::exactDiagonal>},
       {"effects", "auto, none or a list of effects", false, true, setEffects},
       {"without", "a list of mechanisms", false, true, setWithout},

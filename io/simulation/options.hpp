@@ -35,7 +35,6 @@ struct SimulationOptions {
   bool ignoreVelocityLimits = false;  ///< goals alone decide how fast joints move
   int mostDofs = 2000;                ///< more take minutes to load and gigabytes to hold
   std::optional<io::MeshUse> meshes;  ///< absent: automatic, or hull as MuJoCo has it
-  bool noSlip = false;
   bool exactDiagonal = false;
   std::optional<Cone> cone;                     ///< absent: the file's own, or pyramidal
   std::optional<gdd::GddSolver> gddSolver;      ///< absent: the file's own, or the active set

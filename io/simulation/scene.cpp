@@ -30,7 +30,6 @@ void checkSize(const SimulationOptions& options, const Scene& scene) {
 void setOptions(const SimulationOptions& options, Options& o) {
   if (options.timestep) o.timestep = *options.timestep;
   if (options.exactDiagonal) o.exactDiagonal = true;
-  if (options.noSlip) o.noSlip = true;
   if (options.mechanisms) o.mechanisms = *options.mechanisms;
   if (options.cone) o.cone = *options.cone;
   if (options.effects) o.effects = *options.effects;

@@ -362,7 +362,7 @@ TEST(Batch, MistakesAreToldWithFileLineAndKey) {
       {model + "vary:\n  q:elbow_pitch: [0, 5]\n", 4,
        "outside the joint's range -1.5 .. 0.6, in run 1"},
       {model + "vary:\n  upper:elbow_pitch: [0.2]\n  q:elbow_pitch: [0.5]\n", 5, "-1.5 .. 0.2"},
-      {model + "no_slip: 3\n", 3, "found '3', expected true or false"},
+      {model + "step_doubling: 3\n", 3, "found '3', expected true or false"},
       {model + "cone: round\n", 3, "one of pyramidal, elliptic"},
       {model + "q0: {elbow_pitch: much}\n", 3, "joints and their positions"},
       {"model: " + dataFile("robots/arm.urdf") + "\nreach: {hand: {weight: 3}}\n", 2, "target"},

@@ -94,9 +94,9 @@ TEST(NamedOptions, TakeWhatTheySayAndNothingElse) {
   const auto set = [&](const std::string& name, const OptionValue& value) {
     return NamedOption::find(name)->set(value, options);
   };
-  EXPECT_TRUE(set("no_slip", true));
-  EXPECT_TRUE(options.noSlip);
-  EXPECT_FALSE(set("no_slip", 1.0));
+  EXPECT_TRUE(set("exact_diagonal", true));
+  EXPECT_TRUE(options.exactDiagonal);
+  EXPECT_FALSE(set("exact_diagonal", 1.0));
   EXPECT_TRUE(set("cone", std::string("elliptic")));
   EXPECT_FALSE(set("cone", std::string("round")));
   EXPECT_TRUE(set("effects", std::vector<std::string>{std::string(kEffectNames[0].name)}));

@@ -194,7 +194,7 @@ TEST(SummaryFile, HasTheKeysOfTheInterfaceAndNoOthers) {
                              "warnings"}));
   EXPECT_EQ(keysOf(j["model"]), (Keys{"name", "links", "dof", "actuated", "mass_kg"}));
   EXPECT_EQ(keysOf(j["options"]), (Keys{"timestep_s", "integrator", "step_doubling", "tolerance",
-                                        "cone", "impedance_ratio", "exact_diagonal", "no_slip",
+                                        "cone", "impedance_ratio", "exact_diagonal",
                                         "without", "gdd_solver", "control_cost"}));
   EXPECT_EQ(keysOf(j["time_us"]), (Keys{"forward", "gdd", "step"}));
   for (const char* stage : {"forward", "gdd", "step"})

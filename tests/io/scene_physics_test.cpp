@@ -113,7 +113,7 @@ TEST(SceneFile, OptionsAreThoseOfTheModel) {
       SceneFolder(robot +
                   "options: {integrator: semi-implicit-euler, tolerance: 1e-9, max_iterations: 7,\n"
                   "  impedance_ratio: 4, effects: [gravity, joint_limit], compatibility: mujoco,\n"
-                  "  cone: elliptic, no_slip: true, exact_diagonal: true,\n"
+                  "  cone: elliptic, exact_diagonal: true,\n"
                   "  gdd_solver: augmented-lagrangian}\n")
           .read();
   const Options& o = scene.builder.options;
@@ -124,7 +124,6 @@ TEST(SceneFile, OptionsAreThoseOfTheModel) {
   EXPECT_FALSE(o.implicitInSolve);
   EXPECT_FALSE(o.constraintModel == ConstraintModel::softgauss);
   EXPECT_EQ(o.cone, Cone::elliptic);
-  EXPECT_TRUE(o.noSlip);
   EXPECT_TRUE(o.exactDiagonal);
   EffectSet two = EffectSet::none();
   two.insert(Effect::gravity);
@@ -228,7 +227,7 @@ TEST(SceneFile, RefusalsOfPairsOptionsAndWrenches) {
        "key 'options.gdd_solver': found 'both', expected one of active-set, augmented-lagrangian"},
       {"objects: [{name: b, sphere: {radius: 1e-200}}]", "key 'sphere.radius': found '1e-200'"},
       {"a: &a [*a]", "an alias inside of what it stands for"},
-      {ball + "options: {no_slip: 1}", "key 'options.no_slip': found"},
+      {ball + "options: {exact_diagonal: 1}", "key 'options.exact_diagonal': found"},
       {ball + "options: {friction: 1}", "key 'options.friction': found an unknown key"},
       {ball + "options: {integrator: magic}", "key 'options.integrator': found 'magic'"},
       {ball + "options: {tolerance: -1}", "key 'options.tolerance': found '-1'"},

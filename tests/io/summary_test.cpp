@@ -51,11 +51,10 @@ TEST(Summary, OptionsAreThoseOfTheModel) {
   Model model = sampleModel();
   model.options.cone = Cone::elliptic;
   model.options.impedanceRatio = 4.0;
-  model.options.noSlip = model.options.exactDiagonal = true;
+  model.options.exactDiagonal = true;
   const ordered_json options = ordered_json::parse(Summary(model).json())["options"];
   EXPECT_EQ(options["cone"], "elliptic");
   EXPECT_EQ(options["impedance_ratio"], 4.0);
-  EXPECT_EQ(options["no_slip"], true);
   EXPECT_EQ(options["exact_diagonal"], true);
 }
 
@@ -95,7 +94,7 @@ TEST(Summary, HasTheKeysOfTheInterfaceInOrder) {
                                 "mechanisms"}));
   EXPECT_EQ(keysOf(json["model"]), (Keys{"name", "links", "dof", "actuated", "mass_kg"}));
   EXPECT_EQ(keysOf(json["options"]), (Keys{"timestep_s", "integrator", "step_doubling", "tolerance",
-                                           "cone", "impedance_ratio", "exact_diagonal", "no_slip",
+                                           "cone", "impedance_ratio", "exact_diagonal",
                                            "without", "gdd_solver", "control_cost"}));
   EXPECT_EQ(keysOf(json["time_us"]), (Keys{"forward", "gdd", "step"}));
   for (const auto& [key, value] : json["time_us"].items())

@@ -325,7 +325,6 @@ def test_options_of_the_program_are_keywords(tmp_path):
     arm = softgauss.Simulation(
         ROBOTS / "arm.urdf",
         base="auto",
-        no_slip=True,
         exact_diagonal=True,
         step_doubling=True,
         integration_tolerance=1e-5,
@@ -339,8 +338,8 @@ def test_options_of_the_program_are_keywords(tmp_path):
     arm.run(0.01)
     with pytest.raises(TypeError, match="without: found 'parts', expected a list of mechanisms"):
         softgauss.Simulation(ROBOTS / "arm.urdf", without="parts")
-    with pytest.raises(TypeError, match="no_slip: found 1, expected True or False"):
-        softgauss.Simulation(ROBOTS / "arm.urdf", no_slip=1)
+    with pytest.raises(TypeError, match="exact_diagonal: found 1, expected True or False"):
+        softgauss.Simulation(ROBOTS / "arm.urdf", exact_diagonal=1)
 
 
 def test_a_reach_follows_the_posture_beside_it(arm):

@@ -88,7 +88,6 @@ class Decoder {
     if (draws_.chance(0.3)) o.cone = Cone::elliptic;
     if (draws_.chance(0.15)) o.useMujocoModel();
     o.stepDoubling = o.isSingleSolve() && draws_.chance(0.05);
-    o.noSlip = draws_.chance(0.15);
     if (draws_.chance(0.15)) o.mechanisms.remove(Mechanism::slipCorrection);
     o.exactDiagonal = draws_.chance(0.15);
     if (draws_.chance(0.1)) o.impedanceRatio = draws_.power(-1.0, 1.0);

@@ -61,7 +61,7 @@ TEST(RivalsOurs, StartsAsTheSceneSaysAndKeepsItsMomentum) {
 
 TEST(RivalsOurs, RefusesSettingsThatItDoesNotHave) {
   EXPECT_THROW(engineFor(hinged(), 0.01, {"iterations=50"}), std::invalid_argument);
-  EXPECT_THROW(Settings({"no_slip"}), std::invalid_argument);
+  EXPECT_THROW(Settings({"exact_diagonal"}), std::invalid_argument);
 }
 
 }  // namespace

