@@ -85,8 +85,8 @@ struct Fallbacks {
 
   template <class Archive>
   void archive(Archive& a) {
-    a(unconvergedSolves, roundingLimitedSolves, invalidWarmStarts, abandonedTrees,
-      stabilisedBodies, minimumStepsAccepted, possibleTunnelling);
+    a(unconvergedSolves, roundingLimitedSolves, invalidWarmStarts, abandonedTrees, stabilisedBodies,
+      minimumStepsAccepted, possibleTunnelling);
   }
 };
 

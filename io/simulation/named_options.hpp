@@ -2,8 +2,8 @@
 #pragma once
 
 /// Options of simulate_gdd that say what is loaded and how it is stepped, by name: what Python
-/// takes as keywords and a sweep as keys. `--step-doubling` is `step_doubling`, `--package-path` may be
-/// given many times and is `package_paths`.
+/// takes as keywords and a sweep as keys. `--step-doubling` is `step_doubling`, `--package-path`
+/// may be given many times and is `package_paths`.
 
 #include <map>
 #include <string>

@@ -193,9 +193,9 @@ TEST(SummaryFile, HasTheKeysOfTheInterfaceAndNoOthers) {
                              "max_control_ratio",
                              "warnings"}));
   EXPECT_EQ(keysOf(j["model"]), (Keys{"name", "links", "dof", "actuated", "mass_kg"}));
-  EXPECT_EQ(keysOf(j["options"]), (Keys{"timestep_s", "integrator", "step_doubling", "tolerance",
-                                        "cone", "impedance_ratio", "exact_diagonal",
-                                        "without", "gdd_solver", "control_cost"}));
+  EXPECT_EQ(keysOf(j["options"]),
+            (Keys{"timestep_s", "integrator", "step_doubling", "tolerance", "cone",
+                  "impedance_ratio", "exact_diagonal", "without", "gdd_solver", "control_cost"}));
   EXPECT_EQ(keysOf(j["time_us"]), (Keys{"forward", "gdd", "step"}));
   for (const char* stage : {"forward", "gdd", "step"})
     EXPECT_EQ(keysOf(j["time_us"][stage]), (Keys{"mean", "p50", "p95"})) << stage;

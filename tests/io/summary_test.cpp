@@ -93,9 +93,9 @@ TEST(Summary, HasTheKeysOfTheInterfaceInOrder) {
                                 "warnings",
                                 "mechanisms"}));
   EXPECT_EQ(keysOf(json["model"]), (Keys{"name", "links", "dof", "actuated", "mass_kg"}));
-  EXPECT_EQ(keysOf(json["options"]), (Keys{"timestep_s", "integrator", "step_doubling", "tolerance",
-                                           "cone", "impedance_ratio", "exact_diagonal",
-                                           "without", "gdd_solver", "control_cost"}));
+  EXPECT_EQ(keysOf(json["options"]),
+            (Keys{"timestep_s", "integrator", "step_doubling", "tolerance", "cone",
+                  "impedance_ratio", "exact_diagonal", "without", "gdd_solver", "control_cost"}));
   EXPECT_EQ(keysOf(json["time_us"]), (Keys{"forward", "gdd", "step"}));
   for (const auto& [key, value] : json["time_us"].items())
     EXPECT_EQ(keysOf(value), (Keys{"mean", "p50", "p95"})) << key;

@@ -43,9 +43,7 @@ void stands(double seconds, std::uint64_t& last) {
     ASSERT_EQ(status, SolveStatus::converged) << "at " << state.time << " s";
     ASSERT_EQ(controller.limits.violation(controller.control), 0.0);
     const StepStats& stats = data.stats;
-    ASSERT_EQ(stats.invalidWarmStarts + stats.abandonedTrees +
-                  stats.minimumStepsAccepted,
-              0)
+    ASSERT_EQ(stats.invalidWarmStarts + stats.abandonedTrees + stats.minimumStepsAccepted, 0)
         << "at " << state.time << " s";
     ASSERT_EQ(stats.pairsSkipped, 0);
     const gdd::GddStatus ended = controller.report.status;

@@ -184,9 +184,7 @@ bool Trial::watch(SolveStatus status) {
     return breaks("a solve that is called converged has the residual " +
                   std::to_string(stats.residual));
   if (!state.q.allFinite() || !state.v.allFinite()) return breaks("a state that is not finite");
-  if (stats.invalidWarmStarts + stats.abandonedTrees +
-          stats.minimumStepsAccepted >
-      0)
+  if (stats.invalidWarmStarts + stats.abandonedTrees + stats.minimumStepsAccepted > 0)
     return breaks("something done in place of what was asked");
   if (stats.pairsSkipped > 0) return breaks("a pair of shapes was not tested");
   fastest = std::max(fastest, state.v.size() > 0 ? state.v.cwiseAbs().maxCoeff() : 0.0);
