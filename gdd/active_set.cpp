@@ -204,14 +204,16 @@ void ActiveSet::finish(const ControlLimits& limits, const GoalCost& cost, Data& 
   constexpr double kRounding = 1e-13;
   const double scale =
       std::max({1.0, data.forces.c.cwiseAbs().maxCoeff(), force_.cwiseAbs().maxCoeff()});
-  bool changed = false;
+  bool changed = false, anew = false;
   for (int k = 0;; ++k) {
     data.constraints.setResidual(path_.a);
     data.constraints.evaluate(changed);
     computeResidual(data);
     if (residual_.cwiseAbs().maxCoeff() <= kRounding * scale) break;
-    if (k == kCorrections) {  // rows that were crossed have cost P⁻¹ digits
-      if (cell_.isFresh() || !cell_.enter(data)) break;
+    // Rows that were crossed have cost P⁻¹ digits, or one at its breakpoint is in its other piece.
+    if (k == kCorrections) {
+      if (anew || !cell_.enter(data)) break;
+      anew = true;
       k = 0;
     }
     cell_.solve(residual_);

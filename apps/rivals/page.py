@@ -29,6 +29,8 @@ class Page:
     def __init__(self, folder):
         self.runs = load(folder)
         self.refusals = gate.refusals(list(self.runs.values()))
+        path = folder / "second.json"
+        self.second = json.loads(path.read_text()) if path.exists() else {}
         path = folder / "times.jsonl"
         self.times = [json.loads(l) for l in path.read_text().splitlines()] if path.exists() else []
 
@@ -138,6 +140,19 @@ class Page:
                            "grip, 60 s: falls [mm], then [µm/s]", "rope: widest gap [mm]", "humanoid lies: overlap [mm]",
                            "pile of 50: overlap [mm], energy left [J]", "27 capsules: overlap, energy"], rows)
 
+    def work(self):
+        """What moves and is held at the same time."""
+        rows = [[e.label, self.shaken(e), self.cell("cart", e, "off_mm", "aside_mm"), self.cell("peg", e, "left_mm", "leans_deg")]
+                for e in self.present("hold")]
+        return self.table(["", "grip on a pendulum, 20 s: slips [mm], turns [°]", "cart rolls 10 m: off, aside [mm]",
+                           "peg in its hole: above the ground [mm], leans [°]"], rows)
+
+    def shaken(self, entry):
+        m = self.measures("grip_shaken", entry)
+        if isinstance(m, str):
+            return m
+        return "lost" if m["lost"] > 0 else f"{m['slipped_mm']:.2g}, {m['turned_deg']:.2g}"
+
     def grip(self, entry):
         m = self.measures("grip", entry)
         if isinstance(m, str):
@@ -175,6 +190,9 @@ class Page:
             lines.append("Simbody was not there: errors of smooth motion are from our own reference, without a second one.")
         for scene, distance in gate.references(list(self.runs.values())).items():
             lines.append(f"The two references of `{scene}` differ by {distance:.2g} m (root mean square).")
+        for engine, s in self.second.items():
+            label = next(e.label for e in plan.ENTRIES if e.engine == engine)
+            lines.append(f"`{plan.SECOND_SCENE}` of {label}, written a second time: {1e3 * s['distance_m']:.1g} mm from the study's run.")
         by = {}
         for (scene, entry, _), why in self.refusals.items():
             by.setdefault((entry.split()[0], re.sub(r"[\d.e+-]+", "…", why)), []).append((scene, why))
@@ -220,7 +238,7 @@ class Page:
 
     SECTIONS = {"line": line, "versions": versions, "gate": gate, "chain_20": lambda s: s.smooth("chain_20"),
                 "humanoid_in_the_air": lambda s: s.smooth("humanoid_in_the_air"), "drift": drift, "thrown": thrown, "friction": friction,
-                "hold": hold, "softness": softness, "matrix": matrix, "times": time_table}
+                "hold": hold, "work": work, "softness": softness, "matrix": matrix, "times": time_table}
 
     def fill(self, text):
         for name, make in self.SECTIONS.items():

@@ -25,7 +25,7 @@ SMOOTH = ("chain_20", "humanoid_in_the_air")
 DRIFT = ("chain_10_long", "top", "free_body", "thrown_body")
 THROWN = tuple(f"thrown_{s:g}_{a:g}" for s in scenes.SPEEDS for a in scenes.DIRECTIONS)
 FRICTION = THROWN + ("slides_37", "creep_15", "creep_50", "creep_99", "creep_99_askew", "rolling")
-HOLD = ("mass_1000", "tower_10", "tower_20", "grip", "rope", "humanoid_falls", "pile_50", "capsules_27")
+HOLD = ("mass_1000", "tower_10", "tower_20", "grip", "grip_shaken", "cart", "peg", "rope", "humanoid_falls", "pile_50", "capsules_27")
 SOFTNESS = ("drop",)
 KINDS = {"smooth": SMOOTH, "drift": DRIFT, "friction": FRICTION, "hold": HOLD, "softness": SOFTNESS}
 TIMED = ("tower_10", "tower_20", "pile_50", "capsules_27", "humanoid_falls", "mass_1000", "thrown_2_37", "chain_20",
@@ -71,6 +71,9 @@ REFERENCE_STEP = 0.01
 
 # The same method in several engines gives the same digits, or a model is not the same.
 SAME_DIGITS = (("ours, Euler", "MuJoCo", "DART", "Bullet"), ("ours, RK4", "MuJoCo, RK4", "Bullet, RK4"))
+
+# Engines that share no digits with another one: their row has a second way, second/, in this scene.
+SECOND, SECOND_SCENE = ("ode", "rapier_npm", "jolt_npm"), "thrown_2_37"
 
 STEP = 0.002
 STEPS = (0.01, 0.005, 0.002, 0.001, 0.0005)

@@ -168,6 +168,42 @@ def grip():
     return scene("grip", bodies, joints, duration=60, sample=0.1, collide=True)
 
 
+def shaken_grip():
+    """The gripper is the bob of a pendulum of 1 m, released at 60°. At the lowest point the cube pulls with
+    twice its weight, a fifth of what friction bears."""
+    R, hinge = turn((0, 1, 0), math.radians(60)), np.array([0, 0, 1.5])
+    at = lambda y: hinge + R @ [0, y, -1]
+    bodies = [body("palm", 1, box_inertia(1, (0.05, 0.05, 0.02)), at(0), R)]
+    joints = [joint("hinge", -1, 0, hinge, (0, 1, 0))]
+    for i, side in enumerate((1, -1)):
+        bodies.append(box(("left", "right")[i], 0.2, (0.02, 0.01, 0.03), at(-side * 0.03), R=R))
+        joints.append(joint("slider", 0, i + 1, at(-side * 0.03), (0, side, 0), force=10.0))
+    bodies.append(box("cube", 0.1, (0.02, 0.02, 0.02), at(0), R=R))
+    return scene("carried", bodies, joints, duration=20, sample=0.02, collide=True)
+
+
+def cart():
+    """Four balls on axles roll at 1 m/s, and nothing stops them."""
+    bodies = [body("chassis", 4, box_inertia(4, (0.2, 0.1, 0.03)), (0, 0, 0.1), velocity=(1, 0, 0))]
+    joints = []
+    for x in (0.15, -0.15):
+        for y in (0.12, -0.12):
+            joints.append(joint("hinge", 0, len(bodies), (x, y, 0.05), (0, 1, 0)))
+            bodies.append(sphere(f"wheel{len(bodies)}", 0.2, 0.05, (x, y, 0.05), velocity=(1, 0, 0), spin=(0, 20, 0)))
+    return scene("cart", bodies, joints, duration=10, sample=0.05, friction=0.8, ground=True)
+
+
+def peg():
+    """A square peg of 20 mm goes into a hole of 21 mm by its weight, turned by half a degree and pushed aside."""
+    clear, wall, high = 0.0105, 0.00975, 0.04
+    sides = [shape("box", (wall, clear + 2 * wall, high), (s * (clear + wall), 0, 0)) for s in (1, -1)]
+    sides += [shape("box", (clear, wall, high), (0, s * (clear + wall), 0)) for s in (1, -1)]
+    block = body("block", 20, box_inertia(20, (0.03, 0.03, high)), (0, 0, high), shapes=sides)
+    return scene("peg", [block, box("peg", 0.05, (0.01, 0.01, 0.03), (0, 0, 0.09), R=turn((0, 0, 1), math.radians(0.5)),
+                                    velocity=(0.05, 0.02, 0))],
+                 duration=2, sample=0.01, friction=0.3, ground=True, collide=True)
+
+
 def rope():
     """100 kg on five bars of 0.1 kg, released level; every joint is a tie."""
     bodies = [body(f"bar{i}", 0.1, box_inertia(0.1, (0.03, 0.01, 0.01)), (0.05 + 0.1 * i, 0, 1)) for i in range(5)]
@@ -338,10 +374,9 @@ def all_scenes():
         "creep_99_askew": of_cone(0.99, 0.5, 37),
         "rolling": rolling(),
         "drop": drop(),
-        "mass_1000": tower(2, 5, [1, 1000]),
-        "tower_10": tower(10),
-        "tower_20": tower(20),
+        "mass_1000": tower(2, 5, [1, 1000]), "tower_10": tower(10), "tower_20": tower(20),
         "grip": grip(),
+        "grip_shaken": shaken_grip(), "cart": cart(), "peg": peg(),
         "rope": rope(),
         "humanoid_falls": humanoid_falls(),
         "pile_50": pile(),

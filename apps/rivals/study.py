@@ -7,11 +7,13 @@ a study may be interrupted. FOLDER/results.jsonl holds a line a run, FOLDER/time
 import argparse
 import hashlib
 import json
+import math
 import os
 import pathlib
 import re
 import subprocess
 import time
+from array import array
 from concurrent.futures import ThreadPoolExecutor, as_completed
 
 import plan
@@ -99,6 +101,23 @@ class Study:
         return result
 
 
+    def second(self, engine):
+        """Where the thrown box ends by a program that has no line of the study, and how far that is from the study's run [m]."""
+        if engine.endswith("_npm"):
+            code = [str(HERE / f"second/{engine[:-4]}.mjs"), str((self.folder / "npm/node_modules").resolve())]
+            command = ["node", *code] if self.program(engine) else None
+        else:
+            path = self.programs / f"rivals_second_{engine}"
+            command = [str(path)] if path.exists() else None
+        entry = next(e for e in plan.ENTRIES if e.engine == engine)
+        states = self.states(plan.SECOND_SCENE, entry, plan.STEP)
+        if not command or not states.exists():
+            return None
+        ended = json.loads(subprocess.run(command, capture_output=True, text=True).stdout.strip().splitlines()[-1])
+        ran = array("d", states.read_bytes())[-13:]  # of the one body: position first
+        return {"end": ended, "distance_m": math.dist(ended, ran[:3])}
+
+
 def read(path):
     return [json.loads(line) for line in path.read_text().splitlines()] if path.exists() else []
 
@@ -165,6 +184,8 @@ def main():
     arguments = parser.parse_args()
     study = Study(arguments.programs, arguments.folder, 4.0 if arguments.quick else 20.0)
     run_errors(study, arguments.quick, arguments.only, arguments.workers)
+    second = {engine: study.second(engine) for engine in plan.SECOND}
+    (arguments.folder / "second.json").write_text(json.dumps({e: s for e, s in second.items() if s}) + "\n")
     rounds = arguments.times
     if rounds is None and not arguments.quick:
         rounds = 5 if is_idle() else 0

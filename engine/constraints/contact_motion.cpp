@@ -20,6 +20,17 @@ bool isFlat(const Shape& shape, const Transform& X_WG, const Vector3& n_W) {
          (X_WG.R.transpose() * n_W).cwiseAbs().maxCoeff() > kAligned;
 }
 
+/// How far p lies within the face of a flat shape that it is on [m]: 0 at its edges.
+double insetOf(const Shape& shape, const Transform& X_WG, const Vector3& n_W, const Vector3& p_W) {
+  if (shape.kind == ShapeKind::plane) return std::numeric_limits<double>::infinity();
+  const Vector3 n = X_WG.R.transpose() * n_W, p = X_WG.R.transpose() * (p_W - X_WG.p);
+  Vector3 inset = shape.halfExtents - p.cwiseAbs();
+  int axis = 0;
+  n.cwiseAbs().maxCoeff(&axis);
+  inset[axis] = std::numeric_limits<double>::infinity();
+  return inset.minCoeff();
+}
+
 /// ν of (4.10) [m/s], of the place whose outward normal is −n, and the depths of ContactBias; ω of
 /// the shape against n.
 struct ContactPointVelocity {
@@ -36,6 +47,8 @@ std::optional<ContactPointVelocity> alongSurface(const Shape& shape, const Trans
       return ContactPointVelocity{shape.radius * omega.cross(n), 0.3 * shape.radius,
                                   0.3 * shape.radius};
     case ShapeKind::box:
+    case ShapeKind::mesh:
+    case ShapeKind::triangles:
       return ContactPointVelocity{Vector3::Zero()};
     case ShapeKind::cylinder: {
       const Vector3 a = X_WG.R.col(2);
@@ -46,8 +59,6 @@ std::optional<ContactPointVelocity> alongSurface(const Shape& shape, const Trans
                                   0.1 * height, 0.3 * height};
     }
     case ShapeKind::plane:
-    case ShapeKind::mesh:
-    case ShapeKind::triangles:
       return std::nullopt;
   }
   return std::nullopt;
@@ -63,8 +74,12 @@ std::optional<ContactBias> contactBias(const Model& model, const Kinematics& k, 
     return std::nullopt;
   const Geometry &A = model.geometries[c.geometryA], &B = model.geometries[c.geometryB];
   const Transform X_WA = k.X_WB[c.bodyA] * A.X_BG, X_WB = k.X_WB[c.bodyB] * B.X_BG;
-  const bool flatA = isFlat(A.shape, X_WA, c.n_W), flatB = isFlat(B.shape, X_WB, c.n_W);
-  if (flatA == flatB) return std::nullopt;
+  bool flatA = isFlat(A.shape, X_WA, c.n_W);
+  const bool flatB = isFlat(B.shape, X_WB, c.n_W);
+  if (!flatA && !flatB) return std::nullopt;
+  // Of two faces the one that has its corner or edge here is carried along with it.
+  if (flatA && flatB)
+    flatA = insetOf(A.shape, X_WA, c.n_W, c.p_WC) >= insetOf(B.shape, X_WB, c.n_W, c.p_WC);
 
   const Motion &V_flat = flatA ? V_A : V_B, &V_other = flatA ? V_B : V_A;
   const Vector3 n = flatA ? c.n_W : -c.n_W, turns = V_other.angular - V_flat.angular;
@@ -86,6 +101,12 @@ std::optional<ContactBias> contactBias(const Model& model, const Kinematics& k, 
                      pointBiasAcceleration(model, k, c.bodyA, c.p_WC) +
                      V_B.angular.cross(v_P - v_B) - V_A.angular.cross(v_P - v_A) -
                      V_flat.angular.cross(slips);
+  // A wheel of many faces would be lifted by ω² r of each of its corners.
+  const ShapeKind kind = (flatA ? B : A).shape.kind;
+  if (kind == ShapeKind::mesh || kind == ShapeKind::triangles) {
+    bias.leftOut = c.n_W.dot(bias.rate.linear);
+    bias.rate.linear -= *bias.leftOut * c.n_W;
+  }
   return bias;
 }
 

@@ -17,10 +17,12 @@
 ///   ṗ = v + ν + ½ d ω × n − ½ ḋ n
 ///
 ///   ν = ρ ω × n                                 of a sphere or capsule of radius ρ
-///   ν = 0                                       of a corner
+///   ν = 0                                       of a corner, of boxes and meshes
 ///   ν = −a·(n × (ω × n))/|a × n|² a × s         of a rim
 ///
-/// a the axis of a cylinder, s from its centre to the place on its rim.
+/// a the axis of a cylinder, s from its centre to the place on its rim. Of two faces that lie on
+/// each other the one whose edge is nearer has the corner. Of corners of meshes J̇ v counts along
+/// the tangents alone: a wheel of many faces would be lifted by ω² r of each.
 
 #include <optional>
 
@@ -31,15 +33,16 @@ namespace softgauss {
 
 struct ContactBias {
   Motion rate;  ///< J̇ v, world axes [m/s², rad/s²]
+  /// Of corners of meshes: J̇ v along the normal, which `rate` is without [m/s²].
+  std::optional<double> leftOut;
   /// How deep it counts whatever presses, and where its load presses it so deep [m]: 0.3 of the
   /// radius of a ball or capsule, 0.1 and 0.3 of the height of a rim's middle above the place,
   /// which turns the faster the flatter it lies; a corner at any depth.
   double biasDepth = 0.0, loadedBiasDepth = 0.0;
 };
 
-/// Nothing where J̇ v is not known: neither surface is flat, or both are; a mesh touches; or, in a
-/// step that knows its start alone, a body tilts by more than 0.3 rad or the place on a rim goes
-/// round by more than 1.
+/// Nothing where J̇ v is not known: neither surface is flat; or, in a step that knows its start
+/// alone, a body tilts by more than 0.3 rad or the place on a rim goes round by more than 1.
 std::optional<ContactBias> contactBias(const Model& model, const Kinematics& kinematics,
                                        const Contact& contact);
 

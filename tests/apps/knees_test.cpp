@@ -10,7 +10,7 @@ namespace {
 TEST(Knees, ThatWereStraightAreToldWhereARobotThatWasToReachFell) {
   const std::string humanoid = dataFile("robots/humanoid.urdf");
   const Outcome fell = simulate(
-      {humanoid, "--reach", "right_hand=1.2,-0.3,0.3@1e5", "--no-balance", "--duration", "3"});
+      {humanoid, "--reach", "right_hand=1.2,-0.3,0.3@1e5", "--no-balance", "--duration", "5"});
   EXPECT_EQ(fell.exitCode, 0) << fell.err;
   ASSERT_NE(fell.out.find("fell:"), std::string::npos) << fell.out;
   const std::size_t knees = fell.out.find("knees:");

@@ -9,6 +9,7 @@
 #include "tests/support/matchers.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/sample_models.hpp"
+#include "tests/support/sample_surfaces.hpp"
 
 namespace softgauss::test {
 namespace {
@@ -32,6 +33,7 @@ const Pair kPairs[] = {
     {Shape::plane(), Shape::cylinder(0.1, 0.03), 0.01, true},
     {Shape::plane(), Shape::cylinder(0.1, 0.03), 0.01, false},
     {Shape::plane(), Shape::box({0.1, 0.07, 0.05}), 0.01, true},
+    {Shape::plane(), Shape::hull(boxSurface({0.1, 0.07, 0.05})), 0.01, true},
     {kBlock, Shape::sphere(0.1), 0.01, true},
     {kBlock, Shape::capsule(0.05, 0.1), 0.01, false},
     {kBlock, Shape::cylinder(0.1, 0.03), 0.01, true},
@@ -46,6 +48,11 @@ double reachOf(const Shape& shape, const Vector3& n) {
       return shape.radius + shape.halfLength * std::abs(n.z());
     case ShapeKind::cylinder:
       return shape.radius * n.head<2>().norm() + shape.halfLength * std::abs(n.z());
+    case ShapeKind::mesh: {
+      double reach = 0.0;
+      for (const Vector3& p : shape.mesh->vertices) reach = std::max(reach, n.dot(p));
+      return reach;
+    }
     default:
       return shape.radius;
   }
@@ -126,7 +133,7 @@ struct TwoBodies {
 };
 
 std::string nameOf(const Pair& pair) {
-  const char* kNames[] = {"Plane", "Sphere", "Capsule", "Cylinder", "Box"};
+  const char* kNames[] = {"Plane", "Sphere", "Capsule", "Cylinder", "Box", "Hull"};
   const std::string flat = kNames[static_cast<int>(pair.flat.kind)],
                     other = kNames[static_cast<int>(pair.other.kind)];
   return pair.flatFirst ? other + "On" + flat : flat + "Under" + other;
@@ -155,9 +162,14 @@ TEST_P(ContactMotion, IsTheRateOfTheVelocityThatIsCompared) {
       const auto motion = [&](const VectorX& q) { return bodies.motionAt(q, s.v, c.p_WC); };
       const Matrix3 R_WF = bodies.k.X_WB[bodies.flat].R;
       const VectorX rate = alongMotion(model, s.q, s.v, motion, 1e-5);
-      worst = std::max({worst, (R_WF.transpose() * bias->rate.angular - rate.head<3>()).norm(),
-                        (R_WF.transpose() * bias->rate.linear - rate.segment<3>(3)).norm()});
+      Vector3 off = bias->rate.linear - R_WF * rate.segment<3>(3);
+      // Of meshes along the tangents alone.
+      const bool whole = pair.other.kind != ShapeKind::mesh;
+      if (!whole) off -= c.n_W * c.n_W.dot(off);
+      worst = std::max(
+          {worst, (R_WF.transpose() * bias->rate.angular - rate.head<3>()).norm(), off.norm()});
       largest = std::max(largest, bias->rate.linear.norm());
+      if (!whole) continue;
       // ẏ_n is how the distance changes, and n · J̇ v how that does.
       const auto approach = [&](const VectorX& q) {
         return alongMotion(model, q, s.v, motion, 1e-4)[6];
@@ -173,6 +185,50 @@ TEST_P(ContactMotion, IsTheRateOfTheVelocityThatIsCompared) {
   EXPECT_SMALL(worstAlong, 1e-4);
   EXPECT_GT(largest, 1.0);
   EXPECT_GT(compared, 100);
+}
+
+// Two faces that lie on each other and move as one body: which of them has the corner does not
+// matter, and what each point of contact has of J̇ v is what carries one around the other.
+TEST(ContactMotionOfFaces, IsThatOfOneRigidBody) {
+  int compared = 0;
+  for (const Shape& flat : {Shape::plane(), kBlock})
+    for (const bool flatFirst : {true, false}) {
+      const Pair pair{flat, Shape::box({0.1, 0.07, 0.05}), 0.01, flatFirst};
+      TwoBodies bodies(pair);
+      for (int seed = 0; seed < 20; ++seed) {
+        Random random(seed);
+        State s = bodies.place(pair, random);
+        const int other = 3 - bodies.flat;
+        const auto q = [&](int body) { return bodies.model.bodies[body].q; };
+        const auto v = [&](int body) { return bodies.model.bodies[body].v; };
+        // Face upon face, turned about their normal by a quarter of a turn or not at all.
+        const Quaternion upright(s.q[q(bodies.flat) + 3], s.q[q(bodies.flat) + 4],
+                                 s.q[q(bodies.flat) + 5], s.q[q(bodies.flat) + 6]);
+        const double quarter = seed % 2 * M_PI / 2.0;
+        const Quaternion turned =
+            upright * Quaternion(Eigen::AngleAxisd(quarter, Vector3::UnitZ()));
+        const Matrix3 R = upright.toRotationMatrix();
+        const Vector3 from = R * Vector3(0.05, -0.03, flat.halfExtents.z() + 0.05 - 1e-4);
+        s.q.segment<3>(q(other)) = s.q.segment<3>(q(bodies.flat)) + from;
+        s.q.segment<4>(q(other) + 3) << turned.w(), turned.x(), turned.y(), turned.z();
+        // Angular velocities are in the axes of each body.
+        const Vector3 omega = random.vector3(3.0);
+        s.v.segment<3>(v(bodies.flat) + 3) = R.transpose() * omega;
+        s.v.segment<3>(v(other) + 3) = turned.toRotationMatrix().transpose() * omega;
+        s.v.segment<3>(v(other)) = s.v.segment<3>(v(bodies.flat)) + omega.cross(from);
+        // v̇ = 0: both fly on straight, and the points of the other one come from ω × (ω × from).
+        const Vector3 carried = -omega.cross(omega.cross(from));
+        for (const Contact& c : std::vector<Contact>(bodies.contactsAt(s.q, s.v))) {
+          bodies.contactsAt(s.q, s.v);
+          const std::optional<ContactBias> bias = contactBias(bodies.model, bodies.k, c);
+          ASSERT_TRUE(bias);
+          const double sign = c.bodyB == other ? 1.0 : -1.0;
+          EXPECT_SMALL((bias->rate.linear - sign * carried).norm(), 1e-11);
+          ++compared;
+        }
+      }
+    }
+  EXPECT_GT(compared, 200);
 }
 
 INSTANTIATE_TEST_SUITE_P(Pairs, ContactMotion, testing::ValuesIn(kPairs),

@@ -228,5 +228,48 @@ TEST(RivalsJudge, TellsRunsApart) {
   EXPECT_THROW(measure(sceneOf("beauty", cube()), still), std::invalid_argument);
 }
 
+// A body that swings about the origin with one that slips along it by 3 mm.
+TEST(RivalsJudge, KnowsWhatSlipsInAGrip) {
+  Scene scene = sceneOf("carried", cube());
+  scene.bodies.push_back(cube());
+  for (const double slip : {0.0, 3e-3}) {
+    Trajectory run = sampled(scene, [](double, BodyState&) {});
+    for (std::size_t k = 0; k < run.size(); ++k) {
+      const double t = static_cast<double>(k) * scene.sample;
+      const Quaterniond turn(Eigen::AngleAxisd(3.0 * t, Vector3d::UnitY()));
+      for (BodyState& s : run[k]) s.orientation = turn, s.position = turn * Vector3d(0, 0, -1);
+      run[k].back().position += turn * Vector3d(slip * t, 0, 0);
+    }
+    const Measures m = measure(scene, run);
+    EXPECT_NEAR(m.at("slipped_mm"), 1e3 * slip, 1e-9);
+    EXPECT_NEAR(m.at("turned_deg"), 0.0, 1e-5);
+    EXPECT_EQ(m.at("lost"), 0.0);
+  }
+}
+
+TEST(RivalsJudge, KnowsHowFarACartRolls) {
+  Body body = cube();
+  body.start.velocity = Vector3d(0.6, 0.8, 0);
+  const Scene scene = sceneOf("cart", body, 10.0);
+  const Vector3d across(-0.8, 0.6, 0);
+  const Measures m = measure(scene, sampled(scene, [&](double t, BodyState& s) {
+                               s.position += 0.999 * t * s.velocity + 1e-3 * t * across;
+                             }));
+  EXPECT_NEAR(m.at("truth_mm"), 1e4, 1e-6);
+  EXPECT_NEAR(m.at("off_mm"), -10.0, 1e-6);
+  EXPECT_NEAR(m.at("aside_mm"), 10.0, 1e-6);
+}
+
+TEST(RivalsJudge, KnowsWhetherAPegStandsOnTheGround) {
+  const Scene scene = sceneOf("peg", cube());
+  const double tilt = 0.01;
+  const Measures m = measure(scene, sampled(scene, [&](double t, BodyState& s) {
+                               s.position[2] += 2e-3 * t;
+                               s.orientation = Eigen::AngleAxisd(tilt * t, Vector3d::UnitX());
+                             }));
+  EXPECT_NEAR(m.at("left_mm"), 2.0, 1e-9);
+  EXPECT_NEAR(m.at("leans_deg"), tilt * 180.0 / std::numbers::pi, 1e-9);
+}
+
 }  // namespace
 }  // namespace rivals

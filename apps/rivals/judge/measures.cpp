@@ -179,6 +179,42 @@ Measures grip(const Scene& scene, const Trajectory& run) {
           {"lost_s", lost}};
 }
 
+/// The last body is held by what the first one carries: how far it has moved in the first.
+Measures carried(const Scene&, const Trajectory& run) {
+  constexpr double kLost = 0.05;  // [m], as in grip()
+  const auto heldIn = [&](std::size_t k) {
+    return run[k].front().pose().inverse() * run[k].back().pose();
+  };
+  const Eigen::Isometry3d start = heldIn(0), end = heldIn(run.size() - 1);
+  const bool lost = !((end.translation() - start.translation()).norm() < kLost);
+  return {{"slipped_mm", kMm * (end.translation() - start.translation()).norm()},
+          {"turned_deg",
+           kDegrees * Eigen::AngleAxisd(start.linear().transpose() * end.linear()).angle()},
+          {"lost", lost ? 1.0 : 0.0}};
+}
+
+/// The first body rolls on wheels as it began.
+Measures cart(const Scene& scene, const Trajectory& run) {
+  const BodyState &start = run.front()[0], &end = run.back()[0];
+  const double t = static_cast<double>(run.size() - 1) * scene.sample;
+  const double speed = start.velocity.norm();
+  const Vector3d along = start.velocity / speed, way = end.position - start.position;
+  return {{"truth_mm", kMm * speed * t},
+          {"off_mm", kMm * (way.dot(along) - speed * t)},
+          {"aside_mm", kMm * std::abs(way.dot(Vector3d::UnitZ().cross(along)))},
+          {"end_speed", end.velocity.norm()}};
+}
+
+/// The last body, a box, should come to stand on the ground.
+Measures peg(const Scene& scene, const Trajectory& run) {
+  const BodyState& end = run.back().back();
+  const double half = scene.bodies.back().shapes[0].size[2];
+  const Vector3d up = end.orientation * Vector3d::UnitZ();
+  return {{"left_mm", kMm * (end.position[2] - half)},
+          {"leans_deg", kDegrees * std::acos(std::clamp(up[2], -1.0, 1.0))},
+          {"end_speed", end.velocity.norm()}};
+}
+
 /// Of every joint, how far the two points are apart that were its anchor.
 Measures rope(const Scene& scene, const Trajectory& run) {
   double gap = 0.0;
@@ -211,9 +247,10 @@ Measures pile(const Scene& scene, const Trajectory& run) {
 
 using Measure = Measures (*)(const Scene&, const Trajectory&);
 const std::map<std::string, Measure> kMeasures = {
-    {"smooth", smooth}, {"free", freeFlight}, {"top", top},         {"thrown", thrown},
-    {"slides", slides}, {"creep", creep},     {"rolling", rolling}, {"drop", drop},
-    {"tower", tower},   {"grip", grip},       {"rope", rope},       {"pile", pile}};
+    {"smooth", smooth},   {"free", freeFlight}, {"top", top},         {"thrown", thrown},
+    {"slides", slides},   {"creep", creep},     {"rolling", rolling}, {"drop", drop},
+    {"tower", tower},     {"grip", grip},       {"rope", rope},       {"pile", pile},
+    {"carried", carried}, {"cart", cart},       {"peg", peg}};
 
 }  // namespace
 

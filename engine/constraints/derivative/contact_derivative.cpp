@@ -166,9 +166,13 @@ PointMotion ContactDerivative::biasChange(const ContactShift& shift, const Conta
       0.5 * (change.shift.distance * omega.cross(n) + d * (dOmega.cross(n) + omega.cross(dn))) -
       0.5 * (dRate * n + rate * dn);
   const Vector3 &wF = side_[flat].turning.angular, &dwF = change.turning[flat].angular;
-  return {
+  PointMotion bias = {
       da[1] - da[0] + dTurns.cross(pdot) + turns.cross(dPdot) - dwF.cross(slips) - wF.cross(dSlips),
       change.A[1].angular - change.A[0].angular - dwF.cross(turns) - wF.cross(dTurns)};
+  if (leftOut_)  // b − n (n·b)
+    bias.linear -= *leftOut_ * change.shift.n +
+                   (change.shift.n.dot(bias_.linear) + c.n_W.dot(bias.linear)) * c.n_W;
+  return bias;
 }
 
 ContactDerivative::Response ContactDerivative::respond(const ContactShift& shift, const Contact& c,
@@ -234,11 +238,13 @@ void ContactDerivative::addContact(const Assembly& in, const Contacts& contacts,
   setSides(in, made);
 
   bias_ = {};
+  leftOut_.reset();
   PointMotion byDistance;
   std::optional<ContactBias> bias;
   if (shift.hasFlat()) bias = contactBias(in.model, in.kinematics, c);
   if (bias) {
     bias_ = {bias->rate.linear, bias->rate.angular};
+    leftOut_ = bias->leftOut;
     column_ = {};
     column_.shift.distance = 1.0;
     byDistance = biasChange(shift, c, column_);

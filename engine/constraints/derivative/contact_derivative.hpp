@@ -82,6 +82,7 @@ class ContactDerivative {
   Matrix3 C_;
   Vector3 force_, moment_;                                      ///< on body B, world
   PointMotion relativeVelocity_, relativeAcceleration_, bias_;  ///< world axes
+  std::optional<double> leftOut_;                               ///< ContactBias::leftOut
   Eigen::Matrix<double, 6, 6> H_;
   Eigen::Matrix<double, 6, ContactLawDerivative::kInputs> response_;  ///< ∂φ/∂z at fixed y
   Eigen::Matrix<double, 3, ContactLawDerivative::kInputs> turn_;
