@@ -284,7 +284,7 @@ Tried tryStep(const Model& model, const Given& given, const State& start, int mo
     SubstepWorkspace& p = *data.parts;
     const bool finite =
         p.treeSubstepping.integrate(model, p.substepSelection, start, data, state) &&
-        state.v.allFinite();
+        state.v.allFinite() && state.q.allFinite();
     if (!finite) moved = SolveStatus::notFinite;
   }
   if (isRefused(moved)) {
