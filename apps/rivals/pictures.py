@@ -55,18 +55,18 @@ def smooth(page, scene, path):
 
 
 def matrix(page, path):
-    entries = page.matrix_entries()
-    figure, axes = plt.subplots(figsize=(0.72 * len(entries) + 3.2, 0.27 * len(verdicts.CASES) + 1.2))
+    columns = page.matrix_columns()
+    figure, axes = plt.subplots(figsize=(0.72 * len(columns) + 3.2, 0.27 * len(verdicts.CASES) + 1.2))
     words = {"held": "", "missed": "missed", "diverged": "diverged", "late": "slow", "cannot": "cannot", "refused": "–", None: "–"}
     for row, case in enumerate(verdicts.CASES):
-        for column, entry in enumerate(entries):
-            v = page.verdict(case, entry)
+        for column, entries in enumerate(columns.values()):
+            v = page.verdict(case, entries)
             axes.add_patch(plt.Rectangle((column, row), 0.96, 0.9, color=COLOURS[v], lw=0))
             axes.text(column + 0.48, row + 0.45, words[v], ha="center", va="center", fontsize=6.5,
                       color="white" if v in ("missed", "diverged", "late") else "#555555")
-    axes.set_xlim(0, len(entries))
+    axes.set_xlim(0, len(columns))
     axes.set_ylim(len(verdicts.CASES), 0)
-    axes.set_xticks([i + 0.48 for i in range(len(entries))], [e.label.replace(", ", ",\n").replace(" (", "\n(") for e in entries], fontsize=7.5)
+    axes.set_xticks([i + 0.48 for i in range(len(columns))], [name.replace(", ", ",\n") for name in columns], fontsize=7.5)
     axes.xaxis.tick_top()
     axes.set_yticks([i + 0.45 for i in range(len(verdicts.CASES))], [c[0] for c in verdicts.CASES], fontsize=7.5)
     axes.tick_params(length=0)

@@ -46,7 +46,8 @@ class Study:
 
     def origin(self, scene, entry):
         code = self.program(entry.engine)
-        return self.hash(self.folder / f"scenes/{scene}.json", pathlib.Path(code[0] if len(code) == 1 else code[1]))
+        files = sorted(HERE.glob("engines/npm*.mjs")) if entry.engine.endswith("_npm") else [pathlib.Path(code[0])]
+        return self.hash(self.folder / f"scenes/{scene}.json", *files)
 
     def states(self, scene, entry, h):
         name = f"{scene}_{entry.key}_{h:g}".replace(" ", "_").replace("=", "-")

@@ -247,28 +247,40 @@ TEST(RivalsJudge, KnowsWhatSlipsInAGrip) {
   }
 }
 
+// One wheel, a ball of 1 kg under a block of 1 kg: v₀ 2/(2 + 0.4) is left when it rolls.
 TEST(RivalsJudge, KnowsHowFarACartRolls) {
   Body body = cube();
   body.start.velocity = Vector3d(0.6, 0.8, 0);
-  const Scene scene = sceneOf("cart", body, 10.0);
+  Scene scene = sceneOf("cart", body, 10.0);
+  Body wheel = cube();
+  wheel.inertia = Vector3d::Constant(0.4 * 0.05 * 0.05);
+  wheel.shapes = {{ShapeKind::sphere, Vector3d(0.05, 0, 0)}};
+  scene.bodies.push_back(wheel);
+  const double rolls = 2.0 / 2.4, slides = (1.0 - rolls) / (0.5 * kGravity);
   const Vector3d across(-0.8, 0.6, 0);
   const Measures m = measure(scene, sampled(scene, [&](double t, BodyState& s) {
-                               s.position += 0.999 * t * s.velocity + 1e-3 * t * across;
+                               const double u = std::min(t, slides);
+                               const double way = u - 0.25 * kGravity * u * u + rolls * (t - u);
+                               s.position += (way - 1e-3 * t) * s.velocity + 1e-3 * t * across;
                              }));
-  EXPECT_NEAR(m.at("truth_mm"), 1e4, 1e-6);
+  EXPECT_NEAR(m.at("truth_mm"), 1e3 * (rolls * 10.0 + 0.5 * slides * (1.0 - rolls)), 1e-6);
   EXPECT_NEAR(m.at("off_mm"), -10.0, 1e-6);
   EXPECT_NEAR(m.at("aside_mm"), 10.0, 1e-6);
 }
 
+// The wall beside it stands 1 mm in it.
 TEST(RivalsJudge, KnowsWhetherAPegStandsOnTheGround) {
-  const Scene scene = sceneOf("peg", cube());
+  Scene scene = sceneOf("peg", cube());
+  scene.bodies.push_back(cube());
+  scene.bodies.front().start.position[0] = 0.199;
+  Trajectory run = sampled(scene, [](double, BodyState&) {});
   const double tilt = 0.01;
-  const Measures m = measure(scene, sampled(scene, [&](double t, BodyState& s) {
-                               s.position[2] += 2e-3 * t;
-                               s.orientation = Eigen::AngleAxisd(tilt * t, Vector3d::UnitX());
-                             }));
+  run.back().back().position[2] += 2e-3;
+  run.back().back().orientation = Eigen::AngleAxisd(tilt, Vector3d::UnitX());
+  const Measures m = measure(scene, run);
   EXPECT_NEAR(m.at("left_mm"), 2.0, 1e-9);
   EXPECT_NEAR(m.at("leans_deg"), tilt * 180.0 / std::numbers::pi, 1e-9);
+  EXPECT_NEAR(m.at("overlap_mm"), 1.0, 1e-9);
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Jolt from npm (JoltPhysics.js), in single precision. Friction of a pair is the root of the product.
-// Damping, sleep and the limit of 47 rad/s are off, gyroscopic forces on; slop 2 cm as it comes,
+// Bodies without a shape have a sensor for one. Damping, sleep and the limit of 47 rad/s are off, gyroscopic forces on; slop 2 cm as it comes,
 // slop=metres another.
 import {cross, times, turned} from './npm_vectors.mjs';
 
@@ -55,7 +55,7 @@ export async function makeJolt(packages, scene, h, settings) {
   const makeBody = (b) => {
     const c = new J.BodyCreationSettings(shapeOf(J, b.shapes), R(b.position), Q(b.orientation), J.EMotionType_Dynamic, kMoving);
     Object.assign(c, {mFriction: scene.friction, mRestitution: 0, mLinearDamping: 0, mAngularDamping: 0, mMaxAngularVelocity: 1e4,
-      mMaxLinearVelocity: 1e4, mAllowSleeping: false, mApplyGyroscopicForce: true, mIsSensor: false,
+      mMaxLinearVelocity: 1e4, mAllowSleeping: false, mApplyGyroscopicForce: true, mIsSensor: b.shapes.length === 0,
       mOverrideMassProperties: J.EOverrideMassProperties_MassAndInertiaProvided});
     const mass = c.mMassPropertiesOverride;
     mass.mMass = b.mass;

@@ -193,24 +193,39 @@ Measures carried(const Scene&, const Trajectory& run) {
           {"lost", lost ? 1.0 : 0.0}};
 }
 
-/// The first body rolls on wheels as it began.
+/// The first body on wheels, the others, that slide until they roll. What pulls a wheel back turns
+/// it: M (v₀ − v) = Σ I ω/r = v Σ I/r². The slide is over after (v₀ − v)/(μ g).
 Measures cart(const Scene& scene, const Trajectory& run) {
   const BodyState &start = run.front()[0], &end = run.back()[0];
   const double t = static_cast<double>(run.size() - 1) * scene.sample;
-  const double speed = start.velocity.norm();
+  const double speed = start.velocity.norm(), rub = scene.friction * scene.gravity.norm();
+  double turned = 0.0;
+  for (std::size_t i = 1; i < scene.bodies.size(); ++i)
+    turned += scene.bodies[i].inertia[1] / std::pow(scene.bodies[i].shapes[0].size[0], 2.0);
+  const double rolls = speed * scene.mass() / (scene.mass() + turned),
+               slides = (speed - rolls) / rub;
+  const double truth = speed * slides - 0.5 * rub * slides * slides + rolls * (t - slides);
   const Vector3d along = start.velocity / speed, way = end.position - start.position;
-  return {{"truth_mm", kMm * speed * t},
-          {"off_mm", kMm * (way.dot(along) - speed * t)},
+  return {{"truth_mm", kMm * truth},
+          {"off_mm", kMm * (way.dot(along) - truth)},
           {"aside_mm", kMm * std::abs(way.dot(Vector3d::UnitZ().cross(along)))},
           {"end_speed", end.velocity.norm()}};
 }
 
-/// The last body, a box, should come to stand on the ground.
+/// The last body, a box, should come to stand on the ground, and press into no wall of the first on
+/// the way.
 Measures peg(const Scene& scene, const Trajectory& run) {
+  double overlap = 0.0;
+  const Shape& box = scene.bodies.back().shapes[0];
+  for (const auto& states : run)
+    for (const Shape& wall : scene.bodies.front().shapes)
+      overlap = std::max(overlap, -distanceOf(wall, states.front().pose() * wall.pose, box,
+                                              states.back().pose() * box.pose));
   const BodyState& end = run.back().back();
   const double half = scene.bodies.back().shapes[0].size[2];
   const Vector3d up = end.orientation * Vector3d::UnitZ();
   return {{"left_mm", kMm * (end.position[2] - half)},
+          {"overlap_mm", kMm * overlap},
           {"leans_deg", kDegrees * std::acos(std::clamp(up[2], -1.0, 1.0))},
           {"end_speed", end.velocity.norm()}};
 }

@@ -46,8 +46,8 @@ Energies energiesOf(const Scene& scene, const std::vector<BodyState>& states);
 ///   tower    sinks_mm of the top, leans_deg, drift_mm, end_speed
 ///   grip     fell_mm, creep_um_s over the second half, lost_s: when it had fallen 50 mm, or −1
 ///   carried  slipped_mm, turned_deg of the last body in the first one, lost: 1 where it fell
-///   cart     off_mm: along, aside_mm: from where rolling on brings it
-///   peg      left_mm: above the ground at the end, leans_deg
+///   cart     off_mm: along, aside_mm: from where its wheels slide and then roll
+///   peg      left_mm: above the ground at the end, leans_deg, overlap_mm: the deepest in a wall
 ///   rope     gap_mm: the widest of a joint, energy_percent
 ///   pile     deepest_mm ever, rest_mm: in the last second, end_kinetic, lowest_m
 Measures measure(const Scene& scene, const Trajectory& run);
