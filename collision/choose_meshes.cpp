@@ -80,7 +80,7 @@ class Told {
 
 void chooseMeshes(Model& model, PreparedMeshes& meshes) {
   std::map<const Mesh*, MeshFacts> known;
-  Told filled, openHulls, openSurfaces, turned, rooms;
+  Told filled, openHulls, openSurfaces, turned, rooms, asked;
   for (Geometry& g : model.geometries) {
     if (g.shape.kind == ShapeKind::triangles) {
       if (meshes.surface(g.shape.mesh)->isConvex())
@@ -89,13 +89,18 @@ void chooseMeshes(Model& model, PreparedMeshes& meshes) {
                defects.insideOutShells > 0 && defects.openEdges == 0)
         rooms.add(g, "");
     }
-    if (!g.automaticMesh) continue;
+    const bool isFixed = g.body == 0, isAsked = !g.automaticMesh;
+    if (isAsked && !(isFixed && g.shape.kind == ShapeKind::mesh)) continue;
     g.automaticMesh = false;
     const auto [at, isNew] = known.try_emplace(g.shape.mesh.get());
     if (isNew) at->second = factsOf(g.shape.mesh, meshes);
     const MeshFacts& facts = at->second;
     if (facts.isHull()) continue;
-    const bool isFixed = g.body == 0;
+    if (isAsked) {  // open ones were told where they were read
+      if (!facts.defects.any())
+        asked.add(g, ": " + liters(facts.volume) + ", hull " + liters(facts.hullVolume));
+      continue;
+    }
     const bool isOpen = facts.defects.openEdges > 0;
     if (facts.defects.turnedEdges > 0 || facts.defects.insideOutShells > 0) {
       turned.add(g, facts.defects.turnedEdges > 0 ? "" : ", which faces inwards");
@@ -120,6 +125,9 @@ void chooseMeshes(Model& model, PreparedMeshes& meshes) {
   }
   filled.appendTo(model.warnings, "collide as their convex hull, which fills the mesh: ",
                   "; collide_as: triangles, or --meshes triangles, keeps its hollows");
+  asked.appendTo(model.warnings,
+                 "collide as their convex hull, as asked for, which fills the mesh: ",
+                 "; fixed to the world they would collide as their triangles");
   openHulls.appendTo(model.warnings, "collide as their convex hull, the mesh is not closed: ", "");
   openSurfaces.appendTo(model.warnings,
                         "collide from the side that their triangles face, not closed: ", "");

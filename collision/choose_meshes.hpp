@@ -15,7 +15,8 @@
 ///
 /// A mesh that is not closed has no volume: fixed to the world it collides as its triangles, and
 /// what moves as its hull, both with a warning. A mesh whose triangles face mixed sides collides as
-/// its hull, with a warning.
+/// its hull, with a warning. One that is fixed to the world and was asked for as its hull is told
+/// where that fills more than 5 %.
 
 #include "softgauss/collision/prepared_meshes.hpp"
 #include "softgauss/engine/model/model.hpp"

@@ -45,6 +45,9 @@ ordered_json toJson(const GoalOutcome& goal) {
   json["held_back_by"] = ordered_json::array();
   for (const GoalOutcome::Cause& cause : goal.causes)
     json["held_back_by"].push_back({{"what", cause.what}, {"share", cause.share}});
+  if (goal.otherWeight)
+    json["with_weight"] = {{"weight", goal.otherWeight->weight},
+                           {"error" + suffix, goal.otherWeight->error}};
   return json;
 }
 

@@ -45,6 +45,11 @@ struct GoalOutcome {
   bool began = true;                    ///< it has acted, and had a figure
   std::string reason = {};              ///< why it was not met; empty where it was
   std::vector<Cause> causes = {};       ///< the largest first, their shares add up to 1
+  /// Where weights hold it back: one with which it was found to leave less, and how much.
+  struct OtherWeight {
+    double weight, error;
+  };
+  std::optional<OtherWeight> otherWeight = {};
 
   template <class Archive>
   void archive(Archive& a) {

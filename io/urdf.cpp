@@ -15,6 +15,7 @@
 #include "softgauss/io/detail/unit_mistakes.hpp"
 #include "softgauss/io/detail/urdf_check.hpp"
 #include "softgauss/io/detail/urdf_description.hpp"
+#include "softgauss/io/detail/urdf_inertia.hpp"
 #include "softgauss/io/mesh.hpp"
 
 namespace softgauss::io {
@@ -30,7 +31,8 @@ class ShapeReader {
       : finder_(urdf, options.packagePaths), meshes_(options.largestMesh), options_(options) {}
 
   /// Throws where the mesh is missing or cannot be read.
-  GeometrySpec collision(const UrdfShape& shape, const std::string& link, std::size_t index) {
+  GeometrySpec collision(const UrdfShape& shape, const std::string& link, std::size_t index,
+                         const std::optional<double>& friction) {
     GeometrySpec spec;
     spec.name = fmt::format("{}/{}", link, index);
     spec.link = link;
@@ -39,6 +41,10 @@ class ShapeReader {
     spec.where = shape.element.where();
     const auto material = options_.linkMaterials.find(link);
     spec.material = material == options_.linkMaterials.end() ? options_.material : material->second;
+    if (friction && material == options_.linkMaterials.end() && options_.material == Material{}) {
+      spec.material.slidingFriction = *friction;
+      spec.material.priority = 1;  // else the larger friction of two surfaces counts
+    }
     if (shape.shape.kind != ShapeKind::mesh) return spec;
     spec.shape = options_.meshes == MeshUse::triangles ? Shape::surface(mesh(shape))
                                                        : Shape::hull(mesh(shape));
@@ -46,6 +52,11 @@ class ShapeReader {
     if (options_.meshes == MeshUse::hull)
       unsoundHulls_.look(*spec.shape.mesh, "link '" + link + "'");
     return spec;
+  }
+
+  /// The shape with its mesh read, as its solid.
+  Shape solid(const UrdfShape& shape) {
+    return shape.shape.isMesh() ? Shape::surface(mesh(shape)) : shape.shape;
   }
 
   /// Nothing, and a note, where a visual cannot be shown: that never stops a simulation.
@@ -141,6 +152,16 @@ class ShapeReader {
   detail::UnsoundHulls unsoundHulls_;
 };
 
+/// With links and joints, as yet without shapes.
+ModelBuilder begun(const UrdfDescription& urdf, const UrdfOptions& options) {
+  ModelBuilder builder(urdf.name);
+  builder.base = options.base;
+  builder.zeroEffortIsUnlimited = options.zeroEffortIsUnlimited;
+  for (const detail::UrdfLink& link : urdf.links) builder.link(link.spec);
+  for (const JointSpec& joint : urdf.joints) builder.joint(joint);
+  return builder;
+}
+
 }  // namespace
 
 ModelBuilder readUrdf(const std::filesystem::path& file, const UrdfOptions& options,
@@ -151,11 +172,7 @@ ModelBuilder readUrdf(const std::filesystem::path& file, const UrdfOptions& opti
   const detail::XmlFile xml(name, text);
   UrdfDescription urdf = detail::describeUrdf(xml.robot());
 
-  ModelBuilder builder(urdf.name);
-  builder.base = options.base;
-  builder.zeroEffortIsUnlimited = options.zeroEffortIsUnlimited;
-  for (const detail::UrdfLink& link : urdf.links) builder.link(link.spec);
-  for (const JointSpec& joint : urdf.joints) builder.joint(joint);
+  ModelBuilder builder = begun(urdf, options);
   if (const std::string refusal = detail::compareWithUrdfdom(xml, urdf); !refusal.empty()) {
     // The builder names the line of most things that urdfdom refuses.
     builder.build();
@@ -163,10 +180,18 @@ ModelBuilder readUrdf(const std::filesystem::path& file, const UrdfOptions& opti
   }
 
   ShapeReader shapes(file, options);
+  if (options.inferInertia) {
+    for (std::string& told :
+         detail::inferInertia(urdf, options.base == BaseKind::fixed,
+                              [&](const UrdfShape& shape) { return shapes.solid(shape); }))
+      urdf.warnings.push_back(std::move(told));
+    builder = begun(urdf, options);
+  }
   for (detail::UrdfLink& link : urdf.links) {
     for (std::size_t i = 0; i < link.collisions.size(); ++i) {
       if (link.collisions[i].isPoint) continue;
-      GeometrySpec collision = shapes.collision(link.collisions[i], link.spec.name, i);
+      GeometrySpec collision =
+          shapes.collision(link.collisions[i], link.spec.name, i, link.friction);
       link.collisions[i].shape.mesh = collision.shape.mesh;
       builder.geometry(std::move(collision));
     }

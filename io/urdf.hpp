@@ -10,6 +10,8 @@
 /// (transmissions, sensors, …), and what a user should know, is in Model::warnings. Angles [rad],
 /// SI units throughout.
 ///
+/// A <gazebo> of a link gives its friction where nobody else does, by mu1 and mu2, and that then
+/// counts against surfaces of other files.
 /// effort is the control limits, |u| ≤ effort; 0 means not actuated (ModelBuilder says which);
 /// none means no box. A mimic joint is coupled to its leader (4.6) and not actuated.
 
@@ -41,6 +43,7 @@ struct UrdfOptions {
   MeshUse meshes = MeshUse::automatic;        ///< of collision shapes
   std::uintmax_t largestMesh = kLargestMesh;  ///< a file that is larger is not read [bytes]
   bool zeroEffortIsUnlimited = false;
+  bool inferInertia = false;                      ///< of moving links without, from their shapes
   Material material;                              ///< of collision shapes
   std::map<std::string, Material> linkMaterials;  ///< of those of some links instead
 };

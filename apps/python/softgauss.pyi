@@ -198,6 +198,7 @@ class Simulation:
         effects: Literal["auto", "none"] | Sequence[str] = ...,
         without: Sequence[str] = ...,
         zero_effort: Literal["passive", "unlimited"] = ...,
+        infer_inertia: bool = ...,
         most_dofs: int = ...,
         ignore_velocity_limits: bool = ...,
         no_balance: bool = ...,

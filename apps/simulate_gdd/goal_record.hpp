@@ -19,8 +19,9 @@ class GoalRecord {
   struct Track {
     const gdd::Goal* goal;
     io::GoalOutcome outcome;
-    gdd::GoalError last;  ///< while the goal acted
-    bool acts = false;    ///< in the last step seen
+    gdd::GoalError last;   ///< while the goal acted
+    bool acts = false;     ///< in the last step seen
+    double weighed = 0.0;  ///< share of what holds it back that is other weights, at the end
 
     template <class Archive>
     void archive(Archive& a) {

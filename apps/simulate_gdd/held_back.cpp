@@ -75,6 +75,9 @@ HeldGoal HeldBack::of(const GoalRecord::Track& track, const SeenStep& step) {
   result.singular = opposition.singular;
   for (const gdd::Opponent& o : opposition.opponents) {
     const std::string name = nameOf(o, goal);
+    if (o.kind == gdd::Opponent::Kind::controlCost ||
+        (o.kind == gdd::Opponent::Kind::goal && o.index != goal))
+      result.weighed += o.share;
     const auto same = std::find_if(result.causes.begin(), result.causes.end(),
                                    [&](const auto& cause) { return cause.what == name; });
     if (same == result.causes.end())

@@ -20,6 +20,7 @@ struct HeldGoal {
   /// What it pulls with, over what it would at rest (gdd::Opposition::held); 1 where nobody knows.
   double held = 1.0;
   bool singular = false;  ///< gdd::Opposition::singular
+  double weighed = 0.0;   ///< share of what its own weight is set against
 };
 
 class HeldBack {

@@ -105,6 +105,9 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
                  "meaning of effort=\"0\": passive (not actuated) or unlimited")
       ->check(CLI::IsMember({"passive", "unlimited"}))
       ->group(scene);
+  app.add_flag("--infer-inertia", options.inferInertia,
+               "moving links without mass or inertia have that of their shapes, at 1000 kg/m³")
+      ->group(scene);
   app.add_flag("--ignore-velocity-limits", options.ignoreVelocityLimits,
                "goals alone decide how fast joints move and arrive at an end of their range")
       ->group(scene);

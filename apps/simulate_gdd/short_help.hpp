@@ -46,7 +46,7 @@ Output:
   --plot FILE.svg                  curves
   --quiet                          errors only
 
---help-all lists all options; docs/README.md tells where to read on.
+--help-all lists all options; docs/README.md, installed in share/softgauss, where to read on.
 )";
 
 /// kShortHelp for --help; --help-all as CLI11 makes it.

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "apps/simulate_gdd/names.hpp"
+#include "apps/simulate_gdd/other_weights.hpp"
 #include "apps/simulate_gdd/reach_limit.hpp"
 #include "softgauss/gdd/goals/reach.hpp"
 #include "softgauss/io/figure_text.hpp"
@@ -54,7 +55,7 @@ bool reaches(const gdd::GoalDirectedController& controller) {
 
 }  // namespace
 
-Verdict::Verdict(const gdd::GoalDirectedController& controller, const gdd::GoalContext& start,
+Verdict::Verdict(gdd::GoalDirectedController& controller, const gdd::GoalContext& start,
                  bool passive, const BaseNotes& bases)
     : model_(start.model),
       controller_(controller),
@@ -98,6 +99,7 @@ void Verdict::finish(const SeenStep& end) {
       findReason(track, end);
   }
   heldBack_.forget();
+  OtherWeights(model_, controller_, standing_).tell(goals_.tracks(), end);
 }
 
 std::vector<std::string> Verdict::lying(const Kinematics& k, double time) const {
@@ -189,6 +191,7 @@ std::string Verdict::heldText(GoalRecord::Track& track, const SeenStep& step) {
     o.causes.clear();
     return {};
   }
+  track.weighed = (1.0 - out) * held.weighed;
   for (const io::GoalOutcome::Cause& cause : held.causes)
     o.causes.push_back({cause.what, (1.0 - out) * cause.share});
   nameRanges(o.causes);
@@ -209,6 +212,7 @@ std::string Verdict::actuationReason(const GoalRecord::Track& track) const {
 void Verdict::findReason(GoalRecord::Track& track, const SeenStep& step) {
   io::GoalOutcome& o = track.outcome;
   o.causes.clear();
+  track.weighed = 0.0;
   std::vector<std::string> parts;
   bool lost = false;  // nothing that weighs is the reason
   for (const StandingOutcome& s : standing_.outcomes(step.data.kinematics, step.record.time))
@@ -219,7 +223,7 @@ void Verdict::findReason(GoalRecord::Track& track, const SeenStep& step) {
     }
   if (const int dof = track.last.dof; dof >= 0)
     parts.push_back("farthest is " + nameText(model_.jointNames[model_.dofs[dof].body]));
-  parts.push_back(reachReason(track, step));
+  if (!lost) parts.push_back(reachReason(track, step));  // of one that lies it says nothing
   if (joints_.hasSeen()) {
     parts.push_back(actuationReason(track));
     if (lost || !parts.back().empty())

@@ -32,8 +32,8 @@ struct SeenStep {
 class Verdict {
  public:
   /// `start`: the initial state, whose stages are computed. `passive`: nothing drives the scene.
-  Verdict(const gdd::GoalDirectedController& controller, const gdd::GoalContext& start,
-          bool passive, const BaseNotes& bases);
+  Verdict(gdd::GoalDirectedController& controller, const gdd::GoalContext& start, bool passive,
+          const BaseNotes& bases);
 
   /// Returns what is to be told at once.
   std::vector<std::string> observe(const SeenStep& step);
@@ -69,7 +69,7 @@ class Verdict {
   void tellControls(io::Summary& summary) const;
 
   const Model& model_;
-  const gdd::GoalDirectedController& controller_;
+  gdd::GoalDirectedController& controller_;
   BaseOrigin baseOrigin_;
   std::string straightKnees_;
   std::vector<char> bolted_;  ///< (trees) looks as if it were to be bolted down

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "softgauss/io/detail/text.hpp"
@@ -49,7 +51,7 @@ void readSolid(const XmlElement& solid, UrdfShape& shape) {
   } else if (tag == "sphere") {
     shape.shape = Shape::sphere(positive(solid.requiredNumber("radius"), "radius", solid, shape));
     shape.isPoint = shape.shape.radius == 0.0;
-  } else if (tag == "cylinder" || (tag == "capsule" && solid.urdfMinorVersion() >= 1)) {
+  } else if (tag == "cylinder" || tag == "capsule") {
     const double radius = positive(solid.requiredNumber("radius"), "radius", solid, shape);
     const double length = positive(solid.requiredNumber("length"), "length", solid, shape);
     shape.isPoint = radius == 0.0 && length == 0.0;
@@ -62,13 +64,8 @@ void readSolid(const XmlElement& solid, UrdfShape& shape) {
     if ((shape.scale.array() == 0.0).any())
       shape.defect = ModelError(solid.where(), solid.label(), "scale holds a zero, expected none");
   } else {
-    const char* hint = tag == "capsule" ? " (capsule is of URDF 1.1, which version=\"1.1\" in "
-                                          "<robot> says; in 1.0 a cylinder with a sphere of its "
-                                          "radius on each end is simulated as a capsule)"
-                                        : "";
-    shape.defect =
-        ModelError(solid.where(), solid.label(),
-                   fmt::format("unknown geometry, expected box, sphere, cylinder or mesh{}", hint));
+    shape.defect = ModelError(solid.where(), solid.label(),
+                              "unknown geometry, expected box, sphere, cylinder, capsule or mesh");
   }
 }
 
@@ -81,7 +78,7 @@ UrdfShape readShape(const XmlElement& element) {
   // What has a prefix is another tool's.
   std::erase_if(solids, [](const XmlElement& e) { return e.tag().find(':') != std::string::npos; });
   if (solids.size() != 1)
-    geometry.fail(fmt::format("holds {}, expected one box, sphere, cylinder or mesh",
+    geometry.fail(fmt::format("holds {}, expected one box, sphere, cylinder, capsule or mesh",
                               counted(solids.size(), "shape")));
   readSolid(solids.front(), shape);
   return shape;
@@ -142,6 +139,36 @@ UrdfLink readLink(const XmlElement& unnamed, UrdfDescription& urdf) {
   return link;
 }
 
+/// A number in an element of Gazebo's, which has it as text or as an attribute `value`.
+std::optional<double> gazeboNumber(const XmlElement& extension, const char* tag) {
+  const std::vector<XmlElement> found = extension.children(tag);
+  if (found.empty()) return std::nullopt;
+  const std::string text = found.front().text("value").value_or(found.front().content());
+  const std::optional<std::vector<double>> numbers = parseNumbers(text);
+  if (!numbers || numbers->size() != 1 || !((*numbers)[0] >= 0.0) || !std::isfinite((*numbers)[0]))
+    extension.fail(fmt::format("{} is {}, expected one number, 0 or more", tag, quotedText(text)));
+  return (*numbers)[0];
+}
+
+/// The friction of links, of `<gazebo reference=…>` with mu1 and mu2; the smaller of the two.
+void readGazebo(const XmlElement& robot, UrdfDescription& urdf) {
+  std::vector<std::string> unequal;
+  for (const XmlElement& unnamed : robot.children("gazebo")) {
+    const std::string name = unnamed.firstText("reference");
+    const XmlElement extension = unnamed.named("gazebo of " + quotedText(name));
+    const auto link = std::find_if(urdf.links.begin(), urdf.links.end(),
+                                   [&](const UrdfLink& l) { return l.spec.name == name; });
+    if (link == urdf.links.end()) continue;
+    const std::optional<double> mu1 = gazeboNumber(extension, "mu1"),
+                                mu2 = gazeboNumber(extension, "mu2");
+    if (!mu1 && !mu2) continue;
+    link->friction = std::min(mu1.value_or(kInfinity), mu2.value_or(kInfinity));
+    if (mu1 && mu2 && *mu1 != *mu2) unequal.push_back(name);
+  }
+  if (!unequal.empty())
+    urdf.warnings.push_back("mu1 and mu2 differ, the smaller is taken: " + listed(unequal));
+}
+
 /// Moments of inertia that no distribution of mass has: the largest exceeds the sum of the others.
 bool breaksTriangleInequality(const LinkSpec& link) {
   if (link.mass <= 0.0) return false;
@@ -200,6 +227,7 @@ UrdfDescription describeUrdf(const XmlElement& robot) {
         "inertia that no body can have (one principal moment exceeds the sum of the other two), "
         "used as written: " +
         listed(odd));
+  readGazebo(robot, urdf);
   const std::vector<std::string> ignored = ignoredParts(robot);
   if (!ignored.empty()) urdf.warnings.push_back("ignored: " + listed(ignored, 40));
   for (std::string& warning : urdf.warnings) warning = validUtf8(warning);

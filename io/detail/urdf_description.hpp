@@ -29,6 +29,7 @@ struct UrdfShape {
 struct UrdfLink {
   LinkSpec spec;
   bool hasInertial = false;
+  std::optional<double> friction;  ///< of <gazebo>: mu1, mu2
   std::vector<UrdfShape> collisions;
   std::vector<UrdfShape> visuals;
 };

@@ -49,6 +49,29 @@ const std::vector<KnownElement>& knownElements() {
   return known;
 }
 
+/// What <gazebo> says of physics, but for mu1 and mu2, which are read.
+const std::vector<std::string_view> kGazeboPhysics = {"kp",
+                                                      "kd",
+                                                      "dampingFactor",
+                                                      "maxVel",
+                                                      "minDepth",
+                                                      "maxContacts",
+                                                      "selfCollide",
+                                                      "self_collide",
+                                                      "gravity",
+                                                      "turnGravityOff",
+                                                      "static",
+                                                      "springStiffness",
+                                                      "springReference",
+                                                      "implicitSpringDamper",
+                                                      "stopCfm",
+                                                      "stopErp",
+                                                      "fudgeFactor",
+                                                      "cfmDamping",
+                                                      "disableFixedJointLumping",
+                                                      "preserveFixedJoint",
+                                                      "provideFeedback"};
+
 const KnownElement* findElement(std::string_view tag) {
   for (const KnownElement& known : knownElements())
     if (known.tag == tag) return &known;
@@ -109,8 +132,23 @@ bool isReadAttribute(std::string_view tag, std::string_view attribute) {
 std::vector<std::string> ignoredParts(const XmlElement& robot) {
   std::map<std::string, int> counts;
   collect(robot, false, counts);
-  std::vector<std::string> parts;
-  for (const auto& [part, count] : counts) parts.push_back(fmt::format("{} {}", count, part));
+  std::vector<std::string> parts, physics;
+  bool readsFriction = false;
+  for (const XmlElement& gazebo : robot.children("gazebo"))
+    for (const XmlElement& child : gazebo.children()) {
+      const std::string tag = child.tag();
+      readsFriction |= tag == "mu1" || tag == "mu2";
+      if (contains(kGazeboPhysics, tag) &&
+          std::find(physics.begin(), physics.end(), tag) == physics.end())
+        physics.push_back(tag);
+    }
+  for (const auto& [part, count] : counts) {
+    parts.push_back(fmt::format("{} {}", count, part));
+    if (part != "<gazebo>") continue;
+    if (readsFriction) parts.back() += " but for mu1 and mu2";
+    if (!physics.empty())
+      parts.back() += fmt::format(" (of its physics {})", listed(physics, physics.size()));
+  }
   return parts;
 }
 

@@ -119,6 +119,11 @@ std::vector<std::string> XmlElement::attributes() const {
   return names;
 }
 
+std::string XmlElement::content() const {
+  const char* text = element_->GetText();
+  return text ? text : "";
+}
+
 std::optional<std::string> XmlElement::text(const char* attribute) const {
   // Written twice, XML is not well formed and readers differ in which one they take.
   int count = 0;

@@ -51,6 +51,7 @@ class XmlElement {
   std::vector<std::string> attributes() const;
 
   std::optional<std::string> text(const char* attribute) const;
+  std::string content() const;  ///< the text between its tags
   /// What is no physics: "" where it is not there, the first where it is there twice.
   std::string firstText(const char* attribute) const;
   std::string requiredText(const char* attribute) const;  ///< not empty, and UTF-8

@@ -204,6 +204,7 @@ const std::vector<NamedOption>& NamedOption::all() {
       {"effects", "auto, none or a list of effects", false, true, setEffects},
       {"without", "a list of mechanisms", false, true, setWithout},
       {"zero_effort", "one of passive, unlimited", false, false, setZeroEffort},
+      {"infer_inertia", "true or false", false, false, setFlag<&O::inferInertia>},
       {"no_balance", "true or false", false, false, setFlag<&O::noBalance>},
       {"ignore_velocity_limits", "true or false", false, false, setFlag<&O::ignoreVelocityLimits>},
       {"gdd_solver", "one of active-set, augmented-lagrangian", false, true, setSolver},

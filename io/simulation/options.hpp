@@ -33,6 +33,7 @@ struct SimulationOptions {
   std::optional<EffectSet> effects;        ///< absent: the file's own, or all
   bool zeroEffortIsUnlimited = false;
   bool ignoreVelocityLimits = false;  ///< goals alone decide how fast joints move
+  bool inferInertia = false;          ///< of links of a URDF without, from their shapes
   int mostDofs = 2000;                ///< more take minutes to load and gigabytes to hold
   std::optional<io::MeshUse> meshes;  ///< absent: automatic, or hull as MuJoCo has it
   bool exactDiagonal = false;

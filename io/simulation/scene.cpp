@@ -43,6 +43,7 @@ io::UrdfOptions urdfOptions(const SimulationOptions& options) {
   urdf.largestMesh = static_cast<std::uintmax_t>(options.largestMesh * (1 << 20));
   urdf.base = options.base;
   urdf.zeroEffortIsUnlimited = options.zeroEffortIsUnlimited;
+  urdf.inferInertia = options.inferInertia;
   urdf.meshes = options.meshes.value_or(io::MeshUse::automatic);
   return urdf;
 }

@@ -115,9 +115,16 @@ TEST(ChooseMeshes, MixedSidesAreHullsAndTold) {
 }
 
 TEST(ChooseMeshes, WhatWasSaidStays) {
-  const Chosen chosen = choose(ringSurface(0.5, 0.1, 24, 12), true, false);
-  EXPECT_EQ(chosen.kind, ShapeKind::mesh);
-  EXPECT_EQ(chosen.warnings, "");
+  const Chosen moving = choose(ringSurface(0.5, 0.1, 24, 12), false, false);
+  EXPECT_EQ(moving.kind, ShapeKind::mesh);
+  EXPECT_EQ(moving.warnings, "");
+}
+
+TEST(ChooseMeshes, AHullThatWasAskedForAndFillsWhatIsFixedIsTold) {
+  const Chosen ring = choose(ringSurface(0.5, 0.1, 24, 12), true, false);
+  EXPECT_EQ(ring.kind, ShapeKind::mesh);
+  for (const char* words : {"as asked for", "ring", "93.2 l", "hull 206 l"})
+    EXPECT_TRUE(says(ring, words)) << words << ": " << ring.warnings;
 }
 
 }  // namespace

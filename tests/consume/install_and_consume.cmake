@@ -35,6 +35,11 @@ endfunction()
 
 file(REMOVE_RECURSE ${build}/consume)
 run(${CMAKE_COMMAND} --install ${build} --prefix ${prefix})
+foreach(page IN ITEMS README.md reference/scenes.md reference/goals.md pictures/humanoid.png)
+  if(NOT EXISTS ${prefix}/share/softgauss/docs/${page})
+    message(FATAL_ERROR "docs/${page}, which --help names, is not installed")
+  endif()
+endforeach()
 
 build_project(${CMAKE_CURRENT_LIST_DIR} ${build}/consume/build)
 run(${build}/consume/build/consume ${prefix}/share/softgauss/robots/arm.urdf)

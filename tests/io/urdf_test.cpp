@@ -169,6 +169,34 @@ TEST(UrdfWarning, CountsWhatIsNotRead) {
   EXPECT_EQ(m.warnings[0], "ignored: 2 <gazebo>, 1 <transmission>");
 }
 
+TEST(UrdfWarning, SaysWhatOfGazeboIsPhysics) {
+  const Model m = load(with(kSampleUrdf, "</robot>",
+                            "<gazebo reference=\"arm\"><mu1>0.3</mu1><kp>1e6</kp><material>Red"
+                            "</material></gazebo><gazebo><selfCollide>1</selfCollide></gazebo>"
+                            "</robot>"));
+  ASSERT_EQ(m.warnings.size(), 1u);
+  EXPECT_EQ(m.warnings[0],
+            "ignored: 2 <gazebo> but for mu1 and mu2 (of its physics kp, selfCollide)");
+}
+
+// As text or as an attribute. With a priority, for of two surfaces else the larger friction counts.
+TEST(UrdfFriction, IsThatOfGazeboWhereNobodyElseGivesIt) {
+  const std::string text =
+      with(kSampleUrdf, "</robot>",
+           "<gazebo reference=\"arm\"><mu1>0.3</mu1><mu2 value=\"0.2\"/></gazebo></robot>");
+  const Model m = load(text);
+  EXPECT_EQ(m.geometries[0].material, Material{});
+  EXPECT_EQ(m.geometries[1].material.slidingFriction, 0.2);
+  EXPECT_EQ(m.geometries[1].material.priority, 1);
+  EXPECT_TRUE(hasWarning(m, "mu1 and mu2 differ, the smaller is taken: arm"));
+  UrdfOptions options;
+  options.material.slidingFriction = 0.5;
+  EXPECT_EQ(load(text, options).geometries[1].material, options.material);
+  options = {};
+  options.linkMaterials["arm"].slidingFriction = 0.7;
+  EXPECT_EQ(load(text, options).geometries[1].material, options.linkMaterials["arm"]);
+}
+
 TEST(UrdfWarning, APoseOfZeroWhereNoneIsReadMovesNothing) {
   const Model m = load(with(with(kSampleUrdf, "<axis", "<axis rpy=\"0 0.0 0\""), "<inertial><mass",
                             "<origin xyz=\"0 0 0\" quat_xyzw=\"0 0 0 1\"/><inertial><mass"));

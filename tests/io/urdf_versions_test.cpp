@@ -52,8 +52,9 @@ TEST(UrdfVersion, EveryPoseMayHaveAQuaternion) {
   EXPECT_NEAR(m.bodies[1].I_Bcm.xx, 0.2, 1e-15) << "four digits are meant to be a unit quaternion";
 }
 
-TEST(UrdfVersion, OneOneHasCapsules) {
-  for (const char* version : {"1.1", "1.2"}) {
+// Many a file of none or of 1.0 has them too.
+TEST(UrdfVersion, CapsulesAreReadInEvery) {
+  for (const char* version : {"1.0", "1.1", "1.2"}) {
     const Model m = load(ofVersion(version, with(kSampleUrdf, "<cylinder", "<capsule")));
     EXPECT_EQ(m.geometries[1].shape.kind, ShapeKind::capsule);
     EXPECT_EQ(m.geometries[1].shape.radius, 0.1);

@@ -206,7 +206,7 @@ void checkMovingInertias(const Model& model, const std::vector<MergedBody>& merg
     if (!carriesMass[idx(b)] && armature == 0.0)
       fail("moves on joint '" + model.jointNames[idx(b)] +
            "' but neither it nor anything that hangs from it has mass; the mass matrix would be "
-           "singular; expected an <inertial> in one of them");
+           "singular; expected an <inertial> in one of them, or --infer-inertia");
     if (body.massless) continue;
     const Vector3 moments = principalMoments(body.I_Bcm.matrix());
     if (!std::isfinite(body.mass) || !body.com.allFinite() || !moments.allFinite())
@@ -218,7 +218,8 @@ void checkMovingInertias(const Model& model, const std::vector<MergedBody>& merg
                            momentsText(principalMoments(from.negative->I_Lcm)) +
                            ", and so has the body that it is part of; expected none");
     fail("moves, and its inertia with all links fixed to it has principal moments " +
-         momentsText(moments) + ", expected all positive");
+         momentsText(moments) +
+         ", expected all positive; --infer-inertia takes it from shapes where it is missing");
   }
 }
 
