@@ -54,14 +54,16 @@ class EqualityReader {
       spec.X_LAF = a.X_BF;
       spec.X_LBF = b.X_BF;
     } else {
-      Transform X_AB = poseOf(a).inverse() * poseOf(b);
+      e.read("anchor", spec.X_LBF.p);
       std::array<double, 7> pose{};
       const bool isGiven = e.readAll("relpose", pose);
       if (isGiven && (pose[3] != 0.0 || pose[4] != 0.0 || pose[5] != 0.0 || pose[6] != 0.0))
-        X_AB = {Quaternion(pose[3], pose[4], pose[5], pose[6]).normalized().toRotationMatrix(),
-                {pose[0], pose[1], pose[2]}};
-      e.read("anchor", spec.X_LBF.p);
-      spec.X_LAF = X_AB * spec.X_LBF;
+        // The place of the anchor, not of body 2, in body 1.
+        spec.X_LAF = {
+            Quaternion(pose[3], pose[4], pose[5], pose[6]).normalized().toRotationMatrix(),
+            {pose[0], pose[1], pose[2]}};
+      else
+        spec.X_LAF = poseOf(a).inverse() * poseOf(b) * spec.X_LBF;
     }
     e.read("torquescale", spec.torqueScale);
     spec.impedance = impedance;

@@ -56,11 +56,13 @@ Inertial readInertial(const Element& e, const Compiler& compiler) {
   return result;
 }
 
-/// The sum of the solids that weigh.
+/// The sum of the solids that weigh; of one alone, itself.
 Inertial sumOf(const std::vector<Solid>& solids) {
   Inertial result;
+  int count = 0;
   for (const Solid& solid : solids) {
     if (!(solid.properties.mass > kNoMass)) continue;
+    ++count;
     result.mass += solid.properties.mass;
     result.com += solid.properties.mass * solid.properties.com;
   }
@@ -74,6 +76,7 @@ Inertial sumOf(const std::vector<Solid>& solids) {
          solid.properties.mass * (r.squaredNorm() * Matrix3::Identity() - r * r.transpose());
   }
   result.setTensor(I);
+  if (count == 1) result.tensor = I;
   return result;
 }
 
