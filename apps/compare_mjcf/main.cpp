@@ -78,7 +78,9 @@ std::vector<std::filesystem::path> filesOf(const std::string& folder) {
 }
 
 int run(const std::string& folder, const std::string& record, double bound) {
-  const std::vector<std::filesystem::path> files = filesOf(folder);
+  // MuJoCo finds nested includes of absolute paths alone.
+  const std::string root = std::filesystem::absolute(folder).lexically_normal().string();
+  const std::vector<std::filesystem::path> files = filesOf(root);
   if (!record.empty()) {
     for (const std::filesystem::path& file : files)
       app::writeRecord(app::mujocoNumbers(file),
@@ -89,7 +91,7 @@ int run(const std::string& folder, const std::string& record, double bound) {
   fmt::print("| file | dofs | largest differences from MuJoCo {} |\n|---|---|---|\n",
              app::mujocoVersion());
   for (const std::filesystem::path& file : files)
-    fmt::print("{}", compare(file, file.lexically_relative(folder).string(), bound, tally));
+    fmt::print("{}", compare(file, file.lexically_relative(root).string(), bound, tally));
   fmt::print("\n{} files: {} same to {:g}, {} different, {} refused, {} refused by MuJoCo\n",
              files.size(), tally.same, bound, tally.different, tally.refused,
              tally.refusedByMujoco);

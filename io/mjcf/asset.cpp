@@ -64,6 +64,16 @@ Mesh inlineMesh(const Element& element) {
   return mesh;
 }
 
+/// size of <hfield>: half extents, elevation, base.
+std::array<double, 4> sizeOf(const Element& element) {
+  std::array<double, 4> size{};
+  if (!element.readAll("size", size))
+    element.fail("has no attribute 'size', expected four numbers");
+  for (const double s : size)
+    if (!(s > 0.0)) element.fail(fmt::format("size holds {:g}, expected four numbers above 0", s));
+  return size;
+}
+
 }  // namespace
 
 void MeshAttributes::read(const Element& element) {
@@ -192,11 +202,7 @@ std::shared_ptr<const Mesh> Assets::heightField(const std::string& name, const E
     user.fail(fmt::format("height field {} does not exist{}", detail::quotedText(name),
                           offeredOf(name, heightFields_)));
   const Element& element = given->second;
-  std::array<double, 4> size{};
-  if (!element.readAll("size", size))
-    element.fail("has no attribute 'size', expected four numbers");
-  for (const double s : size)
-    if (!(s > 0.0)) element.fail(fmt::format("size holds {:g}, expected four numbers above 0", s));
+  const std::array<double, 4> size = sizeOf(element);
   Heights heights;
   if (element.has("file")) {
     const std::filesystem::path file = compiler_.meshFile(model_, element.requiredText("file"));
@@ -229,6 +235,11 @@ std::shared_ptr<const Mesh> Assets::heightField(const std::string& name, const E
   auto mesh = std::make_shared<const Mesh>(
       heightFieldMesh(heights, 2.0 * size[0], 2.0 * size[1], size[2], size[3]));
   return landscapes_[name] = mesh;
+}
+
+Shape Assets::massOfHeightField(const std::string& name) const {
+  const std::array<double, 4> size = sizeOf(heightFields_.at(name));
+  return Shape::box({size[0], size[1], 0.25 * size[2] + 0.5 * size[3]});
 }
 
 std::optional<std::array<double, 4>> Assets::colour(const std::string& material,

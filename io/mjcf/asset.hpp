@@ -54,6 +54,8 @@ class Assets {
   /// Each throws at `user` where there is none of that name. Files are read when asked for.
   const MeshAsset& mesh(const std::string& name, const Element& user);
   std::shared_ptr<const Mesh> heightField(const std::string& name, const Element& user);
+  /// The box that weighs as MuJoCo has a height field weigh, once it has been asked for.
+  Shape massOfHeightField(const std::string& name) const;
   std::optional<std::array<double, 4>> colour(const std::string& material,
                                               const Element& user) const;
   /// A mesh that is only looked at; without vertices where it is not read.

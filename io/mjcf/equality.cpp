@@ -66,6 +66,10 @@ class EqualityReader {
         spec.X_LAF = poseOf(a).inverse() * poseOf(b) * spec.X_LBF;
     }
     e.read("torquescale", spec.torqueScale);
+    if (spec.torqueScale == 0.0) {  // no moment: a connection
+      builder_.connect({spec.linkA, spec.linkB, spec.X_LAF.p, spec.X_LBF.p, impedance, e.where});
+      return;
+    }
     spec.impedance = impedance;
     spec.where = e.where;
     builder_.weld(spec);

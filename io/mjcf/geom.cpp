@@ -101,7 +101,7 @@ MassProperties massOf(const Geom& geom, const Shape& shape, const MeshAsset* mes
   if (geom.mass == 0.0 || (!geom.mass && geom.density == 0.0)) return {};
   if ((geom.mass && *geom.mass < 0.0) || geom.density < 0.0)
     geom.element.fail("mass or density is negative, expected 0 or more");
-  if (geom.type == Type::plane || geom.type == Type::hfield) return {};
+  if (geom.type == Type::plane) return {};
   if (mesh && geom.isShell)
     geom.element.fail(
         "has shellinertia, which is for primitives; expected inertia=\"shell\" in its <mesh>");
@@ -207,7 +207,8 @@ Solid compileGeom(const Geom& given, const Compiler& compiler, Assets& assets,
   }
   solid.X_BG = X_BF * X;
   if (!use.weighs) return solid;
-  solid.properties = massOf(geom, solid.shape, mesh);
+  solid.properties = massOf(
+      geom, geom.type == Type::hfield ? assets.massOfHeightField(geom.hfield) : solid.shape, mesh);
   solid.properties.com = solid.X_BG * solid.properties.com;
   solid.properties.I_Gcm = solid.X_BG.R * solid.properties.I_Gcm * solid.X_BG.R.transpose();
   return solid;

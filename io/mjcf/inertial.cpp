@@ -53,6 +53,11 @@ Inertial readInertial(const Element& e, const Compiler& compiler) {
   } else if (Vector3 moments; e.read("diaginertia", moments)) {
     result.setMoments(moments);
   }
+  if (result.mass < 0.0 || result.moments.minCoeff() < 0.0)
+    e.fail(
+        fmt::format("has a mass of {:g} kg and moments of inertia {:g}, {:g}, {:g}, expected none "
+                    "below 0",
+                    result.mass, result.moments.x(), result.moments.y(), result.moments.z()));
   return result;
 }
 
@@ -86,11 +91,6 @@ void adjust(Inertial& inertial, const Body& body, const Compiler& compiler) {
   inertial.mass = std::max(inertial.mass, compiler.boundMass);
   if (compiler.boundInertia > inertial.moments.minCoeff())
     inertial.setMoments(inertial.moments.cwiseMax(compiler.boundInertia));
-  if (inertial.mass < 0.0 || inertial.moments.minCoeff() < 0.0)
-    e.fail(fmt::format(
-        "has a mass of {:g} kg and moments of inertia {:g}, {:g}, {:g}, expected none "
-        "below 0",
-        inertial.mass, inertial.moments.x(), inertial.moments.y(), inertial.moments.z()));
   constexpr double kRounding = 1e-12;
   const double sum = inertial.moments.sum(), most = inertial.moments.maxCoeff();
   if (2.0 * most <= sum + kRounding * sum) return;
