@@ -62,51 +62,52 @@ class MujocoFile {
     Eigen::Map<VectorX>(d->qpos, m->nq) = state.q;
     Eigen::Map<VectorX>(d->qvel, m->nv) = state.v;
     mj_forward(m, d);
-    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> M(m->nv, m->nv);
-    mj_fullM(m, d, M.data());
-    state.M = M;
+    state.M.resize(m->nv, m->nv);
+    for (int i = 0; i < m->nv; ++i) {
+      const VectorX unit = VectorX::Unit(m->nv, i);
+      mj_mulM(m, d, state.M.col(i).data(), unit.data());
+    }
     state.bias = Eigen::Map<const VectorX>(d->qfrc_bias, m->nv);
     state.passive = Eigen::Map<const VectorX>(d->qfrc_passive, m->nv);
     state.a = Eigen::Map<const VectorX>(d->qacc, m->nv);
   }
 
-  /// Joint forces of an actuator alone whose control is far below or above.
+  /// Joint forces of an actuator alone whose control is far below or above, and not clipped where
+  /// it is a set point; not finite where they grow with it.
   VectorX extreme(int actuator, double sign) {
     mjModel* const m = model_.get();
-    mjData* const d = data_.get();
-    mj_resetData(m, d);
-    const bool isServo = m->actuator_biastype[actuator] == mjBIAS_AFFINE;
-    const bool bounded =
-        m->actuator_forcelimited[actuator] || (!isServo && m->actuator_ctrllimited[actuator]);
-    int joint = -1;
-    if (m->actuator_trntype[actuator] == mjTRN_JOINT) joint = m->actuator_trnid[2 * actuator];
-    if (!bounded && !(joint >= 0 && m->jnt_actfrclimited[joint]))
-      return VectorX::Constant(m->nv, kInfinity);
-    // Set points of servos go as far as their force does.
-    const int kept = m->actuator_ctrllimited[actuator];
-    if (isServo) m->actuator_ctrllimited[actuator] = 0;
-    const double gain = m->actuator_gainprm[mjNGAIN * actuator];
-    for (int i = 0; i < m->nu; ++i) d->ctrl[i] = 0.0;
-    d->ctrl[actuator] = (gain < 0.0 ? -1.0 : 1.0) * sign * 1e9;
-    m->opt.disableflags &= ~mjDSBL_ACTUATION;
-    mj_forward(m, d);
-    m->opt.disableflags |= mjDSBL_ACTUATION;
-    m->actuator_ctrllimited[actuator] = kept;
-    VectorX tau = VectorX::Zero(m->nv);
-    // Of this actuator alone: the others may have a bias.
-    const double force = d->actuator_force[actuator];
-    const int first = d->moment_rowadr[actuator], count = d->moment_rownnz[actuator];
-    for (int k = first; k < first + count; ++k)
-      tau[d->moment_colind[k]] += d->actuator_moment[k] * force;
-    if (joint >= 0 && m->jnt_actfrclimited[joint]) {
-      const int dof = m->jnt_dofadr[joint];
-      tau[dof] =
-          std::clamp(tau[dof], m->jnt_actfrcrange[2 * joint], m->jnt_actfrcrange[2 * joint + 1]);
+    const VectorX gains = parameters(m->actuator_gainprm, mjNGAIN),
+                  biases = parameters(m->actuator_biasprm, mjNBIAS);
+    const mjtByte kept = m->actuator_ctrllimited[actuator];
+    for (int i = 0; i < m->nu; ++i) {
+      if (i == actuator) continue;
+      std::fill_n(m->actuator_gainprm + i * mjNGAIN, mjNGAIN, 0.0);
+      std::fill_n(m->actuator_biasprm + i * mjNBIAS, mjNBIAS, 0.0);
     }
-    return tau;
+    if (m->actuator_biastype[actuator] == mjBIAS_AFFINE) m->actuator_ctrllimited[actuator] = 0;
+    const double far = gains[actuator * mjNGAIN] < 0.0 ? -sign * 1e9 : sign * 1e9;
+    const VectorX once = forcesAt(actuator, far), twice = forcesAt(actuator, 2.0 * far);
+    m->actuator_ctrllimited[actuator] = kept;
+    std::copy(gains.begin(), gains.end(), m->actuator_gainprm);
+    std::copy(biases.begin(), biases.end(), m->actuator_biasprm);
+    return once == twice ? once : VectorX::Constant(m->nv, kInfinity);
   }
 
  private:
+  VectorX parameters(const mjtNum* first, int each) const {
+    return Eigen::Map<const VectorX>(first, model_->nu * each);
+  }
+
+  /// With all actuators on, at the start.
+  VectorX forcesAt(int actuator, double control) {
+    mj_resetData(model_.get(), data_.get());
+    data_->ctrl[actuator] = control;
+    model_->opt.disableflags &= ~mjDSBL_ACTUATION;
+    mj_forward(model_.get(), data_.get());
+    model_->opt.disableflags |= mjDSBL_ACTUATION;
+    return Eigen::Map<const VectorX>(data_->qfrc_actuator, model_->nv);
+  }
+
   static mjModel* load(const std::filesystem::path& file) {
     mju_user_warning = [](const char*) {};
     char error[1000] = "";
