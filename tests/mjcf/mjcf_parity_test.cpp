@@ -40,7 +40,7 @@ TEST_P(MjcfParity, NumbersAreMujocos) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Files, MjcfParity, testing::ValuesIn(names()),
-                         [](const auto& info) { return info.param; });
+                         [](const auto& test) { return test.param; });
 
 // The comparison sees what differs.
 TEST(MjcfParity, OfAnotherMassIsSeen) {
