@@ -74,6 +74,14 @@ class Apart {
   std::vector<int> link_;  ///< of each geometry, −1: in no pair
 };
 
+/// Pairs that are tested whatever else holds.
+std::set<std::pair<int, int>> pairsTestedAlways(const Model& model) {
+  std::set<std::pair<int, int>> pairs;
+  for (const ContactPair& pair : model.contactPairs)
+    if (pair.always) pairs.emplace(pair.geometryA, pair.geometryB);
+  return pairs;
+}
+
 /// For each geometry the first one behind it that is of another body.
 std::vector<int> endsOfRuns(const Model& model) {
   std::vector<int> ends(model.geometries.size());
@@ -134,6 +142,7 @@ PairFilter makePairFilter(const Model& model, const InitialDistance& initialDist
   const int count = static_cast<int>(model.geometries.size());
   const std::vector<int> runEnds = endsOfRuns(model);
   const Apart apart(model);
+  const std::set<std::pair<int, int>> always = pairsTestedAlways(model);
   for (int i = 0; i < count; ++i) {
     for (int j = i + 1; j < count; ++j) {
       const Geometry& a = model.geometries[static_cast<std::size_t>(i)];
@@ -143,6 +152,17 @@ PairFilter makePairFilter(const Model& model, const InitialDistance& initialDist
         const int end = runEnds[static_cast<std::size_t>(j)];
         filter.rigidPairs += end - j;
         j = end - 1;
+        continue;
+      }
+      if (always.count({i, j})) {
+        if (model.options.effects.has(contactEffect(model, a.body, b.body)))
+          filter.pairs.push_back(inOrder(model, i, j));
+        else
+          ++filter.effectOffPairs;
+        continue;
+      }
+      if (!mayTouch(a.bits, b.bits)) {
+        ++filter.disjointPairs;
         continue;
       }
       const bool oneRobot = ofOneRobot(model, a, b);

@@ -16,8 +16,10 @@
 ///              would push the robot apart from the first step on. All geometries of two such links
 ///              are left out, since the ones beside the overlap mean as little;
 ///   disabled   Model::apart names their links;
+///   disjoint   no bit of the category of one is in the mask of the other (Geometry::bits);
 ///   effect     the effect that the pair belongs to is switched off: self_collision (one robot),
 ///              ground_contact (one side fixed to the world), object_contact (two robots).
+/// A pair that ContactPair::always names is left out as rigid or by its effect alone.
 
 #include <cstdint>
 #include <functional>
@@ -53,6 +55,7 @@ struct PairFilter {
   std::vector<ExcludedPair> excluded;  ///< adjacent and overlapping links, by link names
   std::int64_t rigidPairs = 0;         ///< left out as rigid
   std::int64_t effectOffPairs = 0;     ///< left out because their effect is off
+  std::int64_t disjointPairs = 0;      ///< left out because their bits keep them apart
   std::int64_t unreachablePairs = 0;   ///< left out because no configuration brings them together
 };
 

@@ -10,6 +10,7 @@
 #include "softgauss/io/log.hpp"
 #include "softgauss/io/mcap_log.hpp"
 #include "softgauss/io/mesh.hpp"
+#include "softgauss/io/mjcf.hpp"
 #include "softgauss/io/names.hpp"
 #include "softgauss/io/output.hpp"
 #include "softgauss/io/printable.hpp"

@@ -92,7 +92,8 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
       ->allow_extra_args(false)
       ->group(scene);
   app.add_option("--state", options.state,
-                 "start in a state (group_state) of the SRDF, by name; --q0 comes on top")
+                 "start in a state (group_state) of the SRDF, or a keyframe of the MJCF, by name;\n"
+                 "--q0 comes on top")
       ->group(scene);
   app.add_option("--srdf", options.srdf,
                  "SRDF with states and links that never collide, or none; default: that of\n"

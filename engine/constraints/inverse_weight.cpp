@@ -73,7 +73,7 @@ InverseWeights::InverseWeights(const Model& model)
   if (model.nv == 0) return;
   State state(model);
   for (const Body& body : model.bodies)
-    if (body.dofs == 1) state.q[body.q] = 0.0;
+    if (body.dofs == 1) state.q[body.q] = body.reference;
   Kinematics k(model);
   MassMatrix inertia(model);
   computeKinematics(model, state, k);

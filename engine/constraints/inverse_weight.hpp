@@ -3,10 +3,10 @@
 
 /// Constant inverse inertias that scale the regulariser of every row (2.7).
 ///
-/// Computed once with all joints at zero, as MuJoCo does it, or, where the mass matrix is singular
-/// there, in Model::q0; armature included: for a body the mean
-/// of the diagonal of J M⁻¹ Jᵀ over the three translations, and over the three rotations, of its
-/// centre of mass; for a dof the diagonal of M⁻¹ (for a floating joint the mean of three).
+/// Computed once with all joints at Body::reference, zero for most, as MuJoCo does it, or, where
+/// the mass matrix is singular there, in Model::q0; armature included: for a body the mean of the
+/// diagonal of J M⁻¹ Jᵀ over the three translations, and over the three rotations, of its centre of
+/// mass; for a dof the diagonal of M⁻¹ (for a floating joint the mean of three).
 
 #include <vector>
 

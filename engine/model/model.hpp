@@ -48,6 +48,7 @@ struct Body {
   double mass = 0.0;              ///< [kg]
   Vector3 com = Vector3::Zero();  ///< p_BoBcm_B [m]
   Symmetric3 I_Bcm;               ///< central rotational inertia in B axes [kg m²]
+  double reference = 0.0;         ///< q of a scalar joint at which weights of rows are [rad or m]
 };
 
 /// A kinematic tree: everything that hangs from one child of the world.

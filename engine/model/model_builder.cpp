@@ -152,14 +152,17 @@ class Assembler {
             joint.type == JointType::prismatic ? JointKind::prismatic : JointKind::revolute;
         const int body = addBody(kind, parent.body, X_BC, axis, joint.name, edge.child);
         const bool powerless = joint.effort && *joint.effort == 0.0 && !zeroEffortIsUnlimited;
-        if (powerless && !joint.mimic) powerless_.push_back(joint.name);
-        addDofData(body, joint, !powerless && !joint.mimic);
+        if (powerless && !joint.mimic && joint.actuated) powerless_.push_back(joint.name);
+        addDofData(body, joint, joint.actuated && !powerless && !joint.mimic);
+        model_.bodies[idx(body)].reference = joint.reference;
         place(edge.child, {body, {}, parent.base});
         if (joint.type != JointType::continuous && joint.lower && joint.upper) {
           JointRange range;
           range.body = body;
           range.lower = *joint.lower;
           range.upper = *joint.upper;
+          range.margin = joint.limitMargin;
+          range.impedance = joint.limitImpedance;
           model_.ranges.push_back(range);
         }
         return;
@@ -293,11 +296,12 @@ class Assembler {
   int bases_ = 0;   ///< so far
 };
 
-/// Configuration at zero, or at the middle of the range where zero lies outside it; a joint that
-/// follows another where its coupling wants it.
+/// Configuration at the joints' references, zero unless they say otherwise, or at the middle of the
+/// range where that lies outside it; a joint that follows another where its coupling wants it.
 VectorX initialConfiguration(const Model& model) {
   VectorX q = VectorX::Zero(model.nq);
   for (const Body& body : model.bodies) {
+    if (body.dofs == 1) q[body.q] = body.reference;
     if (body.joint != JointKind::floating) continue;
     q.segment<3>(body.q) = body.X_PB.p;
     const Quaternion r(body.X_PB.R);
@@ -305,7 +309,7 @@ VectorX initialConfiguration(const Model& model) {
   }
   for (const JointRange& range : model.ranges) {
     const int i = model.bodies[static_cast<std::size_t>(range.body)].q;
-    if (range.lower > 0.0 || range.upper < 0.0) q[i] = 0.5 * (range.lower + range.upper);
+    if (range.lower > q[i] || range.upper < q[i]) q[i] = 0.5 * (range.lower + range.upper);
   }
   placeFollowers(model, {}, q);
   return q;
@@ -356,7 +360,7 @@ Model ModelBuilder::build() const {
   for (const GeometrySpec& spec : recogniseCapsules(geometries_)) {
     const Placement at = placementOf(spec.link, spec.where, "geometry '" + spec.name + "'");
     model.geometries.push_back({spec.name, spec.link, at.body, at.X_BL * spec.X_LG, spec.shape,
-                                spec.material, at.base, spec.automaticMesh});
+                                spec.material, at.base, spec.automaticMesh, spec.bits});
   }
   for (const VisualSpec& spec : visuals_) {
     const Placement at = placementOf(spec.link, {}, "visual");

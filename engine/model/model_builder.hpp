@@ -42,6 +42,10 @@ struct JointSpec {
   std::optional<double> lower, upper;  ///< range [rad or m]; both or neither
   std::optional<double> effort;        ///< |u| ≤ effort; absent: no box; 0: not actuated
   std::optional<double> velocity;      ///< [rad/s or m/s]
+  bool actuated = true;                ///< false: never has a control, whatever its effort
+  double reference = 0.0;              ///< q to start from, and of the rows' weights [rad or m]
+  double limitMargin = 0.0;            ///< a limit makes a row where its distance < margin
+  Impedance limitImpedance;
   double damping = 0.0;
   double dryFriction = 0.0;  ///< largest force [N m or N]
   Impedance frictionImpedance;
@@ -60,6 +64,7 @@ struct GeometrySpec {
   Material material;
   SourceLocation where;
   bool automaticMesh = false;  ///< as Geometry::automaticMesh
+  CollisionBits bits = {};     ///< as Geometry::bits
 };
 
 /// Gives what touches each other a surface of its own. A name is that of a link, for all its
@@ -68,6 +73,7 @@ struct PairSpec {
   std::string geometryA, geometryB;
   Material material;
   SourceLocation where;
+  bool always = false;  ///< as ContactPair::always
 };
 
 /// Ties a point of link A to a point of link B; "world" is a link.

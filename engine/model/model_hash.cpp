@@ -55,9 +55,9 @@ class Hasher {
   }
   void add(const Body& b) {
     const auto& [joint, massless, parent, q, v, dofs, tree, robot, subtreeEnd, X_PB, axis, mass,
-                 com, I_Bcm] = b;
+                 com, I_Bcm, reference] = b;
     (*this)(joint, massless, parent, q, v, dofs, tree, robot, subtreeEnd, X_PB, axis, mass, com,
-            I_Bcm);
+            I_Bcm, reference);
   }
   void add(const Tree& t) {
     const auto& [rootBody, bodyEnd, firstDof, dofEnd, mass, actuated] = t;
@@ -118,12 +118,12 @@ class Hasher {
     (*this)(vertices, triangles);
   }
   void add(const Geometry& g) {
-    const auto& [name, link, body, X_BG, shape, material, base, automaticMesh] = g;
-    (*this)(name, link, body, X_BG, shape, material, base, automaticMesh);
+    const auto& [name, link, body, X_BG, shape, material, base, automaticMesh, bits] = g;
+    (*this)(name, link, body, X_BG, shape, material, base, automaticMesh, bits.category, bits.mask);
   }
   void add(const ContactPair& p) {
-    const auto& [geometryA, geometryB, material] = p;
-    (*this)(geometryA, geometryB, material);
+    const auto& [geometryA, geometryB, material, always] = p;
+    (*this)(geometryA, geometryB, material, always);
   }
 
   ByteWriter bytes_;

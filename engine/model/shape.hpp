@@ -83,6 +83,16 @@ struct Shape {
   }
 };
 
+/// Which geometries may touch each other: two, where a bit of the category of one is in the mask of
+/// the other.
+struct CollisionBits {
+  std::uint32_t category = 1, mask = 1;
+  bool operator==(const CollisionBits&) const = default;
+};
+inline bool mayTouch(const CollisionBits& a, const CollisionBits& b) {
+  return (a.category & b.mask) != 0 || (b.category & a.mask) != 0;
+}
+
 /// A collision shape fixed to a body.
 struct Geometry {
   std::string name;  ///< e.g. "left_foot/0"
@@ -95,6 +105,7 @@ struct Geometry {
   /// −1 for scenery, and on what floats or hangs from the world itself.
   int base = -1;
   bool automaticMesh = false;  ///< of kind mesh or triangles: collision::chooseMeshes() says
+  CollisionBits bits = {};
 };
 
 /// A pair of geometries with a surface of its own, in place of the mix of theirs.
@@ -102,6 +113,7 @@ struct ContactPair {
   int geometryA = 0;  ///< index into Model::geometries
   int geometryB = 0;  ///< > geometryA
   Material material;
+  bool always = false;  ///< tested whatever Geometry::bits, Model::apart and joints say
 };
 
 /// A shape that is only looked at.

@@ -15,10 +15,7 @@ struct Format {
 };
 
 constexpr Format kFormats[] = {
-    {"mujoco",
-     "is MJCF, the format of MuJoCo, which is not read; expected a URDF, or a .yaml scene whose "
-     "robots are URDF files. Most robots of MJCF collections were made from a URDF: take that, or "
-     "have a converter write one"},
+    {"mujoco", "is MJCF, the format of MuJoCo, which stands by itself; expected a URDF here"},
     {"sdf",
      "is SDF, the format of Gazebo, which is not read; expected a URDF, or a .yaml scene whose "
      "robots are URDF files. A converter can write one"},

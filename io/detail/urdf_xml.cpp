@@ -16,10 +16,10 @@ namespace softgauss::io::detail {
 namespace {
 
 /// What a reader of the message should look for.
-std::string problemOf(const tinyxml2::XMLDocument& document) {
+std::string problemOf(const tinyxml2::XMLDocument& document, std::string_view root) {
   switch (document.ErrorID()) {
     case tinyxml2::XML_ERROR_EMPTY_DOCUMENT:
-      return "is empty, expected a <robot>";
+      return fmt::format("is empty, expected a <{}>", root);
     case tinyxml2::XML_ERROR_MISMATCHED_ELEMENT:
       return "an element is closed by another name than it was opened with";
     case tinyxml2::XML_ERROR_PARSING_ATTRIBUTE:
@@ -235,7 +235,8 @@ int XmlElement::urdfMinorVersion() const {
   robot.fail(fmt::format("version is {}, expected 1.0, 1.1 or 1.2", quotedText(version)));
 }
 
-XmlFile::XmlFile(const std::string& path, const std::string& text)
+XmlFile::XmlFile(const std::string& path, const std::string& text,
+                 std::initializer_list<std::string_view> roots)
     : path_(path), document_(std::make_unique<tinyxml2::XMLDocument>()) {
   if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
     throw ModelError({path_, 1}, "XML", "is UTF-16, expected UTF-8 (iconv -f utf16 -t utf8)");
@@ -254,16 +255,19 @@ XmlFile::XmlFile(const std::string& path, const std::string& text)
         {path_, 1}, "XML",
         fmt::format("holds {} tags, expected at most {} (--largest-file allows more)", tags, most));
   if (document_->Parse(text.c_str(), text.size()) != tinyxml2::XML_SUCCESS)
-    throw ModelError({path_, std::max(1, document_->ErrorLineNum())}, "XML", problemOf(*document_));
+    throw ModelError({path_, std::max(1, document_->ErrorLineNum())}, "XML",
+                     problemOf(*document_, *roots.begin()));
 
   const tinyxml2::XMLElement* root = document_->RootElement();
-  if (!root) throw ModelError({path_, 1}, "XML", "has no element, expected <robot>");
-  if (std::string_view(root->Name()) != "robot")
+  const std::string expected = fmt::format("<{}>", *roots.begin());
+  if (!root) throw ModelError({path_, 1}, "XML", "has no element, expected " + expected);
+  if (std::find(roots.begin(), roots.end(), std::string_view(root->Name())) == roots.end())
     throw ModelError({path_, root->GetLineNum()}, fmt::format("<{}>", root->Name()),
-                     "is the outermost element, expected <robot> (a URDF)");
+                     fmt::format("is the outermost element, expected {}{}", expected,
+                                 *roots.begin() == "robot" ? " (a URDF)" : ""));
   if (const tinyxml2::XMLElement* second = root->NextSiblingElement())
     throw ModelError({path_, second->GetLineNum()}, fmt::format("<{}>", second->Name()),
-                     "follows </robot>, expected the end of the file");
+                     fmt::format("follows </{}>, expected the end of the file", root->Name()));
 }
 
 XmlFile::~XmlFile() = default;

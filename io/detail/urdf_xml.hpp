@@ -3,6 +3,7 @@
 
 /// Strict access to the raw XML of a URDF: every attribute is read whole or refused, with its line.
 
+#include <initializer_list>
 #include <memory>
 #include <optional>
 #include <string>
@@ -82,15 +83,17 @@ class XmlElement {
   std::string label_;
 };
 
-/// A URDF file in memory. Throws ModelError if it is not there, not XML, or has no <robot>.
+/// A file of XML in memory. Throws ModelError if it is no XML, or its outermost element is none of
+/// `roots`, of which the first is the one to expect.
 class XmlFile {
  public:
-  XmlFile(const std::string& path, const std::string& text);
+  XmlFile(const std::string& path, const std::string& text,
+          std::initializer_list<std::string_view> roots = {"robot"});
   ~XmlFile();
 
   XmlElement robot() const;
 
-  const tinyxml2::XMLElement& root() const;  ///< <robot>
+  const tinyxml2::XMLElement& root() const;
 
  private:
   std::string path_;

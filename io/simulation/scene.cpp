@@ -10,6 +10,8 @@
 #include "softgauss/engine/dynamics/coupled_mass.hpp"
 #include "softgauss/engine/dynamics/regular_mass.hpp"
 #include "softgauss/io/inputs.hpp"
+#include "softgauss/io/mjcf.hpp"
+#include "softgauss/io/mjcf/option.hpp"
 #include "softgauss/io/simulation/error_control.hpp"
 #include "softgauss/io/simulation/ground.hpp"
 #include "softgauss/io/step_warnings.hpp"
@@ -154,6 +156,48 @@ void loadSceneFile(const SimulationOptions& options, Scene& scene) {
   standOnGround(scene.model, *scene.ground, &standing, scene.initial);
 }
 
+/// What an MJCF says by numbers that softgauss gives another meaning.
+void noteMeanings(const io::MjcfFile& file, const Options& o, Scene& scene) {
+  const bool likeMujoco = o.constraintModel == ConstraintModel::mujoco;
+  if (file.givesSoftness && !likeMujoco)
+    scene.notes.emplace_back(
+        "solref and solimp of the file: by softgauss's law, with MuJoCo's numbers "
+        "(--compatibility mujoco: by MuJoCo's)");
+  if (file.namesIntegrator && (!likeMujoco || file.integrator == "implicitfast"))
+    scene.notes.push_back(fmt::format("integrator {} of the file: {} steps in its place",
+                                      file.integrator, integratorName(o.integrator)));
+}
+
+/// An MJCF: bodies stand where it puts them, on ground that it has as a plane.
+void loadMjcf(const SimulationOptions& options, Scene& scene) {
+  for (const auto& [given, option] :
+       {std::pair(options.base != BaseKind::automatic || options.guessBase, "base"),
+        {options.baseHeight.has_value(), "base-height"},
+        {!options.srdf.empty() && options.srdf != "none", "srdf"}})
+    if (given) throw OptionError(fmt::format("{} is for a URDF; an MJCF says it itself", option));
+  io::MjcfFile file = io::readMjcf(scene.file, urdfOptions(options));
+  ModelBuilder& builder = file.scene.builder;
+  setOptions(options, builder.options);
+  io::IntegrationKeys keys;
+  if (builder.options.constraintModel == ConstraintModel::mujoco) {
+    builder.options.integrator = io::mjcf::integratorOf(file.integrator);
+    keys.integrator = true;
+  }
+  setErrorControl(options, keys, builder.options);
+  scene.notes = file.scene.notes;
+  noteMeanings(file, builder.options, scene);
+  scene.ground = options.ground;
+  if (scene.ground) addGround(builder, *scene.ground, {});
+  scene.model = builder.build();
+  checkSize(options, scene);
+  scene.contents = file.scene.contents;
+  scene.baseOrigin = BaseOrigin::scene;
+  scene.actuators = file.scene.actuators;
+  if (!options.timestep) scene.timestepWhere = file.scene.timestepWhere;
+  scene.initial = file.initialState(scene.model, options.state);
+  setJointPositions(scene.model, options.q0, scene.initial);
+}
+
 /// Refuses a start in which the mass matrix is singular, with the place of the link in its file.
 void expectRegularStart(Scene& scene) {
   regulariseCoupledJoints(scene.model, scene.initial.q);
@@ -218,6 +262,8 @@ std::unique_ptr<Scene> loadScene(const std::filesystem::path& file,
   scene->file = file;
   if (isSceneFile(file))
     loadSceneFile(options, *scene);
+  else if (io::isMjcf(file))
+    loadMjcf(options, *scene);
   else
     loadRobot(options, *scene);
   if (options.gddSolver) scene->gddSolver = *options.gddSolver;

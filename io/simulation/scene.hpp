@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// From a URDF or scene file to a model, its contacts, its initial state and its control.
+/// From a URDF, MJCF or scene file to a model, its contacts, its initial state and its control.
 
 #include <filesystem>
 #include <memory>

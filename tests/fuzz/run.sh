@@ -8,12 +8,13 @@ build=$1 seconds=$2
 shift 2
 tree=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 names=("$@")
-((${#names[@]})) || names=(urdf scene goals table mesh checkpoint live step)
+((${#names[@]})) || names=(urdf mjcf scene goals table mesh checkpoint live step)
 
 # seeds NAME: folders of inputs to begin with.
 seeds() {
   case "$1" in
     urdf) echo data/robots tests/bad_input/files/model tests/bad_input/files data/scenes/stability ;;
+    mjcf) echo tests/mjcf/files tests/bad_input/files/mjcf ;;
     scene) echo data/scenes tests/bad_input/files/scene ;;
     goals) echo data/goals tests/bad_input/files/goals ;;
     table) echo tests/fuzz/seeds/table tests/bad_input/files/table tests/bad_input/files/heights ;;
@@ -26,6 +27,7 @@ seeds() {
 settings() {
   case "$1" in
     urdf) echo -max_len=8192 -dict=tests/fuzz/urdf.dict ;;
+    mjcf) echo -max_len=8192 -dict=tests/fuzz/mjcf.dict ;;
     scene | goals) echo -max_len=4096 -dict=tests/fuzz/yaml.dict ;;
     live) echo -max_len=4200 -dict=tests/fuzz/yaml.dict ;;
     table | mesh) echo -max_len=4096 "-dict=tests/fuzz/$1.dict" ;;

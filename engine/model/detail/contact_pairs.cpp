@@ -56,7 +56,7 @@ void addContactPairs(Model& model, const std::vector<PairSpec>& specs) {
         if (a == b) throw ModelError(spec.where, element, "is one geometry, expected two");
         if (!given.emplace(std::min(a, b), std::max(a, b)).second)
           throw ModelError(spec.where, element, "is given twice");
-        model.contactPairs.push_back({std::min(a, b), std::max(a, b), spec.material});
+        model.contactPairs.push_back({std::min(a, b), std::max(a, b), spec.material, spec.always});
       }
     }
   }

@@ -95,6 +95,9 @@ void checkJoint(const JointSpec& joint) {
   notNegative(joint.damping, "damping");
   notNegative(joint.dryFriction, "friction");
   checkImpedance(joint.frictionImpedance, joint.where, element + " friction");
+  checkImpedance(joint.limitImpedance, joint.where, element + " limit");
+  if (!std::isfinite(joint.limitMargin)) fail("margin of its limit is not finite");
+  if (!std::isfinite(joint.reference)) fail("reference is not finite");
   notNegative(joint.armature, "armature");
   notNegative(joint.stiffness, "stiffness");
   if (!std::isfinite(joint.springReference)) fail("spring reference is not finite");
