@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "apps/simulate_gdd/companion.hpp"
+#include "apps/simulate_gdd/options.hpp"
 #include "softgauss/io/simulation/plan_control.hpp"
 
 namespace softgauss::app {

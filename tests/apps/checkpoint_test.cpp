@@ -132,7 +132,7 @@ TEST(Checkpoint, IsWholeWheneverItIsRead) {
   const io::TempFolder folder;
   const RunCase run = runs()[0];
   const Outcome outcome =
-      runShell(folder.path(), program(run, 0.6) +
+      runShell(folder.path(), program(run, 2.0) +
                                   " --checkpoint run.checkpoint --checkpoint-every 0.002 & \n"
                                   "while [ ! -s run.checkpoint ]; do sleep 0.005; done\n"
                                   "n=0; while kill -0 $! 2>/dev/null && [ $n -lt 8 ]; do cp "
