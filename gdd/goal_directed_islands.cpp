@@ -90,15 +90,8 @@ class GoalDirectedIslands::Control final : public IslandControl {
     if (!part_) part_ = std::make_unique<GoalDirectedController>(island_.model);
     part_->goals = std::move(goals);
     part_->limits = std::move(limits);
-    part_->motionLimits = from.motionLimits;
     part_->forceMetric = metricWithin(from.forceMetric, whole, island_);
-    part_->controlCost = from.controlCost;
-    part_->solver = from.solver;
-    part_->augmentedLagrangian.options = from.augmentedLagrangian.options;
-    part_->activeSet.options = from.activeSet.options;
-    part_->expansion.tolerance = from.expansion.tolerance;
-    part_->expansion.maxSolves = from.expansion.maxSolves;
-    part_->iterationBudget = from.iterationBudget;
+    part_->takeSettings(from);
   }
 
   const std::vector<int>& trees() const { return island_.trees; }

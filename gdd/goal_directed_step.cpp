@@ -89,6 +89,17 @@ void GoalDirectedController::keep(WarmStart& warmstart) noexcept {
   earlier_ = report;
 }
 
+void GoalDirectedController::takeSettings(const GoalDirectedController& from) {
+  motionLimits = from.motionLimits;
+  controlCost = from.controlCost;
+  solver = from.solver;
+  augmentedLagrangian.options = from.augmentedLagrangian.options;
+  activeSet.options = from.activeSet.options;
+  expansion.tolerance = from.expansion.tolerance;
+  expansion.maxSolves = from.expansion.maxSolves;
+  iterationBudget = from.iterationBudget;
+}
+
 SolveStatus GoalDirectedController::step(const Model& model, const Input& input, State& state,
                                          Data& data, ContactSource* contacts, bool posed) noexcept {
   if (data.stats.refuse(model, findBadInput(model, input, state))) return data.stats.status;

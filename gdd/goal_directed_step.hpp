@@ -59,6 +59,10 @@ class GoalDirectedController final : public StepControl {
   GddReport report;  ///< of the last step; of a step in parts the worst of them, counts are sums
   double solveTime = 0.0;  ///< wall time of the last step's GDD solves [s]
 
+  /// Motion limits, origin of the price, solvers with their options and budget of another one;
+  /// goals, limits and forceMetric, which are of a model's dofs, stay.
+  void takeSettings(const GoalDirectedController& from);
+
   /// One step. `input` acts besides the control (disturbances). Where isRefused() the
   /// state is left as it was; limits that are none (GddStatus::badLimits) are badInput. `posed` as
   /// of softgauss::step().

@@ -41,15 +41,8 @@ class Lent {
 OtherWeight::OtherWeight(const Model& model, GoalDirectedController& controller)
     : model_(model), controller_(controller), trial_(model), data_(model) {
   trial_.limits = controller.limits;
-  trial_.motionLimits = controller.motionLimits;
   trial_.forceMetric = controller.forceMetric;
-  trial_.controlCost = controller.controlCost;
-  trial_.solver = controller.solver;
-  trial_.augmentedLagrangian.options = controller.augmentedLagrangian.options;
-  trial_.activeSet.options = controller.activeSet.options;
-  trial_.expansion.tolerance = controller.expansion.tolerance;
-  trial_.expansion.maxSolves = controller.expansion.maxSolves;
-  trial_.iterationBudget = controller.iterationBudget;
+  trial_.takeSettings(controller);
 }
 
 double OtherWeight::toTry(double now, double left, double most, double wanted) {

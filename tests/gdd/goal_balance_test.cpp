@@ -51,23 +51,11 @@ struct PulledSlider {
   static constexpr double kWish = 6.0;  ///< w of the reach [kg]
 
   static Model make(double effort, double upper) {
-    ModelBuilder builder;
-    LinkSpec world, cart;
-    world.name = "world";
-    cart.name = "cart";
-    cart.mass = kMass;
-    cart.I_Lcm = Matrix3::Identity();
     JointSpec slide;
-    slide.name = "slide";
-    slide.type = JointType::prismatic;
-    slide.parent = "world";
-    slide.child = "cart";
     slide.lower = -1.0;
     slide.upper = upper;
     if (std::isfinite(effort)) slide.effort = effort;
-    Model model = builder.link(world).link(cart).joint(slide).build();
-    model.options.gravity.setZero();
-    return model;
+    return slidingCart(kMass, slide);
   }
 };
 

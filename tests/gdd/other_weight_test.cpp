@@ -12,7 +12,7 @@ namespace {
 /// A slider of 2 kg along x, at rest between a posture at 0 and a place at 0.1 m.
 struct TornSlider {
   static constexpr double kMass = 2.0, kPostureWeight = 1000.0;
-  Model model = make();
+  Model model = slidingCart(kMass);
   State state{model};
   Data data{model};
   gdd::GoalDirectedController controller{model};
@@ -45,23 +45,6 @@ struct TornSlider {
   double atRest(double weight) const {
     const double held = kPostureWeight * kMass * gdd::Posture(state.q).stiffness;
     return 0.1 * held / (held + weight * reach->stiffness);
-  }
-
-  static Model make() {
-    ModelBuilder builder;
-    LinkSpec world, cart;
-    world.name = "world";
-    cart.name = "cart";
-    cart.mass = kMass;
-    cart.I_Lcm = Matrix3::Identity();
-    JointSpec slide;
-    slide.name = "slide";
-    slide.type = JointType::prismatic;
-    slide.parent = "world";
-    slide.child = "cart";
-    Model model = builder.link(world).link(cart).joint(slide).build();
-    model.options.gravity.setZero();
-    return model;
   }
 };
 

@@ -16,6 +16,23 @@ namespace softgauss::test {
 
 inline constexpr double kWeight = 400.0;  ///< of the humanoid [N]
 
+/// A cart that slides along x, without gravity. `slide`: its range and effort; the rest is set.
+inline Model slidingCart(double mass, JointSpec slide = {}) {
+  ModelBuilder builder;
+  LinkSpec world, cart;
+  world.name = "world";
+  cart.name = "cart";
+  cart.mass = mass;
+  cart.I_Lcm = Matrix3::Identity();
+  slide.name = "slide";
+  slide.type = JointType::prismatic;
+  slide.parent = "world";
+  slide.child = "cart";
+  Model model = builder.link(world).link(cart).joint(slide).build();
+  model.options.gravity.setZero();
+  return model;
+}
+
 struct RobotScene {
   Model model;
   State state;

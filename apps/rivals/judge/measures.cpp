@@ -162,9 +162,12 @@ Measures tower(const Scene&, const Trajectory& run) {
           {"end_speed", speed}};
 }
 
+/// What has moved so far out of a grip is lost [m]: the cube is shorter, and so is the fingers'
+/// reach below it.
+constexpr double kLost = 0.05;
+
 /// The last body is held by the others.
 Measures grip(const Scene& scene, const Trajectory& run) {
-  constexpr double kLost = 0.05;  // [m]: longer than the cube and the fingers' reach below it
   const auto fell = [&](std::size_t k) {
     return run.front().back().position[2] - run[k].back().position[2];
   };
@@ -181,7 +184,6 @@ Measures grip(const Scene& scene, const Trajectory& run) {
 
 /// The last body is held by what the first one carries: how far it has moved in the first.
 Measures carried(const Scene&, const Trajectory& run) {
-  constexpr double kLost = 0.05;  // [m], as in grip()
   const auto heldIn = [&](std::size_t k) {
     return run[k].front().pose().inverse() * run[k].back().pose();
   };
