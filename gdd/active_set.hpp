@@ -74,7 +74,7 @@ class ActiveSet {
   void chooseStart(const Model& model, const GoalCost& cost, Data& data);
   double moveTo(const Model& model, const GoalCost& cost, const VectorX* guess, Data& data);
   double moveAlongPath(const GoalCost& cost, const VectorX& a, Data& data);
-  bool setInertia(const GoalCost& cost, const TreeFactor* massFactor, const Data& data);
+  bool setInertia(const GoalCost& cost, const Data& data);
   void computeEffortSlope();
   double effort() const;
   double objective() const { return effort() + path_.value + forces_.value(); }  ///< F

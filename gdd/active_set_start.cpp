@@ -16,16 +16,14 @@ double ActiveSet::moveTo(const Model& model, const GoalCost& cost, const VectorX
   u_ = u_.cwiseMax(lower_).cwiseMin(upper_);
   cell_.force(u_, force_);
   setAppliedForce(force_, data.forces);
-  if (isRefused(minimizeGauss(model, guess, data))) {
+  if (isRefused(forwardDynamics(model, guess, data))) {
     badDof_ = data.stats.badDof;
     return kInfinity;
   }
   report_.forwardIterations += data.forward.report.iterations;
-  const TreeFactor* massFactor = data.forward.massFactored ? &data.forward.massFactor : nullptr;
-  if (!ready_ && !setInertia(cost, massFactor, data)) return kInfinity;
+  if (!ready_ && !setInertia(cost, data)) return kInfinity;
   ready_ = true;
-  entered_ = data.forward.cellFactored;
-  if (entered_) cell_.enterWith(data.forward.factor);
+  entered_ = false;
   path_.a = data.forward.a;
   evaluateCost(cost, data);
   computeEffortSlope();
@@ -41,7 +39,7 @@ double ActiveSet::moveAlongPath(const GoalCost& cost, const VectorX& a, Data& da
   data.constraints.setResidual(path_.a);
   data.constraints.evaluate(changed);
   ++report_.factorizations;
-  if (!cell_.enter(data) || !setInertia(cost, nullptr, data)) return kInfinity;
+  if (!setInertia(cost, data) || !cell_.enter(data)) return kInfinity;
   computeResidual(data);
   cell_.solve(residual_);
   if (!path_.reach(residual_, cell_, data)) return kInfinity;
@@ -78,8 +76,8 @@ double ActiveSet::effort() const {
 }
 
 /// R, and what it makes of forces where the box has no width.
-bool ActiveSet::setInertia(const GoalCost& cost, const TreeFactor* massFactor, const Data& data) {
-  if (!cell_.setInertia(data, massFactor, cost)) {
+bool ActiveSet::setInertia(const GoalCost& cost, const Data& data) {
+  if (!cell_.setInertia(data, cost)) {
     badDof_ = cell_.massFailedRow();
     return false;
   }
@@ -109,7 +107,7 @@ void ActiveSet::chooseStart(const Model& model, const GoalCost& cost, Data& data
   };
   if (data.constraints.rowCount() > 0 && u_.size() > 0 && std::isfinite(least)) {
     const auto moveWithoutRows = [&] {
-      cell_.enterWith(data.forward.massFactor);
+      cell_.enterWithoutRows();
       path_.a = force_ - data.forces.c;
       cell_.solve(path_.a);
     };

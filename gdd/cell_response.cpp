@@ -26,26 +26,20 @@ SOFTGAUSS_VECTOR_CLONES void subtractRankOne(const double* y, const double* s, d
   for (int i = 0; i < rows; ++i) addScaled(-scale * y[i], s, columns, S.data() + i * columns);
 }
 
-/// K ← Σ_k c_k y_k y_kᵀ (n × n), y_k row k of Y, which is zero but in range k.
-SOFTGAUSS_VECTOR_CLONES void setWeightedGram(const RowMajorMatrixX& Y, const TreeFactor& factor,
+/// K ← K + Σ_k c_k y_k y_kᵀ (n × n), y_k row k of Y, which is zero but in range k.
+SOFTGAUSS_VECTOR_CLONES void addWeightedGram(const RowMajorMatrixX& Y, const TreeFactor& factor,
                                              const std::vector<Segment>& range, MatrixX& K) {
   const int n = static_cast<int>(Y.cols()), rows = static_cast<int>(Y.rows());
-  // The rows of a floating base come first, and all columns move them: four of them at a time.
-  int k = 0;
-  const auto full = [&](int row) { return range[row].begin == 0 && range[row].end == n; };
-  for (; k + 4 <= rows && full(k) && full(k + 1) && full(k + 2) && full(k + 3); k += 4) {
-    const double* y = Y.data() + k * n;
-    for (int i = 0; i < n; ++i)
-      addScaledFour(factor.inversePivot(k) * y[i], factor.inversePivot(k + 1) * y[n + i],
-                    factor.inversePivot(k + 2) * y[2 * n + i],
-                    factor.inversePivot(k + 3) * y[3 * n + i], y, n, n, K.data() + i * n);
-  }
-  for (; k < rows; ++k) {
+  for (int k = 0, end; k < rows; k = end) {
     const Segment r = range[k];
-    const double* y = Y.data() + k * n;
+    const auto same = [&](int i) { return range[i].begin == r.begin && range[i].end == r.end; };
+    for (end = k + 1; end < rows && same(end);) ++end;
+    const double *y = Y.data() + k * n, *inverse = factor.inversePivots() + k;
+    double* to = K.data();
     for (int i = r.begin; i < r.end; ++i)
-      addScaled(factor.inversePivot(k) * y[i], y + r.begin, r.end - r.begin,
-                K.data() + i * n + r.begin);
+      addSum(
+          end - k, [=](int j) { return inverse[j] * y[j * n + i]; },
+          [=](int j) { return y + j * n + r.begin; }, r.end - r.begin, to + i * n + r.begin);
   }
 }
 
@@ -85,19 +79,18 @@ void CellResponse::setColumns(RowMajorMatrixX& X) {
   }
 }
 
-bool CellResponse::setInertia(const Data& data, const TreeFactor* massFactor,
-                              const GoalCost& cost) {
+bool CellResponse::setInertia(const Data& data, const GoalCost& cost) {
   M_ = &data.inertia.M;
   cost_ = &cost;
   controlCost_ = cost.controlCost();
-  massFactor_ = massFactor ? massFactor : &ownMassFactor_;
-  if (!massFactor && !ownMassFactor_.compute(data.inertia.hat())) return false;
+  if (!massFactor_.compute(data.inertia.hat())) return false;
+  enterWithoutRows();
   // Goals weigh by M itself.
-  goalMassFactor_ = data.inertia.anyAdded ? &ownGoalMassFactor_ : massFactor_;
+  goalMassFactor_ = data.inertia.anyAdded ? &ownGoalMassFactor_ : &massFactor_;
   if (data.inertia.anyAdded && cost.metricWeight() != 0.0 &&
       !ownGoalMassFactor_.compute(data.inertia.M))
     return false;
-  controlCost_.prepare(*massFactor_);
+  controlCost_.prepare(massFactor_);
   computeControlCost();
   return true;
 }
@@ -110,8 +103,8 @@ void CellResponse::computeControlCost() {
   reducedControlCost_.setZero(count, count);
   if (controlCost_.hasInverseMass()) {
     setColumns(Y);
-    massFactor_->solveTransposed(Y, range_);
-    setWeightedGram(Y, *massFactor_, range_, reducedControlCost_);
+    massFactor_.solveTransposed(Y, range_);
+    addWeightedGram(Y, massFactor_, range_, reducedControlCost_);
   }
   const int n = columns();
   if (transmission_) {
@@ -141,11 +134,15 @@ void CellResponse::multiplyControlCost(const VectorX& p, VectorX& y) const {
 }
 
 bool CellResponse::enter(Data& data) {
+  if (data.constraints.active().empty()) {
+    enterWith(massFactor_);
+    return true;
+  }
   P_.resize(data.constraints.sparsity());
   P_.assign(data.inertia.hat());
   data.constraints.addCurvature(P_);
-  enterWith(ownFactor_);
-  return ownFactor_.compute(P_);
+  enterWith(cellFactor_);
+  return cellFactor_.compute(P_);
 }
 
 void CellResponse::enterWith(const TreeFactor& factor) {
@@ -165,7 +162,7 @@ void CellResponse::solve(VectorX& x) const {
 }
 
 void CellResponse::multiplyR(const VectorX& x, VectorX& Rx) const {
-  controlCost_.multiply(*massFactor_, x, Rx);
+  controlCost_.multiply(massFactor_, x, Rx);
 }
 
 const CellResponse::Correction& CellResponse::cross(const VectorX& J, double jump) {

@@ -28,14 +28,15 @@ class CellResponse {
 
   /// Takes B from the limits.
   void setDriven(const Model& model, const ControlLimits& limits);
-  /// Takes R from the cost and M̂, and ∇²ℓ from the cost; M and the cost must stay. `massFactor`, of
-  /// M̂, may be null. Returns false when M is not positive definite.
-  bool setInertia(const Data& data, const TreeFactor* massFactor, const GoalCost& cost);
+  /// Takes R from the cost and M̂, and ∇²ℓ from the cost; M and the cost must stay. Returns false
+  /// when M is not positive definite.
+  bool setInertia(const Data& data, const GoalCost& cost);
 
-  /// P of the cell in which the rows are kept. Returns false when it cannot be factored.
+  /// P of the cell in which the rows are kept, after setInertia(). Returns false when it cannot be
+  /// factored.
   bool enter(Data& data);
-  /// P of the forward solve that has just ended in this cell.
-  void enterWith(const TreeFactor& factor);
+  /// M̂ in the place of P: as if there were no rows.
+  void enterWithoutRows() { enterWith(massFactor_); }
   /// What a row that changes its piece does to P⁻¹.
   struct Correction {
     VectorX y, By;       ///< P⁻¹Jᵀ before, Bᵀ y
@@ -70,9 +71,10 @@ class CellResponse {
   void multiplyControlCost(const VectorX& p, VectorX& y) const;        ///< y ← BᵀR B p
   /// Lower triangle.
   auto hessian() const { return (withForces_ ? forceK_ : K_).topLeftCorner(columns(), columns()); }
-  int massFailedRow() const { return massFactor_->failedRow(); }
+  int massFailedRow() const { return massFactor_.failedRow(); }
 
  private:
+  void enterWith(const TreeFactor& factor);
   int padded() const { return paddedSize(columns()); }
   void setColumns(RowMajorMatrixX& X);
   void computeControlCost();
@@ -84,14 +86,13 @@ class CellResponse {
   std::shared_ptr<const Transmission> transmission_;  ///< null: B selects
   MatrixX B_;                                         ///< empty where B selects
   VectorX fixed_, givenForce_;  ///< coordinates that the box fixes, else 0; the force they make
-  TreeFactor ownMassFactor_, ownFactor_;
-  const TreeFactor* massFactor_ = &ownMassFactor_;
+  TreeFactor massFactor_, cellFactor_;  ///< of M̂, of P
   TreeFactor ownGoalMassFactor_;
-  const TreeFactor* goalMassFactor_ = &ownMassFactor_;  ///< of M
+  const TreeFactor* goalMassFactor_ = &massFactor_;  ///< of M
   const TreeMatrix* M_ = nullptr;
   const GoalCost* cost_ = nullptr;
-  const TreeFactor* factor_ = &ownFactor_;  ///< of P before the corrections
-  std::vector<Correction> corrections_;     ///< the first correctionCount_ are in use
+  const TreeFactor* factor_ = &cellFactor_;  ///< of P before the corrections
+  std::vector<Correction> corrections_;      ///< the first correctionCount_ are in use
   int correctionCount_ = 0;
   int correctionsInS_ = 0;  ///< −1: S is not of this factor
   TreeMatrix P_;

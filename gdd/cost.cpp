@@ -74,23 +74,37 @@ void GoalCost::addRows(const Eigen::Ref<const MatrixX>& J, double weight,
   }
 }
 
-void GoalCost::addOneSided(const VectorX& J, double weight, double least) {
-  SOFTGAUSS_ASSERT(J.size() == dofWeight_.size());
+GoalCost::OneSided& GoalCost::addSide(double weight, double least) {
   const std::size_t used = denseWeight_.size();
   const auto room = static_cast<Eigen::Index>(used);
-  if (dense_.cols() <= room) dense_.conservativeResize(J.size(), 2 * room + 1);
-  dense_.col(room) = J;
+  if (dense_.cols() <= room) dense_.conservativeResize(dofWeight_.size(), 2 * room + 1);
   denseWeight_.push_back(0.0);
   denseTarget_.push_back(least);
   sides_.push_back({used, weight});
+  return sides_.back();
+}
+
+void GoalCost::addOneSided(const VectorX& J, double weight, double least) {
+  SOFTGAUSS_ASSERT(J.size() == dofWeight_.size());
+  dense_.col(static_cast<Eigen::Index>(addSide(weight, least).row)) = J;
+}
+
+void GoalCost::addOneSided(int dof, double sign, double weight, double least) {
+  OneSided& side = addSide(weight, least);
+  side.dof = dof;
+  side.sign = sign;
+  auto J = dense_.col(static_cast<Eigen::Index>(side.row));
+  J.setZero();
+  J[dof] = sign;
 }
 
 bool GoalCost::chooseSides(const VectorX& a, bool first) {
   constexpr double kRounding = 1e-10;  // either side will do
   bool changed = false;
   for (const OneSided& side : sides_) {
-    const auto J = dense_.col(static_cast<Eigen::Index>(side.row));
-    const double least = denseTarget_[side.row], is = J.dot(a);
+    const double least = denseTarget_[side.row];
+    const double is = side.dof >= 0 ? side.sign * a[side.dof]
+                                    : dense_.col(static_cast<Eigen::Index>(side.row)).dot(a);
     const double rounding = kRounding * (1.0 + std::abs(least) + std::abs(is));
     double& weight = denseWeight_[side.row];
     const bool counts = weight > 0.0;
@@ -115,6 +129,7 @@ double GoalCost::value(const VectorX& a, const VectorX& Ma) const {
     sum += 0.5 * weight_[i] * (y - target_[i]).squaredNorm();
   }
   for (std::size_t i = 0; i < denseWeight_.size(); ++i) {
+    if (denseWeight_[i] == 0.0) continue;
     const double error = dense_.col(static_cast<Eigen::Index>(i)).dot(a) - denseTarget_[i];
     sum += 0.5 * denseWeight_[i] * error * error;
   }
@@ -132,6 +147,7 @@ void GoalCost::gradient(const VectorX& a, const VectorX& Ma, VectorX& g) const {
     rows_.addTransposed(i, slope.data(), g);
   }
   for (std::size_t i = 0; i < denseWeight_.size(); ++i) {
+    if (denseWeight_[i] == 0.0) continue;
     const auto J = dense_.col(static_cast<Eigen::Index>(i));
     g += denseWeight_[i] * (J.dot(a) - denseTarget_[i]) * J;
   }
@@ -148,6 +164,7 @@ void GoalCost::multiplyCurvature(const VectorX& d, const VectorX& Md, VectorX& H
     rows_.addTransposed(i, y.data(), Hd);
   }
   for (std::size_t i = 0; i < denseWeight_.size(); ++i) {
+    if (denseWeight_[i] == 0.0) continue;
     const auto J = dense_.col(static_cast<Eigen::Index>(i));
     Hd += denseWeight_[i] * J.dot(d) * J;
   }
@@ -163,6 +180,7 @@ double GoalCost::curvatureAlong(const VectorX& d, const VectorX& Md) const {
     sum += weight_[i] * y.squaredNorm();
   }
   for (std::size_t i = 0; i < denseWeight_.size(); ++i) {
+    if (denseWeight_[i] == 0.0) continue;
     const double rate = dense_.col(static_cast<Eigen::Index>(i)).dot(d);
     sum += denseWeight_[i] * rate * rate;
   }
@@ -177,6 +195,7 @@ void GoalCost::addQuadraticCurvature(TreeMatrix& H) {
   }
   const int n = static_cast<int>(dofWeight_.size());
   for (std::size_t r = 0; r < denseWeight_.size(); ++r) {
+    if (denseWeight_[r] == 0.0) continue;
     const auto J = dense_.col(static_cast<Eigen::Index>(r));
     for (int i = 0; i < n; ++i) {
       const double scale = denseWeight_[r] * J[i];

@@ -70,6 +70,8 @@ class GoalCost {
                const Eigen::Ref<const VectorX>& target);
   /// ½ weight max(0, least − J a)² for one row J (nv). It does not count before chooseSides().
   void addOneSided(const VectorX& J, double weight, double least);
+  /// The same of one dof: J a = sign a_dof.
+  void addOneSided(int dof, double sign, double weight, double least);
   bool hasSides() const { return !sides_.empty(); }
   /// From here on those one-sided rows count that are short of their least at a, and ℓ is (9.22)
   /// there; with `first` no more than one row changes. Returns whether any has.
@@ -144,7 +146,10 @@ class GoalCost {
   struct OneSided {
     std::size_t row;  ///< of dense_
     double weight;    ///< while it counts; else denseWeight_ is 0
+    int dof = -1;     ///< that alone is in the row, times `sign`; −1: any
+    double sign = 0.0;
   };
+  OneSided& addSide(double weight, double least);
 
   BlockJacobian rows_;
   std::vector<double> weight_;  ///< one a block

@@ -12,9 +12,14 @@ void GravityCompensation::setStatics(const Model& model, const State& state, con
   force_ = smooth.c - smooth.bias;
   if (data.plan.hasDamping()) force_ -= data.plan.damping.cwiseProduct(state.v);
   if (!data.plan.gravity) return;
-  const Motion up{Vector3::Zero(), -model.options.gravity};
-  for (int i = 0; i < model.nv; ++i)
-    force_[i] += dot(data.kinematics.S[i], data.inertia.composite[model.dofs[i].body] * up);
+  const Vector3 up = -model.options.gravity;
+  for (int b = 1; b < model.bodyCount(); ++b) {
+    const Body& body = model.bodies[b];
+    const Inertia& all = data.inertia.composite[b];
+    const Force weight{all.h.cross(up), all.mass * up};
+    for (int i = body.v; i < body.v + body.dofs; ++i)
+      force_[i] += dot(data.kinematics.S[i], weight);
+  }
 }
 
 /// Whether there is a z.

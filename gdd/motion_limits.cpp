@@ -14,13 +14,18 @@ bool isDriven(const Model& model, const ControlLimits& limits, int dof) {
   return model.dofs[dof].actuated || (limits.transmission && limits.transmission->pulls(dof));
 }
 
+/// 1/M_ii.
+double inverseOf(const Data& data, int dof) {
+  return data.inertia.motionScale[dof] * data.inertia.motionScale[dof];
+}
+
 /// What may come to the joint's speed within a step: by its own motor, or by as much acceleration
 /// as in the last step [rad/s or m/s].
 double gain(const GoalContext& context, const ControlLimits& limits, int dof) {
   const Dof& d = context.model.dofs[dof];
   if (!d.actuated || (limits.transmission && limits.transmission->pulls(dof))) return kInfinity;
   const double inverseInertia =
-      std::max(1.0 / context.data.inertia.M.row(dof)[dof], context.data.weights.dof[dof]);
+      std::max(inverseOf(context.data, dof), context.data.weights.dof[dof]);
   const double own = std::max(d.effortUpper, -d.effortLower) * inverseInertia;
   const WarmStart& last = context.state.warmstart;
   const double before = last.gddValid ? std::abs(last.gddA[dof]) : 0.0;
@@ -33,7 +38,7 @@ double braking(const GoalContext& context, const ControlLimits& limits, int dof,
   const double most = arrival / context.model.options.timestep;
   if (!d.actuated || (limits.transmission && limits.transmission->pulls(dof))) return most;
   const double effort = std::min(d.effortUpper, -d.effortLower);
-  return std::min(most, kOwnShare * effort / context.data.inertia.M.row(dof)[dof]);
+  return std::min(most, kOwnShare * effort * inverseOf(context.data, dof));
 }
 
 }  // namespace
@@ -41,8 +46,6 @@ double braking(const GoalContext& context, const ControlLimits& limits, int dof,
 void MotionLimits::addCost(const GoalContext& context, const ControlLimits& limits,
                            GoalCost& cost) const {
   const Model& model = context.model;
-  VectorX& row = cost.workspace().dofs;
-  row.setZero();
   // sign 1: upwards, with `room` [rad or m] to the upper end of the range; −1: downwards.
   const auto bound = [&](int dof, double sign, double room, double gained) {
     double allowed = model.dofs[dof].velocityLimit, falls = 0.0;  // −u̇ for a joint at u
@@ -54,11 +57,9 @@ void MotionLimits::addCost(const GoalContext& context, const ControlLimits& limi
     }
     const double speed = sign * context.state.v[dof];
     if (!(speed + gained > kBegins * allowed)) return;
-    row[dof] = -sign;
     const double time = std::max(brakingTime, context.model.options.timestep);
-    cost.addOneSided(row, weight * context.data.inertia.M.row(dof)[dof],
+    cost.addOneSided(dof, -sign, weight * context.data.inertia.M.row(dof)[dof],
                      (speed - allowed) / time + falls * std::max(0.0, speed) / allowed);
-    row[dof] = 0.0;
   };
   auto range = model.ranges.begin();
   for (int dof = 0; dof < model.nv; ++dof) {

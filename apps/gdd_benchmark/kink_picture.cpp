@@ -134,7 +134,7 @@ class KinkFinder {
   bool findDirections(Kink& kink) {
     data_.constraints.enterPiece(kink.breakpoint, true);  // rounding must not choose
     cell_.setDriven(model_, limits_);
-    if (!cell_.setInertia(data_, nullptr, cost_) || !cell_.enter(data_)) return false;
+    if (!cell_.setInertia(data_, cost_) || !cell_.enter(data_)) return false;
     cell_.computeHessian();
     VectorX J(model_.nv), n, u, lower, upper;
     data_.constraints.breakpointGradient(kink.breakpoint, J);
@@ -162,7 +162,7 @@ class KinkFinder {
   /// F(u), and the rows as they are there.
   double objective(const VectorX& control) {
     setAppliedForce(control, data_.forces);
-    if (minimizeGauss(model_, &guess_, data_) == SolveStatus::notFinite)
+    if (forwardDynamics(model_, &guess_, data_) == SolveStatus::notFinite)
       throw std::runtime_error("forward dynamics became non-finite");
     bool changed = false;
     data_.constraints.setResidual(data_.forward.a);

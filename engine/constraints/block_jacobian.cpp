@@ -4,6 +4,8 @@
 #include <algorithm>
 
 #include "softgauss/engine/core/check.hpp"
+#include "softgauss/engine/core/vector_clones.hpp"
+#include "softgauss/engine/core/vector_kernels.hpp"
 #include "softgauss/engine/dynamics/jacobian.hpp"
 
 namespace softgauss {
@@ -134,6 +136,56 @@ void BlockJacobian::addTransposed(int i, const double* f, VectorX& tau) const {
   }
 }
 
+namespace {
+
+/// y ← y + Σ_d c_d x_d of n numbers, rows x_d `stride` apart.
+template <int dim>
+[[gnu::always_inline]] inline void addRowsOf(const double* c, const double* x, int stride, int n,
+                                             double* y) {
+  double k[dim];
+  for (int d = 0; d < dim; ++d) k[d] = c[d];
+  int j = 0;
+  for (; j + 4 <= n; j += 4) {
+    Four sum = *reinterpret_cast<const Four*>(y + j);
+    for (int d = 0; d < dim; ++d) sum += k[d] * *reinterpret_cast<const Four*>(x + d * stride + j);
+    *reinterpret_cast<Four*>(y + j) = sum;
+  }
+  for (; j < n; ++j) {
+    double sum = y[j];
+    for (int d = 0; d < dim; ++d) sum += k[d] * x[d * stride + j];
+    y[j] = sum;
+  }
+}
+
+/// Row by row of P, over the segments up to the diagonal. HJ: H J.
+template <int dim>
+[[gnu::always_inline]] inline void addProducts(const Segment* begin, const Segment* end,
+                                               const double* J, const double* HJ, int n,
+                                               TreeMatrix& P) {
+  int ci = 0;
+  for (const Segment* s = begin; s != end; ++s) {
+    for (int row = s->begin; row < s->end; ++row, ++ci) {
+      double c[dim];
+      for (int d = 0; d < dim; ++d) c[d] = HJ[d * n + ci];
+      double* p = P.row(row);
+      const double* from = J;
+      for (const Segment* t = begin; t <= s; ++t) {
+        const int count = (t == s ? row + 1 : t->end) - t->begin;
+        addRowsOf<dim>(c, from, n, count, p + t->begin);
+        from += count;
+      }
+    }
+  }
+}
+
+SOFTGAUSS_VECTOR_CLONES void addProductsOfThree(const Segment* begin, const Segment* end,
+                                                const double* J, const double* HJ, int n,
+                                                TreeMatrix& P) {
+  addProducts<3>(begin, end, J, HJ, n, P);
+}
+
+}  // namespace
+
 void BlockJacobian::addCurvature(int i, const double* H, TreeMatrix& P) {
   const JacobianBlock& block = blocks_[i];
   SOFTGAUSS_ASSERT(block.segmentEnd >= 0);
@@ -146,27 +198,10 @@ void BlockJacobian::addCurvature(int i, const double* H, TreeMatrix& P) {
     for (int e = 1; e < dim; ++e)
       for (int c = 0; c < n; ++c) row[c] += H[d * dim + e] * J[e * n + c];
   }
-  // Row by row of P, over the segments up to the diagonal.
-  int ci = 0;
-  for (int s = block.segment; s < block.segmentEnd; ++s) {
-    for (int row = segments_[s].begin; row < segments_[s].end; ++row, ++ci) {
-      double* p = P.row(row);
-      int c = 0;
-      for (int t = block.segment; t <= s; ++t) {
-        const int begin = segments_[t].begin, end = t == s ? row + 1 : segments_[t].end;
-        if (dim == 3) {
-          const double h0 = HJ[ci], h1 = HJ[n + ci], h2 = HJ[2 * n + ci];
-          const double *J0 = J + c, *J1 = J0 + n, *J2 = J1 + n;
-          for (int j = begin; j < end; ++j)
-            p[j] += h0 * J0[j - begin] + h1 * J1[j - begin] + h2 * J2[j - begin];
-        } else {
-          for (int d = 0; d < dim; ++d)
-            for (int j = begin; j < end; ++j) p[j] += HJ[d * n + ci] * J[d * n + c + j - begin];
-        }
-        c += end - begin;
-      }
-    }
-  }
+  const Segment *begin = segments_.data() + block.segment,
+                *end = segments_.data() + block.segmentEnd;
+  if (dim == 3) return addProductsOfThree(begin, end, J, HJ, n, P);  // most contacts
+  for (int d = 0; d < dim; ++d) addProducts<1>(begin, end, J + d * n, HJ + d * n, n, P);
 }
 
 void BlockJacobian::denseRow(int i, int row, Eigen::Ref<Eigen::RowVectorXd> J) const {

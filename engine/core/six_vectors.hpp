@@ -32,9 +32,6 @@ inline constexpr int kSixMatrix = 6 * kSixRow;  ///< numbers of a matrix
   for (int k = 0; k < 6; ++k) y[k] += c * x[k];
 }
 
-/// Four numbers that are treated apart: the same bits on every processor.
-using Four [[gnu::vector_size(32), gnu::aligned(8), gnu::may_alias]] = double;
-
 /// A row of eight.
 struct Row {
   Four low, high;

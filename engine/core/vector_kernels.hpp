@@ -6,10 +6,15 @@
 /// treated apart, so that every instruction set gives the same bits. For functions marked with
 /// SOFTGAUSS_VECTOR_CLONES, into which they are inlined.
 
+#include <cstddef>
+
 namespace softgauss {
 
 /// The least multiple of four that holds n.
 constexpr int paddedSize(int n) { return (n + 3) & ~3; }
+
+/// Four numbers that are treated apart: the same bits on every processor.
+using Four [[gnu::vector_size(32), gnu::aligned(8), gnu::may_alias]] = double;
 
 /// y ← y + c x.
 [[gnu::always_inline]] inline void addScaled(double c, const double* __restrict x, int n,
@@ -26,14 +31,27 @@ constexpr int paddedSize(int n) { return (n + 3) & ~3; }
   return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
 
-/// y ← y + c₀ x₀ + c₁ x₁ + c₂ x₂ + c₃ x₃ for rows x that lie `stride` apart.
-[[gnu::always_inline]] inline void addScaledFour(double c0, double c1, double c2, double c3,
-                                                 const double* __restrict x, int stride, int n,
-                                                 double* __restrict y) {
-  const double *x1 = x + stride, *x2 = x1 + stride, *x3 = x2 + stride;
-  for (int i = 0; i < n; i += 4)
-    for (int k = 0; k < 4; ++k)
-      y[i + k] += c0 * x[i + k] + c1 * x1[i + k] + c2 * x2[i + k] + c3 * x3[i + k];
+/// `tiles` fours of y gain Σ_k c(k) x(k), of which x(k) points at as many. They stay in registers
+/// while k runs over all `count`.
+template <int tiles, class Coefficients, class Rows>
+[[gnu::always_inline]] inline void addToTiles(int count, Coefficients&& c, Rows&& x, double* y) {
+  Four sum[static_cast<std::size_t>(tiles)];
+  for (int t = 0; t < tiles; ++t) sum[t] = *reinterpret_cast<const Four*>(y + 4 * t);
+  for (int k = 0; k < count; ++k) {
+    const double ck = c(k), *xk = x(k);
+    for (int t = 0; t < tiles; ++t) sum[t] += ck * *reinterpret_cast<const Four*>(xk + 4 * t);
+  }
+  for (int t = 0; t < tiles; ++t) *reinterpret_cast<Four*>(y + 4 * t) = sum[t];
+}
+
+/// y ← y + Σ_k c(k) x(k), n numbers each, for functions c and x of k in [0, count).
+template <class Coefficients, class Rows>
+[[gnu::always_inline]] inline void addSum(int count, Coefficients&& c, Rows&& x, int n, double* y) {
+  int i = 0;
+  const auto from = [&](int k) { return x(k) + i; };
+  for (; i + 16 <= n; i += 16) addToTiles<4>(count, c, from, y + i);
+  if (i + 8 <= n) addToTiles<2>(count, c, from, y + i), i += 8;
+  if (i + 4 <= n) addToTiles<1>(count, c, from, y + i);
 }
 
 /// y ← y + scale · Σ_k c_k x_k for `count` rows x_k that lie `stride` apart, coefficients `step`
@@ -41,11 +59,9 @@ constexpr int paddedSize(int n) { return (n + 3) & ~3; }
 [[gnu::always_inline]] inline void addCombination(double scale, const double* c, int step,
                                                   const double* x, int stride, int count, int n,
                                                   double* y) {
-  int k = 0;
-  for (; k + 4 <= count; k += 4)
-    addScaledFour(scale * c[k * step], scale * c[(k + 1) * step], scale * c[(k + 2) * step],
-                  scale * c[(k + 3) * step], x + k * stride, stride, n, y);
-  for (; k < count; ++k) addScaled(scale * c[k * step], x + k * stride, n, y);
+  addSum(
+      count, [=](int k) { return scale * c[k * step]; }, [=](int k) { return x + k * stride; }, n,
+      y);
 }
 
 }  // namespace softgauss

@@ -78,11 +78,19 @@ SOFTGAUSS_VECTOR_CLONES int eliminateAll(const Arrays& a) {
     for (int i = body.v + body.dofs - 1; i >= body.v; --i, V += kSixRow * step.couplings) {
       const double* S = numbers(a.S[i]);
       double* U = a.U + kSixRow * i;
+      const bool last = i == body.v;
+      if (a.diagonal[i] == kInfinity) {  // it takes nothing out of what passes
+        a.inversePivot[i] = 0.0;
+        std::fill_n(U, kSixRow, 0.0);
+        std::fill_n(V, kSixRow * step.couplings, 0.0);
+        if (last && body.parent != 0) addMatrix(e.I(step.body), e.I(body.parent));
+        continue;
+      }
       project(e, step.body, S, U, V);
       const double pivot = dotSix(S, U) + a.diagonal[i];
       if (!(pivot > 0.0)) return i;
       a.inversePivot[i] = 1.0 / pivot;
-      eliminate(e, step.body, body.parent, i == body.v, a.inversePivot[i], U, V);
+      eliminate(e, step.body, body.parent, last, a.inversePivot[i], U, V);
     }
     for (int p = step.passing; p < step.passingEnd; ++p) pass(e, a.order.passings()[idx(p)]);
   }

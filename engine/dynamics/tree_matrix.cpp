@@ -27,7 +27,8 @@ int nextBit(const std::uint64_t* bits, int from, int end, bool set) {
 
 TreeSparsity::TreeSparsity(const Model& model) {
   const int n = model.nv;
-  rowBegin_.push_back(0);
+  rowBegin_.assign(1, 0);
+  fourBegin_.assign(1, 0);
   std::vector<int> columns;
   for (int row = 0; row < n; ++row) {
     columns.clear();
@@ -39,26 +40,36 @@ TreeSparsity::TreeSparsity(const Model& model) {
       else
         segments_.back().end = columns[c] + 1;
     }
-    finishRow(row, columns.front());
+    finishRow(row);
   }
   finish();
 }
 
 TreeSparsity TreeSparsity::dense(int size) {
   TreeSparsity pattern;
-  pattern.rowBegin_.push_back(0);
+  pattern.rowBegin_.assign(1, 0);
+  pattern.fourBegin_.assign(1, 0);
   for (int row = 0; row < size; ++row) {
     pattern.segments_.push_back({0, row + 1});
-    pattern.finishRow(row, 0);
+    pattern.finishRow(row);
   }
   pattern.finish();
   return pattern;
 }
 
-void TreeSparsity::finishRow(int row, int firstColumn) {
+void TreeSparsity::finishRow(int row) {
   rowBegin_.push_back(static_cast<int>(segments_.size()));
-  offset_.push_back(static_cast<std::ptrdiff_t>(storage_) - firstColumn);
-  storage_ += static_cast<std::size_t>(row - firstColumn + 1);
+  for (const Segment* s = begin(row); s != end(row); ++s) {
+    const Segment four{s->begin & ~3, paddedSize(s->end)};
+    if (s != begin(row) && four.begin <= fours_.back().end)
+      fours_.back().end = four.end;
+    else
+      fours_.push_back(four);
+  }
+  fourBegin_.push_back(static_cast<int>(fours_.size()));
+  const int from = foursBegin(row)->begin;
+  offset_.push_back(static_cast<std::ptrdiff_t>(storage_) - from);
+  storage_ += idx(paddedSize(row + 1) - from);
 }
 
 void TreeSparsity::finish() {
@@ -128,6 +139,8 @@ void TreeSparsity::couple(const TreeSparsity& tree, const std::vector<Segment>& 
 
   segments_.clear();
   rowBegin_.assign(1, 0);
+  fours_.clear();
+  fourBegin_.assign(1, 0);
   offset_.clear();
   storage_ = 0;
   for (int i = 0; i < n; ++i) {
@@ -137,7 +150,7 @@ void TreeSparsity::couple(const TreeSparsity& tree, const std::vector<Segment>& 
       to = nextBit(bits, from, i + 1, false);
       segments_.push_back({from, to});
     }
-    finishRow(i, firstColumn);
+    finishRow(i);
   }
   finish();
 }
@@ -170,18 +183,21 @@ void TreeMatrix::add(const TreeMatrix& other, double scale) {
 
 void TreeMatrix::multiply(const VectorX& x, VectorX& y) const {
   const int n = size();
+  const Rows rows = this->rows();
+  const double* from = x.data();
+  double* to = y.data();
   for (int i = 0; i < n; ++i) {
-    const double* a = row(i);
-    const double xi = x[i];
+    const double* a = rows(i);
+    const double xi = from[i];
     double sum = 0.0;
     for (const Segment* s = sparsity_->begin(i); s != sparsity_->end(i); ++s) {
       const int end = std::min(s->end, i);
       for (int j = s->begin; j < end; ++j) {
-        sum += a[j] * x[j];
-        y[j] += a[j] * xi;
+        sum += a[j] * from[j];
+        to[j] += a[j] * xi;
       }
     }
-    y[i] = sum + a[i] * xi;
+    to[i] = sum + a[i] * xi;
   }
 }
 
@@ -204,29 +220,27 @@ SOFTGAUSS_VECTOR_CLONES bool TreeFactor::compute(const TreeMatrix& A, const doub
   if (diagonal)
     for (int i = 0; i < n; ++i) LD_.row(i)[i] += diagonal[i];
 
-  // Row i of D L from the rows below it that contain i:  A_ij − Σ_k (L_ki D_k) L_kj, four rows at
-  // a time so that each entry of row i is loaded and stored once for four products.
+  coefficient_.resize(idx(n));
+  eliminated_.resize(idx(n));
+  double *coefficient = coefficient_.data(), *pivots = pivot_.data();
+  const double** eliminated = eliminated_.data();
+  const TreeMatrix::Rows rows = LD_.rows();
+  // Row i of D L from the rows below it that contain i:  A_ij − Σ_k (L_ki D_k) L_kj.
   for (int i = n - 1; i >= 0; --i) {
     double* Hi = LD_.row(i);
     for (const Segment* s = pattern.columnBegin(i); s != pattern.columnEnd(i); ++s) {
-      const int from = pattern.first(s->begin);
-      int k = s->begin;
-      for (; k + 4 <= s->end; k += 4) {
-        const double *L0 = LD_.row(k), *L1 = LD_.row(k + 1), *L2 = LD_.row(k + 2),
-                     *L3 = LD_.row(k + 3);
-        const double c0 = L0[i] * pivot_[k], c1 = L1[i] * pivot_[k + 1], c2 = L2[i] * pivot_[k + 2],
-                     c3 = L3[i] * pivot_[k + 3];
-        for (const Segment* t = pattern.begin(i); t != pattern.end(i); ++t)
-          for (int j = std::max(t->begin, from); j < t->end; ++j)
-            Hi[j] -= c0 * L0[j] + c1 * L1[j] + c2 * L2[j] + c3 * L3[j];
+      const int from = pattern.foursBegin(s->begin)->begin, count = s->end - s->begin;
+      for (int k = 0; k < count; ++k) {
+        const double* L = rows(s->begin + k);
+        eliminated[k] = L;
+        coefficient[k] = -L[i] * pivots[s->begin + k];
       }
-      for (; k < s->end; ++k) {
-        const double* L = LD_.row(k);
-        const double c = L[i] * pivot_[k];
-        for (const Segment* t = pattern.begin(k); t != pattern.end(k); ++t) {
-          const int end = std::min(t->end, i + 1);
-          for (int j = t->begin; j < end; ++j) Hi[j] -= c * L[j];
-        }
+      for (const Segment* t = pattern.foursBegin(i); t != pattern.foursEnd(i); ++t) {
+        const int begin = std::max(t->begin, from);
+        if (begin >= t->end) continue;
+        addSum(
+            count, [=](int k) { return coefficient[k]; },
+            [=](int k) { return eliminated[k] + begin; }, t->end - begin, Hi + begin);
       }
     }
     const double pivot = Hi[i];
@@ -234,40 +248,43 @@ SOFTGAUSS_VECTOR_CLONES bool TreeFactor::compute(const TreeMatrix& A, const doub
       failedRow_ = i;
       return false;
     }
-    pivot_[i] = pivot;
+    pivots[i] = pivot;
     inversePivot_[i] = 1.0 / pivot;
-    for (const Segment* t = pattern.begin(i); t != pattern.end(i); ++t) {
-      const int end = std::min(t->end, i);
-      for (int j = t->begin; j < end; ++j) Hi[j] *= inversePivot_[i];
-    }
+    for (const Segment* t = pattern.foursBegin(i); t != pattern.foursEnd(i); ++t)
+      for (int j = t->begin; j < t->end; ++j) Hi[j] *= inversePivot_[i];
+    Hi[i] = pivot;
   }
   return true;
 }
 
 void TreeFactor::solveTransposed(VectorX& x) const {
   const TreeSparsity& pattern = LD_.sparsity();
+  const TreeMatrix::Rows rows = LD_.rows();
+  double* to = x.data();
   for (int k = size() - 1; k > 0; --k) {
-    const double* L = LD_.row(k);
-    const double xk = x[k];
+    const double* L = rows(k);
+    const double xk = to[k];
     if (xk == 0.0) continue;  // a row of a Jacobian has few entries
     for (const Segment* s = pattern.begin(k); s != pattern.end(k); ++s) {
       const int end = std::min(s->end, k);
-      for (int j = s->begin; j < end; ++j) x[j] -= L[j] * xk;
+      for (int j = s->begin; j < end; ++j) to[j] -= L[j] * xk;
     }
   }
 }
 
 void TreeFactor::solveLower(VectorX& x) const {
   const TreeSparsity& pattern = LD_.sparsity();
+  const TreeMatrix::Rows rows = LD_.rows();
+  double* to = x.data();
   const int n = size();
   for (int k = 1; k < n; ++k) {
-    const double* L = LD_.row(k);
-    double sum = x[k];
+    const double* L = rows(k);
+    double sum = to[k];
     for (const Segment* s = pattern.begin(k); s != pattern.end(k); ++s) {
       const int end = std::min(s->end, k);
-      for (int j = s->begin; j < end; ++j) sum -= L[j] * x[j];
+      for (int j = s->begin; j < end; ++j) sum -= L[j] * to[j];
     }
-    x[k] = sum;
+    to[k] = sum;
   }
 }
 
@@ -276,17 +293,24 @@ SOFTGAUSS_VECTOR_CLONES void TreeFactor::solveTransposed(RowMajorMatrixX& X,
   SOFTGAUSS_ASSERT(X.cols() % 4 == 0);
   const TreeSparsity& pattern = LD_.sparsity();
   const int columns = static_cast<int>(X.cols());
-  for (int k = size() - 1; k >= 0; --k) {
-    const double* L = LD_.row(k);
-    const Segment from{range[k].begin & ~3, paddedSize(range[k].end)};
-    range[k] = from;
-    if (from.begin == from.end) continue;
-    const double* xk = X.data() + k * columns + from.begin;
-    for (const Segment* s = pattern.begin(k); s != pattern.end(k); ++s) {
-      const int end = std::min(s->end, k);
-      for (int j = s->begin; j < end; ++j) {
-        addScaled(-L[j], xk, from.end - from.begin, X.data() + j * columns + from.begin);
-        Segment& to = range[j];
+  const TreeMatrix::Rows L = LD_.rows();
+  for (Segment& r : range) r = {r.begin & ~3, paddedSize(r.end)};
+  // Row j from the rows below it that contain j, where these have entries.
+  for (int j = size() - 1; j >= 0; --j) {
+    double* xj = X.data() + j * columns;
+    for (const Segment* s = pattern.columnBegin(j); s != pattern.columnEnd(j); ++s) {
+      for (int k = s->begin, end; k < s->end; k = end) {
+        const Segment from = range[idx(k)];
+        const auto same = [&](int i) {
+          return range[idx(i)].begin == from.begin && range[idx(i)].end == from.end;
+        };
+        for (end = k + 1; end < s->end && same(end);) ++end;
+        if (from.begin == from.end) continue;
+        const double* xk = X.data() + k * columns + from.begin;
+        addSum(
+            end - k, [=](int i) { return -L(k + i)[j]; }, [=](int i) { return xk + i * columns; },
+            from.end - from.begin, xj + from.begin);
+        Segment& to = range[idx(j)];
         const bool empty = to.begin == to.end;
         to.begin = empty ? from.begin : std::min(to.begin, from.begin);
         to.end = std::max(to.end, from.end);
@@ -302,7 +326,8 @@ SOFTGAUSS_VECTOR_CLONES void TreeFactor::solve(RowMajorMatrixX& X,
   const int n = size(), columns = static_cast<int>(X.cols());
   for (int k = 0; k < n; ++k) {
     double* xk = X.data() + k * columns;
-    for (int c = range[k].begin; c < range[k].end; ++c) xk[c] *= inversePivot_[k];
+    const double inverse = inversePivot_[idx(k)];
+    for (int c = range[k].begin; c < range[k].end; ++c) xk[c] *= inverse;
   }
   for (int k = 1; k < n; ++k) {
     const double* L = LD_.row(k);

@@ -47,8 +47,13 @@ class TreeSparsity {
     return columns_.data() + columnBegin_[idx(column + 1)];
   }
   int first(int row) const { return begin(row)->begin; }
+  /// The segments of a row in whole fours of columns, those that meet as one: what runs over them
+  /// has no tails. The last one ends beyond the diagonal.
+  const Segment* foursBegin(int row) const { return fours_.data() + fourBegin_[idx(row)]; }
+  const Segment* foursEnd(int row) const { return fours_.data() + fourBegin_[idx(row + 1)]; }
   /// Position of entry (row, 0) in the value array; entries exist for columns in the segments.
   std::ptrdiff_t offset(int row) const { return offset_[idx(row)]; }
+  const std::ptrdiff_t* offsets() const { return offset_.data(); }
   std::size_t storage() const { return storage_; }
 
   /// This pattern plus all products of the given dof sets, closed under elimination. `couplings`
@@ -57,11 +62,13 @@ class TreeSparsity {
               const std::vector<int>& setEnd);
 
  private:
-  void finishRow(int row, int firstColumn);
+  void finishRow(int row);
   void finish();
 
   std::vector<Segment> segments_;
   std::vector<int> rowBegin_;
+  std::vector<Segment> fours_;
+  std::vector<int> fourBegin_;
   std::vector<std::ptrdiff_t> offset_;
   std::vector<Segment> columns_;  ///< the pattern by columns, diagonal excluded
   std::vector<int> columnBegin_;
@@ -70,8 +77,9 @@ class TreeSparsity {
   std::vector<int> cursor_;          ///< scratch of finish(): a place per column
 };
 
-/// A symmetric matrix on a TreeSparsity; row() points at column 0 of a row. What lies between the
-/// segments of a row is stored and stays zero: algorithms may run over it.
+/// A symmetric matrix on a TreeSparsity; row() points at column 0 of a row. From the four of
+/// columns in which a row begins to the four of its diagonal all is stored, and zero outside its
+/// segments: algorithms may run over it.
 class TreeMatrix {
  public:
   void resize(const TreeSparsity& sparsity) {
@@ -80,6 +88,13 @@ class TreeMatrix {
   }
   const TreeSparsity& sparsity() const { return *sparsity_; }
   int size() const { return sparsity_->size(); }
+  /// Where rows begin, for inner loops: a value, which stores to the matrix cannot change.
+  struct Rows {
+    const double* values;
+    const std::ptrdiff_t* offset;
+    const double* operator()(int i) const { return values + offset[i]; }
+  };
+  Rows rows() const { return {values_.data(), sparsity_->offsets()}; }
   double* row(int i) { return values_.data() + sparsity_->offset(i); }
   const double* row(int i) const { return values_.data() + sparsity_->offset(i); }
   void setZero();
@@ -116,6 +131,7 @@ class TreeFactor {
   /// x ← L⁻¹ x, the last half.
   void solveLower(VectorX& x) const;
   double inversePivot(int k) const { return inversePivot_[idx(k)]; }
+  const double* inversePivots() const { return inversePivot_.data(); }
   /// Row k of L, entries left of the diagonal, on the sparsity of A.
   const double* lowerRow(int k) const { return LD_.row(k); }
   const TreeSparsity& sparsity() const { return LD_.sparsity(); }
@@ -124,9 +140,11 @@ class TreeFactor {
   int failedRow() const { return failedRow_; }
 
  private:
-  TreeMatrix LD_;  ///< L below the diagonal, D on it
+  TreeMatrix LD_;  ///< L below the diagonal, D on it, anything beyond
   int failedRow_ = -1;
   std::vector<double> pivot_, inversePivot_;
+  std::vector<double> coefficient_;        ///< scratch of compute()
+  std::vector<const double*> eliminated_;  ///< scratch of compute()
 };
 
 }  // namespace softgauss

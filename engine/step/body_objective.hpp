@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// The objective of (1.1) on bodies, in O(n + rows): what gauss_objective.hpp computes from M, J
-/// and P by two sweeps for each gradient and ray, and P⁻¹ by articulated bodies.
+/// The objective of (1.1) on bodies, in O(n + rows): two sweeps for each gradient and ray, and P⁻¹
+/// of (1.3) by articulated bodies. Neither M, J nor P is made.
 
 #include <vector>
 

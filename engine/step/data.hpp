@@ -20,17 +20,11 @@ namespace softgauss {
 
 /// Stage written by forwardDynamics().
 struct ForwardSolution {
-  VectorX a;              ///< continuous-time acceleration of (1.1) (nv)
-  VectorX Ma;             ///< M a, where no row acts or minimizeGauss() has solved
-  VectorX gradient;       ///< M a + c − τ − Jᵀf, the residual force [N, N m]
-  TreeFactor factor;      ///< of P = M + Jᵀ∇²s J in the last cell, or of M
-  TreeFactor massFactor;  ///< of M̂, of minimizeGauss()
+  VectorX a;         ///< continuous-time acceleration of (1.1) (nv)
+  VectorX gradient;  ///< M a + c − τ − Jᵀf, the residual force [N, N m]
   NewtonReport report;
-  bool massFactored = false;  ///< massFactor is that of the present M̂
-  bool cellFactored = false;  ///< `factor` is of the cell of the solution
 
-  VectorX direction, Md, scale, start;  ///< scratch
-  TreeMatrix P;
+  VectorX direction, diagonal, scale, start;  ///< scratch
 };
 
 /// Wall time of the stages of the last step [s].

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "softgauss/engine/core/check.hpp"
-#include "softgauss/engine/step/gauss_objective.hpp"
 
 namespace softgauss {
 namespace {
@@ -18,28 +17,13 @@ int firstNotFinite(const VectorX& x) {
 
 bool hasRows(const Data& data) { return !kBuiltRows.empty() && !data.constraints.active().empty(); }
 
-/// x ← M̂⁻¹ x by the factor that goals go on from.
-bool solveByTree(const Model& model, Data& data, VectorX& x) {
-  SOFTGAUSS_ASSERT(data.inertia.whole || data.plan.diagonal);
-  if (data.plan.diagonal && !hasRows(data)) return solveMass(model, data, nullptr, x);
-  ForwardSolution& s = data.forward;
-  if (!s.massFactored && !s.massFactor.compute(data.inertia.hat())) {
-    data.stats.badDof = s.massFactor.failedRow();
-    return false;
-  }
-  s.massFactored = true;
-  s.massFactor.solve(x);
-  return true;
-}
-
 /// Newton's method from `guess` or, where that is far away, from the unconstrained acceleration if
-/// it costs less; `solveInertia` is x ← M̂⁻¹ x and false where M̂ is singular, and names the dof.
-template <class Objective, class SolveInertia>
-void solveRows(const Model& model, const VectorX* guess, Data& data, Objective& objective,
-               SolveInertia&& solveInertia) {
+/// it costs less.
+void solveRows(const Model& model, const VectorX* guess, Data& data) {
   /// A gradient at the guess that is no larger than the forces themselves: it is near.
   constexpr double kNear = 1.0;
   ForwardSolution& s = data.forward;
+  BodyObjective objective(model, data);
   const bool warm = data.constraints.rowCount() > 0 && guess && guess->allFinite();
   double residual = kInfinity, warmCost = kInfinity;
   if (warm) {
@@ -49,7 +33,7 @@ void solveRows(const Model& model, const VectorX* guess, Data& data, Objective& 
   if (!(residual <= kNear)) {
     // Without rows the minimiser is M⁻¹(τ − c).
     s.start = data.forces.net;
-    if (!solveInertia(s.start)) {
+    if (!solveMass(model, data, nullptr, s.start)) {
       s.report.status = SolveStatus::notFinite;
       return;
     }
@@ -60,18 +44,32 @@ void solveRows(const Model& model, const VectorX* guess, Data& data, Objective& 
   s.report = minimize(objective, model.options.tolerance,
                       mostIterations(model.options.maxIterations, data.constraints.rowCount()),
                       residual, s.gradient, s.direction);
-  s.cellFactored = s.report.factorizations > 0 && !objective.cellChanged();
   data.stats.roundingLimitedSolves += s.report.roundingLimited;
   if (s.report.status == SolveStatus::notFinite) data.stats.badDof = firstNotFinite(s.a);
 }
 
-/// Without rows the minimiser is M⁻¹(τ − c): no iteration, no residual.
-template <class SolveInertia>
-void solveSmooth(Data& data, SolveInertia&& solveInertia) {
+/// Whether M̂ a = τ − c as closely as a search would have it.
+bool solves(const Model& model, const VectorX& a, Data& data) {
   ForwardSolution& s = data.forward;
-  s.Ma = s.a = data.forces.net;
+  data.inertia.hat().multiply(a, s.gradient);
+  s.gradient -= data.forces.net;
+  const VectorX& scale = data.inertia.forceScale;
+  const double largest = std::max(1.0, data.forces.net.cwiseProduct(scale).cwiseAbs().maxCoeff());
+  return s.gradient.cwiseProduct(scale).cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <=
+         model.options.tolerance * largest;
+}
+
+/// Without rows the minimiser is M⁻¹(τ − c): no iteration, no residual. Where M is a matrix, goals
+/// have found it.
+void solveSmooth(const Model& model, const VectorX* guess, Data& data) {
+  ForwardSolution& s = data.forward;
+  if (guess && data.inertia.whole && solves(model, *guess, data)) {
+    s.a = *guess;
+    return;
+  }
+  s.a = data.forces.net;
   s.gradient.setZero();
-  const bool solved = solveInertia(s.a);
+  const bool solved = solveMass(model, data, nullptr, s.a);
   if (solved && s.a.allFinite()) return;
   s.report.status = SolveStatus::notFinite;
   if (solved) data.stats.badDof = firstNotFinite(s.a);
@@ -81,7 +79,6 @@ void solveSmooth(Data& data, SolveInertia&& solveInertia) {
 bool begin(const Model& model, const VectorX* guess, Data& data) {
   ForwardSolution& s = data.forward;
   s.report = {};
-  s.cellFactored = false;
   data.stats.invalidWarmStarts += guess && !guess->allFinite();
   if (model.nv == 0) return false;
   if (guess && guess->size() != model.nv) {
@@ -94,20 +91,6 @@ bool begin(const Model& model, const VectorX* guess, Data& data) {
   data.stats.badDof = firstNotFinite(data.forces.net);
   s.report.status = SolveStatus::notFinite;
   return false;
-}
-
-/// (1.1) by a solver that solveInertia() belongs to; `makeObjective` is called where rows act.
-template <class MakeObjective, class SolveInertia>
-SolveStatus minimizeBy(const Model& model, const VectorX* guess, Data& data,
-                       MakeObjective&& makeObjective, SolveInertia&& solveInertia) {
-  if (!begin(model, guess, data)) return data.forward.report.status;
-  if (hasRows(data)) {
-    auto objective = makeObjective();
-    solveRows(model, guess, data, objective, solveInertia);
-  } else {
-    solveSmooth(data, solveInertia);
-  }
-  return data.forward.report.status;
 }
 
 }  // namespace
@@ -145,17 +128,13 @@ bool solveMass(const Model& model, Data& data, const VectorX* diagonal, VectorX&
   return true;
 }
 
-SolveStatus minimizeGauss(const Model& model, const VectorX* guess, Data& data) noexcept {
-  return minimizeBy(
-      model, guess, data,
-      [&] { return GaussObjective(data.inertia, data.forces.net, data.constraints, data.forward); },
-      [&](VectorX& x) { return solveByTree(model, data, x); });
-}
-
 SolveStatus forwardDynamics(const Model& model, const VectorX* guess, Data& data) noexcept {
-  return minimizeBy(
-      model, guess, data, [&] { return BodyObjective(model, data); },
-      [&](VectorX& x) { return solveMass(model, data, nullptr, x); });
+  if (!begin(model, guess, data)) return data.forward.report.status;
+  if (hasRows(data))
+    solveRows(model, guess, data);
+  else
+    solveSmooth(model, guess, data);
+  return data.forward.report.status;
 }
 
 }  // namespace softgauss

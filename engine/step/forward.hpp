@@ -17,9 +17,6 @@ namespace softgauss {
 /// Starts from `guess` (null: none) or the unconstrained acceleration, whichever costs less.
 SolveStatus forwardDynamics(const Model& model, const VectorX* guess, Data& data) noexcept;
 
-/// (1.1) with M, J and P, whose factor is left in data.forward: for goals, which go on from there.
-SolveStatus minimizeGauss(const Model& model, const VectorX* guess, Data& data) noexcept;
-
 /// Of Newton's iterations: a step ends in another cell or at the minimum, and the more rows, the
 /// more cells lie on the way. Options::maxIterations are for every thousand rows. (200 bodies that
 /// fall on each other, with 4,210 rows, have needed more than 100.)

@@ -66,7 +66,7 @@ Data::Data(const Model& model, Evaluation)
       derivative(isImplicit(model.options.integrator) ? std::make_unique<VelocityDerivative>(model)
                                                       : nullptr) {
   ForwardSolution& s = forward;
-  for (VectorX* x : {&s.a, &s.Ma, &s.gradient, &s.direction, &s.Md, &s.scale, &s.start})
+  for (VectorX* x : {&s.a, &s.gradient, &s.direction, &s.diagonal, &s.scale, &s.start})
     *x = VectorX::Zero(model.nv);
   // Rows exist before the first step, so that stages may be read in any state.
   constraints.assemble({model, State(model), kinematics, contacts, weights, inertia.sparsity});
@@ -161,7 +161,7 @@ SolveStatus computeStages(const Model& model, const Input& input, const State& s
   if (!posed) computeKinematics(model, state, data.kinematics);
   computeMassMatrix(model, data.kinematics, data.inertia, matrices);
   if (data.plan.inSolve) addImplicitInertia(model, data);
-  data.forward.massFactored = data.bodies.massFactored = false;
+  data.bodies.massFactored = false;
   computeForces(model, input, state, data, clock);
 
   if (looksForContacts(data, contacts)) {

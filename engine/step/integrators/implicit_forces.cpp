@@ -50,14 +50,14 @@ void addImplicitInertia(const Model& model, Data& data) {
 
 void setImplicitForces(const Model& model, const State& state, Data& data, VectorX& net) {
   const double h = model.options.timestep;
-  VectorX& Md = data.forward.Md;
+  VectorX& added = data.forward.diagonal;
   if (data.plan.hasDamping())
-    Md = h * data.plan.damping;
+    added = h * data.plan.damping;
   else
-    Md.setZero();
+    added.setZero();
   for (const Plan::Spring& spring : data.plan.springs) {
     if (!isStiffSpring(model, data, spring)) continue;
-    Md[spring.dof] += h * h * spring.stiffness;
+    added[spring.dof] += h * h * spring.stiffness;
     net[spring.dof] -= h * spring.stiffness * state.v[spring.dof];
   }
 }

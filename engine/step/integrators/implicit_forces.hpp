@@ -28,7 +28,7 @@ void addImplicitInertia(const Model& model, Data& data);
 /// c ← c + h K v, of the same springs.
 void addImplicitForces(const Model& model, const State& state, Data& data);
 
-/// The same for what follows the solve: data.forward.Md ← h D + h² K, net ← net − h K v.
+/// The same for what follows the solve: data.forward.diagonal ← h D + h² K, net ← net − h K v.
 void setImplicitForces(const Model& model, const State& state, Data& data, VectorX& net);
 
 }  // namespace softgauss

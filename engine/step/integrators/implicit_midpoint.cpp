@@ -126,16 +126,16 @@ class Part {
     const Plan& plan = s_.data.plan;
     const bool diagonal = plan.hasDamping() || plan.hasSprings();
     if (!diagonal && !plan.coriolis) return;
-    VectorX& Md = s_.data.forward.Md;
+    VectorX& added = s_.data.forward.diagonal;
     if (plan.hasDamping())
-      Md = 0.5 * h_ * plan.damping;
+      added = 0.5 * h_ * plan.damping;
     else
-      Md.setZero(model_.nv);
+      added.setZero(model_.nv);
     for (const Plan::Spring& spring : plan.springs)
-      Md[spring.dof] += 0.25 * h_ * h_ * spring.stiffness;
+      added[spring.dof] += 0.25 * h_ * h_ * spring.stiffness;
     VectorX& x = s_.rate[0];
     s_.data.inertia.M.multiply(s_.phi, x);
-    if (!s_.data.derivative->factorize(model_, s_.data, plan.coriolis ? 0.5 * h_ : 0.0, &Md))
+    if (!s_.data.derivative->factorize(model_, s_.data, plan.coriolis ? 0.5 * h_ : 0.0, &added))
       return;
     s_.data.derivative->solve(model_, x);
     s_.phi.swap(x);

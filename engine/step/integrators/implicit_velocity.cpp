@@ -13,12 +13,12 @@ bool implicitVelocity(const Model& model, Data& data, State& state) {
   ForwardSolution& s = data.forward;
   VectorX& net = data.acceleration;
   if (data.constraints.active().empty())
-    net = s.Ma;
+    net = data.forces.net;
   else
     data.bodies.multiplyMass(model, data.kinematics, data.inertia, s.a, net);
   const bool diagonal = data.plan.hasDamping() || anyStiffSpring(model, data);
   if (diagonal) setImplicitForces(model, state, data, net);
-  const VectorX* added = diagonal ? &s.Md : nullptr;
+  const VectorX* added = diagonal ? &s.diagonal : nullptr;
   if (data.plan.coriolis && data.derivative->factorize(model, data, h, added))
     data.derivative->solve(model, net);
   else if (!solveMass(model, data, added, net))

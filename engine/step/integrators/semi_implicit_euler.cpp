@@ -14,11 +14,11 @@ bool semiImplicitEuler(const Model& model, Data& data, State& state) {
   if (implicitFollows(model, data)) {
     VectorX& net = data.acceleration;  // M a
     if (data.constraints.active().empty())
-      net = s.Ma;
+      net = data.forces.net;
     else
       data.bodies.multiplyMass(model, data.kinematics, data.inertia, s.a, net);
     setImplicitForces(model, state, data, net);
-    if (!solveMass(model, data, &s.Md, net)) return false;
+    if (!solveMass(model, data, &s.diagonal, net)) return false;
   }
   s.start = state.v + h * data.acceleration;
   if (tooFast(model, s.start)) return false;

@@ -236,7 +236,7 @@ TEST(Plan, DiagonalMassMatrixIsDividedBy) {
   ASSERT_TRUE(s.data->plan.diagonal);
   s.stages();
   ASSERT_EQ(s.forward(), SolveStatus::converged);
-  EXPECT_FALSE(s.data->forward.massFactored);
+  EXPECT_FALSE(s.data->bodies.massFactored);
   const VectorX a = s.data->inertia.M.dense().llt().solve(s.data->forces.net);
   // Off the diagonal M has rounding: a few units in the last place of the accelerations.
   EXPECT_APPROX(s.data->forward.a, a, 1e-13);
