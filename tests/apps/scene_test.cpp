@@ -322,11 +322,15 @@ TEST(SceneRun, GoalsActOnIslands) {
     }
   }
   ASSERT_EQ(logs[0].rows.size(), logs[1].rows.size());
+  // A search ends within 1e-12 of F, the sum of both arms' in the joint solve. F is quadratic, so a
+  // control may be off by the root of twice that, in either run.
+  const double control = 2.0 * std::sqrt(2e-12);
   for (int row = 0; row + 1 < static_cast<int>(logs[0].rows.size()); row += 10)
-    for (const char* column : {"q:left/elbow_pitch", "u:left/elbow_pitch", "u:right/shoulder_pitch",
-                               "q:box.z", "energy_J"})
+    for (const std::string column : {"q:left/elbow_pitch", "u:left/elbow_pitch",
+                                     "u:right/shoulder_pitch", "q:box.z", "energy_J"})
       EXPECT_NEAR(logs[0].number(row, column), logs[1].number(row, column),
-                  1e-6 * std::max(1.0, std::abs(logs[0].number(row, column))))
+                  (column[0] == 'u' ? control : 1e-6) *
+                      std::max(1.0, std::abs(logs[0].number(row, column))))
           << column << " in row " << row;
 }
 

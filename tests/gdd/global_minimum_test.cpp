@@ -125,16 +125,18 @@ void addTo(PatternTally& tally, GddScene& s, const CellMinimum& least) {
   ++tally.claimed;
   tally.kinks += report.status == gdd::GddStatus::nonsmoothMinimum;
   // The ball is so small that another minimum is hardly in it: within 1e-4 of a, two of 1,500
-  // minima have a better one beside them. What is less there, over what is gone, is the slope.
-  constexpr double kRadius = 1e-6;
+  // minima have a better one beside them. What is less there, over what is gone, is the slope. A
+  // way down leads to the ball's edge, or to a kink on the way; what is less within a thousandth of
+  // the ball already is the point itself, beside a steep kink by the rounding of a.
+  constexpr double kRadius = 1e-6, kPoint = 1e-3;
   const VectorX radius = VectorX::Constant(d.dofs(), kRadius * a.cwiseAbs().maxCoeff());
-  const CellMinimum near = minimumNear(d, a, radius);
-  const double slope = (value - near.value) / scale / kRadius;
-  // A way down leads to the ball's edge, or to a kink on the way. What ends within a thousandth of
-  // the ball is the point itself: beside a steep kink by the rounding of a, 1e-14 of it.
-  const double away = (near.a - a).cwiseAbs().maxCoeff() / radius[0];
-  if (away > 1e-3) tally.steepest = std::max(tally.steepest, slope);
-  tally.local += slope <= Bounds<Solver>::slope || away <= 1e-3;
+  const auto slopeFrom = [&](double from) {
+    return (from - minimumNear(d, a, radius).value) / scale / kRadius;
+  };
+  double slope = slopeFrom(value);
+  if (slope > Bounds<Solver>::slope) slope = slopeFrom(minimumNear(d, a, kPoint * radius).value);
+  tally.steepest = std::max(tally.steepest, slope);
+  tally.local += slope <= Bounds<Solver>::slope;
 }
 
 void tell(const std::string& what, double weight, const PatternTally& t) {
