@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// plan_benchmark: tasks of planning from random starts, AILQR beside phase F alone and beside iLQR
-/// over controls with a careful line search, all on the same engine with the same costs.
+/// over controls with a careful line search, all on the same engine with the same costs; with
+/// --mpc, plans that are made anew while the robot is pushed.
 ///
 /// Costs and figures are the same for the same seed, but for the clock's. Exit codes: 0 done; 2 bad
 /// usage or input; 130 interrupted, with the tables of what was done.
@@ -12,6 +13,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "apps/plan_benchmark/receding.hpp"
 #include "apps/plan_benchmark/trials.hpp"
 #include "apps/shared/interrupt.hpp"
 #include "apps/shared/standard_streams.hpp"
@@ -45,37 +47,87 @@ nlohmann::ordered_json json(const std::vector<app::PlanTrials>& all) {
   return out;
 }
 
+nlohmann::ordered_json json(const std::vector<app::RecedingRuns>& all) {
+  nlohmann::ordered_json out = nlohmann::ordered_json::array();
+  for (const app::RecedingRuns& r : all) {
+    nlohmann::ordered_json runs = nlohmann::ordered_json::array();
+    for (const app::RecedingRun& run : r.runs)
+      runs.push_back({{"carried_out", run.carriedOut},
+                      {"final_planned", run.planned},
+                      {"final", run.final},
+                      {"failed_ticks", run.failedTicks}});
+    out.push_back({{"task", r.task}, {"dof", r.dofs}, {"runs", runs}});
+  }
+  return out;
+}
+
+struct Choice {
+  std::vector<std::string> tasks, methods;
+  app::TrialChoice trials;
+  app::RecedingChoice receding;
+  std::string file;
+};
+
+nlohmann::ordered_json plan(const Choice& choice) {
+  const auto chosen = [&](PlanMethod method) {
+    return std::find(choice.methods.begin(), choice.methods.end(), app::planMethodName(method)) !=
+           choice.methods.end();
+  };
+  std::vector<app::PlanTrials> all;
+  for (const std::string& task : choice.tasks)
+    for (const PlanMethod method : kMethods)
+      if (chosen(method) && !app::interrupted())
+        all.push_back(app::runTrials(task, method, choice.trials));
+  app::print(stdout, app::planTables(all));
+  return json(all);
+}
+
+nlohmann::ordered_json recede(const Choice& choice) {
+  std::vector<app::RecedingRuns> all;
+  for (const std::string& task : choice.tasks)
+    if (!app::interrupted()) all.push_back(app::runReceding(task, choice.receding));
+  app::print(stdout, app::recedingTable(all, choice.receding));
+  return json(all);
+}
+
 int run(int argc, char** argv) {
   CLI::App parser{
-      "Tasks of planning from random starts, by AILQR, by its phase F alone and by iLQR"};
-  std::vector<std::string> tasks, methods;
-  for (const PlanMethod method : kMethods) methods.push_back(app::planMethodName(method));
-  const std::vector<std::string> known = methods;
-  app::TrialChoice choice;
-  std::string file;
-  parser.add_option("TASK", tasks, "scene files with a plan, data/plans/*.yaml")
+      "Tasks of planning from random starts, by AILQR, by its phase F alone and by iLQR; or, with "
+      "--mpc, planned anew while the robot is disturbed"};
+  Choice choice;
+  for (const PlanMethod method : kMethods) choice.methods.push_back(app::planMethodName(method));
+  const std::vector<std::string> known = choice.methods;
+  bool recedes = false;
+  parser.add_option("TASK", choice.tasks, "scene files with a plan, data/plans/*.yaml")
       ->required()
       ->check(CLI::ExistingFile);
-  parser.add_option("--starts", choice.starts, "random starts of each")
+  parser.add_option("--starts", choice.trials.starts, "random starts of each")
       ->check(CLI::Range(1, 10000));
-  parser.add_option("--seed", choice.seed, "of the first start");
-  parser.add_option("--iterations", choice.iterations, "of phase F alone and of iLQR, at most")
+  parser.add_option("--seed", choice.trials.seed, "of the first start, or run");
+  parser
+      .add_option("--iterations", choice.trials.iterations, "of phase F alone and of iLQR, at most")
       ->check(CLI::Range(1, 100000));
-  parser.add_option("--methods", methods, "default all")
+  parser.add_option("--methods", choice.methods, "default all")
       ->check(CLI::IsMember(known))
       ->delimiter(',');
-  parser.add_option("--json", file, "write every trial to this file too");
+  CLI::Option* mpc =
+      parser.add_flag("--mpc", recedes, "plans that recede while something disturbs");
+  parser.add_option("--runs", choice.receding.runs, "of each task, by --mpc")
+      ->needs(mpc)
+      ->check(CLI::Range(1, 10000));
+  parser.add_option("--push", choice.receding.push, "of what floats, in 0.1 s [m/s]")
+      ->needs(mpc)
+      ->check(CLI::Range(0.0, 100.0));
+  parser.add_option("--timestep", choice.receding.timestep, "of the simulator [s]")
+      ->needs(mpc)
+      ->check(CLI::Range(1e-5, 0.1));
+  parser.add_option("--json", choice.file, "write every trial to this file too");
   CLI11_PARSE(parser, argc, argv);
   app::catchInterrupts();
-  std::vector<app::PlanTrials> all;
-  for (const std::string& task : tasks)
-    for (const PlanMethod method : kMethods)
-      if (std::find(methods.begin(), methods.end(), app::planMethodName(method)) != methods.end() &&
-          !app::interrupted())
-        all.push_back(app::runTrials(task, method, choice));
-  app::print(stdout, app::planTables(all));
-  if (!file.empty() && !(std::ofstream(file) << json(all).dump(1) << '\n')) {
-    app::tell("plan_benchmark: " + file + " cannot be written");
+  choice.receding.seed = choice.trials.seed;
+  const nlohmann::ordered_json all = recedes ? recede(choice) : plan(choice);
+  if (!choice.file.empty() && !(std::ofstream(choice.file) << all.dump(1) << '\n')) {
+    app::tell("plan_benchmark: " + choice.file + " cannot be written");
     return 2;
   }
   return app::interrupted() ? 130 : app::finishStandardOutput("plan_benchmark");

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/plan_benchmark/receding.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "apps/shared/interrupt.hpp"
+#include "apps/shared/wall_clock.hpp"
+#include "softgauss/io/nearest_rank.hpp"
+#include "softgauss/io/simulation/plan_control.hpp"
+#include "softgauss/io/simulation/simulation.hpp"
+
+namespace softgauss::app {
+namespace {
+
+constexpr double kPushSeconds = 0.1;
+constexpr double kLost = 0.1;  // of what the final terms were to fall by
+
+int floatingBody(const Model& model) {
+  for (int b = 1; b < model.bodyCount(); ++b)
+    if (model.isFree(b)) return b;
+  return -1;
+}
+
+double massOf(const Model& model) {
+  double mass = 0.0;
+  for (const Body& body : model.bodies) mass += body.mass;
+  return mass;
+}
+
+/// A push at the root, or none.
+struct Push {
+  int body = -1;
+  double start = 0.0;
+  Vector3 force = Vector3::Zero();
+
+  bool actsAt(double time) const {
+    return body >= 0 && time >= start && time < start + kPushSeconds;
+  }
+};
+
+Push randomPush(const Model& model, const RecedingChoice& choice, double planned,
+                planning::NormalNumbers& random) {
+  Push push;
+  push.body = floatingBody(model);
+  push.start = planned + 0.5 * random.uniform();
+  const double angle = 2.0 * std::numbers::pi * random.uniform();
+  push.force =
+      massOf(model) * choice.push / kPushSeconds * Vector3(std::cos(angle), std::sin(angle), 0.0);
+  return push;
+}
+
+/// Where scalar joints start, within their ranges.
+std::vector<std::pair<std::string, double>> disturbed(const Scene& scene, double deviation,
+                                                      planning::NormalNumbers& random) {
+  std::vector<std::pair<std::string, double>> q0;
+  const Model& model = scene.model;
+  for (int b = 1; b < model.bodyCount(); ++b) {
+    const Body& body = model.bodies[static_cast<std::size_t>(b)];
+    if (body.dofs != 1) continue;
+    double q = scene.initial.q[body.q] + deviation * random.next();
+    for (const JointRange& range : model.ranges)
+      if (range.body == b) q = std::clamp(q, range.lower, range.upper);
+    q0.emplace_back(model.jointNames[static_cast<std::size_t>(b)], q);
+  }
+  return q0;
+}
+
+/// Acts until `choice.after` seconds after the push.
+RecedingRun act(Simulation& sim, PlanControl& control, const Push& push,
+                const RecedingChoice& choice, RecedingRuns& all) {
+  RecedingRun run;
+  const planning::MotionPlan& plan = control.solve();
+  State end(sim.model());
+  end.q = plan.q.back(), end.v = plan.v.back();
+  run.planned = control.finalCost(end);
+  const double atStart = control.finalCost(sim.state());
+  control.attach(sim.controller());
+  control.begin(sim.state());
+  const double until = push.start + kPushSeconds + choice.after;
+  bool refused = false;
+  for (int ticks = 0; sim.time() < until && !refused && !interrupted();) {
+    control.update(sim.state());
+    if (control.report().ticks > ticks) all.tickMs.push_back(1e3 * control.report().last);
+    ticks = control.report().ticks;
+    sim.input().wrenches.clear();
+    if (push.actsAt(sim.time()))
+      sim.input().wrenches.push_back({push.body, {Vector3::Zero(), push.force}});
+    const Clock::time_point start = Clock::now();
+    refused = isRefused(sim.step());
+    all.stepUs.push_back(1e6 * secondsSince(start));
+  }
+  run.failedTicks = control.report().failed;
+  run.final = control.finalCost(sim.state());
+  run.carriedOut =
+      !refused && run.final <= run.planned + kLost * std::max(atStart - run.planned, 0.0);
+  return run;
+}
+
+double percentile(const std::vector<double>& sorted, double share) {
+  return sorted.empty() ? 0.0 : sorted[io::nearestRank(share, sorted.size())];
+}
+
+}  // namespace
+
+int RecedingRuns::carriedOut() const {
+  return static_cast<int>(
+      std::count_if(runs.begin(), runs.end(), [](const RecedingRun& r) { return r.carriedOut; }));
+}
+
+RecedingRuns runReceding(const std::filesystem::path& file, const RecedingChoice& choice) {
+  SimulationOptions options;
+  options.timestep = choice.timestep;
+  const auto scene = loadScene(file, options);
+  RecedingRuns all;
+  all.task = file.stem().string();
+  all.dofs = scene->model.nv;
+  all.floats = floatingBody(scene->model) >= 0;
+  for (int i = 0; i < choice.runs && !interrupted(); ++i) {
+    planning::NormalNumbers random(choice.seed + static_cast<unsigned>(i));
+    options.q0.clear();
+    if (!all.floats) options.q0 = disturbed(*scene, choice.disturbed, random);
+    Simulation sim = Simulation::load(file, options);
+    PlanControl control(sim.scene(), io::readPlanTask(file, sim.model(), sim.scene().initial),
+                        true);
+    const Push push = randomPush(sim.model(), choice, control.duration(), random);
+    all.runs.push_back(act(sim, control, push, choice, all));
+  }
+  std::sort(all.tickMs.begin(), all.tickMs.end());
+  std::sort(all.stepUs.begin(), all.stepUs.end());
+  return all;
+}
+
+std::string recedingTable(const std::vector<RecedingRuns>& all, const RecedingChoice& choice) {
+  std::string out = fmt::format("{:<16}{:>4}  {:<18}{:>10}{:>10}{:>10}{:>8}{:>8}{:>9}\n", "task",
+                                "dof", "disturbed by", "ends well", "tick p50", "p99.9", "failed",
+                                "step p50", "p99.9 us");
+  for (const RecedingRuns& r : all) {
+    int failed = 0;
+    for (const RecedingRun& run : r.runs) failed += run.failedTicks;
+    out += fmt::format(
+        "{:<16}{:>4}  {:<18}{:>7}/{:<2}{:>7.2f} ms{:>7.2f} ms{:>8}{:>8.1f}{:>9.1f}\n", r.task,
+        r.dofs,
+        r.floats ? fmt::format("{:g} m/s", choice.push)
+                 : fmt::format("{:g} rad at first", choice.disturbed),
+        r.carriedOut(), r.runs.size(), percentile(r.tickMs, 0.5), percentile(r.tickMs, 0.999),
+        failed, percentile(r.stepUs, 0.5), percentile(r.stepUs, 0.999));
+  }
+  return out;
+}
+
+}  // namespace softgauss::app
