@@ -66,7 +66,7 @@ class Goal {
 
   virtual ~Goal() = default;
   bool actsAt(double time) const { return startTime <= time && time < endTime; }
-  /// Whether its wish stays where it is at this time [s]: no line that it follows.
+  /// Whether its wish stays where it is at this time [s]: no target that moves.
   virtual bool steadyAt(double) const { return true; }
   /// As the summary names it, e.g. "reach right_hand".
   virtual std::string name() const = 0;

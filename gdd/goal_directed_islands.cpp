@@ -187,7 +187,8 @@ void GoalDirectedIslands::begin(double time, std::vector<int>& trees) noexcept {
   if (changed_) wake([](const Control& control) { return control.hasActuators(); });
   changed_ = false;
   for (std::size_t k = 0; k < std::min(acting_.size(), controller_.goals.size()); ++k) {
-    const int acts = controller_.goals[k]->actsAt(time);
+    const Goal& goal = *controller_.goals[k];
+    const int acts = !goal.actsAt(time) ? 0 : goal.steadyAt(time) ? 1 : 2;
     if (acts != acting_[k]) wake([&](const Control& control) { return control.has(k); });
     acting_[k] = acts;
   }

@@ -59,7 +59,8 @@ class GoalDirectedIslands final : public IslandControls {
   const Units units_;
   GoalDirectedController& controller_;
   std::vector<Control*> controls_;  ///< of all islands that there are
-  std::vector<int> acting_;         ///< (goals) in the last step; -1: it has been changed since
+  std::vector<int> acting_;         ///< (goals) in the last step: 0: no, 1: at rest, 2: it moves;
+                                    ///< -1: it has been changed since
   bool changed_ = false;            ///< since the last step
 };
 

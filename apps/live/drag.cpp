@@ -15,39 +15,35 @@ void Drag::begin(const Model& model, const std::string& link, const Vector3& p_F
                  const Vector3& p_WTarget, std::optional<double> weight) {
   reach = gdd::Reach(model, link, p_WTarget, p_FP);
   if (weight) reach.weight = *weight, reach.defaultWeight.giveUp();
-  line.reset();
+  duration.reset();
   startTime = -kInfinity;
 }
 
-void Drag::followLine(const Vector3& p_W, double time, double duration) {
-  line = BegunLine{};
-  line->p_start = p_W;
-  line->p_target = reach.p_WTarget;
-  line->startTime = time;
-  line->duration = duration;
+void Drag::followFrom(const Vector3& p_W, double time, double lasting) {
+  duration = lasting;
+  gdd::PointMotion from;
+  from.p = p_W;
+  comeFrom(from, time);
+}
+
+void Drag::comeFrom(const gdd::PointMotion& from, double time) {
+  MatrixX p(3, 2), v = MatrixX::Zero(3, 2), a = MatrixX::Zero(3, 2);
+  p << from.p, reach.p_WTarget;
+  v.col(0) = from.v;
+  a.col(0) = from.a;
+  reach.trajectory =
+      std::make_shared<gdd::KnotTrajectory>(std::vector<double>{time, time + *duration}, p, v, a);
 }
 
 void Drag::moveTo(const Vector3& p_WTarget, double time) {
   reach.p_WTarget = p_WTarget;
-  if (line) line->turnTo(p_WTarget, time);
+  if (duration) comeFrom(reach.targetAt(time), time);
 }
 
 std::optional<gdd::LedPlace> Drag::ledPlace() const {
   std::optional<gdd::LedPlace> place = reach.ledPlace();
   if (place) place->startTime = startTime, place->endTime = endTime;
   return place;
-}
-
-/// As a reach does it along its line.
-void Drag::addCost(const gdd::GoalContext& context, gdd::GoalCost& cost) const {
-  if (!line) return reach.addCost(context, cost);
-  const Kinematics& k = context.data.kinematics;
-  const int body = context.model.frames[reach.frame].body;
-  const BegunLine::Point on = line->at(context.state.time);
-  const Vector3 p = reach.position(context), v = pointVelocity(context.model, k, body, p);
-  const Vector3 wished = on.a + reach.stiffness * (on.p - p) + reach.damping * (on.v - v);
-  cost.addPoint(context.model, k, context.data.inertia.sparsity, body, p, reach.weight,
-                wished - pointBiasAcceleration(context.model, k, body, p));
 }
 
 }  // namespace softgauss::live

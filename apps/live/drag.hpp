@@ -3,11 +3,10 @@
 
 /// A spatial goal that begins when somebody takes hold of a point, equation (11) of the paper, and
 /// ends when it is let go. The point comes by a virtual spring-damper, or along a minimum-jerk
-/// line, which goes on without a jump, from where it is, whenever the place moves.
+/// trajectory, which goes on without a jump, from where it is, whenever the place moves.
 
 #include <optional>
 
-#include "apps/live/begun_line.hpp"
 #include "softgauss/gdd/goals/reach.hpp"
 
 namespace softgauss::live {
@@ -20,8 +19,8 @@ class Drag final : public gdd::Goal {
   /// Without a weight [kg] it weighs as a reach does.
   void begin(const Model& model, const std::string& link, const Vector3& p_FP,
              const Vector3& p_WTarget, std::optional<double> weight);
-  /// Lets it come along a line in `duration` [s] from p_W, at rest, at `time` [s].
-  void followLine(const Vector3& p_W, double time, double duration);
+  /// Lets it come in `duration` [s] from p_W, at rest, at `time` [s].
+  void followFrom(const Vector3& p_W, double time, double duration);
   /// From `time` on [s] the point seeks another place.
   void moveTo(const Vector3& p_WTarget, double time);
   void end() { startTime = kInfinity; }
@@ -32,21 +31,26 @@ class Drag final : public gdd::Goal {
   int linkFrame() const override { return reach.frame; }
   void weighBeside(double posture) override { reach.weighBeside(posture); }
   std::optional<gdd::LedPlace> ledPlace() const override;
-  void addCost(const gdd::GoalContext& context, gdd::GoalCost& cost) const override;
+  void addCost(const gdd::GoalContext& context, gdd::GoalCost& cost) const override {
+    reach.addCost(context, cost);
+  }
+  /// The place that is held, wherever the trajectory there is.
   std::optional<gdd::GoalMark> mark(const gdd::GoalContext& context) const override {
-    return reach.mark(context);
+    return gdd::GoalMark{reach.frame, reach.position(context), reach.p_WTarget};
   }
   /// None while nobody holds it.
   void errors(const gdd::GoalContext& context, const gdd::ContactForces& contacts,
               std::vector<gdd::GoalError>& out) const override {
-    if (held()) reach.errors(context, contacts, out);
+    if (held()) Goal::errors(context, contacts, out);
   }
   bool hasLaterErrors() const override { return true; }
 
-  gdd::Reach reach;               ///< what it asks for while it is held
-  std::optional<BegunLine> line;  ///< by which it comes; absent: spring-damper
+  gdd::Reach reach;                ///< what it asks for while it is held
+  std::optional<double> duration;  ///< of the trajectory by which it comes [s]; absent: it has none
 
  private:
+  void comeFrom(const gdd::PointMotion& from, double time);
+
   std::string name_;
 };
 

@@ -55,8 +55,8 @@ GoalSettings firstOf(gdd::Goal& goal) {
 GoalSettings settingsOf(gdd::Goal& goal) {
   if (auto* drag = dynamic_cast<Drag*>(&goal)) return settingsOf(drag->reach);
   return firstOf<gdd::Reach, gdd::Posture, gdd::VirtualDamping, gdd::Hold, gdd::JointPosture,
-                 gdd::JointAcceleration, gdd::CenterOfMass, gdd::CapturePoint, gdd::Effort,
-                 gdd::LinkAcceleration, gdd::LookAt, gdd::KeepClear, gdd::ContactForce,
+                 gdd::JointAcceleration, gdd::JointVelocity, gdd::CenterOfMass, gdd::CapturePoint,
+                 gdd::Effort, gdd::LinkAcceleration, gdd::LookAt, gdd::KeepClear, gdd::ContactForce,
                  gdd::CenterOfPressure>(goal);
 }
 

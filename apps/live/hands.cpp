@@ -124,7 +124,7 @@ std::string Hands::grab(const Event& event) {
   drag.reach.stiffness = event.maybeNumber("stiffness").value_or(drag.reach.stiffness);
   drag.reach.damping = event.maybeNumber("damping").value_or(drag.reach.damping);
   if (const std::optional<double> duration = event.maybeNumber("duration"))
-    drag.followLine(placeOf(drag.reach), run_.state.time, *duration);
+    drag.followFrom(placeOf(drag.reach), run_.state.time, *duration);
   holding_ = drag.name();
   return "";
 }
@@ -251,7 +251,8 @@ std::vector<Hands::GoalView> Hands::goals() const {
     view.weightIsDefault = s.weightIsDefault;
     const auto* drag = dynamic_cast<const Drag*>(&goal);
     view.canBegin = drag && !drag->held();
-    if (const auto* reach = drag ? &drag->reach : dynamic_cast<const gdd::Reach*>(&goal)) {
+    const auto* reach = drag ? &drag->reach : dynamic_cast<const gdd::Reach*>(&goal);
+    if (reach && (drag || !reach->trajectory)) {  // of another trajectory the page knows nothing
       view.link = reach->link;
       view.point = reach->p_FP;
       view.target = reach->p_WTarget;
@@ -262,8 +263,8 @@ std::vector<Hands::GoalView> Hands::goals() const {
         view.rotationWeight = reach->rotationWeight;
         view.rotationWeightIsDefault = reach->defaultRotationWeight.isAt(reach->rotationWeight);
       }
-      if (drag && drag->line)
-        view.duration = drag->line->duration;
+      if (drag && drag->duration)
+        view.duration = drag->duration;
       else if (reach->minimumJerk)
         view.duration = reach->minimumJerk->duration;
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/python/goals.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "apps/python/arrays.hpp"
@@ -31,10 +32,13 @@ Targets both(Vector3& first, Vector3& second) {
 
 // ---- What each kind seeks, and how much it weighs
 
-Targets targetOfKind(gdd::Reach& g) { return entriesOf(g.p_WTarget); }
-Targets targetOfKind(gdd::LookAt& g) { return entriesOf(g.p_WTarget); }
-Targets targetOfKind(gdd::CenterOfMass& g) { return entriesOf(g.p_WTarget); }
-Targets targetOfKind(gdd::CapturePoint& g) { return entriesOf(g.p_WTarget); }
+/// None where a trajectory says what it is.
+Targets placeOf(gdd::PlaceTarget& g) { return g.trajectory ? Targets{} : entriesOf(g.p_WTarget); }
+
+Targets targetOfKind(gdd::Reach& g) { return placeOf(g); }
+Targets targetOfKind(gdd::LookAt& g) { return placeOf(g); }
+Targets targetOfKind(gdd::CenterOfMass& g) { return placeOf(g); }
+Targets targetOfKind(gdd::CapturePoint& g) { return placeOf(g); }
 Targets targetOfKind(gdd::CenterOfPressure& g) { return entriesOf(g.p_WTarget); }
 Targets targetOfKind(gdd::ContactForce& g) { return entriesOf(g.force); }
 Targets targetOfKind(gdd::MomentumGoal& g) { return both(g.linear, g.angular); }
@@ -42,12 +46,30 @@ Targets targetOfKind(gdd::LinkAcceleration& g) {
   return g.angular ? both(g.linear, *g.angular) : entriesOf(g.linear);
 }
 Targets targetOfKind(gdd::JointAcceleration& g) { return valuesOf(g.targets); }
-Targets targetOfKind(gdd::JointPosture& g) { return valuesOf(g.targets); }
+Targets targetOfKind(gdd::JointPosture& g) {
+  const bool follows = std::any_of(g.targets.begin(), g.targets.end(),
+                                   [](const gdd::JointTarget& joint) { return joint.trajectory; });
+  return follows ? Targets{} : valuesOf(g.targets);
+}
+Targets targetOfKind(gdd::JointVelocity& g) { return valuesOf(g.targets); }
 Targets targetOfKind(gdd::Posture& g) { return entriesOf(g.q); }
 Targets targetOfKind(gdd::KeepClear& g) { return {&g.distance}; }
 Targets targetOfKind(gdd::Hold&) { return {}; }
 Targets targetOfKind(gdd::VirtualDamping&) { return {}; }
 Targets targetOfKind(gdd::Effort&) { return {}; }
+
+/// How fast its target moves, and how that changes, where a target may move.
+Targets rateOf(gdd::Goal& goal, Vector3 gdd::PlaceTarget::*ofPlace,
+               double gdd::JointTarget::*ofJoint) {
+  Targets out;
+  if (auto* place = dynamic_cast<gdd::PlaceTarget*>(&goal)) {
+    if (!place->trajectory) out = entriesOf(place->*ofPlace);
+  } else if (auto* posture = dynamic_cast<gdd::JointPosture*>(&goal)) {
+    if (!targetOfKind(*posture).empty())
+      for (gdd::JointTarget& joint : posture->targets) out.push_back(&(joint.*ofJoint));
+  }
+  return out;
+}
 
 template <class Kind>
 double* weightOfKind(Kind& g) {
@@ -70,9 +92,9 @@ void callAsAny(gdd::Goal& goal, F&& f) {
 template <class F>
 void visitKind(gdd::Goal& goal, F&& f) {
   using namespace gdd;
-  callAsAny<Reach, JointAcceleration, JointPosture, Posture, LinkAcceleration, LookAt, Hold,
-            VirtualDamping, CenterOfMass, CapturePoint, CenterOfPressure, ContactForce,
-            MomentumGoal, KeepClear, Effort>(goal, f);
+  callAsAny<Reach, JointAcceleration, JointPosture, JointVelocity, Posture, LinkAcceleration,
+            LookAt, Hold, VirtualDamping, CenterOfMass, CapturePoint, CenterOfPressure,
+            ContactForce, MomentumGoal, KeepClear, Effort>(goal, f);
 }
 
 // ---- Numbers that a goal of a file may have too, and no others
@@ -114,19 +136,13 @@ class Handle {
     return *goal_;
   }
 
-  VectorX target() const {
-    const Targets numbers = targets();
-    VectorX x(static_cast<Eigen::Index>(numbers.size()));
-    for (Eigen::Index i = 0; i < x.size(); ++i) x[i] = *numbers[static_cast<std::size_t>(i)];
-    return x;
-  }
-
-  void setTarget(const py::object& given) const {
-    const Targets numbers = targets();
-    const VectorX x = vectorOf(given, "target", static_cast<Eigen::Index>(numbers.size()),
-                               "numbers of goal '" + get().name() + "'");
-    if (!x.allFinite()) throw py::value_error("target: found NaN or ∞, expected finite numbers");
-    for (Eigen::Index i = 0; i < x.size(); ++i) *numbers[static_cast<std::size_t>(i)] = x[i];
+  VectorX target() const { return valuesOf(targets()); }
+  void setTarget(const py::object& given) const { set(targets(), given, "target"); }
+  VectorX velocity() const { return valuesOf(velocities()); }
+  void setVelocity(const py::object& given) const { set(velocities(), given, "velocity"); }
+  VectorX acceleration() const { return valuesOf(accelerations()); }
+  void setAcceleration(const py::object& given) const {
+    set(accelerations(), given, "acceleration");
   }
 
   double& weight() const {
@@ -150,10 +166,34 @@ class Handle {
   }
 
  private:
-  Targets targets() const {
-    Targets numbers = targetOf(get());
-    if (numbers.empty()) throw py::type_error("goal '" + get().name() + "' has no target");
+  static VectorX valuesOf(const Targets& numbers) {
+    VectorX x(static_cast<Eigen::Index>(numbers.size()));
+    for (Eigen::Index i = 0; i < x.size(); ++i) x[i] = *numbers[static_cast<std::size_t>(i)];
+    return x;
+  }
+
+  void set(const Targets& numbers, const py::object& given, const char* what) const {
+    const VectorX x = vectorOf(given, what, static_cast<Eigen::Index>(numbers.size()),
+                               "numbers of goal '" + get().name() + "'");
+    if (!x.allFinite())
+      throw py::value_error(std::string(what) + ": found NaN or ∞, expected finite numbers");
+    for (Eigen::Index i = 0; i < x.size(); ++i) *numbers[static_cast<std::size_t>(i)] = x[i];
+  }
+
+  Targets some(Targets numbers, const char* what) const {
+    if (numbers.empty())
+      throw py::type_error("goal '" + get().name() + "' has no " + what +
+                           " that could be set: it seeks none, or follows a trajectory");
     return numbers;
+  }
+  Targets targets() const { return some(targetOf(get()), "target"); }
+  Targets velocities() const {
+    return some(rateOf(get(), &gdd::PlaceTarget::v_WTarget, &gdd::JointTarget::velocity),
+                "velocity of a target");
+  }
+  Targets accelerations() const {
+    return some(rateOf(get(), &gdd::PlaceTarget::a_WTarget, &gdd::JointTarget::acceleration),
+                "acceleration of a target");
   }
 
   Held& held_;
@@ -193,9 +233,15 @@ void bindHandle(py::module_& m) {
           "As in the summary: 'reach right_hand'.")
       .def_property(
           "target", &Handle::target, &Handle::setTarget,
-          "What it seeks: a place (3,) [m], a force (3,) [N], accelerations or positions\n"
-          "of its joints in their order, a configuration (nq,). TypeError where it seeks\n"
-          "none.")
+          "What it seeks: a place (3,) [m], a force (3,) [N], accelerations, velocities or\n"
+          "positions of its joints in their order, a configuration (nq,). TypeError where it\n"
+          "seeks none, or follows a trajectory.")
+      .def_property(
+          "velocity", &Handle::velocity, &Handle::setVelocity,
+          "How fast the target moves, for who moves it step by step: (3,) [m/s] of a place,\n"
+          "[rad/s or m/s] of each joint of a joint_posture. At first 0. TypeError as for target.")
+      .def_property("acceleration", &Handle::acceleration, &Handle::setAcceleration,
+                    "The rate of that velocity.")
       .def_property("weight", &Handle::weight, &Handle::setWeight, "In the unit of its kind, ≥ 0.")
       .def_property(
           "start", [](Handle& h) { return h.get().startTime; }, &Handle::setStart,

@@ -42,6 +42,8 @@ class Goal:
     """A goal of a simulation, until its goals are cleared."""
 
     target: Array
+    velocity: Array  # of the target that is moved step by step
+    acceleration: Array
     weight: float
     start: float
     end: float

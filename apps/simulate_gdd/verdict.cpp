@@ -153,8 +153,8 @@ std::string Verdict::reachReason(GoalRecord::Track& track, const SeenStep& step)
   bool isChain = false;
   for (int b = body; b > 0; b = model_.bodies[b].parent) isChain |= model_.bodies[b].dofs == 1;
   if (!isChain) return {};  // the link goes where its base goes
-  const ReachLimit limit =
-      reachLimit(model_, step.record.q, reach->frame, reach->p_FP, reach->p_WTarget);
+  const ReachLimit limit = reachLimit(model_, step.record.q, reach->frame, reach->p_FP,
+                                      reach->targetAt(step.record.time).p);
   const bool floats = model_.floats(model_.bodies[body].tree);
   io::GoalOutcome& o = track.outcome;
   const double left = std::max(o.finalError, limit.withinRanges);

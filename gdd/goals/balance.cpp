@@ -46,14 +46,15 @@ int drivenRobot(const Model& model) {
 }
 
 CenterOfMass::CenterOfMass(const Model& model, int ofRobot, const Vector3& target)
-    : robot(ofRobot),
-      p_WTarget(target),
+    : PlaceTarget(target),
+      robot(ofRobot),
       weight(kReachWeightPerMass * massOfRobot(model, robot)),
       defaultWeight(weight) {}
 
 void CenterOfMass::addCost(const GoalContext& context, GoalCost& cost) const {
   const Centroidal& c = centroidalOf(context, robot, cost.workspace().centroidal);
-  const Vector3 wished = stiffness * (p_WTarget - c.p_WC) - damping * c.v_WC;
+  const PointMotion to = targetAt(context.state.time);
+  const Vector3 wished = to.a + stiffness * (to.p - c.p_WC) + damping * (to.v - c.v_WC);
   for (int i = 0; i < 3; ++i)
     if (axes[static_cast<std::size_t>(i)]) addAxis(c, i, weight, wished[i], cost);
 }
@@ -73,28 +74,30 @@ void MomentumGoal::addCost(const GoalContext& context, GoalCost& cost) const {
 }
 
 CapturePoint::CapturePoint(const Model& model, int ofRobot, const Vector3& target)
-    : robot(ofRobot),
-      p_WTarget(target),
+    : PlaceTarget(target),
+      robot(ofRobot),
       weight(kReachWeightPerMass * massOfRobot(model, robot)),
       defaultWeight(weight) {}
 
 std::optional<Vector3> CapturePoint::position(const GoalContext& context) const {
   Centroidal c;
   centroidalOf(context, robot, c);
-  const double omega = pendulumRate(context, c.p_WC.z() - p_WTarget.z());
+  const double ground = targetAt(context.state.time).p.z();
+  const double omega = pendulumRate(context, c.p_WC.z() - ground);
   if (omega == 0.0) return std::nullopt;
   const Vector3 point = c.p_WC + c.v_WC / omega;
-  return Vector3(point.x(), point.y(), p_WTarget.z());
+  return Vector3(point.x(), point.y(), ground);
 }
 
 void CapturePoint::addCost(const GoalContext& context, GoalCost& cost) const {
   const Centroidal& c = centroidalOf(context, robot, cost.workspace().centroidal);
-  const double z = c.p_WC.z() - p_WTarget.z();
+  const PointMotion to = targetAt(context.state.time);
+  const double z = c.p_WC.z() - to.p.z();
   const double omega = pendulumRate(context, z);
   if (omega == 0.0) return;
   for (int i = 0; i < 2; ++i) {
-    const double v = c.v_WC[i], away = c.p_WC[i] + v / omega - p_WTarget[i];
-    addAxis(c, i, weight, omega * (-rate * away - v) - 0.5 * v * c.v_WC.z() / z, cost);
+    const double v = c.v_WC[i], away = c.p_WC[i] + v / omega - to.p[i];
+    addAxis(c, i, weight, omega * (to.v[i] - rate * away - v) - 0.5 * v * c.v_WC.z() / z, cost);
   }
 }
 

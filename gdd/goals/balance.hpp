@@ -5,13 +5,13 @@
 ///
 /// All are rows of the centroidal momentum matrix A (2.8), m the robot's mass, x its centre of
 /// mass, h = (p; k) its momentum about that:
-///   centre of mass   ½ w |S (ẍ − k_p (x* − x) + k_d ẋ)|²,   S: the chosen axes              (9.13)
+///   centre of mass   ½ w |S (ẍ − ẍ* − k_p (x* − x) − k_d (ẋ* − ẋ))|²,   S: the chosen axes  (9.13)
 ///   momentum         ½ w_p |ṗ − β (p* − p)|² + ½ w_k |k̇ − β (k* − k)|²                      (9.14)
-///   capture point    ½ w |ẍ − ẍ*|² over the horizontal axes                               (9.15)
+///   capture point    ½ w |ẍ − ẍ°|² over the horizontal axes                               (9.15)
 /// The instantaneous capture point ξ = x + ẋ/ω₀, ω₀ = √(g/z), is where a robot with the height z of
-/// its centre of mass over the ground would have to put its foot to come to rest (Pratt 2006). ẍ*
-/// is the acceleration with which ξ̇ = −β (ξ − ξ*):
-///   ξ̇ = ẋ + ẍ/ω₀ + ẋ ż/(2 ω₀ z)   ⟹   ẍ* = ω₀ (−β (ξ − ξ*) − ẋ) − ẋ ż/(2 z)
+/// its centre of mass over the ground would have to put its foot to come to rest (Pratt 2006). ẍ°
+/// is the acceleration with which ξ̇ = ξ̇* − β (ξ − ξ*):
+///   ξ̇ = ẋ + ẍ/ω₀ + ẋ ż/(2 ω₀ z)   ⟹   ẍ° = ω₀ (ξ̇* − β (ξ − ξ*) − ẋ) − ẋ ż/(2 z)
 /// A goal is of one robot, drivenRobot() or another.
 
 #include <array>
@@ -20,16 +20,17 @@
 #include "softgauss/engine/dynamics/centroidal.hpp"
 #include "softgauss/gdd/goal.hpp"
 #include "softgauss/gdd/goals/default_weight.hpp"
+#include "softgauss/gdd/goals/trajectory.hpp"
 
 namespace softgauss::gdd {
 
 /// The robot (Body::robot) of the first actuated dof. Throws ModelError when nothing is actuated.
 int drivenRobot(const Model& model);
 
-class CenterOfMass final : public Goal {
+/// The target x* is a PlaceTarget.
+class CenterOfMass final : public Goal, public PlaceTarget {
  public:
   int robot;                                   ///< Body::robot
-  Vector3 p_WTarget;                           ///< x* [m]
   std::array<bool, 3> axes{true, true, true};  ///< S: of x, y, z
   double weight;                               ///< w [kg]; default 2.5 × the robot's mass
   DefaultWeight defaultWeight;                 ///< of w
@@ -40,6 +41,7 @@ class CenterOfMass final : public Goal {
 
   std::string name() const override { return "center_of_mass"; }
   void weighBeside(double posture) override { defaultWeight.setBeside(posture, weight); }
+  bool steadyAt(double time) const override { return !targetMovesAt(time); }
   void addCost(const GoalContext& context, GoalCost& cost) const override;
   std::unique_ptr<Goal> within(const Model& whole, const SubModel& island) const override;
   void errors(const GoalContext& context, const ContactForces& contacts,
@@ -64,10 +66,11 @@ class MomentumGoal final : public Goal {
               std::vector<GoalError>& out) const override;
 };
 
-class CapturePoint final : public Goal {
+/// The target ξ* is a PlaceTarget on the ground: z is the ground's height; its acceleration does
+/// not count.
+class CapturePoint final : public Goal, public PlaceTarget {
  public:
   int robot;                    ///< Body::robot
-  Vector3 p_WTarget;            ///< ξ*, on the ground: z is the ground's height [m]
   double weight;                ///< w [kg]; default 2.5 × the robot's mass
   DefaultWeight defaultWeight;  ///< of w
   double rate = 5.0;            ///< β [1/s]
@@ -79,6 +82,7 @@ class CapturePoint final : public Goal {
   std::optional<Vector3> position(const GoalContext& context) const;
   std::string name() const override { return "capture_point"; }
   void weighBeside(double posture) override { defaultWeight.setBeside(posture, weight); }
+  bool steadyAt(double time) const override { return !targetMovesAt(time); }
   void addCost(const GoalContext& context, GoalCost& cost) const override;
   std::unique_ptr<Goal> within(const Model& whole, const SubModel& island) const override;
   void errors(const GoalContext& context, const ContactForces& contacts,

@@ -11,7 +11,7 @@
 #include "softgauss/gdd/goals/center_of_pressure.hpp"
 #include "softgauss/gdd/goals/contact_force.hpp"
 #include "softgauss/gdd/goals/hold.hpp"
-#include "softgauss/gdd/goals/joints.hpp"
+#include "softgauss/gdd/goals/joint_velocity.hpp"
 #include "softgauss/gdd/goals/keep_clear.hpp"
 #include "softgauss/gdd/goals/link_acceleration.hpp"
 #include "softgauss/gdd/goals/posture.hpp"
@@ -115,7 +115,8 @@ void Posture::errors(const GoalContext& context, const ContactForces&,
                      std::vector<GoalError>& out) const {
   if (weight == 0.0) return;
   const Model& model = context.model;
-  const VectorX away = positionDifference(model, context.state.q, q);
+  VectorX away(model.nv);
+  findAway(context, away);
   WorstJoints worst("rad", "m");
   double place = -1.0, turn = -1.0;
   // A posture of a scene holds objects too, but nobody asks where a cube is that a robot carries.
@@ -147,7 +148,8 @@ void JointPosture::errors(const GoalContext& context, const ContactForces&,
   WorstJoints worst("rad", "m");
   for (const JointTarget& target : targets) {
     const Body& body = context.model.bodies[target.body];
-    worst.see(context.model, body.v, std::abs(target.value - context.state.q[body.q]),
+    worst.see(context.model, body.v,
+              std::abs(target.positionAt(context.state.time).p - context.state.q[body.q]),
               metPosition(body));
   }
   worst.addTo(out);
@@ -160,6 +162,17 @@ void JointAcceleration::errors(const GoalContext& context, const ContactForces&,
     const int dof = context.model.bodies[target.body].v;
     worst.see(context.model, dof, std::abs(target.value - context.data.forward.a[dof]),
               std::max(GoalError::kMetShare * std::abs(target.value), 0.05));
+  }
+  worst.addTo(out);
+}
+
+void JointVelocity::errors(const GoalContext& context, const ContactForces&,
+                           std::vector<GoalError>& out) const {
+  WorstJoints worst("rad/s", "m/s");
+  for (const JointTarget& target : targets) {
+    const int dof = context.model.bodies[target.body].v;
+    worst.see(context.model, dof, std::abs(target.value - context.state.v[dof]),
+              std::max(GoalError::kMetShare * std::abs(target.value), GoalError::kMetSpeed));
   }
   worst.addTo(out);
 }
@@ -189,7 +202,8 @@ void KeepClear::errors(const GoalContext& context, const ContactForces&,
 void CenterOfMass::errors(const GoalContext& context, const ContactForces&,
                           std::vector<GoalError>& out) const {
   const Bulk bulk(context, robot);
-  out.push_back(figure(along(axes, p_WTarget - bulk.p_WC).norm(), "m", GoalError::kMetLength));
+  out.push_back(figure(along(axes, targetAt(context.state.time).p - bulk.p_WC).norm(), "m",
+                       GoalError::kMetLength));
 }
 
 void MomentumGoal::errors(const GoalContext& context, const ContactForces&,
@@ -207,11 +221,12 @@ void MomentumGoal::errors(const GoalContext& context, const ContactForces&,
 void CapturePoint::errors(const GoalContext& context, const ContactForces&,
                           std::vector<GoalError>& out) const {
   const Bulk bulk(context, robot);
-  const double height = bulk.p_WC.z() - p_WTarget.z();
+  const Vector3 to = targetAt(context.state.time).p;
+  const double height = bulk.p_WC.z() - to.z();
   const double pull = -context.model.options.gravity.z();
   if (!(height > 1e-3 && pull > 0.0)) return;
   const Vector3 point = bulk.p_WC + bulk.linear / bulk.mass * std::sqrt(height / pull);
-  out.push_back(figure((point - p_WTarget).head<2>().norm(), "m", GoalError::kMetLength));
+  out.push_back(figure((point - to).head<2>().norm(), "m", GoalError::kMetLength));
 }
 
 void ContactForce::errors(const GoalContext& context, const ContactForces& touching,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "softgauss/gdd/goals/joints.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace softgauss::gdd {
@@ -16,22 +17,6 @@ JointTarget jointTarget(const Model& model, const std::string& joint, double val
   if (!std::isfinite(value)) throw ModelError({}, element, "the target is not finite");
   return {body, value};
 }
-
-namespace {
-
-/// A goal of joints within an island: of those that are there.
-template <class JointGoal>
-std::unique_ptr<Goal> ofJointsWithin(const JointGoal& goal, const Model& whole,
-                                     const SubModel& island) {
-  auto part = std::make_unique<JointGoal>(goal);
-  part->targets.clear();
-  for (JointTarget target : goal.targets)
-    if ((target.body = island.bodyOf(whole, target.body)) > 0) part->targets.push_back(target);
-  if (part->targets.empty()) return nullptr;
-  return part;
-}
-
-}  // namespace
 
 std::unique_ptr<Goal> JointAcceleration::within(const Model& whole, const SubModel& island) const {
   return ofJointsWithin(*this, whole, island);
@@ -51,10 +36,16 @@ void JointAcceleration::addCost(const GoalContext& context, GoalCost& cost) cons
 void JointPosture::addCost(const GoalContext& context, GoalCost& cost) const {
   for (const JointTarget& target : targets) {
     const Body& body = context.model.bodies[target.body];
-    const double away = target.value - context.state.q[body.q];
+    const CoordinateMotion to = target.positionAt(context.state.time);
     cost.addDof(body.v, weight * context.data.inertia.M.row(body.v)[body.v],
-                stiffness * away - damping * context.state.v[body.v]);
+                to.a + stiffness * (to.p - context.state.q[body.q]) +
+                    damping * (to.v - context.state.v[body.v]));
   }
+}
+
+bool JointPosture::steadyAt(double time) const {
+  return std::none_of(targets.begin(), targets.end(),
+                      [&](const JointTarget& target) { return target.movesAt(time); });
 }
 
 }  // namespace softgauss::gdd

@@ -5,7 +5,7 @@
 ///
 ///   ℓ(a) = ½ w Σ_i M_ii (a_i − a*_i)²                                                    (9.8)
 ///   acceleration   a*_i given
-///   posture        a*_i = k_p (q*_i − q_i) − k_d v_i                                      (9.9)
+///   posture        a*_i = q̈*_i + k_p (q*_i − q_i) + k_d (q̇*_i − v_i)                      (9.9)
 /// over the chosen dofs i. M_ii, of the present configuration, is the inertia that joint i moves
 /// when all others are locked: one w serves heavy and light joints. Joints that are not chosen are
 /// free to move; a Posture of the whole robot (9.7) counts their motion too.
@@ -13,18 +13,44 @@
 #include <vector>
 
 #include "softgauss/gdd/goal.hpp"
+#include "softgauss/gdd/goals/trajectory.hpp"
 
 namespace softgauss::gdd {
 
 /// What a joint of one degree of freedom is to do.
 struct JointTarget {
   int body = 0;        ///< that the joint carries
-  double value = 0.0;  ///< a* [rad/s² or m/s²], q* [rad or m]
+  double value = 0.0;  ///< a* [rad/s² or m/s²], q* [rad or m], v* [rad/s or m/s]
+  // Of postures, whose target may move:
+  double velocity = 0.0;      ///< q̇* [rad/s or m/s], for who moves q* himself
+  double acceleration = 0.0;  ///< q̈* [rad/s² or m/s²], likewise
+  std::shared_ptr<const Trajectory> trajectory{};  ///< q*(t); it replaces these
+  int coordinate = 0;                              ///< of the trajectory
+
+  CoordinateMotion positionAt(double time) const {
+    return trajectory ? trajectory->at(time, coordinate)
+                      : CoordinateMotion{value, velocity, acceleration};
+  }
+  bool movesAt(double time) const {
+    return trajectory ? trajectory->movesAt(time) : velocity != 0.0 || acceleration != 0.0;
+  }
 };
 
 /// The target of a named joint. Throws ModelError when the model has no such joint, or when it has
 /// not one degree of freedom.
 JointTarget jointTarget(const Model& model, const std::string& joint, double value);
+
+/// A goal of joints within an island: of those that are there.
+template <class JointGoal>
+std::unique_ptr<Goal> ofJointsWithin(const JointGoal& goal, const Model& whole,
+                                     const SubModel& island) {
+  auto part = std::make_unique<JointGoal>(goal);
+  part->targets.clear();
+  for (JointTarget target : goal.targets)
+    if ((target.body = island.bodyOf(whole, target.body)) > 0) part->targets.push_back(target);
+  if (part->targets.empty()) return nullptr;
+  return part;
+}
 
 class JointAcceleration final : public Goal {
  public:
@@ -46,6 +72,7 @@ class JointPosture final : public Goal {
   double damping = 15.0;             ///< k_d [1/s]
 
   std::string name() const override { return "joint_posture"; }
+  bool steadyAt(double time) const override;
   void addCost(const GoalContext& context, GoalCost& cost) const override;
   std::unique_ptr<Goal> within(const Model& whole, const SubModel& island) const override;
   void errors(const GoalContext& context, const ContactForces& contacts,

@@ -21,11 +21,11 @@ Vector3 turn(const Vector3& u, const Vector3& d) {
 
 LookAt::LookAt(const Model& model, const std::string& linkName, const Vector3& target,
                const Vector3& axis, const Vector3& point)
-    : link(linkName),
+    : PlaceTarget(target),
+      link(linkName),
       frame(model.findFrame(linkName)),
       axis_F(axis.stableNormalized()),
       p_FP(point),
-      p_WTarget(target),
       weight(kRotationWeightPerWeight * kReachWeightPerMass * referenceMass(model, frame)),
       defaultWeight(weight) {
   const std::string element = "goal 'look_at " + linkName + "'";
@@ -37,8 +37,8 @@ LookAt::LookAt(const Model& model, const std::string& linkName, const Vector3& t
 
 std::optional<GoalMark> LookAt::mark(const GoalContext& context) const {
   const Transform X = framePose(context.model, context.data.kinematics, frame);
-  const Vector3 p = X * p_FP;
-  return GoalMark{frame, p + (p_WTarget - p).norm() * (X.R * axis_F), p_WTarget};
+  const Vector3 p = X * p_FP, to = targetAt(context.state.time).p;
+  return GoalMark{frame, p + (to - p).norm() * (X.R * axis_F), to};
 }
 
 void LookAt::addCost(const GoalContext& context, GoalCost& cost) const {
@@ -47,23 +47,25 @@ void LookAt::addCost(const GoalContext& context, GoalCost& cost) const {
   if (context.model.bodies[body].dofs == 0) return;  // fixed to the world
   const Transform X = framePose(context.model, context.data.kinematics, frame);
   const Vector3 p = X * p_FP, u = X.R * axis_F;
-  const double r = (p_WTarget - p).norm();
+  const PointMotion to = targetAt(context.state.time);
+  const double r = (to.p - p).norm();
   if (r < kNearest) return;
-  const Vector3 d = (p_WTarget - p) / r;
+  const Vector3 d = (to.p - p) / r;
 
   const LinkRows rows(context, body, p, cost.workspace());
-  const Vector3 v = rows.velocity.head(3), omega = rows.velocity.tail(3);
-  const double rdot = -d.dot(v);
-  const Vector3 ddot = (-v - rdot * d) / r;
+  const Vector3 v = to.v - rows.velocity.head<3>(), omega = rows.velocity.tail(3);
+  const double rdot = d.dot(v);
+  const Vector3 ddot = (v - rdot * d) / r;
   const Matrix3 Pi = Matrix3::Identity() - u * u.transpose();
-  const Matrix3 across = skew(d) / r;  // ω̇ − α_d = ω̇ + across (p̈ + 2 ṙ ḋ)
+  const Matrix3 across = skew(d) / r;  // ω̇ − α_d = ω̇ + across (p̈ − p̈* + 2 ṙ ḋ)
   const Vector3 wished = stiffness * turn(u, d) - damping * (omega - d.cross(ddot));
   auto J = cost.workspace().rows.topRows(3);
   for (Eigen::Index i = 0; i < J.cols(); ++i) {
     const Vector3 point = rows.J.col(i).head<3>(), rotation = rows.J.col(i).tail<3>();
     J.col(i) = Pi * (rotation + across * point);
   }
-  const Vector3 bias = rows.bias.tail(3) + across * (rows.bias.head(3) + 2.0 * rdot * ddot);
+  const Vector3 bias =
+      rows.bias.tail(3) + across * (rows.bias.head<3>() - to.a + 2.0 * rdot * ddot);
   const Vector3 target = Pi * (wished - bias);
   cost.addRows(J, weight, target);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "softgauss/gdd/goals/posture.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "softgauss/engine/dynamics/jacobian.hpp"
@@ -85,16 +86,38 @@ void Posture::yield(const GoalContext& context, GoalWorkspace& work, VectorX& pu
   pull -= x;
 }
 
+/// q* ⊖ q (nv).
+void Posture::findAway(const GoalContext& context, VectorX& away) const {
+  positionDifference(context.model, context.state.q, q, away);
+  for (const JointTarget& target : moving) {
+    const Body& body = context.model.bodies[target.body];
+    away[body.v] = target.positionAt(context.state.time).p - context.state.q[body.q];
+  }
+}
+
 void Posture::addCost(const GoalContext& context, GoalCost& cost) const {
   VectorX& pull = cost.workspace().pull;
-  positionDifference(context.model, context.state.q, q, pull);
+  findAway(context, pull);
+  pull *= stiffness;
+  for (const JointTarget& target : moving) {
+    const CoordinateMotion to = target.positionAt(context.state.time);
+    pull[context.model.bodies[target.body].v] += to.a + damping * to.v;
+  }
   if (!yieldsTo.empty()) yield(context, cost.workspace(), pull);
-  cost.addMetric(weight, context.data.inertia.M, stiffness * pull - damping * context.state.v);
+  cost.addMetric(weight, context.data.inertia.M, pull - damping * context.state.v);
+}
+
+bool Posture::steadyAt(double time) const {
+  return std::none_of(moving.begin(), moving.end(),
+                      [&](const JointTarget& target) { return target.movesAt(time); });
 }
 
 std::unique_ptr<Goal> Posture::within(const Model& whole, const SubModel& island) const {
   auto goal = std::make_unique<Posture>(*this);  // M ties nothing that is apart
   island.gatherPosition(whole, q, goal->q);
+  goal->moving.clear();
+  for (JointTarget target : moving)
+    if ((target.body = island.bodyOf(whole, target.body)) > 0) goal->moving.push_back(target);
   goal->yieldsTo.clear();
   for (LedPlace place : yieldsTo)
     if ((place.frame = island.frameOf(place.frame)) >= 0) goal->yieldsTo.push_back(place);

@@ -6,23 +6,6 @@
 #include "softgauss/engine/core/rotation.hpp"
 
 namespace softgauss::gdd {
-namespace {
-
-/// The way along a minimum-jerk line, 0 to 1, with its rates.
-struct Way {
-  double s, sdot, sddot;
-
-  Way(const MinimumJerk& line, double time) {
-    const double T = line.duration;
-    const double x = std::clamp((time - line.startTime) / T, 0.0, 1.0);
-    s = x * x * x * (10.0 + x * (-15.0 + 6.0 * x));
-    sdot = 30.0 * x * x * (1.0 - x) * (1.0 - x) / T;
-    sddot = 60.0 * x * (1.0 - x) * (1.0 - 2.0 * x) / (T * T);
-  }
-};
-
-}  // namespace
-
 double massOfRobot(const Model& model, int robot) {
   double mass = 0.0;
   for (const Body& body : model.bodies)
@@ -41,10 +24,10 @@ double referenceMass(const Model& model, int frame) {
 
 Reach::Reach(const Model& model, const std::string& linkName, const Vector3& target,
              const Vector3& point)
-    : link(linkName),
+    : PlaceTarget(target),
+      link(linkName),
       frame(model.findFrame(linkName)),
       p_FP(point),
-      p_WTarget(target),
       weight(kReachWeightPerMass * referenceMass(model, frame)),
       rotationWeight(kRotationWeightPerWeight * weight),
       defaultWeight(weight),
@@ -60,15 +43,22 @@ Vector3 Reach::position(const GoalContext& context) const {
 }
 
 std::optional<GoalMark> Reach::mark(const GoalContext& context) const {
-  return GoalMark{frame, position(context), p_WTarget};
+  return GoalMark{frame, position(context), targetAt(context.state.time).p};
+}
+
+/// r of (9.3).
+PointMotion Reach::referenceAt(double time) const {
+  const PointMotion to = targetAt(time);
+  if (!minimumJerk) return to;
+  const CoordinateMotion s = minimumJerkShare(time, minimumJerk->startTime, minimumJerk->duration);
+  const Vector3 way = to.p - minimumJerk->p_start;
+  return {minimumJerk->p_start + s.p * way, s.v * way + s.p * to.v,
+          s.a * way + 2.0 * s.v * to.v + s.p * to.a};
 }
 
 Vector3 Reach::wishedAcceleration(double time, const Vector3& p, const Vector3& v) const {
-  if (!minimumJerk) return stiffness * (p_WTarget - p) - damping * v;
-  const Way way(*minimumJerk, time);
-  const Vector3 line = p_WTarget - minimumJerk->p_start;
-  return way.sddot * line + stiffness * (minimumJerk->p_start + way.s * line - p) +
-         damping * (way.sdot * line - v);
+  const PointMotion r = referenceAt(time);
+  return r.a + stiffness * (r.p - p) + damping * (r.v - v);
 }
 
 Vector3 Reach::wishedRotation(double time, const Matrix3& R, const Vector3& omega) const {
@@ -76,10 +66,10 @@ Vector3 Reach::wishedRotation(double time, const Matrix3& R, const Vector3& omeg
     return quaternionLog(Quaternion(Matrix3(B * A.transpose())));
   };
   if (!minimumJerk) return stiffness * from(R, *R_WTarget) - damping * omega;
-  const Way way(*minimumJerk, time);
+  const CoordinateMotion s = minimumJerkShare(time, minimumJerk->startTime, minimumJerk->duration);
   const Vector3 turn = from(minimumJerk->R_start, *R_WTarget);
-  const Matrix3 now = quaternionExp(way.s * turn).toRotationMatrix() * minimumJerk->R_start;
-  return way.sddot * turn + stiffness * from(R, now) + damping * (way.sdot * turn - omega);
+  const Matrix3 now = quaternionExp(s.p * turn).toRotationMatrix() * minimumJerk->R_start;
+  return s.a * turn + stiffness * from(R, now) + damping * (s.v * turn - omega);
 }
 
 void Reach::addCost(const GoalContext& context, GoalCost& cost) const {

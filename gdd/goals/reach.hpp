@@ -5,22 +5,24 @@
 /// link may seek an orientation too.
 ///
 ///   ℓ(a) = ½ w |J a + J̇ v − a*|² + ½ w_r |J_r a + J̇_r v − α*|²                            (9.2)
-/// with the wished acceleration of P from one of two laws, e = p* − p:
-///   spring-damper   a* = k_p e − k_d ṗ
-///   minimum jerk    a* = r̈(t) + k_p (r − p) + k_d (ṙ − ṗ)                                 (9.3)
-/// r is the minimum-jerk line of Flash and Hogan (1985) from the start p₀, at rest, to p* in the
-/// duration T:  r = p₀ + (p* − p₀)(10 s³ − 15 s⁴ + 6 s⁵),  s = (t − t₀)/T in [0, 1].
-/// The angular acceleration α* follows the same laws with θ, the rotation vector of R* Rᵀ, for e,
-/// and ω for ṗ; along a minimum-jerk line the link turns about one axis                    (9.4)
+/// with the wished acceleration of P
+///   a* = r̈ + k_p (r − p) + k_d (ṙ − ṗ)                                                   (9.3)
+/// r is the target p*(t), which rests or moves (trajectory.hpp). With a minimum jerk, P comes to it
+/// from the start p₀, at rest, in the duration T: r = p₀ + σ(s) (p* − p₀), s = (t − t₀)/T, σ of
+/// (9.26); where p* rests that is the line of Flash and Hogan (1985).
+/// The angular acceleration α* follows the same law with θ, the rotation vector of R* Rᵀ, for
+/// r − p, and ω for ṗ; with a minimum jerk the link turns about one axis                   (9.4)
 /// The metric may be the consistent one (9.5) instead of the Euclidean.
 
 #include <optional>
 
 #include "softgauss/gdd/goals/default_weight.hpp"
 #include "softgauss/gdd/goals/link_rows.hpp"
+#include "softgauss/gdd/goals/trajectory.hpp"
 
 namespace softgauss::gdd {
 
+/// How a point comes to its target.
 struct MinimumJerk {
   Vector3 p_start = Vector3::Zero();      ///< p₀ [m]
   double startTime = 0.0;                 ///< t₀ [s]
@@ -42,12 +44,12 @@ double referenceMass(const Model& model, int frame);
 /// w_r over w by default [m²]: a link of radius of gyration 0.1 m.
 inline constexpr double kRotationWeightPerWeight = 0.01;
 
-class Reach final : public Goal {
+/// The target is a PlaceTarget.
+class Reach final : public Goal, public PlaceTarget {
  public:
   std::string link;                     ///< for the name
   int frame = 0;                        ///< index into Model::frames
   Vector3 p_FP = Vector3::Zero();       ///< the point in the link's frame [m]
-  Vector3 p_WTarget = Vector3::Zero();  ///< p* [m]
   std::optional<Matrix3> R_WTarget;     ///< R*: orientation of the link; absent: any
   double weight;                        ///< w [kg; - if consistent]; default 2.5 × referenceMass()
   double rotationWeight;                ///< w_r [kg m²; - if consistent]; default 0.01 m² × w
@@ -56,7 +58,7 @@ class Reach final : public Goal {
   LinkMetric metric = LinkMetric::euclidean;
   double stiffness = 100.0;                ///< k_p [1/s²]
   double damping = 20.0;                   ///< k_d [1/s]
-  std::optional<MinimumJerk> minimumJerk;  ///< absent: spring-damper
+  std::optional<MinimumJerk> minimumJerk;  ///< absent: at once
 
   /// Throws ModelError when the model has no such link.
   Reach(const Model& model, const std::string& link, const Vector3& p_WTarget,
@@ -73,8 +75,9 @@ class Reach final : public Goal {
     return LedPlace{frame, p_FP, R_WTarget.has_value(), startTime, endTime};
   }
   bool steadyAt(double time) const override {
-    return !minimumJerk || time < minimumJerk->startTime ||
-           time > minimumJerk->startTime + minimumJerk->duration;
+    const bool comes = minimumJerk && time >= minimumJerk->startTime &&
+                       time <= minimumJerk->startTime + minimumJerk->duration;
+    return !comes && !targetMovesAt(time);
   }
   void addCost(const GoalContext& context, GoalCost& cost) const override;
   std::unique_ptr<Goal> within(const Model&, const SubModel& island) const override {
@@ -86,6 +89,7 @@ class Reach final : public Goal {
   Vector3 position(const GoalContext& context) const;
 
  private:
+  PointMotion referenceAt(double time) const;
   Vector3 wishedAcceleration(double time, const Vector3& p, const Vector3& v) const;
   Vector3 wishedRotation(double time, const Matrix3& R, const Vector3& omega) const;
 };

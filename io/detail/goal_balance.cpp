@@ -3,6 +3,7 @@
 
 #include "softgauss/gdd/goals/balance.hpp"
 #include "softgauss/io/detail/goal_kinds.hpp"
+#include "softgauss/io/detail/goal_trajectory.hpp"
 
 namespace softgauss::io::detail {
 
@@ -16,7 +17,7 @@ GoalPointer readCenterOfMass(const YamlMap& keys, const GoalScene& scene) {
   computeMassMatrix(model, kinematics, inertia);
   computeCentroidal(model, kinematics, inertia, robot, centroidal);
   auto goal = std::make_unique<gdd::CenterOfMass>(model, robot, centroidal.p_WC);
-  keys.read("target", goal->p_WTarget);
+  readPlaceTarget(keys, false, *goal);
   if (const auto* axes = keys.find("axes")) goal->axes = readAxes(keys, *axes);
   readWeight(keys, *goal);
   keys.read("stiffness", goal->stiffness, Range::notNegative);
@@ -36,8 +37,8 @@ GoalPointer readMomentum(const YamlMap& keys, const GoalScene& scene) {
 
 GoalPointer readCapturePoint(const YamlMap& keys, const GoalScene& scene) {
   const int robot = readRobot(keys, scene.model);
-  const Vector3 target = keys.vector3(keys.required("target", "three numbers [x, y, z]"));
-  auto goal = std::make_unique<gdd::CapturePoint>(scene.model, robot, target);
+  auto goal = std::make_unique<gdd::CapturePoint>(scene.model, robot, Vector3::Zero());
+  readPlaceTarget(keys, true, *goal);
   readWeight(keys, *goal);
   keys.read("rate", goal->rate, Range::notNegative);
   return goal;

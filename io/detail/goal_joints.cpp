@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Goals of joints: posture, joint_posture, acceleration, damping, effort.
+/// Goals of joints: posture, joint_posture, joint_velocity, acceleration, damping, effort.
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "softgauss/gdd/goals/effort.hpp"
-#include "softgauss/gdd/goals/joints.hpp"
+#include "softgauss/gdd/goals/joint_velocity.hpp"
 #include "softgauss/gdd/goals/posture.hpp"
 #include "softgauss/gdd/goals/virtual_damping.hpp"
 #include "softgauss/io/detail/goal_kinds.hpp"
+#include "softgauss/io/detail/goal_trajectory.hpp"
 #include "softgauss/io/detail/text.hpp"
 
 namespace softgauss::io::detail {
@@ -35,15 +36,28 @@ GoalPointer readPosture(const YamlMap& keys, const GoalScene& scene) {
   if (const auto* joints = keys.find("joints"))
     for (const auto& [body, value] : readJoints(keys.map(*joints), scene.model))
       goal->q[scene.model.bodies[static_cast<std::size_t>(body)].q] = value;
+  goal->moving = readJointTrajectory(keys, scene.model);
   return goal;
 }
 
 GoalPointer readJointPosture(const YamlMap& keys, const GoalScene& scene) {
   auto goal = std::make_unique<gdd::JointPosture>();
-  goal->targets = requiredJoints(keys, scene.model);
+  goal->targets = readJointTrajectory(keys, scene.model);
+  if (goal->targets.empty())
+    goal->targets = requiredJoints(keys, scene.model);
+  else if (const auto* joints = keys.find("joints"))
+    keys.fail(*joints, "found beside trajectory, expected one of joints, trajectory");
   keys.read("weight", goal->weight, Range::notNegative);
   keys.read("stiffness", goal->stiffness, Range::notNegative);
   keys.read("damping", goal->damping, Range::notNegative);
+  return goal;
+}
+
+GoalPointer readJointVelocity(const YamlMap& keys, const GoalScene& scene) {
+  auto goal = std::make_unique<gdd::JointVelocity>();
+  goal->targets = requiredJoints(keys, scene.model);
+  keys.read("weight", goal->weight, Range::notNegative);
+  keys.read("rate", goal->rate, Range::notNegative);
   return goal;
 }
 

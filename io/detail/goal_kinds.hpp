@@ -74,6 +74,7 @@ GoalPointer readHold(const YamlMap& keys, const GoalScene& scene);
 GoalPointer readKeepClear(const YamlMap& keys, const GoalScene& scene);
 GoalPointer readPosture(const YamlMap& keys, const GoalScene& scene);
 GoalPointer readJointPosture(const YamlMap& keys, const GoalScene& scene);
+GoalPointer readJointVelocity(const YamlMap& keys, const GoalScene& scene);
 GoalPointer readAcceleration(const YamlMap& keys, const GoalScene& scene);
 GoalPointer readDamping(const YamlMap& keys, const GoalScene& scene);
 GoalPointer readEffort(const YamlMap& keys, const GoalScene& scene);

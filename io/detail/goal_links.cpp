@@ -10,13 +10,11 @@
 #include "softgauss/gdd/goals/look_at.hpp"
 #include "softgauss/gdd/goals/reach.hpp"
 #include "softgauss/io/detail/goal_kinds.hpp"
+#include "softgauss/io/detail/goal_trajectory.hpp"
 #include "softgauss/io/detail/scene_parts.hpp"
 
 namespace softgauss::io::detail {
 namespace {
-
-/// Of a minimum-jerk line [s]: less is below any time step, and accelerations go as its square.
-constexpr double kShortest = 1e-6;
 
 /// The line of Flash and Hogan from where the goal's point is at first. It begins when the goal
 /// does, unless the file says otherwise.
@@ -26,9 +24,9 @@ gdd::MinimumJerk readMinimumJerk(const YamlMap& keys, double goalStart, const gd
   gdd::MinimumJerk line;
   line.startTime = std::max(line.startTime, goalStart);
   keys.read("duration", line.duration, Range::positive);
-  if (line.duration < kShortest)
+  if (line.duration < kShortestPiece)
     keys.fail(*keys.find("duration"),
-              fmt::format("found {} s, expected at least {:g} s", line.duration, kShortest));
+              fmt::format("found {} s, expected at least {:g} s", line.duration, kShortestPiece));
   keys.read("start", line.startTime, Range::any);
   const Transform start = initialPose(scene, goal.frame);
   line.p_start = start * goal.p_FP;
@@ -62,15 +60,12 @@ std::string requiredLink(const YamlMap& keys, const Model& model) {
   return movingLink(keys, keys.required("link", "the name of a link"), model);
 }
 
-Vector3 requiredTarget(const YamlMap& keys) {
-  return keys.vector3(keys.required("target", "three numbers [x, y, z]"));
-}
-
 }  // namespace
 
 GoalPointer readReach(const YamlMap& keys, const GoalScene& scene) {
   const std::string link = requiredLink(keys, scene.model);
-  auto goal = std::make_unique<gdd::Reach>(scene.model, link, requiredTarget(keys));
+  auto goal = std::make_unique<gdd::Reach>(scene.model, link, Vector3::Zero());
+  readPlaceTarget(keys, true, *goal);
   keys.read("point", goal->p_FP);
   if (keys.find("rpy") || keys.find("quaternion")) goal->R_WTarget = readPose(keys).R;
   readWeights(keys, goal->R_WTarget.has_value(),
@@ -98,7 +93,7 @@ void joinLines(const std::vector<GoalPointer>& goals) {
       const gdd::Reach& before = **it;
       if (before.frame != goal.frame || before.p_FP != goal.p_FP) continue;
       if (before.startTime == goal.startTime) continue;
-      goal.minimumJerk->p_start = before.p_WTarget;
+      goal.minimumJerk->p_start = before.targetAt(goal.minimumJerk->startTime).p;
       if (before.R_WTarget) goal.minimumJerk->R_start = *before.R_WTarget;
     }
   }
@@ -117,12 +112,12 @@ GoalPointer readLinkAcceleration(const YamlMap& keys, const GoalScene& scene) {
 
 GoalPointer readLookAt(const YamlMap& keys, const GoalScene& scene) {
   const std::string link = requiredLink(keys, scene.model);
-  const Vector3 target = requiredTarget(keys);
   Vector3 axis = Vector3::UnitX();
   keys.read("axis", axis);
   if (axis.stableNorm() == 0.0)
     keys.fail(*keys.find("axis"), "found a vector of length 0, expected a direction");
-  auto goal = std::make_unique<gdd::LookAt>(scene.model, link, target, axis);
+  auto goal = std::make_unique<gdd::LookAt>(scene.model, link, Vector3::Zero(), axis);
+  readPlaceTarget(keys, true, *goal);
   keys.read("point", goal->p_FP);
   readWeight(keys, *goal);
   keys.read("stiffness", goal->stiffness, Range::notNegative);

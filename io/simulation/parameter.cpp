@@ -295,6 +295,8 @@ void Parameter::apply(double value, gdd::GoalDirectedController& controller) con
   bool found = false;
   for (const auto& goal : controller.goals)
     if (auto* reach = dynamic_cast<gdd::Reach*>(goal.get()); reach && reach->link == link_) {
+      if (reach->trajectory)
+        fail("found a reach goal whose target follows a trajectory, expected one with a target");
       reach->p_WTarget[indices_.front()] = value;
       found = true;
     }

@@ -57,7 +57,7 @@ gdd::Reach& SimulationGoals::reach(const std::string& link, const Vector3& p_WTa
   for (const auto& goal : parts_->controller->goals)
     if (auto* same = dynamic_cast<gdd::Reach*>(goal.get());
         same && same->link == link && same->p_FP == p_LP) {
-      same->p_WTarget = p_WTarget;
+      same->restAt(p_WTarget);
       if (weight) same->weight = *weight, same->defaultWeight.giveUp();
       weighDefaults();
       return *same;

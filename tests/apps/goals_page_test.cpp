@@ -100,5 +100,27 @@ TEST(GoalsPage, ExamplesDoWhatThePageSays) {
   }
 }
 
+TEST(GoalsPage, ACircleIsFollowedToAMillimetre) {
+  int circles = 0;
+  for (const Example& example : examplesOfThePage()) {
+    if (example.yaml.find("circle:") == std::string::npos) continue;
+    ++circles;
+    const io::TempFolder folder;
+    const std::string log = folder.path() / "log.csv";
+    std::vector<std::string> arguments = example.arguments;
+    arguments.insert(arguments.end(),
+                     {"--goals", folder.write("goals.yaml", example.yaml), "--log", log});
+    ASSERT_EQ(simulate(arguments).exitCode, 0);
+    const Csv table(readFile(log));
+    double worst = 0.0;
+    for (int row = 0; row < static_cast<int>(table.rows.size()); ++row)
+      if (table.number(row, "time_s") > 0.5)
+        worst = std::max(worst, table.number(row, "error:reach hand [m]"));
+    EXPECT_GT(worst, 0.0);
+    EXPECT_LT(worst, 1e-3);
+  }
+  EXPECT_EQ(circles, 1);
+}
+
 }  // namespace
 }  // namespace softgauss::test

@@ -88,6 +88,8 @@ std::unique_ptr<gdd::CenterOfMass> randomCenter(const Scene& scene, Random& rand
   auto goal =
       std::make_unique<gdd::CenterOfMass>(scene.model, robotOf(scene, random), random.vector3(1.0));
   if (random.chance(0.5)) goal->axes[static_cast<std::size_t>(random.index(3))] = false;
+  goal->v_WTarget = random.vector3(1.0);
+  goal->a_WTarget = random.vector3(5.0);
   return goal;
 }
 
@@ -100,8 +102,10 @@ std::unique_ptr<gdd::MomentumGoal> randomMomentum(const Scene& scene, Random& ra
 
 std::unique_ptr<gdd::CapturePoint> randomCapture(const Scene& scene, Random& random) {
   // A ground well below, so that there is a pendulum.
-  return std::make_unique<gdd::CapturePoint>(scene.model, robotOf(scene, random),
-                                             random.vector3(1.0) - Vector3(0.0, 0.0, 5.0));
+  auto goal = std::make_unique<gdd::CapturePoint>(scene.model, robotOf(scene, random),
+                                                  random.vector3(1.0) - Vector3(0.0, 0.0, 5.0));
+  goal->v_WTarget = Vector3(random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), 0.0);
+  return goal;
 }
 
 TEST(BalanceGoals, KeepTheLawsOfCosts) {
@@ -126,8 +130,9 @@ TEST(BalanceGoals, WeighTheMotionOfTheWholeRobot) {
     const Vector3 acceleration = rateAlong(scene, a, [&](const Kinematics& k) {
       return PlainMomentum(scene.model, k, centre->robot).velocity;
     });
-    Vector3 error = acceleration - centre->stiffness * (centre->p_WTarget - c.centre) +
-                    centre->damping * c.velocity;
+    Vector3 error = acceleration - centre->a_WTarget -
+                    centre->stiffness * (centre->p_WTarget - c.centre) -
+                    centre->damping * (centre->v_WTarget - c.velocity);
     for (int i = 0; i < 3; ++i)
       if (!centre->axes[static_cast<std::size_t>(i)]) error[i] = 0.0;
     double expected = 0.5 * centre->weight * error.squaredNorm();
@@ -168,7 +173,8 @@ TEST(BalanceGoals, TheCapturePointMovesAtItsRate) {
     const double omega = std::sqrt(
         9.81 / (PlainMomentum(scene.model, scene.data->kinematics, goal->robot).centre.z() -
                 goal->p_WTarget.z()));
-    const Vector3 off = omega * (rateAlong(scene, a, xi) + goal->rate * (now - goal->p_WTarget));
+    const Vector3 off =
+        omega * (rateAlong(scene, a, xi) - goal->v_WTarget + goal->rate * (now - goal->p_WTarget));
     const double expected = 0.5 * goal->weight * off.squaredNorm();
     EXPECT_SMALL(GoalCheck(scene, *goal).value(a) / expected - 1.0, kDifference) << seed;
   }

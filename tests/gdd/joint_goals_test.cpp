@@ -58,9 +58,20 @@ TEST(Posture, IsItsFormulaWithAFloatingBaseTurnedAway) {
     for (const Body& body : scene.model.bodies) floating += body.joint == JointKind::floating;
     const VectorX d = random.vector(scene.model.nv, 1.0);
     const auto goal = postureAway(scene, d, random);
+    // Joints of one degree of freedom may move on from there.
+    VectorX rate = VectorX::Zero(scene.model.nv), bend = rate;
+    for (int b = 1; b < scene.model.bodyCount(); b += 2) {
+      const Body& body = scene.model.bodies[b];
+      if (body.dofs != 1) continue;
+      gdd::JointTarget& target = goal->moving.emplace_back();
+      target.body = b;
+      target.value = goal->q[body.q];
+      target.velocity = rate[body.v] = random.uniform(-2.0, 2.0);
+      target.acceleration = bend[body.v] = random.uniform(-5.0, 5.0);
+    }
     const MatrixX M = scene.data->inertia.M.dense();
     const auto formula = [&](const VectorX& a) {
-      const VectorX e = a - goal->stiffness * d + goal->damping * scene.state.v;
+      const VectorX e = a - bend - goal->stiffness * d - goal->damping * (rate - scene.state.v);
       return 0.5 * goal->weight * e.dot(M * e);
     };
     const VectorX a = random.vector(scene.model.nv, 10.0), zero = 0.0 * a;
@@ -88,6 +99,33 @@ TEST(JointGoals, WeighTheInertiaThatTheJointMoves) {
   }
   const GoalCheck check(scene, goal);
   EXPECT_NEAR(check.value(a) - check.value(0.0 * a), expected, 1e-12 * std::abs(expected));
+}
+
+// (9.9) and (9.28), counted from a = 0.
+TEST(JointGoals, FollowPositionsAndVelocitiesOfTheirTargets) {
+  const Scene scene = drivenArm(4);
+  Random random(4);
+  gdd::JointPosture posture;
+  posture.targets = randomTargets(scene.model, random);
+  gdd::JointVelocity velocity;
+  velocity.targets = posture.targets;
+  const VectorX a = random.vector(scene.model.nv, 5.0);
+  double ofPosture = 0.0, ofVelocity = 0.0;
+  for (gdd::JointTarget& target : posture.targets) {
+    target.velocity = random.uniform(-2.0, 2.0);
+    target.acceleration = random.uniform(-5.0, 5.0);
+    const Body& body = scene.model.bodies[target.body];
+    const double q = scene.state.q[body.q], v = scene.state.v[body.v];
+    const double M = scene.data->inertia.M.dense()(body.v, body.v);
+    const auto add = [&](double& sum, double wished) {
+      sum += 500.0 * M * (std::pow(a[body.v] - wished, 2) - std::pow(wished, 2));
+    };
+    add(ofPosture, target.acceleration + 50.0 * (target.value - q) + 15.0 * (target.velocity - v));
+    add(ofVelocity, 20.0 * (target.value - v));
+  }
+  const GoalCheck check(scene, posture), speeds(scene, velocity);
+  EXPECT_NEAR(check.value(a) - check.value(0.0 * a), ofPosture, 1e-12 * std::abs(ofPosture));
+  EXPECT_NEAR(speeds.value(a) - speeds.value(0.0 * a), ofVelocity, 1e-12 * std::abs(ofVelocity));
 }
 
 // A heavy goal of every joint leaves nothing to gravity: the arm does what it is told.

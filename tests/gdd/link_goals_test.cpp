@@ -20,6 +20,8 @@ std::unique_ptr<gdd::Reach> randomPose(const Model& model, Random& random) {
   goal->R_WTarget = random.rotation();
   goal->weight = random.uniform(1.0, 100.0);
   goal->rotationWeight = random.uniform(0.1, 10.0);
+  goal->v_WTarget = random.vector3(1.0);
+  goal->a_WTarget = random.vector3(5.0);
   return goal;
 }
 
@@ -28,6 +30,8 @@ std::unique_ptr<gdd::LookAt> randomLookAt(const Model& model, Random& random) {
       std::make_unique<gdd::LookAt>(model, randomLinkName(model, random), random.vector3(2.0),
                                     random.vector3(2.0), random.vector3(0.2));
   goal->weight = random.uniform(0.1, 10.0);
+  goal->v_WTarget = random.vector3(1.0);
+  goal->a_WTarget = random.vector3(5.0);
   return goal;
 }
 
@@ -87,8 +91,9 @@ TEST(PoseGoal, WeighsTheAccelerationsOfPointAndLink) {
     const Transform X = framePose(at.scene.model, at.k(), goal->frame);
     const Vector3 p = X * goal->p_FP;
     const int body = at.body(goal->frame);
-    const Vector3 wished = goal->stiffness * (goal->p_WTarget - p) -
-                           goal->damping * pointVelocity(at.scene.model, at.k(), body, p);
+    const Vector3 velocity = pointVelocity(at.scene.model, at.k(), body, p);
+    const Vector3 wished = goal->a_WTarget + goal->stiffness * (goal->p_WTarget - p) +
+                           goal->damping * (goal->v_WTarget - velocity);
     const Vector3 wishedTurn =
         goal->stiffness * rotationVector(*goal->R_WTarget * X.R.transpose()) -
         goal->damping * at.k().V[static_cast<std::size_t>(body)].angular;
@@ -198,16 +203,21 @@ TEST(LookAtGoal, WeighsTheAngularAccelerationAgainstThePlace) {
     const auto place = [&](const Kinematics& k) -> Vector3 {
       return framePose(model, k, goal->frame) * goal->p_FP;
     };
-    // ω_d = d × ḋ, and ω, as features of the state.
-    const auto turning = [&](const Kinematics& k) -> Vector3 {
-      const Vector3 s = goal->p_WTarget - place(k), v = pointVelocity(model, k, body, place(k));
-      return k.V[static_cast<std::size_t>(body)].angular - s.cross(-v) / s.squaredNorm();
+    // ω_d = d × ḋ, and ω, as features of the state and of the target dt later.
+    const auto turningAt = [&](const Kinematics& k, double dt) -> Vector3 {
+      const Vector3 s = goal->p_WTarget + dt * goal->v_WTarget - place(k);
+      const Vector3 v =
+          goal->v_WTarget + dt * goal->a_WTarget - pointVelocity(model, k, body, place(k));
+      return k.V[static_cast<std::size_t>(body)].angular - s.cross(v) / s.squaredNorm();
     };
+    const auto turning = [&](const Kinematics& k) { return turningAt(k, 0.0); };
+    constexpr double h = 1e-6;
+    const Vector3 byTarget = (turningAt(at.k(), h) - turningAt(at.k(), -h)) / (2.0 * h);
     const Vector3 u = framePose(model, at.k(), goal->frame).R * goal->axis_F;
     const Vector3 d = (goal->p_WTarget - place(at.k())).normalized();
     const Vector3 theta = std::acos(u.dot(d)) * u.cross(d).normalized();
-    const Vector3 residual = rateAlong(at.scene, at.a, turning) - goal->stiffness * theta +
-                             goal->damping * turning(at.k());
+    const Vector3 residual = rateAlong(at.scene, at.a, turning) + byTarget -
+                             goal->stiffness * theta + goal->damping * turning(at.k());
     const double expected = 0.5 * goal->weight * (residual - u * u.dot(residual)).squaredNorm();
     EXPECT_SMALL(GoalCheck(at.scene, *goal).value(at.a) / expected - 1.0, kDifference) << seed;
   }

@@ -13,34 +13,8 @@
 namespace softgauss::io {
 namespace {
 
-/// The goals of the items, each on a line of its own from line 2 on.
-Goals readItems(const std::string& items) {
-  const TempFolder folder;
-  return readGoals(folder.write("goals.yaml", "goals:\n" + items), sampleModel(), sampleState());
-}
-
-template <class Kind>
-std::unique_ptr<Kind> readOne(const std::string& item) {
-  Goals goals = readItems("  - " + item + "\n");
-  EXPECT_EQ(goals.size(), 1u);
-  Kind* kind = dynamic_cast<Kind*>(goals.at(0).release());
-  EXPECT_NE(kind, nullptr) << item;
-  return std::unique_ptr<Kind>(kind);
-}
-
-/// What reading the item ends in, after `goals.yaml:2: goal 1 `.
-std::string errorOfItem(const std::string& item) {
-  const std::string start = "goals.yaml:2: goal 1 ";
-  try {
-    readItems("  - " + item + "\n");
-  } catch (const ModelError& error) {
-    const std::string message = error.what();
-    const std::size_t at = message.find(start);
-    if (at == std::string::npos) return message;
-    return message.substr(at + start.size());
-  }
-  return "no error";
-}
+using items::errorOfItem;
+using items::readOne;
 
 TEST(GoalTimesInFiles, AreOfEveryKind) {
   const auto goal = readOne<gdd::VirtualDamping>("damping: {start: -1, end: 2.5}");
@@ -68,13 +42,20 @@ TEST(GoalNumbersInFiles, AtTheirLargestKeepStepsFinite) {
       "look_at: {link: arm, target: [1, 1, 2], axis: [1e-300, 1e-300, 0]}",
       "hold: {link: arm, point: [1e12, 0, 0], weight: 1e12, rate: 1e12}",
       "posture: {weight: 1e12, stiffness: 1e12, damping: 1e12, joints: {shoulder: 1e12}}",
+      "reach: {link: arm, stiffness: 1e12, damping: 1e12, trajectory: {times: [0, 1e-6, 1e12],"
+      " points: [[1e12, 0, 0], [-1e12, 0, 0], [0, 1e12, 0]]}}",
+      "reach: {link: arm, trajectory: {circle: {center: [0, 0, 1e12], radius: 1e12,"
+      " frequency: 1e12, normal: [1e-300, 1e-300, 0], phase: 1e12}}}",
+      "joint_posture: {weight: 1e12, trajectory: {times: [-1e-6, 0, 1e-6],"
+      " joints: {shoulder: [1e12, -1e12, 1e12]}, interpolation: natural_spline}}",
+      "joint_velocity: {joints: {shoulder: 1e12}, weight: 1e12, rate: 1e12}",
       "damping: {weight: 1e12, rate: 1e12}",
       "center_of_mass: {target: [1e12, 0, 0], weight: 1e12, stiffness: 1e12, damping: 1e12}",
       "momentum: {linear: [1e12, 0, 0], linear_weight: 1e12, rate: 1e12}",
       "capture_point: {target: [1e12, 0, 0], weight: 1e12, rate: 1e12}"};
   for (const std::string& item : items) {
     gdd::GoalDirectedController controller(sampleModel());
-    controller.goals = readItems("  - " + item + "\n");
+    controller.goals = items::readItems("  - " + item + "\n");
     Data data(sampleModel());
     State state = sampleState();
     EXPECT_NE(controller.step(sampleModel(), {}, state, data, nullptr), SolveStatus::notFinite)
@@ -207,7 +188,8 @@ TEST(LinkGoalsInFiles, BadOnesAreRefused) {
   EXPECT_EQ(errorOfItem("look_at: {link: arm, target: [1, 2, 3], axis: [0, 0, 0]}"),
             "'look_at': key 'axis': found a vector of length 0, expected a direction");
   EXPECT_EQ(errorOfItem("look_at: {link: arm}"),
-            "'look_at': key 'target': found no such key, expected three numbers [x, y, z]");
+            "'look_at': key 'target': found no such key, expected three numbers [x, y, z], or "
+            "trajectory");
   EXPECT_EQ(errorOfItem("hold: {}"),
             "'hold': key 'link': found no such key, expected the name of a link");
   EXPECT_EQ(errorOfItem("hold: {link: arm, point: [0, 0, 0], rotation_weight: 1}"),
@@ -258,8 +240,10 @@ TEST(BalanceGoalsInFiles, BadOnesAreRefused) {
             "you mean 'arm'? there are: base, arm");
   EXPECT_EQ(errorOfItem("momentum: {rate: -1}"),
             "'momentum': key 'rate': found '-1', expected a finite number >= 0");
-  EXPECT_EQ(errorOfItem("capture_point: {}"),
-            "'capture_point': key 'target': found no such key, expected three numbers [x, y, z]");
+  EXPECT_EQ(
+      errorOfItem("capture_point: {}"),
+      "'capture_point': key 'target': found no such key, expected three numbers [x, y, z], or "
+      "trajectory");
 }
 
 TEST(EffortInFiles, IsOfTheActuatedJointsNamed) {

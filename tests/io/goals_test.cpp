@@ -163,8 +163,8 @@ const BadGoal kBadGoals[] = {
      "mean 'goals'?"},
     {"UnknownKey", "weight: 7", "wieght: 7",
      "bad.yaml:4: goal 1 'reach': key 'wieght': found an unknown key, expected one of link, "
-     "target, point, rpy, quaternion, weight, rotation_weight, metric, stiffness, damping, "
-     "minimum_jerk, start, end, did you mean 'weight'?"},
+     "target, trajectory, point, rpy, quaternion, weight, rotation_weight, metric, stiffness, "
+     "damping, minimum_jerk, start, end, did you mean 'weight'?"},
     {"UnknownNestedKey", "duration: 1.5", "time: 1.5",
      "bad.yaml:5: goal 1 'reach': key 'minimum_jerk.time': found an unknown key, expected one of "
      "duration, start"},
@@ -184,7 +184,7 @@ const BadGoal kBadGoals[] = {
      "bad.yaml:3: goal 1 'reach': key 'link': found no such key, expected the name of a link"},
     {"NoTarget", "target: [0.5, -1, 1.5e-1], ", "",
      "bad.yaml:3: goal 1 'reach': key 'target': found no such key, expected three numbers "
-     "[x, y, z]"},
+     "[x, y, z], or trajectory"},
     // Numbers
     {"NegativeWeight", "weight: 7", "weight: -7",
      "bad.yaml:4: goal 1 'reach': key 'weight': found '-7', expected a finite number >= 0"},
@@ -263,12 +263,12 @@ const BadGoal kBadGoals[] = {
     // Kinds
     {"UnknownKind", "posture:", "posutre:",
      "bad.yaml:6: goal 2: found the unknown kind 'posutre', expected one of reach, "
-     "link_acceleration, look_at, hold, keep_clear, posture, joint_posture, acceleration, damping, "
-     "effort, center_of_mass, momentum and 3 more, did you mean 'posture'?"},
+     "link_acceleration, look_at, hold, keep_clear, posture, joint_posture, joint_velocity, "
+     "acceleration, damping, effort, center_of_mass and 4 more, did you mean 'posture'?"},
     {"GoalIsAWord", "- posture", "- damping\n  - posture",
      "bad.yaml:6: goal 2: found 'damping', expected kind: {…}, the kind one of reach, "
-     "link_acceleration, look_at, hold, keep_clear, posture, joint_posture, acceleration, damping, "
-     "effort, center_of_mass, momentum and 3 more"},
+     "link_acceleration, look_at, hold, keep_clear, posture, joint_posture, joint_velocity, "
+     "acceleration, damping, effort, center_of_mass and 4 more"},
     {"KeysNotIndented", "      weight: 0.5\n      rate: 3", "    weight: 0.5\n    rate: 3",
      "bad.yaml:7: goal 3: found 3 keys (damping, weight, rate), expected one, the kind, whose own "
      "keys are in {…} or indented below it"},

@@ -117,6 +117,28 @@ TEST(SleepUnderGoals, WakeThoseThatTheyAreAbout) {
               0.05);
 }
 
+TEST(SleepUnderGoals, WakeWhereTheirTargetBeginsToMove) {
+  ModelBuilder builder = ground();
+  addCreature(builder, "robot", Vector3(0.0, 0.0, 0.05));
+  GoalCrowd crowd(builder.build());
+  auto bent = std::make_unique<gdd::JointPosture>();
+  for (const char* joint : {"robot_1_joint", "robot_2_joint", "robot_3_joint"})
+    bent->targets.push_back(gdd::jointTarget(crowd.model, joint, 0.4));
+  const double begins = 6000 * crowd.model.options.timestep;
+  const MatrixX p = (MatrixX(1, 2) << 0.4, -0.4).finished();
+  bent->targets[2].trajectory = std::make_shared<gdd::KnotTrajectory>(
+      std::vector<double>{begins, begins + 1000 * crowd.model.options.timestep}, p);
+  crowd.controller.goals.push_back(std::move(bent));
+  crowd.start(Sleep{.enabled = true, .controlled = true});
+  ASSERT_TRUE(crowd.steps(5900));
+  ASSERT_TRUE(crowd.islands->asleep(crowd.body("robot_0")));
+  ASSERT_TRUE(crowd.steps(200));
+  ASSERT_FALSE(crowd.islands->asleep(crowd.body("robot_0")));
+  ASSERT_TRUE(crowd.steps(3000));
+  const auto body = static_cast<std::size_t>(crowd.model.findJoint("robot_3_joint"));
+  EXPECT_NEAR(crowd.islands->state().q[crowd.model.bodies[body].q], -0.4, 0.05);
+}
+
 TEST(SleepUnderGoals, FollowALineAwake) {
   // A minimum-jerk line of 8 s starts with less than 1 mm/s; a robot that slept would never go.
   ModelBuilder builder = ground();

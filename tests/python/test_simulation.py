@@ -224,6 +224,7 @@ def test_accelerations_come_true(arm):
         ({"look_at": {"link": "hand", "target": [1, 0, 0]}}, 3),
         ({"link_acceleration": {"link": "hand", "linear": [0, 0, 1], "angular": [0, 0, 0]}}, 6),
         ({"joint_posture": {"joints": {"elbow_pitch": 0.5}}}, 1),
+        ({"joint_velocity": {"joints": {"elbow_pitch": 0.5}}}, 1),
         ({"posture": {}}, 7),
         ({"center_of_mass": {}}, 3),
         ({"momentum": {}}, 6),
@@ -250,6 +251,33 @@ def test_what_seeks_nothing_has_no_target(arm, goal):
         added.target
     added.start, added.end, added.weight = 0.5, 1.0, 2.0
     assert (added.start, added.end, added.weight) == (0.5, 1.0, 2.0)
+
+
+# A target that is moved step by step is followed without lag where its rates are said too.
+@pytest.mark.parametrize("with_rates", [True, False])
+def test_moved_targets_are_followed(arm, with_rates):
+    start, speed = arm.pose("hand")[:3, 3], np.array([0.0, 0.2, 0.0])
+    goal, _ = arm.goals.add(
+        [{"reach": {"link": "hand", "target": start, "weight": 1e5}}, {"damping": {}}]
+    )
+    if with_rates:
+        goal.velocity, goal.acceleration = speed, np.zeros(3)
+        assert np.array_equal(goal.velocity, speed)
+    while arm.time < 1.0:
+        goal.target = start + arm.time * speed
+        arm.step()
+    lag = (start + arm.time * speed - arm.pose("hand")[:3, 3])[1]
+    assert lag == pytest.approx(0.0 if with_rates else 0.04, abs=0.002)  # v k_d/k_p
+
+
+def test_a_trajectory_says_where_its_target_is(arm):
+    circle = {"center": [0.5, 0, 0.5], "radius": 0.1, "frequency": 0.5}
+    (goal,) = arm.goals.add({"reach": {"link": "hand", "trajectory": {"circle": circle}}})
+    for name in ("target", "velocity", "acceleration"):
+        with pytest.raises(TypeError, match="follows a trajectory"):
+            getattr(goal, name)
+    goal = arm.goals.reach("hand", [0.5, 0.0, 0.5])  # the same goal, which rests from now on
+    assert np.array_equal(goal.target, [0.5, 0.0, 0.5])
 
 
 # ---- Threads and interrupts

@@ -207,6 +207,8 @@ void addEveryQuadraticGoal(RobotScene& r) {
   pose.metric = gdd::LinkMetric::consistent;
   pose.weight = pose.rotationWeight = 10.0;
   pose.minimumJerk = gdd::MinimumJerk{};
+  const MatrixX knots = (MatrixX(3, 3) << 0.4, 0.5, 0.4, 0.2, 0.25, 0.2, 1.0, 1.1, 1.0).finished();
+  pose.trajectory = std::make_shared<gdd::KnotTrajectory>(std::vector<double>{0, 1, 9}, knots);
   add(pose);
   gdd::Hold foot(model, "left_foot"), toe(model, "right_foot");
   toe.wholeLink = false;
@@ -227,7 +229,12 @@ void addEveryQuadraticGoal(RobotScene& r) {
   add(acceleration);
   gdd::JointPosture posture;
   posture.targets = {joint};
+  posture.targets[0].trajectory = pose.trajectory;
   add(posture);
+  gdd::JointVelocity velocity;
+  velocity.targets = {joint};
+  velocity.weight = 1.0;
+  add(velocity);
   add(gdd::Effort(driven));
   gdd::ContactForce force(model, "left_foot", Vector3(0.0, 0.0, 200.0));
   force.countOnly(model, "world");
