@@ -45,8 +45,31 @@ TEST(PlanBenchmark, FindsContactsThatControlsAloneDoNot) {
   EXPECT_GT(json[2]["trials"][0]["cost"], 40.0);
 }
 
+// Starts differ, and the pole ends up each time; the same seeds give the same runs.
+TEST(PlanBenchmark, RecedingPlansBringBackWhatIsDisturbed) {
+  const io::TempFolder folder;
+  const std::string file = folder.path() / "runs.json";
+  const auto runs = [&](const char* seed) {
+    const Outcome outcome =
+        runProgram("plan_benchmark", {dataFile("plans/cart_pole.yaml"), "--mpc", "--runs", "2",
+                                      "--seed", seed, "--json", file});
+    EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+    EXPECT_NE(outcome.out.find(" 2/2 "), std::string::npos) << outcome.out;
+    return PlanJson::parse(readFile(file))[0]["runs"];
+  };
+  const PlanJson first = runs("1");
+  EXPECT_EQ(first, runs("1"));
+  EXPECT_EQ(first[1], runs("2")[0]);
+  EXPECT_NE(first[0]["final"], first[1]["final"]);
+  for (const PlanJson& run : first) EXPECT_EQ(run["failed_ticks"], 0);
+}
+
 TEST(PlanBenchmark, TellsWhatIsWrong) {
   EXPECT_NE(runProgram("plan_benchmark", {"nowhere.yaml"}).exitCode, 0);
+  const Outcome pushed =
+      runProgram("plan_benchmark", {dataFile("plans/acrobot.yaml"), "--push", "1"});
+  EXPECT_NE(pushed.exitCode, 0);
+  EXPECT_NE(pushed.err.find("--mpc"), std::string::npos) << pushed.err;
   const Outcome outcome =
       runProgram("plan_benchmark", {dataFile("scenes/two_arms.yaml"), "--starts", "1"});
   EXPECT_EQ(outcome.exitCode, 2);
