@@ -32,8 +32,7 @@ SOFTGAUSS_VECTOR_CLONES void addWeightedGram(const RowMajorMatrixX& Y, const Tre
   const int n = static_cast<int>(Y.cols()), rows = static_cast<int>(Y.rows());
   for (int k = 0, end; k < rows; k = end) {
     const Segment r = range[k];
-    const auto same = [&](int i) { return range[i].begin == r.begin && range[i].end == r.end; };
-    for (end = k + 1; end < rows && same(end);) ++end;
+    end = endOfRun(range, k, rows);
     const double *y = Y.data() + k * n, *inverse = factor.inversePivots() + k;
     double* to = K.data();
     for (int i = r.begin; i < r.end; ++i)
@@ -84,7 +83,6 @@ bool CellResponse::setInertia(const Data& data, const GoalCost& cost) {
   cost_ = &cost;
   controlCost_ = cost.controlCost();
   if (!massFactor_.compute(data.inertia.hat())) return false;
-  enterWithoutRows();
   // Goals weigh by M itself.
   goalMassFactor_ = data.inertia.anyAdded ? &ownGoalMassFactor_ : &massFactor_;
   if (data.inertia.anyAdded && cost.metricWeight() != 0.0 &&

@@ -17,18 +17,11 @@ namespace softgauss::app {
 namespace {
 
 constexpr double kPushSeconds = 0.1;
-constexpr double kLost = 0.1;  // of what the final terms were to fall by
 
 int floatingBody(const Model& model) {
   for (int b = 1; b < model.bodyCount(); ++b)
     if (model.bodies[static_cast<std::size_t>(b)].joint == JointKind::floating) return b;
   return -1;
-}
-
-double massOf(const Model& model) {
-  double mass = 0.0;
-  for (const Body& body : model.bodies) mass += body.mass;
-  return mass;
 }
 
 /// A push at the root, or none.
@@ -48,8 +41,8 @@ Push randomPush(const Model& model, const RecedingChoice& choice, double planned
   push.body = floatingBody(model);
   push.start = planned + 0.5 * random.uniform();
   const double angle = 2.0 * std::numbers::pi * random.uniform();
-  push.force =
-      massOf(model) * choice.push / kPushSeconds * Vector3(std::cos(angle), std::sin(angle), 0.0);
+  push.force = model.totalMass() * choice.push / kPushSeconds *
+               Vector3(std::cos(angle), std::sin(angle), 0.0);
   return push;
 }
 
@@ -73,13 +66,10 @@ std::vector<std::pair<std::string, double>> disturbed(const Scene& scene, double
 RecedingRun act(Simulation& sim, PlanControl& control, const Push& push,
                 const RecedingChoice& choice, RecedingRuns& all) {
   RecedingRun run;
-  const planning::MotionPlan& plan = control.solve();
-  State end(sim.model());
-  end.q = plan.q.back(), end.v = plan.v.back();
-  run.planned = control.finalCost(end);
-  const double atStart = control.finalCost(sim.state());
+  control.solve();
   control.attach(sim.controller());
   control.begin(sim.state());
+  run.planned = control.finalPlanned();
   const double until = push.start + kPushSeconds + choice.after;
   bool refused = false;
   for (int ticks = 0; sim.time() < until && !refused && !interrupted();) {
@@ -94,9 +84,8 @@ RecedingRun act(Simulation& sim, PlanControl& control, const Push& push,
     all.stepUs.push_back(1e6 * secondsSince(start));
   }
   run.failedTicks = control.report().failed;
-  run.final = control.finalCost(sim.state());
-  run.carriedOut =
-      !refused && run.final <= run.planned + kLost * std::max(atStart - run.planned, 0.0);
+  run.final = control.cost(sim.state()).final;
+  run.carriedOut = !refused && !control.isLost(run.final);
   return run;
 }
 

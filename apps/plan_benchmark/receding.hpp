@@ -23,8 +23,7 @@ struct RecedingChoice {
   double after = 3.0;       ///< for which a run goes on after its push [s]
 };
 
-/// One run. It is carried out where nine tenths of what the final terms were to fall by are won in
-/// the end, as simulate_gdd has it.
+/// One run. It is carried out where it has not lost its plan (PlanControl::isLost()).
 struct RecedingRun {
   bool carriedOut = false;
   double planned = 0.0;  ///< final terms where the plan ends

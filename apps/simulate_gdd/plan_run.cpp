@@ -15,9 +15,6 @@ namespace {
 
 using planning::MotionPlan;
 
-/// A plan is lost where more than this share of what it was to win of the final terms was not.
-constexpr double kLost = 0.1;
-
 /// "knee, by 0.021 rad"
 std::string farthestText(const Model& model, const std::pair<int, double>& farthest) {
   const auto [dof, amount] = farthest;
@@ -88,10 +85,7 @@ std::string planText(const PlanControl& plan) {
 }
 
 bool PlanRun::before(long taken) {
-  if (taken == 0) {
-    plan_.begin(state_);
-    costAtStart_ = plan_.finalCost(state_);
-  }
+  if (taken == 0) plan_.begin(state_);
   plan_.update(state_);
   const planning::HorizonReport& report = plan_.report();
   if (report.ticks > ticks_) tickMs_.add(1e3 * report.last);
@@ -117,29 +111,26 @@ void PlanRun::concludeTicks(io::Summary& summary, io::PlanOutcome& outcome) cons
 void PlanRun::conclude(io::Summary& summary) {
   const MotionPlan& plan = plan_.planner().plan();
   const Model& model = plan_.planner().model();
-  State end(model);
-  end.q = plan.q.back(), end.v = plan.v.back();
   io::PlanOutcome& o = summary.plan.emplace();
   o.planned = plan.cost;
   o.status = planStatusName(plan.status);
   o.iterations = plan.iterations;
   o.seconds = plan.seconds;
   o.rootForce = plan.rootForce, o.gap = plan.gap, o.certificate = plan.certificate;
-  o.finalPlanned = plan_.finalCost(end);
+  o.finalPlanned = plan_.finalPlanned();
   const MotionCost cost = plan_.cost(state_);
   o.cost = cost.total(), o.running = cost.running, o.effort = cost.effort, o.final = cost.final;
   summary.verdict.emplace_back(
       "planned", fmt::format("cost {:.4g}, {:.4g} of it at the end; {} iterations in {:.3g} s, {}",
                              o.planned, o.finalPlanned, o.iterations, o.seconds, o.status));
-  const bool lost =
-      !(cost.final <= o.finalPlanned + kLost * std::max(costAtStart_ - o.finalPlanned, 0.0));
+  const bool lost = plan_.isLost(cost.final);
   const bool early = !plan_.recedes() && !plan_.hasEnded(state_.time);
   o.outcome = early ? "cut short" : lost ? "lost" : "carried out";
   const char* const aim = plan_.recedes() ? "the target" : "the plan's end";
   summary.verdict.emplace_back(
       o.outcome,
       fmt::format("cost {:.4g}, {:.4g} of it {} ({:.4g} at the start); farthest from {} is {}",
-                  o.cost, o.final, early ? "where it is" : "at the end", costAtStart_, aim,
+                  o.cost, o.final, early ? "where it is" : "at the end", plan_.finalAtStart(), aim,
                   farthestText(model, plan_.farthest(state_))));
   if (plan_.recedes()) concludeTicks(summary, o);
 }

@@ -42,7 +42,6 @@ class PlanRun final : public Companion {
 
   PlanControl& plan_;
   const State& state_;
-  double costAtStart_ = 0.0;  ///< of the final terms
   int ticks_ = 0;
   io::Series tickMs_;
 };

@@ -142,17 +142,13 @@ namespace {
 template <int dim>
 [[gnu::always_inline]] inline void addRowsOf(const double* c, const double* x, int stride, int n,
                                              double* y) {
-  double k[dim];
-  for (int d = 0; d < dim; ++d) k[d] = c[d];
   int j = 0;
-  for (; j + 4 <= n; j += 4) {
-    Four sum = *reinterpret_cast<const Four*>(y + j);
-    for (int d = 0; d < dim; ++d) sum += k[d] * *reinterpret_cast<const Four*>(x + d * stride + j);
-    *reinterpret_cast<Four*>(y + j) = sum;
-  }
+  for (; j + 4 <= n; j += 4)
+    addToTiles<1>(
+        dim, [=](int d) { return c[d]; }, [=](int d) { return x + d * stride + j; }, y + j);
   for (; j < n; ++j) {
     double sum = y[j];
-    for (int d = 0; d < dim; ++d) sum += k[d] * x[d * stride + j];
+    for (int d = 0; d < dim; ++d) sum += c[d] * x[d * stride + j];
     y[j] = sum;
   }
 }

@@ -301,10 +301,7 @@ SOFTGAUSS_VECTOR_CLONES void TreeFactor::solveTransposed(RowMajorMatrixX& X,
     for (const Segment* s = pattern.columnBegin(j); s != pattern.columnEnd(j); ++s) {
       for (int k = s->begin, end; k < s->end; k = end) {
         const Segment from = range[idx(k)];
-        const auto same = [&](int i) {
-          return range[idx(i)].begin == from.begin && range[idx(i)].end == from.end;
-        };
-        for (end = k + 1; end < s->end && same(end);) ++end;
+        end = endOfRun(range, k, s->end);
         if (from.begin == from.end) continue;
         const double* xk = X.data() + k * columns + from.begin;
         addSum(

@@ -22,7 +22,15 @@ namespace softgauss {
 struct Segment {
   int begin = 0;
   int end = 0;
+  bool operator==(const Segment&) const = default;
 };
+
+/// Where the run of equal segments ends that begins at `from`, at `end` at the latest.
+inline int endOfRun(const std::vector<Segment>& segments, int from, int end) {
+  int i = from + 1;
+  while (i < end && segments[idx(i)] == segments[idx(from)]) ++i;
+  return i;
+}
 
 /// Which columns of each row of the lower triangle (diagonal included) may be non-zero. Closed
 /// under elimination: if j < i are both in row k then j is in row i.

@@ -59,12 +59,15 @@ void BodySolution::addForces(const Model& model, const Kinematics& k, const Cons
   addBodyForces(model, k, force, tau);
 }
 
-BodyObjective::BodyObjective(const Model& model, Data& data)
-    : model_(model), data_(data), rows_(data.constraints), s_(data.bodies) {
-  // The largest of the smooth forces, in their common unit, sets the scale.
+void setForceScale(Data& data) {
   VectorX& scale = data.forward.scale;
   scale = data.inertia.forceScale;
   scale /= std::max(1.0, data.forces.net.cwiseProduct(scale).cwiseAbs().maxCoeff());
+}
+
+BodyObjective::BodyObjective(const Model& model, Data& data)
+    : model_(model), data_(data), rows_(data.constraints), s_(data.bodies) {
+  setForceScale(data);
   s_.pairs.clear();
   rows_.appendPairs(s_.pairs);
   s_.factor.couple(s_.pairs);

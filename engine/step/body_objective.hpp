@@ -39,6 +39,10 @@ struct BodySolution {
 
 struct Data;
 
+/// data.forward.scale ← what forces are told by: the largest of the smooth ones, in their common
+/// unit, counts 1 at most.
+void setForceScale(Data& data);
+
 /// A NewtonObjective. Reads the stages of `data` up to constraints; a and its scratch vectors are
 /// those of Data::forward.
 class BodyObjective {

@@ -53,10 +53,9 @@ bool solves(const Model& model, const VectorX& a, Data& data) {
   ForwardSolution& s = data.forward;
   data.inertia.hat().multiply(a, s.gradient);
   s.gradient -= data.forces.net;
-  const VectorX& scale = data.inertia.forceScale;
-  const double largest = std::max(1.0, data.forces.net.cwiseProduct(scale).cwiseAbs().maxCoeff());
-  return s.gradient.cwiseProduct(scale).cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <=
-         model.options.tolerance * largest;
+  setForceScale(data);
+  return s.gradient.cwiseProduct(s.scale).cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <=
+         model.options.tolerance;
 }
 
 /// Without rows the minimiser is M⁻¹(τ − c): no iteration, no residual. Where M is a matrix, goals

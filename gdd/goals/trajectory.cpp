@@ -128,18 +128,19 @@ CoordinateMotion KnotTrajectory::at(double time, int i) const {
   if (after == times_.end() && time > times_.back()) return {p_(i, k), 0.0, 0.0};
   if (after == times_.end()) return {p_(i, k), v_(i, k), a_(i, k)};
   const double t = *(after - 1), h = *after - t, s = (time - t) / h, r = 1.0 - s;
+  const CoordinateMotion share = minimumJerkShare(s, 0.0, 1.0);
   const double way = p_(i, k + 1) - p_(i, k);
   const double v0 = h * v_(i, k), v1 = h * v_(i, k + 1);
   const double a0 = 0.5 * h * h * a_(i, k), a1 = 0.5 * h * h * a_(i, k + 1);
   CoordinateMotion x;
-  x.p = p_(i, k) + s * s * s * (10.0 + s * (-15.0 + 6.0 * s)) * way +
-        s * (1.0 + s * s * (-6.0 + s * (8.0 - 3.0 * s))) * v0 + s * s * r * r * r * a0 -
-        s * s * s * (4.0 + s * (-7.0 + 3.0 * s)) * v1 + s * s * s * r * r * a1;
-  x.v = (30.0 * s * s * r * r * way + r * r * (1.0 + s * (2.0 - 15.0 * s)) * v0 +
+  x.p = p_(i, k) + share.p * way + s * (1.0 + s * s * (-6.0 + s * (8.0 - 3.0 * s))) * v0 +
+        s * s * r * r * r * a0 - s * s * s * (4.0 + s * (-7.0 + 3.0 * s)) * v1 +
+        s * s * s * r * r * a1;
+  x.v = (share.v * way + r * r * (1.0 + s * (2.0 - 15.0 * s)) * v0 +
          s * r * r * (2.0 - 5.0 * s) * a0 - s * s * (12.0 + s * (-28.0 + 15.0 * s)) * v1 +
          s * s * r * (3.0 - 5.0 * s) * a1) /
         h;
-  x.a = (60.0 * s * r * (1.0 - 2.0 * s) * way - 12.0 * s * r * (3.0 - 5.0 * s) * v0 +
+  x.a = (share.a * way - 12.0 * s * r * (3.0 - 5.0 * s) * v0 +
          2.0 * r * (1.0 + s * (-8.0 + 10.0 * s)) * a0 - s * (24.0 + s * (-84.0 + 60.0 * s)) * v1 +
          2.0 * s * (3.0 + s * (-12.0 + 10.0 * s)) * a1) /
         (h * h);

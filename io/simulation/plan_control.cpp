@@ -78,6 +78,10 @@ void PlanControl::begin(const State& state) {
   begun_ = state.time;
   if (!horizon_.begin(state))
     throw PlanError("the plan has no value model, for some control of it has no least cost");
+  finalAtStart_ = finalCost(state);
+  State end(scene_.model);
+  end.q = plan_.q.back(), end.v = plan_.v.back();
+  finalPlanned_ = finalCost(end);
 }
 
 void PlanControl::update(const State& state) {

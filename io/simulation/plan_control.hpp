@@ -15,6 +15,7 @@
 /// the task, on the scene's own contacts; where the task says so, on planning contacts, with a
 /// margin of at most 5 mm.
 
+#include <algorithm>
 #include <optional>
 
 #include "softgauss/io/plan_task.hpp"
@@ -56,7 +57,15 @@ class PlanControl {
 
   /// Up to `state`.
   MotionCost cost(const State& state);
-  double finalCost(const State& state);  ///< of the final terms there
+  /// What the final terms cost where the plan began, and where it is to end.
+  double finalAtStart() const { return finalAtStart_; }
+  double finalPlanned() const { return finalPlanned_; }
+  /// Whether a motion that ends with these final terms has lost the plan: more than a tenth of what
+  /// they were to fall by is missing.
+  bool isLost(double final) const {
+    constexpr double kShare = 0.1;
+    return !(final <= finalPlanned_ + kShare * std::max(finalAtStart_ - finalPlanned_, 0.0));
+  }
   /// How far `state` is from the plan's end, or a receding one's target: the degree of freedom that
   /// is farthest, and by how much [m, rad].
   std::pair<int, double> farthest(const State& state) const;
@@ -73,6 +82,7 @@ class PlanControl {
   static constexpr double kRounding = 1e-9;  // [s]
   double sumOf(const std::vector<std::unique_ptr<planning::CostTerm>>& terms, const State& state,
                int knot);
+  double finalCost(const State& state);  ///< of the final terms there
 
   const Scene& scene_;
   io::PlanTask task_;
@@ -87,6 +97,7 @@ class PlanControl {
   int counted_ = 0;           ///< knots
   double due_ = 0.0;          ///< their cost that no step has followed yet
   double begun_ = 0.0;        ///< [s]
+  double finalAtStart_ = 0.0, finalPlanned_ = 0.0;
 };
 
 }  // namespace softgauss

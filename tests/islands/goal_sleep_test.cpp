@@ -26,6 +26,14 @@ void addCrane(ModelBuilder& builder, const std::string& name, const Vector3& p) 
   builder.add(one, "");
 }
 
+/// The three joints of a creature bent by 0.4 rad.
+std::unique_ptr<gdd::JointPosture> bent(const Model& model, const std::string& name) {
+  auto goal = std::make_unique<gdd::JointPosture>();
+  for (const char* joint : {"_1_joint", "_2_joint", "_3_joint"})
+    goal->targets.push_back(gdd::jointTarget(model, name + joint, 0.4));
+  return goal;
+}
+
 TEST(SleepUnderGoals, ObjectsSleepAndRobotsWakeThatGoalsBeginFor) {
   ModelBuilder builder = ground();
   addCrane(builder, "first", Vector3(0.0, 0.0, 0.1));
@@ -66,10 +74,7 @@ TEST(SleepUnderGoals, MayLetRobotsSleep) {
     ModelBuilder builder = ground();
     addCreature(builder, "robot", Vector3(0.0, 0.0, 0.05));
     GoalCrowd crowd(builder.build());
-    auto bent = std::make_unique<gdd::JointPosture>();
-    for (const char* joint : {"robot_1_joint", "robot_2_joint", "robot_3_joint"})
-      bent->targets.push_back(gdd::jointTarget(crowd.model, joint, 0.4));
-    crowd.controller.goals.push_back(std::move(bent));
+    crowd.controller.goals.push_back(bent(crowd.model, "robot"));
     crowd.start(Sleep{.enabled = true, .controlled = controlled});
     ASSERT_TRUE(crowd.steps(5000));
     ASSERT_EQ(crowd.islands->asleep(crowd.body("robot_0")), controlled);
@@ -95,13 +100,8 @@ TEST(SleepUnderGoals, WakeThoseThatTheyAreAbout) {
   for (int i = 0; i < 4; ++i)
     addCreature(builder, "robot" + std::to_string(i), Vector3(2.0 * i, 0.0, 0.05));
   GoalCrowd crowd(builder.build());
-  for (int i = 0; i < 4; ++i) {
-    auto bent = std::make_unique<gdd::JointPosture>();
-    const std::string name = "robot" + std::to_string(i);
-    for (const char* joint : {"_1_joint", "_2_joint", "_3_joint"})
-      bent->targets.push_back(gdd::jointTarget(crowd.model, name + joint, 0.4));
-    crowd.controller.goals.push_back(std::move(bent));
-  }
+  for (int i = 0; i < 4; ++i)
+    crowd.controller.goals.push_back(bent(crowd.model, "robot" + std::to_string(i)));
   crowd.start(Sleep{.enabled = true, .controlled = true});
   ASSERT_TRUE(crowd.steps(6000));
   ASSERT_EQ(crowd.islands->islandStats().awake, 0);
@@ -121,14 +121,12 @@ TEST(SleepUnderGoals, WakeWhereTheirTargetBeginsToMove) {
   ModelBuilder builder = ground();
   addCreature(builder, "robot", Vector3(0.0, 0.0, 0.05));
   GoalCrowd crowd(builder.build());
-  auto bent = std::make_unique<gdd::JointPosture>();
-  for (const char* joint : {"robot_1_joint", "robot_2_joint", "robot_3_joint"})
-    bent->targets.push_back(gdd::jointTarget(crowd.model, joint, 0.4));
+  auto goal = bent(crowd.model, "robot");
   const double begins = 6000 * crowd.model.options.timestep;
   const MatrixX p = (MatrixX(1, 2) << 0.4, -0.4).finished();
-  bent->targets[2].trajectory = std::make_shared<gdd::KnotTrajectory>(
+  goal->targets[2].trajectory = std::make_shared<gdd::KnotTrajectory>(
       std::vector<double>{begins, begins + 1000 * crowd.model.options.timestep}, p);
-  crowd.controller.goals.push_back(std::move(bent));
+  crowd.controller.goals.push_back(std::move(goal));
   crowd.start(Sleep{.enabled = true, .controlled = true});
   ASSERT_TRUE(crowd.steps(5900));
   ASSERT_TRUE(crowd.islands->asleep(crowd.body("robot_0")));
