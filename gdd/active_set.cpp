@@ -251,7 +251,7 @@ std::optional<GddStatus> ActiveSet::descend(const GoalCost& cost, double wanted,
     const int heldBefore = held.atBreakpoints();
     bool stationary = predicted <= options.tolerance * merit_ || isRounding(data);
     if (!stationary) {
-      if (report_.iterations == options.maxIterations) {
+      if (report_.iterations == options.maxIterations || options.deadline.isOver()) {
         report_.stationarity = predicted / merit_;
         return GddStatus::iterationLimit;
       }
@@ -312,7 +312,9 @@ GddReport ActiveSet::solve(const Model& model, GoalCost& cost, const ControlLimi
   // An expansion of functions is good near its point alone.
   const bool canSearch =
       data.constraints.rowCount() > 0 && cell_.columns() > 0 && !cost.hasFunctions();
-  if (!canSearch || options.longestSearchWait == 0 || ++searchAge_ < searchWait_) return report_;
+  if (!canSearch || options.longestSearchWait == 0 || options.deadline.isOver() ||
+      ++searchAge_ < searchWait_)
+    return report_;
   searchAge_ = 0;
   const bool found = startAgain(model, cost, limits, data);
   searchWait_ = found ? 1 : std::min(2 * searchWait_, options.longestSearchWait);

@@ -23,6 +23,7 @@
 
 #include "softgauss/gdd/cell_response.hpp"
 #include "softgauss/gdd/cost.hpp"
+#include "softgauss/gdd/deadline.hpp"
 #include "softgauss/gdd/forward_path.hpp"
 #include "softgauss/gdd/problem.hpp"
 #include "softgauss/gdd/quadratic_program.hpp"
@@ -33,6 +34,7 @@ namespace softgauss::gdd {
 struct ActiveSetOptions {
   double tolerance = 1e-12;  ///< of the decrease still promised, over the objective
   int maxIterations = 100;
+  Deadline deadline;       ///< past it, as past maxIterations
   int maxPatternRows = 6;  ///< dependent rows at their breakpoints of which all 2^n cells are tried
   /// A search for a better minimum follows the last one after 1, 2, 4 … solves, as many as this at
   /// most; after 1 again when it has found one. 0: none.

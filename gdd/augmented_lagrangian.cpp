@@ -158,7 +158,8 @@ GddReport AugmentedLagrangian::minimizeFrom(const Model& model, GoalCost& cost,
     if (!gradient(bounds, cost, data)) return end(GddStatus::notFinite);
     report.violation = limits.violation(g_);
     report.objective = cost.controlCost().value(g_, Rg_) + cost.value(a_, Ma_) + forces_.value();
-    if (report.iterations == options.maxIterations) return end(GddStatus::iterationLimit);
+    if (report.iterations == options.maxIterations || options.deadline.isOver())
+      return end(GddStatus::iterationLimit);
 
     // Direction in this cell.
     const bool sameCell = !stale_ && !boundsChanged_ && wholeStep;

@@ -19,6 +19,7 @@
 
 #include "softgauss/gdd/cost.hpp"
 #include "softgauss/gdd/curved_ray.hpp"
+#include "softgauss/gdd/deadline.hpp"
 #include "softgauss/gdd/held_rows.hpp"
 #include "softgauss/gdd/hessian.hpp"
 #include "softgauss/gdd/problem.hpp"
@@ -32,6 +33,7 @@ struct AugmentedLagrangianOptions {
   double gradientTolerance = 1e-8;    ///< scaled ∇Φ, see Report::stationarity
   double violationTolerance = 1e-10;  ///< distance of y from its limits, as force, over max(1, |c|)
   int maxIterations = 150;
+  Deadline deadline;  ///< past it, as past maxIterations
   int maxDualUpdates = 100;
 };
 

@@ -43,8 +43,11 @@ Opponent opponentOf(const Rows& rows, int kind, int row) {
     return {Kind::contact, std::min(contact.geometryA, contact.geometryB),
             std::max(contact.geometryA, contact.geometryB)};
   } else if constexpr (requires { rows.dof(row); }) {
-    const bool limit = kind == static_cast<int>(RowKind::jointLimit);
-    return {limit ? Kind::range : Kind::dryFriction, rows.dof(row)};
+    const auto is = [&](RowKind of) { return kind == static_cast<int>(of); };
+    return {is(RowKind::jointLimit) ? Kind::range
+            : is(RowKind::servo)    ? Kind::servo
+                                    : Kind::dryFriction,
+            rows.dof(row)};
   } else {
     return {Kind::equality};
   }

@@ -41,6 +41,7 @@ struct Opponent {
     velocityLimit,  ///< of the dof `index`
     contact,        ///< of the geometries `index` and `other`, index < other
     dryFriction,    ///< of the dof `index`
+    servo,          ///< of the dof `index`, of a tree that goals do not control
     equality        ///< what joins bodies besides joints
   };
   Kind kind = Kind::goal;

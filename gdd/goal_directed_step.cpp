@@ -49,6 +49,7 @@ const VectorX* GoalDirectedController::solve(Solver& used, const Model& model, c
   addCost(model, state, data, holding_, cost_);
   data.stats.invalidWarmStarts += refuses(used, state.warmstart);
   expansion.iterationsLeft = iterationBudget;
+  expansion.deadline = Deadline::in(timeBudget);
   report = solveOneSided(expansion, used, model, cost_, limits, data, state.warmstart, between_);
   const GddReport solved = report;
   report.addEarlier(earlier_);
@@ -98,6 +99,7 @@ void GoalDirectedController::takeSettings(const GoalDirectedController& from) {
   expansion.tolerance = from.expansion.tolerance;
   expansion.maxSolves = from.expansion.maxSolves;
   iterationBudget = from.iterationBudget;
+  timeBudget = from.timeBudget;
 }
 
 SolveStatus GoalDirectedController::step(const Model& model, const Input& input, State& state,

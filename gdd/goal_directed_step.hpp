@@ -52,6 +52,9 @@ class GoalDirectedController final : public StepControl {
   /// Iterations of the solver, at most, for one control: past them the best control that was found
   /// is taken, with GddStatus::iterationLimit and its certificate.
   int iterationBudget = std::numeric_limits<int>::max();
+  /// The same in wall time [s], looked at once an iteration: what is past it is less than one
+  /// iteration. With a finite one results depend on the machine.
+  double timeBudget = kInfinity;
 
   VectorX control;  ///< τ = B u of the last step, 0 on unactuated dofs (nv) [N or N m]
   VectorX

@@ -15,7 +15,8 @@
 namespace softgauss::gdd {
 
 /// As SequentialQuadraticSolve::solve(). `between` is memory. Iterations are those of all solves.
-/// Status iterationLimit where the sides still change after forty, or no iterations are left.
+/// Status iterationLimit where the sides still change after forty, or no iterations or time are
+/// left.
 template <class Solver>
 GddReport solveOneSided(SequentialQuadraticSolve& expansion, Solver& solver, const Model& model,
                         GoalCost& cost, const ControlLimits& limits, Data& data,
@@ -26,7 +27,7 @@ GddReport solveOneSided(SequentialQuadraticSolve& expansion, Solver& solver, con
   if (!cost.hasSides()) return total;
   for (int i = 1; !isRefused(total.status); ++i) {
     if (!cost.chooseSides(expansion.acceleration(), i >= kTogether)) break;
-    if (i == kMost || expansion.iterationsLeft == 0) {
+    if (i == kMost || !expansion.mayGoOn()) {
       total.status = GddStatus::iterationLimit;
       break;
     }

@@ -10,7 +10,7 @@ namespace softgauss::gdd {
 enum class GddStatus {
   converged,
   nonsmoothMinimum,  ///< converged, with rows held at their breakpoints
-  iterationLimit,    ///< the best point so far
+  iterationLimit,    ///< the best point so far: iterations, or the time, are spent
   nonsmoothStall,    ///< no descent along the direction, past a kink of an elliptic cone: not
                      ///< certified
   undecided,  ///< solver 2: at a kink of more dependent rows than it tries in all combinations, or

@@ -45,6 +45,7 @@ class SequentialQuadraticSolve {
   int maxSolves = 100;
   /// Iterations that the solves to come may still take together, of which each counts its own.
   int iterationsLeft = std::numeric_limits<int>::max();
+  Deadline deadline;  ///< of all solves together
 
   explicit SequentialQuadraticSolve(const Model& model)
       : a_(VectorX::Zero(model.nv)), force_(VectorX::Zero(model.nv)) {}
@@ -67,7 +68,7 @@ class SequentialQuadraticSolve {
     double best = kInfinity, bestGap = kInfinity, mu = 0.0, growth = 4.0;
     GddReport total;
     GddStatus bestStatus = total.status = GddStatus::notFinite;
-    while (solves_ < maxSolves && (solves_ == 0 || iterationsLeft > 0)) {
+    while (solves_ < maxSolves && (solves_ == 0 || mayGoOn())) {
       if (!cost.expand(data.inertia.M, at, guessed ? 0.0 : mu)) break;
       ++solves_;
       const GddReport report = solveOnce(solver, model, cost, limits, data, warm_);
@@ -125,6 +126,7 @@ class SequentialQuadraticSolve {
   const VectorX& acceleration() const { return a_; }  ///< the solution
   const VectorX& force() const { return force_; }     ///< g there, before clamping
   int solves() const { return solves_; }              ///< of the last solve()
+  bool mayGoOn() const { return iterationsLeft > 0 && !deadline.isOver(); }
   /// Writes the solution where the next solve starts from.
   void keepWarmStart(WarmStart& warm) const {
     warm.gddA = warm_.gddA;
@@ -142,6 +144,7 @@ class SequentialQuadraticSolve {
                       const ControlLimits& limits, Data& data, const WarmStart& warm) {
     const int most = solver.options.maxIterations;
     solver.options.maxIterations = std::min(most, iterationsLeft);
+    solver.options.deadline = deadline;
     const GddReport report = solver.solve(model, cost, limits, data, warm);
     solver.options.maxIterations = most;
     iterationsLeft -= std::min(iterationsLeft, report.iterations);

@@ -188,6 +188,22 @@ std::string clearancesText(const ExplainContext& context) {
   return "clearance at the start, between links that no joint joins\n" + table.text();
 }
 
+std::string servosText(const Model& model) {
+  detail::TextTable table;
+  table.row({"servo of", "kp", "kd", "effort", "set point", "its rate"});
+  bool any = false;
+  for (const Dof& dof : model.dofs) {
+    const Servo& s = dof.servo;
+    if (!s.exists()) continue;
+    any = true;
+    table.row(
+        {model.jointNames[idx(dof.body)], detail::shortNumber(s.kp), detail::shortNumber(s.kd),
+         std::isfinite(s.effort) ? detail::shortNumber(s.effort) : "-",
+         s.kp > 0.0 ? detail::shortNumber(s.setPoint) : "-", detail::shortNumber(s.setPointRate)});
+  }
+  return any ? "servos, which act where no goal does\n" + table.text() : "";
+}
+
 std::string actuatorsText(const ExplainContext& context) {
   if (context.actuators.empty()) return {};
   detail::TextTable table;
@@ -309,6 +325,7 @@ std::string explain(const Model& model, const ExplainContext& context) {
   };
   section(headText(model, context));
   section(jointsText(model, context));
+  section(servosText(model));
   section(actuatorsText(context));
   section(framesText(model));
   section(shapesText(model, context));

@@ -143,8 +143,16 @@ class MjcfReader {
       scene_.builder.findJoint(name)->actuated = true;
       boundByJoint(joint, actuator, out);
     }
-    (actuator.isServo() ? servos_ : motors_) += 1;
+    result_.servos.push_back(mjcf::servoOf(actuator, {out.lower, out.upper}, compiler_.autolimits));
+    expectOneServo(actuator);
+    if (actuator.isServo() && !result_.servos.back()) ++stillServos_;
     scene_.actuators.push_back(std::move(out));
+  }
+
+  /// A joint has one servo; what others do with it is not simulated.
+  void expectOneServo(const mjcf::Actuator& actuator) {
+    auto& servo = result_.servos.back();
+    if (servo && !servoed_.insert(actuator.joint).second) servo.reset();
   }
 
   std::vector<std::pair<std::string, double>> pulls(const mjcf::Actuator& actuator) const {
@@ -200,11 +208,12 @@ class MjcfReader {
   }
 
   void tellActuators() {
-    if (servos_ > 0)
+    if (stillServos_ > 0)
       scene_.notes.push_back(fmt::format(
-          "{} of the file: goals choose {} within forcerange; set points, kp and kv do not act",
-          detail::counted(static_cast<std::size_t>(servos_), "servo"),
-          servos_ == 1 ? "its force" : "their forces"));
+          "{} of the file: goals choose {} within forcerange; set points, kp and kv do not act, "
+          "which they do of one joint with kp, kv of 0 or more and the same force either way",
+          detail::counted(static_cast<std::size_t>(stillServos_), "servo"),
+          stillServos_ == 1 ? "its force" : "their forces"));
   }
 
   void tellReadPast() {
@@ -253,17 +262,17 @@ class MjcfReader {
   std::vector<mjcf::Pair> pairs_;
   std::vector<const Element*> excludes_;
   std::map<std::string, mjcf::Tendon> tendons_;
-  std::set<std::string> driven_;  ///< joints that have an actuator
-  int inactive_ = 0, servos_ = 0, motors_ = 0;
+  std::set<std::string> servoed_;  ///< joints that have a servo
+  std::set<std::string> driven_;   ///< joints that have an actuator
+  int inactive_ = 0, stillServos_ = 0;
   SceneFile scene_;
   MjcfFile result_;
 };
 
 }  // namespace
 
-State MjcfFile::initialState(const Model& model, const std::string& keyframe) const {
-  State state(model);
-  if (keyframe.empty()) return state;
+const mjcf::Keyframe* MjcfFile::find(const std::string& keyframe) const {
+  if (keyframe.empty()) return nullptr;
   const auto key = std::find_if(keyframes.begin(), keyframes.end(),
                                 [&](const mjcf::Keyframe& k) { return k.name == keyframe; });
   if (key == keyframes.end()) {
@@ -274,6 +283,22 @@ State MjcfFile::initialState(const Model& model, const std::string& keyframe) co
         names.empty() ? "the file has no keyframe"
                       : "is no keyframe of the file" + detail::offered(keyframe, names));
   }
+  return &*key;
+}
+
+void MjcfFile::setServos(Model& model, const std::string& keyframe) const {
+  const mjcf::Keyframe* key = find(keyframe);
+  if (key && key->ctrl && key->ctrl->size() != servos.size())
+    throw ModelError(
+        key->where, fmt::format("key '{}'", key->name),
+        fmt::format("ctrl has {} numbers, expected {}", key->ctrl->size(), servos.size()));
+  mjcf::setServos(servos, key && key->ctrl ? *key->ctrl : std::vector<double>{}, model);
+}
+
+State MjcfFile::initialState(const Model& model, const std::string& keyframe) const {
+  State state(model);
+  const mjcf::Keyframe* key = find(keyframe);
+  if (!key) return state;
   const std::string element = fmt::format("key '{}'", key->name);
   const auto set = [&](const std::optional<std::vector<double>>& values, const char* what,
                        VectorX& x) {

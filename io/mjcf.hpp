@@ -12,6 +12,7 @@
 /// of a body are a chain of links without mass. Generalised coordinates are MuJoCo's, in its order.
 
 #include "softgauss/io/mjcf/keyframe.hpp"
+#include "softgauss/io/mjcf/servo.hpp"
 #include "softgauss/io/scene.hpp"
 
 namespace softgauss::io {
@@ -19,6 +20,7 @@ namespace softgauss::io {
 struct MjcfFile {
   SceneFile scene;
   std::vector<mjcf::Keyframe> keyframes;
+  std::vector<std::optional<mjcf::JointServo>> servos;  ///< (actuators)
   /// In MuJoCo's word: of the file, where `namesIntegrator`, or its default.
   std::string integrator = "Euler";
   bool namesIntegrator = false;
@@ -26,6 +28,12 @@ struct MjcfFile {
 
   /// At the start, or in a keyframe by name. Throws ModelError where there is none.
   State initialState(const Model& model, const std::string& keyframe = {}) const;
+  /// Gives the model its servos, with the set points of a ctrl of zeros or of that keyframe's.
+  /// Throws ModelError.
+  void setServos(Model& model, const std::string& keyframe = {}) const;
+
+ private:
+  const mjcf::Keyframe* find(const std::string& keyframe) const;
 };
 
 /// Of the options, the meshes' are read. Throws ModelError.

@@ -30,19 +30,20 @@ std::optional<OptionValue> optionValue(const py::handle& given) {
   }
 }
 
-/// The option by keyword; without_goals is none of the program's, which has --passive.
+/// The option by keyword; without_goals and without_servos are none of the program's, which has
+/// --passive and --servos.
 bool set(const std::string& name, const py::handle& given, SimulationOptions& options) {
   const std::optional<OptionValue> value = optionValue(given);
-  if (name == "without_goals") {
+  if (name == "without_goals" || name == "without_servos") {
     const bool* flag = value ? std::get_if<bool>(&*value) : nullptr;
-    if (flag) options.withoutGoals = *flag;
+    if (flag) (name == "without_goals" ? options.withoutGoals : options.withoutServos) = *flag;
     return flag != nullptr;
   }
   return value && NamedOption::find(name)->set(*value, options);
 }
 
 std::string expectedOf(const std::string& name) {
-  if (name == "without_goals") return "True or False";
+  if (name == "without_goals" || name == "without_servos") return "True or False";
   const std::string expected = NamedOption::find(name)->expected;
   if (expected == "true or false") return "True or False";
   return name == "ground" ? "a height [m] or None" : expected;

@@ -98,6 +98,18 @@ void bindByName(HeldClass& sim) {
       "set_velocity", [](Held& h, const std::string& j, double v) { h.sim().setVelocity(j, v); },
       py::arg("joint"), py::arg("v"), "[rad/s or m/s]");
   sim.def(
+      "set_set_point",
+      [](Held& h, const std::string& j, double q, double v) { h.sim().setSetPoint(j, q, v); },
+      py::arg("joint"), py::arg("set_point"), py::arg("rate") = 0.0,
+      "Tells the servo of a joint where to go [rad or m] and how fast that moves [rad/s or m/s], "
+      "in\nevery step from now on. Without goals; they choose forces themselves.");
+  sim.def(
+      "set_point", [](Held& h, const std::string& j) { return h.sim().setPoint(j); },
+      py::arg("joint"),
+      "What the servo of a joint is to be told to make the force of the last step [rad or m]: of "
+      "a\n"
+      "robot under goals, what its drive would be sent.");
+  sim.def(
       "pose", poseOf, py::arg("link"),
       "(4, 4) pose of the link's frame in the world, now: rotation and position [m]. StepError\n"
       "where q is no configuration.");

@@ -192,6 +192,7 @@ class Simulation:
         cone: Literal["pyramidal", "elliptic"] = ...,
         gdd_solver: Literal["active-set", "augmented-lagrangian"] = ...,
         control_cost: Literal["about-gravity", "total"] = ...,
+        budget: int | str = ...,
         meshes: Literal["auto", "hull", "triangles"] = ...,
         collision: Literal["own", "fcl"] = ...,
         compatibility: Literal["none", "mujoco"] = ...,
@@ -206,6 +207,7 @@ class Simulation:
         no_balance: bool = ...,
         package_paths: Sequence[Path] = ...,
         without_goals: bool = ...,
+        without_servos: bool = ...,
     ) -> None: ...
     @property
     def goals(self) -> Goals: ...
@@ -224,6 +226,10 @@ class Simulation:
     def velocity(self, joint: str) -> float: ...
     def set_position(self, joint: str, q: float) -> None: ...
     def set_velocity(self, joint: str, v: float) -> None: ...
+    def set_set_point(self, joint: str, set_point: float, rate: float = 0.0) -> None:
+        """Of its servo [rad or m, rad/s or m/s]"""
+    def set_point(self, joint: str) -> float:
+        """With which its servo makes the force of the last step [rad or m]"""
     def pose(self, link: str) -> Array:
         """(4, 4) in the world, now"""
     def torque(self, joint: str) -> float:

@@ -53,6 +53,8 @@ std::string HeldBack::nameOf(const gdd::Opponent& o, int goal) const {
     }
     case Kind::dryFriction:
       return "dry friction of " + joint(o.index);
+    case Kind::servo:
+      return "servo of " + joint(o.index);
     case Kind::equality:
       return "what joins links besides joints";
   }

@@ -38,6 +38,7 @@ void IslandRun::take(const Input& input, State& state, Data& data) {
     data.forces.tau = input.tau;
   else
     data.forces.tau.setZero();
+  addServoForces(data.forces.tau);
   state = islands_.state();
 
   const IslandStats& stats = islands_.islandStats();
@@ -47,6 +48,18 @@ void IslandRun::take(const Input& input, State& state, Data& data) {
   outcomes_.wakeups += stats.wakeups;
   outcomes_.most = std::max(outcomes_.most, stats.islands);
   outcomes_.fewestAwake = std::min(outcomes_.fewestAwake, stats.awake);
+}
+
+void IslandRun::addServoForces(VectorX& tau) {
+  for (int unit = 0; unit < islands_.units().size(); ++unit) {
+    const Islands::Island& island = islands_.islandOf(unit);
+    if (island.units.front() != unit || island.data.constraints.servo.rowCount() == 0) continue;
+    ofIsland_.setZero(island.part.model.nv);
+    softgauss::addServoForces(island.data, ofIsland_);
+    ofScene_.setZero(model_.nv);
+    island.part.scatter(model_, ofIsland_, ofScene_);
+    tau += ofScene_;
+  }
 }
 
 void IslandRun::collectContacts(std::vector<Contact>& contacts) {

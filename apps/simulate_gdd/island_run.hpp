@@ -47,6 +47,7 @@ class IslandRun {
 
  private:
   void collectContacts(std::vector<Contact>& contacts);
+  void addServoForces(VectorX& tau);
   void forcesOf(const Islands::Island& island);
   void keepAsleep();
 
@@ -59,7 +60,7 @@ class IslandRun {
   /// Of islands that sleep since an earlier process stepped them, by their first unit.
   std::map<int, std::vector<Snapshot::ContactForce>> asleep_;
   io::IslandOutcomes outcomes_;
-  VectorX scratch_;
+  VectorX scratch_, ofIsland_, ofScene_;
 };
 
 }  // namespace softgauss::app

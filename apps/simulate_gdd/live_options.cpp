@@ -64,7 +64,8 @@ void finishLiveOptions(const CLI::App& app, SimulateOptions& options) {
 #endif
   if (app.count("--duration") == 0) options.duration = kInfinity;
   // A robot that nobody has told anything holds its posture, and gives way to who drags it.
-  if (!options.isScene() && !options.passive && options.torques.empty() && !options.hasGoals())
+  if (!options.isScene() && !options.passive && !options.servos && options.torques.empty() &&
+      !options.hasGoals())
     options.posture = gdd::Posture::kDefaultWeight;
 }
 

@@ -15,6 +15,7 @@
 #include "apps/simulate_gdd/short_help.hpp"
 #include "softgauss/io/inputs.hpp"
 #include "softgauss/io/names.hpp"
+#include "softgauss/io/simulation/named_options.hpp"
 
 namespace softgauss::app {
 namespace {
@@ -60,7 +61,7 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
   app.set_help_all_flag("--help-all", "all options");
   app.set_version_flag("--version", std::string("softgauss ") + SOFTGAUSS_VERSION);
   std::string base = "automatic", ground, effects, without, zeroEffort = "passive", integrator,
-              cone, solver, controlCost, compatibility, islands, posture, meshes, collision;
+              cone, solver, controlCost, budget, compatibility, islands, posture, meshes, collision;
   std::vector<std::string> reach, q0;
   for (int i = 0; i < argc; ++i)
     options.commandLine +=
@@ -163,7 +164,9 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
   app.add_option("--torques", options.torques,
                  "a .csv file of controls (columns time_s, u:<joint>) instead of goals")
       ->group(goals);
-  app.add_flag("--passive", options.passive, "no goals, no controls")->group(goals);
+  app.add_flag("--servos", options.servos, "no goals: servos of the file follow their set points")
+      ->group(goals);
+  app.add_flag("--passive", options.passive, "no goals, no controls, no servos")->group(goals);
   addPlanOptions(app, options);
 
   const char* const simulation = "Simulation";
@@ -219,6 +222,10 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
                  "that\na reach ends at its target; total: cost of all force, as in the paper, and "
                  "links\nthat are held against gravity sag a little")
       ->check(CLI::IsMember({"about-gravity", "total"}))
+      ->group(simulation);
+  app.add_option("--budget", budget,
+                 "most work for a control: iterations, as 20, or a time, as 200us, 1ms; past it "
+                 "the\nbest that was found acts. With a time results depend on the machine")
       ->group(simulation);
   app.add_option("--compatibility", compatibility,
                  "none (default) or mujoco: MuJoCo's model, with Coriolis forces of the step's "
@@ -315,6 +322,9 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
   if (!controlCost.empty())
     options.controlCost =
         controlCost == "total" ? gdd::ControlCost::total : gdd::ControlCost::aboutGravity;
+  if (!budget.empty() && !setBudget(budget, options))
+    throw UsageError(
+        fmt::format("--budget {}: expected iterations, as 20, or a time, as 200us", budget));
   if (!meshes.empty())
     options.meshes = meshes == "hull"        ? io::MeshUse::hull
                      : meshes == "triangles" ? io::MeshUse::triangles
@@ -364,14 +374,16 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
       if (given)
         throw UsageError(fmt::format("{} is for a URDF; a scene file says it itself", option));
   const bool hasGoals = options.hasGoals();
-  if (int{options.passive} + int{!options.torques.empty()} + int{hasGoals} > 1)
+  if (int{options.passive} + int{options.servos} + int{!options.torques.empty()} + int{hasGoals} >
+      1)
     throw UsageError(
-        "choose one of goals (--reach, --hold, --posture, --goals), --torques and --passive");
-  if (!options.isScene() && !options.passive && options.torques.empty() && !hasGoals &&
-      !options.explain)
+        "choose one of goals (--reach, --hold, --posture, --goals), --servos, --torques and "
+        "--passive");
+  if (!options.isScene() && !options.passive && !options.servos && options.torques.empty() &&
+      !hasGoals && !options.explain)
     throw UsageError(
         "nothing to do: give a goal (--reach LINK=x,y,z, --hold LINK, --posture or --goals FILE), "
-        "--torques FILE or --passive");
+        "--torques FILE, --servos or --passive");
   return options;
 }
 

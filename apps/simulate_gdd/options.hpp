@@ -36,6 +36,7 @@ struct SimulateOptions : SimulationOptions {
   bool hasOwnGoals() const { return !reach.empty() || !hold.empty() || posture; }
   bool hasGoals() const { return hasOwnGoals() || !goals.empty(); }  ///< or of --goals
   bool passive = false;
+  bool servos = false;
   bool plan = false, mpc = false;            ///< what the scene's key plan asks for
   std::shared_ptr<PlanControl> planControl;  ///< of it, once it is read
   bool hasDuration = false;                  ///< it was typed

@@ -55,8 +55,10 @@ class Runner {
         contactLinks_(model_),
         summary_(model_) {
     setUp(options, scene, controller_);
-    const bool passive =
-        controller_.goals.empty() && options.torques.empty() && scene.wrenches.empty();
+    const bool passive = controller_.goals.empty() && options.torques.empty() &&
+                         scene.wrenches.empty() &&
+                         std::none_of(scene.model.dofs.begin(), scene.model.dofs.end(),
+                                      [](const Dof& dof) { return dof.servo.exists(); });
     company_.emplace(options, scene, state_, stages_, controller_);
     tellOrigin(scene);
     const std::vector<io::EffectNote> notes = io::effectNotes(model_, scene.wrenches);
@@ -192,6 +194,8 @@ class Runner {
   /// A control that goals have found is held over the step.
   void estimateError() {
     held_.wrenches = input_.wrenches;
+    held_.setPoint = input_.setPoint;
+    held_.setPointRate = input_.setPointRate;
     held_.tau = controller_.goals.empty() ? input_.tau : controller_.control;
     held_.controlled.clear();
     if (!controller_.goals.empty()) controller_.limits.markControlled(model_, held_.controlled);
@@ -202,7 +206,7 @@ class Runner {
     const bool gdd = !controller_.goals.empty();
     const StepStats& stats = data_.stats;
     record_.a = data_.plan.drifts ? data_.acceleration : data_.forward.a;
-    record_.u = data_.forces.tau;
+    appliedForces(data_, record_.u);
     record_.contacts = stats.contacts;
     record_.constraints = stats.rows;
     record_.iterations = gdd ? controller_.report.iterations : stats.iterations;

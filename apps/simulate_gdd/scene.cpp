@@ -26,7 +26,8 @@ void checkLinks(const SimulateOptions& options, const Model& model) {
 SimulationOptions loadOptions(const SimulateOptions& options) {
   SimulationOptions load = options;
   load.visualMeshes = !options.view.empty() || options.live;
-  load.withoutGoals = options.passive || !options.torques.empty() || options.plan || options.mpc;
+  load.withoutServos = options.passive || !options.torques.empty();
+  load.withoutGoals = load.withoutServos || options.servos || options.plan || options.mpc;
   return load;
 }
 
@@ -49,7 +50,7 @@ std::unique_ptr<Scene> loadScene(const SimulateOptions& options) {
 void setUp(const SimulateOptions& options, const Scene& scene,
            gdd::GoalDirectedController& controller) {
   setUpControl(scene, loadOptions(options), controller);
-  if (options.passive || !options.torques.empty()) return;
+  if (options.passive || options.servos || !options.torques.empty()) return;
   if (!options.goals.empty()) addGoals(options.goals, scene, controller);
   for (const ReachArgument& r : options.reach) {
     auto goal = std::make_unique<gdd::Reach>(scene.model, r.link, r.p_WTarget, r.p_FP);

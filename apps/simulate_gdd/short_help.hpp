@@ -33,7 +33,8 @@ Goals:
   --posture[=W]                    all joints and the base seek the initial posture
   --goals FILE.yaml                goals with times and weights (docs/reference/goals.md)
   --plan, --mpc                    plan the motion that a scene asks for, once or again and again
-  --passive                        no goals, no controls
+  --servos                         no goals: servos of the file follow their set points
+  --passive                        no goals, no controls, no servos
   --torques FILE.csv               controls instead of goals
 Simulation:
   --duration S, --timestep S       default 2 and 0.002

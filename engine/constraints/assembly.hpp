@@ -3,8 +3,6 @@
 
 /// What an effect may read when it makes its rows.
 
-#include <cstdint>
-#include <span>
 #include <vector>
 
 #include "softgauss/engine/constraints/contact_set.hpp"
@@ -18,10 +16,10 @@ namespace softgauss {
 struct Assembly {
   /// Whether a control acts on one of the trees that a row holds: on a body, or on one of two.
   bool isControlled(int bodyA, int bodyB = 0) const {
-    if (controlled.empty()) return false;
+    if (!input || input->controlled.empty()) return false;
     const auto of = [&](int body) {
       const int t = model.bodies[static_cast<std::size_t>(body)].tree;
-      return t >= 0 && controlled[static_cast<std::size_t>(t)] != 0;
+      return t >= 0 && input->controlled[static_cast<std::size_t>(t)] != 0;
     };
     return of(bodyA) || of(bodyB);
   }
@@ -47,11 +45,11 @@ struct Assembly {
   const Kinematics& kinematics;
   const ContactSet& contacts;
   const InverseWeights& weights;
-  const TreeSparsity& tree;  ///< pattern of M: row i lists the dofs that move body(i)
-  std::span<const std::uint8_t> controlled = {};  ///< Input::controlled
-  const VectorX* midstepVelocity = nullptr;       ///< null: State::v
-  const SupportedMass* load = nullptr;            ///< null: no row knows of a load
-  MechanismCounts* acted = nullptr;               ///< null: nobody counts
+  const TreeSparsity& tree;      ///< pattern of M: row i lists the dofs that move body(i)
+  const Input* input = nullptr;  ///< null: nothing is asked of the step
+  const VectorX* midstepVelocity = nullptr;  ///< null: State::v
+  const SupportedMass* load = nullptr;       ///< null: no row knows of a load
+  MechanismCounts* acted = nullptr;          ///< null: nobody counts
   bool columns = true;  ///< whether blocks list the dofs that move them (BlockJacobian)
   const std::vector<Motion>* lastMotion = nullptr;  ///< (bodies) by State::a, without columns
 };

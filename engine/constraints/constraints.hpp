@@ -21,6 +21,7 @@
 #include "softgauss/engine/constraints/joint_coupling.hpp"
 #include "softgauss/engine/constraints/joint_limit.hpp"
 #include "softgauss/engine/constraints/pyramidal_contact.hpp"
+#include "softgauss/engine/constraints/servo_drive.hpp"
 #include "softgauss/engine/constraints/weld.hpp"
 #include "softgauss/engine/model/plan.hpp"
 
@@ -55,6 +56,7 @@ class Constraints {
   CouplingRows coupling;
   DryFriction dryFriction;
   JointLimit jointLimit;
+  ServoDrive servo;
   GeometricStiffness geometricStiffness;
   PyramidalContact contact;
   EllipticContact ellipticContact;
@@ -200,6 +202,7 @@ class Constraints {
     call(self.coupling, RowKind::coupling, kinds, f);
     call(self.dryFriction, RowKind::dryFriction, kinds, f);
     call(self.jointLimit, RowKind::jointLimit, kinds, f);
+    call(self.servo, RowKind::servo, kinds, f);
     call(self.geometricStiffness, RowKind::geometricStiffness, kinds, f);
   }
   /// Sets the pattern of P.
@@ -237,6 +240,7 @@ static_assert(SoftConstraint<WeldRows>);
 static_assert(SoftConstraint<CouplingRows>);
 static_assert(SoftConstraint<DryFriction>);
 static_assert(SoftConstraint<JointLimit>);
+static_assert(SoftConstraint<ServoDrive>);
 static_assert(SoftConstraint<GeometricStiffness>);
 static_assert(SoftConstraint<PyramidalContact>);
 static_assert(SoftConstraint<EllipticContact>);

@@ -24,8 +24,7 @@ void harden(Softness& soft, double rate, double limit) {
 
 void DryFriction::assemble(const Assembly& in) {
   const Model& model = in.model;
-  dof_.clear();
-  clearRows();
+  clear();
   if (model.options.effects.has(Effect::dryFriction)) {
     for (int i = 0; i < model.nv; ++i) {
       const Dof& dof = model.dofs[i];
@@ -36,13 +35,11 @@ void DryFriction::assemble(const Assembly& in) {
                           ? frictionLaw(dof.frictionImpedance, A, model.options)
                           : softnessAt(dof.frictionImpedance, 0.0, A, model.options.rowTimestep());
       if (in.usesStiction(dof.body)) harden(soft, std::abs(rate), dof.dryFriction);
-      dof_.push_back(i);
-      reference.push_back(soft.referenceAcceleration(rate, 0.0));
-      pushSoftness(soft);
+      push(i, 1.0, soft, soft.referenceAcceleration(rate, 0.0));
       limit.push_back(dof.dryFriction);
     }
   }
-  resizeRows(dof_.size());
+  finish();
 }
 
 }  // namespace softgauss

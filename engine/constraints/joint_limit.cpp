@@ -45,9 +45,7 @@ Softness limitSoftness(const Assembly& in, const JointRange& range, double r) {
 
 void JointLimit::assemble(const Assembly& in) {
   const Model& model = in.model;
-  dof_.clear();
-  sign_.clear();
-  clearRows();
+  clear();
   if (model.options.effects.has(Effect::jointLimit)) {
     for (const JointRange& range : model.ranges) {
       const Body& body = model.bodies[range.body];
@@ -59,14 +57,11 @@ void JointLimit::assemble(const Assembly& in) {
                             !underdampedReference(range.impedance, model.options)))
           continue;
         const Softness soft = limitSoftness(in, range, r);
-        dof_.push_back(body.v);
-        sign_.push_back(sign);
-        reference.push_back(soft.referenceAcceleration(rate, r));
-        pushSoftness(soft);
+        push(body.v, sign, soft, soft.referenceAcceleration(rate, r));
       }
     }
   }
-  resizeRows(dof_.size());
+  finish();
 }
 
 }  // namespace softgauss

@@ -11,6 +11,9 @@
 namespace softgauss {
 namespace {
 
+/// What Input has of every dof.
+constexpr VectorX Input::*kInputVectors[] = {&Input::tau, &Input::setPoint, &Input::setPointRate};
+
 std::vector<int> treesOf(const Units& units, const std::vector<int>& some) {
   std::vector<int> trees;
   for (const int unit : some)
@@ -84,6 +87,7 @@ Islands::Islands(const Model& model, IslandContacts* contacts, Sleep sleep,
   islandOf_.resize(idx(units_.size()), nullptr);
   groupOf_.resize(idx(units_.size()), 0);
   acceleration_ = VectorX::Zero(model.nv);
+  setPoints_.fill(acceleration_);
   setState(State(model));
 }
 
@@ -177,13 +181,14 @@ void Islands::refreshLists() {
   std::sort(awakeUnits_.begin(), awakeUnits_.end());
 }
 
+void Islands::push(int tree) {
+  Island& island = *islandOf_[idx(units_.ofTree[idx(tree)])];
+  if (!island.awake) ++islandStats_.wakeups, wake(island);
+  island.resting = 0.0;
+}
+
 /// A force that is not zero keeps an island awake, and wakes it.
 void Islands::wakeWhatIsPushed(const Input& input) {
-  const auto push = [&](int tree) {
-    Island& island = *islandOf_[idx(units_.ofTree[idx(tree)])];
-    if (!island.awake) ++islandStats_.wakeups, wake(island);
-    island.resting = 0.0;
-  };
   if (input.tau.size() > 0)
     for (std::size_t t = 0; t < model_.trees.size(); ++t) {
       const Tree& tree = model_.trees[t];
@@ -197,26 +202,34 @@ void Islands::wakeWhatIsPushed(const Input& input) {
   }
 }
 
+/// Where servos are told something new, their islands wake.
+void Islands::wakeWhatIsServoed(const Input& input) {
+  const VectorX* const asked[] = {&input.setPoint, &input.setPointRate};
+  for (int i = 0; i < model_.nv; ++i) {
+    const Dof& dof = model_.dofs[idx(i)];
+    if (!dof.servo.exists()) continue;
+    for (const std::size_t k : {0, 1}) {
+      const double own = k == 0 ? dof.servo.setPoint : dof.servo.setPointRate;
+      const double now = asked[k]->size() > 0 ? (*asked[k])[i] : own;
+      if (now != std::exchange(setPoints_[k][i], now)) push(model_.bodies[idx(dof.body)].tree);
+    }
+  }
+}
+
 /// Where what controls an island begins, ends or has changed, it wakes.
 void Islands::wakeWhatIsControlled() {
   if (!controls_) return;
   changed_.clear();
   controls_->begin(state_.time, changed_);
-  for (const int tree : changed_) {
-    Island& island = *islandOf_[idx(units_.ofTree[idx(tree)])];
-    if (!island.awake) ++islandStats_.wakeups, wake(island);
-    island.resting = 0.0;
-  }
+  for (const int tree : changed_) push(tree);
 }
 
 /// One step of an island.
 SolveStatus Islands::take(Island& island, const Input& input) {
   Input& part = island.input;
-  if (input.tau.size() > 0) {
-    part.tau.resize(island.part.model.nv);
-    island.part.gather(model_, input.tau, part.tau);
-  } else {
-    part.tau.resize(0);
+  for (const auto x : kInputVectors) {
+    (part.*x).resize((input.*x).size() > 0 ? island.part.model.nv : 0);
+    if ((input.*x).size() > 0) island.part.gather(model_, input.*x, part.*x);
   }
   part.controlled.clear();
   if (!input.controlled.empty())
@@ -251,6 +264,7 @@ SolveStatus Islands::step(const Input& input) noexcept {
   if (stats_.refuse(model_, findBadInput(model_, input, state_))) return stats_.status;
 
   wakeWhatIsPushed(input);
+  wakeWhatIsServoed(input);
   wakeWhatIsControlled();
   if (islandStats_.wakeups > 0) refreshLists();
   for (Island* island : awake_) poseForStep(island->part.model, island->state, island->data);

@@ -27,6 +27,7 @@
 /// changes, wake() or setState() is called. What a control acts on stays awake unless
 /// Sleep::controlled. What sleep leaves out: docs/decisions/0026.
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -142,8 +143,11 @@ class Islands {
   void fallAsleep(Island& island);
   void place(const Island& island);
   void refreshLists();
+  /// Wakes the island of a tree, which then rests anew.
+  void push(int tree);
   void wakeWhatIsPushed(const Input& input);
   void wakeWhatIsControlled();
+  void wakeWhatIsServoed(const Input& input);
   SolveStatus take(Island& island, const Input& input);
   void part();
   void join();
@@ -171,6 +175,7 @@ class Islands {
   std::vector<int> awakeUnits_;                ///< ascending
   int active_ = 0;                             ///< islands, asleep or not
   std::int64_t clock_ = 0;                     ///< steps taken
+  std::array<VectorX, 2> setPoints_;           ///< (nv) of servos and their rates, last asked for
   std::vector<std::pair<int, int>> touching_;  ///< scratch
   std::vector<Island*> affected_;              ///< scratch
   std::vector<int> changed_;                   ///< scratch

@@ -43,7 +43,7 @@ void archive(Archive& a, Motion& motion) {
 }
 
 void Islands::save(ByteWriter& a) {
-  a(state_, acceleration_, clock_, active_);
+  a(state_, acceleration_, setPoints_[0], setPoints_[1], clock_, active_);
   for (int unit = 0; unit < units_.size(); ++unit) {
     Island& island = *islandOf_[idx(unit)];
     if (island.units.front() == unit) a(island.units, SavedIsland{island});
@@ -54,6 +54,7 @@ void Islands::restore(ByteReader& a) {
   a(state_);
   expectStateOf(model_, state_);
   a.sized(acceleration_);
+  for (VectorX& x : setPoints_) a.sized(x);
   int islands = 0;
   a(clock_, islands);
   for (Island* island : islandOf_)

@@ -20,6 +20,7 @@
 #include "softgauss/engine/model/equality.hpp"
 #include "softgauss/engine/model/material.hpp"
 #include "softgauss/engine/model/mechanisms.hpp"
+#include "softgauss/engine/model/servo.hpp"
 #include "softgauss/engine/model/shape.hpp"
 
 namespace softgauss {
@@ -75,6 +76,7 @@ struct Dof {
   double effortLower = -kInfinity;  ///< control limits [N m or N]
   double effortUpper = kInfinity;
   double velocityLimit = kInfinity;  ///< [rad/s or m/s], for controllers
+  Servo servo;                       ///< scalar joints only
 };
 
 /// A range q_min ≤ q ≤ q_max of a scalar joint.

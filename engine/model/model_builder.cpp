@@ -248,6 +248,9 @@ class Assembler {
     dof.stiffness = joint.stiffness;
     dof.springReference = joint.springReference;
     dof.actuated = actuated;
+    dof.servo = joint.servo;
+    if (joint.effort && *joint.effort > 0.0)
+      dof.servo.effort = std::min(dof.servo.effort, *joint.effort);
     if (joint.effort && *joint.effort > 0.0) {
       dof.effortLower = -*joint.effort;
       dof.effortUpper = *joint.effort;

@@ -52,6 +52,7 @@ struct JointSpec {
   double stiffness = 0.0;        ///< of a spring [N m/rad or N/m]; revolute, continuous, prismatic
   double springReference = 0.0;  ///< [rad or m]
   double armature = 0.0;
+  Servo servo;  ///< revolute, continuous, prismatic; mimic joints have none
   std::optional<MimicSpec> mimic;
   SourceLocation where;
 };

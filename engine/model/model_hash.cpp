@@ -82,9 +82,11 @@ class Hasher {
   }
   void add(const Dof& d) {
     const auto& [body, parent, damping, armature, dryFriction, frictionImpedance, stiffness,
-                 springReference, actuated, effortLower, effortUpper, velocityLimit] = d;
+                 springReference, actuated, effortLower, effortUpper, velocityLimit, servo] = d;
+    const auto& [kp, kd, effort, setPoint, setPointRate] = servo;
     (*this)(body, parent, damping, armature, dryFriction, frictionImpedance, stiffness,
-            springReference, actuated, effortLower, effortUpper, velocityLimit);
+            springReference, actuated, effortLower, effortUpper, velocityLimit, kp, kd, effort,
+            setPoint, setPointRate);
   }
   void add(const JointRange& r) {
     const auto& [body, lower, upper, margin, impedance] = r;

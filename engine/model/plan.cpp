@@ -93,12 +93,14 @@ Plan::Plan(const Model& model) : options_(model.options) {
         springs.push_back({i, model.bodies[dof.body].q, dof.stiffness, dof.springReference});
     }
   run(Effect::armature, anyDof([](const Dof& d) { return d.armature != 0.0; }));
-  run(Effect::actuation, anyDof([](const Dof& d) { return d.actuated; }));
   externalWrench = run(Effect::externalWrench, model.nv > 0);  // Input is not of the model
   diagonal = model.nv > 0 && std::all_of(model.trees.begin(), model.trees.end(),
                                          [&](const Tree& t) { return isDiagonal(model, t); });
 
   // Rows.
+  const bool servos = anyDof([](const Dof& d) { return d.servo.exists(); });
+  if (run(Effect::actuation, servos || anyDof([](const Dof& d) { return d.actuated; })) && servos)
+    rows.insert(RowKind::servo);
   if (run(Effect::jointLimit, !model.ranges.empty())) rows.insert(RowKind::jointLimit);
   if (run(Effect::dryFriction, anyDof([](const Dof& d) { return d.dryFriction != 0.0; })))
     rows.insert(RowKind::dryFriction);
@@ -133,6 +135,8 @@ bool Plan::fits(const Model& model) const {
     const Dof& dof = model.dofs[i];
     if (dof.dryFriction != 0.0 && now.effects.has(Effect::dryFriction) &&
         !rows.has(RowKind::dryFriction))
+      return false;
+    if (dof.servo.exists() && now.effects.has(Effect::actuation) && !rows.has(RowKind::servo))
       return false;
     const double planned = hasDamping() ? damping[i] : 0.0;
     if (now.effects.has(Effect::damping) && dof.damping != planned) return false;

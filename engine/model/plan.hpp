@@ -21,11 +21,12 @@ enum class RowKind : std::uint8_t {
   coupling,
   dryFriction,
   jointLimit,
+  servo,
   geometricStiffness,
   pyramid,
   ellipticCone
 };
-inline constexpr int kRowKinds = 8;
+inline constexpr int kRowKinds = 9;
 
 /// A set of them.
 class RowKinds {
@@ -58,6 +59,7 @@ constexpr RowKinds builtRows() {
     add(kind, Effect::equality);
   add(RowKind::dryFriction, Effect::dryFriction);
   add(RowKind::jointLimit, Effect::jointLimit);
+  add(RowKind::servo, Effect::actuation);
   for (const RowKind kind : {RowKind::pyramid, RowKind::ellipticCone})
     add(kind, Effect::selfCollision, Effect::groundContact, Effect::objectContact);
   return rows;

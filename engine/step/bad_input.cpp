@@ -36,6 +36,8 @@ const char* nameOf(BadInputKind kind) {
       return "the warm start";
     case BadInputKind::tau:
       return "Input::tau";
+    case BadInputKind::setPoint:
+      return "Input::setPoint or Input::setPointRate";
     case BadInputKind::controlled:
       return "Input::controlled";
     case BadInputKind::wrench:
@@ -54,6 +56,9 @@ const char* nameOf(BadInputKind kind) {
 BadInput findBadInput(const Model& model, const Input& input) noexcept {
   if (input.tau.size() != 0)
     if (const BadInput bad = checkSize(BadInputKind::tau, input.tau, model.nv)) return bad;
+  for (const VectorX* x : {&input.setPoint, &input.setPointRate})
+    if (x->size() != 0)
+      if (const BadInput bad = checkSize(BadInputKind::setPoint, *x, model.nv)) return bad;
   if (!input.controlled.empty()) {
     const auto trees = static_cast<int>(model.trees.size());
     if (const BadInput bad = checkSize(BadInputKind::controlled, input.controlled, trees))
@@ -104,7 +109,8 @@ BadInput findBadQuaternion(const Model& model, const VectorX& q) noexcept {
 }
 
 bool isFinite(const Input& input, const State& state) noexcept {
-  if (!state.q.allFinite() || !state.v.allFinite() || !input.tau.allFinite()) return false;
+  for (const VectorX* x : {&state.q, &state.v, &input.tau, &input.setPoint, &input.setPointRate})
+    if (!x->allFinite()) return false;
   return std::all_of(input.wrenches.begin(), input.wrenches.end(), [&](const ExternalWrench& w) {
     return w.F_Bo_W.force.allFinite() && w.F_Bo_W.moment.allFinite();
   });
@@ -113,11 +119,12 @@ bool isFinite(const Input& input, const State& state) noexcept {
 int firstBadDof(const Model& model, const Input& input, const State& state) noexcept {
   for (const Body& body : model.bodies) {
     const int coordinates = body.dofs == 6 ? 7 : body.dofs;
-    const bool bad =
-        !state.q.segment(body.q, coordinates).allFinite() ||
-        !state.v.segment(body.v, body.dofs).allFinite() ||
-        (input.tau.size() == model.nv && !input.tau.segment(body.v, body.dofs).allFinite());
-    if (bad) return body.v;
+    const auto bad = [&](const VectorX& x) {
+      return x.size() == model.nv && !x.segment(body.v, body.dofs).allFinite();
+    };
+    if (!state.q.segment(body.q, coordinates).allFinite() || bad(state.v) || bad(input.tau) ||
+        bad(input.setPoint) || bad(input.setPointRate))
+      return body.v;
   }
   return -1;
 }

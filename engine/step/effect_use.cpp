@@ -44,6 +44,7 @@ std::array<EffectUse, kEffects> effectUse(const Model& model, const Data& data,
     return EffectUse{rows.calls()[static_cast<std::size_t>(number)], kind.rowCount(), kind.bytes()};
   };
   at(Effect::jointLimit) = of(rows.jointLimit, RowKind::jointLimit);
+  at(Effect::actuation) = of(rows.servo, RowKind::servo);
   at(Effect::dryFriction) = of(rows.dryFriction, RowKind::dryFriction);
   for (const EffectUse& kind : {of(rows.connection, RowKind::connection),
                                 of(rows.weld, RowKind::weld), of(rows.coupling, RowKind::coupling),

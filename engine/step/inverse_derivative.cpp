@@ -42,9 +42,8 @@ SolveStatus InverseDerivative::compute(const Model& model, const Input& input, c
   v_.setZero();
   addSmooth(model, input, a, data);
   if (data.constraints.active().empty()) return status;
-  Assembly in{model,           state,        data.kinematics,
-              data.contacts,   data.weights, data.inertia.sparsity,
-              input.controlled};
+  Assembly in{model, state, data.kinematics, data.contacts, data.weights, data.inertia.sparsity,
+              &input};
   if (data.plan.drifts && predictsMidstepVelocity(model, state))
     in.midstepVelocity = &data.midstepVelocity;
   if (model.options.uses(Mechanism::supportedMass)) {

@@ -41,8 +41,8 @@ void RowDifferences::force(const Assembly& in, const VectorX& a, ContactSource* 
                            VectorX& tau) {
   const Model& model = in.model;
   computeKinematics(model, state_, kinematics_);
-  Assembly now{model,   state_,        kinematics_, in.contacts, in.weights,
-               in.tree, in.controlled, nullptr,     in.load,     nullptr};
+  Assembly now{model,   state_,   kinematics_, in.contacts, in.weights,
+               in.tree, in.input, nullptr,     in.load,     nullptr};
   if (in.midstepVelocity) {
     midstep_ = *in.midstepVelocity + state_.v - in.state.v;
     setMidstepVelocity(model, midstep_, kinematics_);
@@ -64,8 +64,8 @@ void RowDifferences::force(const Assembly& in, const VectorX& a, ContactSource* 
     if (std::find(pairs_.begin(), pairs_.end(), std::pair(c.geometryA, c.geometryB)) !=
         pairs_.end())
       kept_.add(c);
-  const Assembly touching{model,   state_,        kinematics_,         kept_,   in.weights,
-                          in.tree, in.controlled, now.midstepVelocity, in.load, nullptr};
+  const Assembly touching{model,   state_,   kinematics_,         kept_,   in.weights,
+                          in.tree, in.input, now.midstepVelocity, in.load, nullptr};
   addForce(touching, a, pyramid_, tau);
   addForce(touching, a, cone_, tau);
 }

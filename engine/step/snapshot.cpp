@@ -48,6 +48,15 @@ void contactForces(const Data& data, std::vector<Snapshot::ContactForce>& contac
   }
 }
 
+void addServoForces(const Data& data, VectorX& tau) {
+  data.constraints.servo.addTransposed(data.constraints.servo.f, tau);
+}
+
+void appliedForces(const Data& data, VectorX& tau) {
+  tau = data.forces.tau;
+  addServoForces(data, tau);
+}
+
 void takeSnapshot(const Model& model, const Kinematics& k,
                   const std::vector<Snapshot::ContactForce>& contacts, double time,
                   Snapshot& snapshot) {

@@ -41,6 +41,11 @@ std::optional<Vector3> centerOfPressure(const Model& model,
 /// The contacts of the last solve, with their forces.
 void contactForces(const Data& data, std::vector<Snapshot::ContactForce>& contacts);
 
+/// Of the last solve: what acts on each dof from controls, Input::tau and servos (nv) [N m or N].
+void appliedForces(const Data& data, VectorX& tau);
+/// tau += the forces of servos alone (nv).
+void addServoForces(const Data& data, VectorX& tau);
+
 /// Poses and velocities of `kinematics` at `time`, and these contacts.
 void takeSnapshot(const Model& model, const Kinematics& kinematics,
                   const std::vector<Snapshot::ContactForce>& contacts, double time,

@@ -131,9 +131,8 @@ bool needsMatrices(const Model& model, const Data& data, const Given& given) {
 void assembleRows(const Model& model, const Input& input, const State& state, Data& data,
                   Clock::time_point& clock, bool matrices) {
   if (kBuiltRows.empty() || data.plan.rows.empty()) return;
-  Assembly assembly{model,           state,        data.kinematics,
-                    data.contacts,   data.weights, data.inertia.sparsity,
-                    input.controlled};
+  Assembly assembly{
+      model, state, data.kinematics, data.contacts, data.weights, data.inertia.sparsity, &input};
   assembly.columns = matrices;
   if (data.plan.drifts && predictsMidstepVelocity(model, state))
     assembly.midstepVelocity = &data.midstepVelocity;

@@ -155,11 +155,29 @@ TimedWrench readWrench(const YamlMap& map, const std::set<std::string>& links) {
   return wrench;
 }
 
+namespace {
+
+Servo readServo(const YamlMap& map) {
+  map.expectOnly({"kp", "kd", "effort", "set_point", "set_point_rate"});
+  Servo servo;
+  map.read("kp", servo.kp, Range::notNegative);
+  map.read("kd", servo.kd, Range::notNegative);
+  if (!servo.exists())
+    map.fail("kp", map.line(),
+             "found no gain, expected a kp [N m/rad or N/m] or a kd [N m s/rad or N s/m] above 0");
+  map.read("effort", servo.effort, Range::positive);
+  map.read("set_point", servo.setPoint, Range::any);
+  map.read("set_point_rate", servo.setPointRate, Range::any);
+  return servo;
+}
+
+}  // namespace
+
 void readJointParameters(const YamlMap& joints, ModelBuilder& robot) {
   for (const YamlMap::Entry& entry : joints.entries()) {
     const YamlMap map = joints.map(entry);
     JointSpec& joint = *robot.findJoint(entry.key);
-    map.expectOnly({"friction", "damping", "armature", "stiffness", "spring_reference"});
+    map.expectOnly({"friction", "damping", "armature", "stiffness", "spring_reference", "servo"});
     map.read("friction", joint.dryFriction, Range::notNegative);
     map.read("damping", joint.damping, Range::notNegative);
     map.read("armature", joint.armature, Range::notNegative);
@@ -167,6 +185,7 @@ void readJointParameters(const YamlMap& joints, ModelBuilder& robot) {
     map.read("spring_reference", joint.springReference, Range::any);
     if (const auto* reference = map.find("spring_reference"); reference && joint.stiffness == 0.0)
       map.fail(*reference, "found without a stiffness above 0, expected both or neither");
+    if (const auto* servo = map.find("servo")) joint.servo = readServo(map.map(*servo));
   }
 }
 

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// <actuator>: motors, and servos as far as forces go.
+/// <actuator>: motors and servos.
 ///
 /// MuJoCo's actuator makes the force  f = clip(gain · clip(ctrl) + b₀ + b₁ l + b₂ l̇)  on a length l
-/// = gear · q of a joint, or of a fixed tendon. Goals choose forces, not set points, so that an
-/// actuator comes to the forces that it can make: of a motor (no bias) gain · ctrlrange within
-/// forcerange, of a servo (bias) forcerange alone.
+/// = gear · q of a joint, or of a fixed tendon. Goals choose forces, not set points: to them an
+/// actuator is the forces that it can make, of a motor (no bias) gain · ctrlrange within
+/// forcerange, of a servo (bias) forcerange alone. Without goals servos of joints follow their set
+/// points (mjcf/servo.hpp).
 
 #include <map>
 

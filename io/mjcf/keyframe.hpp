@@ -12,7 +12,7 @@ namespace softgauss::io::mjcf {
 struct Keyframe {
   std::string name;  ///< or its number, from 0, where it has none
   SourceLocation where;
-  std::optional<std::vector<double>> qpos, qvel;
+  std::optional<std::vector<double>> qpos, qvel, ctrl;
 };
 
 /// <key>, the index-th of the file.

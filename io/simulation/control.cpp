@@ -82,6 +82,8 @@ void setUpControl(const Scene& scene, const SimulationOptions& options,
   controller.goals.clear();
   if (scene.hasGoals && !options.withoutGoals) addGoals(scene.file, scene, controller);
   if (options.controlCost) controller.controlCost = *options.controlCost;
+  if (options.iterationBudget) controller.iterationBudget = *options.iterationBudget;
+  if (options.timeBudget) controller.timeBudget = *options.timeBudget;
 }
 
 /// The posture yields to reaches and holds (9.24), lets a robot that stands lean no further than

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "softgauss/io/simulation/named_options.hpp"
 
+#include <fmt/format.h>
+
+#include <charconv>
 #include <cmath>
 #include <functional>
+#include <string_view>
 
 #include "softgauss/io/names.hpp"
 
@@ -172,6 +176,12 @@ bool setPackagePaths(const V& value, O& o) {
   return folders != nullptr;
 }
 
+bool setBudgetValue(const V& value, O& o) {
+  const auto* text = std::get_if<std::string>(&value);
+  const double* number = std::get_if<double>(&value);
+  return (text || number) && setBudget(text ? *text : fmt::format("{}", *number), o);
+}
+
 bool setMostDofs(const V& value, O& o) {
   const double* given = std::get_if<double>(&value);
   if (!given || !(*given >= 1.0 && *given <= 1e9 && *given == std::floor(*given))) return false;
@@ -209,6 +219,7 @@ const std::vector<NamedOption>& NamedOption::all() {
       {"ignore_velocity_limits", "true or false", false, false, setFlag<&O::ignoreVelocityLimits>},
       {"gdd_solver", "one of active-set, augmented-lagrangian", false, true, setSolver},
       {"control_cost", "one of about-gravity, total", false, false, setControlCost},
+      {"budget", "iterations, as 20, or a time, as 200us", false, false, setBudgetValue},
       {"meshes", "one of auto, hull, triangles", false, false, setMeshes},
       {"collision", "one of own, fcl", false, false, setCollision},
       {"compatibility", "one of none, mujoco", false, true, setCompatibility},
@@ -216,6 +227,21 @@ const std::vector<NamedOption>& NamedOption::all() {
       {"most_dofs", "a whole number from 1 on", false, false, setMostDofs},
   };
   return options;
+}
+
+bool setBudget(const std::string& text, SimulationOptions& options) {
+  double number = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || !(number >= 0.0)) return false;
+  const std::string_view unit(end, static_cast<std::size_t>(text.data() + text.size() - end));
+  if (unit.empty()) {
+    if (number != std::floor(number) || number > 1e9) return false;
+    options.iterationBudget = static_cast<int>(number);
+    return true;
+  }
+  for (const auto& [name, seconds] : {std::pair("us", 1e-6), std::pair("ms", 1e-3), {"s", 1.0}})
+    if (unit == name) return options.timeBudget = number * seconds, true;
+  return false;
 }
 
 const NamedOption* NamedOption::find(const std::string& name) {

@@ -35,4 +35,8 @@ class NamedOption {
   bool (*set)(const OptionValue& value, SimulationOptions& options);
 };
 
+/// A budget of a control, in iterations ("20") or in time ("200us", "1.5ms", "0.001s"). Returns
+/// whether the text is one; the options are as they were where it is not.
+bool setBudget(const std::string& text, SimulationOptions& options);
+
 }  // namespace softgauss

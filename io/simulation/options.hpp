@@ -40,16 +40,19 @@ struct SimulationOptions {
   std::optional<Cone> cone;                     ///< absent: the file's own, or pyramidal
   std::optional<gdd::GddSolver> gddSolver;      ///< absent: the file's own, or the active set
   std::optional<gdd::ControlCost> controlCost;  ///< absent: the files' own, or about gravity
+  std::optional<int> iterationBudget;           ///< of a control; absent: the solver's own
+  std::optional<double> timeBudget;             ///< of a control [s]; absent: none
   std::optional<Integrator> integrator;         ///< absent: the file's own, or the leapfrog
   std::optional<double> integrationTolerance;
   bool stepDoubling = false;
   std::optional<bool> throughFcl;  ///< absent: as the file says, or own
   std::optional<bool> likeMujoco;  ///< --compatibility
   std::vector<std::filesystem::path> packagePaths;
-  double largestMesh = 64.0;  ///< [MB]
-  bool visualMeshes = false;  ///< read the meshes of visuals too
-  bool noBalance = false;     ///< robots that stand are not kept standing beside a reach
-  bool withoutGoals = false;  ///< the goals of the file are left out
+  double largestMesh = 64.0;   ///< [MB]
+  bool visualMeshes = false;   ///< read the meshes of visuals too
+  bool noBalance = false;      ///< robots that stand are not kept standing beside a reach
+  bool withoutGoals = false;   ///< the goals of the file are left out
+  bool withoutServos = false;  ///< the servos of the file are left out: joints are driven by forces
 };
 
 /// An option that does not fit what is loaded. what() reads `<option> …`, the option in the words

@@ -99,7 +99,7 @@ struct Rollout::Worker {
   Simulation sim;
   SimulationParts& parts;
   std::vector<Snapshot::ContactForce> touching;
-  VectorX forces;
+  VectorX forces, applied;
   bool modelIsChanged = false;  ///< by the last run
 };
 
@@ -139,7 +139,8 @@ void Rollout::Worker::write(const Task& task, long index, long row) {
   copyTo(parts.state.v, rowOf(out.v, at, model.nv));
   copyTo(parts.data->plan.drifts ? parts.data->acceleration : parts.data->forward.a,
          rowOf(out.a, at, model.nv));
-  copyTo(parts.data->forces.tau, rowOf(out.tau, at, model.nv));
+  appliedForces(*parts.data, applied);
+  copyTo(applied, rowOf(out.tau, at, model.nv));
   if (out.contactForces.empty()) return;
   contactForces(*parts.data, touching);
   parts.links.forces(touching, forces);

@@ -132,6 +132,8 @@ void loadSceneFile(const SimulationOptions& options, Scene& scene) {
   if (!scene.ground && !file.noGround && !file.starts.empty()) scene.ground = 0.0;
   if (scene.ground) addGround(file.builder, *scene.ground, file.groundMaterial);
   scene.model = file.builder.build();
+  if (options.withoutServos)
+    for (Dof& dof : scene.model.dofs) dof.servo = {};
   checkSize(options, scene);
   for (std::string& warning : warnings) scene.model.warnings.push_back(std::move(warning));
   scene.contents = file.contents;
@@ -194,6 +196,7 @@ void loadMjcf(const SimulationOptions& options, Scene& scene) {
   scene.baseOrigin = BaseOrigin::scene;
   scene.actuators = file.scene.actuators;
   if (!options.timestep) scene.timestepWhere = file.scene.timestepWhere;
+  if (!options.withoutServos) file.setServos(scene.model, options.state);
   scene.initial = file.initialState(scene.model, options.state);
   setJointPositions(scene.model, options.q0, scene.initial);
 }

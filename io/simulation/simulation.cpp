@@ -27,6 +27,15 @@ const Body& scalarJoint(const Model& model, const std::string& joint) {
   return model.bodies[model.findJoint(joint)];
 }
 
+/// The dof of a joint with a servo, and where asked one that has a spring.
+int servoedDof(const Model& model, const std::string& joint, bool withSpring) {
+  const int v = scalarJoint(model, joint).v;
+  const Servo& servo = model.dofs[static_cast<std::size_t>(v)].servo;
+  if (withSpring ? servo.kp > 0.0 : servo.exists()) return v;
+  throw NameError(fmt::format("joint '{}' has no {}; give it one in the scene's joint_parameters",
+                              joint, withSpring ? "servo with a kp" : "servo"));
+}
+
 }  // namespace
 
 SimulationParts::SimulationParts(std::unique_ptr<Scene> loaded, const SimulationOptions& loadedWith)
@@ -210,7 +219,29 @@ Transform Simulation::pose(const std::string& link) const {
 }
 
 double Simulation::torque(const std::string& joint) const {
-  return parts_->data->forces.tau[scalarJoint(model(), joint).v];
+  VectorX tau;
+  appliedForces(*parts_->data, tau);
+  return tau[scalarJoint(model(), joint).v];
+}
+
+void Simulation::setSetPoint(const std::string& joint, double setPoint, double rate) {
+  const int dof = servoedDof(model(), joint, false);
+  Input& input = parts_->input;
+  if (input.setPoint.size() != model().nv || input.setPointRate.size() != model().nv) {
+    input.setPoint.resize(model().nv);
+    input.setPointRate.resize(model().nv);
+    for (int i = 0; i < model().nv; ++i) {
+      input.setPoint[i] = model().dofs[static_cast<std::size_t>(i)].servo.setPoint;
+      input.setPointRate[i] = model().dofs[static_cast<std::size_t>(i)].servo.setPointRate;
+    }
+  }
+  input.setPoint[dof] = setPoint;
+  input.setPointRate[dof] = rate;
+}
+
+double Simulation::setPoint(const std::string& joint) const {
+  const Dof& dof = model().dofs[static_cast<std::size_t>(servoedDof(model(), joint, true))];
+  return setPointOf(dof.servo, position(joint), velocity(joint), torque(joint));
 }
 
 Vector3 Simulation::contactForceOn(const std::string& link) const {

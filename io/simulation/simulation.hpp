@@ -82,8 +82,15 @@ class Simulation {
   double velocity(const std::string& joint) const;       ///< [rad/s or m/s]
   void setPosition(const std::string& joint, double q);  ///< joints that follow it go with it
   void setVelocity(const std::string& joint, double v);
+  /// Tells the servo of a joint where to go: its set point [rad or m] and that one's rate [rad/s or
+  /// m/s], at the end of every step from now on. Without goals; they choose forces themselves.
+  void setSetPoint(const std::string& joint, double setPoint, double rate = 0.0);
+  /// What the servo of a joint is to be told to make the force of the last step: of a robot under
+  /// goals, what its drive would be sent. Needs a servo of kp > 0.
+  double setPoint(const std::string& joint) const;
   Transform pose(const std::string& link) const;  ///< of the link's frame in the world, now
-  /// Of the last step: what acts on the joint from its actuator and from input().tau [N m or N].
+  /// Of the last step: what acts on the joint from its actuator or servo and from input().tau [N m
+  /// or N].
   double torque(const std::string& joint) const;
   /// Of the last step: the sum of the contact forces on a link [N], world axes.
   Vector3 contactForceOn(const std::string& link) const;

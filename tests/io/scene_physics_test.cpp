@@ -28,6 +28,26 @@ TEST(SceneFile, SpringsPullJointsToTheirReference) {
   EXPECT_SMALL(data.forward.a[0] + 3.0 * (0.7 - 0.2), 1e-14);
 }
 
+// A servo of the arm, whose effort is 40 in the URDF: I = 1 kg m², f = kp (u − q) far from it.
+TEST(SceneFile, ServosDriveJoints) {
+  const auto servoOf = [](const std::string& keys) {
+    const SceneFolder folder(
+        "robots:\n  - {urdf: sample.urdf, base: fixed, joint_parameters: {shoulder: {servo: {" +
+        keys + "}}}}\n");
+    const io::SceneFile scene = folder.read();
+    const Model model = scene.builder.build();
+    return model.dofs[0].servo;
+  };
+  const Servo servo = servoOf("kp: 200, kd: 10, effort: 5, set_point: 0.3, set_point_rate: 0.1");
+  EXPECT_EQ(servo.kp, 200.0);
+  EXPECT_EQ(servo.kd, 10.0);
+  EXPECT_EQ(servo.effort, 5.0);
+  EXPECT_EQ(servo.setPoint, 0.3);
+  EXPECT_EQ(servo.setPointRate, 0.1);
+  const auto model = SceneFolder("robots:\n  - {urdf: sample.urdf, base: fixed}\n").read();
+  EXPECT_EQ(servoOf("kd: 10").effort, model.builder.build().dofs[0].effortUpper);
+}
+
 const std::string kPairs =
     "materials:\n"
     "  ice: {friction: 0.05, condim: 1}\n"

@@ -172,5 +172,34 @@ TEST(Sleep, IsOffUnlessAskedFor) {
   EXPECT_EQ(crowd.islands.islandStats().awake, 4);
 }
 
+// A servo holds its load asleep, and wakes when it is told another place to go.
+TEST(Sleep, EndsForServosThatAreToldSomethingNew) {
+  ModelBuilder builder = ground();
+  addCube(builder, "cube", Vector3(3.0, 0.0, 0.1));
+  builder.link(emptyLink("world")).link(boxLink("arm", 1.0, {0.1, 0.1, 0.1}, {0.5, 0.0, 0.0}));
+  JointSpec joint = jointSpec("hinge", JointType::revolute, "world", "arm",
+                              {Matrix3::Identity(), Vector3(0.0, 0.0, 1.0)}, Vector3::UnitY());
+  joint.servo = {.kp = 500.0, .kd = 50.0};
+  builder.joint(joint);
+  Crowd crowd(builder.build(), kSleep);
+  const int dof = crowd.model.bodies[idx(crowd.body("arm"))].v;
+  ASSERT_TRUE(crowd.steps(3000));
+  EXPECT_EQ(crowd.islands.islandStats().awake, 0);
+  const double before = crowd.islands.state().q[crowd.model.bodies[idx(crowd.body("arm"))].q];
+  Input input;
+  input.setPoint = VectorX::Zero(crowd.model.nv);
+  ASSERT_EQ(crowd.islands.step(input), SolveStatus::converged);
+  EXPECT_TRUE(crowd.islands.asleep(crowd.body("arm")));
+  input.setPoint[dof] = 0.3;
+  ASSERT_EQ(crowd.islands.step(input), SolveStatus::converged);
+  EXPECT_TRUE(crowd.islands.asleep(crowd.body("cube")));
+  EXPECT_FALSE(crowd.islands.asleep(crowd.body("arm")));
+  for (int i = 0; i < 3000; ++i) crowd.islands.step(input);
+  EXPECT_EQ(crowd.islands.islandStats().awake, 0);
+  // It turns by 0.3, but for what the lever of its weight changes by its spring: 9.81 N × 0.5 m.
+  const double after = crowd.islands.state().q[crowd.model.bodies[idx(crowd.body("arm"))].q];
+  EXPECT_SMALL(after - before - 0.3, 9.81 * 0.5 / 500.0);
+}
+
 }  // namespace
 }  // namespace softgauss::test

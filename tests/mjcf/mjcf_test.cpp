@@ -162,6 +162,59 @@ TEST(Mjcf, ActuatorsComeToForces) {
   EXPECT_FALSE(actuated("free"));
 }
 
+// With l = gear q: kp, kd by gear², the force by gear, set points by 1/gear; zeros of ctrl are
+// clamped to its range, and a keyframe has its own.
+TEST(Mjcf, ServosOfJointsHaveTheGainsOfTheFile) {
+  const TempMjcf model(R"(<mujoco>
+  <compiler angle="radian"/>
+  <worldbody>
+    <body><joint name="position" axis="0 1 0"/><geom size="0.1" pos="0.3 0 0"/></body>
+    <body pos="1 0 0"><joint name="velocity" axis="0 1 0"/><geom size="0.1" pos="0.3 0 0"/></body>
+    <body pos="2 0 0"><joint name="ratio" axis="0 1 0"/><geom size="0.1" pos="0.3 0 0"/></body>
+    <body pos="3 0 0"><joint name="uneven" axis="0 1 0"/><geom size="0.1" pos="0.3 0 0"/></body>
+    <body pos="4 0 0"><joint name="general" axis="0 1 0"/><geom size="0.1" pos="0.3 0 0"/></body>
+  </worldbody>
+  <actuator>
+    <position joint="position" kp="40" kv="3" gear="2" forcerange="-8 8" ctrlrange="0.2 1"/>
+    <velocity joint="velocity" kv="5" gear="-2"/>
+    <position joint="ratio" kp="40" dampratio="1"/>
+    <position joint="uneven" kp="40" forcerange="-8 9"/>
+    <general joint="general" biastype="affine" gainprm="30" biasprm="6 -15 -2"/>
+  </actuator>
+  <keyframe><key name="home" ctrl="0.5 3 7 0 1"/></keyframe>
+</mujoco>)");
+  SimulationOptions home;
+  home.state = "home";
+  const auto zero = loadScene(model.file), key = loadScene(model.file, home);
+  const auto servo = [](const softgauss::Scene& scene, const char* joint) {
+    const Body& body = scene.model.bodies[idx(scene.model.findJoint(joint))];
+    return scene.model.dofs[idx(body.v)].servo;
+  };
+  EXPECT_EQ(servo(*zero, "position").kp, 160.0);
+  EXPECT_EQ(servo(*zero, "position").kd, 12.0);
+  EXPECT_EQ(servo(*zero, "position").effort, 16.0);
+  EXPECT_EQ(servo(*zero, "position").setPoint, 0.1);
+  EXPECT_EQ(servo(*key, "position").setPoint, 0.25);
+  EXPECT_EQ(servo(*zero, "velocity").kp, 0.0);
+  EXPECT_EQ(servo(*zero, "velocity").kd, 20.0);
+  EXPECT_EQ(servo(*key, "velocity").setPointRate, -1.5);
+  const auto scene = loadScene(model.file);
+  const double mass = 1000.0 * 4.0 / 3.0 * 3.14159265358979 * 1e-3;
+  const double inertia = mass * (0.09 + 0.4 * 0.01);
+  EXPECT_NEAR(servo(*zero, "ratio").kd / (2.0 * std::sqrt(40.0 * inertia)), 1.0, 1e-12);
+  EXPECT_FALSE(servo(*zero, "uneven").exists());
+  // f = 30 u + 6 − 15 q − 2 v.
+  EXPECT_EQ(servo(*key, "general").kp, 15.0);
+  EXPECT_EQ(servo(*key, "general").kd, 2.0);
+  EXPECT_NEAR(servo(*key, "general").setPoint, 36.0 / 15.0, 1e-15);
+  SimulationOptions passive;
+  passive.withoutServos = true;
+  EXPECT_FALSE(servo(*loadScene(model.file, passive), "position").exists());
+  std::string notes;
+  for (const std::string& note : zero->notes) notes += note;
+  EXPECT_NE(notes.find("1 servo of the file"), std::string::npos) << notes;
+}
+
 // A file that includes itself, or another twice, or one elsewhere, ends.
 TEST(Mjcf, IncludesEnd) {
   const TempMjcf itself("<mujoco><include file=\"model.xml\"/></mujoco>");

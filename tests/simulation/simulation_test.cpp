@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "softgauss/engine/engine.hpp"
 #include "tests/io/temp_folder.hpp"
 #include "tests/simulation/data_file.hpp"
@@ -260,6 +262,27 @@ TEST(Simulation, AnIterationBudgetBoundsTheSolve) {
   EXPECT_LE(sim.solve(start.q, start.v).report.stationarity, 1e-12);
 }
 
+// No time is no iteration; enough of it changes nothing.
+TEST(Simulation, ATimeBudgetBoundsTheSolve) {
+  const auto answerOf = [](double seconds, int iterations) {
+    Simulation sim = Simulation::load(robot("humanoid"));
+    sim.goals.reach("right_hand", {0.5, -0.4, 1.3}).weight = 1e4;
+    sim.controller().limits.upper *= 0.1;
+    sim.controller().limits.lower *= 0.1;
+    sim.controller().timeBudget = seconds;
+    sim.controller().iterationBudget = iterations;
+    const State start = sim.state();
+    return sim.solve(start.q, start.v);
+  };
+  const int many = std::numeric_limits<int>::max();
+  const ControlSolution none = answerOf(0.0, many), all = answerOf(100.0, many);
+  EXPECT_EQ(none.report.iterations, 0);
+  EXPECT_EQ(none.report.status, gdd::GddStatus::iterationLimit);
+  EXPECT_EQ(none.tau, answerOf(kInfinity, 0).tau);
+  EXPECT_GT(all.report.iterations, 1);
+  EXPECT_EQ(all.tau, answerOf(kInfinity, many).tau);
+}
+
 TEST(Simulation, RefusesMeasurementsOfAnotherSize) {
   Simulation sim = Simulation::load(robot("humanoid"));
   sim.goals.reach("right_hand", {0.4, -0.2, 1.1});
@@ -325,6 +348,53 @@ TEST(Simulation, ARefusedStepTellsWhy) {
   EXPECT_THROW(sim.run(0.01), StepError);
   EXPECT_EQ(sim.time(), 0.0);
   EXPECT_NE(sim.failure().find("shoulder_yaw"), std::string::npos) << sim.failure();
+}
+
+const char* const kServos = "{servo: {kp: 100, kd: 10}}";
+
+/// The arm with servos on all its joints.
+std::string armWithServos() {
+  std::string text =
+      "robots:\n  - urdf: " + robot("arm") + "\n    base: fixed\n    joint_parameters:\n";
+  const Model model = Simulation::load(robot("arm")).model();
+  for (const std::string& joint : model.jointNames)
+    if (!joint.empty()) text += "      " + joint + ": " + kServos + "\n";
+  return text;
+}
+
+// What a drive would be told under goals makes the same motion where it is told that and no goal
+// acts, where no spring is too stiff for the step. No joint has friction, which would be softer
+// under goals.
+TEST(Simulation, SetPointsOfGoalsMakeTheirMotion) {
+  const io::TempFolder folder;
+  const auto file = folder.write("arm.yaml", armWithServos());
+  Simulation goals = Simulation::load(file), drives = Simulation::load(file);
+  goals.goals.reach("hand", {0.5, 0.2, 0.4});
+  double moved = 0.0;
+  for (int i = 0; i < 500; ++i) {
+    ASSERT_FALSE(isRefused(goals.step()));
+    for (const std::string& joint : goals.model().jointNames)
+      if (!joint.empty()) drives.setSetPoint(joint, goals.setPoint(joint));
+    ASSERT_FALSE(isRefused(drives.step()));
+    // 1e-12 of a solve, times kp: forces differ by 1e-9 and the motion by less.
+    EXPECT_NEAR((goals.state().q - drives.state().q).cwiseAbs().maxCoeff(), 0.0, 1e-9) << i;
+    moved = std::max(moved, goals.state().q.cwiseAbs().maxCoeff());
+  }
+  EXPECT_GT(moved, 0.1);
+}
+
+TEST(Simulation, ServosAreToldBySetPoints) {
+  const io::TempFolder folder;
+  Simulation sim = Simulation::load(folder.write("arm.yaml", armWithServos()));
+  const std::string joint = sim.model().jointNames.back();
+  sim.setSetPoint(joint, 0.3);
+  sim.run(3.0);
+  // It bears its link's weight by its spring; told that it does, it says so.
+  EXPECT_NEAR(sim.setPoint(joint), 0.3, 1e-6);
+  EXPECT_NEAR(sim.torque(joint), 100.0 * (0.3 - sim.position(joint)), 1e-6);
+  Simulation motor = Simulation::load(robot("arm"));
+  EXPECT_EQ(nameError([&] { motor.setSetPoint(joint, 0.0); }),
+            "joint '" + joint + "' has no servo; give it one in the scene's joint_parameters");
 }
 
 }  // namespace

@@ -63,7 +63,7 @@ bool ContactLaw::sample(const Assembly& in, const ContactRows& made, Contacts& r
   };
   move(L::kVelocity, V);
   move(L::kBias, A);
-  rows.assemble({in.model, in.state, kinematics_, contact_, in.weights, in.tree, in.controlled,
+  rows.assemble({in.model, in.state, kinematics_, contact_, in.weights, in.tree, in.input,
                  in.midstepVelocity, in.load, nullptr});
   V = keptV, A = keptA;
   out.rows = rows.rowCount();

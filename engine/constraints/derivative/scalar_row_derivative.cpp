@@ -19,8 +19,8 @@ int find(const Rows& rows, const RowKey& name, int from) {
 }
 
 Assembly withState(const Assembly& in, const State& state) {
-  return {in.model, state,         in.kinematics,      in.contacts, in.weights,
-          in.tree,  in.controlled, in.midstepVelocity, in.load,     nullptr};
+  return {in.model, state,    in.kinematics,      in.contacts, in.weights,
+          in.tree,  in.input, in.midstepVelocity, in.load,     nullptr};
 }
 
 }  // namespace
@@ -28,9 +28,9 @@ Assembly withState(const Assembly& in, const State& state) {
 ScalarRowDerivative::ScalarRowDerivative(const Model& model)
     : state_(model), gradient_(VectorX::Zero(model.nv)) {}
 
-template <class Rows, class Sign>
+template <class Rows>
 void ScalarRowDerivative::add(const Assembly& in, const Rows& rows, Rows& more, Rows& less,
-                              const Sign& sign, bool ofPosition, MatrixX& G) {
+                              bool ofPosition, MatrixX& G) {
   if (rows.rowCount() == 0) return;
   state_ = in.state;
   VectorX& x = ofPosition ? state_.q : state_.v;
@@ -53,7 +53,7 @@ void ScalarRowDerivative::add(const Assembly& in, const Rows& rows, Rows& more, 
     const double reference = (high.reference[highRow] - low.reference[lowRow]) / apart;
     const double stiffness = (high.D[highRow] - low.D[lowRow]) / (apart * rows.D[row]);
     const int i = rows.dof(row);
-    G(i, i) -= sign(row) * (rows.h[row] * reference + rows.f[row] * stiffness);
+    G(i, i) -= rows.sign(row) * (rows.h[row] * reference + rows.f[row] * stiffness);
   }
 }
 
@@ -85,8 +85,8 @@ void ScalarRowDerivative::addBorneInertia(const Assembly& in, const JointLimit& 
   // Rows that a load makes as hard as they are do not ask for the joint's own weight.
   weights_ = in.weights;
   for (double& weight : weights_.dof) weight *= 1.0 + 1e-9;
-  limitMore_.assemble({in.model, in.state, in.kinematics, in.contacts, weights_, in.tree,
-                       in.controlled, in.midstepVelocity, in.load, nullptr});
+  limitMore_.assemble({in.model, in.state, in.kinematics, in.contacts, weights_, in.tree, in.input,
+                       in.midstepVelocity, in.load, nullptr});
   for (int row = 0; row < rows.rowCount(); ++row) {
     if (rows.h[row] == 0.0 || limitMore_.D[row] != rows.D[row]) continue;
     const int i = rows.dof(row);
@@ -98,11 +98,11 @@ void ScalarRowDerivative::addBorneInertia(const Assembly& in, const JointLimit& 
 
 void ScalarRowDerivative::addTo(const Assembly& in, const Constraints& rows,
                                 const MassMatrix& inertia, MatrixX& Gq, MatrixX& Gv) {
-  const auto limits = [&](int row) { return rows.jointLimit.sign(row); };
-  const auto friction = [](int) { return 1.0; };
-  add(in, rows.jointLimit, limitMore_, limitLess_, limits, true, Gq);
-  add(in, rows.jointLimit, limitMore_, limitLess_, limits, false, Gv);
-  add(in, rows.dryFriction, frictionMore_, frictionLess_, friction, false, Gv);
+  add(in, rows.jointLimit, limitMore_, limitLess_, true, Gq);
+  add(in, rows.jointLimit, limitMore_, limitLess_, false, Gv);
+  add(in, rows.dryFriction, frictionMore_, frictionLess_, false, Gv);
+  add(in, rows.servo, servoMore_, servoLess_, true, Gq);
+  add(in, rows.servo, servoMore_, servoLess_, false, Gv);
   addBorneInertia(in, rows.jointLimit, inertia, Gq);
 }
 

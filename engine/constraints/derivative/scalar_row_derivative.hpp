@@ -30,9 +30,9 @@ class ScalarRowDerivative {
              MatrixX& Gv);
 
  private:
-  template <class Rows, class Sign>
-  void add(const Assembly& in, const Rows& rows, Rows& more, Rows& less, const Sign& sign,
-           bool ofPosition, MatrixX& G);
+  template <class Rows>
+  void add(const Assembly& in, const Rows& rows, Rows& more, Rows& less, bool ofPosition,
+           MatrixX& G);
   void addBorneInertia(const Assembly& in, const JointLimit& rows, const MassMatrix& inertia,
                        MatrixX& Gq);
   /// gradient_ ← gradient_ + scale · ∂I/∂q of what the joint of `body` bears; returns I. What its
@@ -43,6 +43,7 @@ class ScalarRowDerivative {
   InverseWeights weights_;
   JointLimit limitMore_, limitLess_;
   DryFriction frictionMore_, frictionLess_;
+  ServoDrive servoMore_, servoLess_;
   VectorX gradient_;
 };
 

@@ -73,6 +73,23 @@ void checkImpedance(const Impedance& p, const SourceLocation& where, const std::
                      "impedance power is " + number(p.power) + ", expected 1 or more");
 }
 
+namespace {
+
+template <class Fail>
+void checkServo(const Servo& servo, bool mayHaveOne, const Fail& fail) {
+  for (const auto& [gain, what] : {std::pair(servo.kp, "kp"), std::pair(servo.kd, "kd")})
+    if (!(gain >= 0.0) || !std::isfinite(gain))
+      fail("servo's " + std::string(what) + " is " + number(gain) + ", expected 0 or more");
+  if (servo.exists() && !mayHaveOne)
+    fail("has a servo, which only a revolute, continuous or prismatic joint that mimics none has");
+  if (!(servo.effort > 0.0))
+    fail("servo's effort is " + number(servo.effort) + ", expected more than 0");
+  if (!std::isfinite(servo.setPoint) || !std::isfinite(servo.setPointRate))
+    fail("servo's set point is not finite");
+}
+
+}  // namespace
+
 void checkJoint(const JointSpec& joint) {
   const std::string element = "joint '" + joint.name + "'";
   const auto fail = [&](const std::string& text) { throw ModelError(joint.where, element, text); };
@@ -105,6 +122,7 @@ void checkJoint(const JointSpec& joint) {
                       joint.type == JointType::prismatic;
   if (joint.stiffness != 0.0 && !scalar)
     fail("has a spring, which only a revolute, continuous or prismatic joint may have");
+  checkServo(joint.servo, scalar && !joint.mimic, fail);
   if (joint.effort) notNegative(*joint.effort, "effort");
   if (joint.velocity) notNegative(*joint.velocity, "velocity");
   if (joint.mimic &&

@@ -283,5 +283,22 @@ TEST(InverseDerivative, OfContactsOfShapesWithoutAClosedForm) {
       [](Scene&) {}, {}, 0.5, 1e-6);  // themselves differences
 }
 
+// Of servos at their limit and within it.
+TEST(InverseDerivative, OfServos) {
+  for (const std::uint64_t seed : {1, 2, 3, 4}) {
+    Random random(seed);
+    Scene s(chain(6).build());
+    for (Dof& dof : s.model.dofs)
+      dof.servo = {.kp = random.uniform(1.0, 300.0),
+                   .kd = random.uniform(0.0, 20.0),
+                   .effort = random.uniform(2.0, 60.0),
+                   .setPoint = random.uniform(-1.0, 1.0)};
+    s.state = randomState(s.model, random);
+    Count count;
+    expectDerivative(s, random.vector(s.model.nv, 5.0), count);
+    EXPECT_GT(count.compared, 6);
+  }
+}
+
 }  // namespace
 }  // namespace softgauss::test
