@@ -7,6 +7,7 @@
 
 #include "softgauss/engine/constraints/contact_motion.hpp"
 #include "softgauss/engine/constraints/contact_rotation.hpp"
+#include "softgauss/engine/constraints/contact_slip.hpp"
 #include "softgauss/engine/constraints/contact_softness.hpp"
 #include "softgauss/engine/constraints/law/row_law.hpp"
 #include "softgauss/engine/constraints/stiction.hpp"
@@ -54,84 +55,14 @@ ContactBlocks::FrameVector biasInFrame(const ContactRows& contact, const Motion&
   return y;
 }
 
-/// Rows that share what presses along the normal.
-int rowsAlongNormal(const Options& options, const Touch& touch) {
-  return options.cone == Cone::pyramidal && touch.frictionDim > 0 ? 2 * touch.frictionDim : 1;
-}
-
-/// n A/R: what its n rows answer to a residual along the normal, of what would undo it [-].
-double gain(const Options& options, const Touch& touch) {
-  return rowsAlongNormal(options, touch) * touch.inverseMass / touch.softness.R;
-}
-
 /// Residual of a row that holds its body at rest under `acceleration` [m/s²].
 double residualUnder(double acceleration, const Options& options, const Touch& touch) {
-  return acceleration / gain(options, touch);
+  return acceleration / gainOf(options, touch, touch.softness);
 }
 
 /// Speed at which it creeps under its weight [m/s].
 double creepUnderWeight(const Options& options, const Touch& touch) {
   return residualUnder(options.gravity.norm(), options, touch) / touch.softness.damping;
-}
-
-/// What turns a body by a push at p_W, as an inverse weight there [1/kg].
-double turnedWeight(const Assembly& in, int body, const Vector3& p_W) {
-  const Vector3 lever = p_W - in.kinematics.X_WB[body] * in.model.bodies[body].com;
-  return in.weights.rotation[body] * lever.squaredNorm();
-}
-
-/// Where the centre of mass cannot move, a wheel's on its stand, a push moves p by turning the body
-/// alone: this share of that counts at least, or the row's mass would be without bound.
-constexpr double kTurned = 1e-4;
-
-/// The inverse weight of a body at p_W [1/kg]: that of its centre of mass, if that can move.
-double weightAt(const Assembly& in, int body, const Vector3& p_W) {
-  const double ofCentre = in.weights.translation[body];
-  if (in.model.options.constraintModel == ConstraintModel::mujoco) return ofCentre;
-  return std::max(ofCentre, kTurned * turnedWeight(in, body, p_W));
-}
-
-/// V (5.11): by how much a slip [m/s] is faster than what friction stops within the row's horizon,
-/// where its contact `presses` by so much [m/s²], or by its weight.
-double slipNumber(const Options& options, const Touch& touch, double slip, double presses) {
-  const double horizon = std::max(options.timestep, 1.0 / touch.softness.damping);
-  const double load = gain(options, touch) * std::max(0.0, presses);
-  const double stopped = touch.mu() * horizon * std::max(options.gravity.norm(), load);
-  return stopped > 0.0 ? slip / stopped : (slip > 0.0 ? kInfinity : 0.0);
-}
-
-/// m (5.12): what friction changes this slip by, over what it changes a slide by.
-double mobilityOf(const Assembly& in, const Contact& c, const Touch& touch, const Slip& slip) {
-  if (slip.dim <= 2) return 1.0;
-  const double turns = in.weights.rotation[c.bodyA] + in.weights.rotation[c.bodyB];
-  double m = 0.0;
-  for (int k = 0; k < slip.dim; ++k)
-    m += std::pow(slip.direction[k] * touch.friction[k] / touch.mu(), 2.0) *
-         (k < 2 ? 1.0 : turns / touch.inverseMass);
-  return m;
-}
-
-/// Whether slip may push the bodies of a contact apart: nothing glides whose centre of mass cannot
-/// move.
-bool mayGlide(const Assembly& in, const Contact& c) {
-  return in.weights.translation[c.bodyA] + in.weights.translation[c.bodyB] >
-         kTurned * (turnedWeight(in, c.bodyA, c.p_WC) + turnedWeight(in, c.bodyB, c.p_WC));
-}
-
-/// Whether a pyramid turns with the slip: where friction turns the slip stably, slower than it
-/// points. Friction then points against the slip, whatever tangents the pyramid has.
-bool slides(const Assembly& in, const Contact& contact, const Touch& touch, const Vector3& slip) {
-  constexpr double kTurnsStably = 0.5;
-  const Options& options = in.model.options;
-  if (touch.frictionDim == 0 || options.cone != Cone::pyramidal || !options.correctsSlip() ||
-      !mayGlide(in, contact))
-    return false;
-  const Softness& s = touch.softness;
-  const double normal = contact.n_W.dot(slip);
-  const double presses = std::max(0.0, -s.stiffness * touch.distance) +
-                         std::max(0.0, -s.damping * normal) /
-                             (1.0 + gain(options, touch) * options.timestep * s.damping);
-  return slipNumber(options, touch, (slip - normal * contact.n_W).norm(), presses) > kTurnsStably;
 }
 
 /// What presses by the weight and by J̇ v [m/s²].
@@ -271,8 +202,8 @@ ContactBlocks::BlockMotion ContactBlocks::addBlock(const Assembly& in, int i, co
   const Motion slips{
       k.V[c.bodyB].angular - k.V[c.bodyA].angular,
       pointVelocity(model, k, c.bodyB, c.p_WC) - pointVelocity(model, k, c.bodyA, c.p_WC)};
-  const Matrix3 R_WC = slides(in, c, touch, slips.linear) ? contactFrame(c.n_W, slips.linear)
-                                                          : contactFrame(c.n_W, c.tangent_W);
+  const Matrix3 R_WC = turnsWithSlip(in, c, touch, slips.linear) ? contactFrame(c.n_W, slips.linear)
+                                                                 : contactFrame(c.n_W, c.tangent_W);
   // The contacts of a pair are neighbours in the set.
   const std::vector<Contact>& all = in.contacts.contacts;
   int place = 0;
@@ -332,41 +263,6 @@ Softness ContactBlocks::soften(const Assembly& in, const Touch& touch,
       speeds.regularisationScale(touch.supportsOthers ? kCarries : kAlone);
   in.count(Mechanism::stiction, contactsWithRows_.back().regularisationScale < 1.0);
   return stiffened(soft, contactsWithRows_.back().regularisationScale);
-}
-
-Slip ContactBlocks::slipOf(const Assembly& in, const Touch& touch, const Softness& soft,
-                           const BlockMotion& moves) const {
-  constexpr double kSure = 30.0;
-  const Options& options = in.model.options;
-  Slip slip;
-  slip.dim = touch.frictionDim;
-  slip.damping = options.timestep * soft.damping;
-  slip.asked = soft.damping * slipSpeed(touch, moves.velocity);
-  if (!(slip.asked > 0.0)) return slip;
-  const Contact& contact = in.contacts.contacts[contactsWithRows_.back().contact];
-  if (!mayGlide(in, contact)) return slip;
-  for (int k = 0; k < slip.dim; ++k)
-    slip.direction[k] = -touch.friction[k] * soft.damping * moves.velocity[k + 1] / slip.asked;
-  const double m = mobilityOf(in, contact, touch, slip);
-  slip.asksFor = std::clamp(1.0 / m, 1.0, 2.0 * slip.dim);
-  slip.share =
-      std::min(1.0, kSure * slipNumber(options, touch, slip.asked / (m * soft.damping * touch.mu()),
-                                       -soft.stiffness * touch.distance));
-  in.count(Mechanism::slipCorrection, slip.share == 1.0);
-  if (!in.state.hasAcceleration) return slip;
-  double last[6];
-  const int block = jacobian_.size() - 1;
-  if (in.lastMotion)
-    jacobian_.multiply(block, BodyMotion{in.state.a, *in.lastMotion}, last);
-  else
-    jacobian_.multiply(block, in.state.a, last);
-  for (int k = 0; k < slip.dim; ++k)
-    slip.met += slip.direction[k] * touch.friction[k] * (last[k + 1] + moves.bias[k + 1]);
-  const double leaves = last[0] + moves.bias[0];
-  if (slip.met > 0.0 && leaves > 0.0)
-    slip.met = std::max(0.0, slip.met - 0.5 * touch.mu() * touch.mu() * leaves);
-  slip.met = std::clamp(slip.met, -slip.asked, slip.asked);
-  return slip;
 }
 
 void ContactBlocks::indexRows(std::size_t rows) {

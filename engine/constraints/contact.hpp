@@ -136,6 +136,9 @@ class ContactBlocks {
   /// How the last block slides (5.8).
   Slip slipOf(const Assembly& in, const Touch& touch, const Softness& soft,
               const BlockMotion& moves) const;
+  /// What of s the last acceleration met by what rests on the contact, t₋ of (5.8); `brakes` is β.
+  double metLast(const Assembly& in, const BlockMotion& moves, const Slip& slip,
+                 double brakes) const;
   /// Contact of each of `rows` rows.
   void indexRows(std::size_t rows);
 

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "softgauss/engine/constraints/contact_slip.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace softgauss {
+namespace {
+
+/// What turns a body by a push at p_W, as an inverse weight there [1/kg].
+double turnedWeight(const Assembly& in, int body, const Vector3& p_W) {
+  const Vector3 lever = p_W - in.kinematics.X_WB[body] * in.model.bodies[body].com;
+  return in.weights.rotation[body] * lever.squaredNorm();
+}
+
+/// Where the centre of mass cannot move, a wheel's on its stand, a push moves p by turning the body
+/// alone: this share of that counts at least, or the row's mass would be without bound.
+constexpr double kTurned = 1e-4;
+
+/// V (5.11): by how much a slip [m/s] is faster than what friction stops within the row's horizon,
+/// where its contact `presses` by so much [m/s²], or by its weight.
+double slipNumber(const Options& options, const Touch& touch, double slip, double presses) {
+  const double horizon = std::max(options.timestep, 1.0 / touch.softness.damping);
+  const double load = gainOf(options, touch, touch.softness) * std::max(0.0, presses);
+  const double stopped = touch.mu() * horizon * std::max(options.gravity.norm(), load);
+  return stopped > 0.0 ? slip / stopped : (slip > 0.0 ? kInfinity : 0.0);
+}
+
+/// m (5.12): what friction changes this slip by, over what it changes a slide by.
+double mobilityOf(const Assembly& in, const Contact& c, const Touch& touch, const Slip& slip) {
+  if (slip.dim <= 2) return 1.0;
+  const double turns = in.weights.rotation[c.bodyA] + in.weights.rotation[c.bodyB];
+  double m = 0.0;
+  for (int k = 0; k < slip.dim; ++k)
+    m += std::pow(slip.direction[k] * touch.friction[k] / touch.mu(), 2.0) *
+         (k < 2 ? 1.0 : turns / touch.inverseMass);
+  return m;
+}
+
+/// The inverse weight of a body at p_W along the unit vector d [1/kg].
+double weightAlong(const Assembly& in, int body, const Vector3& p_W, const Vector3& d_W) {
+  const Vector3 lever = p_W - in.kinematics.X_WB[body] * in.model.bodies[body].com;
+  return in.weights.translation[body] + in.weights.rotation[body] * lever.cross(d_W).squaredNorm();
+}
+
+/// β (5.8): how much of s friction meets for each m/s² that the normal force adds to ẏ_n.
+double brakesPerPush(const Assembly& in, const Contact& c, const ContactRows& made,
+                     const Slip& slip) {
+  const auto along = [&](const Vector3& d_W) {
+    return weightAlong(in, c.bodyA, c.p_WC, d_W) + weightAlong(in, c.bodyB, c.p_WC, d_W);
+  };
+  const double turns = in.weights.rotation[c.bodyA] + in.weights.rotation[c.bodyB];
+  double sum = 0.0;
+  for (int k = 0; k < slip.dim; ++k)
+    sum += std::pow(slip.direction[k] * made.friction[k], 2.0) *
+           (k < 2 ? along(made.R_WC.col(k + 1)) : turns);
+  return sum / along(c.n_W);
+}
+
+/// Whether slip may push the bodies of a contact apart: nothing glides whose centre of mass cannot
+/// move.
+bool mayGlide(const Assembly& in, const Contact& c) {
+  return in.weights.translation[c.bodyA] + in.weights.translation[c.bodyB] >
+         kTurned * (turnedWeight(in, c.bodyA, c.p_WC) + turnedWeight(in, c.bodyB, c.p_WC));
+}
+
+}  // namespace
+
+double weightAt(const Assembly& in, int body, const Vector3& p_W) {
+  const double ofCentre = in.weights.translation[body];
+  if (in.model.options.constraintModel == ConstraintModel::mujoco) return ofCentre;
+  return std::max(ofCentre, kTurned * turnedWeight(in, body, p_W));
+}
+
+double gainOf(const Options& options, const Touch& touch, const Softness& soft) {
+  const bool edges = options.cone == Cone::pyramidal && touch.frictionDim > 0;
+  return (edges ? 2 * touch.frictionDim : 1) * touch.inverseMass / soft.R;
+}
+
+bool turnsWithSlip(const Assembly& in, const Contact& contact, const Touch& touch,
+                   const Vector3& slip_W) {
+  constexpr double kTurnsStably = 0.5;
+  const Options& options = in.model.options;
+  if (touch.frictionDim == 0 || options.cone != Cone::pyramidal || !options.correctsSlip() ||
+      !mayGlide(in, contact))
+    return false;
+  const Softness& s = touch.softness;
+  const double normal = contact.n_W.dot(slip_W);
+  const double presses =
+      std::max(0.0, -s.stiffness * touch.distance) +
+      std::max(0.0, -s.damping * normal) /
+          (1.0 + gainOf(options, touch, touch.softness) * options.timestep * s.damping);
+  return slipNumber(options, touch, (slip_W - normal * contact.n_W).norm(), presses) > kTurnsStably;
+}
+
+Slip ContactBlocks::slipOf(const Assembly& in, const Touch& touch, const Softness& soft,
+                           const BlockMotion& moves) const {
+  constexpr double kSure = 30.0;
+  const Options& options = in.model.options;
+  Slip slip;
+  slip.dim = touch.frictionDim;
+  slip.damping = options.timestep * soft.damping;
+  slip.asked = soft.damping * slipSpeed(touch, moves.velocity);
+  if (!(slip.asked > 0.0)) return slip;
+  const Contact& contact = in.contacts.contacts[contactsWithRows_.back().contact];
+  if (!mayGlide(in, contact)) return slip;
+  for (int k = 0; k < slip.dim; ++k)
+    slip.direction[k] = -touch.friction[k] * soft.damping * moves.velocity[k + 1] / slip.asked;
+  const double m = mobilityOf(in, contact, touch, slip);
+  slip.asksFor = std::clamp(1.0 / m, 1.0, 2.0 * slip.dim);
+  slip.share =
+      std::min(1.0, kSure * slipNumber(options, touch, slip.asked / (m * soft.damping * touch.mu()),
+                                       -soft.stiffness * touch.distance));
+  in.count(Mechanism::slipCorrection, slip.share == 1.0);
+  const double brakes = brakesPerPush(in, contact, contactsWithRows_.back(), slip);
+  slip.met = metLast(in, moves, slip, brakes);
+  const double gain = gainOf(options, touch, soft);
+  const double push = soft.referenceAcceleration(moves.velocity[0], touch.distance);
+  const double load = std::max(options.gravity.norm(), slip.met / brakes);
+  slip.met += brakes * std::max(0.0, (gain * push - load) / (1.0 + gain));
+  slip.met = std::clamp(slip.met, -slip.asked, slip.asked);
+  return slip;
+}
+
+double ContactBlocks::metLast(const Assembly& in, const BlockMotion& moves, const Slip& slip,
+                              double brakes) const {
+  if (!in.state.hasAcceleration) return 0.0;
+  double last[6];
+  const int block = jacobian_.size() - 1;
+  if (in.lastMotion)
+    jacobian_.multiply(block, BodyMotion{in.state.a, *in.lastMotion}, last);
+  else
+    jacobian_.multiply(block, in.state.a, last);
+  double met = 0.0;
+  for (int k = 0; k < slip.dim; ++k)
+    met += slip.direction[k] * contactsWithRows_.back().friction[k] *
+           (last[k + 1] + moves.bias[k + 1]);
+  const double leaves = last[0] + moves.bias[0];
+  return met > 0.0 && leaves > 0.0 ? std::max(0.0, met - brakes * leaves) : met;
+}
+
+}  // namespace softgauss
