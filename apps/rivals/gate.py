@@ -95,6 +95,10 @@ def refusals(runs):
     out = {}
     for r in runs:
         key = r["scene"], r["entry"], r["h"]
+        if "refused" in r:  # decided when it ran
+            if r["refused"]:
+                out[key] = r["refused"]
+            continue
         why = refusal_of_run(r) or digits.get(key[:2])
         if not why and r["scene"] in plan.SMOOTH and r["entry"].split()[0] in inertia:
             why = f"inertia of the chain off by {inertia[r['entry'].split()[0]]:.2g}"

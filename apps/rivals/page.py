@@ -1,19 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Writes what the study has found: page.py FOLDER DOCS.
+"""Writes what the study has found: page.py FOLDER DOCS [--keep].
 
 FOLDER is that of study.py. Of DOCS/rivals.md what stands between `<!-- NAME -->` and `<!-- end -->` is
-written anew; DOCS/rivals/ gets all results as results.csv and the pictures.
+written anew; DOCS/rivals/ gets all results as results.csv and the pictures. --keep, for a study of a part:
+what FOLDER lacks stays as results.csv has it, and times as the page has them.
 """
-import csv
+import argparse
 import json
 import pathlib
 import re
-import statistics
-import sys
 
 import gate
+import kept
 import pictures
 import plan
+import times
 import verdicts
 
 RED = "🔴 "
@@ -21,18 +22,28 @@ RED = "🔴 "
 
 def load(folder):
     """Runs by (scene, entry, step); the last of each counts."""
-    lines = (folder / "results.jsonl").read_text().splitlines()
+    path = folder / "results.jsonl"
+    lines = path.read_text().splitlines() if path.exists() else []
     return {(r["scene"], r["entry"], r["h"]): r for r in map(json.loads, lines)}
 
 
 class Page:
-    def __init__(self, folder):
+    def __init__(self, folder, earlier=None):
+        self.keeps = earlier is not None
         self.runs = load(folder)
+        if self.keeps:
+            self.runs.update(kept.read(earlier, self.runs))
         self.refusals = gate.refusals(list(self.runs.values()))
         path = folder / "second.json"
-        self.second = json.loads(path.read_text()) if path.exists() else {}
-        path = folder / "times.jsonl"
-        self.times = [json.loads(l) for l in path.read_text().splitlines()] if path.exists() else []
+        for engine, s in json.loads(path.read_text()).items() if path.exists() else ():
+            run = self.runs.get((plan.SECOND_SCENE, self.first(engine).key, plan.STEP))
+            if run:
+                run["judged"]["measures"]["second_m"] = s["distance_m"]
+        self.times = times.read(folder)
+
+    @staticmethod
+    def first(engine):
+        return next(e for e in plan.ENTRIES if e.engine == engine)
 
     def present(self, kind):
         """Columns of a kind of table: those that have run."""
@@ -130,6 +141,22 @@ class Page:
                            "at half the cone [mm/s]", "at 99 % of the cone [mm/s]", "at 99 %, slope askew by 37°: down, aside [mm/s]",
                            "ball slides, then rolls: off [mm], slips [%]"], rows)
 
+    def bounce(self):
+        """Of every body and restitution: the three heights. The truth is in the head."""
+        rows = [[e.label] + [self.cell(s, e, "top1_mm", "top2_mm", "top3_mm", style="{:.0f}") for s in plan.BOUNCE]
+                + [self.cell("bounce_ball_80", e, "deepest_mm")] for e in self.present("bounce")]
+        names = []
+        for s in plan.BOUNCE:
+            kind, e = s.split("_")[1], float(s.split("_")[2]) / 100
+            names.append(f"{kind}, e = {e:g}: " + ", ".join(f"{1000 * e ** (2 * n):.0f}" for n in (1, 2, 3)))
+        return self.table(["heights [mm]"] + names + ["deepest, ball, e = 0.8"], rows)
+
+    def machines(self):
+        rows = [[e.label, self.cell("nut_rests", e, "off_mm", "creep_mm_s"), self.cell("nut_runs", e, "off_mm", "aside_mm"),
+                 self.cell("feet", e, "off_mm", "aside_mm", "turned_deg", "slip_mm")] for e in self.present("hold")]
+        return self.table(["", "nut that locks, 10 s: sinks [mm], then [mm/s]", "nut that runs down 17.5 mm: off, aside [mm]",
+                           "feet walk 270 mm: off, aside [mm], turn [°], slip [mm]"], rows)
+
     def hold(self):
         rows = [[e.label, self.cell("mass_1000", e, "sinks_mm", "leans_deg"), self.cell("tower_10", e, "sinks_mm", "leans_deg"),
                  self.cell("tower_20", e, "sinks_mm", "leans_deg"), self.grip(e),
@@ -179,8 +206,11 @@ class Page:
         return {name: (labels[c], labels[s]) for name, (c, s) in self.MATRIX.items() if c in labels and s in labels}
 
     def verdict(self, case, column):
-        contacts = plan.kind_of(case[1][0]) in plan.CONTACT
-        return verdicts.verdict(case, column[0 if contacts else 1], self.runs, self.refusals)
+        entry = column[0 if plan.kind_of(case[1][0]) in plan.CONTACT else 1]
+        found = verdicts.verdict(case, entry, self.runs, self.refusals)
+        npm = [e for e in plan.ENTRIES if (e.engine, e.settings) == (entry.engine + "_npm", entry.settings)]
+        # Where an engine has not run natively, as npm has it.
+        return found or (verdicts.verdict(case, npm[0], self.runs, self.refusals) if npm else None)
 
     def matrix(self):
         columns = self.matrix_columns()
@@ -194,9 +224,10 @@ class Page:
             lines.append("Simbody was not there: errors of smooth motion are from our own reference, without a second one.")
         for scene, distance in gate.references(list(self.runs.values())).items():
             lines.append(f"The two references of `{scene}` differ by {distance:.2g} m (root mean square).")
-        for engine, s in self.second.items():
-            label = next(e.label for e in plan.ENTRIES if e.engine == engine)
-            lines.append(f"`{plan.SECOND_SCENE}` of {label}, written a second time: {1e3 * s['distance_m']:.1g} mm from the study's run.")
+        for e in map(self.first, plan.SECOND):
+            m = self.measures(plan.SECOND_SCENE, e)
+            if "second_m" in m:
+                lines.append(f"`{plan.SECOND_SCENE}` of {e.label}, written a second time: {1e3 * m['second_m']:.1g} mm from the study's run.")
         by = {}
         for (scene, entry, _), why in self.refusals.items():
             by.setdefault((entry.split()[0], re.sub(r"[\d.e+-]+", "…", why)), []).append((scene, why))
@@ -210,57 +241,47 @@ class Page:
             lines.append(f"No run of {why[0]}: {', '.join(found)}: {why[1]}.")
         return ["- " + l for l in lines]
 
-    def time_rows(self):
-        """Medians and spread of CPU time a step over that of the calibration beside it, by scene."""
-        rows = []
-        for scene in plan.TIMED:
-            for e in plan.ENTRIES:
-                found = [t for t in self.times if t["scene"] == scene and t["entry"] == e.key]
-                if found:
-                    us = sorted(t["us_a_step"] for t in found)
-                    rows.append((scene, e, statistics.median(us), us[0], us[-1], statistics.median(t["calibration_us"] for t in found),
-                                 statistics.median(t["load"] for t in found), found[-1]["end"]))
-        return rows
-
     def time_table(self):
-        rows = self.time_rows()
+        """Medians and ranges of CPU time a step over that of the calibration beside it, by scene; None: as they were."""
+        found = times.figures(self.times)
+        rows = [(scene, e, found[scene, e.key]) for scene in plan.TIMED for e in plan.ENTRIES if (scene, e.key) in found]
         if not rows:
-            return ["Not measured in this run of the study: `./dev rivals` times after the errors, on a machine that does nothing else."]
-        load = max(r[6] for r in rows)
-        lines = self.table(["scene", "column", "µs a step, median (least to most)", "calibration [µs]", "end"],
-                           [[s, e.label, f"{m:.3g} ({a:.3g} to {b:.3g})", f"{c:.3g}", end] for s, e, m, a, b, c, _, end in rows])
+            return None if self.keeps else ["Not measured in this run of the study: `./dev rivals` times after the errors, on a machine that does nothing else."]
+        load = max(f.load for _, _, f in rows)
+        lines = self.table(["scene", "column", "a step, times the calibration: median (least to most)", "µs a step", "rounds", "end"],
+                           [[s, e.label, f"{f.median:.3g} ({f.ratios[0]:.3g} to {f.ratios[-1]:.3g})", f"{f.median * f.calibration_us:.3g}",
+                             str(len(f.ratios)), f.end] for s, e, f in rows])
         return lines + ["", f"Largest median load of the machine: {load:.2g}" + ("; above 1.5 these figures say little." if load > 1.5 else ".")]
 
-    def write_csv(self, path):
-        with path.open("w", newline="") as file:
-            out = csv.writer(file, lineterminator="\n")
-            out.writerow(["scene", "engine", "settings", "h", "version", "end", "refused", "measures"])
-            for (scene, entry, h), r in sorted(self.runs.items()):
-                engine, *settings = entry.split()
-                m = r.get("judged", {}).get("measures", {})
-                out.writerow([scene, engine, " ".join(settings), h, r.get("version", ""), r["end"], self.refusals.get((scene, entry, h), ""),
-                              " ".join(f"{k}={v:.6g}" for k, v in sorted(m.items()) if v is not None)])
-
     SECTIONS = {"line": line, "versions": versions, "gate": gate, "chain_20": lambda s: s.smooth("chain_20"),
-                "humanoid_in_the_air": lambda s: s.smooth("humanoid_in_the_air"), "drift": drift, "thrown": thrown, "friction": friction,
-                "hold": hold, "work": work, "softness": softness, "matrix": matrix, "times": time_table}
+                "humanoid_in_the_air": lambda s: s.smooth("humanoid_in_the_air"), "drift": drift, "thrown": thrown, "friction": friction, "bounce": bounce,
+                "hold": hold, "work": work, "machines": machines, "softness": softness, "matrix": matrix, "times": time_table}
 
     def fill(self, text):
         for name, make in self.SECTIONS.items():
-            content = "\n".join(make(self))
+            lines = make(self)
+            if lines is None:
+                continue
+            content = "\n".join(lines)
             text = re.sub(rf"(<!-- {name} -->\n).*?(<!-- end -->)", lambda m: m[1] + content + "\n" + m[2], text, flags=re.S)
         return text
 
 
-def main(folder, docs):
-    page = Page(pathlib.Path(folder))
-    docs = pathlib.Path(docs)
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("folder", type=pathlib.Path)
+    parser.add_argument("docs", type=pathlib.Path)
+    parser.add_argument("--keep", action="store_true")
+    arguments = parser.parse_args()
+    docs = arguments.docs
     (docs / "rivals").mkdir(parents=True, exist_ok=True)
-    page.write_csv(docs / "rivals/results.csv")
+    results = docs / "rivals/results.csv"
+    page = Page(arguments.folder, results if arguments.keep else None)
+    kept.write(results, page.runs, page.refusals)
     pictures.draw(page, docs / "rivals")
     text = docs / "rivals.md"
     text.write_text(page.fill(text.read_text()))
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    main()

@@ -25,13 +25,15 @@ SMOOTH = ("chain_20", "humanoid_in_the_air")
 DRIFT = ("chain_10_long", "top", "free_body", "thrown_body")
 THROWN = tuple(f"thrown_{s:g}_{a:g}" for s in scenes.SPEEDS for a in scenes.DIRECTIONS)
 FRICTION = THROWN + ("slides_37", "creep_15", "creep_50", "creep_99", "creep_99_askew", "rolling")
-HOLD = ("mass_1000", "tower_10", "tower_20", "grip", "grip_shaken", "cart", "peg", "rope", "humanoid_falls", "pile_50", "capsules_27")
+BOUNCE = tuple(f"bounce_{kind}_{100 * e:g}" for kind in ("ball", "box") for e in scenes.machines.RESTITUTIONS)
+MACHINES = ("nut_rests", "nut_runs", "feet")
+HOLD = ("mass_1000", "tower_10", "tower_20", "grip", "grip_shaken", "cart", "peg", "rope", "humanoid_falls", "pile_50", "capsules_27") + MACHINES
 SOFTNESS = ("drop",)
-KINDS = {"smooth": SMOOTH, "drift": DRIFT, "friction": FRICTION, "hold": HOLD, "softness": SOFTNESS}
+KINDS = {"smooth": SMOOTH, "drift": DRIFT, "friction": FRICTION, "bounce": BOUNCE, "hold": HOLD, "softness": SOFTNESS}
 TIMED = ("tower_10", "tower_20", "pile_50", "capsules_27", "humanoid_falls", "mass_1000", "thrown_2_37", "chain_20",
-         "humanoid_in_the_air")
+         "humanoid_in_the_air", "nut_rests", "feet")
 
-CONTACT = ("friction", "hold", "softness")
+CONTACT = ("friction", "bounce", "hold", "softness")
 MOTION = ("smooth", "drift")
 
 ENTRIES = (

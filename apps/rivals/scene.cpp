@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/rivals/scene.hpp"
 
+#include <cmath>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
@@ -52,6 +53,8 @@ Joint joint(const json& j) {
           {},
           j.at("force")};
   if (!j.at("range").is_null()) x.range = {number(j.at("range"), 0), number(j.at("range"), 1)};
+  if (j.contains("program"))
+    for (const json& p : j.at("program")) x.program.emplace_back(number(p, 0), number(p, 1));
   return x;
 }
 
@@ -62,6 +65,20 @@ Isometry3d BodyState::pose() const {
   X.linear() = orientation.toRotationMatrix();
   X.translation() = position;
   return X;
+}
+
+double Joint::forceAt(double time) const {
+  constexpr double kRounding = 1e-9;  // [s] of a time that is a sum of steps
+  double now = force;
+  for (const auto& [from, value] : program)
+    if (time >= from - kRounding) now = value;
+  return now;
+}
+
+double Scene::fallSpeed() const {
+  const Shape& shape = bodies[0].shapes[0];
+  const double under = shape.kind == ShapeKind::box ? shape.size[2] : shape.size[0];
+  return std::sqrt(2.0 * gravity.norm() * (bodies[0].start.position[2] - under));
 }
 
 double Scene::mass() const {
@@ -105,6 +122,7 @@ Scene parseScene(const std::string& text) {
           {}};
   for (const json& b : j.at("bodies")) s.bodies.push_back(body(b));
   for (const json& x : j.at("joints")) s.joints.push_back(joint(x));
+  s.restitution = j.value("restitution", 0.0);
   return s;
 }
 

@@ -58,6 +58,13 @@ struct Joint {
   Vector3d axis;      ///< at the start, world; of hinges and sliders
   std::optional<std::pair<double, double>> range;  ///< from the start [rad or m]
   double force = 0.0;                              ///< along the axis [N or N m], constant
+  /// Of sliders: times [s], ascending, and the force that acts along the axis from each on [N]. The
+  /// force on the child has its reaction on the parent.
+  std::vector<std::pair<double, double>> program = {};
+
+  bool isDriven() const { return force != 0.0 || !program.empty(); }
+  /// The force along the axis at a time after the start [s].
+  double forceAt(double time) const;
 };
 
 struct Scene {
@@ -70,8 +77,13 @@ struct Scene {
   double duration, sample;  ///< [s]
   std::vector<Body> bodies;
   std::vector<Joint> joints;
+  /// Of every pair: speed after an impact over speed before it.
+  double restitution = 0.0;
 
   double mass() const;
+  /// Speed at which the first body, a ball or a box that lies flat, meets the ground in a free fall
+  /// from where it starts at rest [m/s].
+  double fallSpeed() const;
   /// Pose of a body at the start; of −1, the world, the identity.
   Isometry3d startOf(int body) const;
   /// Speed of a joint along or about its axis at the start.

@@ -13,74 +13,11 @@ import xml.etree.ElementTree as xml
 
 import numpy as np
 
-GRAVITY = 9.81
+import machines
+from bodies import GRAVITY, body, box, box_inertia, capsule, joint, scene, shape, sphere, turn
+
 DIRECTIONS = (0, 22.5, 37, 45, 75, 120, 200, 300)  # of thrown boxes [degrees]
 SPEEDS = (0.5, 1, 2, 4)  # [m/s]
-
-
-# ---- Rotations and bodies ------------------------------------------------------------------------
-
-def turn(axis, angle):
-    a = np.asarray(axis, float) / np.linalg.norm(axis)
-    K = np.array([[0, -a[2], a[1]], [a[2], 0, -a[0]], [-a[1], a[0], 0]])
-    return np.eye(3) + math.sin(angle) * K + (1 - math.cos(angle)) * K @ K
-
-
-def quaternion(R):
-    """w, x, y, z of a rotation matrix."""
-    K = np.array([
-        [R[0, 0] - R[1, 1] - R[2, 2], 0, 0, 0],
-        [R[1, 0] + R[0, 1], R[1, 1] - R[0, 0] - R[2, 2], 0, 0],
-        [R[2, 0] + R[0, 2], R[2, 1] + R[1, 2], R[2, 2] - R[0, 0] - R[1, 1], 0],
-        [R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1], R[0, 0] + R[1, 1] + R[2, 2]]])
-    vectors = np.linalg.eigh(K / 3, UPLO="L")[1]
-    x, y, z, w = vectors[:, 3]
-    return [float(s) for s in (w, x, y, z)] if w >= 0 else [float(-s) for s in (w, x, y, z)]
-
-
-def shape(kind, size, position=(0, 0, 0), R=np.eye(3)):
-    return {"kind": kind, "size": [float(s) for s in size], "position": list(map(float, position)),
-            "orientation": quaternion(np.asarray(R))}
-
-
-def body(name, mass, inertia, position, R=np.eye(3), shapes=(), velocity=(0, 0, 0), spin=(0, 0, 0)):
-    return {"name": name, "mass": float(mass), "inertia": list(map(float, inertia)),
-            "position": list(map(float, position)), "orientation": quaternion(np.asarray(R)),
-            "velocity": list(map(float, velocity)), "angular_velocity": list(map(float, spin)),
-            "shapes": list(shapes)}
-
-
-def box_inertia(mass, half):
-    s = [mass * h * h / 3 for h in half]
-    return s[1] + s[2], s[0] + s[2], s[0] + s[1]
-
-
-def box(name, mass, half, position, **more):
-    return body(name, mass, box_inertia(mass, half), position, shapes=[shape("box", half)], **more)
-
-
-def sphere(name, mass, radius, position, **more):
-    return body(name, mass, 3 * [0.4 * mass * radius ** 2], position,
-                shapes=[shape("sphere", (radius, 0, 0))], **more)
-
-
-def capsule(name, mass, radius, half, position, **more):
-    """Its inertia is that of a cylinder."""
-    across = mass * (0.25 * radius ** 2 + half ** 2 / 3)
-    return body(name, mass, (across, across, 0.5 * mass * radius ** 2), position,
-                shapes=[shape("capsule", (radius, half, 0))], **more)
-
-
-def joint(kind, parent, child, anchor, axis=(0, 0, 1), force=0.0, limits=None):
-    return {"kind": kind, "parent": parent, "child": child, "anchor": list(map(float, anchor)),
-            "axis": list(map(float, axis)), "force": force, "range": limits}
-
-
-def scene(measure, bodies, joints=(), *, duration, sample=0.02, friction=0.5, ground=False,
-          collide=False, gravity=(0, 0, -GRAVITY)):
-    return {"measure": measure, "gravity": list(map(float, gravity)), "friction": friction,
-            "ground": ground, "collide": collide, "duration": duration, "sample": sample,
-            "bodies": list(bodies), "joints": list(joints)}
 
 
 # ---- Smooth motion -------------------------------------------------------------------------------
@@ -373,10 +310,12 @@ def all_scenes():
         "creep_99": of_cone(0.99, 0.5),
         "creep_99_askew": of_cone(0.99, 0.5, 37),
         "rolling": rolling(),
+        **{f"bounce_{kind}_{100 * e:g}": machines.bounce(kind, e) for kind in ("ball", "box") for e in machines.RESTITUTIONS},
         "drop": drop(),
         "mass_1000": tower(2, 5, [1, 1000]), "tower_10": tower(10), "tower_20": tower(20),
         "grip": grip(),
         "grip_shaken": shaken_grip(), "cart": cart(), "peg": peg(),
+        "nut_rests": machines.nut(0.4, 10), "nut_runs": machines.nut(0.1, 0.6), "feet": machines.feet(),
         "rope": rope(),
         "humanoid_falls": humanoid_falls(),
         "pile_50": pile(),

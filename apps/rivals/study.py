@@ -2,7 +2,7 @@
 """Runs the study beside other engines: study.py PROGRAMS FOLDER [--quick] [--only PATTERN] [--times ROUNDS].
 
 Each run is a process of its own. What has run with these programs and scenes is not run again, so that
-a study may be interrupted. FOLDER/results.jsonl holds a line a run, FOLDER/times.jsonl one a timed run.
+a study may be interrupted. FOLDER/results.jsonl holds a line a run, FOLDER/times.jsonl one a timed run (times.py).
 """
 import argparse
 import hashlib
@@ -18,6 +18,7 @@ from concurrent.futures import ThreadPoolExecutor, as_completed
 
 import plan
 import scenes
+import times
 
 HERE = pathlib.Path(__file__).parent
 
@@ -157,7 +158,9 @@ def is_idle(patience=180):
 
 
 def run_times(study, only, rounds):
-    """Rounds through all scenes and engines, so that a change of the machine's mood meets them all."""
+    """Rounds through all scenes and engines, so that a change of the machine's mood meets them all. Further sessions add to what
+    there is."""
+    session = 1 + max((r.get("session", 0) for r in times.read(study.folder)), default=0)
     with (study.folder / "times.jsonl").open("a") as file:
         for number in range(rounds):
             for scene in plan.TIMED:
@@ -167,7 +170,7 @@ def run_times(study, only, rounds):
                         continue
                     ran = study.run(scene, entry, plan.STEP, least=0.3)
                     if "us_a_step" in ran:
-                        file.write(json.dumps({"scene": scene, "entry": entry.key, "round": number, "end": ran["end"],
+                        file.write(json.dumps({"scene": scene, "entry": entry.key, "session": session, "round": number, "end": ran["end"],
                                                "us_a_step": ran["us_a_step"], "calibration_us": ran["calibration_us"],
                                                "load": os.getloadavg()[0]}) + "\n")
                         file.flush()

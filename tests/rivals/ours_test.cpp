@@ -59,6 +59,42 @@ TEST(RivalsOurs, StartsAsTheSceneSaysAndKeepsItsMomentum) {
   EXPECT_LT(measure(scene, run).at("energy_percent"), 1e-5);
 }
 
+// A slider between two bodies that is pushed for 0.1 s, and pulled back for 0.1 s: they rest again,
+// apart by a t² of what they gain on one another, and their common centre is where it was.
+TEST(RivalsOurs, DrivesByAProgram) {
+  Scene scene = hinged();
+  scene.joints[0].kind = JointKind::slider;
+  scene.joints[0].range.reset();
+  for (Body& b : scene.bodies) b.start.velocity = b.start.angularVelocity = Vector3d::Zero();
+  scene.joints[0].axis = Vector3d::UnitZ();  // through both centres
+  scene.joints[0].program = {{0.1, 6.0}, {0.2, -6.0}, {0.3, 0.0}};
+  const auto engine = engineFor(scene, 0.01, {"integrator=semi-implicit-euler"});
+  ASSERT_TRUE(engine->step(50));
+  const std::vector<BodyState> end = engine->state();
+  const double gain = 6.0 / scene.bodies[1].mass + 6.0 / scene.bodies[0].mass;
+  EXPECT_NEAR(end[1].position[2] - end[0].position[2] - 0.5, gain * 0.01, 1e-9);
+  EXPECT_LT(end[0].velocity.norm() + end[1].velocity.norm(), 1e-9);
+  const double middle = (2.0 * 0.3 + 1.0 * 0.8) / 3.0;
+  EXPECT_NEAR((2.0 * end[0].position[2] + end[1].position[2]) / 3.0, middle, 1e-9);
+}
+
+// A ball that falls by 1 m is up again by e² of it: the recipe is good to 0.025 of e.
+TEST(RivalsOurs, BouncesByTheRecipe) {
+  Scene scene =
+      parseScene(R"({"name": "ball", "measure": "bounce", "gravity": [0, 0, -9.81], "friction": 0.5,
+    "ground": true, "collide": false, "duration": 1.2, "sample": 0.002, "restitution": 0.8, "bodies": [
+    {"name": "ball", "mass": 1, "inertia": [0.004, 0.004, 0.004], "position": [0, 0, 1.1], "orientation": [1, 0, 0, 0],
+     "velocity": [0, 0, 0], "angular_velocity": [0, 0, 0], "shapes": [{"kind": "sphere", "size": [0.1, 0, 0],
+     "position": [0, 0, 0], "orientation": [1, 0, 0, 0]}]}], "joints": []})");
+  const auto engine = engineFor(scene, 0.002, {});
+  Trajectory run{engine->state()};
+  for (int k = 0; k < 600; ++k) {
+    ASSERT_TRUE(engine->step(1));
+    run.push_back(engine->state());
+  }
+  EXPECT_NEAR(measure(scene, run).at("top1_mm"), 640.0, 2.0 * 0.8 * 25.0);
+}
+
 TEST(RivalsOurs, RefusesSettingsThatItDoesNotHave) {
   EXPECT_THROW(engineFor(hinged(), 0.01, {"iterations=50"}), std::invalid_argument);
   EXPECT_THROW(Settings({"exact_diagonal"}), std::invalid_argument);

@@ -3,8 +3,8 @@
 /// bodies with constraints), all else rigid bodies. preset=pybullet: the solver settings that
 /// PyBullet has; solver=dantzig: the direct solver; integrator=rk4: of btMultiBody.
 ///
-/// Friction of a pair is a product, so that each has the root. Bullet's own damping of multibodies,
-/// 0.04/s, and its limit of 100 rad/s are switched off, and so is sleep.
+/// Friction and restitution of a pair are products, so that each has the root. Bullet's own damping
+/// of multibodies, 0.04/s, and its limit of 100 rad/s are switched off, and so is sleep.
 
 #include <BulletDynamics/Featherstone/btMultiBody.h>
 #include <BulletDynamics/Featherstone/btMultiBodyConstraintSolver.h>
@@ -77,8 +77,10 @@ class Bullet final : public Engine {
 
   bool step(int count) override {
     for (int k = 0; k < count; ++k) {
-      for (const auto& [tree, link, force] : forces_) tree->addJointTorque(link, force);
+      for (const auto& [tree, link, joint] : forces_)
+        tree->addJointTorque(link, joint->forceAt(steps_ * h_));
       world_->stepSimulation(h_, 0);
+      ++steps_;
     }
     return true;
   }
@@ -164,7 +166,7 @@ class Bullet final : public Engine {
 
   void finish(btCollisionObject& object, const Body& b) {
     object.setFriction(std::sqrt(scene_.friction));
-    object.setRestitution(0.0);
+    object.setRestitution(std::sqrt(scene_.restitution));
     object.setActivationState(DISABLE_DEACTIVATION);
     if (b.shapes.empty())
       object.setCollisionFlags(object.getCollisionFlags() |
@@ -253,7 +255,7 @@ class Bullet final : public Engine {
       return;
     }
     tree.setJointVel(k, scene_.jointSpeed(j));
-    if (j.force != 0.0) forces_.push_back({&tree, k, j.force});
+    if (j.isDriven()) forces_.push_back({&tree, k, &j});
     if (j.range) {
       limits_.push_back(std::make_unique<btMultiBodyJointLimitConstraint>(&tree, k, j.range->first,
                                                                           j.range->second));
@@ -318,11 +320,13 @@ class Bullet final : public Engine {
     auto* ground =
         keep<btRigidBody>(0.0, nullptr, keep<btStaticPlaneShape>(btVector3(0, 0, 1), 0.0));
     ground->setFriction(std::sqrt(scene_.friction));
+    ground->setRestitution(std::sqrt(scene_.restitution));
     world_->addRigidBody(ground, kGround, kBody);
   }
 
   const Scene scene_;
   double h_;
+  int steps_ = 0;
   bool useTrees_ = true, rungeKutta_ = false;
   btDefaultCollisionConfiguration configuration_;
   btCollisionDispatcher dispatcher_;
@@ -338,7 +342,7 @@ class Bullet final : public Engine {
   struct Force {
     btMultiBody* tree;
     int link;
-    double force;
+    const Joint* joint;
   };
   std::vector<Force> forces_;
 };

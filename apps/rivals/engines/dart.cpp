@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// DART in the study. detector=ode (as Gazebo has it, the default here) or dart; DART's own
 /// default, fcl, takes shapes for meshes. solver=pgs in place of Dantzig's. Friction is a pyramid.
+/// The restitution of a pair is a product, so that each has the root.
 
 #include <dart/collision/ode/ode.hpp>
 #include <dart/dart.hpp>
@@ -35,7 +36,7 @@ class Dart final : public Engine {
 
   bool step(int count) override {
     for (int k = 0; k < count; ++k) {
-      for (const auto& [dof, force] : forces_) dof->setForce(force);
+      for (const auto& [dof, joint] : forces_) dof->setForce(joint->forceAt(world_->getTime()));
       world_->step();
     }
     return true;
@@ -83,7 +84,7 @@ class Dart final : public Engine {
           nodes_.back()->createShapeNodeWith<dd::CollisionAspect, dd::DynamicsAspect>(shape);
       node->setRelativeTransform(s.pose);
       node->getDynamicsAspect()->setFrictionCoeff(scene_.friction);
-      node->getDynamicsAspect()->setRestitutionCoeff(0.0);
+      node->getDynamicsAspect()->setRestitutionCoeff(std::sqrt(scene_.restitution));
     }
     if (!parent) world_->addSkeleton(skeleton);
     if (!scene_.collide) skeleton->disableSelfCollisionCheck();
@@ -134,7 +135,7 @@ class Dart final : public Engine {
       std::tie(joint, node) = skeleton.createJointAndBodyNodePair<dd::PrismaticJoint>(
           parent, single(dd::PrismaticJoint::Properties()), properties);
     joint->setVelocity(0, scene_.jointSpeed(*j));
-    if (j->force != 0.0) forces_.push_back({joint->getDof(0), j->force});
+    if (j->isDriven()) forces_.push_back({joint->getDof(0), j});
     return node;
   }
 
@@ -155,6 +156,7 @@ class Dart final : public Engine {
     auto* node = body->createShapeNodeWith<dd::CollisionAspect, dd::DynamicsAspect>(
         std::make_shared<dd::PlaneShape>(Vector3d::UnitZ(), 0.0));
     node->getDynamicsAspect()->setFrictionCoeff(scene_.friction);
+    node->getDynamicsAspect()->setRestitutionCoeff(std::sqrt(scene_.restitution));
     world_->addSkeleton(ground);
     if (scene_.collide) return;
     // Bodies that do not touch one another: of their pairs, the ground's alone are looked at.
@@ -168,7 +170,7 @@ class Dart final : public Engine {
   const Scene scene_;
   dart::simulation::WorldPtr world_;
   std::vector<dd::BodyNode*> nodes_;
-  std::vector<std::pair<dd::DegreeOfFreedom*, double>> forces_;
+  std::vector<std::pair<dd::DegreeOfFreedom*, const Joint*>> forces_;
 };
 
 }  // namespace

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/rivals/engines/mjcf.hpp"
 
+#include <cmath>
+#include <numbers>
 #include <sstream>
 
 namespace rivals {
@@ -24,7 +26,8 @@ std::string frame(const Isometry3d& X) {
 
 class Writer {
  public:
-  Writer(const Scene& scene, const std::string& options, const std::string& sizes) : scene_(scene) {
+  Writer(const Scene& scene, double h, const std::string& options, const std::string& sizes)
+      : scene_(scene), h_(h) {
     out_.precision(17);
     out_ << "<mujoco><compiler angle=\"radian\" balanceinertia=\"false\" boundmass=\"0\" "
             "boundinertia=\"0\"/>"
@@ -51,7 +54,20 @@ class Writer {
     return j ? j->parent : -1;
   }
 
-  void friction() { out_ << " friction=\"" << scene_.friction << " 0.005 0.0001\""; }
+  /// A restitution is a spring and a damper that an impact leaves after thirty steps (solref in its
+  /// direct form), damped so that e = exp(−2 ζ/√(1 − ζ²) atan(√(1 − ζ²)/ζ)).
+  void friction() {
+    out_ << " friction=\"" << scene_.friction << " 0.005 0.0001\"";
+    if (scene_.restitution == 0.0) return;
+    double low = 0.0, high = 1.0;
+    for (int i = 0; i < 60; ++i) {
+      const double zeta = 0.5 * (low + high), root = std::sqrt(1.0 - zeta * zeta);
+      const double e = std::exp(-2.0 * zeta / root * std::atan(root / zeta));
+      (e > scene_.restitution ? low : high) = zeta;
+    }
+    const double omega = std::numbers::pi / (30.0 * h_);
+    out_ << " solref=\"" << -omega * omega << ' ' << -2.0 * low * omega << "\"";
+  }
 
   void body(int i) {
     const Body& b = scene_.bodies[static_cast<std::size_t>(i)];
@@ -109,13 +125,15 @@ class Writer {
   }
 
   const Scene& scene_;
+  double h_;
   std::ostringstream out_;
 };
 
 }  // namespace
 
-std::string mjcf(const Scene& scene, const std::string& options, const std::string& sizes) {
-  return Writer(scene, options, sizes).text();
+std::string mjcf(const Scene& scene, double h, const std::string& options,
+                 const std::string& sizes) {
+  return Writer(scene, h, options, sizes).text();
 }
 
 }  // namespace rivals

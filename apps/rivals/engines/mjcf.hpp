@@ -8,7 +8,8 @@
 namespace rivals {
 
 /// A scene in MuJoCo's own format. A body's frame is that of the scene; its joint starts at 0.
-/// `options` and `sizes` are attributes of <option> and <size>.
-std::string mjcf(const Scene& scene, const std::string& options, const std::string& sizes);
+/// `options` and `sizes` are attributes of <option> and <size>; `h` is the step [s].
+std::string mjcf(const Scene& scene, double h, const std::string& options,
+                 const std::string& sizes);
 
 }  // namespace rivals

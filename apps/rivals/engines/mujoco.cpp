@@ -26,7 +26,7 @@ class Mujoco final : public Engine {
     std::string file = std::filesystem::temp_directory_path() / "rivals_XXXXXX.xml";
     const int descriptor = mkstemps(file.data(), 4);
     const std::string text =
-        mjcf(scene, options.str(), mj_version() < 300 ? "nconmax=\"450\" njmax=\"1900\"" : "");
+        mjcf(scene, h, options.str(), mj_version() < 300 ? "nconmax=\"450\" njmax=\"1900\"" : "");
     if (descriptor < 0 || write(descriptor, text.data(), text.size()) < 0)
       throw std::runtime_error("no file for MJCF");
     close(descriptor);
@@ -46,6 +46,7 @@ class Mujoco final : public Engine {
 
   bool step(int count) override {
     for (int k = 0; k < count; ++k) {
+      for (const auto& [v, joint] : forces_) data_->qfrc_applied[v] = joint->forceAt(data_->time);
       mj_step(model_, data_);
       for (const int warning : {mjWARN_BADQPOS, mjWARN_BADQVEL, mjWARN_BADQACC})
         if (data_->warning[warning].number > 0) return false;
@@ -97,13 +98,15 @@ class Mujoco final : public Engine {
     else if (j->kind == JointKind::ball)
       for (int k = 0; k < 3; ++k) data_->qvel[v + k] = spin[k];
     else
-      data_->qvel[v] = scene_.jointSpeed(*j), data_->qfrc_applied[v] = j->force;
+      data_->qvel[v] = scene_.jointSpeed(*j);
+    if (j && j->isDriven()) forces_.push_back({v, j});
   }
 
   const Scene scene_;
   mjModel* model_;
   mjData* data_;
   std::vector<int> bodies_;
+  std::vector<std::pair<int, const Joint*>> forces_;  // of degrees of freedom
 };
 
 }  // namespace

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Jolt from npm (JoltPhysics.js), in single precision. Friction of a pair is the root of the product.
+// Jolt from npm (JoltPhysics.js), in single precision. Friction of a pair is the root of the product, restitution the larger.
 // Bodies without a shape have a sensor for one. Damping, sleep and the limit of 47 rad/s are off, gyroscopic forces on; slop 2 cm as it comes,
 // slop=metres another.
-import {cross, times, turned} from './npm_vectors.mjs';
+import {bodyOf, cross, directionIn, forceAt, isDriven, times, turned} from './npm_vectors.mjs';
 
 const kFixed = 0, kMoving = 1;  // layers
 // Capsules lie along y.
 const kUpright = [Math.SQRT1_2, Math.SQRT1_2, 0, 0];
 const array = (v) => [v.GetX(), v.GetY(), v.GetZ()];
+const orientation = (b) => ((q) => [q.GetW(), q.GetX(), q.GetY(), q.GetZ()])(b.GetRotation());
 
 function settingsOfWorld(J, collide) {
   const pairs = new J.ObjectLayerPairFilterTable(2);
@@ -34,7 +35,9 @@ function shapeOf(J, shapes) {
     return one(shapes[0]).Create().Get();
   const compound = new J.StaticCompoundShapeSettings();
   for (const s of shapes) compound.AddShape(V(s.position), Q(turn(s)), one(s), 0);
-  return compound.Create().Get();
+  const made = compound.Create().Get(), [x, y, z] = array(made.GetCenterOfMass());
+  // A shape's centre is not where the body has its mass.
+  return Math.hypot(x, y, z) < 1e-6 ? made : new J.OffsetCenterOfMassShapeSettings(V([-x, -y, -z]), compound).Create().Get();
 }
 
 export async function makeJolt(packages, scene, h, settings) {
@@ -50,11 +53,12 @@ export async function makeJolt(packages, scene, h, settings) {
   const makeGround = () => {
     const c = new J.BodyCreationSettings(new J.BoxShape(V([50, 50, 1]), 0.05), R([0, 0, -1]), Q([1, 0, 0, 0]), J.EMotionType_Static, kFixed);
     c.mFriction = scene.friction;
+    c.mRestitution = scene.restitution ?? 0;
     interface_.AddBody(interface_.CreateBody(c).GetID(), J.EActivation_DontActivate);
   };
   const makeBody = (b) => {
     const c = new J.BodyCreationSettings(shapeOf(J, b.shapes), R(b.position), Q(b.orientation), J.EMotionType_Dynamic, kMoving);
-    Object.assign(c, {mFriction: scene.friction, mRestitution: 0, mLinearDamping: 0, mAngularDamping: 0, mMaxAngularVelocity: 1e4,
+    Object.assign(c, {mFriction: scene.friction, mRestitution: scene.restitution ?? 0, mLinearDamping: 0, mAngularDamping: 0, mMaxAngularVelocity: 1e4,
       mMaxLinearVelocity: 1e4, mAllowSleeping: false, mApplyGyroscopicForce: true, mIsSensor: b.shapes.length === 0,
       mOverrideMassProperties: J.EOverrideMassProperties_MassAndInertiaProvided});
     const mass = c.mMassPropertiesOverride;
@@ -68,7 +72,8 @@ export async function makeJolt(packages, scene, h, settings) {
     return made;
   };
   if (scene.ground) makeGround();
-  const bodies = scene.bodies.map(makeBody), forces = [];
+  const bodies = scene.bodies.map(makeBody), forces = [], force = V([0, 0, 0]);
+  let steps = 0;
   for (const j of scene.joints) {
     const parent = j.parent < 0 ? J.JoltInterface.prototype.sGetFixedToWorldBody() : bodies[j.parent];
     let c;
@@ -87,7 +92,7 @@ export async function makeJolt(packages, scene, h, settings) {
     }
     c.mSpace = J.EConstraintSpace_WorldSpace;
     system.AddConstraint(c.Create(parent, bodies[j.child]));
-    if (j.force !== 0) forces.push([bodies[j.child], V(j.axis.map((x) => x * j.force))]);
+    if (isDriven(j)) forces.push([bodies[j.child], j.parent < 0 ? undefined : bodies[j.parent], directionIn(bodyOf(scene, j.parent), j.axis), j]);
   }
   const inverse = (b) => b.GetMotionProperties();
   return {
@@ -101,7 +106,14 @@ export async function makeJolt(packages, scene, h, settings) {
       }, 0);
     },
     step() {
-      for (const [b, f] of forces) b.AddForce(f);
+      for (const [child, parent, axis, j] of forces) {
+        const along = parent ? turned(orientation(parent), axis) : axis, f = forceAt(j, steps * h);
+        force.Set(...along.map((x) => x * f));
+        child.AddForce(force);
+        force.Set(...along.map((x) => -x * f));
+        if (parent) parent.AddForce(force, child.GetCenterOfMassPosition());
+      }
+      ++steps;
       jolt.Step(h, 1);
       return true;
     },

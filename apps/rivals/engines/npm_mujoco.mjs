@@ -1,11 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 // MuJoCo from npm. Settings as those of mujoco.cpp; the description is written anew here, so that one
 // slip is not in both.
-import {bodyOf, carrierOf, conjugate, directionIn, jointSpeed, minus, pointIn, times, turned} from './npm_vectors.mjs';
+import {bodyOf, carrierOf, conjugate, directionIn, forceAt, jointSpeed, minus, pointIn, times, turned} from './npm_vectors.mjs';
 
 const text = (v) => v.join(' ');
 
-function bodyXml(scene, i) {
+// A restitution: an impact of thirty steps, on a spring and damper of that e (solref in its direct form).
+function solref(e, h) {
+  if (!e) return '';
+  let low = 0, high = 1;
+  for (let i = 0; i < 60; ++i) {
+    const zeta = 0.5 * (low + high), root = Math.sqrt(1 - zeta * zeta);
+    if (Math.exp(-2 * zeta / root * Math.atan2(root, zeta)) > e) low = zeta;
+    else high = zeta;
+  }
+  const omega = Math.PI / (30 * h);
+  return ` solref="${-omega * omega} ${-2 * low * omega}"`;
+}
+
+function bodyXml(scene, i, h) {
   const b = scene.bodies[i], j = carrierOf(scene, i), parent = bodyOf(scene, j ? j.parent : -1);
   let x = `<body name="${b.name}" pos="${text(pointIn(parent, b.position))}" quat="${text(times(conjugate(parent.orientation), b.orientation))}">`;
   if (!j) x += '<freejoint/>';
@@ -18,9 +31,9 @@ function bodyXml(scene, i) {
   x += `<inertial pos="0 0 0" mass="${b.mass}" diaginertia="${text(b.inertia)}"/>`;
   for (const s of b.shapes)
     x += `<geom type="${s.kind}" size="${text(s.size)}" pos="${text(s.position)}" quat="${text(s.orientation)}" ` +
-      `friction="${scene.friction} 0.005 0.0001" contype="${scene.collide ? 3 : 0}" conaffinity="${scene.collide ? 3 : 1}"/>`;
+      `friction="${scene.friction} 0.005 0.0001"${solref(scene.restitution, h)} contype="${scene.collide ? 3 : 0}" conaffinity="${scene.collide ? 3 : 1}"/>`;
   scene.bodies.forEach((_, k) => {
-    if (carrierOf(scene, k)?.parent === i) x += bodyXml(scene, k);
+    if (carrierOf(scene, k)?.parent === i) x += bodyXml(scene, k, h);
   });
   return x + '</body>';
 }
@@ -30,9 +43,9 @@ function mjcf(scene, h, settings) {
   let x = '<mujoco><compiler angle="radian" balanceinertia="false" boundmass="0" boundinertia="0"/>' +
     `<option timestep="${h}" gravity="${text(scene.gravity)}" integrator="${integrator}" cone="${cone}" ` +
     `noslip_iterations="${noslip}" impratio="${impratio}"/><size memory="200M"/><worldbody>`;
-  if (scene.ground) x += `<geom type="plane" size="0 0 1" friction="${scene.friction} 0.005 0.0001" contype="1" conaffinity="1"/>`;
+  if (scene.ground) x += `<geom type="plane" size="0 0 1" friction="${scene.friction} 0.005 0.0001"${solref(scene.restitution, h)} contype="1" conaffinity="1"/>`;
   scene.bodies.forEach((_, i) => {
-    if ((carrierOf(scene, i)?.parent ?? -1) < 0) x += bodyXml(scene, i);
+    if ((carrierOf(scene, i)?.parent ?? -1) < 0) x += bodyXml(scene, i, h);
   });
   x += '</worldbody><equality>';
   for (const j of scene.joints.filter((k) => k.kind === 'tie')) {
@@ -46,14 +59,14 @@ function mjcf(scene, h, settings) {
 export async function makeMujoco(packages, scene, h, settings) {
   const M = await (await import(`${packages}/@mujoco/mujoco/mujoco.js`)).default();
   const m = M.MjModel.from_xml_string(mjcf(scene, h, settings)), d = new M.MjData(m);
-  const bodies = scene.bodies.map((b) => M.mj_name2id(m, M.mjtObj.mjOBJ_BODY.value, b.name));
+  const forces = [], bodies = scene.bodies.map((b) => M.mj_name2id(m, M.mjtObj.mjOBJ_BODY.value, b.name));
   scene.bodies.forEach((b, i) => {
     const v = m.jnt_dofadr[m.body_jntadr[bodies[i]]], j = carrierOf(scene, i);
     const spin = turned(conjugate(b.orientation), b.angular_velocity);
     if (!j || j.kind === 'ball') [...(j ? [] : b.velocity), ...spin].forEach((x, k) => (d.qvel[v + k] = x));
     else {
       d.qvel[v] = jointSpeed(scene, j);
-      d.qfrc_applied[v] = j.force;
+      forces.push([v, j]);
     }
   });
   M.mj_forward(m, d);
@@ -62,6 +75,7 @@ export async function makeMujoco(packages, scene, h, settings) {
     mass: () => M.mj_getTotalmass(m),
     kineticEnergy: () => (M.mj_energyVel(m, d), d.energy[1]),
     step() {
+      for (const [v, j] of forces) d.qfrc_applied[v] = forceAt(j, d.time);
       M.mj_step(m, d);
       return bad.every((w) => d.warning.get(w).number === 0);
     },

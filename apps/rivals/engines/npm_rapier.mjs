@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rapier from npm, in single precision. Friction of a pair is the mean. Joints are impulse joints.
-import {bodyOf, directionIn, pointIn, times, turned} from './npm_vectors.mjs';
+// Rapier from npm, in single precision. Friction and restitution of a pair are means. Joints are impulse joints.
+import {bodyOf, directionIn, forceAt, isDriven, pointIn, times, turned} from './npm_vectors.mjs';
 
 const V = ([x, y, z]) => ({x, y, z}), Q = ([w, x, y, z]) => ({x, y, z, w});
-const array = ({x, y, z}) => [x, y, z];
+const array = ({x, y, z}) => [x, y, z], orientation = (r) => (({x, y, z, w}) => [w, x, y, z])(r.rotation());
 const kGround = 1, kBody = 2;
 // Capsules lie along y.
 const kUpright = [Math.SQRT1_2, Math.SQRT1_2, 0, 0];
@@ -16,7 +16,7 @@ function collider(R, s, scene) {
   };
   const q = s.kind === 'capsule' ? times(s.orientation, kUpright) : s.orientation;
   return make[s.kind]().setTranslation(...s.position).setRotation(Q(q)).setDensity(0).setFriction(scene.friction)
-      .setRestitution(0).setCollisionGroups((kBody << 16) | (scene.collide ? kGround | kBody : kGround));
+      .setRestitution(scene.restitution ?? 0).setCollisionGroups((kBody << 16) | (scene.collide ? kGround | kBody : kGround));
 }
 
 function jointData(R, scene, j) {
@@ -34,7 +34,7 @@ export async function makeRapier(packages, scene, h) {
   const fixed = world.createRigidBody(R.RigidBodyDesc.fixed());
   if (scene.ground)
     world.createCollider(R.ColliderDesc.cuboid(50, 50, 1).setTranslation(0, 0, -1).setFriction(scene.friction)
-        .setCollisionGroups((kGround << 16) | kBody), fixed);
+        .setRestitution(scene.restitution ?? 0).setCollisionGroups((kGround << 16) | kBody), fixed);
   const bodies = scene.bodies.map((b) => {
     const r = world.createRigidBody(R.RigidBodyDesc.dynamic().setTranslation(...b.position).setRotation(Q(b.orientation))
         .setCanSleep(false).setLinearDamping(0).setAngularDamping(0)
@@ -45,10 +45,11 @@ export async function makeRapier(packages, scene, h) {
     return r;
   });
   const forces = [];
+  let steps = 0;
   for (const j of scene.joints) {
     const joint = world.createImpulseJoint(jointData(R, scene, j), j.parent < 0 ? fixed : bodies[j.parent], bodies[j.child], true);
     if (j.range) joint.setLimits(...j.range);
-    if (j.force !== 0) forces.push([bodies[j.child], V(j.axis.map((x) => x * j.force))]);
+    if (isDriven(j)) forces.push([bodies[j.child], j.parent < 0 ? undefined : bodies[j.parent], directionIn(bodyOf(scene, j.parent), j.axis), j]);
   }
   world.propagateModifiedBodyPositionsToColliders();
   for (const r of bodies) r.recomputeMassPropertiesFromColliders();
@@ -63,10 +64,13 @@ export async function makeRapier(packages, scene, h) {
       }, 0);
     },
     step() {
-      for (const [r, f] of forces) {
-        r.resetForces(true);
-        r.addForce(f, true);
+      for (const r of forces.length ? bodies : []) r.resetForces(true);
+      for (const [child, parent, axis, j] of forces) {
+        const along = parent ? turned(orientation(parent), axis) : axis, f = forceAt(j, steps * h);
+        child.addForce(V(along.map((x) => x * f)), true);
+        if (parent) parent.addForceAtPoint(V(along.map((x) => -x * f)), child.translation(), true);
       }
+      ++steps;
       world.step();
       return true;
     },

@@ -17,6 +17,10 @@ export const directionIn = (b, v) => turned(conjugate(b.orientation), v);
 // The joint of a tree that carries a body.
 export const carrierOf = (scene, i) => scene.joints.find((j) => j.child === i && j.kind !== 'tie');
 
+// The force along a joint's axis at a time after the start.
+export const forceAt = (j, time) => (j.program ?? []).reduce((f, [from, value]) => (time >= from - 1e-9 ? value : f), j.force);
+export const isDriven = (j) => j.force !== 0 || j.program !== undefined;
+
 export function jointSpeed(scene, j) {
   const p = bodyOf(scene, j.parent), c = bodyOf(scene, j.child);
   if (j.kind !== 'slider') return dot(j.axis, minus(c.angular_velocity, p.angular_velocity));

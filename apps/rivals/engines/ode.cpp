@@ -40,7 +40,7 @@ class Ode final : public Engine {
       dWorldSetContactSurfaceLayer(world_, 0.001);
     }
     for (const Body& b : scene.bodies) addBody(b);
-    for (const Joint& j : scene.joints) addJoint(j);
+    for (const Joint& j : scene_.joints) addJoint(j);
     if (scene.ground) dCreatePlane(space_, 0, 0, 1, 0);
   }
   ~Ode() override {
@@ -55,7 +55,9 @@ class Ode final : public Engine {
         dSpaceCollide(space_, this, [](void* self, dGeomID a, dGeomID b) {
           static_cast<Ode*>(self)->touch(a, b);
         });
-      for (const auto& [slider, force] : forces_) dJointAddSliderForce(slider, force);
+      for (const auto& [slider, joint] : forces_)
+        dJointAddSliderForce(slider, joint->forceAt(steps_ * h_));
+      ++steps_;
       const int ok = quick_ ? dWorldQuickStep(world_, h_) : dWorldStep(world_, h_);
       dJointGroupEmpty(contacts_);
       if (!ok) return false;
@@ -108,6 +110,10 @@ class Ode final : public Engine {
       std::memset(&found[i].surface, 0, sizeof found[i].surface);
       found[i].surface.mode = dContactApprox1;
       found[i].surface.mu = scene_.friction;
+      if (scene_.restitution > 0.0) {
+        found[i].surface.mode |= dContactBounce;
+        found[i].surface.bounce = scene_.restitution;
+      }
       dJointAttach(dJointCreateContact(world_, contacts_, &found[i]), x, y);
     }
   }
@@ -158,7 +164,7 @@ class Ode final : public Engine {
       const dJointID id = dJointCreateSlider(world_, nullptr);
       dJointAttach(id, child, parent);
       dJointSetSliderAxis(id, a[0], a[1], a[2]);
-      if (j.force != 0.0) forces_.push_back({id, j.force});
+      if (j.isDriven()) forces_.push_back({id, &j});
     } else {
       const dJointID id = dJointCreateBall(world_, nullptr);
       dJointAttach(id, child, parent);
@@ -168,12 +174,13 @@ class Ode final : public Engine {
 
   const Scene scene_;
   double h_;
+  int steps_ = 0;
   bool quick_;
   dWorldID world_;
   dSpaceID space_;
   dJointGroupID contacts_;
   std::vector<dBodyID> bodies_;
-  std::vector<std::pair<dJointID, double>> forces_;
+  std::vector<std::pair<dJointID, const Joint*>> forces_;
 };
 
 }  // namespace

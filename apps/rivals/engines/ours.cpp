@@ -2,6 +2,9 @@
 /// softgauss in the study, built by ModelBuilder: no file of ours is read. Settings are those of
 /// Options by the names of simulate_gdd; islands=1 steps island by island.
 
+#include <cmath>
+#include <numbers>
+
 #include "apps/rivals/engine.hpp"
 #include "softgauss/collision/scene_contacts.hpp"
 #include "softgauss/collision/unit_contacts.hpp"
@@ -34,10 +37,32 @@ void apply(Settings& settings, double h, sg::Options& o) {
   if (settings.word("compatibility", "") == "mujoco") o.useMujocoModel();
 }
 
+/// The recipe of docs/guide/contact.md for a body that is to bounce: an impact lasts thirty steps,
+/// and gravity and the step take from the damping ratio. A box that lies flat has four contacts,
+/// each a quarter of the spring.
+sg::ContactSpring bouncy(const Scene& scene, const Body& body, double h) {
+  const double omega = std::numbers::pi / (30.0 * h);
+  const double gravity = scene.gravity.norm() / (omega * scene.fallSpeed());
+  double low = 0.0, high = 1.0;
+  for (int i = 0; i < 60; ++i) {
+    const double zeta = 0.5 * (low + high), root = std::sqrt(1.0 - zeta * zeta);
+    const double e = std::exp(-2.0 * zeta / root * std::atan(root / zeta));
+    (e - 3.5 * zeta * gravity > scene.restitution ? low : high) = zeta;
+  }
+  const double zeta = low - 0.25 * omega * h;
+  if (zeta < 0.0) throw CannotExpress("a bounce of so high a restitution at this step");
+  const double share = body.mass / (body.shapes[0].kind == ShapeKind::box ? 4.0 : 1.0);
+  sg::ContactSpring spring;
+  spring.stiffness = share * omega * omega;
+  spring.damping = 2.0 * zeta * share * omega;
+  return spring;
+}
+
 class Ours final : public Engine {
  public:
   Ours(const Scene& scene, double h, Settings& settings)
       : scene_(scene),
+        h_(h),
         nothingTouches_(!scene.ground && !scene.collide),
         model_(build(scene, h, settings)),
         state_(model_),
@@ -56,6 +81,8 @@ class Ours final : public Engine {
 
   bool step(int count) override {
     for (int i = 0; i < count; ++i) {
+      for (const auto& [v, joint] : forces_) input_.tau[v] = joint->forceAt(steps_ * h_);
+      ++steps_;
       const sg::SolveStatus status = islands_ ? islands_->step(input_)
                                               : sg::step(model_, input_, state_, data_,
                                                          nothingTouches_ ? nullptr : &*contacts_);
@@ -155,6 +182,7 @@ class Ours final : public Engine {
                 : s.kind == ShapeKind::sphere ? sg::Shape::sphere(s.size[0])
                                               : sg::Shape::capsule(s.size[0], s.size[1]);
       g.material.slidingFriction = scene.friction;
+      if (scene.restitution > 0.0) g.material.spring = bouncy(scene, body, h_);
       into.geometry(g);
     }
     if (carrier)
@@ -196,7 +224,6 @@ class Ours final : public Engine {
 
   void place() {
     input_.tau = sg::VectorX::Zero(model_.nv);
-    bool anyForce = false;
     for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {
       const BodyState& start = scene_.bodies[i].start;
       const int body =
@@ -211,11 +238,10 @@ class Ours final : public Engine {
         placeBall(*j, start, b.q - 2, b.v - 2);
       } else {
         state_.v[b.v] = scene_.jointSpeed(*j);
-        input_.tau[b.v] = j->force;
-        anyForce = anyForce || j->force != 0.0;
+        if (j->isDriven()) forces_.push_back({b.v, j});
       }
     }
-    if (!anyForce) input_.tau.resize(0);
+    if (forces_.empty()) input_.tau.resize(0);
   }
 
   /// R = Rx Ry Rz of the three hinges, and ω = x̂ q̇₁ + Rx ŷ q̇₂ + Rx Ry ẑ q̇₃, in the parent.
@@ -232,6 +258,7 @@ class Ours final : public Engine {
   }
 
   const Scene scene_;
+  double h_;
   bool nothingTouches_;
   std::vector<Vector3d> centres_;  // of mass, in the links
   sg::Model model_;
@@ -240,6 +267,8 @@ class Ours final : public Engine {
   sg::Kinematics kinematics_;
   sg::Input input_;
   std::vector<int> bodies_;
+  std::vector<std::pair<int, const Joint*>> forces_;  // of degrees of freedom
+  int steps_ = 0;
   std::optional<sg::collision::SceneContacts> contacts_;
   std::optional<sg::collision::UnitContacts> unitContacts_;
   std::optional<sg::Islands> islands_;

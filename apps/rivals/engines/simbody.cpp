@@ -2,6 +2,8 @@
 /// Simbody in the study: Runge–Kutta–Merson, error control. Settings: accuracy (1e-3, Simbody's
 /// default), transition_velocity (0.01 m/s), stiffness (1e7 Pa), dissipation (1 s/m). Its step is
 /// where it reports, not where it integrates. Boxes and capsules touch the ground and spheres only.
+/// A restitution e is a dissipation of (1 − e)/v, for the speed v of the first impact: Simbody's e
+/// falls with the speed.
 
 #include <Simbody.h>
 
@@ -22,6 +24,21 @@ SimTK::Transform toSim(const Isometry3d& X) {
 }
 Vector3d fromSim(const SimTK::Vec3& v) { return {v[0], v[1], v[2]}; }
 
+/// The force of a joint that is driven.
+class Drive final : public SimTK::Force::Custom::Implementation {
+ public:
+  Drive(const SimTK::MobilizedBody& body, const Joint& joint) : body_(body), joint_(joint) {}
+  void calcForce(const SimTK::State& s, SimTK::Vector_<SimTK::SpatialVec>&,
+                 SimTK::Vector_<SimTK::Vec3>&, SimTK::Vector& mobilityForces) const override {
+    body_.applyOneMobilityForce(s, 0, joint_.forceAt(s.getTime()), mobilityForces);
+  }
+  SimTK::Real calcPotentialEnergy(const SimTK::State&) const override { return 0.0; }
+
+ private:
+  SimTK::MobilizedBody body_;
+  Joint joint_;
+};
+
 class Simbody final : public Engine {
  public:
   Simbody(const Scene& scene, double h, Settings& settings)
@@ -36,9 +53,11 @@ class Simbody final : public Engine {
     if (scene.gravity.norm() > 0.0)
       SimTK::Force::UniformGravity(forces_, matter_, toSim(scene.gravity));
     contact_.setTransitionVelocity(settings.number("transition_velocity", 0.01));
-    const SimTK::ContactMaterial material(settings.number("stiffness", 1e7),
-                                          settings.number("dissipation", 1.0), scene.friction,
-                                          scene.friction, 0.0);
+    const double dissipation = scene.restitution > 0.0
+                                   ? (1.0 - scene.restitution) / scene.fallSpeed()
+                                   : settings.number("dissipation", 1.0);
+    const SimTK::ContactMaterial material(settings.number("stiffness", 1e7), dissipation,
+                                          scene.friction, scene.friction, 0.0);
     if (scene.ground) {
       const SimTK::Rotation up(SimTK::Pi / 2, SimTK::YAxis);  // the half space is x > 0
       matter_.Ground().updBody().addContactSurface(
@@ -157,8 +176,7 @@ class Simbody final : public Engine {
     if (j->range)
       SimTK::Force::MobilityLinearStop(forces_, mobilized_.back(), SimTK::MobilizerQIndex(0),
                                        1000.0, 1.0, j->range->first, j->range->second);
-    if (j->force != 0.0)
-      SimTK::Force::MobilityConstantForce(forces_, mobilized_.back(), 0, j->force);
+    if (j->isDriven()) SimTK::Force::Custom(forces_, new Drive(mobilized_.back(), *j));
   }
 
   void place(int i, SimTK::State& start) {

@@ -10,6 +10,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "apps/rivals/judge/machines.hpp"
 #include "apps/rivals/judge/overlap.hpp"
 
 namespace rivals {
@@ -267,7 +268,8 @@ const std::map<std::string, Measure> kMeasures = {
     {"smooth", smooth},   {"free", freeFlight}, {"top", top},         {"thrown", thrown},
     {"slides", slides},   {"creep", creep},     {"rolling", rolling}, {"drop", drop},
     {"tower", tower},     {"grip", grip},       {"rope", rope},       {"pile", pile},
-    {"carried", carried}, {"cart", cart},       {"peg", peg}};
+    {"carried", carried}, {"cart", cart},       {"peg", peg},         {"bounce", measureBounce},
+    {"nut", measureNut},  {"feet", measureFeet}};
 
 }  // namespace
 

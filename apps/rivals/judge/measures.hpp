@@ -47,6 +47,12 @@ Energies energiesOf(const Scene& scene, const std::vector<BodyState>& states);
 ///   grip     fell_mm, creep_um_s over the second half, lost_s: when it had fallen 50 mm, or −1
 ///   carried  slipped_mm, turned_deg of the last body in the first one, lost: 1 where it fell
 ///   cart     off_mm: along, aside_mm: from where its wheels slide and then roll
+///   bounce   top1_mm, top2_mm, top3_mm: heights after the impacts; off_percent: the worst of the
+///            three from e²ⁿ times the fall, in percent of the fall; deepest_mm, turned_deg
+///   nut      off_mm: sunk more than truth_mm, creep_mm_s over the second half, turned_deg, and
+///            off_thread_mm: what it has sunk but not turned; aside_mm, leans_deg
+///   feet     off_mm: the worse frame, along, aside_mm, turned_deg, slip_mm: the most that a frame
+///            has moved while it stood and the other was lifted
 ///   peg      left_mm: above the ground at the end, leans_deg, overlap_mm: the deepest in a wall
 ///   rope     gap_mm: the widest of a joint, energy_percent
 ///   pile     deepest_mm ever, rest_mm: in the last second, end_kinetic, lowest_m
