@@ -109,5 +109,7 @@ def runs(quick=False):
                     steps = STEPS
                 if scene in ("thrown_2_37", "tower_10") and not quick:
                     steps = (STEP, 0.01)
+                if scene == "nut_runs" and not quick:
+                    steps = (STEP, 0.0005)
                 for h in steps:
                     yield scene, entry, 0.01 if entry.engine == "simbody" and kind == "smooth" else h

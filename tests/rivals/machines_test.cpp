@@ -10,7 +10,7 @@
 #include <functional>
 #include <numbers>
 
-namespace rivals {
+namespace rivals::machines {
 namespace {
 
 constexpr double kGravity = 9.81;
@@ -77,6 +77,16 @@ TEST(RivalsJudge, KnowsHowHighABallBounces) {
   m = measure(scene, run(0.7, 0.0));
   EXPECT_NEAR(m.at("off_percent"), 16.95, 1e-3);
   EXPECT_GE(measure(scene, run(0.8, 0.02)).at("deepest_mm"), 19.0);
+  // A turn counts before the fourth impact, at 0.45 + 2 · 0.45 (0.8 + 0.64 + 0.512) = 2.21 s.
+  const auto turning = [&](double from) {
+    Trajectory made = run(0.8, 0.0);
+    for (std::size_t k = 0; k < made.size(); ++k)
+      if (static_cast<double>(k) * scene.sample > from)
+        made[k][0].orientation = Eigen::AngleAxisd(0.1, Vector3d::UnitX());
+    return measure(scene, made).at("turned_deg");
+  };
+  EXPECT_NEAR(turning(2.1), 0.1 * 180.0 / std::numbers::pi, 1e-9);
+  EXPECT_EQ(turning(2.3), 0.0);
   // What does not come up has bounced to 0.
   m = measure(scene, sampled(scene, [](double, BodyState&) {}));
   EXPECT_NEAR(m.at("off_percent"), 64.0, 1e-9);
@@ -178,4 +188,4 @@ TEST(RivalsJudge, KnowsHowFarFeetWalk) {
 }
 
 }  // namespace
-}  // namespace rivals
+}  // namespace rivals::machines

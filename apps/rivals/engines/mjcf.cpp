@@ -2,7 +2,6 @@
 #include "apps/rivals/engines/mjcf.hpp"
 
 #include <cmath>
-#include <numbers>
 #include <sstream>
 
 namespace rivals {
@@ -65,7 +64,7 @@ class Writer {
       const double e = std::exp(-2.0 * zeta / root * std::atan(root / zeta));
       (e > scene_.restitution ? low : high) = zeta;
     }
-    const double omega = std::numbers::pi / (30.0 * h_);
+    const double omega = EIGEN_PI / (30.0 * h_);
     out_ << " solref=\"" << -omega * omega << ' ' << -2.0 * low * omega << "\"";
   }
 

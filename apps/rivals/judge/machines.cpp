@@ -9,26 +9,28 @@
 namespace rivals {
 namespace {
 
-constexpr double kMm = 1e3, kDegrees = 180.0 / std::numbers::pi;
-
-double turnOf(const BodyState& a, const BodyState& b) {
-  return a.orientation.angularDistance(b.orientation);
-}
-
 /// The height of a ball's or a flat box's centre where it rests [m].
 double restOf(const Shape& shape) {
   return shape.kind == ShapeKind::box ? shape.size[2] : shape.size[0];
 }
 
-/// The tops of the flights after each impact, above `rest` [m]. An impact is where the body stops
-/// to fall and begins to rise.
-std::vector<double> topsOf(const Trajectory& run, double rest) {
-  std::vector<double> tops;
+struct Flights {
+  std::vector<double> tops;  ///< after each impact, above where the body rests [m]
+  double turned = 0.0;       ///< largest angle from the start on the way [rad]
+};
+
+/// The first three flights after the fall. An impact is where the body stops to fall and begins to
+/// rise.
+Flights flightsOf(const Trajectory& run, double rest) {
+  Flights out;
   for (std::size_t k = 1; k < run.size(); ++k) {
-    if (run[k - 1][0].velocity[2] < 0.0 && run[k][0].velocity[2] >= 0.0) tops.push_back(0.0);
-    if (!tops.empty()) tops.back() = std::max(tops.back(), run[k][0].position[2] - rest);
+    const BodyState& now = run[k][0];
+    if (run[k - 1][0].velocity[2] < 0.0 && now.velocity[2] >= 0.0) out.tops.push_back(0.0);
+    if (out.tops.size() > 3) break;
+    if (!out.tops.empty()) out.tops.back() = std::max(out.tops.back(), now.position[2] - rest);
+    out.turned = std::max(out.turned, turnOf(run[0][0], now));
   }
-  return tops;
+  return out;
 }
 
 /// Of the thread: the radius where the nut's balls run, and the slope there.
@@ -76,8 +78,8 @@ double swungMass(const Scene& scene, bool inner) {
 Measures measureBounce(const Scene& scene, const Trajectory& run) {
   const double rest = restOf(scene.bodies[0].shapes[0]);
   const double fall = run.front()[0].position[2] - rest;
-  const std::vector<double> tops = topsOf(run, rest);
-  Measures out{{"turned_deg", kDegrees * turnOf(run.front()[0], run.back()[0])}};
+  const auto [tops, turned] = flightsOf(run, rest);
+  Measures out{{"turned_deg", kDegrees * turned}};
   double truth = fall, worst = 0.0, deepest = 0.0;
   for (int n = 1; n <= 3; ++n) {
     const auto k = static_cast<std::size_t>(n - 1);

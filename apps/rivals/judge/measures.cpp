@@ -7,7 +7,6 @@
 #include <functional>
 #include <iterator>
 #include <limits>
-#include <numbers>
 #include <stdexcept>
 
 #include "apps/rivals/judge/machines.hpp"
@@ -16,11 +15,7 @@
 namespace rivals {
 namespace {
 
-constexpr double kMm = 1e3, kUm = 1e6, kDegrees = 180.0 / std::numbers::pi;
-
-double turnOf(const BodyState& a, const BodyState& b) {
-  return a.orientation.angularDistance(b.orientation);
-}
+constexpr double kUm = 1e6;
 
 /// Largest change of energy over the largest kinetic energy, in percent.
 double energyError(const Scene& scene, const Trajectory& run) {

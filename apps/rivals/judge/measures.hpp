@@ -5,6 +5,7 @@
 /// of a scene by closed forms and conservation laws, and shares no code with any engine.
 
 #include <map>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,13 @@ namespace rivals {
 using Trajectory = std::vector<std::vector<BodyState>>;
 /// What was measured, by name with its unit, such as off_mm.
 using Measures = std::map<std::string, double>;
+
+inline constexpr double kMm = 1e3, kDegrees = 180.0 / std::numbers::pi;
+
+/// Angle between two states of a body [rad].
+inline double turnOf(const BodyState& a, const BodyState& b) {
+  return a.orientation.angularDistance(b.orientation);
+}
 
 /// Reads what a run wrote. Throws std::runtime_error where the file does not hold whole samples.
 Trajectory readTrajectory(const std::string& path, std::size_t bodies);
@@ -48,7 +56,7 @@ Energies energiesOf(const Scene& scene, const std::vector<BodyState>& states);
 ///   carried  slipped_mm, turned_deg of the last body in the first one, lost: 1 where it fell
 ///   cart     off_mm: along, aside_mm: from where its wheels slide and then roll
 ///   bounce   top1_mm, top2_mm, top3_mm: heights after the impacts; off_percent: the worst of the
-///            three from e²ⁿ times the fall, in percent of the fall; deepest_mm, turned_deg
+///            three from e²ⁿ times the fall, in percent of the fall; deepest_mm, and turned_deg until the fourth impact
 ///   nut      off_mm: sunk more than truth_mm, creep_mm_s over the second half, turned_deg, and
 ///            off_thread_mm: what it has sunk but not turned; aside_mm, leans_deg
 ///   feet     off_mm: the worse frame, along, aside_mm, turned_deg, slip_mm: the most that a frame
