@@ -48,6 +48,7 @@ Trajectory sampled(const Scene& scene, const std::function<void(double, BodyStat
 std::pair<double, double> bouncing(double fall, double e, double time) {
   double speed = std::sqrt(2.0 * kGravity * fall), from = speed / kGravity;
   if (time < from) return {fall - 0.5 * kGravity * time * time, -kGravity * time};
+  if (time >= from * (1.0 + e) / (1.0 - e)) return {0.0, 0.0};  // after bounces without number
   for (speed *= e; time >= from + 2.0 * speed / kGravity; speed *= e)
     from += 2.0 * speed / kGravity;
   const double t = time - from;
