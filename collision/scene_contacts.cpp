@@ -263,7 +263,7 @@ void SceneContacts::detect(const Model& model, const Kinematics& kinematics,
   contacts.clear();
   Scene& scene = *scene_;
   scene.pose(kinematics);
-  if (model.options.hasRowLaw()) scene.setWays(kinematics, model.options.timestep);
+  if (model.options.hasRowLaw()) scene.setWays(kinematics, model.options.timeToNextRows());
   if (scene.moved()) scene.findNear();
   for (const auto& [list, of] :
        {std::pair(&scene.nearPlaneRows, &scene.planeRows), std::pair(&scene.nearRows, &scene.rows)})

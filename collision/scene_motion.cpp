@@ -37,13 +37,13 @@ bool SceneContacts::Scene::setMotion(const Kinematics& kinematics, double longes
   return any;
 }
 
-void SceneContacts::Scene::setWays(const Kinematics& kinematics, double timestep) {
+void SceneContacts::Scene::setWays(const Kinematics& kinematics, double time) {
   for (const int g : posed) {
     const auto i = static_cast<std::size_t>(g);
     const int body = model.geometries[i].body;
     const Vector3& omega = kinematics.V[static_cast<std::size_t>(body)].angular;
-    way[i] = timestep * (pointVelocity(model, kinematics, body, centre[i]).norm() +
-                         omega.norm() * moving[i].extent.lever);
+    way[i] = time * (pointVelocity(model, kinematics, body, centre[i]).norm() +
+                     omega.norm() * moving[i].extent.lever);
   }
 }
 

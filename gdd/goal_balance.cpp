@@ -43,11 +43,9 @@ Opponent opponentOf(const Rows& rows, int kind, int row) {
     return {Kind::contact, std::min(contact.geometryA, contact.geometryB),
             std::max(contact.geometryA, contact.geometryB)};
   } else if constexpr (requires { rows.dof(row); }) {
-    const auto is = [&](RowKind of) { return kind == static_cast<int>(of); };
-    return {is(RowKind::jointLimit) ? Kind::range
-            : is(RowKind::servo)    ? Kind::servo
-                                    : Kind::dryFriction,
-            rows.dof(row)};
+    const auto of = static_cast<RowKind>(kind);
+    if (of == RowKind::servo) return {Kind::servo, rows.dof(row)};
+    return {of == RowKind::jointLimit ? Kind::range : Kind::dryFriction, rows.dof(row)};
   } else {
     return {Kind::equality};
   }
@@ -366,8 +364,7 @@ Opposition GoalBalance::against(int i, int dof) {
     wish = VectorX::Unit(model_.nv, dof) * (sign * inertia_[dof]);
   }
   const VectorX free = wish.cwiseQuotient(inertia_);
-  result.singular = dof < 0 && wish.dot(free) < kSingular * goal.most;
-  if (wish.dot(free) < kSingular * goal.most) return result;
+  if (wish.dot(free) < kSingular * goal.most) return {{}, 0.0, dof < 0};
   const VectorX d = direction(wish);
   const double pull = -slope.dot(d);
   if (!(wish.dot(d) > kPulls * wish.dot(free)) || !(pull > 0.0)) return result;

@@ -97,11 +97,12 @@ const std::string& restingBody(const Model& model, const Rest& rest) {
   return model.bodyNames[idx(first ? a : b)];
 }
 
-std::string formOf(const Material& pair) {
+std::string formOf(const Material& pair, const Options& options) {
   if (pair.spring)
     return fmt::format("a spring of {:.4g} N/m, {:.4g} N s/m", pair.spring->stiffness,
                        pair.spring->damping);
   const Impedance& p = pair.impedance;
+  if (options.hasRowLaw() && p == Impedance{}) return "near-rigid, as no softness is given";
   const std::string reference =
       p.direct
           ? fmt::format("reference {:.4g} 1/s², {:.4g} 1/s", p.direct->stiffness, p.direct->damping)
@@ -142,7 +143,7 @@ std::string softnessText(const Model& model, const ExplainContext& context) {
     }
     const Material pair = surfaceOf(model, group.most);
     out += fmt::format("  {}: friction {:.4g}, condim {}, {}\n", group.surfaces,
-                       pair.slidingFriction, pair.condim, formOf(pair));
+                       pair.slidingFriction, pair.condim, formOf(pair, model.options));
     out += table.text();
   }
   if (out.empty()) return out;

@@ -92,9 +92,9 @@ class Recording final : public StepControl {
     auto& records = dataset_.records;
     while (!records.empty() && records.back().state.time >= state.time) records.pop_back();
     const Options& o = model.options;
-    records.push_back({state, o.timestep, o.outerTimestep, limits_.clamp(recorder_.force()),
-                       recorder_.acceleration(), report.status, data.stats.contacts,
-                       static_cast<int>(dataset_.goals.size()) - 1});
+    records.push_back({state, o.timestep, o.outerTimestep, o.nextTimestep,
+                       limits_.clamp(recorder_.force()), recorder_.acceleration(), report.status,
+                       data.stats.contacts, static_cast<int>(dataset_.goals.size()) - 1});
     setAppliedForce(records.back().control, data.forces);
     return &recorder_.acceleration();
   }

@@ -25,7 +25,7 @@ struct Robot {
   Model model;
   std::unique_ptr<collision::SceneContacts> contacts;
   State initial;
-  Input input;  ///< no force; its trees are those that goals control
+  Input input;               ///< no force; its trees are those that goals control
   double deviate = 0.5;      ///< σ of the operator's targets [m]
   double lowest = 0.1;       ///< least z of a target [m]
   double weightScale = 1.0;  ///< weight of its goals over that of the humanoid's [-]
@@ -38,10 +38,11 @@ std::vector<std::string> robotNames();
 std::unique_ptr<Robot> loadRobot(const std::string& folder, const std::string& name);
 
 struct Record {
-  State state;                                 ///< of the solve: q at mid-step
-  double timestep = 0.0, outerTimestep = 0.0;  ///< of Options, those of the part
-  VectorX control;                             ///< applied, within its box (nv) [N or N m]
-  VectorX acceleration;  ///< the solver's own, before the control was clamped (nv)
+  State state;  ///< of the solve: q at mid-step
+  double timestep = 0.0, outerTimestep = 0.0,
+         nextTimestep = 0.0;  ///< of Options, those of the part
+  VectorX control;            ///< applied, within its box (nv) [N or N m]
+  VectorX acceleration;       ///< the solver's own, before the control was clamped (nv)
   gdd::GddStatus status = gdd::GddStatus::converged;
   int contacts = 0;
   int goal = 0;  ///< index into Dataset::goals

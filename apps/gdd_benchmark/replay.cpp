@@ -75,6 +75,7 @@ class Replayer {
     times.finish.resize(solvers_.size());
     model_.options.timestep = record.timestep;
     model_.options.outerTimestep = record.outerTimestep;
+    model_.options.nextTimestep = record.nextTimestep;
     Clock::time_point clock = Clock::now();
     computeStages(model_, robot_.input, record.state, data_, robot_.contacts.get());
     times.stages = lap(clock);

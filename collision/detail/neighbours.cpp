@@ -46,7 +46,7 @@ double Neighbours::wayOf(const Part& part, const Vector3& centre) const {
   const TreeMotionView& tree = bodies_[idx(part.tree)];
   const Motion& V = tree.V[idx(part.bodyInTree)];
   const Vector3 v = V.linear + V.angular.cross(centre - *tree.p_WO);
-  return options.timestep * (v.norm() + V.angular.norm() * part.lever);
+  return options.timeToNextRows() * (v.norm() + V.angular.norm() * part.lever);
 }
 
 void Neighbours::measure(int unit) {

@@ -53,8 +53,8 @@ struct SceneContacts::Scene {
   bool moved() const;
   void findNear();
   void sweep();
-  /// How far each shape goes in a step, where rows begin before they touch (3.16).
-  void setWays(const Kinematics& kinematics, double timestep);
+  /// How far each shape goes in `time` [s], where rows begin before they touch (3.16).
+  void setWays(const Kinematics& kinematics, double time);
   /// By how much nearer a pair may be at the end of the step [m].
   double wayOf(const Row& row) const {
     return way[static_cast<std::size_t>(row.a)] + way[static_cast<std::size_t>(row.b)];

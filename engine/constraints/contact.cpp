@@ -202,8 +202,7 @@ ContactBlocks::BlockMotion ContactBlocks::addBlock(const Assembly& in, int i, co
   const Motion slips{
       k.V[c.bodyB].angular - k.V[c.bodyA].angular,
       pointVelocity(model, k, c.bodyB, c.p_WC) - pointVelocity(model, k, c.bodyA, c.p_WC)};
-  const Matrix3 R_WC = turnsWithSlip(in, c, touch, slips.linear) ? contactFrame(c.n_W, slips.linear)
-                                                                 : contactFrame(c.n_W, c.tangent_W);
+  const Matrix3 R_WC = contactFrame(c.n_W, tangentOf(in, c, touch, slips));
   // The contacts of a pair are neighbours in the set.
   const std::vector<Contact>& all = in.contacts.contacts;
   int place = 0;

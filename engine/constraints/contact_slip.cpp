@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace softgauss {
 namespace {
@@ -37,24 +38,21 @@ double mobilityOf(const Assembly& in, const Contact& c, const Touch& touch, cons
   return m;
 }
 
-/// The inverse weight of a body at p_W along the unit vector d [1/kg].
-double weightAlong(const Assembly& in, int body, const Vector3& p_W, const Vector3& d_W) {
-  const Vector3 lever = p_W - in.kinematics.X_WB[body] * in.model.bodies[body].com;
-  return in.weights.translation[body] + in.weights.rotation[body] * lever.cross(d_W).squaredNorm();
-}
-
-/// β (5.8): how much of s friction meets for each m/s² that the normal force adds to ẏ_n.
-double brakesPerPush(const Assembly& in, const Contact& c, const ContactRows& made,
-                     const Slip& slip) {
-  const auto along = [&](const Vector3& d_W) {
-    return weightAlong(in, c.bodyA, c.p_WC, d_W) + weightAlong(in, c.bodyB, c.p_WC, d_W);
-  };
-  const double turns = in.weights.rotation[c.bodyA] + in.weights.rotation[c.bodyB];
-  double sum = 0.0;
-  for (int k = 0; k < slip.dim; ++k)
-    sum += std::pow(slip.direction[k] * made.friction[k], 2.0) *
-           (k < 2 ? along(made.R_WC.col(k + 1)) : turns);
-  return sum / along(c.n_W);
+/// β (5.8): how much of s friction meets for each m/s² that the normal force adds to ẏ_n. A slide
+/// of what is round turns it too, about a lever that stays; other levers change as bodies tip, and
+/// are left out.
+double brakesPerPush(const Assembly& in, const Contact& c, const Touch& touch, const Slip& slip,
+                     double mobility) {
+  double turns = 0.0;
+  for (const auto& [body, geometry] : {std::pair(c.bodyA, c.geometryA), {c.bodyB, c.geometryB}}) {
+    const Shape& shape = in.model.geometries[geometry].shape;
+    if (shape.kind == ShapeKind::sphere || shape.kind == ShapeKind::capsule)
+      turns += in.weights.rotation[body] * shape.radius * shape.radius;
+  }
+  turns /= in.weights.translation[c.bodyA] + in.weights.translation[c.bodyB];
+  double slides = 0.0;
+  for (int k = 0; k < 2; ++k) slides += std::pow(slip.direction[k] * touch.friction[k], 2.0);
+  return touch.mu() * touch.mu() * mobility + slides * turns;
 }
 
 /// Whether slip may push the bodies of a contact apart: nothing glides whose centre of mass cannot
@@ -77,20 +75,28 @@ double gainOf(const Options& options, const Touch& touch, const Softness& soft) 
   return (edges ? 2 * touch.frictionDim : 1) * touch.inverseMass / soft.R;
 }
 
-bool turnsWithSlip(const Assembly& in, const Contact& contact, const Touch& touch,
-                   const Vector3& slip_W) {
+Vector3 tangentOf(const Assembly& in, const Contact& contact, const Touch& touch,
+                  const Motion& slips_W) {
   constexpr double kTurnsStably = 0.5;
   const Options& options = in.model.options;
   if (touch.frictionDim == 0 || options.cone != Cone::pyramidal || !options.correctsSlip() ||
       !mayGlide(in, contact))
-    return false;
+    return contact.tangent_W;
   const Softness& s = touch.softness;
-  const double normal = contact.n_W.dot(slip_W);
+  const double normal = contact.n_W.dot(slips_W.linear);
   const double presses =
       std::max(0.0, -s.stiffness * touch.distance) +
       std::max(0.0, -s.damping * normal) /
           (1.0 + gainOf(options, touch, touch.softness) * options.timestep * s.damping);
-  return slipNumber(options, touch, (slip_W - normal * contact.n_W).norm(), presses) > kTurnsStably;
+  const auto turnsStably = [&](double slip) {
+    return slipNumber(options, touch, slip, presses) > kTurnsStably;
+  };
+  if (turnsStably((slips_W.linear - normal * contact.n_W).norm())) return slips_W.linear;
+  if (touch.frictionDim < 4) return contact.tangent_W;
+  const Vector3 roll = slips_W.angular - contact.n_W * contact.n_W.dot(slips_W.angular);
+  const double turns = in.weights.rotation[contact.bodyA] + in.weights.rotation[contact.bodyB];
+  const double slides = touch.friction[3] * turns / (touch.mu() * touch.inverseMass);
+  return turnsStably(roll.norm() / slides) ? roll : contact.tangent_W;
 }
 
 Slip ContactBlocks::slipOf(const Assembly& in, const Touch& touch, const Softness& soft,
@@ -112,7 +118,7 @@ Slip ContactBlocks::slipOf(const Assembly& in, const Touch& touch, const Softnes
       std::min(1.0, kSure * slipNumber(options, touch, slip.asked / (m * soft.damping * touch.mu()),
                                        -soft.stiffness * touch.distance));
   in.count(Mechanism::slipCorrection, slip.share == 1.0);
-  const double brakes = brakesPerPush(in, contact, contactsWithRows_.back(), slip);
+  const double brakes = brakesPerPush(in, contact, touch, slip, m);
   slip.met = metLast(in, moves, slip, brakes);
   const double gain = gainOf(options, touch, soft);
   const double push = soft.referenceAcceleration(moves.velocity[0], touch.distance);

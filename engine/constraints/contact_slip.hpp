@@ -15,9 +15,10 @@ double weightAt(const Assembly& in, int body, const Vector3& p_W);
 /// [-].
 double gainOf(const Options& options, const Touch& touch, const Softness& soft);
 
-/// Whether a pyramid turns with the slip [m/s] of its bodies: where friction turns the slip stably,
-/// slower than it points. Friction then points against the slip, whatever tangents the pyramid has.
-bool turnsWithSlip(const Assembly& in, const Contact& contact, const Touch& touch,
-                   const Vector3& slip_W);
+/// Where t₁ of a contact points, besides n. A pyramid turns with the slip of its bodies, or, where
+/// nothing slides, with their roll, as long as friction turns that stably, slower than it points:
+/// friction then points against it, whatever tangents the contact has.
+Vector3 tangentOf(const Assembly& in, const Contact& contact, const Touch& touch,
+                  const Motion& slips_W);
 
 }  // namespace softgauss

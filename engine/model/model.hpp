@@ -167,6 +167,8 @@ struct Options {
   double substepAngle = 0.1;
   /// h of the step that this one is a part of, whose rows and stiff springs it keeps; 0: of none.
   double outerTimestep = 0.0;
+  /// h of the step after this one, where it is another: of the last part of a step; 0: the same.
+  double nextTimestep = 0.0;
   /// softgauss's is beyond MuJoCo's by (3.15), (3.11), (4.9), (5.1), (5.6), (5.7), (5.8),
   /// and the curvature of couplings (4.6).
   ConstraintModel constraintModel = ConstraintModel::softgauss;
@@ -202,6 +204,10 @@ struct Options {
   }
   /// h by which rows bound their softness: what a whole step follows, a part of it does too [s].
   double rowTimestep() const { return outerTimestep > 0.0 ? outerTimestep : timestep; }
+  /// From where the leapfrog makes rows, at mid-step, to where it makes them next [s].
+  double timeToNextRows() const {
+    return nextTimestep > 0.0 ? 0.5 * (timestep + nextTimestep) : timestep;
+  }
   /// The step evaluates the dynamics again within it.
   bool isMultiStage() const { return !isSingleSolve() || stepDoubling; }
 };

@@ -47,11 +47,11 @@ class Hasher {
   }
   void add(const Options& o) {
     const auto& [timestep, gravity, effects, integrator, integrationTolerance, stepDoubling,
-                 implicitInSolve, cone, impedanceRatio, substepAngle, outerTimestep,
+                 implicitInSolve, cone, impedanceRatio, substepAngle, outerTimestep, nextTimestep,
                  constraintModel, mechanisms, exactDiagonal, maxIterations, tolerance] = o;
     (*this)(timestep, gravity, effects, integrator, integrationTolerance, stepDoubling,
-            implicitInSolve, cone, impedanceRatio, substepAngle, outerTimestep, constraintModel,
-            mechanisms, exactDiagonal, maxIterations, tolerance);
+            implicitInSolve, cone, impedanceRatio, substepAngle, outerTimestep, nextTimestep,
+            constraintModel, mechanisms, exactDiagonal, maxIterations, tolerance);
   }
   void add(const Body& b) {
     const auto& [joint, massless, parent, q, v, dofs, tree, robot, subtreeEnd, X_PB, axis, mass,

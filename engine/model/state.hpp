@@ -82,7 +82,7 @@ struct Input {
   /// rows are as they are without a control, bit for bit.
   std::vector<std::uint8_t> controlled;
   /// (nv) of servos, at the step's end [rad or m, rad/s or m/s]; empty: those of Servo.
-  VectorX setPoint, setPointRate;
+  VectorX setPoint = {}, setPointRate = {};
 };
 
 /// Input::controlled where a control acts on every tree.

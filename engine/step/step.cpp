@@ -322,6 +322,7 @@ Tried stepInParts(const Model& model, const Given& given, int parts, State& stat
   Tried tried = Tried::taken;
   for (int k = 0; k < parts && tried == Tried::taken; ++k) {
     state = p.start;
+    p.model.options.nextTimestep = k + 1 == parts ? model.options.timestep : 0.0;
     tried = tryStep(p.model, given, p.start, most, false, state, data);
     total.add(data.stats);
     p.start = state;

@@ -36,7 +36,7 @@ TEST_P(ParityScene, PruningIsNotSeen) {
     state.q = reference.q[0];
     state.v = reference.v[0];
     State same = state;
-    const Input input{log_.force, {}, {}};
+    const Input input{log_.force, {}, {}, {}, {}};
     const double duration = reference.every * static_cast<double>(reference.q.size() - 1);
     for (double t = 0.0; t < duration; t += model.options.timestep) {
       const SolveStatus status = step(model, input, state, data, &pruned);
@@ -61,7 +61,7 @@ TEST_P(ParityScene, IslandsAreNotSeen) {
     State state(model_);
     state.q = reference.q;
     state.v = reference.v;
-    const Input input{reference.force, reference.wrenches, {}};
+    const Input input{reference.force, reference.wrenches, {}, {}, {}};
     islands.setState(state);
     ASSERT_EQ(islands.step(input), SolveStatus::converged);
     ASSERT_EQ(step(model_, input, state, data_, &contacts_), SolveStatus::converged);

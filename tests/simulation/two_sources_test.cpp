@@ -20,6 +20,9 @@ struct Case {
   const char* name;
   double seconds;          ///< until it is at rest
   const char* goals = "";  ///< a file of data/goals; then the name is that of a robot
+  /// Bodies land: ours are found before they touch and FCL's after, so that where they slide to
+  /// differs. Without near-rigid rows, which begin before they touch, both are found alike.
+  bool lands = false;
 };
 
 constexpr Case kScenes[] = {
@@ -29,10 +32,10 @@ constexpr Case kScenes[] = {
     {"stability/boxes_1000_on_1", 2.0},
     {"stability/tower_20", 2.0},
     {"stability/light_feet", 2.0},
-    {"landscape", 12.0},
+    {"landscape", 12.0, "", true},
     {"arm_presses_table", 5.0},
     {"two_arms", 6.0},
-    {"hand_and_ball", 6.0},
+    {"hand_and_ball", 6.0, "", true},
     {"humanoid", 4.0, "stand_and_reach"},
 };
 
@@ -48,6 +51,7 @@ struct Rest {
   Rest(const Case& c, bool throughFcl) {
     SimulationOptions options;
     options.throughFcl = throughFcl;
+    if (c.lands) options.mechanisms.emplace(MechanismSet::all()).remove(Mechanism::nearRigid);
     // Its soles are level to 5e-12 rad, as its file writes angles. A nanometre up, all of both
     // lands in one step; else the sources see other corners in the first.
     if (*c.goals) options.baseHeight = 0.92 + 1e-9;
@@ -117,8 +121,8 @@ TEST(TwoSources, BringScenesToTheSameRest) {
     EXPECT_GT(own.contacts, 0);
     EXPECT_TRUE(std::any_of(own.moves.begin(), own.moves.end(),
                             [](const auto& link) { return link.second <= kRests; }));
-    EXPECT_LE(d.place, 2e-4);
-    EXPECT_LE(d.force, 0.01);
+    EXPECT_LE(d.place, c.lands ? 1e-9 : 2e-4);
+    EXPECT_LE(d.force, c.lands ? 1e-9 : 0.01);
   }
 }
 

@@ -103,10 +103,11 @@ class Course {
     };
     ++steps;
     if (unpruned_.mayTouch()) {  // data.kinematics is that of the last part's start
-      const double whole = model.options.timestep;
+      const Options whole = model.options;
+      if (data.stats.parts > 1) model.options.nextTimestep = whole.timestep;
       model.options.timestep /= data.stats.parts;
       unpruned_.detect(model, data.kinematics, all_);
-      model.options.timestep = whole;
+      model.options = whole;
       if (!sameContacts(data.contacts, all_)) return breaks("other contacts without pruning");
     }
     if (status == SolveStatus::notFinite) return breaks("not finite");

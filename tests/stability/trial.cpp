@@ -161,11 +161,13 @@ bool Trial::run(double seconds, const std::function<void()>& each) {
 bool Trial::watch(SolveStatus status) {
   const StepStats& stats = data->stats;
   if (unpruned->mayTouch()) {
-    // Near-rigid contacts are found within the way of what was stepped last, a part of a step.
-    const double whole =
-        std::exchange(model.options.timestep, model.options.timestep / stats.parts);
+    // Near-rigid contacts are found within the way from where the rows of what was stepped last, a
+    // part of a step, were made, to where those of the next step are.
+    const Options whole = model.options;
+    if (stats.parts > 1) model.options.nextTimestep = whole.timestep;
+    model.options.timestep /= stats.parts;
     unpruned->detect(model, data->kinematics, all_);
-    model.options.timestep = whole;
+    model.options = whole;
   }
   const auto breaks = [&](const std::string& law) {
     ADD_FAILURE() << name_ << ": " << law << " at t = " << state.time;

@@ -23,8 +23,9 @@
 /// Near-rigid ones share the spring, K/n each, so that depth does not depend on friction. A
 /// friction below 0.3 counts as 0.3, or overlaps would take ever longer to resolve, n e τ.
 ///
-/// A row begins before it touches, where r ≥ 0 and r + h ẋ < 0: it ends the step where it touches,
-///   a_ref = −ẋ/h − r/h²                                                                  (3.16)
+/// A row begins before it touches, where r ≥ 0 and r + T ẋ < 0, with T from where rows are made to
+/// where they are made next: it touches then,
+///   a_ref = −ẋ/h − r/(h T)                                                               (3.16)
 
 #include <algorithm>
 
@@ -96,13 +97,13 @@ inline Softness frictionLaw(const Impedance& p, double inverseInertia, const Opt
 
 /// (3.16) for a row that is not touched yet.
 inline Softness beginning(Softness s, const Options& options) {
-  s.stiffness = 1.0 / (options.timestep * options.timestep);
+  s.stiffness = 1.0 / (options.timestep * options.timeToNextRows());
   return s;
 }
 
-/// Whether a row of this distance and rate begins within the step.
+/// Whether a row of this distance and rate begins before rows are made again.
 inline bool begins(double distance, double rate, const Options& options) {
-  return distance >= 0.0 && distance + options.timestep * rate < 0.0;
+  return distance >= 0.0 && distance + options.timeToNextRows() * rate < 0.0;
 }
 
 }  // namespace softgauss

@@ -10,15 +10,17 @@
 /// that references stay functions of the state, the penalty convex and the inverse (1.2) explicit:
 ///
 ///   p = −b ẏ_n − k d r,   s_k = −μ_k b ẏ_k,   û = s/|s|     what depth, speed and slip ask for
-///   ŷ = J a₋ + J̇ v,   β = Σ (û_k μ_k)² A_k/A_n
+///   ŷ = J a₋ + J̇ v,   β = Σ (û_k μ_k)² A_k/A
 ///   t₋ = Σ û_k μ_k ŷ_k − β max(0, ŷ_n)                      what the load met of s
 ///   t = t₋ + β max(0, (G p − ℓ)/(1 + G)),   |t| ≤ |s|       what load and impact will meet
 ///   σ = |s| − t                                             the slip that is left          (5.8)
 ///
-/// β is what Coulomb's friction meets of s for each m/s² that the normal force adds to ẏ_n, of the
-/// inverse inertias A_n, A_k at the contact. The force adds (G p − ℓ)/(1 + G), with G = n A D of
-/// its n rows and the load ℓ = max(g, t₋/β): at rest nothing. Without it an impact would count as
-/// slip what its own friction is about to stop, and stop half of ẏ_n alone.
+/// β is what Coulomb's friction meets of s for each m/s² that the normal force adds to ẏ_n, with
+/// A_k = A (1 + R² w_r/w_t) for a slide, R the radius of what is round, else 0. The force adds
+/// (G p − ℓ)/(1 + G), with G = n A D of its n rows and the load ℓ = max(g, t₋/β): at rest nothing.
+/// Without it an impact would count as slip what its own friction is about to stop, and stop half
+/// of ẏ_n alone. A β too large would make ŷ_n swing from step to step: levers of bodies that are
+/// not round, which many contacts share, are left out.
 ///
 /// *Pyramids*: the n edges push by m_e ≥ 0 that add up to n p, whatever slides, and no edge asks
 /// for more than stops the body within the step:
