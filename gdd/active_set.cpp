@@ -9,6 +9,8 @@ namespace softgauss::gdd {
 
 ActiveSet::ActiveSet(const Model& model) : path_(model) {
   for (VectorX* x : {&force_, &Ma_, &adjoint_, &residual_, &rate_}) *x = VectorX::Zero(model.nv);
+  // No more rows stand at their breakpoints than there are dofs, but for those that depend on them.
+  for (auto* keys : {&breakpoints_, &first_.breakpoints}) keys->reserve(idx(model.nv));
 }
 
 /// B u − g(a), with the rows as they were last evaluated.

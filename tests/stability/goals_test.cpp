@@ -104,8 +104,7 @@ class Course {
     ++steps;
     if (unpruned_.mayTouch()) {  // data.kinematics is that of the last part's start
       const Options whole = model.options;
-      if (data.stats.parts > 1) model.options.nextTimestep = whole.timestep;
-      model.options.timestep /= data.stats.parts;
+      model.options.nextTimestep = whole.timestep, model.options.timestep /= data.stats.parts;
       unpruned_.detect(model, data.kinematics, all_);
       model.options = whole;
       if (!sameContacts(data.contacts, all_)) return breaks("other contacts without pruning");
