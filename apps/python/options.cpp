@@ -55,11 +55,11 @@ SimulationOptions optionsFrom(const py::kwargs& keywords) {
   SimulationOptions options;
   for (const auto& [key, value] : keywords) {
     const auto name = key.cast<std::string>();
-    if (name != "without_goals" && !NamedOption::find(name)) {
+    if (name != "without_goals" && name != "without_servos" && !NamedOption::find(name)) {
       std::string known;
       for (const NamedOption& other : NamedOption::all()) known += std::string(other.name) + ", ";
       throw py::type_error("found the option '" + name + "', expected one of " + known +
-                           "without_goals");
+                           "without_goals, without_servos");
     }
     if (set(name, value, options)) continue;
     const std::string problem =

@@ -139,9 +139,10 @@ void bindSimulation(py::module_&, HeldClass& sim) {
           "base, base_height, ground, q0, srdf, state, timestep, integrator,\n"
           "integration_tolerance, step_doubling, cone, exact_diagonal, effects, without, "
           "zero_effort,\n"
-          "infer_inertia, ignore_velocity_limits, no_balance, gdd_solver, control_cost, meshes, "
-          "collision,\n"
-          "compatibility, package_paths, most_dofs; and without_goals. Raises ModelError and "
+          "infer_inertia, ignore_velocity_limits, no_balance, gdd_solver, control_cost, "
+          "budget, meshes, collision,\n"
+          "compatibility, package_paths, most_dofs; and without_goals, without_servos. Raises "
+          "ModelError and "
           "OptionError.");
   sim.def_property_readonly(
       "goals", py::cpp_function([](Held& h) { return GoalList{h}; }, py::keep_alive<0, 1>()),
