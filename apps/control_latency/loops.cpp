@@ -43,8 +43,8 @@ const Loop kLoops[] = {
      },
      3.0, "", 0.0, 0.1},
     {"hand_and_ball", "data/scenes/hand_and_ball.yaml", [](Simulation&) {}, 3.0, "ball", 1.0, 0.0},
-    {"quadruped", "data/robots/quadruped.urdf", [](Simulation& sim) { sim.goals.posture(1000.0); },
-     3.0, "", 0.0, 0.3},
+    {"humanoid_at_wall", "data/scenes/humanoid_pushes_wall.yaml", [](Simulation&) {}, 4.0, "", 0.0,
+     0.02},
 };
 
 /// Pushes the link for a tenth of a second every second, each time another way.

@@ -66,7 +66,7 @@ void run(const Choice& choice) {
   if (!choice.budget.empty() && !setBudget(choice.budget, options))
     throw OptionError(
         fmt::format("budget {}: expected iterations, as 20, or a time, as 200us", choice.budget));
-  fmt::print("{:<18}{:>8}{:>9}{:>9}{:>9}{:>9}{:>10}{:>12}{:>8}\n", "loop, times in us", "cycles",
+  fmt::print("{:<18}{:>8}{:>9}{:>9}{:>9}{:>9}{:>12}{:>13}{:>8}\n", "loop, times in us", "cycles",
              "50 %", "99 %", "99.9 %", "most", "budget met", "uncertified", "faults");
   for (const std::string& name : choice.loops) {
     askForRealTime(choice);
@@ -76,7 +76,7 @@ void run(const Choice& choice) {
       const auto last = static_cast<double>(times.us.size() - 1);
       return times.us[static_cast<std::size_t>(std::lround(share * last))];
     };
-    fmt::print("{:<18}{:>8}{:>9.1f}{:>9.1f}{:>9.1f}{:>9.1f}{:>10}{:>12}{:>8}\n", name,
+    fmt::print("{:<18}{:>8}{:>9.1f}{:>9.1f}{:>9.1f}{:>9.1f}{:>12}{:>13}{:>8}\n", name,
                times.us.size(), at(0.5), at(0.99), at(0.999), at(1.0), times.budgetMet,
                times.uncertified, times.pageFaults);
     if (choice.histogram) fmt::print("{}", histogramOf(times.us));
