@@ -16,6 +16,7 @@
 #include <cstdio>
 
 #include "apps/control_latency/loops.hpp"
+#include "softgauss/io/nearest_rank.hpp"
 #include "softgauss/io/simulation/named_options.hpp"
 
 namespace softgauss::app {
@@ -68,14 +69,11 @@ void run(const Choice& choice) {
         fmt::format("budget {}: expected iterations, as 20, or a time, as 200us", choice.budget));
   fmt::print("{:<18}{:>8}{:>9}{:>9}{:>9}{:>9}{:>12}{:>13}{:>8}\n", "loop, times in us", "cycles",
              "50 %", "99 %", "99.9 %", "most", "budget met", "uncertified", "faults");
+  askForRealTime(choice);
   for (const std::string& name : choice.loops) {
-    askForRealTime(choice);
     LoopTimes times = runLoop(name, options, choice.cycles, pageFaults);
     std::sort(times.us.begin(), times.us.end());
-    const auto at = [&](double share) {
-      const auto last = static_cast<double>(times.us.size() - 1);
-      return times.us[static_cast<std::size_t>(std::lround(share * last))];
-    };
+    const auto at = [&](double share) { return times.us[io::nearestRank(share, times.us.size())]; };
     fmt::print("{:<18}{:>8}{:>9.1f}{:>9.1f}{:>9.1f}{:>9.1f}{:>12}{:>13}{:>8}\n", name,
                times.us.size(), at(0.5), at(0.99), at(0.999), at(1.0), times.budgetMet,
                times.uncertified, times.pageFaults);

@@ -30,20 +30,25 @@ std::optional<OptionValue> optionValue(const py::handle& given) {
   }
 }
 
-/// The option by keyword; without_goals and without_servos are none of the program's, which has
-/// --passive and --servos.
+/// A flag that is none of the program's, which has --passive and --servos; null: of another name.
+bool SimulationOptions::*ownFlag(const std::string& name) {
+  if (name == "without_goals") return &SimulationOptions::withoutGoals;
+  return name == "without_servos" ? &SimulationOptions::withoutServos : nullptr;
+}
+
+/// The option by keyword.
 bool set(const std::string& name, const py::handle& given, SimulationOptions& options) {
   const std::optional<OptionValue> value = optionValue(given);
-  if (name == "without_goals" || name == "without_servos") {
+  if (const auto own = ownFlag(name)) {
     const bool* flag = value ? std::get_if<bool>(&*value) : nullptr;
-    if (flag) (name == "without_goals" ? options.withoutGoals : options.withoutServos) = *flag;
+    if (flag) options.*own = *flag;
     return flag != nullptr;
   }
   return value && NamedOption::find(name)->set(*value, options);
 }
 
 std::string expectedOf(const std::string& name) {
-  if (name == "without_goals" || name == "without_servos") return "True or False";
+  if (ownFlag(name)) return "True or False";
   const std::string expected = NamedOption::find(name)->expected;
   if (expected == "true or false") return "True or False";
   return name == "ground" ? "a height [m] or None" : expected;
@@ -55,7 +60,7 @@ SimulationOptions optionsFrom(const py::kwargs& keywords) {
   SimulationOptions options;
   for (const auto& [key, value] : keywords) {
     const auto name = key.cast<std::string>();
-    if (name != "without_goals" && name != "without_servos" && !NamedOption::find(name)) {
+    if (!ownFlag(name) && !NamedOption::find(name)) {
       std::string known;
       for (const NamedOption& other : NamedOption::all()) known += std::string(other.name) + ", ";
       throw py::type_error("found the option '" + name + "', expected one of " + known +

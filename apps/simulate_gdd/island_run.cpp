@@ -51,15 +51,15 @@ void IslandRun::take(const Input& input, State& state, Data& data) {
 }
 
 void IslandRun::addServoForces(VectorX& tau) {
+  ofScene_.setZero(model_.nv);
   for (int unit = 0; unit < islands_.units().size(); ++unit) {
     const Islands::Island& island = islands_.islandOf(unit);
     if (island.units.front() != unit || island.data.constraints.servo.rowCount() == 0) continue;
     ofIsland_.setZero(island.part.model.nv);
     softgauss::addServoForces(island.data, ofIsland_);
-    ofScene_.setZero(model_.nv);
     island.part.scatter(model_, ofIsland_, ofScene_);
-    tau += ofScene_;
   }
+  tau += ofScene_;
 }
 
 void IslandRun::collectContacts(std::vector<Contact>& contacts) {

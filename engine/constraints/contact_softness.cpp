@@ -88,11 +88,7 @@ Softness contactSoftness(const Material& pair, int frictionDim, double distance,
                          const Options& options) {
   const bool edges = frictionDim > 0 && options.cone == Cone::pyramidal;
   if (pair.spring) {
-    // Stiff, it swings by more than a radian in a step, and would give back what it was found with.
-    const double h = options.timestep, K = pair.spring->stiffness;
-    const bool stiff = h * h * K * weight > 1.0;
-    Softness s =
-        implicitSpringDamper(K, pair.spring->damping, stiff ? h : timeToStepEnd(options), options);
+    Softness s = springLaw(pair.spring->stiffness, pair.spring->damping, weight, options);
     if (edges) s.R *= 2.0 * frictionDim;
     return s;
   }

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "softgauss/engine/constraints/servo_drive.hpp"
 
-#include "softgauss/engine/constraints/impedance.hpp"
+#include "softgauss/engine/constraints/law/row_law.hpp"
 
 namespace softgauss {
-
 namespace {
 
 /// What Input asks of a dof, or `otherwise`.
@@ -17,7 +16,6 @@ double asked(const Input* input, VectorX Input::*of, int dof, double otherwise) 
 void ServoDrive::assemble(const Assembly& in) {
   const Model& model = in.model;
   const Options& options = model.options;
-  const double step = options.timestep;
   clear();
   for (int i = 0; options.effects.has(Effect::actuation) && i < model.nv; ++i) {
     const Dof& dof = model.dofs[i];
@@ -25,9 +23,7 @@ void ServoDrive::assemble(const Assembly& in) {
     if (!servo.exists() || in.isControlled(dof.body)) continue;
     const double u = asked(in.input, &Input::setPoint, i, servo.setPoint);
     const double rate = asked(in.input, &Input::setPointRate, i, servo.setPointRate);
-    const bool stiff = step * step * servo.kp * in.weights.dof[i] > 1.0;
-    const Softness soft =
-        implicitSpringDamper(servo.kp, servo.kd, stiff ? step : timeToStepEnd(options), options);
+    const Softness soft = springLaw(servo.kp, servo.kd, in.weights.dof[i], options);
     const double away = in.state.q[model.bodies[dof.body].q] - u;
     push(i, 1.0, soft, soft.referenceAcceleration(in.state.v[i], away) + servo.kd * soft.R * rate);
     limit.push_back(servo.effort);

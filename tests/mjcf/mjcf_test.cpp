@@ -198,7 +198,6 @@ TEST(Mjcf, ServosOfJointsHaveTheGainsOfTheFile) {
   EXPECT_EQ(servo(*zero, "velocity").kp, 0.0);
   EXPECT_EQ(servo(*zero, "velocity").kd, 20.0);
   EXPECT_EQ(servo(*key, "velocity").setPointRate, -1.5);
-  const auto scene = loadScene(model.file);
   const double mass = 1000.0 * 4.0 / 3.0 * 3.14159265358979 * 1e-3;
   const double inertia = mass * (0.09 + 0.4 * 0.01);
   EXPECT_NEAR(servo(*zero, "ratio").kd / (2.0 * std::sqrt(40.0 * inertia)), 1.0, 1e-12);

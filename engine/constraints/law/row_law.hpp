@@ -50,6 +50,16 @@ inline Softness implicitDamper(double dampingTimesA, double inverseInertia,
   return s;
 }
 
+/// The row (3.14) of a spring [N/m] and a damper [N s/m] that are given, on what has the inverse
+/// inertia A. Stiff, it swings by more than a radian in a step, and would give back what it was
+/// found with: its spring is then that of a whole step later.
+inline Softness springLaw(double stiffness, double damping, double inverseInertia,
+                          const Options& options) {
+  const double h = options.timestep;
+  const bool stiff = h * h * stiffness * inverseInertia > 1.0;
+  return implicitSpringDamper(stiffness, damping, stiff ? h : timeToStepEnd(options), options);
+}
+
 /// The row (3.14) of an impedance, of inverse inertia A.
 inline Softness rowLaw(const Impedance& p, double distance, double inverseInertia,
                        const Options& options) {
