@@ -5,6 +5,8 @@
 #include <bit>
 #include <cmath>
 
+#include "softgauss/engine/step/forward.hpp"
+
 namespace softgauss::gdd {
 
 ActiveSet::ActiveSet(const Model& model) : path_(model) {
@@ -201,27 +203,34 @@ ActiveSet::Next ActiveSet::tryNeighbourCell(Data& data) {
 }
 
 /// a to rounding, the rows as they are there, and the report.
-void ActiveSet::finish(const ControlLimits& limits, const GoalCost& cost, Data& data) {
+void ActiveSet::finish(const Model& model, const ControlLimits& limits, const GoalCost& cost,
+                       Data& data) {
   constexpr int kCorrections = 3;
   constexpr double kRounding = 1e-13;
   const double scale =
       std::max({1.0, data.forces.c.cwiseAbs().maxCoeff(), force_.cwiseAbs().maxCoeff()});
-  bool changed = false, anew = false;
+  setAppliedForce(force_, data.forces);
+  bool changed = false, anew = false, searched = false;
   for (int k = 0;; ++k) {
     data.constraints.setResidual(path_.a);
     data.constraints.evaluate(changed);
     computeResidual(data);
-    if (residual_.cwiseAbs().maxCoeff() <= kRounding * scale) break;
-    // Rows that were crossed have cost P⁻¹ digits, or one at its breakpoint is in its other piece.
-    if (k == kCorrections) {
-      if (anew || !cell_.enter(data)) break;
+    if (residual_.cwiseAbs().maxCoeff() <= kRounding * scale || searched) break;
+    if (k < kCorrections) {
+      cell_.solve(residual_);
+      path_.a += residual_;
+    } else if (!anew) {
+      // Rows that were crossed have cost P⁻¹ digits, or one at its breakpoint is in its other
+      // piece.
+      if (!cell_.enter(data)) break;
       anew = true;
-      k = 0;
+      k = -1;
+    } else {
+      // Rows at their breakpoints go from piece to piece.
+      if (!isRefused(forwardDynamics(model, &path_.a, data))) path_.a = data.forward.a;
+      searched = true;
     }
-    cell_.solve(residual_);
-    path_.a += residual_;
   }
-  setAppliedForce(force_, data.forces);
   rate_ = force_ - residual_;  // g(a)
   report_.violation = limits.violation(rate_);
   forces_.evaluate(data.constraints);
@@ -306,7 +315,7 @@ GddReport ActiveSet::solve(const Model& model, GoalCost& cost, const ControlLimi
   else if (!cell_.enter(data))
     report_.status = GddStatus::notFinite;
   if (report_.status == GddStatus::notFinite) return report_;
-  finish(limits, cost, data);
+  finish(model, limits, cost, data);
 
   if (!known_) return report_;  // a cold start has looked
   searchAge_ = warm.gddSearchAge;
@@ -346,7 +355,7 @@ bool ActiveSet::startAgain(const Model& model, const GoalCost& cost, const Contr
     const std::optional<GddStatus> status = descend(cost, wanted, data);
     options.maxIterations = most;
     report_.status = status.value_or(GddStatus::notFinite);
-    if (report_.status != GddStatus::notFinite) finish(limits, cost, data);
+    if (report_.status != GddStatus::notFinite) finish(model, limits, cost, data);
   } else {
     report_.status = GddStatus::notFinite;
   }

@@ -94,7 +94,7 @@ class ActiveSet {
   std::optional<GddStatus> descend(const GoalCost& cost, double wanted, Data& data);
   bool startAgain(const Model& model, const GoalCost& cost, const ControlLimits& limits,
                   Data& data);
-  void finish(const ControlLimits& limits, const GoalCost& cost, Data& data);
+  void finish(const Model& model, const ControlLimits& limits, const GoalCost& cost, Data& data);
 
   CellResponse cell_;
   QuadraticProgram program_;

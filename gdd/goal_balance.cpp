@@ -269,7 +269,7 @@ void GoalBalance::findMultipliers() {
 
 bool GoalBalance::solve(const Input& input, const State& state, ContactSource* contacts) {
   Input held = input;
-  controller_.limits.markControlled(model_, held.controlled);
+  controller_.markControlled(model_, held.controlled);
   listTerms(state.time);
   findStillSlopes(held, state, contacts);
   if (isRefused(computeStages(model_, held, state, data_, contacts))) return false;

@@ -106,7 +106,7 @@ SolveStatus GoalDirectedController::step(const Model& model, const Input& input,
                                          Data& data, ContactSource* contacts, bool posed) noexcept {
   if (data.stats.refuse(model, findBadInput(model, input, state))) return data.stats.status;
   held_ = input;
-  limits.markControlled(model, held_.controlled);
+  markControlled(model, held_.controlled);
   outside_ = input.tau;
   begin();
   return softgauss::step(model, held_, state, data, contacts, this, posed);

@@ -66,6 +66,13 @@ class GoalDirectedController final : public StepControl {
   /// goals, limits and forceMetric, which are of a model's dofs, stay.
   void takeSettings(const GoalDirectedController& from);
 
+  /// Marks the trees that it controls in Input::controlled. Solver 1 squares P, and is given soft
+  /// contacts.
+  void markControlled(const Model& model, std::vector<std::uint8_t>& trees) const {
+    const bool squares =
+        solver == GddSolver::augmentedLagrangian || model.options.cone == Cone::elliptic;
+    limits.markControlled(model, trees, squares ? kControlledSoft : kControlled);
+  }
   /// One step. `input` acts besides the control (disturbances). Where isRefused() the
   /// state is left as it was; limits that are none (GddStatus::badLimits) are badInput. `posed` as
   /// of softgauss::step().

@@ -16,22 +16,23 @@ ControlLimits::ControlLimits(const Model& model, std::vector<Actuator> actuators
   }
 }
 
-void ControlLimits::markControlled(const Model& model, std::vector<std::uint8_t>& trees) const {
+void ControlLimits::markControlled(const Model& model, std::vector<std::uint8_t>& trees,
+                                   std::uint8_t mark) const {
   if (trees.empty()) trees.resize(model.trees.size(), 0);
   if (lower.size() != model.nv || upper.size() != model.nv || trees.size() != model.trees.size())
     return;  // the step is refused
-  const auto mark = [&](int dof) {
+  const auto set = [&](int dof) {
     const int body = model.dofs[static_cast<std::size_t>(dof)].body;
-    trees[static_cast<std::size_t>(model.bodies[static_cast<std::size_t>(body)].tree)] = 1;
+    trees[static_cast<std::size_t>(model.bodies[static_cast<std::size_t>(body)].tree)] = mark;
   };
   for (int i = 0; i < model.nv; ++i) {
     if (!(lower[i] < upper[i])) continue;
     if (isPlain(i)) {
-      mark(i);
+      set(i);
       continue;
     }
     for (int dof = 0; dof < model.nv; ++dof)
-      if (transmission->T()(dof, i) != 0.0) mark(dof);
+      if (transmission->T()(dof, i) != 0.0) set(dof);
   }
 }
 

@@ -62,7 +62,8 @@ struct ControlLimits {
   bool open() const { return (lower.array() != 0.0).any() || (upper.array() != 0.0).any(); }
   /// Marks the trees, in Input::controlled, on which forces act among which the box leaves a
   /// choice.
-  void markControlled(const Model& model, std::vector<std::uint8_t>& trees) const;
+  void markControlled(const Model& model, std::vector<std::uint8_t>& trees,
+                      std::uint8_t mark = kControlled) const;
   /// Opens the limits of every force that no actuator causes: root forces are then allowed, and
   /// applied.
   void allowRootForces(const Model& model) {

@@ -10,6 +10,7 @@
 #include "softgauss/engine/constraints/contact.hpp"
 #include "softgauss/engine/constraints/contact_softness.hpp"
 #include "softgauss/engine/constraints/inverse_weight.hpp"
+#include "softgauss/engine/constraints/stiction.hpp"
 #include "softgauss/engine/constraints/supported_mass.hpp"
 #include "softgauss/engine/core/index.hpp"
 #include "softgauss/io/detail/text.hpp"
@@ -111,6 +112,13 @@ std::string formOf(const Material& pair, const Options& options) {
   return fmt::format("{}, impedance {:.4g} to {:.4g}", reference, p.dMin, p.dMax);
 }
 
+/// Creep under goals for each newton [m/(N s)]: what is near-rigid sticks (5.7), but for solver 1.
+double creepUnderGoals(const Material& pair, const ContactAtRest& at, const Options& options) {
+  const bool sticks = options.hasRowLaw() && !pair.spring && pair.impedance == Impedance{} &&
+                      options.cone == Cone::pyramidal && options.uses(Mechanism::stiction);
+  return (sticks ? kLeastUnderGoals : 1.0) * at.mobility;
+}
+
 }  // namespace
 
 std::string softnessText(const Model& model, const ExplainContext& context) {
@@ -131,15 +139,16 @@ std::string softnessText(const Model& model, const ExplainContext& context) {
       const bool rubs = at.mobility > 0.0;
       const double d = at.equivalent.dMax;
       const bool possible = d >= 1e-4 && d <= 0.9999;  // as an impedance, which is clamped
-      table.row({fmt::format("'{}', {:.4g} kg", restingBody(model, *rest), rest->mass),
-                 fmt::format("{:.4g}", 1e3 * at.depth), fmt::format("{:.4g}", at.stiffness),
-                 fmt::format("{:.4g}", at.damping),
-                 rubs ? fmt::format("{:.4g}", 1e3 * at.mobility) : "slides",
-                 rubs ? fmt::format("{:.4g}", at.stickForce) : "-",
-                 possible ? fmt::format("{:.4g}", d) : "-",
-                 possible ? fmt::format("{:.4g}, {:.4g}", at.equivalent.direct->stiffness,
-                                        at.equivalent.direct->damping)
-                          : "-"});
+      table.row(
+          {fmt::format("'{}', {:.4g} kg", restingBody(model, *rest), rest->mass),
+           fmt::format("{:.4g}", 1e3 * at.depth), fmt::format("{:.4g}", at.stiffness),
+           fmt::format("{:.4g}", at.damping),
+           rubs ? fmt::format("{:.4g}", 1e3 * creepUnderGoals(pair, at, model.options)) : "slides",
+           rubs ? fmt::format("{:.4g}", at.stickForce) : "-",
+           possible ? fmt::format("{:.4g}", d) : "-",
+           possible ? fmt::format("{:.4g}, {:.4g}", at.equivalent.direct->stiffness,
+                                  at.equivalent.direct->damping)
+                    : "-"});
     }
     const Material pair = surfaceOf(model, group.most);
     out += fmt::format("  {}: friction {:.4g}, condim {}, {}\n", group.surfaces,

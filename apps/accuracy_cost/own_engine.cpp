@@ -17,7 +17,7 @@ class OwnEngine final : public EngineUnderTest {
         contacts_(model_),
         data_(model_),
         state_(model_) {
-    if (problem.softFriction) input_.controlled = allTrees(model_);
+    if (problem.softFriction) input_.controlled = allTrees(model_, kControlledSoft);
   }
 
   const Model& model() const override { return model_; }

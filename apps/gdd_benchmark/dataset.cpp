@@ -24,7 +24,8 @@ void standOnGround(const Model& model, State& state) {
 
 std::vector<std::string> robotNames() { return {"humanoid", "hand", "held_hand"}; }
 
-std::unique_ptr<Robot> loadRobot(const std::string& folder, const std::string& name) {
+std::unique_ptr<Robot> loadRobot(const std::string& folder, const std::string& name,
+                                 std::uint8_t mark) {
   const bool held = name == "held_hand";
   const bool hand = held || name == "hand";
   auto robot = std::make_unique<Robot>();
@@ -41,7 +42,7 @@ std::unique_ptr<Robot> loadRobot(const std::string& folder, const std::string& n
   robot->model = builder.geometry(plane).build();
   robot->contacts = std::make_unique<collision::SceneContacts>(robot->model);
   robot->initial = State(robot->model);
-  gdd::ControlLimits(robot->model).markControlled(robot->model, robot->input.controlled);
+  gdd::ControlLimits(robot->model).markControlled(robot->model, robot->input.controlled, mark);
   if (!held) standOnGround(robot->model, robot->initial);
   if (hand) {  // lengths by the sizes, 0.37 m against 1.58 m
     robot->deviate = 0.12;

@@ -35,7 +35,9 @@ struct Robot {
 /// hand with its forearm fixed, palm down, 0.15 m above the ground.
 std::vector<std::string> robotNames();
 /// `name` is one of robotNames(); `folder` has humanoid.urdf and hand.urdf. Throws ModelError.
-std::unique_ptr<Robot> loadRobot(const std::string& folder, const std::string& name);
+/// `mark`: how a control acts on it (Input::controlled).
+std::unique_ptr<Robot> loadRobot(const std::string& folder, const std::string& name,
+                                 std::uint8_t mark);
 
 struct Record {
   State state;  ///< of the solve: q at mid-step

@@ -198,7 +198,7 @@ class Runner {
     held_.setPointRate = input_.setPointRate;
     held_.tau = controller_.goals.empty() ? input_.tau : controller_.control;
     held_.controlled.clear();
-    if (!controller_.goals.empty()) controller_.limits.markControlled(model_, held_.controlled);
+    if (!controller_.goals.empty()) controller_.markControlled(model_, held_.controlled);
     errorEstimate_->observe(before_, held_, state_, model_.options.timestep);
   }
 

@@ -3,6 +3,7 @@
 
 /// What an effect may read when it makes its rows.
 
+#include <algorithm>
 #include <vector>
 
 #include "softgauss/engine/constraints/contact_set.hpp"
@@ -14,18 +15,14 @@
 namespace softgauss {
 
 struct Assembly {
-  /// Whether a control acts on one of the trees that a row holds: on a body, or on one of two.
-  bool isControlled(int bodyA, int bodyB = 0) const {
-    if (!input || input->controlled.empty()) return false;
-    const auto of = [&](int body) {
+  /// Input::controlled of the trees that a row holds, on a body or on two, the larger.
+  std::uint8_t controlled(int bodyA, int bodyB = 0) const {
+    if (!input || input->controlled.empty()) return 0;
+    const auto of = [&](int body) -> std::uint8_t {
       const int t = model.bodies[static_cast<std::size_t>(body)].tree;
-      return t >= 0 && input->controlled[static_cast<std::size_t>(t)] != 0;
+      return t >= 0 ? input->controlled[static_cast<std::size_t>(t)] : 0;
     };
-    return of(bodyA) || of(bodyB);
-  }
-  /// Whether friction of a row is regularised less where it sticks.
-  bool usesStiction(int bodyA, int bodyB = 0) const {
-    return model.options.uses(Mechanism::stiction) && !isControlled(bodyA, bodyB);
+    return std::max(of(bodyA), of(bodyB));
   }
   /// How far v lies behind q [s]: half a step where positions drift to mid-step first. A distance
   /// that changes by J v there has changed by J v − lag J̇ v where the step began (4.5).

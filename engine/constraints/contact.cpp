@@ -250,16 +250,19 @@ Softness ContactBlocks::soften(const Assembly& in, const Touch& touch,
                                const FrameVector& velocity) {
   const Softness& soft = touch.softness;
   const Contact& contact = in.contacts.contacts[contactsWithRows_.back().contact];
+  const std::uint8_t controlled = in.controlled(contact.bodyA, contact.bodyB);
   // What stands alone on a softness that is given creeps as that says.
   if (!(touch.nearRigid || touch.supportsOthers) || touch.distance >= 0.0 ||
-      touch.frictionDim == 0 || !in.usesStiction(contact.bodyA, contact.bodyB))
+      touch.frictionDim == 0 || !in.model.options.uses(Mechanism::stiction) ||
+      controlled == kControlledSoft)
     return soft;
   if (!(soft.damping * soft.damping >= 4.0 * soft.stiffness)) return soft;  // it bounces
   ContactSpeeds speeds{slipSpeed(touch, velocity), std::abs(velocity[0])};
   speeds.weight = creepUnderWeight(in.model.options, touch);
   speeds.creep = speeds.weight - soft.stiffness * touch.distance / soft.damping;
-  contactsWithRows_.back().regularisationScale =
-      speeds.regularisationScale(touch.supportsOthers ? kCarries : kAlone);
+  Hardening most = touch.supportsOthers ? kCarries : kAlone;
+  if (controlled) most.least = kLeastUnderGoals;
+  contactsWithRows_.back().regularisationScale = speeds.regularisationScale(most);
   in.count(Mechanism::stiction, contactsWithRows_.back().regularisationScale < 1.0);
   return stiffened(soft, contactsWithRows_.back().regularisationScale);
 }

@@ -34,7 +34,8 @@ void DryFriction::assemble(const Assembly& in) {
       Softness soft = model.options.hasRowLaw()
                           ? frictionLaw(dof.frictionImpedance, A, model.options)
                           : softnessAt(dof.frictionImpedance, 0.0, A, model.options.rowTimestep());
-      if (in.usesStiction(dof.body)) harden(soft, std::abs(rate), dof.dryFriction);
+      if (model.options.uses(Mechanism::stiction) && !in.controlled(dof.body))
+        harden(soft, std::abs(rate), dof.dryFriction);
       push(i, 1.0, soft, soft.referenceAcceleration(rate, 0.0));
       limit.push_back(dof.dryFriction);
     }

@@ -37,6 +37,9 @@ inline constexpr Hardening kAlone{0.001, 1e-4};
 /// takes ten seconds to rest, with 0.1 two or three. Towers sink by so much more (decision 0030).
 inline constexpr Hardening kCarries{0.06, 1e-5};
 
+/// ρ_min of contacts of trees that goals control: harder ones cost the solve digits of a.
+inline constexpr double kLeastUnderGoals = 1e-2;
+
 /// How fast a contact moves, and how fast it creeps by its softness [m/s].
 struct ContactSpeeds {
   double tangential = 0.0;  ///< s

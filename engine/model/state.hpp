@@ -76,18 +76,23 @@ struct ExternalWrench {
 struct Input {
   VectorX tau;  ///< generalised applied force (nv) [N or N m]; empty: none
   std::vector<ExternalWrench> wrenches;
-  /// (trees) 1: a control acts on the tree; empty: on none. Friction of such a tree is as soft at
-  /// rest as in motion, as MuJoCo's, and creeps under load: (5.6) and (5.7) are left out of
-  /// its rows. What sticks hard does not answer its control, so goals see it like this. All other
-  /// rows are as they are without a control, bit for bit.
+  /// (trees) kControlled where a control acts on the tree, 0 elsewhere; empty: on none. Dry
+  /// friction of its joints is as soft at rest as in motion, and creeps under load: (5.6) is left
+  /// out, for what sticks hard hides from goals what a larger control would gain. Its contacts
+  /// stick, up to a hundred times as hard (5.7). kControlledSoft: contacts do not harden either.
+  /// All other rows are as they are without a control, bit for bit.
   std::vector<std::uint8_t> controlled;
   /// (nv) of servos, at the step's end [rad or m, rad/s or m/s]; empty: those of Servo.
   VectorX setPoint = {}, setPointRate = {};
 };
 
+/// Of Input::controlled.
+inline constexpr std::uint8_t kControlled = 1;
+inline constexpr std::uint8_t kControlledSoft = 2;
+
 /// Input::controlled where a control acts on every tree.
-inline std::vector<std::uint8_t> allTrees(const Model& model) {
-  return std::vector<std::uint8_t>(model.trees.size(), 1);
+inline std::vector<std::uint8_t> allTrees(const Model& model, std::uint8_t mark = kControlled) {
+  return std::vector<std::uint8_t>(model.trees.size(), mark);
 }
 
 /// 64-bit hash of a state, bit for bit.

@@ -101,7 +101,7 @@ void solveInto(SimulationParts& p, ContactSource& contacts, ControlSolution& ans
   const Model& model = p.scene->model;
   const bool controlled = !p.controller->goals.empty();
   p.held = p.inputOfStep();
-  if (controlled) p.controller->limits.markControlled(model, p.held.controlled);
+  if (controlled) p.controller->markControlled(model, p.held.controlled);
   answer.report = {};
   answer.status = computeStages(model, p.held, p.state, *p.data, &contacts);
   if (isRefused(answer.status)) return;

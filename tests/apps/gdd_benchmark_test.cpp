@@ -70,12 +70,8 @@ TEST(GddBenchmark, ASolverIsAsGoodAsItself) {
   EXPECT_EQ(comparison["second_lower"], 0);
 }
 
-// Guards against a solver that becomes worse. Solver 1's figures are what 20,000 records showed,
-// with room for so few; solver 2's are what is asked of 20,000 by the goals' weight, with half as
-// many iterations again at 95 % for so few.
-TEST(GddBenchmark, StatisticsStayMet) {
-  const OrderedJson json = benchmark({"--records", "2000", "--passes", "1", "--weight", "1",
-                                      "--weight", "100", "--weight", "1000"});
+/// What is asked of the figures of `json`.
+void expectStatistics(const OrderedJson& json) {
   ASSERT_EQ(json["datasets"].size(), 9u);
   const struct {
     double median, most, certified;
@@ -105,6 +101,21 @@ TEST(GddBenchmark, StatisticsStayMet) {
       EXPECT_GE(solver["certified"], bound.certified) << label();
     }
   }
+}
+
+// Guards against a solver that becomes worse. Solver 1's figures are what 20,000 records showed,
+// with room for so few; solver 2's are what is asked of 20,000 by the goals' weight, with half as
+// many iterations again at 95 % for so few. Beside solver 1 contacts are as soft as that has them;
+// solver 2 alone has those that stick, as in a simulation.
+TEST(GddBenchmark, StatisticsStayMet) {
+  expectStatistics(benchmark({"--records", "2000", "--passes", "1", "--weight", "1", "--weight",
+                              "100", "--weight", "1000"}));
+}
+
+TEST(GddBenchmark, StatisticsStayMetWhereContactsStick) {
+  expectStatistics(
+      benchmark({"--records", "2000", "--passes", "1", "--weight", "1", "--weight", "100",
+                 "--weight", "1000", "--solvers", "active-set", "--record-with", "active-set"}));
 }
 
 // F rises from the minimum on both sides, and not as a parabola does: its slopes there are not 0.

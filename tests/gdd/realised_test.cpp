@@ -131,13 +131,15 @@ constexpr double kTimesteps[] = {0.0005, 0.002, 0.01};
 
 // Damping, springs, limits, dry friction, contacts and Coriolis forces are in the solve. The
 // augmented Lagrangian meets torque limits to 1e-8 of the largest force (10.1): its a is off by
-// what is cut there, up to eleven times as much where links are light.
+// what is cut there, up to eleven times as much where links are light. The active set ends by
+// forward dynamics where corrections do not, in every step.
 TEST_P(RealisedGoals, AreWhatWasSolved) {
   for (const gdd::GddSolver solver :
        {gdd::GddSolver::activeSet, gdd::GddSolver::augmentedLagrangian})
     for (const double timestep : kTimesteps) {
       const Off off = offOver(GetParam(), {solver, Integrator::leapfrog, timestep, true});
-      EXPECT_SMALL(off.p95, solver == gdd::GddSolver::activeSet ? 1e-9 : 1.1e-7) << timestep;
+      const bool exact = solver == gdd::GddSolver::activeSet;
+      EXPECT_SMALL(exact ? off.most : off.p95, exact ? 1e-9 : 1.1e-7) << timestep;
     }
 }
 

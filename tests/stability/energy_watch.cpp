@@ -130,7 +130,7 @@ double EnergyWatch::offset(const State& state, const Input& input) {
 
 double EnergyWatch::stored(const State& state, const Input& input) {
   Input soft = input;
-  soft.controlled = allTrees(model_);  // (5.7) scales k d by the speed
+  soft.controlled = allTrees(model_, kControlledSoft);  // (5.7) scales k d by the speed
   State still = state;
   still.v.setZero();
   still.forgetLastStep();

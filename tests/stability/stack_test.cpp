@@ -159,7 +159,7 @@ double creepsInAHeap(double timestep, Cone cone, bool soft) {
     addBody(builder, "box" + std::to_string(i), Shape::box(Vector3(kWidth, kWidth, 0.25 * kWidth)),
             1.0, {R, R * Vector3(0, 0, (0.25 + 0.5 * i) * kWidth)});
   Trial t(soft ? "heap on a slope, soft" : "heap on a slope", with(builder, timestep, cone));
-  if (soft) t.input.controlled = allTrees(t.model);
+  if (soft) t.input.controlled = allTrees(t.model, kControlledSoft);
   t.run(2.0);
   const Vector3 begun = t.origin("box1");
   t.run(10.0);

@@ -63,7 +63,7 @@ struct Resting {
     along = 0;
     up = box ? 2 : 1;
     static_cast<SampleContacts&>(*scene.contacts).tangentOfPlane = true;
-    scene.input.controlled = allTrees(scene.model);  // without stiction (5.7)
+    scene.input.controlled = allTrees(scene.model, kControlledSoft);  // without stiction (5.7)
   }
 
   static Model model(bool box, const Form& form, double mu, double mass, Cone cone) {
@@ -117,7 +117,8 @@ TEST(Softness, RestDepthIsThePredictedOne) {
             const ContactAtRest rest = r.predicted(mass);
             // From there it would stay; so from above.
             r.scene.state.q[r.up] -= 0.5 * rest.depth;
-            // Near-rigid pyramids of little friction go with the time constant n e τ = 0.9 s (3.17).
+            // Near-rigid pyramids of little friction go with the time constant n e τ = 0.9 s
+            // (3.17).
             const bool slow = form.material.impedance == Impedance{} && !form.material.spring;
             r.scene.steps(slow ? 8000 : 3000);
             ASSERT_EQ(r.scene.data->stats.contacts, r.contacts);

@@ -32,7 +32,8 @@ struct Row {
   double D = 0.0, reference = 0.0, perInertia = 0.0;
 };
 Row firstRow(Scene& scene, bool soft) {
-  scene.input.controlled = soft ? allTrees(scene.model) : std::vector<std::uint8_t>();
+  scene.input.controlled =
+      soft ? allTrees(scene.model, kControlledSoft) : std::vector<std::uint8_t>();
   EXPECT_EQ(scene.stages(), SolveStatus::converged);
   const Constraints& all = scene.data->constraints;
   if (scene.model.options.cone == Cone::elliptic)
@@ -81,7 +82,7 @@ TEST(Stiction, LeavesWhatStandsAloneAsItIs) {
       Model model = builder.build();
       for (Geometry& g : model.geometries) g.material.impedance.timeConstant = 0.03;
       Scene scene(model, std::make_shared<SampleContacts>());
-      if (soft) scene.input.controlled = allTrees(scene.model);
+      if (soft) scene.input.controlled = allTrees(scene.model, kControlledSoft);
       int contacts = 0;
       for (int i = 0; i < 400; ++i) {
         scene.step();
