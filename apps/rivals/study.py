@@ -89,7 +89,8 @@ class Study:
 
     def result(self, scene, entry, h):
         ran = self.run(scene, entry, h)
-        out = {"scene": scene, "entry": entry.key, "h": h, "origin": self.origin(scene, entry), **ran}
+        out = {"scene": scene, "entry": entry.key, "h": h, "origin": self.origin(scene, entry),
+               "most": self.most, **ran}
         if ran["end"] in ("done", "diverged", "late") and "mass" in ran:
             self.judge_again(out)
         return out
@@ -126,7 +127,9 @@ def read(path):
 
 def run_errors(study, quick, only, workers):
     path = study.folder / "results.jsonl"
-    done = {(r["scene"], r["entry"], r["h"], r["origin"]) for r in read(path)}
+    # What was late for a quicker study may end in this one.
+    done = {(r["scene"], r["entry"], r["h"], r["origin"]) for r in read(path)
+            if r["end"] != "late" or r.get("most", study.most) >= study.most}
     missing = sorted({e.engine for e in plan.ENTRIES if not study.program(e.engine)})
     if missing:
         print("not found, and left out:", ", ".join(missing), flush=True)
