@@ -49,7 +49,8 @@ void SceneContacts::Scene::setPairs(const std::vector<GeometryPair>& pairs, int 
         turn[static_cast<std::size_t>(g)] = Turn::full;
   }
   reaches.resize(static_cast<std::size_t>(surfaces));
-  if (static_cast<int>(rows.size()) <= broadphasePairs) return;
+  nearPlaneRows.reserve(planeRows.size());
+  if (static_cast<int>(rows.size()) <= broadphasePairs) return nearRows.reserve(rows.size());
 
   std::vector<bool> paired(model.geometries.size(), false);
   for (const Row& row : rows)

@@ -384,14 +384,4 @@ bool ActiveSet::startAgain(const Model& model, const GoalCost& cost, const Contr
   return better;
 }
 
-void ActiveSet::keepWarmStart(WarmStart& warm) const {
-  warm.gddA = path_.a;
-  cell_.place(u_, warm.control);
-  warm.multipliers.setZero(force_.size());
-  warm.breakpoints = breakpoints_;
-  warm.gddSearchAge = searchAge_;
-  warm.gddSearchWait = searchWait_;
-  warm.gddValid = true;
-}
-
 }  // namespace softgauss::gdd

@@ -47,6 +47,9 @@ class ActiveSet {
 
   ActiveSetOptions options;
 
+  /// Makes room for solves like the last one whose paths meet no more breakpoints than this.
+  void reserve(int crossings);
+
   /// Reads the stages of `data` up to the rows and leaves the rows evaluated at the result; sets
   /// the applied force to the control found.
   GddReport solve(const Model& model, GoalCost& cost, const ControlLimits& limits, Data& data,

@@ -5,9 +5,23 @@
 #include "softgauss/engine/step/forward.hpp"
 #include "softgauss/gdd/active_set.hpp"
 
-/// Where solver 2 starts from.
+/// Where solver 2 starts from, and what it leaves for the next start.
 
 namespace softgauss::gdd {
+
+void ActiveSet::reserve(int crossings) {
+  const int controls = cell_.columns();
+  cell_.reserve(crossings);
+  path_.reserve(crossings, controls);
+  program_.reserve(controls, crossings);
+  const std::size_t most = idx(crossings);
+  constrained_.reserve(most), atBreakpoint_.reserve(most), tried_.reserve(most);
+  breakpoints_.reserve(most), first_.breakpoints.reserve(most);
+  first_.a.resize(path_.a.size());
+  first_.u.resize(controls);
+  sides_.resize(crossings, controls);
+  distances_.resize(crossings);
+}
 
 /// Takes u, within the limits, as the present control and a = f(u). Returns F, ∞ if it is not
 /// finite.
@@ -171,6 +185,16 @@ GddStatus ActiveSet::start(const Model& model, const GoalCost& cost, const Contr
   if (!std::isfinite(value)) value = moveTo(model, cost, known_ ? &warm.gddA : nullptr, data);
   setAppliedForce(force_, data.forces);
   return std::isfinite(value) ? GddStatus::converged : GddStatus::notFinite;
+}
+
+void ActiveSet::keepWarmStart(WarmStart& warm) const {
+  warm.gddA = path_.a;
+  cell_.place(u_, warm.control);
+  warm.multipliers.setZero(force_.size());
+  warm.breakpoints = breakpoints_;
+  warm.gddSearchAge = searchAge_;
+  warm.gddSearchWait = searchWait_;
+  warm.gddValid = true;
 }
 
 }  // namespace softgauss::gdd

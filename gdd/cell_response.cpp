@@ -143,6 +143,15 @@ bool CellResponse::enter(Data& data) {
   return cellFactor_.compute(P_);
 }
 
+void CellResponse::reserve(int crossings) {
+  corrections_.resize(std::max(corrections_.size(), static_cast<std::size_t>(crossings)));
+  for (Correction& c : corrections_) {
+    for (VectorX* x : {&c.y, &c.Hy}) x->setZero(M_->size());
+    c.By.setZero(padded());
+  }
+  correctionCount_ = 0;
+}
+
 void CellResponse::enterWith(const TreeFactor& factor) {
   factor_ = &factor;
   correctionCount_ = 0;

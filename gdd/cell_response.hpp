@@ -35,6 +35,8 @@ class CellResponse {
   /// P of the cell in which the rows are kept, after setInertia(). Returns false when it cannot be
   /// factored.
   bool enter(Data& data);
+  /// Makes room for so many crossings, after setDriven() and setInertia().
+  void reserve(int crossings);
   /// M̂ in the place of P: as if there were no rows.
   void enterWithoutRows() { enterWith(massFactor_); }
   /// What a row that changes its piece does to P⁻¹.

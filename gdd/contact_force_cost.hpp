@@ -40,6 +40,10 @@ class ContactForceCost {
     pending_ = false;
   }
   bool empty() const { return residuals_.empty(); }
+  /// Makes room for so many contacts.
+  void reserve(int contacts) {
+    if (!empty()) parts_.reserve(residuals_.size() * static_cast<std::size_t>(contacts));
+  }
   /// ½ weight |Σ C F − target|², with contacts that addContact() names afterwards. Without any it
   /// is a constant, and left out.
   void add(double weight, const Vector3& target) {

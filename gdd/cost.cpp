@@ -50,6 +50,17 @@ void GoalCost::clear(const ForceMetric& R) {
   metricSlope_.setZero();
 }
 
+void GoalCost::reserve(int controls, int contacts) {
+  const Eigen::Index dofs = dofWeight_.size();
+  const Eigen::Index most = static_cast<Eigen::Index>(denseWeight_.size()) + 2 * dofs;
+  if (dense_.cols() < most) dense_.conservativeResize(dofs, most);
+  for (std::vector<double>* list : {&denseWeight_, &denseTarget_})
+    list->reserve(static_cast<std::size_t>(most));
+  sides_.reserve(static_cast<std::size_t>(most));
+  reduced_.resize(paddedSize(controls));
+  forces_.reserve(contacts);
+}
+
 void GoalCost::addPoint(const Model& model, const Kinematics& k, const TreeSparsity& tree, int body,
                         const Vector3& p_WP, double weight, const Vector3& target) {
   RelativeMotion motion;  // against the world

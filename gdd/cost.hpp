@@ -60,6 +60,8 @@ class GoalCost {
   /// Returns φ(a) and writes ∇φ (nv) and ∇²φ (nv × nv), which have their size.
   using Function = std::function<double(const VectorX& a, VectorX& gradient, MatrixX& hessian)>;
 
+  /// Makes room for one-sided terms of all joints, and for so many contacts in terms of forces.
+  void reserve(int controls, int contacts);
   /// No goals; force costs ½ gᵀR g.
   void clear(const ForceMetric& R = {});
   /// ½ weight |J a − target|² for the world acceleration J a of the point p_WP of `body`.

@@ -15,6 +15,11 @@ ForwardPath::ForwardPath(const Model& model) {
   for (VectorX* x : {&a, &slope, &rate_, &Mrate_, &slopeRate_, &J_}) *x = VectorX::Zero(model.nv);
 }
 
+void ForwardPath::reserve(int crossings, int controls) {
+  crossed_.reserve(idx(crossings));
+  held.reserve(crossings, static_cast<int>(a.size()), controls);
+}
+
 PathEnd ForwardPath::follow(const PathStart& start, CellResponse& cell, const GoalCost& cost,
                             ContactForceTerms& forces, const VectorX& rate, Data& data) {
   Constraints& rows = data.constraints;

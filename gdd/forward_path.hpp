@@ -34,6 +34,8 @@ struct PathEnd {
 class ForwardPath {
  public:
   explicit ForwardPath(const Model& model);
+  /// Makes room for paths with so many crossings, and as many held rows, of so many controls.
+  void reserve(int crossings, int controls);
 
   VectorX a;             ///< f(u), moved along the path
   VectorX slope;         ///< ∇ℓ(a) without contact forces, moved along

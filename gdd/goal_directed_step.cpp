@@ -2,6 +2,7 @@
 #include "softgauss/gdd/goal_directed_step.hpp"
 
 #include <chrono>
+#include <tuple>
 
 #include "softgauss/gdd/goals/standing_balance.hpp"
 
@@ -78,6 +79,30 @@ const VectorX* GoalDirectedController::apply(const Model& model, const State& st
   if (solver == GddSolver::activeSet && data.constraints.piecewiseQuadratic())
     return solve(activeSet, model, state, data);
   return solve(augmentedLagrangian, model, state, data);
+}
+
+void GoalDirectedController::reserve(const Model& model, const State& state, Data& data) {
+  const int rows = data.constraints.rowCount();
+  std::vector<std::pair<double, double>> times;
+  for (const auto& goal : goals) {  // all at once
+    times.emplace_back(goal->startTime, goal->endTime);
+    goal->startTime = -kInfinity, goal->endTime = kInfinity;
+  }
+  begin();
+  apply(model, state, data);
+  for (std::size_t i = 0; i < goals.size(); ++i)
+    std::tie(goals[i]->startTime, goals[i]->endTime) = times[i];
+  const auto controls = (limits.lower.array() < limits.upper.array()).count();
+  cost_.reserve(static_cast<int>(controls), static_cast<int>(data.contacts.contacts.capacity()));
+  if (solver == GddSolver::activeSet && data.constraints.piecewiseQuadratic())
+    activeSet.reserve(rows);
+  expansion.reserve(rows);
+  expansion.keepWarmStart(between_);
+  between_.breakpoints.reserve(static_cast<std::size_t>(rows));
+  held_.wrenches.reserve(model.bodies.size());
+  held_.controlled.reserve(model.trees.size());
+  begin();
+  report = {};
 }
 
 void GoalDirectedController::begin() noexcept {

@@ -73,6 +73,8 @@ class GoalDirectedController final : public StepControl {
         solver == GddSolver::augmentedLagrangian || model.options.cone == Cone::elliptic;
     limits.markControlled(model, trees, squares ? kControlledSoft : kControlled);
   }
+  /// Makes room for steps of a model whose rows softgauss::reserveRows() has just made in `data`.
+  void reserve(const Model& model, const State& state, Data& data);
   /// One step. `input` acts besides the control (disturbances). Where isRefused() the
   /// state is left as it was; limits that are none (GddStatus::badLimits) are badInput. `posed` as
   /// of softgauss::step().

@@ -37,6 +37,14 @@ class HeldBreakpoints {
   const HeldBreakpoint* begin() const { return breakpoints_.data(); }
   const HeldBreakpoint* end() const { return breakpoints_.data() + count_; }
   void clear() { count_ = 0; }
+  /// Makes room for so many, of a model of so many dofs and controls.
+  void reserve(int breakpoints, int dofs, int controls) {
+    breakpoints_.resize(std::max(breakpoints_.size(), idx(breakpoints)));
+    for (HeldBreakpoint& held : breakpoints_) {
+      held.J.resize(dofs);
+      held.side.resize(controls);
+    }
+  }
   /// The entry of a breakpoint, which is new if it was not there.
   HeldBreakpoint& entry(Breakpoint breakpoint) {
     for (HeldBreakpoint& held : *this)

@@ -16,6 +16,12 @@ class PaddedCholesky {
   /// K by its lower triangle; false when it is not positive definite.
   bool compute(const Eigen::Ref<const MatrixX>& K);
 
+  /// Makes room for K of `n` columns.
+  void reserve(int n) {
+    L_.reserve(static_cast<std::size_t>(n) * static_cast<std::size_t>(paddedSize(n)));
+    inverse_.reserve(static_cast<std::size_t>(n));
+  }
+
   int size() const { return n_; }
   int stride() const { return paddedSize(n_); }
   const double* L() const { return L_.data(); }  ///< column j at j · stride(), zero above

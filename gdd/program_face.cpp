@@ -33,6 +33,16 @@ double largest(const double* x, int n) {
 
 }  // namespace
 
+void ProgramFace::reserve(int unknowns, int rows) {
+  const std::size_t most = static_cast<std::size_t>(2 * unknowns + rows);
+  for (std::vector<int>* list : {&active_, &from_}) list->reserve(most);
+  for (std::vector<double>* list : {&rest_, &size_, &products_}) list->reserve(most);
+  isActive_.reserve(most);
+  nu_.reserve(most + 4);  // padded
+  W_.resize(std::max(W_.size(), most * static_cast<std::size_t>(paddedSize(unknowns))));
+  gram_.reserve(unknowns);
+}
+
 /// Takes in a constraint: its w.
 void ProgramFace::addNormal(const PaddedCholesky& factor, const ProgramData& program,
                             int constraint) {

@@ -32,6 +32,8 @@ struct ProgramData {
 
 class ProgramFace {
  public:
+  /// Makes room for programs of so many unknowns and rows.
+  void reserve(int unknowns, int rows);
   /// From the face on which bounds hold that hold at p = 0, and all rows. False where it gives up.
   bool minimize(const PaddedCholesky& factor, const ProgramData& program);
 

@@ -36,6 +36,21 @@ SOFTGAUSS_VECTOR_CLONES void subtractOuter(const double* z, const double* c, int
 
 }  // namespace
 
+void QuadraticProgram::reserve(int unknowns, int rows) {
+  const std::size_t most = static_cast<std::size_t>(2 * unknowns + rows);
+  face_.reserve(unknowns, rows);
+  active_.reserve(most);
+  isActive_.reserve(most);
+  multiplier_.reserve(most);
+  for (std::vector<double>* list : {&norm_, &rowMultipliers_})
+    list->reserve(static_cast<std::size_t>(rows));
+  J_.resize(paddedSize(unknowns), unknowns);
+  R_.resize(unknowns, unknowns);
+  d_.resize(unknowns);
+  r_.resize(unknowns);
+  z_.resize(paddedSize(unknowns));
+}
+
 double QuadraticProgram::slack(int constraint) const {
   const int n = static_cast<int>(p_.size());
   if (constraint < n) return p_[constraint] - (*program_.lower)[constraint];

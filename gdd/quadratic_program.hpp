@@ -19,6 +19,8 @@ namespace softgauss::gdd {
 
 class QuadraticProgram {
  public:
+  /// Makes room for programs of so many unknowns and rows.
+  void reserve(int unknowns, int rows);
   /// Factors K, given by its lower triangle; false when it is not positive definite.
   bool setHessian(const Eigen::Ref<const MatrixX>& K) { return factor_.compute(K); }
   /// Solves for p = 0 feasible. Returns false where rounding kept it from an answer; p is then

@@ -50,6 +50,11 @@ class SequentialQuadraticSolve {
   explicit SequentialQuadraticSolve(const Model& model)
       : a_(VectorX::Zero(model.nv)), force_(VectorX::Zero(model.nv)) {}
 
+  /// Makes room for solutions with so many rows at breakpoints.
+  void reserve(int breakpoints) {
+    for (WarmStart* warm : {&warm_, &next_})
+      warm->breakpoints.reserve(static_cast<std::size_t>(breakpoints));
+  }
   /// As Solver::solve(), for a cost with or without functions. Iterations are those of all solves.
   template <class Solver>
   GddReport solve(Solver& solver, const Model& model, GoalCost& cost, const ControlLimits& limits,

@@ -81,13 +81,15 @@ std::vector<std::string> loopNames() {
   return names;
 }
 
-LoopTimes runLoop(const std::string& name, const SimulationOptions& options, int cycles,
-                  const std::function<long()>& faults) {
+LoopTimes runLoop(const std::string& name, const std::string& folder,
+                  const SimulationOptions& options, int cycles,
+                  const std::function<long()>& count) {
   using Clock = std::chrono::steady_clock;
   const Loop& loop = *std::find_if(std::begin(kLoops), std::end(kLoops),
                                    [&](const Loop& l) { return l.name == name; });
-  Simulation sim = Simulation::load(loop.file, options);
+  Simulation sim = Simulation::load(folder + "/" + loop.file, options);
   loop.setGoals(sim);
+  sim.reserve();
   std::mt19937 random(1);
   LoopTimes times;
   times.us.reserve(static_cast<std::size_t>(cycles));
@@ -97,17 +99,17 @@ LoopTimes runLoop(const std::string& name, const SimulationOptions& options, int
     push(loop, sim, random);
     q = sim.state().q;
     v = sim.state().v;
-    const long faultsBefore = faults();
+    const long before = count();
     const Clock::time_point start = Clock::now();
     const ControlSolution& answer = sim.solve(q, v);
     times.us.push_back(std::chrono::duration<double, std::micro>(Clock::now() - start).count());
-    times.pageFaults += faults() - faultsBefore;
     using gdd::GddStatus;
     const GddStatus status = answer.report.status;
     times.budgetMet += status == GddStatus::iterationLimit;
     times.uncertified += status != GddStatus::iterationLimit && status != GddStatus::converged &&
                          status != GddStatus::nonsmoothMinimum;
     if (isRefused(answer.status) || isRefused(sim.step())) throw StepError(sim.failure());
+    times.counted += count() - before;
   }
   return times;
 }

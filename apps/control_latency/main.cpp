@@ -71,12 +71,12 @@ void run(const Choice& choice) {
              "50 %", "99 %", "99.9 %", "most", "budget met", "uncertified", "faults");
   askForRealTime(choice);
   for (const std::string& name : choice.loops) {
-    LoopTimes times = runLoop(name, options, choice.cycles, pageFaults);
+    LoopTimes times = runLoop(name, ".", options, choice.cycles, pageFaults);
     std::sort(times.us.begin(), times.us.end());
     const auto at = [&](double share) { return times.us[io::nearestRank(share, times.us.size())]; };
     fmt::print("{:<18}{:>8}{:>9.1f}{:>9.1f}{:>9.1f}{:>9.1f}{:>12}{:>13}{:>8}\n", name,
                times.us.size(), at(0.5), at(0.99), at(0.999), at(1.0), times.budgetMet,
-               times.uncertified, times.pageFaults);
+               times.uncertified, times.counted);
     if (choice.histogram) fmt::print("{}", histogramOf(times.us));
   }
 }

@@ -12,7 +12,12 @@ EliminationOrder::EliminationOrder(const Model& model)
       place_(model.bodies.size()),
       later_(model.bodies.size()),
       neighbours_(model.bodies.size()) {
+  constexpr std::size_t kFew = 64;  // bodies whose lists are little memory
   for (int b = 1; b < model.bodyCount(); ++b) parent_[idx(b)] = model.bodies[idx(b)].parent;
+  for (std::size_t b = 0; b < model.bodies.size() && model.bodies.size() <= kFew; ++b) {
+    later_[b].reserve(model.bodies.size());
+    neighbours_[b].reserve(model.bodies.size());
+  }
 }
 
 int EliminationOrder::block(int earlier, int later) const {

@@ -103,7 +103,11 @@ void TreeSparsity::finish() {
 
 void TreeSparsity::couple(const TreeSparsity& tree, const std::vector<Segment>& couplings,
                           const std::vector<int>& setEnd) {
+  constexpr std::size_t kSmall = 256;  // rows whose most segments are little memory
   const int n = tree.size();
+  if (const std::size_t rows = static_cast<std::size_t>(n); rows <= kSmall)
+    for (std::vector<Segment>* list : {&segments_, &fours_, &columns_})
+      list->reserve(rows * (rows + 4) / 4);
   const std::size_t words = (static_cast<std::size_t>(n) + 63) / 64;
   bits_.assign(words * static_cast<std::size_t>(n), 0);
   const auto row = [&](int i) { return bits_.data() + words * static_cast<std::size_t>(i); };

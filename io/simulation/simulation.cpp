@@ -10,6 +10,7 @@
 #include "softgauss/engine/engine.hpp"
 #include "softgauss/engine/model/followers.hpp"
 #include "softgauss/engine/model/saved_state.hpp"
+#include "softgauss/engine/step/reserve.hpp"
 #include "softgauss/io/names.hpp"
 #include "softgauss/io/simulation/ground.hpp"
 #include "softgauss/io/simulation/simulation_parts.hpp"
@@ -122,6 +123,28 @@ void solveInto(SimulationParts& p, ContactSource& contacts, ControlSolution& ans
 }
 
 }  // namespace
+
+void Simulation::reserve(int contacts) {
+  constexpr int kOfShape = 4;
+  SimulationParts& p = *parts_;
+  const Model& model = p.scene->model;
+  if (contacts == 0) contacts = kOfShape * static_cast<int>(model.geometries.size());
+  std::vector<std::pair<int, int>> pairs;
+  for (const collision::GeometryPair& pair : p.scene->contacts->filter().pairs)
+    pairs.emplace_back(pair.a, pair.b);
+  reserveRows(model, pairs, contacts, *p.data);
+  const auto rows = static_cast<std::size_t>(p.data->constraints.rowCount());
+  if (!p.controller->goals.empty()) p.controller->reserve(model, p.state, *p.data);
+  p.data->contacts.contacts.reserve(static_cast<std::size_t>(contacts));
+  p.solution.contacts.reserve(static_cast<std::size_t>(contacts));
+  for (Input* input : {&p.applied, &p.held}) {
+    input->wrenches.reserve(model.bodies.size());
+    input->controlled.reserve(model.trees.size());
+  }
+  p.before = p.state;
+  for (State* state : {&p.state, &p.before}) state->warmstart.breakpoints.reserve(rows);
+  solveInto(p, p.scene->source(), p.solution);
+}
 
 ControlSolution Simulation::solve() {
   ControlSolution answer;

@@ -50,6 +50,11 @@ class Simulation {
 
   SimulationGoals goals;
 
+  /// Makes room for states with at most `contacts` contacts, 0: four for each shape: step() and
+  /// solve(q, v) allocate no memory then, but for goals of functions and where a search meets more
+  /// breakpoints than such a state has rows. Takes about as long as a step for each pair of shapes
+  /// that may touch. After all goals are set.
+  void reserve(int contacts = 0);
   /// One step of model().options.timestep. Where isRefused(), the state is as it was.
   SolveStatus step() noexcept;
   /// Steps until `seconds` later. Throws StepError.

@@ -105,6 +105,7 @@ TEST_F(Guide, OptionsGoalsControlAndRollouts) {
     EXPECT_FALSE(isRefused(real.step()));
   };
   arm.controller().iterationBudget = 20;
+  arm.reserve();
   softgauss::VectorX q(arm.model().nq), v(arm.model().nv);
   auto next = std::chrono::steady_clock::now();
   for (int cycle = 0; cycle < 100; ++cycle) {

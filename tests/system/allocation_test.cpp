@@ -6,6 +6,7 @@
 
 #include <set>
 
+#include "apps/control_latency/loops.hpp"
 #include "softgauss/collision/clearance.hpp"
 #include "softgauss/collision/scene_contacts.hpp"
 #include "softgauss/io/simulation/simulation.hpp"
@@ -334,6 +335,25 @@ TEST(Allocation, NoneInTheControllerOfMeasuredStates) {
   const AllocationGuard guard;
   answerAll();
   EXPECT_EQ(guard.count(), 0);
+}
+
+/// Controls and steps of robots that are pushed, fall, hold and let go, after one reserve().
+void expectNoneInControlLoops(int cycles) {
+  for (const std::string& name : app::loopNames()) {
+    const app::LoopTimes times = app::runLoop(name, SOFTGAUSS_SOURCE_DIR, {}, cycles,
+                                              [] { return static_cast<long>(allocationCount()); });
+    EXPECT_EQ(times.counted, 0) << name;
+  }
+}
+
+TEST(Allocation, NoneInControlLoops) {
+  SKIP_WITHOUT_HOOK();
+  expectNoneInControlLoops(2000);
+}
+
+TEST(AllocationLong, NoneInControlLoops) {
+  SKIP_WITHOUT_HOOK();
+  expectNoneInControlLoops(100000);
 }
 
 TEST(Allocation, NoneInInverseDynamics) {
