@@ -15,6 +15,11 @@ constexpr std::pair<const char*, const char*> kShortNames[] = {{"euler", "semi-i
 
 }  // namespace
 
+std::string nameText(const std::string& name) {
+  const bool isNumber = name.find_first_not_of("0123456789.+-") == std::string::npos;
+  return isNumber ? "'" + name + "'" : name;
+}
+
 std::string linkProblem(const Model& model, const std::string& link) {
   const int frame = model.findFrame(link);
   const bool isWorld = frame < 0 && link == "world";

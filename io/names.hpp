@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// Names that a user gives, looked up in a model.
+/// Names that a user gives, looked up in a model and told.
 
 #include <optional>
 #include <string>
@@ -10,6 +10,9 @@
 #include "softgauss/engine/model/model.hpp"
 
 namespace softgauss::io {
+
+/// A name as it stands in a sentence: quoted where it reads as a number, as of a joint called 3.
+std::string nameText(const std::string& name);
 
 /// Why there can be no goal of that link, as a message goes on: "found 'hnd', expected a link of
 /// model 'arm', did you mean 'hand'? there are: …"; nothing where the link exists and moves.

@@ -165,6 +165,13 @@ class Handle {
     held_.sim().goals.weighDefaults();
   }
 
+  std::vector<std::pair<std::string, double>> heldBack() const {
+    const gdd::Goal& goal = get();
+    std::vector<std::pair<std::string, double>> causes;
+    for (const auto& [what, share] : held_.sim().heldBack(goal)) causes.emplace_back(what, share);
+    return causes;
+  }
+
  private:
   static VectorX valuesOf(const Targets& numbers) {
     VectorX x(static_cast<Eigen::Index>(numbers.size()));
@@ -248,6 +255,11 @@ void bindHandle(py::module_& m) {
           "It acts from here on [s].")
       .def_property(
           "end", [](Handle& h) { return h.get().endTime; }, &Handle::setEnd, "And before this [s].")
+      .def("held_back", &Handle::heldBack,
+           "What holds it back in the present state: [(what, share), ...], the largest share "
+           "first;\n"
+           "shares add up to 1. [('posture', 0.97), ('range of elbow', 0.03)] says that a larger\n"
+           "weight helps. Empty where it does not act, or pulls no more.")
       .def("__repr__", [](Handle& h) { return "<softgauss.Goal '" + h.get().name() + "'>"; });
 }
 

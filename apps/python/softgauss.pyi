@@ -49,6 +49,8 @@ class Goal:
     end: float
     @property
     def name(self) -> str: ...
+    def held_back(self) -> list[tuple[str, float]]:
+        """What holds it back now, and its share: the largest first, they add up to 1."""
 
 class Goals:
     """The goals of a simulation. Reach, hold and posture come with virtual damping."""

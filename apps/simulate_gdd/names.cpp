@@ -5,11 +5,6 @@
 
 namespace softgauss::app {
 
-std::string nameText(const std::string& name) {
-  const bool isNumber = name.find_first_not_of("0123456789.+-") == std::string::npos;
-  return isNumber ? "'" + name + "'" : name;
-}
-
 std::string listed(const std::vector<std::string>& names) {
   constexpr std::size_t kMost = 6;
   std::string text;

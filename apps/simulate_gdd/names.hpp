@@ -6,10 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "softgauss/io/names.hpp"
+
 namespace softgauss::app {
 
-/// A name as it stands in a sentence: quoted where it reads as a number, as of a joint called 3.
-std::string nameText(const std::string& name);
+using io::nameText;
 
 /// "a, b, c and 3 more": six at most.
 std::string listed(const std::vector<std::string>& names);

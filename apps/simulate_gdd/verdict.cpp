@@ -182,7 +182,7 @@ std::string Verdict::heldText(GoalRecord::Track& track, const SeenStep& step) {
     for (io::GoalOutcome::Cause& cause : o.causes) cause.share /= out;
     return {};
   }
-  const HeldGoal held = heldBack_.of(track, step);
+  const io::HeldBack held = heldBack_.of(track, step);
   if (held.held < kHeld && joints_.speed(dofsOf(track)) > kMoving) {
     o.causes.clear();
     return {};

@@ -11,6 +11,7 @@
 #include "softgauss/engine/model/followers.hpp"
 #include "softgauss/engine/model/saved_state.hpp"
 #include "softgauss/engine/step/reserve.hpp"
+#include "softgauss/io/held_back.hpp"
 #include "softgauss/io/names.hpp"
 #include "softgauss/io/simulation/ground.hpp"
 #include "softgauss/io/simulation/simulation_parts.hpp"
@@ -183,6 +184,16 @@ const ControlSolution& Simulation::solve(const VectorX& q, const VectorX& v,
   p.state.warmstart.valid = true;
   if (!p.controller->goals.empty()) p.controller->keep(p.state.warmstart);
   return p.solution;
+}
+
+std::vector<io::GoalOutcome::Cause> Simulation::heldBack(const gdd::Goal& goal) {
+  SimulationParts& p = *parts_;
+  gdd::GoalBalance balance(p.scene->model, *p.controller);
+  if (!goal.actsAt(p.state.time) || !balance.solve(p.inputOfStep(), p.state, &p.scene->source()))
+    return {};
+  const int i = balance.find(goal, goal.name());
+  if (i < 0) return {};
+  return io::heldBack(p.scene->model, p.controller->limits, balance, i).causes;
 }
 
 void Simulation::reset() { parts_->state = parts_->scene->initial; }

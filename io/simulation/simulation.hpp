@@ -21,6 +21,7 @@
 
 #include "softgauss/io/simulation/scene.hpp"
 #include "softgauss/io/simulation/simulation_goals.hpp"
+#include "softgauss/io/summary.hpp"
 
 namespace softgauss {
 
@@ -70,6 +71,10 @@ class Simulation {
   /// it was; what was answered holds until the next call.
   const ControlSolution& solve(const VectorX& q, const VectorX& v,
                                ContactSource* contacts = nullptr) noexcept;
+  /// What holds one of `goals` back in the present state, in names of the scene, the largest share
+  /// first; shares add up to 1. Empty where it does not act, or pulls no more. Solves once, and
+  /// allocates.
+  std::vector<io::GoalOutcome::Cause> heldBack(const gdd::Goal& goal);
   /// Back to the state at which it started; goals stay.
   void reset();
   /// State and time as bytes: restore() goes on from them to the same bits, in another process too,
