@@ -290,6 +290,7 @@ std::optional<GddStatus> ActiveSet::descend(const GoalCost& cost, double wanted,
       case Next::undecided:
         return GddStatus::undecided;
       case Next::cell:
+        if (options.deadline.isOver()) return GddStatus::iterationLimit;
         break;
     }
   }
