@@ -40,7 +40,6 @@ State::State(const Model& model)
   warmstart.gddA = VectorX::Zero(model.nv);
   warmstart.multipliers = VectorX::Zero(model.nv);
   warmstart.control = VectorX::Zero(model.nv);
-  warmstart.breakpoints.reserve(static_cast<std::size_t>(model.nv));
 }
 
 std::uint64_t hash(const State& state) {
