@@ -77,7 +77,7 @@ void addOptions(CLI::App& parser, BenchmarkOptions& options) {
 std::uint8_t markFor(const BenchmarkOptions& options) {
   std::vector<std::string> used = options.solvers;
   used.push_back(options.recorder);
-  const bool squares = std::find(used.begin(), used.end(), "augmented-lagrangian") != used.end();
+  const bool squares = std::find(used.begin(), used.end(), app::kAugmentedLagrangian) != used.end();
   return squares ? kControlledSoft : kControlled;
 }
 

@@ -6,7 +6,6 @@
 namespace softgauss::app {
 namespace {
 
-constexpr const char* kAugmentedLagrangian = "augmented-lagrangian";
 constexpr const char* kActiveSet = "active-set";
 
 template <class Solver>

@@ -13,6 +13,9 @@
 
 namespace softgauss::app {
 
+/// The name of solver 1.
+inline constexpr const char* kAugmentedLagrangian = "augmented-lagrangian";
+
 class SolverUnderTest {
  public:
   explicit SolverUnderTest(std::string name) : name_(std::move(name)) {}
