@@ -62,6 +62,9 @@ class BlockJacobian {
   /// Appends the pairs of bodies that blocks couple.
   void appendPairs(std::vector<std::pair<int, int>>& pairs) const { bodies_.appendPairs(pairs); }
 
+  /// A body that block i moves.
+  int bodyOf(int i) const { return bodies_.bodyOf(i); }
+
   /// Memory held [bytes].
   std::size_t bytes() const {
     return bodies_.bytes() + bytesOfAll(blocks_, segments_, values_, scratch_);

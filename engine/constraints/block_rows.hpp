@@ -25,19 +25,19 @@ class BlockRows : public ScalarRows<Quadratic> {
   /// `Acceleration`, `Forces`, `Curvature`: as BlockJacobian takes them.
   template <class Acceleration>
   void multiply(const Acceleration& a, std::vector<double>& y) const {
-    for (int i = 0; i < jacobian_.size(); ++i) jacobian_.multiply(i, a, y.data() + 3 * i);
+    forEachBlock([&](int i) { jacobian_.multiply(i, a, y.data() + 3 * i); });
   }
   template <class Forces>
   void addTransposed(const std::vector<double>& y, Forces& tau) const {
-    for (int i = 0; i < jacobian_.size(); ++i) jacobian_.addTransposed(i, y.data() + 3 * i, tau);
+    forEachBlock([&](int i) { jacobian_.addTransposed(i, y.data() + 3 * i, tau); });
   }
   template <class Curvature>
   void addCurvature(Curvature& P) {
-    for (int i = 0; i < jacobian_.size(); ++i) {
+    forEachBlock([&](int i) {
       const double* d = h.data() + 3 * i;
       const double H[9] = {d[0], 0.0, 0.0, 0.0, d[1], 0.0, 0.0, 0.0, d[2]};
       jacobian_.addCurvature(i, H, P);
-    }
+    });
   }
   /// y ← y + scale · (row i of J)ᵀ.
   void addRow(int i, double scale, VectorX& y) const {
@@ -49,6 +49,8 @@ class BlockRows : public ScalarRows<Quadratic> {
     jacobian_.appendCouplings(segments, setEnd);
   }
   void appendPairs(std::vector<std::pair<int, int>>& pairs) const { jacobian_.appendPairs(pairs); }
+  /// A body that the row moves.
+  int bodyOf(const Model&, int row) const { return jacobian_.bodyOf(row / 3); }
 
   std::size_t bytes() const { return ScalarRows::bytes() + jacobian_.bytes(); }
 
@@ -67,6 +69,13 @@ class BlockRows : public ScalarRows<Quadratic> {
   }
 
   BlockJacobian jacobian_;
+
+ private:
+  template <class F>
+  void forEachBlock(F&& call) const {
+    for (const Segment rows : selection.segments())
+      for (int i = rows.begin / 3; i < rows.end / 3; ++i) call(i);
+  }
 };
 
 }  // namespace softgauss

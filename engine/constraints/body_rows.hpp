@@ -36,6 +36,11 @@ class BodyRows {
   void clear();
   void add(const Model& model, const Kinematics& k, const RelativeMotion& motion);
   int size() const { return static_cast<int>(blocks_.size()); }
+  /// A body that block i moves.
+  int bodyOf(int i) const {
+    const Block& block = blocks_[idx(i)];
+    return block.bodyB != 0 ? block.bodyB : block.bodyA;
+  }
 
   /// y ← W A of block i.
   void multiply(int i, const std::vector<Motion>& A, double* y) const;

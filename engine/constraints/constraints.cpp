@@ -103,6 +103,19 @@ int Constraints::rowCount() const {
   return rows;
 }
 
+void Constraints::divide(const Model& model, const TreeIslands& islands) {
+  visit([&](auto& c) {
+    c.selection.divide(islands.size(), model.trees.size(),
+                       [&](int row) { return islands.ofBody()[idx(c.bodyOf(model, row))]; });
+  });
+}
+
+int Constraints::selectedRows() const {
+  int rows = 0;
+  visit([&](const auto& c) { rows += c.selection.count(); });
+  return rows;
+}
+
 double Constraints::evaluate(bool& cellChanged) {
   double cost = 0.0;
   visit([&](auto& c) { cost += c.evaluate(cellChanged); });
@@ -114,10 +127,8 @@ void Constraints::along(double alpha, Jet& jet) const {
 }
 
 bool Constraints::staysInCell() const {
-  bool stays = piecewiseQuadratic();
-  visit([&](const auto& c) {
-    if constexpr (requires { c.staysInCell(); }) stays = stays && c.staysInCell();
-  });
+  bool stays = true;
+  visit([&](const auto& c) { stays = stays && c.staysInCell(); });
   return stays;
 }
 

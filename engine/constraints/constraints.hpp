@@ -23,14 +23,15 @@
 #include "softgauss/engine/constraints/pyramidal_contact.hpp"
 #include "softgauss/engine/constraints/servo_drive.hpp"
 #include "softgauss/engine/constraints/weld.hpp"
+#include "softgauss/engine/dynamics/tree_islands.hpp"
 #include "softgauss/engine/model/plan.hpp"
 
 namespace softgauss {
 
 template <class C>
-concept SoftConstraint = requires(C c, const Assembly& in, const VectorX& a, VectorX& tau,
-                                  std::vector<double>& y, TreeMatrix& P, bool& changed, Jet& jet,
-                                  std::vector<Crossing>& crossings) {
+concept SoftConstraint = requires(C c, const Model& model, const Assembly& in, const VectorX& a,
+                                  VectorX& tau, std::vector<double>& y, TreeMatrix& P,
+                                  bool& changed, Jet& jet, std::vector<Crossing>& crossings) {
   { c.rowCount() } -> std::convertible_to<int>;
   { c.bytes() } -> std::convertible_to<std::size_t>;       // memory held
   c.assemble(in);                                          // rows, a_ref, D
@@ -42,6 +43,8 @@ concept SoftConstraint = requires(C c, const Assembly& in, const VectorX& a, Vec
   c.addTransposed(y, tau);                                 // tau += Jᵀ y
   c.addCurvature(P);                                       // P += Jᵀ ∇²s J
   c.addRow(0, 1.0, tau);                                   // tau += scale · (row of J)ᵀ
+  { c.selection } -> std::convertible_to<RowSelection>;    // what all these walk
+  { c.bodyOf(model, 0) } -> std::convertible_to<int>;      // a body that the row moves
   c.findCrossings(0, crossings);                           // breakpoints along a ray
   { c.aboveBreakpoint(0, 0) } -> std::convertible_to<double>;
   { c.curvatureJump(0, 0) } -> std::convertible_to<double>;
@@ -123,7 +126,7 @@ class Constraints {
   void setResidual(const Acceleration& a) {
     visit([&](auto& c) {
       c.multiply(a, c.x);
-      for (std::size_t i = 0; i < c.x.size(); ++i) c.x[i] -= c.reference[i];
+      c.selection.forEach([&](std::size_t i) { c.x[i] -= c.reference[i]; });
     });
     if (active_.has(RowKind::ellipticCone)) ellipticContact.clearBreakpointPlacement();
   }
@@ -155,6 +158,22 @@ class Constraints {
   }
   /// Appends the pairs of bodies that rows couple.
   void appendPairs(std::vector<std::pair<int, int>>& pairs) const;
+  /// Appends the pairs of bodies whose joints rows couple.
+  void appendCoupledBodies(const Model& model, std::vector<std::pair<int, int>>& pairs) const {
+    if (active_.has(RowKind::coupling)) coupling.appendCoupledBodies(model, pairs);
+  }
+  /// Finds the rows of each island, which select() needs.
+  void divide(const Model& model, const TreeIslands& islands);
+  /// From here on everything that runs over the rows does over those of one island, until
+  /// selectAll() or assemble().
+  void select(int island) {
+    visit([&](auto& c) { c.selection.select(island); });
+  }
+  void selectAll() {
+    visit([](auto& c) { c.selection.selectAll(); });
+  }
+  /// Rows that are selected.
+  int selectedRows() const;
   /// Whether s is a sum of piecewise quadratics at present, so that findCrossings() is complete.
   bool piecewiseQuadratic() const { return ellipticContact.rowCount() == 0; }
   /// All breakpoints ahead on the ray, α ≥ 0, unordered.

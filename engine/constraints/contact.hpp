@@ -112,6 +112,8 @@ class ContactBlocks {
   }
   /// Place in contactsWithRows() of the contact that has this row.
   int contactOfRow(int row) const { return contactOfRow_[idx(row)]; }
+  /// A body that the row moves.
+  int bodyOf(const Model&, int row) const { return jacobian_.bodyOf(contactOfRow(row)); }
 
   std::size_t bytes() const {
     return jacobian_.bytes() + bytesOfAll(contactsWithRows_, contactOfRow_);
@@ -141,6 +143,14 @@ class ContactBlocks {
                  double brakes) const;
   /// Contact of each of `rows` rows.
   void indexRows(std::size_t rows);
+  /// call(i), an int, of the contacts to which these rows belong.
+  template <class F>
+  void forEachContact(const RowSelection& rows, F&& call) const {
+    for (const Segment s : rows.segments()) {
+      if (s.begin == s.end) continue;
+      for (int i = contactOfRow(s.begin); i <= contactOfRow(s.end - 1); ++i) call(i);
+    }
+  }
 
   BlockJacobian jacobian_;  ///< block i: y of contact i
   std::vector<ContactRows> contactsWithRows_;

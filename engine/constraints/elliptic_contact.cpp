@@ -34,12 +34,13 @@ void EllipticContact::assemble(const Assembly& in) {
   zones_.assign(cones_.size(), ConeZone::top);
   placed_.assign(cones_.size(), false);
   indexRows(reference.size());
+  selection.reset(reference.size());
 }
 
 template <class Acceleration>
 void EllipticContact::multiply(const Acceleration& a, std::vector<double>& y) const {
-  for (std::size_t i = 0; i < contactsWithRows_.size(); ++i)
-    jacobian_.multiply(static_cast<int>(i), a, y.data() + contactsWithRows_[i].row);
+  forEachContact(selection,
+                 [&](int i) { jacobian_.multiply(i, a, y.data() + contactsWithRows_[i].row); });
 }
 
 double EllipticContact::evaluate(std::size_t i, const double* at, double* force, double* H,
@@ -51,19 +52,19 @@ double EllipticContact::evaluate(std::size_t i, const double* at, double* force,
 
 double EllipticContact::evaluate(bool& cellChanged) {
   double cost = 0.0;
-  for (std::size_t i = 0; i < contactsWithRows_.size(); ++i) {
+  forEachContact(selection, [&](int i) {
     ConeZone zone;
     cost += evaluate(i, x.data() + contactsWithRows_[i].row, f.data() + contactsWithRows_[i].row,
                      nullptr, zone);
     // The middle zone bends: there the curvature changes with every step.
     cellChanged |= placed_[i] || zone != zones_[i] || zone == ConeZone::middle;
     zones_[i] = zone;
-  }
+  });
   return cost;
 }
 
 void EllipticContact::along(double alpha, Jet& sum) const {
-  for (std::size_t i = 0; i < contactsWithRows_.size(); ++i) {
+  forEachContact(selection, [&](int i) {
     const int dim = cones_[i].dim;
     const double *from = x.data() + contactsWithRows_[i].row,
                  *rate = dx.data() + contactsWithRows_[i].row;
@@ -72,16 +73,16 @@ void EllipticContact::along(double alpha, Jet& sum) const {
     for (int k = 0; k < dim; ++k) at[k] = from[k] + alpha * rate[k];
     ConeZone zone;
     sum.value += evaluate(i, at, force, H, zone);
-    if (zone == ConeZone::top) continue;
+    if (zone == ConeZone::top) return;
     for (int k = 0; k < dim; ++k) {
       sum.slope -= force[k] * rate[k];
       for (int l = 0; l < dim; ++l) sum.curvature += rate[k] * H[k * dim + l] * rate[l];
     }
-  }
+  });
 }
 
 void EllipticContact::advance(double alpha) {
-  for (std::size_t i = 0; i < x.size(); ++i) x[i] += alpha * dx[i];
+  selection.forEach([&](std::size_t i) { x[i] += alpha * dx[i]; });
 }
 
 void EllipticContact::setForceRate() {
@@ -119,19 +120,20 @@ int EllipticContact::frameCurvature(int i, double* H) const {
 
 template <class Forces>
 void EllipticContact::addTransposed(const std::vector<double>& y, Forces& tau) const {
-  for (int i = 0; i < static_cast<int>(contactsWithRows_.size()); ++i)
+  forEachContact(selection, [&](int i) {
     if (zones_[i] != ConeZone::top)
       jacobian_.addTransposed(i, y.data() + contactsWithRows_[i].row, tau);
+  });
 }
 
 template <class Curvature>
 void EllipticContact::addCurvature(Curvature& P) {
-  for (std::size_t i = 0; i < contactsWithRows_.size(); ++i) {
+  forEachContact(selection, [&](int i) {
     double force[EllipticCone::kMaxDim], H[EllipticCone::kMaxDim * EllipticCone::kMaxDim];
     ConeZone zone;
     evaluate(i, x.data() + contactsWithRows_[i].row, force, H, zone);
-    if (zone != ConeZone::top) jacobian_.addCurvature(static_cast<int>(i), H, P);
-  }
+    if (zone != ConeZone::top) jacobian_.addCurvature(i, H, P);
+  });
 }
 
 void EllipticContact::addRow(int row, double scale, VectorX& y) const {

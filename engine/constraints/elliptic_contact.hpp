@@ -24,6 +24,7 @@ class EllipticContact : public ContactBlocks {
   std::vector<double> dx;         ///< J d
   std::vector<double> f;          ///< force −∇s(x)
   std::vector<double> df;         ///< rate of f along the search direction
+  RowSelection selection;         ///< what the solver walks
 
   int rowCount() const { return static_cast<int>(x.size()); }
   void assemble(const Assembly& in);
@@ -32,6 +33,8 @@ class EllipticContact : public ContactBlocks {
   void multiply(const Acceleration& a, std::vector<double>& y) const;
   double evaluate(bool& cellChanged);
   void along(double alpha, Jet& sum) const;
+  /// A cone bends.
+  bool staysInCell() const { return selection.count() == 0; }
   void advance(double alpha);
   void setForceRate();  ///< df ← −∇²s(x) dx
   template <class Forces>
@@ -65,7 +68,7 @@ class EllipticContact : public ContactBlocks {
 
   FrameVector frameForce(int i) const;
   std::size_t bytes() const {
-    return ContactBlocks::bytes() +
+    return ContactBlocks::bytes() + selection.bytes() +
            bytesOfAll(reference, x, dx, f, df, cones_, perInertia_, zones_, placed_);
   }
   /// Its rate along the search direction, after setForceRate().

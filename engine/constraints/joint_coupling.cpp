@@ -75,12 +75,12 @@ void CouplingRows::assemble(const Assembly& in) {
 }
 
 void CouplingRows::multiply(const VectorX& a, std::vector<double>& y) const {
-  for (std::size_t i = 0; i < pairs_.size(); ++i)
-    y[i] = a[pairs_[i].follower] - pairs_[i].slope * a[pairs_[i].leader];
+  selection.forEach(
+      [&](std::size_t i) { y[i] = a[pairs_[i].follower] - pairs_[i].slope * a[pairs_[i].leader]; });
 }
 
 void CouplingRows::addTransposed(const std::vector<double>& y, VectorX& tau) const {
-  for (std::size_t i = 0; i < pairs_.size(); ++i) addRow(static_cast<int>(i), y[i], tau);
+  selection.forEach([&](std::size_t i) { addRow(static_cast<int>(i), y[i], tau); });
 }
 
 void CouplingRows::addCurvature(TreeMatrix& P) {
@@ -95,16 +95,24 @@ void CouplingRows::addCurvature(TreeMatrix& P) {
 }
 
 void CouplingRows::addCurvature(ArticulatedFactor& P) {
-  for (std::size_t i = 0; i < pairs_.size(); ++i)
-    if (pairs_[i].leader == pairs_[i].follower)
-      P.addJoint(pairs_[i].follower, h[i]);
+  selection.forEach([&](std::size_t i) {
+    const Pair& pair = pairs_[i];
+    if (pair.leader == pair.follower)
+      P.addJoint(pair.follower, h[i]);
     else
-      P.addJoints({pairs_[i].follower, pairs_[i].leader, pairs_[i].slope}, h[i]);
+      P.addJoints({pair.follower, pair.leader, pair.slope}, h[i]);
+  });
 }
 
 void CouplingRows::addRow(int i, double scale, VectorX& y) const {
   y[pairs_[i].follower] += scale;
   y[pairs_[i].leader] -= scale * pairs_[i].slope;
+}
+
+void CouplingRows::appendCoupledBodies(const Model& model,
+                                       std::vector<std::pair<int, int>>& pairs) const {
+  for (const Pair& pair : pairs_)
+    pairs.emplace_back(model.dofs[idx(pair.follower)].body, model.dofs[idx(pair.leader)].body);
 }
 
 void CouplingRows::appendCouplings(std::vector<Segment>& segments, std::vector<int>& setEnd) const {

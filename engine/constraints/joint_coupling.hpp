@@ -38,6 +38,13 @@ class CouplingRows : public ScalarRows<Quadratic> {
   /// Pairs of dofs on different branches.
   void appendCouplings(std::vector<Segment>& segments, std::vector<int>& setEnd) const;
 
+  /// Appends the pairs of bodies whose joints rows couple.
+  void appendCoupledBodies(const Model& model, std::vector<std::pair<int, int>>& pairs) const;
+  /// A body that the row moves.
+  int bodyOf(const Model& model, int row) const {
+    return model.dofs[idx(pairs_[idx(row)].follower)].body;
+  }
+
   std::size_t bytes() const { return ScalarRows::bytes() + bytesOf(pairs_); }
 
  private:

@@ -17,17 +17,17 @@ template <ScalarPenalty Penalty>
 class JointRows : public ScalarRows<Penalty> {
  public:
   void multiply(const VectorX& a, std::vector<double>& y) const {
-    for (std::size_t i = 0; i < dof_.size(); ++i) y[i] = sign_[i] * a[dof_[i]];
+    this->selection.forEach([&](std::size_t i) { y[i] = sign_[i] * a[dof_[i]]; });
   }
   void addTransposed(const std::vector<double>& y, VectorX& tau) const {
-    for (std::size_t i = 0; i < dof_.size(); ++i) tau[dof_[i]] += sign_[i] * y[i];
+    this->selection.forEach([&](std::size_t i) { tau[dof_[i]] += sign_[i] * y[i]; });
   }
   void multiply(const BodyMotion& a, std::vector<double>& y) const { multiply(a.joint, y); }
   void addTransposed(const std::vector<double>& y, BodyForce& tau) const {
     addTransposed(y, tau.joint);
   }
   void addCurvature(ArticulatedFactor& P) {
-    for (std::size_t i = 0; i < dof_.size(); ++i) P.addJoint(dof_[i], this->h[i]);
+    this->selection.forEach([&](std::size_t i) { P.addJoint(dof_[i], this->h[i]); });
   }
   void addCurvature(TreeMatrix& P) {
     for (std::size_t i = 0; i < dof_.size(); ++i) P.row(dof_[i])[dof_[i]] += this->h[i];
@@ -36,6 +36,8 @@ class JointRows : public ScalarRows<Penalty> {
   void addRow(int i, double scale, VectorX& y) const { y[dof_[idx(i)]] += sign_[idx(i)] * scale; }
   std::size_t bytes() const { return ScalarRows<Penalty>::bytes() + bytesOfAll(dof_, sign_); }
   int dof(int row) const { return dof_[idx(row)]; }
+  /// A body that the row moves.
+  int bodyOf(const Model& model, int row) const { return model.dofs[idx(dof(row))].body; }
   /// +1: J = eᵢ, −1: J = −eᵢ.
   double sign(int row) const { return sign_[idx(row)]; }
   RowKey name(int row) const {

@@ -50,12 +50,12 @@ void PyramidalContact::assemble(const Assembly& in) {
 
 template <class Acceleration>
 void PyramidalContact::multiply(const Acceleration& a, std::vector<double>& y) const {
-  for (std::size_t i = 0; i < contactsWithRows_.size(); ++i) {
+  forEachContact(selection, [&](int i) {
     double frame[6];
-    jacobian_.multiply(static_cast<int>(i), a, frame);
+    jacobian_.multiply(i, a, frame);
     toEdges(frame, contactsWithRows_[i].frictionDim, contactsWithRows_[i].friction,
             y.data() + contactsWithRows_[i].row);
-  }
+  });
 }
 
 ContactBlocks::FrameVector PyramidalContact::inFrame(int i, const std::vector<double>& y) const {
@@ -72,10 +72,10 @@ ContactBlocks::FrameVector PyramidalContact::inFrame(int i, const std::vector<do
 
 template <class Forces>
 void PyramidalContact::addTransposed(const std::vector<double>& y, Forces& tau) const {
-  for (int i = 0; i < static_cast<int>(contactsWithRows_.size()); ++i) {
+  forEachContact(selection, [&](int i) {
     const FrameVector frame = inFrame(i, y);
     if (frame != FrameVector{}) jacobian_.addTransposed(i, frame.data(), tau);
-  }
+  });
 }
 
 int PyramidalContact::frameCurvature(int i, double* H) const {
@@ -99,10 +99,10 @@ int PyramidalContact::frameCurvature(int i, double* H) const {
 template <class Curvature>
 void PyramidalContact::addCurvature(Curvature& P) {
   double H[36];
-  for (int i = 0; i < static_cast<int>(contactsWithRows_.size()); ++i) {
+  forEachContact(selection, [&](int i) {
     frameCurvature(i, H);
     if (H[0] != 0.0) jacobian_.addCurvature(i, H, P);
-  }
+  });
 }
 
 ContactBlocks::FrameVector PyramidalContact::rowInFrame(int row, double scale) const {

@@ -17,6 +17,7 @@
 
 #include "softgauss/engine/constraints/impedance.hpp"
 #include "softgauss/engine/constraints/penalty.hpp"
+#include "softgauss/engine/constraints/row_selection.hpp"
 #include "softgauss/engine/core/check.hpp"
 #include "softgauss/engine/core/memory.hpp"
 
@@ -58,6 +59,7 @@ class ScalarRows {
   std::vector<double> f;           ///< force −s′(x)
   std::vector<double> h;           ///< curvature s″(x)
   std::vector<double> df;          ///< −s″(x) dx, rate of f along the search direction
+  RowSelection selection;          ///< what evaluate(), along(), staysInCell(), advance() walk
 
   int rowCount() const { return static_cast<int>(x.size()); }
   Penalty penalty(std::size_t i) const {
@@ -82,13 +84,14 @@ class ScalarRows {
   void resizeRows(std::size_t rows) {
     for (std::vector<double>* column : {&reference, &D, &x, &dx, &f, &h, &df}) column->resize(rows);
     piece_.resize(rows);
+    selection.reset(rows);
   }
 
-  /// Force and curvature of every row at x; returns the cost. `cellChanged` becomes true where a
+  /// Force and curvature of the rows at x; returns the cost. `cellChanged` becomes true where a
   /// row is not in the piece of its penalty in which it was.
   double evaluate(bool& cellChanged) {
     double cost = 0.0;
-    for (std::size_t i = 0; i < x.size(); ++i) {
+    selection.forEach([&](std::size_t i) {
       const Penalty p = penalty(i);
       const Jet s = p.at(x[i]);
       const auto piece = static_cast<std::int8_t>(p.piece(x[i]));
@@ -97,7 +100,7 @@ class ScalarRows {
       h[i] = s.curvature;
       cellChanged |= piece_[i] != piece;
       piece_[i] = piece;
-    }
+    });
     return cost;
   }
 
@@ -112,18 +115,19 @@ class ScalarRows {
 
   /// Slope and curvature of Σ s(x + α dx) in α.
   void along(double alpha, Jet& sum) const {
-    for (std::size_t i = 0; i < x.size(); ++i) {
+    selection.forEach([&](std::size_t i) {
       const Jet s = penalty(i).at(x[i] + alpha * dx[i]);
       sum.value += s.value;
       sum.slope += s.slope * dx[i];
       sum.curvature += s.curvature * dx[i] * dx[i];
-    }
+    });
   }
 
   /// Whether x + dx has every row in the piece in which it was.
   bool staysInCell() const {
-    for (std::size_t i = 0; i < x.size(); ++i)
-      if (penalty(i).piece(x[i] + dx[i]) != piece_[i]) return false;
+    for (const Segment rows : selection.segments())
+      for (std::size_t i = idx(rows.begin); i < idx(rows.end); ++i)
+        if (penalty(i).piece(x[i] + dx[i]) != piece_[i]) return false;
     return true;
   }
 
@@ -197,11 +201,11 @@ class ScalarRows {
 
   /// Memory held [bytes].
   std::size_t bytes() const {
-    return bytesOfAll(reference, D, perInertia, limit, x, dx, f, h, df, piece_);
+    return bytesOfAll(reference, D, perInertia, limit, x, dx, f, h, df, piece_) + selection.bytes();
   }
 
   void advance(double alpha) {
-    for (std::size_t i = 0; i < x.size(); ++i) x[i] += alpha * dx[i];
+    selection.forEach([&](std::size_t i) { x[i] += alpha * dx[i]; });
   }
   void setForceRate() {
     for (std::size_t i = 0; i < x.size(); ++i) df[i] = -h[i] * dx[i];

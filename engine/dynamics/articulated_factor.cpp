@@ -62,6 +62,7 @@ struct Elimination {
 struct Arrays {
   const Model& model;
   const EliminationOrder& order;
+  std::span<const EliminationOrder::Step> steps;
   const Motion* S;
   const double* diagonal;
   double *inertia, *block, *U, *V, *inversePivot;
@@ -70,7 +71,7 @@ struct Arrays {
 
 /// −1, or the joint whose pivot is not positive.
 SOFTGAUSS_VECTOR_CLONES int eliminateAll(const Arrays& a) {
-  for (const EliminationOrder::Step& step : a.order.steps()) {
+  for (const EliminationOrder::Step& step : a.steps) {
     const Body& body = a.model.bodies[idx(step.body)];
     const Elimination e{a.inertia, a.block, a.order.couplings(step), step.couplings,
                         a.order.pairBlocks(step)};
@@ -145,29 +146,48 @@ ArticulatedFactor::ArticulatedFactor(const Model& model)
       motions_(model.bodies.size()) {
   std::vector<std::pair<int, int>> none;
   order_.find(none);
+  bodies_.reserve(model.trees.size() + 1);
 }
 
 void ArticulatedFactor::begin(const Model& model, const MassMatrix& inertia, double rowScale) {
   rowScale_ = rowScale;
+  const Segment all = allBodies(model);
+  begin(model, inertia, {&all, 1}, 0);
+}
+
+void ArticulatedFactor::begin(const Model& model, const MassMatrix& inertia,
+                              const TreeIslands& islands, int island) {
+  rowScale_ = 1.0;
+  begin(model, inertia, islands.bodies(island), island);
+}
+
+void ArticulatedFactor::begin(const Model& model, const MassMatrix& inertia, Segments bodies,
+                              int island) {
+  part_ = order_.part(island);
+  bodies_.assign(bodies.begin(), bodies.end());
   pairs_.clear();
-  for (int b = 1; b < model.bodyCount(); ++b) {
-    double* I = inertia_.data() + kSixMatrix * b;
-    if (model.bodies[idx(b)].massless)
-      std::fill_n(I, kSixMatrix, 0.0);
-    else
-      setInertia(inertia.body[idx(b)], I);
-  }
   const bool armature = model.options.effects.has(Effect::armature);
-  for (int i = 0; i < model.nv; ++i)
-    diagonal_[idx(i)] = (armature ? model.dofs[idx(i)].armature : 0.0) + inertia.added[i];
+  for (const Segment s : bodies_)
+    for (int b = s.begin; b < s.end; ++b) {
+      const Body& body = model.bodies[idx(b)];
+      double* I = inertia_.data() + kSixMatrix * b;
+      if (body.massless)
+        std::fill_n(I, kSixMatrix, 0.0);
+      else
+        setInertia(inertia.body[idx(b)], I);
+      for (int i = body.v; i < body.v + body.dofs; ++i)
+        diagonal_[idx(i)] = (armature ? model.dofs[idx(i)].armature : 0.0) + inertia.added[i];
+    }
   if (order_.blocks() == 0) return;
-  block_.assign(idx(kSixMatrix * order_.blocks()), 0.0);
+  block_.resize(idx(kSixMatrix * order_.blocks()));
+  std::fill(block_.begin() + kSixMatrix * part_.blocks.begin,
+            block_.begin() + kSixMatrix * part_.blocks.end, 0.0);
   int numbers = 0;
-  for (const EliminationOrder::Step& step : order_.steps()) {
+  for (const EliminationOrder::Step& step : order_.steps(part_)) {
     firstV_[idx(step.body)] = numbers;
     numbers += kSixRow * step.couplings * model.bodies[idx(step.body)].dofs;
   }
-  V_.resize(idx(numbers));
+  if (V_.size() < idx(numbers)) V_.resize(idx(numbers));
 }
 
 void ArticulatedFactor::addRows(const BodyPair& pair, const double* H) {
@@ -185,8 +205,10 @@ void ArticulatedFactor::addRows(const BodyPair& pair, const double* H) {
 }
 
 bool ArticulatedFactor::factor(const Model& model, const Kinematics& k) {
-  const Arrays arrays{model,         order_,    k.S.data(), diagonal_.data(),     inertia_.data(),
-                      block_.data(), U_.data(), V_.data(),  inversePivot_.data(), firstV_.data()};
+  const Arrays arrays{
+      model,           order_,        order_.steps(part_), k.S.data(), diagonal_.data(),
+      inertia_.data(), block_.data(), U_.data(),           V_.data(),  inversePivot_.data(),
+      firstV_.data()};
   failedJoint_ = eliminateAll(arrays);
   return failedJoint_ < 0 && (pairs_.empty() || factorPairs(model, k));
 }
@@ -220,7 +242,7 @@ void ArticulatedFactor::solve(const Model& model, const Kinematics& k, VectorX& 
     y_[static_cast<Eigen::Index>(r)] = pairs_[r].of(x);
   pairFactor_.solveInPlace(y_);
   x.noalias() -= X_ * y_;
-  moveBodies(model, k, x, A);
+  moveBodies(model, k, bodies_, x, A);
 }
 
 void ArticulatedFactor::solveTree(const Model& model, const Kinematics& k, VectorX& x,
@@ -230,8 +252,9 @@ void ArticulatedFactor::solveTree(const Model& model, const Kinematics& k, Vecto
     return V_.data() + firstV_[idx(step.body)] +
            kSixRow * step.couplings * (body.v + body.dofs - 1 - i);
   };
-  std::fill(p_.begin(), p_.end(), Force{});
-  for (const EliminationOrder::Step& step : order_.steps()) {
+  const std::span<const EliminationOrder::Step> steps = order_.steps(part_);
+  for (const Segment s : bodies_) std::fill(p_.begin() + s.begin, p_.begin() + s.end, Force{});
+  for (const EliminationOrder::Step& step : steps) {
     const Body& body = model.bodies[idx(step.body)];
     const Coupling* coupling = order_.couplings(step);
     double* p = numbers(p_[idx(step.body)]);
@@ -245,8 +268,8 @@ void ArticulatedFactor::solveTree(const Model& model, const Kinematics& k, Vecto
     }
     if (body.parent != 0) p_[idx(body.parent)] += p_[idx(step.body)];
   }
-  for (std::size_t s = order_.steps().size(); s-- > 0;) {
-    const EliminationOrder::Step& step = order_.steps()[s];
+  for (std::size_t s = steps.size(); s-- > 0;) {
+    const EliminationOrder::Step& step = steps[s];
     const Body& body = model.bodies[idx(step.body)];
     const Coupling* coupling = order_.couplings(step);
     Motion moves = A[idx(body.parent)];

@@ -50,10 +50,16 @@ class ArticulatedFactor {
 
   /// Rows of these pairs of bodies may come, see EliminationOrder::find(); of none without this.
   void couple(std::vector<std::pair<int, int>>& pairs) { order_.find(pairs); }
+  /// The same, and each of `islands` is factored by itself.
+  void couple(std::vector<std::pair<int, int>>& pairs, const TreeIslands& islands) {
+    order_.find(pairs, &islands);
+  }
 
   /// Begins anew with the inertias of the bodies, and the armature and MassMatrix::added of the
   /// joints. What is added then counts `rowScale` times.
   void begin(const Model& model, const MassMatrix& inertia, double rowScale = 1.0);
+  /// The same of one island, to which all that follows is confined.
+  void begin(const Model& model, const MassMatrix& inertia, const TreeIslands& islands, int island);
   /// Adds h to the diagonal of joint i.
   void addJoint(int i, double h) { diagonal_[idx(i)] += rowScale_ * h; }
   /// Joint i does not move: x_i is 0.
@@ -66,7 +72,7 @@ class ArticulatedFactor {
   void addRows(const BodyPair& pair, const double* H);
   /// False where a pivot is not positive, that of failedJoint().
   bool factor(const Model& model, const Kinematics& k);
-  /// x ← P⁻¹ x, and the motions of the bodies by it.
+  /// x ← P⁻¹ x, and the motions of the bodies by it; what is of other islands is left as it is.
   void solve(const Model& model, const Kinematics& k, VectorX& x, std::vector<Motion>& A);
 
   int failedJoint() const { return failedJoint_; }
@@ -76,10 +82,13 @@ class ArticulatedFactor {
     double inverseCurvature = 0.0;
     double of(const VectorX& x) const { return x[first] - slope * x[second]; }
   };
+  void begin(const Model& model, const MassMatrix& inertia, Segments bodies, int island);
   bool factorPairs(const Model& model, const Kinematics& k);
   void solveTree(const Model& model, const Kinematics& k, VectorX& x, std::vector<Motion>& A);
 
   EliminationOrder order_;
+  EliminationOrder::Part part_;  ///< of the island
+  std::vector<Segment> bodies_;  ///< of the island
   double rowScale_ = 1.0;
   int failedJoint_ = -1;
   std::vector<double> diagonal_;      ///< (nv) d

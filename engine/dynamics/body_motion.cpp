@@ -17,8 +17,10 @@ void moveBody(const Model& model, const Kinematics& k, int b, const VectorX& a,
 
 }  // namespace
 
-void moveBodies(const Model& model, const Kinematics& k, const VectorX& a, std::vector<Motion>& A) {
-  for (int b = 1; b < model.bodyCount(); ++b) moveBody(model, k, b, a, A);
+void moveBodies(const Model& model, const Kinematics& k, Segments bodies, const VectorX& a,
+                std::vector<Motion>& A) {
+  for (const Segment s : bodies)
+    for (int b = s.begin; b < s.end; ++b) moveBody(model, k, b, a, A);
 }
 
 double twiceKineticEnergy(const Model& model, const Tree& tree, const Kinematics& k,
@@ -34,19 +36,23 @@ double twiceKineticEnergy(const Model& model, const Tree& tree, const Kinematics
   return sum;
 }
 
-void addBodyForces(const Model& model, const Kinematics& k, std::vector<Force>& F, VectorX& tau) {
-  for (int b = model.bodyCount() - 1; b > 0; --b) {
-    const Body& body = model.bodies[idx(b)];
-    const double* force = numbers(F[idx(b)]);
-    for (int i = body.v; i < body.v + body.dofs; ++i) tau[i] += dotSix(numbers(k.S[idx(i)]), force);
-    if (body.parent != 0) F[idx(body.parent)] += F[idx(b)];
-  }
+void addBodyForces(const Model& model, const Kinematics& k, Segments bodies, std::vector<Force>& F,
+                   VectorX& tau) {
+  for (const Segment s : bodies)
+    for (int b = s.end - 1; b >= s.begin; --b) {
+      const Body& body = model.bodies[idx(b)];
+      const double* force = numbers(F[idx(b)]);
+      for (int i = body.v; i < body.v + body.dofs; ++i)
+        tau[i] += dotSix(numbers(k.S[idx(i)]), force);
+      if (body.parent != 0) F[idx(body.parent)] += F[idx(b)];
+    }
 }
 
-void multiplyInertias(const Model& model, const MassMatrix& inertia, const std::vector<Motion>& A,
-                      std::vector<Force>& IA) {
-  for (int b = 1; b < model.bodyCount(); ++b)
-    IA[idx(b)] = model.bodies[idx(b)].massless ? Force{} : inertia.body[idx(b)] * A[idx(b)];
+void multiplyInertias(const Model& model, const MassMatrix& inertia, Segments bodies,
+                      const std::vector<Motion>& A, std::vector<Force>& IA) {
+  for (const Segment s : bodies)
+    for (int b = s.begin; b < s.end; ++b)
+      IA[idx(b)] = model.bodies[idx(b)].massless ? Force{} : inertia.body[idx(b)] * A[idx(b)];
 }
 
 }  // namespace softgauss

@@ -27,15 +27,30 @@ struct BodyForce {
   std::vector<Force>& body;  ///< (bodies)
 };
 
-/// A_b of all bodies for the joint acceleration a, without Ṡ v.
-void moveBodies(const Model& model, const Kinematics& k, const VectorX& a, std::vector<Motion>& A);
+/// All bodies but the world.
+inline Segment allBodies(const Model& model) { return {1, model.bodyCount()}; }
 
-/// tau ← tau + Σ S_iᵀ F, of forces on bodies; these become those of subtrees.
-void addBodyForces(const Model& model, const Kinematics& k, std::vector<Force>& F, VectorX& tau);
+/// A_b of these bodies, of whole trees, for the joint acceleration a, without Ṡ v.
+void moveBodies(const Model& model, const Kinematics& k, Segments bodies, const VectorX& a,
+                std::vector<Motion>& A);
+inline void moveBodies(const Model& model, const Kinematics& k, const VectorX& a,
+                       std::vector<Motion>& A) {
+  const Segment all = allBodies(model);
+  moveBodies(model, k, {&all, 1}, a, A);
+}
 
-/// I_b A_b of all bodies.
-void multiplyInertias(const Model& model, const MassMatrix& inertia, const std::vector<Motion>& A,
-                      std::vector<Force>& IA);
+/// tau ← tau + Σ S_iᵀ F, of forces on these bodies; these become those of subtrees.
+void addBodyForces(const Model& model, const Kinematics& k, Segments bodies, std::vector<Force>& F,
+                   VectorX& tau);
+inline void addBodyForces(const Model& model, const Kinematics& k, std::vector<Force>& F,
+                          VectorX& tau) {
+  const Segment all = allBodies(model);
+  addBodyForces(model, k, {&all, 1}, F, tau);
+}
+
+/// I_b A_b of these bodies.
+void multiplyInertias(const Model& model, const MassMatrix& inertia, Segments bodies,
+                      const std::vector<Motion>& A, std::vector<Force>& IA);
 
 /// xᵀM x of one tree: twice its kinetic energy at the velocity x. `V` is scratch (bodies).
 double twiceKineticEnergy(const Model& model, const Tree& tree, const Kinematics& k,

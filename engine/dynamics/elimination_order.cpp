@@ -13,6 +13,8 @@ EliminationOrder::EliminationOrder(const Model& model)
       later_(model.bodies.size()),
       neighbours_(model.bodies.size()) {
   constexpr std::size_t kFew = 64;  // bodies whose lists are little memory
+  parts_.reserve(model.trees.size() + 1);
+  islandOf_.reserve(model.bodies.size());
   for (int b = 1; b < model.bodyCount(); ++b) parent_[idx(b)] = model.bodies[idx(b)].parent;
   for (std::size_t b = 0; b < model.bodies.size() && model.bodies.size() <= kFew; ++b) {
     later_[b].reserve(model.bodies.size());
@@ -27,41 +29,67 @@ int EliminationOrder::block(int earlier, int later) const {
   return -1;
 }
 
-void EliminationOrder::find(std::vector<std::pair<int, int>>& pairs) {
+void EliminationOrder::find(std::vector<std::pair<int, int>>& pairs, const TreeIslands* islands) {
+  const std::span<const int> given = islands ? islands->ofBody() : std::span<const int>();
+  const auto islandOf = [&](int body) { return islands ? given[idx(body)] : 0; };
   for (auto& [a, b] : pairs)
     if (a > b) std::swap(a, b);
-  std::sort(pairs.begin(), pairs.end());
+  std::sort(pairs.begin(), pairs.end(), [&](const auto& x, const auto& y) {
+    const int a = islandOf(x.first), b = islandOf(y.first);
+    return a != b ? a < b : x < y;
+  });
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-  if (found_ && pairs == pairs_) return;
+  if (found_ && pairs == pairs_ && std::ranges::equal(given, islandOf_)) return;
   found_ = true;
   pairs_.assign(pairs.begin(), pairs.end());
-  findSequence();
-  for (std::size_t i = 0; i < sequence_.size(); ++i)
-    place_[idx(sequence_[i])] = static_cast<int>(i);
+  islandOf_.assign(given.begin(), given.end());
   blocks_ = 0;
-  steps_.clear(), couplings_.clear(), pairBlocks_.clear(), passings_.clear();
+  parts_.clear(), steps_.clear(), couplings_.clear(), pairBlocks_.clear(), passings_.clear();
   for (auto& coupled : later_) coupled.clear();
-  for (const auto& [a, b] : pairs_) addBlock(a, b);
-  for (const int body : sequence_) addStep(body);
+  children_.assign(parent_.size(), 0);
+  for (std::size_t b = 1; b < parent_.size(); ++b) ++children_[idx(parent_[b])];
+  if (!islands) {
+    const Segment all{1, static_cast<int>(parent_.size())};
+    return findPart({&all, 1}, {0, static_cast<int>(pairs_.size())});
+  }
+  Segment of;
+  for (int island = 0; island < islands->size(); ++island, of.begin = of.end) {
+    while (idx(of.end) < pairs_.size() && islandOf(pairs_[idx(of.end)].first) == island) ++of.end;
+    findPart(islands->bodies(island), of);
+  }
 }
 
-void EliminationOrder::findSequence() {
-  const int bodies = static_cast<int>(parent_.size());
+void EliminationOrder::findPart(Segments bodies, Segment pairs) {
+  Part part{{static_cast<int>(steps_.size()), 0}, {blocks_, 0}};
+  findSequence(bodies, pairs);
+  for (std::size_t i = 0; i < sequence_.size(); ++i)
+    place_[idx(sequence_[i])] = static_cast<int>(i);
+  for (int i = pairs.begin; i < pairs.end; ++i)
+    addBlock(pairs_[idx(i)].first, pairs_[idx(i)].second);
+  for (const int body : sequence_) addStep(body);
+  part.steps.end = static_cast<int>(steps_.size());
+  part.blocks.end = blocks_;
+  parts_.push_back(part);
+}
+
+void EliminationOrder::findSequence(Segments bodies, Segment pairs) {
   sequence_.clear();
-  if (pairs_.empty()) {  // a child has a larger number than its parent
-    for (int b = bodies - 1; b > 0; --b) sequence_.push_back(b);
-    return;
-  }
-  children_.assign(parent_.size(), 0);
+  // A child has a larger number than its parent.
+  const auto leavesFirst = [&](auto&& f) {
+    for (auto s = bodies.rbegin(); s != bodies.rend(); ++s)
+      for (int b = s->end - 1; b >= s->begin; --b) f(b);
+  };
+  if (pairs.begin == pairs.end) return leavesFirst([&](int b) { sequence_.push_back(b); });
   ready_.clear();
-  for (auto& near : neighbours_) near.clear();
-  for (int b = 1; b < bodies; ++b) ++children_[idx(parent_[idx(b)])];
-  for (const auto& [a, b] : pairs_) {
+  leavesFirst([&](int b) {
+    neighbours_[idx(b)].clear();
+    if (children_[idx(b)] == 0) ready_.push_back(b);
+  });
+  for (int i = pairs.begin; i < pairs.end; ++i) {
+    const auto& [a, b] = pairs_[idx(i)];
     neighbours_[idx(a)].push_back(b);
     neighbours_[idx(b)].push_back(a);
   }
-  for (int b = bodies - 1; b > 0; --b)
-    if (children_[idx(b)] == 0) ready_.push_back(b);
   while (!ready_.empty()) {
     std::size_t best = 0;
     for (std::size_t i = 1; i < ready_.size() && !neighbours_[idx(ready_[best])].empty(); ++i)

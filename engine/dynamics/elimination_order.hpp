@@ -10,13 +10,12 @@
 /// comes after its children, and of those that may come next the one with the fewest couplings
 /// does: minimum degree (George and Liu, Computer Solution of Large Sparse Positive Definite
 /// Systems, 1981) on trees. Without couplings all are one chain of leaves first and nothing is
-/// filled in.
+/// filled in. The steps and the blocks of an island (tree_islands.hpp) are ranges.
 
 #include <utility>
 #include <vector>
 
-#include "softgauss/engine/core/index.hpp"
-#include "softgauss/engine/model/model.hpp"
+#include "softgauss/engine/dynamics/tree_islands.hpp"
 
 namespace softgauss {
 
@@ -48,10 +47,18 @@ class EliminationOrder {
   explicit EliminationOrder(const Model& model);
 
   /// Finds the order for these pairs of bodies, none of them the world; any order, repetitions
-  /// allowed. Keeps what it has where they are those of the last call.
-  void find(std::vector<std::pair<int, int>>& pairs);
+  /// allowed. Keeps what it has where they are those of the last call. `islands`, of which no pair
+  /// has two: null where all bodies are one.
+  void find(std::vector<std::pair<int, int>>& pairs, const TreeIslands* islands = nullptr);
 
-  const std::vector<Step>& steps() const { return steps_; }
+  /// What is of one island.
+  struct Part {
+    Segment steps, blocks;
+  };
+  const Part& part(int island) const { return parts_[idx(island)]; }
+  std::span<const Step> steps(const Part& part) const {
+    return std::span(steps_).subspan(idx(part.steps.begin), idx(part.steps.end - part.steps.begin));
+  }
   const Coupling* couplings(const Step& s) const { return couplings_.data() + s.coupling; }
   /// Blocks of each two couplings of a step, the first with the second, the first with the third, …
   const int* pairBlocks(const Step& s) const { return pairBlocks_.data() + s.pair; }
@@ -63,16 +70,19 @@ class EliminationOrder {
   int block(int earlier, int later) const;
 
  private:
-  void findSequence();
+  void findPart(Segments bodies, Segment pairs);
+  void findSequence(Segments bodies, Segment pairs);
   void eliminate(int body);
   int addBlock(int a, int b);
   void addStep(int body);
   void connect(int a, int b);
 
   std::vector<int> parent_;
-  std::vector<std::pair<int, int>> pairs_;  ///< sorted, each once
+  std::vector<std::pair<int, int>> pairs_;  ///< by island, sorted, each once
+  std::vector<int> islandOf_;               ///< (bodies) in that order; empty: all are one
   bool found_ = false;
 
+  std::vector<Part> parts_;
   std::vector<Step> steps_;
   std::vector<Coupling> couplings_;
   std::vector<int> pairBlocks_;

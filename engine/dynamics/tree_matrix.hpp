@@ -13,17 +13,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "softgauss/engine/core/index.hpp"
+#include "softgauss/engine/core/segment.hpp"
 #include "softgauss/engine/model/model.hpp"
 
 namespace softgauss {
-
-/// Columns [begin, end).
-struct Segment {
-  int begin = 0;
-  int end = 0;
-  bool operator==(const Segment&) const = default;
-};
 
 /// Where the run of equal segments ends that begins at `from`, at `end` at the latest.
 inline int endOfRun(const std::vector<Segment>& segments, int from, int end) {

@@ -33,9 +33,9 @@
 #include <memory>
 #include <vector>
 
+#include "softgauss/engine/core/union_find.hpp"
 #include "softgauss/engine/islands/island_contacts.hpp"
 #include "softgauss/engine/islands/island_control.hpp"
-#include "softgauss/engine/islands/union_find.hpp"
 #include "softgauss/engine/islands/units.hpp"
 #include "softgauss/engine/step/step.hpp"
 

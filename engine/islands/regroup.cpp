@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "softgauss/engine/core/index.hpp"
+#include "softgauss/engine/core/union_find.hpp"
 #include "softgauss/engine/islands/islands.hpp"
-#include "softgauss/engine/islands/union_find.hpp"
 
 namespace softgauss {
 /// Makes an island of each set of the units of `old` islands, unless there is such a one already.

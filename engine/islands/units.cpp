@@ -3,7 +3,7 @@
 
 #include <map>
 
-#include "softgauss/engine/islands/union_find.hpp"
+#include "softgauss/engine/core/union_find.hpp"
 
 namespace softgauss {
 

@@ -9,8 +9,12 @@
 /// knows no physics.
 ///
 /// Stops when the scaled gradient  max_i |g_i| / scale_i  is at most the tolerance; the scales are
-/// the objective's, so that all entries share their unit.
+/// the objective's, so that all entries share their unit. Where rounding of stiff pieces keeps the
+/// gradient above that, Newton's decrement √(−gᵀd), which is how far the minimum is in the metric
+/// of the curvature (Boyd and Vandenberghe, Convex Optimization, 2004, 9.5.1), is held to the same
+/// tolerance.
 
+#include <algorithm>
 #include <cmath>
 #include <concepts>
 
@@ -59,6 +63,16 @@ struct NewtonReport {
   int lineSearchEvaluations = 0;
   double residual = 0.0;         ///< scaled gradient at the result
   bool roundingLimited = false;  ///< converged as far as rounding lets it, short of the tolerance
+
+  /// With another one that was solved beside it: the worst of both.
+  void add(const NewtonReport& other) {
+    status = std::max(status, other.status);
+    iterations = std::max(iterations, other.iterations);
+    factorizations = std::max(factorizations, other.factorizations);
+    lineSearchEvaluations = std::max(lineSearchEvaluations, other.lineSearchEvaluations);
+    residual = std::max(residual, other.residual);
+    roundingLimited = roundingLimited || other.roundingLimited;
+  }
 };
 
 /// What is minimised. It holds the present point.
@@ -67,7 +81,9 @@ concept NewtonObjective = requires(O o, VectorX& g, VectorX& d, double alpha) {
   { o.gradient(g) } -> std::convertible_to<double>;  // g ← ∇; returns its scaled norm
   { o.cellChanged() } -> std::convertible_to<bool>;  // since the last factorize()
   { o.factorize() } -> std::convertible_to<bool>;    // curvature of this cell
-  o.direction(g, d);                                 // d ← −(∇²)⁻¹ g, and readies the ray
+  // d ← −(∇²)⁻¹ g, and readies the ray; returns gᵀd.
+  { o.direction(g, d) } -> std::convertible_to<double>;
+  { o.unit() } -> std::convertible_to<double>;  // decrements of this are a scaled gradient of 1
   // Whether the objective is one quadratic from the point to point + d.
   { o.staysInCell() } -> std::convertible_to<bool>;
   { o.along(alpha) } -> std::convertible_to<Jet>;  // along point + α d
@@ -111,10 +127,14 @@ NewtonReport minimize(Objective& objective, double tolerance, int maxIterations,
       }
       factored = true;
     }
-    objective.direction(g, d);
+    const double slope = objective.direction(g, d);
+    if (slow && -slope <= std::pow(tolerance * objective.unit(), 2.0)) {
+      report.roundingLimited = true;
+      return report;
+    }
     LineSearchResult search{.alpha = 1.0};
     if (!objective.staysInCell())
-      search = exactLineSearch([&](double alpha) { return objective.along(alpha); }, g.dot(d));
+      search = exactLineSearch([&](double alpha) { return objective.along(alpha); }, slope);
     report.lineSearchEvaluations += search.evaluations;
     ++report.iterations;
     if (search.alpha == 0.0) {

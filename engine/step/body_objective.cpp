@@ -10,10 +10,40 @@ namespace softgauss {
 namespace {
 
 /// Σ A_bᵀ F_b.
-double power(const std::vector<Motion>& A, const std::vector<Force>& F) {
+double power(Segments bodies, const std::vector<Motion>& A, const std::vector<Force>& F) {
   double sum = 0.0;
-  for (std::size_t b = 1; b < A.size(); ++b) sum += dotSix(numbers(A[b]), numbers(F[b]));
+  for (const Segment s : bodies)
+    for (std::size_t b = idx(s.begin); b < idx(s.end); ++b)
+      sum += dotSix(numbers(A[b]), numbers(F[b]));
   return sum;
+}
+
+/// What of x is of these dofs.
+auto part(VectorX& x, Segment s) { return x.segment(s.begin, s.end - s.begin); }
+auto part(const VectorX& x, Segment s) { return x.segment(s.begin, s.end - s.begin); }
+
+double dot(Segments dofs, const VectorX& x, const VectorX& y) {
+  double sum = 0.0;
+  for (const Segment s : dofs) sum += part(x, s).dot(part(y, s));
+  return sum;
+}
+
+/// xᵀ diag(d) y.
+double dot(Segments dofs, const VectorX& x, const VectorX& d, const VectorX& y) {
+  double sum = 0.0;
+  for (const Segment s : dofs) sum += part(x, s).dot(part(d, s).cwiseProduct(part(y, s)));
+  return sum;
+}
+
+/// max |x_i| scale_i.
+double largest(Segments dofs, const VectorX& x, const VectorX& scale) {
+  double most = 0.0;
+  for (const Segment s : dofs) {
+    const double of =
+        part(x, s).cwiseProduct(part(scale, s)).cwiseAbs().maxCoeff<Eigen::PropagateNaN>();
+    if (!(of <= most)) most = of;
+  }
+  return most;
 }
 
 }  // namespace
@@ -26,7 +56,10 @@ BodySolution::BodySolution(const Model& model)
       IA(model.bodies.size()),
       Iray(model.bodies.size()),
       force(model.bodies.size()),
-      diagonal(VectorX::Zero(model.nv)) {}
+      diagonal(VectorX::Zero(model.nv)),
+      islands(model) {
+  factor.couple(pairs, islands);
+}
 
 void BodySolution::findDiagonal(const Model& model, const MassMatrix& inertia) {
   diagonal = inertia.added;
@@ -34,83 +67,118 @@ void BodySolution::findDiagonal(const Model& model, const MassMatrix& inertia) {
     for (int i = 0; i < model.nv; ++i) diagonal[i] += model.dofs[idx(i)].armature;
 }
 
+void BodySolution::divide(const Model& model, const MassMatrix& inertia, Constraints& rows) {
+  findDiagonal(model, inertia);
+  pairs.clear();
+  rows.appendPairs(pairs);
+  const std::size_t ofBodies = pairs.size();
+  rows.appendCoupledBodies(model, pairs);
+  if (pairs != lastPairs) {
+    lastPairs = pairs;
+    islands.find(model, pairs);
+    pairs.resize(ofBodies);
+    factor.couple(pairs, islands);
+  }
+  if (model.trees.size() > 1) rows.divide(model, islands);
+}
+
 void BodySolution::multiplyMass(const Model& model, const Kinematics& k, const MassMatrix& inertia,
                                 const VectorX& x, VectorX& y) {
+  const Segment all = allBodies(model);
   findDiagonal(model, inertia);
   moveBodies(model, k, x, ray);
-  multiplyInertias(model, inertia, ray, force);
+  multiplyInertias(model, inertia, {&all, 1}, ray, force);
   y = diagonal.cwiseProduct(x);
   addBodyForces(model, k, force, y);
 }
 
 void BodySolution::moveTo(const Model& model, const Kinematics& k, const MassMatrix& inertia,
+                          Segments bodies, const VectorX& a) {
+  moveBodies(model, k, bodies, a, A);
+  multiplyInertias(model, inertia, bodies, A, IA);
+}
+
+void BodySolution::moveTo(const Model& model, const Kinematics& k, const MassMatrix& inertia,
                           const VectorX& a) {
+  const Segment all = allBodies(model);
   findDiagonal(model, inertia);
-  moveBodies(model, k, a, A);
-  multiplyInertias(model, inertia, A, IA);
+  moveTo(model, k, inertia, {&all, 1}, a);
+}
+
+void BodySolution::addForces(const Model& model, const Kinematics& k, const Constraints& rows,
+                             Segments bodies, Segments dofs, const VectorX& a, VectorX& tau) {
+  for (const Segment s : dofs) part(tau, s) -= part(diagonal, s).cwiseProduct(part(a, s));
+  for (const Segment s : bodies)
+    for (std::size_t b = idx(s.begin); b < idx(s.end); ++b) force[b] = Force{} - IA[b];
+  BodyForce all{tau, force};
+  rows.addForce(all);
+  addBodyForces(model, k, bodies, force, tau);
 }
 
 void BodySolution::addForces(const Model& model, const Kinematics& k, const Constraints& rows,
                              const VectorX& a, VectorX& tau) {
-  tau -= diagonal.cwiseProduct(a);
-  for (std::size_t b = 1; b < force.size(); ++b) force[b] = Force{} - IA[b];
-  BodyForce all{tau, force};
-  rows.addForce(all);
-  addBodyForces(model, k, force, tau);
+  const Segment bodies = allBodies(model), dofs{0, model.nv};
+  addForces(model, k, rows, {&bodies, 1}, {&dofs, 1}, a, tau);
 }
 
-void setForceScale(Data& data) {
-  VectorX& scale = data.forward.scale;
-  scale = data.inertia.forceScale;
-  scale /= std::max(1.0, data.forces.net.cwiseProduct(scale).cwiseAbs().maxCoeff());
+double setForceScale(Segments dofs, Data& data) {
+  const VectorX& unit = data.inertia.forceScale;
+  const double most = std::max(1.0, largest(dofs, data.forces.net, unit));
+  for (const Segment s : dofs) part(data.forward.scale, s) = part(unit, s) / most;
+  return most;
 }
 
-BodyObjective::BodyObjective(const Model& model, Data& data)
-    : model_(model), data_(data), rows_(data.constraints), s_(data.bodies) {
-  setForceScale(data);
-  s_.pairs.clear();
-  rows_.appendPairs(s_.pairs);
-  s_.factor.couple(s_.pairs);
+BodyObjective::BodyObjective(const Model& model, Data& data, int island)
+    : model_(model),
+      data_(data),
+      island_(island),
+      bodies_(data.bodies.islands.bodies(island)),
+      dofs_(data.bodies.islands.dofs(island)),
+      rows_(data.constraints),
+      s_(data.bodies) {
+  unit_ = setForceScale(dofs_, data);
+  if (model.trees.size() > 1) rows_.select(island);
 }
 
 double BodyObjective::moveTo(const VectorX& at) {
   VectorX& a = data_.forward.a;
-  a = at;
-  s_.moveTo(model_, data_.kinematics, data_.inertia, a);
+  for (const Segment s : dofs_) part(a, s) = part(at, s);
+  s_.moveTo(model_, data_.kinematics, data_.inertia, bodies_, a);
   rows_.setResidual(BodyMotion{a, s_.A});
   const double cost = rows_.evaluate(changed_);
   fresh_ = true;
-  return 0.5 * (power(s_.A, s_.IA) + a.dot(s_.diagonal.cwiseProduct(a))) - a.dot(data_.forces.net) +
-         cost;
+  return 0.5 * (power(bodies_, s_.A, s_.IA) + dot(dofs_, a, s_.diagonal, a)) -
+         dot(dofs_, a, data_.forces.net) + cost;
 }
 
 double BodyObjective::gradient(VectorX& g) {
   if (!fresh_) rows_.evaluate(changed_);
   fresh_ = false;
   // −g = τ − c − M a + Jᵀf
-  g = data_.forces.net;
-  s_.addForces(model_, data_.kinematics, rows_, data_.forward.a, g);
-  g = -g;
-  return g.cwiseProduct(data_.forward.scale).cwiseAbs().maxCoeff<Eigen::PropagateNaN>();
+  for (const Segment s : dofs_) part(g, s) = part(data_.forces.net, s);
+  s_.addForces(model_, data_.kinematics, rows_, bodies_, dofs_, data_.forward.a, g);
+  for (const Segment s : dofs_) part(g, s) = -part(g, s);
+  return largest(dofs_, g, data_.forward.scale);
 }
 
 bool BodyObjective::factorize() {
   changed_ = false;
   newFactor_ = true;
-  s_.factor.begin(model_, data_.inertia);
+  s_.factor.begin(model_, data_.inertia, s_.islands, island_);
   rows_.addCurvature(s_.factor);
   return s_.factor.factor(model_, data_.kinematics);
 }
 
-void BodyObjective::direction(const VectorX& g, VectorX& d) {
-  d = -g;
+double BodyObjective::direction(const VectorX& g, VectorX& d) {
+  for (const Segment s : dofs_) part(d, s) = -part(g, s);
   s_.factor.solve(model_, data_.kinematics, d, s_.ray);
-  multiplyInertias(model_, data_.inertia, s_.ray, s_.Iray);
+  multiplyInertias(model_, data_.inertia, bodies_, s_.ray, s_.Iray);
   rows_.setRay(BodyMotion{d, s_.ray});
   // Along the ray the smooth part has slope dᵀ(M a − net) + α dᵀM d.
-  slope_ = power(s_.ray, s_.IA) + d.dot(s_.diagonal.cwiseProduct(data_.forward.a)) -
-           d.dot(data_.forces.net);
-  curvature_ = power(s_.ray, s_.Iray) + d.dot(s_.diagonal.cwiseProduct(d));
+  slope_ = power(bodies_, s_.ray, s_.IA) + dot(dofs_, d, s_.diagonal, data_.forward.a) -
+           dot(dofs_, d, data_.forces.net);
+  curvature_ = power(bodies_, s_.ray, s_.Iray) + dot(dofs_, d, s_.diagonal, d);
+  return dot(dofs_, g, d);
 }
 
 Jet BodyObjective::along(double alpha) const {
@@ -120,11 +188,12 @@ Jet BodyObjective::along(double alpha) const {
 }
 
 void BodyObjective::advance(const VectorX& d, double alpha) {
-  data_.forward.a += alpha * d;
-  for (std::size_t b = 1; b < s_.A.size(); ++b) {
-    addSix(alpha, numbers(s_.ray[b]), numbers(s_.A[b]));
-    addSix(alpha, numbers(s_.Iray[b]), numbers(s_.IA[b]));
-  }
+  for (const Segment s : dofs_) part(data_.forward.a, s) += alpha * part(d, s);
+  for (const Segment s : bodies_)
+    for (std::size_t b = idx(s.begin); b < idx(s.end); ++b) {
+      addSix(alpha, numbers(s_.ray[b]), numbers(s_.A[b]));
+      addSix(alpha, numbers(s_.Iray[b]), numbers(s_.IA[b]));
+    }
   rows_.advance(alpha);
   newFactor_ = false;
 }

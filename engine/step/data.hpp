@@ -41,7 +41,7 @@ struct StepStats {
   SolveStatus status = SolveStatus::converged;
   int contacts = 0;
   int rows = 0;
-  int iterations = 0;
+  int iterations = 0;  ///< of Newton, of the island that took most; sums over solves and parts
   int factorizations = 0;
   double residual = 0.0;  ///< of the solve, the largest of a step in parts, scaled
   /// Whether what moves is what was solved: the largest |(v⁺ − v)/h − a|, a of the solve, of the

@@ -17,35 +17,56 @@ int firstNotFinite(const VectorX& x) {
 
 bool hasRows(const Data& data) { return !kBuiltRows.empty() && !data.constraints.active().empty(); }
 
-/// Newton's method from `guess` or, where that is far away, from the unconstrained acceleration if
-/// it costs less.
-void solveRows(const Model& model, const VectorX* guess, Data& data) {
+/// What islands without rows come to, and where others begin that are not near a guess.
+struct SmoothStart {
+  bool known = false;
+
+  /// data.forward.start ← M⁻¹(τ − c).
+  bool find(const Model& model, Data& data) {
+    if (known) return true;
+    data.forward.start = data.forces.net;
+    return known = solveMass(model, data, nullptr, data.forward.start);
+  }
+};
+
+/// One island: Newton's method from `guess` or, where that is far away, from the unconstrained
+/// acceleration if it costs less.
+NewtonReport solveIsland(const Model& model, const VectorX* guess, int island, SmoothStart& smooth,
+                         Data& data) {
   /// A gradient at the guess that is no larger than the forces themselves: it is near.
   constexpr double kNear = 1.0;
   ForwardSolution& s = data.forward;
-  BodyObjective objective(model, data);
-  const bool warm = data.constraints.rowCount() > 0 && guess && guess->allFinite();
+  BodyObjective objective(model, data, island);
+  const int rows = objective.rowCount();
+  // Without rows a guess is as good only where goals have found it.
+  const bool warm = guess && (rows > 0 || data.inertia.whole);
   double residual = kInfinity, warmCost = kInfinity;
   if (warm) {
     warmCost = objective.moveTo(*guess);
     residual = objective.gradient(s.gradient);
   }
-  if (!(residual <= kNear)) {
-    // Without rows the minimiser is M⁻¹(τ − c).
-    s.start = data.forces.net;
-    if (!solveMass(model, data, nullptr, s.start)) {
-      s.report.status = SolveStatus::notFinite;
-      return;
-    }
+  if (!(residual <= (rows > 0 ? kNear : model.options.tolerance))) {
+    if (!smooth.find(model, data)) return {.status = SolveStatus::notFinite};
     const double smoothCost = objective.moveTo(s.start);
-    if (warm && warmCost <= smoothCost) objective.moveTo(*guess);
+    if (rows > 0 && warm && warmCost <= smoothCost) objective.moveTo(*guess);
     residual = objective.gradient(s.gradient);
   }
-  s.report = minimize(objective, model.options.tolerance,
-                      mostIterations(model.options.maxIterations, data.constraints.rowCount()),
-                      residual, s.gradient, s.direction);
+  return minimize(objective, model.options.tolerance,
+                  mostIterations(model.options.maxIterations, rows), residual, s.gradient,
+                  s.direction);
+}
+
+void solveRows(const Model& model, const VectorX* guess, Data& data) {
+  ForwardSolution& s = data.forward;
+  data.bodies.divide(model, data.inertia, data.constraints);
+  if (guess && !guess->allFinite()) guess = nullptr;
+  SmoothStart smooth;
+  for (int i = 0; i < data.bodies.islands.size() && !isRefused(s.report.status); ++i)
+    s.report.add(solveIsland(model, guess, i, smooth, data));
+  data.constraints.selectAll();
   data.stats.roundingLimitedSolves += s.report.roundingLimited;
-  if (s.report.status == SolveStatus::notFinite) data.stats.badDof = firstNotFinite(s.a);
+  if (s.report.status == SolveStatus::notFinite && data.stats.badDof < 0)
+    data.stats.badDof = firstNotFinite(s.a);
 }
 
 /// Whether M̂ a = τ − c as closely as a search would have it.
@@ -53,7 +74,8 @@ bool solves(const Model& model, const VectorX& a, Data& data) {
   ForwardSolution& s = data.forward;
   data.inertia.hat().multiply(a, s.gradient);
   s.gradient -= data.forces.net;
-  setForceScale(data);
+  const Segment all{0, model.nv};
+  setForceScale({&all, 1}, data);
   return s.gradient.cwiseProduct(s.scale).cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <=
          model.options.tolerance;
 }

@@ -41,9 +41,9 @@ TEST(Islands, AgreeWithTheJointSolve) {
       most = std::max(most, crowd.islands.islandStats().islands);
       fewest = std::min(fewest, crowd.islands.islandStats().islands);
     }
-    EXPECT_SMALL(worst, 1e-10);
-    EXPECT_EQ(most, 24);    // all apart at the start
-    EXPECT_LT(fewest, 16);  // and then in heaps
+    EXPECT_SMALL(worst, 1e-12);  // the joint solve goes by island too
+    EXPECT_EQ(most, 24);         // all apart at the start
+    EXPECT_LT(fewest, 16);       // and then in heaps
   }
 }
 

@@ -19,6 +19,7 @@
 #include "softgauss/engine/dynamics/energy.hpp"
 #include "softgauss/engine/step/inverse.hpp"
 #include "tests/parity/comparison.hpp"
+#include "tests/parity/free_run.hpp"
 #include "tests/parity/reference_log.hpp"
 #include "tests/support/scene.hpp"
 #include "tests/support/tolerance.hpp"
@@ -359,27 +360,21 @@ TEST_P(Parity, InverseDynamics) {
 TEST_P(Parity, Trajectory) {
   const ReferenceTrajectory& reference = log_.trajectory("Euler", false);
   const ReferenceTrajectory& finer = log_.trajectory("Euler", true);
-  const int stride = static_cast<int>(std::lround(reference.every / reference.timestep));
-  scene_.state.q = reference.q[0];
-  scene_.state.v = reference.v[0];
   scene_.input.tau = log_.force;
-  double worst = 0.0, ofHalfStep = 0.0;
-  for (std::size_t i = 0; i < reference.q.size(); ++i) {
-    const Model& model = scene_.model;
-    ofHalfStep = std::max(
-        ofHalfStep, stateDifference(model, finer.q[i], finer.v[i], reference.q[i], reference.v[i]));
-    const double difference =
-        stateDifference(model, scene_.state.q, scene_.state.v, reference.q[i], reference.v[i]);
-    worst = std::max(worst, difference);
+  const std::vector<double> run = runBeside(reference, scene_, Random(0), 0.0);
+  double worst = *std::max_element(run.begin(), run.end()), ofHalfStep = 0.0;
+  for (std::size_t i = 0; i < run.size(); ++i) {
+    ofHalfStep = std::max(ofHalfStep, stateDifference(scene_.model, finer.q[i], finer.v[i],
+                                                      reference.q[i], reference.v[i]));
     if (GetParam().run == Run::halfStep) {
-      EXPECT_LE(difference, ofHalfStep) << "after " << static_cast<double>(i) * reference.every;
+      EXPECT_LE(run[i], ofHalfStep) << "after " << static_cast<double>(i) * reference.every;
     }
-    for (int k = 0; k < stride; ++k) ASSERT_EQ(scene_.step(), SolveStatus::converged);
   }
   if (GetParam().run == Run::same) {
     EXPECT_SMALL(worst, kTrajectory);
   }
   if (GetParam().run == Run::apart) {
+    worst = medianDifference(reference, scene_);
     EXPECT_SMALL(worst, GetParam().apart);
     EXPECT_GT(worst, ofHalfStep) << "no longer apart";
   }

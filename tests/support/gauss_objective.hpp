@@ -15,7 +15,8 @@ class GaussObjective {
       : M_(data.inertia.hat()), net_(data.forces.net), rows_(data.constraints) {
     for (VectorX* x : {&a_, &Ma_, &Md_}) *x = VectorX::Zero(net_.size());
     scale_ = data.inertia.forceScale;
-    scale_ /= std::max(1.0, net_.cwiseProduct(scale_).cwiseAbs().maxCoeff());
+    unit_ = std::max(1.0, net_.cwiseProduct(scale_).cwiseAbs().maxCoeff());
+    scale_ /= unit_;
   }
 
   const VectorX& a() const { return a_; }
@@ -46,15 +47,17 @@ class GaussObjective {
     return factor_.compute(P_);
   }
 
-  void direction(const VectorX& g, VectorX& d) {
+  double direction(const VectorX& g, VectorX& d) {
     d = -g;
     factor_.solve(d);
     M_.multiply(d, Md_);
     rows_.setRay(d);
     slope_ = d.dot(Ma_) - d.dot(net_);
     curvature_ = d.dot(Md_);
+    return g.dot(d);
   }
 
+  double unit() const { return unit_; }
   bool staysInCell() const { return newFactor_ && rows_.staysInCell(); }
 
   Jet along(double alpha) const {
@@ -79,7 +82,7 @@ class GaussObjective {
   TreeFactor factor_;
   bool changed_ = true;
   bool newFactor_ = false;  ///< no step has been taken with it
-  double slope_ = 0.0, curvature_ = 0.0;
+  double unit_ = 1.0, slope_ = 0.0, curvature_ = 0.0;
 };
 static_assert(NewtonObjective<GaussObjective>);
 

@@ -31,7 +31,11 @@ class DenseObjective {
     llt_.compute(H);
     return llt_.info() == Eigen::Success;
   }
-  void direction(const VectorX& g, VectorX& d) { d_ = d = -llt_.solve(g); }
+  double direction(const VectorX& g, VectorX& d) {
+    d_ = d = -llt_.solve(g);
+    return g.dot(d);
+  }
+  double unit() const { return 1.0; }
   bool staysInCell() const {
     const VectorX x = p_.J * (a + d_) - p_.aRef;
     const bool stays = (x.array() < 0.0).cast<double>().matrix() == active_;

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Islands of trees: two trees are of one where rows couple them, directly or through others.
+///
+/// P = M + Jᵀ∇²s J has no entry between two islands, so the objective of (1.1) is the sum of theirs
+/// and each is minimised by itself, in its own number of iterations: what one comes to does not
+/// depend, to the last bit, on who else is in the scene. A tree without rows of two trees is an
+/// island. Islands are in the order of their first trees.
+
+#include <utility>
+#include <vector>
+
+#include "softgauss/engine/core/segment.hpp"
+#include "softgauss/engine/core/union_find.hpp"
+#include "softgauss/engine/model/model.hpp"
+
+namespace softgauss {
+
+class TreeIslands {
+ public:
+  TreeIslands() = default;
+  explicit TreeIslands(const Model& model);
+
+  /// Finds them anew where rows couple these pairs of bodies. The world couples nothing.
+  void find(const Model& model, const std::vector<std::pair<int, int>>& pairs);
+
+  int size() const { return bodies_.size(); }
+  /// Its bodies, and its dofs, ascending.
+  Segments bodies(int island) const { return bodies_[island]; }
+  Segments dofs(int island) const { return dofs_[island]; }
+  /// (bodies) the island of each; the first one for the world.
+  const std::vector<int>& ofBody() const { return ofBody_; }
+
+ private:
+  void list(const Model& model);
+
+  UnionFind sets_;
+  std::vector<int> ofBody_;  ///< (bodies)
+  std::vector<int> first_;   ///< (islands) their first trees
+  std::vector<int> last_;    ///< (islands) scratch
+  std::vector<int> next_;    ///< (trees) the next tree of the same island, −1 at the last
+  SegmentSets bodies_, dofs_;
+};
+
+}  // namespace softgauss
