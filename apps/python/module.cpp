@@ -56,6 +56,8 @@ PYBIND11_MODULE(softgauss, m) {
   softgauss::python::bindModel(sim);
   softgauss::python::bindControl(m, sim);
   softgauss::python::bindDynamics(sim);
+  softgauss::python::bindQuantities(sim);
+  softgauss::python::bindDerivatives(sim);
   softgauss::python::bindRollout(m);
   softgauss::python::bindPlans(m);
   softgauss::python::bindEnvironments(m);

@@ -18,8 +18,10 @@ using HeldClass = py::class_<Held>;
 
 void bindErrors(py::module_& m);
 void bindGoals(py::module_& m);
-void bindModel(HeldClass& sim);     ///< sizes and names
-void bindDynamics(HeldClass& sim);  ///< forward, inverse, Jacobians
+void bindModel(HeldClass& sim);        ///< sizes and names
+void bindDynamics(HeldClass& sim);     ///< forward, inverse, Jacobians
+void bindQuantities(HeldClass& sim);   ///< energy, momentum, centre of mass, configurations
+void bindDerivatives(HeldClass& sim);  ///< of dynamics and of a step
 void bindControl(py::module_& m, HeldClass& sim);
 void bindSimulation(py::module_& m, HeldClass& sim);
 void bindRollout(py::module_& m);

@@ -268,6 +268,32 @@ class Simulation:
         self, link: str, point: ArrayLike = (0, 0, 0), q: ArrayLike | None = None
     ) -> Array:
         """(6, nv): velocity of the point, then angular velocity, world axes"""
+    def bias_forces(self, q: ArrayLike | None = None, v: ArrayLike | None = None) -> Array:
+        """(nv,) gravity, Coriolis and centripetal forces b of M a + b = τ"""
+    def energy(
+        self, q: ArrayLike | None = None, v: ArrayLike | None = None
+    ) -> tuple[float, float]:
+        """(kinetic, potential) [J]"""
+    def momentum(self, q: ArrayLike | None = None, v: ArrayLike | None = None) -> Array:
+        """(6,) linear, then angular about the centre of mass, world axes"""
+    def center_of_mass(self, q: ArrayLike | None = None) -> Array: ...
+    def center_of_mass_jacobian(self, q: ArrayLike | None = None) -> Array: ...
+    def integrate(self, q: ArrayLike, v: ArrayLike, seconds: float = 1.0) -> Array:
+        """(nq,) where q is after so many seconds at v"""
+    def difference(self, q0: ArrayLike, q1: ArrayLike) -> Array:
+        """(nv,) with integrate(q0, difference(q0, q1)) = q1"""
+    def inverse_dynamics_derivatives(
+        self, a: ArrayLike, q: ArrayLike | None = None, v: ArrayLike | None = None
+    ) -> tuple[Array, Array, Array]:
+        """(∂τ/∂q, ∂τ/∂v, ∂τ/∂a), (nv, nv) each"""
+    def forward_dynamics_derivatives(
+        self, tau: ArrayLike | None = None, q: ArrayLike | None = None, v: ArrayLike | None = None
+    ) -> tuple[Array, Array, Array]:
+        """(∂a/∂q, ∂a/∂v, ∂a/∂τ), (nv, nv) each"""
+    def step_derivatives(
+        self, tau: ArrayLike | None = None, q: ArrayLike | None = None, v: ArrayLike | None = None
+    ) -> tuple[Array, Array]:
+        """(A, B): ∂(q, v)/∂(q, v) (2 nv, 2 nv) and ∂(q, v)/∂τ (2 nv, nv) of one bare step"""
     @property
     def name(self) -> str: ...
     @property
