@@ -11,6 +11,7 @@ namespace softgauss::app {
 struct Mujoco::Memory {
   mjModel* model = nullptr;
   mjData* data = nullptr;
+  std::vector<mjtNum> transition{};  ///< of differentiateStep()
   ~Memory() {
     if (data) mj_deleteData(data);
     if (model) mj_deleteModel(model);
@@ -70,6 +71,13 @@ double Mujoco::imbalance() const {
 }
 void Mujoco::inverse() { mj_inverse(memory_->model, memory_->data); }
 void Mujoco::step() { mj_step(memory_->model, memory_->data); }
+void Mujoco::differentiateStep() {
+  constexpr double kDifference = 1e-6;
+  const auto states = static_cast<std::size_t>(2 * nv() + memory_->model->na);
+  memory_->transition.resize(states * states);
+  mjd_transitionFD(memory_->model, memory_->data, kDifference, 0, memory_->transition.data(),
+                   nullptr, nullptr, nullptr);
+}
 
 VectorX Mujoco::q() const { return vectorOf(memory_->data->qpos, nq()); }
 VectorX Mujoco::v() const { return vectorOf(memory_->data->qvel, nv()); }

@@ -37,6 +37,9 @@ class Mujoco {
   double imbalance() const;
   void inverse();
   void step();
+  /// ∂(q⁺, v⁺)/∂(q, v) by forward differences, its own function with the difference that its manual
+  /// has; of another state and force nothing is left changed.
+  void differentiateStep();
 
   VectorX q() const;
   VectorX v() const;

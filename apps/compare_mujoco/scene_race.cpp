@@ -12,12 +12,13 @@
 #include "apps/shared/cpu_time.hpp"
 #include "apps/shared/pose_error.hpp"
 #include "apps/shared/wall_clock.hpp"
+#include "softgauss/engine/step/forward_derivative.hpp"
 
 namespace softgauss::app {
 namespace {
 
 constexpr int kUntimed = 2;    ///< steps of a window before those that are timed
-constexpr int kInverses = 10;  ///< evaluations of inverse dynamics that are timed at once
+constexpr int kInverses = 10;  ///< evaluations of inverse dynamics, or derivatives, timed at once
 
 /// Why a race is given up.
 struct Refused : std::runtime_error {
@@ -90,6 +91,26 @@ class Race {
     mujoco_.setForce(window.torques[1]);
     mujoco_.forward();
     return timeOften([&] { mujoco_.inverse(); });
+  }
+
+  /// Times of the derivatives of a step after the start.
+  double timeOurDerivatives(const Window& window) {
+    begin(window);
+    follow(window, 0);
+    input_.tau = window.torques[1];
+    Model bare = scene_->model;
+    bare.options = StepDerivative::bareStep(bare.options);
+    Data data(bare);
+    StepDerivative derivative(bare);
+    return timeOften([&] {
+      accept(derivative.compute(bare, input_, scene_->state, scene_->contacts.get(), data));
+    });
+  }
+  double timeMujocoDerivatives(const Window& window) {
+    beginMujoco(window);
+    followMujoco(window, 0);
+    mujoco_.setForce(window.torques[1]);
+    return timeOften([&] { mujoco_.differentiateStep(); });
   }
 
   /// How far the links of both are from each other at the end of a window [m].
@@ -196,6 +217,10 @@ std::vector<Contestant> contestants(const TableScene& scene, Race& race, RaceRes
   if (scene.inverse) {
     add(&Race::timeOurInverse, result.inverse.ours);
     add(&Race::timeMujocoInverse, result.inverse.mujoco);
+  }
+  if (scene.derivatives) {
+    add(&Race::timeOurDerivatives, result.derivatives.ours);
+    add(&Race::timeMujocoDerivatives, result.derivatives.mujoco);
   }
   return all;
 }

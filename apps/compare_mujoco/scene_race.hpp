@@ -21,6 +21,8 @@ struct RaceTimes {
 struct RaceResult {
   RaceTimes step;
   RaceTimes inverse;      ///< where TableScene::inverse
+  RaceTimes derivatives;  ///< where TableScene::derivatives: ours analytic, with those by forces
+                          ///< too; MuJoCo's by differences, without
   double reaching = 0.0;  ///< our controlled step, of Drive::reach [µs]
   double apart = 0.0;     ///< of the links of both at the end of a window, at most [m]
   int dofs = 0, rounds = 0;

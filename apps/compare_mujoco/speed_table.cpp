@@ -31,9 +31,11 @@ class Table {
   }
 
   void addScene(const TableScene& scene) {
-    const std::string inverse = "inverse dynamics, " + scene.name;
-    const bool step = wants(scene.name);
-    if ((options_.quick && scene.large) || !(step || (scene.inverse && wants(inverse)))) return;
+    const std::string inverse = "inverse dynamics, " + scene.name,
+                      derivatives = "derivatives of a step, " + scene.name;
+    const bool step = wants(scene.name), wantsInverse = scene.inverse && wants(inverse),
+               wantsDerivatives = scene.derivatives && wants(derivatives);
+    if ((options_.quick && scene.large) || !(step || wantsInverse || wantsDerivatives)) return;
     RaceOptions limits;
     limits.rounds = options_.quick ? 1 : options_.rounds;
     const RaceResult r = race(scene, limits);
@@ -42,7 +44,8 @@ class Table {
       return;
     }
     if (step) add(scene.name, r.step, r);
-    if (scene.inverse && wants(inverse)) later_.emplace_back(inverse, r);
+    if (wantsInverse) later_.push_back({inverse, r.inverse, r});
+    if (wantsDerivatives) last_.push_back({derivatives, r.derivatives, r});
     if (!scene.curve.empty() && r.refused.empty()) {
       Json& curve = curves_[scene.curve];
       curve["sizes"].push_back(scene.size);
@@ -68,9 +71,10 @@ class Table {
     push(std::move(row));
   }
 
-  /// Inverse dynamics come after all steps.
-  void addInverse() {
-    for (const auto& [name, r] : later_) add(name, r.inverse, r);
+  /// Inverse dynamics and derivatives come after all steps.
+  void addLater() {
+    for (const auto* rows : {&later_, &last_})
+      for (const Later& row : *rows) add(row.name, row.times, row.race);
   }
 
   Json json() const {
@@ -121,7 +125,12 @@ class Table {
   const TableOptions& options_;
   std::regex wanted_;
   Json rows_ = Json::array(), curves_ = Json::object();
-  std::vector<std::pair<std::string, RaceResult>> later_;
+  struct Later {
+    std::string name;
+    RaceTimes times;
+    RaceResult race;
+  };
+  std::vector<Later> later_, last_;
 };
 
 Json heading(const TableOptions& options) {
@@ -155,7 +164,7 @@ Json measureSpeeds(const TableOptions& options) {
     table.addScene(scene);
     swung = scene.curve == kSwinging;
   }
-  table.addInverse();
+  table.addLater();
   Json result{{"heading", heading(options)}};
   result.update(table.json());
   return result;

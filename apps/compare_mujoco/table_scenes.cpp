@@ -158,7 +158,7 @@ void addRobots(const std::string& robots, std::vector<TableScene>& scenes) {
     scene.warmUp = warmUp;
     scene.windows = windows;
     scene.steps = steps;
-    scene.inverse = inverse;
+    scene.inverse = scene.derivatives = inverse;
     scenes.push_back(std::move(scene));
   }
   for (const std::string robot : {"humanoid", "hand", "arm"}) {

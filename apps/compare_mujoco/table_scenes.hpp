@@ -26,14 +26,15 @@ struct TableScene {
   std::string name;
   std::function<std::unique_ptr<Scene>()> make;  ///< at its start, with its controller
   Drive drive = Drive::none;
-  int warmUp = 100;      ///< steps before the first window
-  int windows = 4;       ///< pieces of the path that are timed
-  int steps = 20;        ///< timed ones of a window
-  int between = 20;      ///< steps from a window to the next
-  bool inverse = false;  ///< inverse dynamics are timed too
-  std::string curve{};   ///< of growth that it belongs to; empty: of none
-  int size = 0;          ///< along it: links or bodies
-  bool large = false;    ///< left out where a quick table is asked for
+  int warmUp = 100;          ///< steps before the first window
+  int windows = 4;           ///< pieces of the path that are timed
+  int steps = 20;            ///< timed ones of a window
+  int between = 20;          ///< steps from a window to the next
+  bool inverse = false;      ///< inverse dynamics are timed too
+  bool derivatives = false;  ///< and derivatives of a step
+  std::string curve{};       ///< of growth that it belongs to; empty: of none
+  int size = 0;              ///< along it: links or bodies
+  bool large = false;        ///< left out where a quick table is asked for
 };
 
 /// Robots of the folder `robots`, chains, piles, boxes, and last the `extra` robots, held and
