@@ -60,5 +60,6 @@ PYBIND11_MODULE(softgauss, m) {
   softgauss::python::bindDerivatives(sim);
   softgauss::python::bindRollout(m);
   softgauss::python::bindPlans(m);
+  softgauss::python::bindReprs(m, sim);
   softgauss::python::bindEnvironments(m);
 }

@@ -26,5 +26,6 @@ void bindControl(py::module_& m, HeldClass& sim);
 void bindSimulation(py::module_& m, HeldClass& sim);
 void bindRollout(py::module_& m);
 void bindPlans(py::module_& m);
+void bindReprs(py::module_& m, HeldClass& sim);  ///< after all of these
 
 }  // namespace softgauss::python
