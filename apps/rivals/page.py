@@ -3,7 +3,7 @@
 
 FOLDER is that of study.py. Of DOCS/rivals.md what stands between `<!-- NAME -->` and `<!-- end -->` is
 written anew; DOCS/rivals/ gets all results as results.csv and the pictures. --keep, for a study of a part:
-what FOLDER lacks stays as results.csv has it, and times as the page has them.
+what FOLDER lacks stays as results.csv and times.csv have it.
 """
 import argparse
 import json
@@ -40,6 +40,8 @@ class Page:
             if run:
                 run["judged"]["measures"]["second_m"] = s["distance_m"]
         self.times = times.read(folder)
+        if earlier:
+            self.times = times.merged(self.times, times.kept(earlier.parent / "times.csv"))
 
     @staticmethod
     def first(engine):
@@ -279,6 +281,8 @@ def main():
     results = docs / "rivals/results.csv"
     page = Page(arguments.folder, results if arguments.keep else None)
     kept.write(results, page.runs, page.refusals)
+    if page.times:
+        times.write(results.parent / "times.csv", page.times)
     pictures.draw(page, docs / "rivals")
     text = docs / "rivals.md"
     text.write_text(page.fill(text.read_text()))

@@ -7,6 +7,7 @@ range over all rounds. Two sessions, or the whole of two folders, agree on a fig
 meet. Prints the figures on which they do not, and how many of them chance would give; ends with 1 where
 there are more.
 """
+import csv
 import json
 import math
 import pathlib
@@ -34,6 +35,35 @@ class Figure:
 def read(folder):
     path = pathlib.Path(folder) / "times.jsonl"
     return [json.loads(line) for line in path.read_text().splitlines()] if path.exists() else []
+
+
+COLUMNS = {"scene": str, "entry": str, "session": int, "round": int, "us_a_step": float, "calibration_us": float, "load": float, "end": str}
+
+
+def write(path, runs):
+    """All rounds as the page's data, docs/rivals/times.csv; five digits of each time."""
+    rows = sorted(runs, key=lambda r: (r["scene"], r["entry"], r.get("session", 0), r["round"]))
+    with pathlib.Path(path).open("w", newline="") as file:
+        table = csv.writer(file, lineterminator="\n")
+        table.writerow(COLUMNS)
+        for r in rows:
+            values = [r.get(name, 0) for name in COLUMNS]
+            table.writerow([f"{v:.5g}" if isinstance(v, float) else v for v in values])
+
+
+def kept(path):
+    """What write() has written; nothing where there is no such file."""
+    path = pathlib.Path(path)
+    if not path.exists():
+        return []
+    with path.open(newline="") as file:
+        return [{name: kind(row[name]) for name, kind in COLUMNS.items()} for row in csv.DictReader(file)]
+
+
+def merged(new, old):
+    """Of each scene that was timed anew the new rounds, so that engines beside each other were; else the old ones."""
+    scenes = {r["scene"] for r in new}
+    return new + [r for r in old if r["scene"] not in scenes]
 
 
 def figures(runs):

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// Half-open ranges of indices, and sets of things as few of them as may be.
+/// Half-open ranges of indices, and several sets of such.
 
 #include <cstdint>
 #include <span>

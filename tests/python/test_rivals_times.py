@@ -43,3 +43,16 @@ def test_sessions_of_one_folder_are_told_apart(tmp_path):
     runs = session(1, [5.0, 5.2]) + session(2, [5.1, 5.3])
     (tmp_path / "times.jsonl").write_text("".join(json.dumps(r) + "\n" for r in runs))
     assert [len(s) for s in times.sessions(times.read(tmp_path))] == [2, 2]
+
+
+def test_what_is_kept_is_read_again_and_gives_way_to_a_scene_that_is_timed_anew(tmp_path):
+    runs = session(1, [5.0, 5.2]) + session(2, [5.1, 5.3])
+    times.write(tmp_path / "times.csv", runs)
+    again = times.kept(tmp_path / "times.csv")
+    assert [(r["session"], r["round"]) for r in again] == [(1, 0), (1, 1), (2, 0), (2, 1)]
+    figure, before = (times.figures(rs)["tower", "ours"] for rs in (again, runs))
+    assert all(abs(a / b - 1) < 1e-4 for a, b in zip(figure.ratios, before.ratios))  # five digits
+    new = [{**r, "entry": "ode"} for r in session(3, [2.0])]
+    assert times.merged(new, again) == new  # of the same scene
+    assert times.merged([{**new[0], "scene": "feet"}], again)[1:] == again
+    assert times.kept(tmp_path / "none.csv") == []
