@@ -37,8 +37,7 @@ class Mujoco {
   double imbalance() const;
   void inverse();
   void step();
-  /// ∂(q⁺, v⁺)/∂(q, v) by forward differences, its own function with the difference that its manual
-  /// has; of another state and force nothing is left changed.
+  /// ∂(q⁺, v⁺)/∂(q, v) by its own forward differences. State and force stay.
   void differentiateStep();
 
   VectorX q() const;

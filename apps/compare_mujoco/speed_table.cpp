@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <regex>
 #include <utility>
 
@@ -21,6 +22,16 @@ std::string figure(double x) {
   return x >= 100.0 ? fmt::format("{:.0f}", x) : fmt::format("{:.3g}", x);
 }
 
+/// What is timed besides a step, in the order of its rows.
+struct Besides {
+  const char* prefix;
+  bool TableScene::*asked;
+  RaceTimes RaceResult::*times;
+};
+constexpr Besides kBesides[] = {
+    {"inverse dynamics, ", &TableScene::inverse, &RaceResult::inverse},
+    {"derivatives of a step, ", &TableScene::derivatives, &RaceResult::derivatives}};
+
 /// Collects the rows.
 class Table {
  public:
@@ -31,11 +42,12 @@ class Table {
   }
 
   void addScene(const TableScene& scene) {
-    const std::string inverse = "inverse dynamics, " + scene.name,
-                      derivatives = "derivatives of a step, " + scene.name;
-    const bool step = wants(scene.name), wantsInverse = scene.inverse && wants(inverse),
-               wantsDerivatives = scene.derivatives && wants(derivatives);
-    if ((options_.quick && scene.large) || !(step || wantsInverse || wantsDerivatives)) return;
+    const bool step = wants(scene.name);
+    const auto wantsIt = [&](const Besides& b) {
+      return scene.*b.asked && wants(b.prefix + scene.name);
+    };
+    const bool any = step || std::any_of(std::begin(kBesides), std::end(kBesides), wantsIt);
+    if ((options_.quick && scene.large) || !any) return;
     RaceOptions limits;
     limits.rounds = options_.quick ? 1 : options_.rounds;
     const RaceResult r = race(scene, limits);
@@ -44,8 +56,7 @@ class Table {
       return;
     }
     if (step) add(scene.name, r.step, r);
-    if (wantsInverse) later_.push_back({inverse, r.inverse, r});
-    if (wantsDerivatives) last_.push_back({derivatives, r.derivatives, r});
+    races_.emplace_back(scene, r);
     if (!scene.curve.empty() && r.refused.empty()) {
       Json& curve = curves_[scene.curve];
       curve["sizes"].push_back(scene.size);
@@ -71,10 +82,12 @@ class Table {
     push(std::move(row));
   }
 
-  /// Inverse dynamics and derivatives come after all steps.
-  void addLater() {
-    for (const auto* rows : {&later_, &last_})
-      for (const Later& row : *rows) add(row.name, row.times, row.race);
+  /// They come after all steps.
+  void addBesides() {
+    for (const Besides& b : kBesides)
+      for (const auto& [scene, r] : races_)
+        if (const std::string name = b.prefix + scene.name; scene.*b.asked && wants(name))
+          add(name, r.*b.times, r);
   }
 
   Json json() const {
@@ -125,12 +138,7 @@ class Table {
   const TableOptions& options_;
   std::regex wanted_;
   Json rows_ = Json::array(), curves_ = Json::object();
-  struct Later {
-    std::string name;
-    RaceTimes times;
-    RaceResult race;
-  };
-  std::vector<Later> later_, last_;
+  std::vector<std::pair<TableScene, RaceResult>> races_;
 };
 
 Json heading(const TableOptions& options) {
@@ -164,7 +172,7 @@ Json measureSpeeds(const TableOptions& options) {
     table.addScene(scene);
     swung = scene.curve == kSwinging;
   }
-  table.addLater();
+  table.addBesides();
   Json result{{"heading", heading(options)}};
   result.update(table.json());
   return result;

@@ -3,29 +3,17 @@
 
 #include "apps/python/at_state.hpp"
 #include "apps/python/held.hpp"
-#include "softgauss/engine/engine.hpp"
+#include "apps/python/stages.hpp"
 #include "softgauss/io/names.hpp"
-#include "softgauss/io/simulation/simulation_parts.hpp"
 
 namespace softgauss::python {
 namespace {
 
-/// The stages of the step from the present state, under a force.
-void computeStagesUnder(Simulation& sim, const VectorX& tau) {
-  Input input = sim.parts().inputOfStep();
-  input.tau = tau;
-  const SolveStatus status =
-      computeStages(sim.model(), input, sim.state(), sim.data(), &sim.contacts());
-  if (isRefused(status)) throw StepError(sim.failure());
-}
-
 VectorX forward(Held& held, const py::object& tau, const py::object& q, const py::object& v) {
   return held.alone([&](Simulation& sim) {
     const AtState at(sim, q, v);
-    computeStagesUnder(
-        sim, tau.is_none() ? sim.input().tau : vectorOf(tau, "tau", sim.model().nv, "nv"));
-    if (isRefused(forwardDynamics(sim.model(), sim.state(), sim.data())))
-      throw StepError(sim.failure());
+    computeStagesUnder(sim, forceOf(sim, tau));
+    expectSolved(sim, forwardDynamics(sim.model(), sim.state(), sim.data()));
     return sim.data().forward.a;
   });
 }
@@ -34,8 +22,7 @@ VectorX forward(Held& held, const py::object& tau, const py::object& q, const py
 VectorX inverse(Simulation& sim, const py::object& a, const py::object& q, const py::object& v,
                 RowMajorMatrixX* P) {
   const AtState at(sim, q, v);
-  const VectorX wished = vectorOf(a, "a", sim.model().nv, "nv");
-  if (!wished.allFinite()) throw py::value_error("a: found NaN or ∞, expected finite numbers");
+  const VectorX wished = accelerationOf(sim, a);
   computeStagesUnder(sim, {});
   VectorX tau;
   inverseDynamics(sim.model(), wished, sim.data(), tau);

@@ -3,33 +3,32 @@
 
 #include "apps/python/at_state.hpp"
 #include "apps/python/held.hpp"
+#include "apps/python/stages.hpp"
 #include "softgauss/engine/dynamics/energy.hpp"
 #include "softgauss/engine/dynamics/jacobian.hpp"
-#include "softgauss/engine/engine.hpp"
 #include "softgauss/engine/step/forward_derivative.hpp"
-#include "softgauss/io/simulation/simulation_parts.hpp"
 
 namespace softgauss::python {
 namespace {
 
-/// A simulation at some q and v, with poses and inertias there.
+/// A simulation at some q and v, with poses there.
 struct Posed : AtState {
   Posed(Simulation& sim, const py::object& q, const py::object& v)
-      : AtState(sim, q, v), model(sim.model()), state(sim.state()), k(model), inertia(model) {
+      : AtState(sim, q, v), model(sim.model()), state(sim.state()), k(model) {
     computeKinematics(model, state, k);
-    computeMassMatrix(model, k, inertia);
   }
 
   const Model& model;
   const State& state;
   Kinematics k;
-  MassMatrix inertia;
 };
 
 VectorX biasForces(const Posed& at) {
+  MassMatrix inertia(at.model);
+  computeMassMatrix(at.model, at.k, inertia);
   RneaWorkspace work(at.model);
   VectorX bias(at.model.nv);
-  computeBias(at.model, at.k, at.inertia, work, bias);
+  computeBias(at.model, at.k, inertia, work, bias);
   return bias;
 }
 
@@ -59,17 +58,6 @@ RowMajorMatrixX centerOfMassJacobian(const Posed& at) {
   return sum / mass;
 }
 
-/// A force [N, N m], the present one where it is not given.
-Input inputUnder(Simulation& sim, const py::object& tau) {
-  Input input = sim.parts().inputOfStep();
-  input.tau = tau.is_none() ? sim.input().tau : vectorOf(tau, "tau", sim.model().nv, "nv");
-  return input;
-}
-
-void expectSolved(Simulation& sim, SolveStatus status) {
-  if (isRefused(status)) throw StepError(sim.failure());
-}
-
 py::tuple rows(const MatrixX& x, const MatrixX& y, const MatrixX& z) {
   return py::make_tuple(RowMajorMatrixX(x), RowMajorMatrixX(y), RowMajorMatrixX(z));
 }
@@ -77,10 +65,8 @@ py::tuple rows(const MatrixX& x, const MatrixX& y, const MatrixX& z) {
 py::tuple inverseDerivatives(Simulation& sim, const py::object& a, const py::object& q,
                              const py::object& v) {
   const AtState at(sim, q, v);
-  const VectorX wished = vectorOf(a, "a", sim.model().nv, "nv");
-  if (!wished.allFinite()) throw py::value_error("a: found NaN or ∞, expected finite numbers");
-  const Input input = inputUnder(sim, py::none());
-  expectSolved(sim, computeStages(sim.model(), input, sim.state(), sim.data(), &sim.contacts()));
+  const VectorX wished = accelerationOf(sim, a);
+  const Input input = computeStagesUnder(sim, {});
   InverseDerivative of(sim.model());
   expectSolved(sim,
                of.compute(sim.model(), input, sim.state(), wished, &sim.contacts(), sim.data()));
@@ -90,8 +76,7 @@ py::tuple inverseDerivatives(Simulation& sim, const py::object& a, const py::obj
 py::tuple forwardDerivatives(Simulation& sim, const py::object& tau, const py::object& q,
                              const py::object& v) {
   const AtState at(sim, q, v);
-  const Input input = inputUnder(sim, tau);
-  expectSolved(sim, computeStages(sim.model(), input, sim.state(), sim.data(), &sim.contacts()));
+  const Input input = computeStagesUnder(sim, forceOf(sim, tau));
   expectSolved(sim, forwardDynamics(sim.model(), sim.state(), sim.data()));
   ForwardDerivative of(sim.model());
   expectSolved(sim, of.compute(sim.model(), input, sim.state(), &sim.contacts(), sim.data()));
@@ -101,7 +86,7 @@ py::tuple forwardDerivatives(Simulation& sim, const py::object& tau, const py::o
 py::tuple stepDerivatives(Simulation& sim, const py::object& tau, const py::object& q,
                           const py::object& v) {
   const AtState at(sim, q, v);
-  const Input input = inputUnder(sim, tau);
+  const Input input = inputUnder(sim, forceOf(sim, tau));
   Model bare = sim.model();
   bare.options = StepDerivative::bareStep(bare.options);
   State start(bare);
@@ -125,6 +110,14 @@ template <class F>
 auto configured(F f) {
   return [f](Held& held, const py::object& q) {
     return held.alone([&](Simulation& sim) { return f(Posed(sim, q, py::none())); });
+  };
+}
+
+/// The derivatives of a simulation that no other thread uses.
+auto alone(py::tuple (*derivatives)(Simulation&, const py::object&, const py::object&,
+                                    const py::object&)) {
+  return [derivatives](Held& held, const py::object& x, const py::object& q, const py::object& v) {
+    return held.alone([&](Simulation& sim) { return derivatives(sim, x, q, v); });
   };
 }
 
@@ -175,27 +168,14 @@ void bindDerivatives(HeldClass& sim) {
   const auto q = py::arg("q") = py::none(), v = py::arg("v") = py::none();
   const auto tau = py::arg("tau") = py::none();
   sim.def(
-      "inverse_dynamics_derivatives",
-      [](Held& h, const py::object& a, const py::object& q_, const py::object& v_) {
-        return h.alone([&](Simulation& s) { return inverseDerivatives(s, a, q_, v_); });
-      },
-      py::arg("a"), q, v,
+      "inverse_dynamics_derivatives", alone(inverseDerivatives), py::arg("a"), q, v,
       "(∂τ/∂q, ∂τ/∂v, ∂τ/∂a) of inverse_dynamics(), (nv, nv) each, contacts and limits included;\n"
       "q changes as integrate() has it. At a kink, where a contact begins or slips, those of the\n"
       "side on which its rows are. StepError.");
+  sim.def("forward_dynamics_derivatives", alone(forwardDerivatives), tau, q, v,
+          "(∂a/∂q, ∂a/∂v, ∂a/∂τ) of forward_dynamics(), (nv, nv) each, likewise. StepError.");
   sim.def(
-      "forward_dynamics_derivatives",
-      [](Held& h, const py::object& t, const py::object& q_, const py::object& v_) {
-        return h.alone([&](Simulation& s) { return forwardDerivatives(s, t, q_, v_); });
-      },
-      tau, q, v,
-      "(∂a/∂q, ∂a/∂v, ∂a/∂τ) of forward_dynamics(), (nv, nv) each, likewise. StepError.");
-  sim.def(
-      "step_derivatives",
-      [](Held& h, const py::object& t, const py::object& q_, const py::object& v_) {
-        return h.alone([&](Simulation& s) { return stepDerivatives(s, t, q_, v_); });
-      },
-      tau, q, v,
+      "step_derivatives", alone(stepDerivatives), tau, q, v,
       "(A, B): ∂(q, v)/∂(q, v) (2 nv, 2 nv) and ∂(q, v)/∂τ (2 nv, nv) of one step, under a force\n"
       "and without goals, of the leapfrog that is not divided and predicts nothing. StepError.");
 }

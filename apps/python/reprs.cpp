@@ -7,13 +7,12 @@
 
 #include "apps/python/goals.hpp"
 #include "apps/python/held.hpp"
+#include "softgauss/io/detail/text.hpp"
 
 namespace softgauss::python {
 namespace {
 
-std::string counted(std::size_t n, const char* one) {
-  return fmt::format("{} {}{}", n, one, n == 1 ? "" : "s");
-}
+using io::detail::counted;
 
 std::string simulationRepr(Held& held) {
   const Simulation& sim = held.sim();

@@ -53,28 +53,16 @@ def state_of(sim, seed):
 
 
 @pytest.mark.parametrize("seed", range(2))
-def test_of_inverse_dynamics(robot, seed):
-    q, v, tau = state_of(robot, seed)
-    a = robot.forward_dynamics(tau, q, v)
-    found = robot.inverse_dynamics_derivatives(a, q, v)
-
-    def inverse(q, v, a):
-        return robot.inverse_dynamics(a, q, v)
-
+@pytest.mark.parametrize("name", ["inverse_dynamics", "forward_dynamics"])
+def test_of_dynamics(robot, name, seed):
+    q, v, given = state_of(robot, seed)
+    if name == "inverse_dynamics":
+        given = robot.forward_dynamics(given, q, v)
+    function = getattr(robot, name)
+    found = getattr(robot, name + "_derivatives")(given, q, v)
     for of, matrix in zip("qva", found):
-        expect_close(matrix, differences(robot, inverse, q, v, a, of))
-
-
-@pytest.mark.parametrize("seed", range(2))
-def test_of_forward_dynamics(robot, seed):
-    q, v, tau = state_of(robot, seed)
-    found = robot.forward_dynamics_derivatives(tau, q, v)
-
-    def forward(q, v, tau):
-        return robot.forward_dynamics(tau, q, v)
-
-    for of, matrix in zip("qva", found):
-        expect_close(matrix, differences(robot, forward, q, v, tau, of))
+        expected = differences(robot, lambda q, v, x: function(x, q, v), q, v, given, of)
+        expect_close(matrix, expected)
 
 
 @pytest.mark.parametrize("seed", range(2))
