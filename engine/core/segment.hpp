@@ -3,11 +3,12 @@
 
 /// Half-open ranges of indices, and several sets of such.
 
-#include <cstdint>
+#include <cstddef>
 #include <span>
 #include <vector>
 
 #include "softgauss/engine/core/index.hpp"
+#include "softgauss/engine/core/memory.hpp"
 
 namespace softgauss {
 
@@ -20,36 +21,52 @@ struct Segment {
 
 using Segments = std::span<const Segment>;
 
-/// The segments of each of several sets, in one array.
+/// A range of indices that is divided into sets, of each its segments, ascending.
 class SegmentSets {
  public:
-  /// Begins anew; keeps the memory.
-  void clear() {
-    segments_.clear();
-    first_.assign(1, 0);
+  void reserve(std::size_t sets, std::size_t segments) {
+    end_.reserve(sets);
+    runs_.reserve(segments);
+    segments_.reserve(segments);
   }
-  void reserve(int sets, int segments) {
-    first_.reserve(idx(sets) + 1);
-    segments_.reserve(idx(segments));
+  /// Divides it into so many sets: setOf(i) is that of each index.
+  template <class SetOf>
+  void divide(Segment range, int sets, SetOf&& setOf) {
+    runs_.clear();
+    end_.assign(idx(sets), 0);
+    for (int i = range.begin; i < range.end; ++i) {
+      const int set = setOf(i);
+      if (runs_.empty() || runs_.back().set != set) {
+        runs_.push_back({set, {i, i}});
+        ++end_[idx(set)];
+      }
+      ++runs_.back().segment.end;
+    }
+    // Where the segments of each begin, which becomes where they end as they are put there.
+    int before = 0;
+    for (int& end : end_) {
+      const int count = end;
+      end = before;
+      before += count;
+    }
+    segments_.resize(runs_.size());
+    for (const Run& run : runs_) segments_[idx(end_[idx(run.set)]++)] = run.segment;
   }
-  /// Adds a segment to the set that is open; one that begins where the last ends goes on with it.
-  void add(Segment segment) {
-    if (static_cast<int>(segments_.size()) > first_.back() && segments_.back().end == segment.begin)
-      segments_.back().end = segment.end;
-    else
-      segments_.push_back(segment);
-  }
-  /// Ends the set that is open.
-  void close() { first_.push_back(static_cast<int>(segments_.size())); }
-  int size() const { return static_cast<int>(first_.size()) - 1; }
+  int size() const { return static_cast<int>(end_.size()); }
   Segments operator[](int set) const {
-    return Segments(segments_).subspan(idx(first_[idx(set)]),
-                                       idx(first_[idx(set + 1)] - first_[idx(set)]));
+    const int begin = set == 0 ? 0 : end_[idx(set - 1)];
+    return Segments(segments_).subspan(idx(begin), idx(end_[idx(set)] - begin));
   }
+  std::size_t bytes() const { return bytesOfAll(runs_, segments_, end_); }
 
  private:
-  std::vector<Segment> segments_;
-  std::vector<int> first_{0};
+  struct Run {
+    int set = 0;
+    Segment segment;
+  };
+  std::vector<Run> runs_;          ///< neighbours of one set, ascending
+  std::vector<Segment> segments_;  ///< the same, by set
+  std::vector<int> end_;           ///< (sets) where those of each end in segments_
 };
 
 }  // namespace softgauss

@@ -3,15 +3,13 @@
 
 #include <algorithm>
 
+#include "softgauss/engine/dynamics/body_motion.hpp"
+
 namespace softgauss {
 
-TreeIslands::TreeIslands(const Model& model)
-    : ofBody_(model.bodies.size()), next_(model.trees.size()) {
-  const int trees = static_cast<int>(model.trees.size());
-  first_.reserve(model.trees.size());
-  last_.reserve(model.trees.size());
-  bodies_.reserve(trees, trees);
-  dofs_.reserve(trees, trees);
+TreeIslands::TreeIslands(const Model& model) : ofBody_(model.bodies.size()) {
+  for (SegmentSets* sets : {&bodies_, &dofs_})
+    sets->reserve(model.trees.size(), model.trees.size());
   find(model, {});
 }
 
@@ -22,37 +20,16 @@ void TreeIslands::find(const Model& model, const std::vector<std::pair<int, int>
     const int a = model.bodies[idx(bodyA)].tree, b = model.bodies[idx(bodyB)].tree;
     if (a >= 0 && b >= 0) sets_.unite(a, b);
   }
-  first_.clear();
-  last_.clear();
-  for (int tree = 0; tree < trees; ++tree) {
-    next_[idx(tree)] = -1;
-    const Tree& t = model.trees[idx(tree)];
-    int island = static_cast<int>(first_.size());
-    if (const int first = sets_.find(tree); first != tree) {
-      island = ofBody_[idx(model.trees[idx(first)].rootBody)];
-      next_[idx(last_[idx(island)])] = tree;
-      last_[idx(island)] = tree;
-    } else {
-      first_.push_back(tree);
-      last_.push_back(tree);
-    }
-    std::fill(ofBody_.begin() + t.rootBody, ofBody_.begin() + t.bodyEnd, island);
+  int islands = 0;
+  for (int t = 0; t < trees; ++t) {
+    const Tree& tree = model.trees[idx(t)];
+    const int first = sets_.find(t);  // the first tree of its island
+    const int island = first == t ? islands++ : ofBody_[idx(model.trees[idx(first)].rootBody)];
+    std::fill(ofBody_.begin() + tree.rootBody, ofBody_.begin() + tree.bodyEnd, island);
   }
-  list(model);
-}
-
-void TreeIslands::list(const Model& model) {
-  bodies_.clear();
-  dofs_.clear();
-  for (const int first : first_) {
-    for (int t = first; t >= 0; t = next_[idx(t)]) {
-      const Tree& tree = model.trees[idx(t)];
-      bodies_.add({tree.rootBody, tree.bodyEnd});
-      dofs_.add({tree.firstDof, tree.dofEnd});
-    }
-    bodies_.close();
-    dofs_.close();
-  }
+  bodies_.divide(allBodies(model), islands, [&](int b) { return ofBody_[idx(b)]; });
+  dofs_.divide({0, model.nv}, islands,
+               [&](int i) { return ofBody_[idx(model.dofs[idx(i)].body)]; });
 }
 
 }  // namespace softgauss

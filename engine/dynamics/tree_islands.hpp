@@ -33,13 +33,8 @@ class TreeIslands {
   const std::vector<int>& ofBody() const { return ofBody_; }
 
  private:
-  void list(const Model& model);
-
   UnionFind sets_;
   std::vector<int> ofBody_;  ///< (bodies)
-  std::vector<int> first_;   ///< (islands) their first trees
-  std::vector<int> last_;    ///< (islands) scratch
-  std::vector<int> next_;    ///< (trees) the next tree of the same island, −1 at the last
   SegmentSets bodies_, dofs_;
 };
 
