@@ -202,7 +202,8 @@ ContactBlocks::BlockMotion ContactBlocks::addBlock(const Assembly& in, int i, co
   const Motion slips{
       k.V[c.bodyB].angular - k.V[c.bodyA].angular,
       pointVelocity(model, k, c.bodyB, c.p_WC) - pointVelocity(model, k, c.bodyA, c.p_WC)};
-  const Matrix3 R_WC = contactFrame(c.n_W, tangentOf(in, c, touch, slips));
+  const WishedTangent wished = tangentOf(in, c, touch, slips);
+  const Matrix3 R_WC = contactFrame(c.n_W, wished.t_W);
   // The contacts of a pair are neighbours in the set.
   const std::vector<Contact>& all = in.contacts.contacts;
   int place = 0;
@@ -210,7 +211,8 @@ ContactBlocks::BlockMotion ContactBlocks::addBlock(const Assembly& in, int i, co
          all[i - place - 1].geometryB == c.geometryB)
     ++place;
   contactsWithRows_.push_back({i, c.geometryA, c.geometryB, c.bodyA, c.bodyB, place, row, R_WC,
-                               touch.frictionDim, touch.friction, touch.loadStiffening, 1.0});
+                               touch.frictionDim, touch.friction, touch.loadStiffening, 1.0, 1.0,
+                               wished.ofGravity});
 
   RelativeMotion motion;
   motion.bodyA = c.bodyA;
@@ -260,6 +262,9 @@ Softness ContactBlocks::soften(const Assembly& in, const Touch& touch,
   ContactSpeeds speeds{slipSpeed(touch, velocity), std::abs(velocity[0])};
   speeds.weight = creepUnderWeight(in.model.options, touch);
   speeds.creep = speeds.weight - soft.stiffness * touch.distance / soft.damping;
+  if (!touch.supportsOthers && holdsWeight(in, contact, touch))
+    speeds.sticks = std::max(0.0, 1.0 - slipNumber(in, contact, touch, velocity));
+  contactsWithRows_.back().sticks = speeds.sticks;
   Hardening most = touch.supportsOthers ? kCarries : kAlone;
   if (controlled) most.least = kLeastUnderGoals;
   contactsWithRows_.back().regularisationScale = speeds.regularisationScale(most);

@@ -28,12 +28,13 @@ double slipNumber(const Options& options, const Touch& touch, double slip, doubl
 }
 
 /// m (5.12): what friction changes this slip by, over what it changes a slide by.
-double mobilityOf(const Assembly& in, const Contact& c, const Touch& touch, const Slip& slip) {
-  if (slip.dim <= 2) return 1.0;
+double mobilityOf(const Assembly& in, const Contact& c, const Touch& touch,
+                  const std::array<double, 5>& direction) {
+  if (touch.frictionDim <= 2) return 1.0;
   const double turns = in.weights.rotation[c.bodyA] + in.weights.rotation[c.bodyB];
   double m = 0.0;
-  for (int k = 0; k < slip.dim; ++k)
-    m += std::pow(slip.direction[k] * touch.friction[k] / touch.mu(), 2.0) *
+  for (int k = 0; k < touch.frictionDim; ++k)
+    m += std::pow(direction[k] * touch.friction[k] / touch.mu(), 2.0) *
          (k < 2 ? 1.0 : turns / touch.inverseMass);
   return m;
 }
@@ -75,13 +76,38 @@ double gainOf(const Options& options, const Touch& touch, const Softness& soft) 
   return (edges ? 2 * touch.frictionDim : 1) * touch.inverseMass / soft.R;
 }
 
-Vector3 tangentOf(const Assembly& in, const Contact& contact, const Touch& touch,
-                  const Motion& slips_W) {
+double slipNumber(const Assembly& in, const Contact& contact, const Touch& touch,
+                  const std::array<double, 6>& velocity) {
+  double squares = 0.0;
+  std::array<double, 5> direction{};
+  for (int k = 0; k < touch.frictionDim; ++k) {
+    direction[k] = touch.friction[k] * velocity[k + 1];
+    squares += direction[k] * direction[k];
+  }
+  const double speed = std::sqrt(squares);
+  if (!(speed > 0.0)) return 0.0;
+  for (double& d : direction) d /= speed;
+  return slipNumber(in.model.options, touch,
+                    speed / (mobilityOf(in, contact, touch, direction) * touch.mu()),
+                    -touch.softness.stiffness * touch.distance);
+}
+
+bool holdsWeight(const Assembly& in, const Contact& contact, const Touch& touch) {
+  if (touch.frictionDim == 0 || in.controlled(contact.bodyA, contact.bodyB)) return false;
+  constexpr double kShare =
+      0.5;  // between its tangents a pyramid has 0.7 of what it has along them
+  const Vector3& g = in.model.options.gravity;
+  return contact.n_W.cross(g).norm() >
+         kShare * touch.mu() / touch.frictionDim * std::abs(contact.n_W.dot(g));
+}
+
+WishedTangent tangentOf(const Assembly& in, const Contact& contact, const Touch& touch,
+                        const Motion& slips_W) {
   constexpr double kTurnsStably = 0.5;
   const Options& options = in.model.options;
   if (touch.frictionDim == 0 || options.cone != Cone::pyramidal || !options.correctsSlip() ||
       !mayGlide(in, contact))
-    return contact.tangent_W;
+    return {contact.tangent_W};
   const Softness& s = touch.softness;
   const double normal = contact.n_W.dot(slips_W.linear);
   const double presses =
@@ -91,12 +117,15 @@ Vector3 tangentOf(const Assembly& in, const Contact& contact, const Touch& touch
   const auto turnsStably = [&](double slip) {
     return slipNumber(options, touch, slip, presses) > kTurnsStably;
   };
-  if (turnsStably((slips_W.linear - normal * contact.n_W).norm())) return slips_W.linear;
-  if (touch.frictionDim < 4) return contact.tangent_W;
-  const Vector3 roll = slips_W.angular - contact.n_W * contact.n_W.dot(slips_W.angular);
-  const double turns = in.weights.rotation[contact.bodyA] + in.weights.rotation[contact.bodyB];
-  const double slides = touch.friction[3] * turns / (touch.mu() * touch.inverseMass);
-  return turnsStably(roll.norm() / slides) ? roll : contact.tangent_W;
+  if (turnsStably((slips_W.linear - normal * contact.n_W).norm())) return {slips_W.linear};
+  if (touch.frictionDim >= 4) {
+    const Vector3 roll = slips_W.angular - contact.n_W * contact.n_W.dot(slips_W.angular);
+    const double turns = in.weights.rotation[contact.bodyA] + in.weights.rotation[contact.bodyB];
+    const double slides = touch.friction[3] * turns / (touch.mu() * touch.inverseMass);
+    if (turnsStably(roll.norm() / slides)) return {roll};
+  }
+  if (holdsWeight(in, contact, touch)) return {options.gravity, true};
+  return {contact.tangent_W};
 }
 
 Slip ContactBlocks::slipOf(const Assembly& in, const Touch& touch, const Softness& soft,
@@ -112,7 +141,7 @@ Slip ContactBlocks::slipOf(const Assembly& in, const Touch& touch, const Softnes
   if (!mayGlide(in, contact)) return slip;
   for (int k = 0; k < slip.dim; ++k)
     slip.direction[k] = -touch.friction[k] * soft.damping * moves.velocity[k + 1] / slip.asked;
-  const double m = mobilityOf(in, contact, touch, slip);
+  const double m = mobilityOf(in, contact, touch, slip.direction);
   slip.asksFor = std::clamp(1.0 / m, 1.0, 2.0 * slip.dim);
   slip.share =
       std::min(1.0, kSure * slipNumber(options, touch, slip.asked / (m * soft.damping * touch.mu()),

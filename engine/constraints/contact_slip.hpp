@@ -15,10 +15,26 @@ double weightAt(const Assembly& in, int body, const Vector3& p_W);
 /// [-].
 double gainOf(const Options& options, const Touch& touch, const Softness& soft);
 
-/// Where t₁ of a contact points, besides n. A pyramid turns with the slip of its bodies, or, where
-/// nothing slides, with their roll, as long as friction turns that stably, slower than it points:
-/// friction then points against it, whatever tangents the contact has.
-Vector3 tangentOf(const Assembly& in, const Contact& contact, const Touch& touch,
-                  const Motion& slips_W);
+/// V (5.11) of a contact that moves by `velocity` in its frame.
+double slipNumber(const Assembly& in, const Contact& contact, const Touch& touch,
+                  const std::array<double, 6>& velocity);
+
+/// Whether friction holds a weight at a contact: gravity asks half of what would take the load off
+/// an edge of its pyramid, 1/(condim − 1) of the cone. Contacts of what goals control are left out:
+/// the forces there are the goals' to choose.
+bool holdsWeight(const Assembly& in, const Contact& contact, const Touch& touch);
+
+/// What t₁ of a contact is along, besides n.
+struct WishedTangent {
+  Vector3 t_W;
+  bool ofGravity = false;
+};
+
+/// A pyramid turns with the slip of its bodies, or, where nothing slides, with their roll, as long
+/// as friction turns that stably, slower than it points: friction then points against it, whatever
+/// tangents the contact has. Where it holds a weight the pyramid turns with gravity: between its
+/// tangents it would hold 71 %.
+WishedTangent tangentOf(const Assembly& in, const Contact& contact, const Touch& touch,
+                        const Motion& slips_W);
 
 }  // namespace softgauss

@@ -7,7 +7,7 @@
 /// a load that it holds a contact creeps. So rows of contacts harden as they slow down (5.7). With
 /// n rows that push along the normal, s = |(μ_k ẏ_k)|,
 ///   w = g R/(n A b),   u = k d |r|/b + w       creep by the weight it is made for, and its depth's
-///   ρ = clamp(max(s/(c_t u), |ẏ_n|/(c_n w)), ρ_min, 1)
+///   ρ = clamp(max(s/(c_t u), (|ẏ_n| − a)/(c_n w)), ρ_min, 1)
 ///   R ← ρ R,   k d ← ρ k d
 /// A row pushes with f = −D (y + b ẏ + k d r). So D k d |r|, the force of what is at rest, stays as
 /// it was, and the speed that a load needs falls by ρ: under one that creeps by c u at ρ = 1,
@@ -16,8 +16,13 @@
 /// stays explicit; what moves faster is as it was, bit for bit.
 ///
 /// Along the normal a contact then keeps its depth where that is off by less than c_n of the depth
-/// under its own weight; where it has farther to go it is as soft as before. What bounces is left
-/// alone: springs of contacts, and references that are less than critically damped, b² < 4 k d.
+/// under its own weight; where it has farther to go it is as soft as before. Friction moves it
+/// along the normal, too, where it carries much: edges of a pyramid, and contacts of a body, leave
+/// their load to others. That is no way to go, and ends with the slip:
+///   a = min(c_s s max(0, 1 − V), u − w, w)     where friction holds a weight that carries nothing,
+///                                              else 0
+/// What bounces is left alone: springs of contacts, and references that are less than critically
+/// damped, b² < 4 k d.
 
 #include <algorithm>
 
@@ -46,14 +51,18 @@ struct ContactSpeeds {
   double normal = 0.0;      ///< |ẏ_n|
   double creep = 0.0;       ///< u
   double weight = 0.0;      ///< w
+  double sticks = 0.0;      ///< max(0, 1 − V) where friction holds a weight, else 0
 
   /// ρ.
   double regularisationScale(const Hardening& most) const {
     // The last edge of a pyramid of n edges creeps at ((n − 2) τ/(1 − τ) − 1) u under the share τ
     // of what friction holds: by 200 u at 99 % with condim 3, 96 % with condim 6.
     constexpr double kTangential = 200.0;
+    constexpr double kWithSlip = 10.0;
+    const double byFriction = std::min({kWithSlip * sticks * tangential, creep - weight, weight});
+    const double way = std::max(0.0, normal - byFriction);
     const double scale =
-        std::max(tangential / (kTangential * creep), normal / (most.settled * weight));
+        std::max(tangential / (kTangential * creep), way / (most.settled * weight));
     return scale < 1.0 ? std::max(most.least, scale) : 1.0;  // also NaN
   }
 };

@@ -60,6 +60,8 @@ struct Outcome {
 class Instant {
  public:
   explicit Instant(RobotScene& r) : r_(r), cost_(r.model.nv) {
+    // Rows as the controller sees them.
+    r.controller.markControlled(r.model, r.input.controlled);
     EXPECT_NE(computeStages(r.model, r.input, r.state, r.data, &r.contacts),
               SolveStatus::notFinite);
     for (const auto& goal : r.controller.goals) goal->addCost({r.model, r.state, r.data}, cost_);

@@ -66,7 +66,7 @@ void ContactDerivative::addContacts(const Assembly& in, const Contacts& contacts
   for (int i = 0; i < static_cast<int>(contacts.contactsWithRows().size()); ++i) {
     const ContactRows& made = contacts.contactsWithRows()[i];
     const Contact& c = in.contacts.contacts[made.contact];
-    if (const auto shift = ContactShift::of(in.model, in.kinematics, c)) {
+    if (const auto shift = ContactShift::of(in.model, in.kinematics, c, made.alongGravity)) {
       addContact(in, contacts, i, *shift, Gq, Gv);
       continue;
     }

@@ -22,11 +22,11 @@ bool touchesPlanes(ShapeKind kind) {
 
 }  // namespace
 
-void ContactShift::setTangent(const Contact& c, Wish carriedBy) {
+void ContactShift::setTangent(const Contact& c, Wish carriedBy, const Vector3& wished) {
   constexpr double kSmallestSine = 1e-6;  // as contactFrame()
   const Vector3& n = c.n_W;
   contactNormal_ = n;
-  wished_ = c.tangent_W;
+  wished_ = wished;
   wish_ = carriedBy;
   Vector3 u = wished_ - n * n.dot(wished_);
   if (!(u.norm() > kSmallestSine * wished_.norm())) {
@@ -62,7 +62,7 @@ ContactShift::Core ContactShift::coreOf(const Shape& shape, const Transform& X_W
 }
 
 bool ContactShift::setRound(const Geometry& A, const Transform& X_WA, const Geometry& B,
-                            const Transform& X_WB, const Contact& c) {
+                            const Transform& X_WB, const Contact& c, const Vector3& wished) {
   constexpr double kAlongside = 0.02;  // sine²: beside each other they touch at more than a point
   round_ = true;
   n_ = c.n_W;
@@ -73,18 +73,20 @@ bool ContactShift::setRound(const Geometry& A, const Transform& X_WA, const Geom
   cosine_ = coreA_.axis.dot(coreB_.axis);
   const bool capsules = A.shape.kind == B.shape.kind && A.shape.kind == ShapeKind::capsule;
   if (capsules && 1.0 - cosine_ * cosine_ < kAlongside) return false;
-  setTangent(c, Wish::world);
+  setTangent(c, Wish::world, wished);
   return true;
 }
 
 std::optional<ContactShift> ContactShift::of(const Model& model, const Kinematics& k,
-                                             const Contact& c) {
+                                             const Contact& c, bool alongGravity) {
   const Geometry &A = model.geometries[c.geometryA], &B = model.geometries[c.geometryB];
   const ShapeKind kindA = A.shape.kind, kindB = B.shape.kind;
   ContactShift s;
   s.d_ = c.distance;
+  const Vector3& wished = alongGravity ? model.options.gravity : c.tangent_W;
   if (isRound(kindA) && isRound(kindB)) {
-    if (!s.setRound(A, k.X_WB[A.body] * A.X_BG, B, k.X_WB[B.body] * B.X_BG, c)) return std::nullopt;
+    if (!s.setRound(A, k.X_WB[A.body] * A.X_BG, B, k.X_WB[B.body] * B.X_BG, c, wished))
+      return std::nullopt;
     return s;
   }
   const bool planeA = kindA == ShapeKind::plane, planeB = kindB == ShapeKind::plane;
@@ -99,7 +101,8 @@ std::optional<ContactShift> ContactShift::of(const Model& model, const Kinematic
   const bool capsule = shape.kind == ShapeKind::capsule;
   if (capsule || shape.kind == ShapeKind::sphere) s.radius_ = shape.radius;
   if (shape.kind == ShapeKind::cylinder) s.setRim(model, k, c, other);
-  s.setTangent(c, capsule == s.flatIsA_ ? Wish::ofB : Wish::ofA);
+  const Wish ofCapsule = capsule == s.flatIsA_ ? Wish::ofB : Wish::ofA;
+  s.setTangent(c, alongGravity ? Wish::world : ofCapsule, wished);
   return s;
 }
 

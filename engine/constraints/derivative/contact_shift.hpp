@@ -41,7 +41,8 @@ class ContactShift {
   };
 
   /// Nothing where the pair of shapes has no closed form here.
-  static std::optional<ContactShift> of(const Model& model, const Kinematics& k, const Contact& c);
+  static std::optional<ContactShift> of(const Model& model, const Kinematics& k, const Contact& c,
+                                        bool alongGravity);
 
   Change change(const PointMotion& A, const PointMotion& B) const;
 
@@ -68,10 +69,10 @@ class ContactShift {
                      const Vector3& fromContact);
   /// False where the two lie alongside.
   bool setRound(const Geometry& A, const Transform& X_WA, const Geometry& B, const Transform& X_WB,
-                const Contact& c);
+                const Contact& c, const Vector3& wished);
   /// δc of both.
   std::pair<Vector3, Vector3> centresMove(const PointMotion& A, const PointMotion& B) const;
-  void setTangent(const Contact& c, Wish carriedBy);
+  void setTangent(const Contact& c, Wish carriedBy, const Vector3& wished);
   void setRim(const Model& model, const Kinematics& k, const Contact& c, int geometry);
   double spin(const Change& change, const PointMotion& A, const PointMotion& B) const;
 
