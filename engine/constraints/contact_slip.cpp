@@ -94,8 +94,8 @@ double slipNumber(const Assembly& in, const Contact& contact, const Touch& touch
 
 bool holdsWeight(const Assembly& in, const Contact& contact, const Touch& touch) {
   if (touch.frictionDim == 0 || in.controlled(contact.bodyA, contact.bodyB)) return false;
-  constexpr double kShare =
-      0.5;  // between its tangents a pyramid has 0.7 of what it has along them
+  // Between its tangents a pyramid has 0.7 of what it has along them.
+  constexpr double kShare = 0.5;
   const Vector3& g = in.model.options.gravity;
   return contact.n_W.cross(g).norm() >
          kShare * touch.mu() / touch.frictionDim * std::abs(contact.n_W.dot(g));

@@ -58,6 +58,7 @@ struct ContactSpeeds {
     // The last edge of a pyramid of n edges creeps at ((n − 2) τ/(1 − τ) − 1) u under the share τ
     // of what friction holds: by 200 u at 99 % with condim 3, 96 % with condim 6.
     constexpr double kTangential = 200.0;
+    // Measured: with 8 some slopes creep on, with 14 a capsule in a groove jitters.
     constexpr double kWithSlip = 10.0;
     const double byFriction = std::min({kWithSlip * sticks * tangential, creep - weight, weight});
     const double way = std::max(0.0, normal - byFriction);
