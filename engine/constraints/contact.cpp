@@ -262,9 +262,11 @@ Softness ContactBlocks::soften(const Assembly& in, const Touch& touch,
   ContactSpeeds speeds{slipSpeed(touch, velocity), std::abs(velocity[0])};
   speeds.weight = creepUnderWeight(in.model.options, touch);
   speeds.creep = speeds.weight - soft.stiffness * touch.distance / soft.damping;
-  if (!touch.supportsOthers && holdsWeight(in, contact, touch))
+  if (holdsWeight(in, contact, touch)) {
     speeds.sticks = std::max(0.0, 1.0 - slipNumber(in, contact, touch, velocity));
-  contactsWithRows_.back().sticks = speeds.sticks;
+    if (in.model.options.cone == Cone::elliptic)
+      speeds.slidesFrom = coneCreep(touch.mu() / std::sqrt(in.model.options.impedanceRatio));
+  }
   Hardening most = touch.supportsOthers ? kCarries : kAlone;
   if (controlled) most.least = kLeastUnderGoals;
   contactsWithRows_.back().regularisationScale = speeds.regularisationScale(most);

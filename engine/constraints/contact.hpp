@@ -83,7 +83,6 @@ struct ContactRows {
   double regularisationScale = 1.0;  ///< ρ (5.7), 1 where it does not stick
   double share = 1.0;                ///< of J̇ v along the tangents
   bool alongGravity = false;         ///< t₁ is
-  double sticks = 0.0;               ///< ContactSpeeds::sticks
 };
 
 /// Contacts of one kind, and how they move.

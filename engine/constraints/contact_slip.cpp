@@ -94,6 +94,7 @@ double slipNumber(const Assembly& in, const Contact& contact, const Touch& touch
 
 bool holdsWeight(const Assembly& in, const Contact& contact, const Touch& touch) {
   if (touch.frictionDim == 0 || in.controlled(contact.bodyA, contact.bodyB)) return false;
+  if (in.load && in.load->isTied(in.model, contact.bodyA, contact.bodyB)) return false;
   // Between its tangents a pyramid has 0.7 of what it has along them.
   constexpr double kShare = 0.5;
   const Vector3& g = in.model.options.gravity;

@@ -20,8 +20,9 @@ double slipNumber(const Assembly& in, const Contact& contact, const Touch& touch
                   const std::array<double, 6>& velocity);
 
 /// Whether friction holds a weight at a contact: gravity asks half of what would take the load off
-/// an edge of its pyramid, 1/(condim − 1) of the cone. Contacts of what goals control are left out:
-/// the forces there are the goals' to choose.
+/// an edge of its pyramid, 1/(condim − 1) of the cone. Contacts of what goals control are left out,
+/// for the forces there are the goals' to choose, and of what connections or welds hold, which bear
+/// its weight.
 bool holdsWeight(const Assembly& in, const Contact& contact, const Touch& touch);
 
 /// What t₁ of a contact is along, besides n.

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "softgauss/engine/constraints/contact_slip.hpp"
-
 namespace softgauss {
 
 void EllipticContact::assemble(const Assembly& in) {
@@ -23,13 +21,8 @@ void EllipticContact::assemble(const Assembly& in) {
       Softness soft = soften(in, *touch, moves.velocity);
       const double ratio = touch->mu() / std::sqrt(options.impedanceRatio);
       double push = soft.referenceAcceleration(moves.velocity[0], touch->distance);
-      if (options.correctsSlip()) {
-        Slip slip = slipOf(in, *touch, soft, moves);
-        const ContactRows& made = contactsWithRows_.back();
-        // What sticks answers its slip by itself.
-        slip.share *= 1.0 - made.sticks * (1.0 - made.regularisationScale);
-        soft = soft.hardened(levelCone(slip, ratio, push));
-      }
+      if (options.correctsSlip())
+        soft = soft.hardened(levelCone(slipOf(in, *touch, soft, moves), ratio, push));
       perInertia_.push_back(soft.perInertia);
       cones_.push_back({touch->frictionDim + 1, 1.0 / soft.R, ratio, touch->friction});
       reference.push_back(push - moves.bias[0]);

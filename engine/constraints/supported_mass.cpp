@@ -95,6 +95,14 @@ double SupportedMass::equalityShare(const Model& model, int bodyA, int bodyB) co
   return most;
 }
 
+bool SupportedMass::isTied(const Model& model, int bodyA, int bodyB) const {
+  const auto tied = [&](int body) {
+    const int tree = model.bodies[body].tree;
+    return tree >= 0 && supports_[tree].equalities > 0;
+  };
+  return tied(bodyA) || tied(bodyB);
+}
+
 /// m of all trees, the islands' largest, and who holds whom.
 void SupportedMass::weigh(const Model& model, const Kinematics& kinematics,
                           const ContactSet& contacts, const InverseWeights& weights) {

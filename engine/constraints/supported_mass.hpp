@@ -68,6 +68,8 @@ class SupportedMass {
   double equalityShare(const Model& model, int bodyA, int bodyB) const;
   /// What a contact bears at least of robots (5.3) [kg].
   double contactShare(const Model& model, int bodyA, int bodyB) const;
+  /// Whether an equality constraint holds one of the bodies' trees to another, or to the world.
+  bool isTied(const Model& model, int bodyA, int bodyB) const;
   /// I between bodies that a weld ties, about p_W [kg m²].
   double inertia(const Model& model, int bodyA, int bodyB, const Vector3& p_W) const;
 

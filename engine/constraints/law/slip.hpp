@@ -44,8 +44,7 @@
 ///
 /// makes the normal force D max(0, p − y_n). All this counts min(1, 30 V) times, V the slip over
 /// what friction stops within the row's horizon (5.11), so that forces are between the two: what
-/// sticks answers s by itself. Cones that hold a weight count it 1 − max(0, 1 − V)(1 − ρ) times
-/// less.
+/// sticks answers s by itself.
 
 #include <algorithm>
 #include <array>
