@@ -138,6 +138,15 @@ Material pairMaterial(const Model& model, int geometryA, int geometryB) {
 
 namespace {
 
+/// Whether joints may press at a contact, and not weights alone.
+bool jointsPress(const Model& model, const Contact& c) {
+  const auto isJointed = [&](int body) {
+    const int tree = model.bodies[body].tree;
+    return tree >= 0 && !model.isFree(model.trees[tree].rootBody);
+  };
+  return isJointed(c.bodyA) || isJointed(c.bodyB);
+}
+
 /// Whether bodies that are apart touch by the end of the step.
 bool beginsNow(const Assembly& in, const Contact& c, double distance) {
   if (!in.model.options.hasRowLaw()) return false;
@@ -262,7 +271,10 @@ Softness ContactBlocks::soften(const Assembly& in, const Touch& touch,
   ContactSpeeds speeds{slipSpeed(touch, velocity), std::abs(velocity[0])};
   speeds.weight = creepUnderWeight(in.model.options, touch);
   speeds.creep = speeds.weight - soft.stiffness * touch.distance / soft.damping;
-  if (holdsWeight(in, contact, touch)) {
+  // Of free bodies that rest on one another friction stays softer: with a, heaps would take a third
+  // more time.
+  const bool maySqueeze = !touch.supportsOthers || jointsPress(in.model, contact);
+  if (maySqueeze && holdsWeight(in, contact, touch)) {
     speeds.sticks = std::max(0.0, 1.0 - slipNumber(in, contact, touch, velocity));
     if (in.model.options.cone == Cone::elliptic)
       speeds.slidesFrom = coneCreep(touch.mu() / std::sqrt(in.model.options.impedanceRatio));
