@@ -113,6 +113,11 @@ class Page:
         return self.table(["", "chain of 10: energy [%]", "top: tilt [°], true 20.00, 55.46", "free body at 50 rad/s: energy [%]",
                            "momentum, relative", "thrown body: off its parabola [mm]"], rows)
 
+    def published(self):
+        rows = [[e.label, "{:.3g}, {:.3g}".format(*plan.PUBLISHED[e.label]) if e.label in plan.PUBLISHED else "",
+                 self.cell("published_body", e, "parabola_mm", "momentum", h=plan.PUBLISHED_STEP)] for e in self.present("drift")]
+        return self.table(["off the parabola [mm], angular momentum, relative", "published, 2015", "here"], rows)
+
     def thrown(self):
         rows = []
         for e in self.present("friction"):
@@ -247,7 +252,7 @@ class Page:
     def time_table(self):
         """Medians and ranges of CPU time a step over that of the calibration beside it, by scene; None: as they were."""
         found = times.figures(self.times)
-        rows = [(scene, e, found[scene, e.key]) for scene in plan.TIMED for e in plan.ENTRIES if (scene, e.key) in found]
+        rows = [(scene, e, found[scene, e.key, plan.STEP]) for scene in plan.TIMED for e in plan.ENTRIES if (scene, e.key, plan.STEP) in found]
         if not rows:
             return None if self.keeps else ["Not measured in this run of the study: `./dev rivals` times after the errors, on a machine that does nothing else."]
         load = max(f.load for _, _, f in rows)
@@ -257,7 +262,7 @@ class Page:
         return lines + ["", f"Largest median load of the machine: {load:.2g}" + ("; above 1.5 these figures say little." if load > 1.5 else ".")]
 
     SECTIONS = {"line": line, "versions": versions, "gate": gate, "chain_20": lambda s: s.smooth("chain_20"),
-                "humanoid_in_the_air": lambda s: s.smooth("humanoid_in_the_air"), "drift": drift, "thrown": thrown, "friction": friction, "bounce": bounce,
+                "humanoid_in_the_air": lambda s: s.smooth("humanoid_in_the_air"), "drift": drift, "published": published, "thrown": thrown, "friction": friction, "bounce": bounce,
                 "hold": hold, "work": work, "machines": machines, "softness": softness, "matrix": matrix, "times": time_table}
 
     def fill(self, text):

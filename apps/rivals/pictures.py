@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pictures of the study: error against the step, what held, and how far thrown boxes go."""
+"""Pictures of the study: error against the step and against time, what held, how far thrown boxes go, and time against size."""
 import math
 
 import matplotlib
@@ -8,10 +8,13 @@ matplotlib.use("svg")
 import matplotlib.pyplot as plt
 
 import plan
+import times
 import verdicts
 
 matplotlib.rcParams.update({"font.size": 9, "svg.hashsalt": "softgauss", "svg.fonttype": "none", "axes.spines.top": False, "axes.spines.right": False})
-INK = {"ours": "#0b6e75", "ours, elliptic": "#e07b39", "ours, RK4": "#5fb3b3", "ours, Dormand-Prince 1e-5": "#e07b39"}
+INK = {"ours": "#0b6e75", "ours, elliptic": "#e07b39", "ours, RK4": "#5fb3b3", "ours, Dormand-Prince 1e-5": "#e07b39",
+       "MuJoCo": "#d9534f", "Bullet, RK4": "#7a5195", "ODE": "#7f8c8d"}
+SIZE_INK = {"ours": "#0b6e75", "MuJoCo": "#d9534f", "DART": "#7a5195", "Bullet, library": "#e07b39", "ODE": "#7f8c8d", "ODE, quick": "#b3b9ba"}
 COLOURS = {"held": "#7fbf8e", "missed": "#d9534f", "diverged": "#8c2d2a", "late": "#b0763f", "cannot": "#d8d8d8",
            "refused": "#ffffff", None: "#ffffff"}
 # At most six curves a picture, each labelled at its end.
@@ -32,25 +35,34 @@ def apart(heights, least):
 
 
 def smooth(page, scene, path):
-    figure, axes = plt.subplots(figsize=(6.0, 3.6))
-    ends = []
+    """Error over the step, and over the CPU time that it takes."""
+    found = times.figures(page.times)
+    figure, panels = plt.subplots(1, 2, figsize=(9.6, 3.6), sharey=True, gridspec_kw={"wspace": 0.7})
+    ends = ([], [])
     for entry in page.present("smooth"):
         if entry.label not in CURVES:
             continue
-        points = [(h, m["error_m"]) for h in plan.STEPS if not isinstance(m := page.measures(scene, entry, h), str)]
-        if not points:
-            continue
-        line, = axes.loglog([1e3 * h for h, _ in points], [e for _, e in points], "o-", ms=3, lw=1.2, color=INK.get(entry.label))
-        ends.append((math.log10(points[0][1]), entry.label, line.get_color()))
-    ends.sort()
-    decades = math.log10(axes.get_ylim()[1] / axes.get_ylim()[0])
-    for y, (_, label, colour) in zip(apart([e[0] for e in ends], 0.055 * decades), ends):
-        axes.annotate(label, (11, 10 ** y), color=colour, va="center", annotation_clip=False)
-    axes.set_xlabel("step [ms]")
-    axes.set_ylabel("error [m]")
-    axes.set_title(scene.replace("_", " ") + ": root mean square, from Simbody at 1e-12", loc="left", fontsize=9)
-    axes.set_xticks([1e3 * h for h in plan.STEPS], [f"{1e3 * h:g}" for h in plan.STEPS])
-    axes.minorticks_off()
+        errors = {h: m["error_m"] for h in plan.STEPS if not isinstance(m := page.measures(scene, entry, h), str)}
+        cost = {h: found[scene, entry.key, h].median / h for h in errors if (scene, entry.key, h) in found}
+        colour = None
+        for axes, at, points in zip(panels, ends, ([(1e3 * h, e) for h, e in errors.items()], [(cost[h], errors[h]) for h in cost])):
+            if not points:
+                continue
+            line, = axes.loglog(*zip(*points), "o-", ms=3, lw=1.2, color=colour or INK.get(entry.label))
+            colour = line.get_color()
+            at.append((math.log10(points[0 if axes is panels[0] else -1][1]), entry.label, colour))
+    for axes, at in zip(panels, ends):
+        at.sort()
+        decades = math.log10(axes.get_ylim()[1] / axes.get_ylim()[0])
+        right = 1.15 * max(x for line in axes.lines for x in line.get_xdata()) if axes.lines else 1
+        for y, (_, label, colour) in zip(apart([e[0] for e in at], 0.055 * decades), at):
+            axes.annotate(label, (right, 10 ** y), color=colour, va="center", annotation_clip=False)
+    panels[0].set_xlabel("step [ms]")
+    panels[0].set_ylabel("error [m]")
+    panels[0].set_title(scene.replace("_", " ") + ": root mean square, from Simbody at 1e-12", loc="left", fontsize=9)
+    panels[0].set_xticks([1e3 * h for h in plan.STEPS], [f"{1e3 * h:g}" for h in plan.STEPS])
+    panels[0].minorticks_off()
+    panels[1].set_xlabel("CPU time of a second, times the calibration")
     save(figure, path)
 
 
@@ -98,8 +110,37 @@ def thrown(page, path):
     save(figure, path)
 
 
+def size(page, path):
+    """Time a step over the number of bodies, of chains, towers and piles."""
+    found = times.figures(page.times)
+    if not all(any((f"{name}_{n}", page.first("ours").key, plan.STEP) in found for n in plan.SIZES[name]) for name in plan.SIZES):
+        return
+    figure, panels = plt.subplots(1, len(plan.SIZES), figsize=(9.6, 3.2), gridspec_kw={"wspace": 0.75})
+    for axes, (name, sizes) in zip(panels, plan.SIZES.items()):
+        ends = []
+        for entry in plan.ENTRIES:
+            # A chain is of Bullet's trees, which both of its columns step alike.
+            label = "Bullet, library" if (name, entry.label) == ("chain", "Bullet") else entry.label
+            keys = {n: (f"{name}_{n}", entry.key, plan.STEP) for n in sizes}
+            points = [(n, found[key].median) for n, key in keys.items() if key in found]
+            if label not in SIZE_INK or not points:
+                continue
+            line, = axes.loglog(*zip(*points), "o-", ms=3, lw=1.2, color=SIZE_INK[label])
+            ends.append((math.log10(points[-1][1]), label, line.get_color()))
+        ends.sort()
+        decades = math.log10(axes.get_ylim()[1] / axes.get_ylim()[0])
+        for y, (_, label, colour) in zip(apart([e[0] for e in ends], 0.07 * decades), ends):
+            axes.annotate(label, (1.1 * sizes[-1], 10 ** y), color=colour, va="center", annotation_clip=False)
+        axes.set_xticks(sizes, [str(n) for n in sizes])
+        axes.minorticks_off()
+        axes.set_xlabel({"chain": "links of a chain", "tower": "cubes of a tower", "pile": "bodies that fall"}[name])
+    panels[0].set_ylabel("a step, times the calibration")
+    save(figure, path)
+
+
 def draw(page, folder):
     for scene in plan.SMOOTH:
         smooth(page, scene, folder / f"{scene}.svg")
     matrix(page, folder / "matrix.svg")
     thrown(page, folder / "thrown.svg")
+    size(page, folder / "size.svg")

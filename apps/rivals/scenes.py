@@ -41,9 +41,15 @@ def free_body():
 
 
 def thrown_body():
-    """Peters and Hsu's free box: a parabola, and energy and angular momentum that stay."""
+    """A free box after Peters and Hsu: a parabola, and energy and angular momentum that stay."""
     return scene("free", [body("body", 8, box_inertia(8, (0.05, 0.2, 0.45)), (0, 0, 1),
                                velocity=(-0.9, 0.4, 0.1), spin=(0.5, -3, 0.7))], duration=10, sample=0.1)
+
+
+def published_body():
+    """The box of scpeters/benchmark, test_results/BENCHMARK_boxes_dt.csv, that is `complex`."""
+    return scene("free", [body("body", 10, box_inertia(10, (0.05, 0.2, 0.45)), (0, 0, 0), velocity=(-2, 2, 8), spin=(0.1, 5, 0.1))],
+                 duration=10, sample=0.01, gravity=(0, 0, -9.8))
 
 
 def top():
@@ -156,11 +162,11 @@ def random_turn(r):
                      [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)]])
 
 
-def pile():
-    """50 boxes, capsules and balls above one another, apart."""
+def pile(count):
+    """Boxes, capsules and balls above one another, apart."""
     r = random.Random(7)
     bodies = []
-    for i in range(50):
+    for i in range(count):
         layer, cell = divmod(i, 9)
         at = ((cell % 3 - 1) * 0.34, (cell // 3 - 1) * 0.34, 0.25 + layer * 0.36)
         at = [x + r.uniform(-0.01, 0.01) for x in at]
@@ -298,12 +304,13 @@ def humanoid_falls():
 def all_scenes():
     scenes = {
         "chain_20": chain(20, 1.2, 0.05, 2),
-        "chain_10": chain(10, 1.2, 0.1, 2),
+        **{f"chain_{n}": chain(n, 1.2, 0.05, 2) for n in (5, 10, 40)},
         "chain_10_long": chain(10, 1.2, 0.1, 10),
         "humanoid_in_the_air": humanoid_in_the_air(),
         "top": top(),
         "free_body": free_body(),
         "thrown_body": thrown_body(),
+        "published_body": published_body(),
         "slides_37": incline(math.radians(37), 0.5, 1, measure="slides"),
         "creep_15": incline(math.radians(15), 1.0, 10, half=(0.1, 0.1, 0.1)),
         "creep_50": of_cone(0.5, 0.5),
@@ -312,13 +319,13 @@ def all_scenes():
         "rolling": rolling(),
         **{f"bounce_{kind}_{100 * e:g}": machines.bounce(kind, e) for kind in ("ball", "box") for e in machines.RESTITUTIONS},
         "drop": drop(),
-        "mass_1000": tower(2, 5, [1, 1000]), "tower_10": tower(10), "tower_20": tower(20),
+        "mass_1000": tower(2, 5, [1, 1000]), **{f"tower_{n}": tower(n) for n in (5, 10, 20, 40)},
         "grip": grip(),
         "grip_shaken": shaken_grip(), "cart": cart(), "peg": peg(),
         "nut_rests": machines.nut(0.4, 10), "nut_runs": machines.nut(0.1, 0.6), "feet": machines.feet(),
         "rope": rope(),
         "humanoid_falls": humanoid_falls(),
-        "pile_50": pile(),
+        **{f"pile_{n}": pile(n) for n in (10, 25, 50, 100)},
         "capsules_27": capsules(),
     }
     for speed in SPEEDS:

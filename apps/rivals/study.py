@@ -54,12 +54,12 @@ class Study:
         name = f"{scene}_{entry.key}_{h:g}".replace(" ", "_").replace("=", "-")
         return self.folder / "states" / name
 
-    def run(self, scene, entry, h, least=0.0):
-        """One process. What it says, or why it ended."""
+    def run(self, scene, entry, h, least=0.0, most=None):
+        """One process, of at least and at most so much CPU time [s]. What it says, or why it ended."""
         command = [*self.program(entry.engine), str(self.folder / f"scenes/{scene}.json"),
-                   str(self.states(scene, entry, h)), repr(h), "--least", str(least), "--most", str(self.most),
+                   str(self.states(scene, entry, h)), repr(h), "--least", str(least), "--most", str(most or self.most),
                    *entry.settings]
-        # `most` is CPU time, looked at by the program itself. This is for what hangs, on a machine however busy;
+        # CPU time is looked at by the program itself. This is for what hangs, on a machine however busy;
         # a limit of the process (RLIMIT_CPU) would make its CPU clock count by ticks.
         if entry.role == "reference":
             command[command.index("--most") + 1] = "600"
@@ -166,17 +166,18 @@ def run_times(study, only, rounds):
     session = 1 + max((r.get("session", 0) for r in times.read(study.folder)), default=0)
     with (study.folder / "times.jsonl").open("a") as file:
         for number in range(rounds):
-            for scene in plan.TIMED:
+            for scene in plan.TIMED + plan.SIZED:
                 for entry in plan.ENTRIES:
                     if entry.engine.endswith("_npm") or not study.program(entry.engine) or not plan.takes_part(entry, scene) \
                             or not re.search(only, f"{scene} {entry.key}"):
                         continue
-                    ran = study.run(scene, entry, plan.STEP, least=0.3)
-                    if "us_a_step" in ran:
-                        file.write(json.dumps({"scene": scene, "entry": entry.key, "session": session, "round": number, "end": ran["end"],
-                                               "us_a_step": ran["us_a_step"], "calibration_us": ran["calibration_us"],
-                                               "load": os.getloadavg()[0]}) + "\n")
-                        file.flush()
+                    for h in plan.timed_steps(entry, scene):
+                        ran = study.run(scene, entry, h, least=0.3, most=20.0)
+                        if "us_a_step" in ran:
+                            file.write(json.dumps({"scene": scene, "entry": entry.key, "h": h, "session": session, "round": number,
+                                                   "end": ran["end"], "us_a_step": ran["us_a_step"],
+                                                   "calibration_us": ran["calibration_us"], "load": os.getloadavg()[0]}) + "\n")
+                            file.flush()
 
 
 def main():
@@ -189,7 +190,7 @@ def main():
                         help="of timed runs, on any machine; 5 on one that does little else, none with --quick")
     parser.add_argument("--workers", type=int, default=os.cpu_count())
     arguments = parser.parse_args()
-    study = Study(arguments.programs, arguments.folder, 4.0 if arguments.quick else 20.0)
+    study = Study(arguments.programs, arguments.folder, 4.0 if arguments.quick else 60.0)
     run_errors(study, arguments.quick, arguments.only, arguments.workers)
     second = {engine: study.second(engine) for engine in plan.SECOND}
     (arguments.folder / "second.json").write_text(json.dumps({e: s for e, s in second.items() if s}) + "\n")

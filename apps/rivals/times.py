@@ -18,7 +18,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Figure:
-    """Of one scene and column: ratios of a step's time to the calibration's, ascending."""
+    """Of one scene, column and step: ratios of a step's time to the calibration's, ascending."""
     ratios: tuple
     calibration_us: float  # median [µs]
     load: float            # median load of the machine
@@ -37,12 +37,12 @@ def read(folder):
     return [json.loads(line) for line in path.read_text().splitlines()] if path.exists() else []
 
 
-COLUMNS = {"scene": str, "entry": str, "session": int, "round": int, "us_a_step": float, "calibration_us": float, "load": float, "end": str}
+COLUMNS = {"scene": str, "entry": str, "h": float, "session": int, "round": int, "us_a_step": float, "calibration_us": float, "load": float, "end": str}
 
 
 def write(path, runs):
     """All rounds as the page's data, docs/rivals/times.csv; five digits of each time."""
-    rows = sorted(runs, key=lambda r: (r["scene"], r["entry"], r.get("session", 0), r["round"]))
+    rows = sorted(runs, key=lambda r: (r["scene"], r["entry"], r["h"], r.get("session", 0), r["round"]))
     with pathlib.Path(path).open("w", newline="") as file:
         table = csv.writer(file, lineterminator="\n")
         table.writerow(COLUMNS)
@@ -67,10 +67,10 @@ def merged(new, old):
 
 
 def figures(runs):
-    """By scene and entry."""
+    """By scene, entry and step."""
     by = {}
     for r in runs:
-        by.setdefault((r["scene"], r["entry"]), []).append(r)
+        by.setdefault((r["scene"], r["entry"], r["h"]), []).append(r)
     return {key: Figure(tuple(sorted(r["us_a_step"] / r["calibration_us"] for r in rs)),
                         statistics.median(r["calibration_us"] for r in rs),
                         statistics.median(r["load"] for r in rs), rs[-1]["end"]) for key, rs in by.items()}
@@ -95,8 +95,8 @@ def compare(first, second):
     a, b = figures(first), figures(second)
     common = [key for key in a if key in b]
     apart = [key for key in common if not a[key].meets(b[key])]
-    lines = [f"{scene}, {entry}: {a[scene, entry].median:.3g} and {b[scene, entry].median:.3g} times the calibration, "
-             f"{100 * (b[scene, entry].median / a[scene, entry].median - 1):+.1f} %" for scene, entry in apart]
+    lines = [f"{scene}, {entry}, {1e3 * h:g} ms: {a[scene, entry, h].median:.3g} and {b[scene, entry, h].median:.3g} times the calibration, "
+             f"{100 * (b[scene, entry, h].median / a[scene, entry, h].median - 1):+.1f} %" for scene, entry, h in apart]
     chance = sum(by_chance(a[key], b[key]) for key in common)
     # Three standard deviations of a count that is rare.
     allowed = chance + 3 * math.sqrt(chance)
