@@ -32,12 +32,18 @@ class Figure:
         return self.ratios[0] <= other.ratios[-1] and other.ratios[0] <= self.ratios[-1]
 
 
-def read(folder):
-    path = pathlib.Path(folder) / "times.jsonl"
-    return [json.loads(line) for line in path.read_text().splitlines()] if path.exists() else []
-
-
 COLUMNS = {"scene": str, "entry": str, "h": float, "session": int, "round": int, "us_a_step": float, "calibration_us": float, "load": float, "end": str}
+
+
+def read(folder):
+    """Rounds of a study, with the digits that are kept: a page of them and one of what is kept are the same."""
+    path = pathlib.Path(folder) / "times.jsonl"
+    rows = [json.loads(line) for line in path.read_text().splitlines()] if path.exists() else []
+    return [{name: digits(v) if COLUMNS.get(name) is float else v for name, v in r.items()} for r in rows]
+
+
+def digits(v):
+    return float(f"{v:.5g}")
 
 
 def write(path, runs):
