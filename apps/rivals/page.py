@@ -32,6 +32,8 @@ class Page:
         self.keeps = earlier is not None
         self.runs = load(folder)
         if self.keeps:
+            # What was late for a quicker study says nothing of a whole one.
+            self.runs = {k: r for k, r in self.runs.items() if r["end"] != "late" or r.get("most", plan.MOST) >= plan.MOST}
             self.runs.update(kept.read(earlier, self.runs))
         self.refusals = gate.refusals(list(self.runs.values()))
         path = folder / "second.json"
@@ -261,9 +263,22 @@ class Page:
                              str(len(f.ratios)), f.end] for s, e, f in rows])
         return lines + ["", f"Largest median load of the machine: {load:.2g}" + ("; above 1.5 these figures say little." if load > 1.5 else ".")]
 
+    def slower(self):
+        """Where a column of ours by default takes more than 1.1 times another's time for a step."""
+        found = times.figures(self.times)
+        lines = []
+        for scene in plan.TIMED + plan.SIZED:
+            ours = found.get((scene, "ours", plan.STEP))
+            others = [(e.label, ours.median / found[scene, e.key, plan.STEP].median) for e in plan.ENTRIES
+                      if e.engine != "ours" and ours and (scene, e.key, plan.STEP) in found]
+            over = "; ".join(f"{ratio:.2g} of {label}" for label, ratio in others if ratio > 1.1)
+            if over:
+                lines.append(f"- {RED}`{scene}`: {over}")
+        return lines or (None if self.keeps else ["Not measured in this run of the study."])
+
     SECTIONS = {"line": line, "versions": versions, "gate": gate, "chain_20": lambda s: s.smooth("chain_20"),
                 "humanoid_in_the_air": lambda s: s.smooth("humanoid_in_the_air"), "drift": drift, "published": published, "thrown": thrown, "friction": friction, "bounce": bounce,
-                "hold": hold, "work": work, "machines": machines, "softness": softness, "matrix": matrix, "times": time_table}
+                "hold": hold, "work": work, "machines": machines, "softness": softness, "matrix": matrix, "slower": slower, "times": time_table}
 
     def fill(self, text):
         for name, make in self.SECTIONS.items():

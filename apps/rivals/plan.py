@@ -81,6 +81,7 @@ SAME_DIGITS = (("ours, Euler", "MuJoCo", "DART", "Bullet"), ("ours, RK4", "MuJoC
 # Engines that share no digits with another one: their row has a second way, second/, in this scene.
 SECOND, SECOND_SCENE = ("ode", "rapier_npm", "jolt_npm"), "thrown_2_37"
 
+MOST, MOST_QUICK = 60.0, 4.0  # of CPU time a run [s]
 STEP = 0.002
 # What others have published of published_body at 1 ms: off the parabola [mm], angular momentum, relative; of Gazebo 6 in 2015.
 PUBLISHED_STEP = 0.001

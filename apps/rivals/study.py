@@ -190,7 +190,7 @@ def main():
                         help="of timed runs, on any machine; 5 on one that does little else, none with --quick")
     parser.add_argument("--workers", type=int, default=os.cpu_count())
     arguments = parser.parse_args()
-    study = Study(arguments.programs, arguments.folder, 4.0 if arguments.quick else 60.0)
+    study = Study(arguments.programs, arguments.folder, plan.MOST_QUICK if arguments.quick else plan.MOST)
     run_errors(study, arguments.quick, arguments.only, arguments.workers)
     second = {engine: study.second(engine) for engine in plan.SECOND}
     (arguments.folder / "second.json").write_text(json.dumps({e: s for e, s in second.items() if s}) + "\n")
