@@ -34,6 +34,18 @@ def apart(heights, least):
     return out
 
 
+def decades(axes):
+    low, high = axes.get_ylim()
+    return math.log10(high / low)
+
+
+def label(axes, ends, x, least):
+    """Names curves at their ends, (height, name, colour); heights are decades where the axis is logarithmic."""
+    ends.sort()
+    for y, (_, name, colour) in zip(apart([e[0] for e in ends], least), ends):
+        axes.annotate(name, (x, 10 ** y if axes.get_yscale() == "log" else y), color=colour, va="center", annotation_clip=False)
+
+
 def smooth(page, scene, path):
     """Error over the step, and over the CPU time that it takes."""
     found = times.figures(page.times)
@@ -52,11 +64,8 @@ def smooth(page, scene, path):
             colour = line.get_color()
             at.append((math.log10(points[0 if axes is panels[0] else -1][1]), entry.label, colour))
     for axes, at in zip(panels, ends):
-        at.sort()
-        decades = math.log10(axes.get_ylim()[1] / axes.get_ylim()[0])
         right = 1.15 * max(x for line in axes.lines for x in line.get_xdata()) if axes.lines else 1
-        for y, (_, label, colour) in zip(apart([e[0] for e in at], 0.055 * decades), at):
-            axes.annotate(label, (right, 10 ** y), color=colour, va="center", annotation_clip=False)
+        label(axes, at, right, 0.055 * decades(axes))
     panels[0].set_xlabel("step [ms]")
     panels[0].set_ylabel("error [m]")
     panels[0].set_title(scene.replace("_", " ") + ": root mean square, from Simbody at 1e-12", loc="left", fontsize=9)
@@ -99,9 +108,7 @@ def thrown(page, path):
         if points:
             line, = axes.plot(*zip(*points), "o:", ms=4, lw=0.7, color=INK.get(entry.label))
             ends.append((points[-1][1], entry.label, line.get_color()))
-    ends.sort()
-    for y, (_, label, colour) in zip(apart([e[0] for e in ends], 5.5), ends):
-        axes.annotate(label, (308, y), color=colour, va="center", annotation_clip=False)
+    label(axes, ends, 308, 5.5)
     axes.axhline(0, color="#aaaaaa", lw=0.8, zorder=0)
     axes.set_xlabel("direction of the throw [°]")
     axes.set_ylabel("too far [%]")
@@ -113,24 +120,21 @@ def thrown(page, path):
 def size(page, path):
     """Time a step over the number of bodies, of chains, towers and piles."""
     found = times.figures(page.times)
-    if not all(any((f"{name}_{n}", page.first("ours").key, plan.STEP) in found for n in plan.SIZES[name]) for name in plan.SIZES):
+    if not all(any((f"{name}_{n}", page.first("ours").key, plan.STEP) in found for n in plan.scenes.SIZES[name]) for name in plan.scenes.SIZES):
         return
-    figure, panels = plt.subplots(1, len(plan.SIZES), figsize=(9.6, 3.2), gridspec_kw={"wspace": 0.75})
-    for axes, (name, sizes) in zip(panels, plan.SIZES.items()):
+    figure, panels = plt.subplots(1, len(plan.scenes.SIZES), figsize=(9.6, 3.2), gridspec_kw={"wspace": 0.75})
+    for axes, (name, sizes) in zip(panels, plan.scenes.SIZES.items()):
         ends = []
         for entry in plan.ENTRIES:
             # A chain is of Bullet's trees, which both of its columns step alike.
-            label = "Bullet, library" if (name, entry.label) == ("chain", "Bullet") else entry.label
+            column = "Bullet, library" if (name, entry.label) == ("chain", "Bullet") else entry.label
             keys = {n: (f"{name}_{n}", entry.key, plan.STEP) for n in sizes}
             points = [(n, found[key].median) for n, key in keys.items() if key in found]
-            if label not in SIZE_INK or not points:
+            if column not in SIZE_INK or not points:
                 continue
-            line, = axes.loglog(*zip(*points), "o-", ms=3, lw=1.2, color=SIZE_INK[label])
-            ends.append((math.log10(points[-1][1]), label, line.get_color()))
-        ends.sort()
-        decades = math.log10(axes.get_ylim()[1] / axes.get_ylim()[0])
-        for y, (_, label, colour) in zip(apart([e[0] for e in ends], 0.07 * decades), ends):
-            axes.annotate(label, (1.1 * sizes[-1], 10 ** y), color=colour, va="center", annotation_clip=False)
+            line, = axes.loglog(*zip(*points), "o-", ms=3, lw=1.2, color=SIZE_INK[column])
+            ends.append((math.log10(points[-1][1]), column, line.get_color()))
+        label(axes, ends, 1.1 * sizes[-1], 0.07 * decades(axes))
         axes.set_xticks(sizes, [str(n) for n in sizes])
         axes.minorticks_off()
         axes.set_xlabel({"chain": "links of a chain", "tower": "cubes of a tower", "pile": "bodies that fall"}[name])

@@ -33,9 +33,8 @@ KINDS = {"smooth": SMOOTH, "drift": DRIFT, "friction": FRICTION, "bounce": BOUNC
 TIMED = ("tower_10", "tower_20", "pile_50", "capsules_27", "humanoid_falls", "mass_1000", "thrown_2_37", "chain_20",
          "humanoid_in_the_air", "nut_rests", "feet")
 
-# What differs in nothing but its size, which is timed alone: scenes by the number of bodies.
-SIZES = {"chain": (5, 10, 20, 40), "tower": (5, 10, 20, 40), "pile": (10, 25, 50, 100)}
-SIZED = tuple(scene for name, sizes in SIZES.items() for n in sizes if (scene := f"{name}_{n}") not in TIMED)
+# Scenes that are timed alone, of several sizes.
+SIZED = tuple(scene for name, sizes in scenes.SIZES.items() for n in sizes if (scene := f"{name}_{n}") not in TIMED)
 
 CONTACT = ("friction", "bounce", "hold", "softness")
 MOTION = ("smooth", "drift")

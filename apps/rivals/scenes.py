@@ -18,6 +18,8 @@ from bodies import GRAVITY, body, box, box_inertia, capsule, joint, scene, shape
 
 DIRECTIONS = (0, 22.5, 37, 45, 75, 120, 200, 300)  # of thrown boxes [degrees]
 SPEEDS = (0.5, 1, 2, 4)  # [m/s]
+# What differs in nothing but its size: numbers of bodies.
+SIZES = {"chain": (5, 10, 20, 40), "tower": (5, 10, 20, 40), "pile": (10, 25, 50, 100)}
 
 
 # ---- Smooth motion -------------------------------------------------------------------------------
@@ -303,8 +305,8 @@ def humanoid_falls():
 
 def all_scenes():
     scenes = {
-        "chain_20": chain(20, 1.2, 0.05, 2),
-        **{f"chain_{n}": chain(n, 1.2, 0.05, 2) for n in (5, 10, 40)},
+        **{f"{name}_{n}": make(n) for name, make in (("chain", lambda n: chain(n, 1.2, 0.05, 2)), ("tower", tower), ("pile", pile))
+           for n in SIZES[name]},
         "chain_10_long": chain(10, 1.2, 0.1, 10),
         "humanoid_in_the_air": humanoid_in_the_air(),
         "top": top(),
@@ -319,13 +321,12 @@ def all_scenes():
         "rolling": rolling(),
         **{f"bounce_{kind}_{100 * e:g}": machines.bounce(kind, e) for kind in ("ball", "box") for e in machines.RESTITUTIONS},
         "drop": drop(),
-        "mass_1000": tower(2, 5, [1, 1000]), **{f"tower_{n}": tower(n) for n in (5, 10, 20, 40)},
+        "mass_1000": tower(2, 5, [1, 1000]),
         "grip": grip(),
         "grip_shaken": shaken_grip(), "cart": cart(), "peg": peg(),
         "nut_rests": machines.nut(0.4, 10), "nut_runs": machines.nut(0.1, 0.6), "feet": machines.feet(),
         "rope": rope(),
         "humanoid_falls": humanoid_falls(),
-        **{f"pile_{n}": pile(n) for n in (10, 25, 50, 100)},
         "capsules_27": capsules(),
     }
     for speed in SPEEDS:
