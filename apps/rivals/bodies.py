@@ -30,11 +30,13 @@ def shape(kind, size, position=(0, 0, 0), R=np.eye(3)):
             "orientation": quaternion(np.asarray(R))}
 
 
-def body(name, mass, inertia, position, R=np.eye(3), shapes=(), velocity=(0, 0, 0), spin=(0, 0, 0)):
-    return {"name": name, "mass": float(mass), "inertia": list(map(float, inertia)),
+def body(name, mass, inertia, position, R=np.eye(3), shapes=(), velocity=(0, 0, 0), spin=(0, 0, 0), force=None):
+    """`force` acts at the centre of mass, in the world."""
+    made = {"name": name, "mass": float(mass), "inertia": list(map(float, inertia)),
             "position": list(map(float, position)), "orientation": quaternion(np.asarray(R)),
             "velocity": list(map(float, velocity)), "angular_velocity": list(map(float, spin)),
             "shapes": list(shapes)}
+    return {**made, "force": list(map(float, force))} if force else made
 
 
 def box_inertia(mass, half):
@@ -66,8 +68,11 @@ def joint(kind, parent, child, anchor, axis=(0, 0, 1), force=0.0, limits=None, p
 
 
 def scene(measure, bodies, joints=(), *, duration, sample=0.02, friction=0.5, ground=False,
-          collide=False, gravity=(0, 0, -GRAVITY), restitution=0.0):
+          collide=False, gravity=(0, 0, -GRAVITY), restitution=0.0, ground_friction=None):
+    """`friction` is that of every pair, or of all but those with the ground, which have `ground_friction`."""
     made = {"measure": measure, "gravity": list(map(float, gravity)), "friction": friction,
             "ground": ground, "collide": collide, "duration": duration, "sample": sample,
             "bodies": list(bodies), "joints": list(joints)}
-    return {**made, "restitution": restitution} if restitution else made
+    if restitution:
+        made["restitution"] = restitution
+    return made if ground_friction is None else {**made, "ground_friction": ground_friction}

@@ -14,6 +14,7 @@ import plan
 EXACT, SINGLE = 1e-6, 2e-5
 SAME_DIGITS = 0.01  # two digits of an error: beyond, the method is not the same, or the model
 SAME_INERTIA = 1e-9
+SECOND_WAY = 1e-5  # [m] of a scene written a second time: single precision, over 450 steps
 REFERENCES_AGREE = 1e-10  # [m]
 # What the gate refuses outright is no result; a run that diverges or comes late is one.
 RAN = ("done", "diverged", "late")
@@ -40,6 +41,9 @@ def refusal_of_run(run):
         return f"mass {run['mass']:.7g} kg for {gate['mass']:.7g} kg"
     if "kinetic_energy" in run and not relative(run["kinetic_energy"], gate["kinetic_energy"]) <= 10 * bound:
         return f"kinetic energy {run['kinetic_energy']:.7g} J for {gate['kinetic_energy']:.7g} J"
+    second = judged.get("measures", {}).get("second_m", 0.0)
+    if second > SECOND_WAY:
+        return f"{second:.2g} m from the same scene, written a second time"
     return None
 
 

@@ -35,12 +35,12 @@ class Page:
             # What was late for a quicker study says nothing of a whole one.
             self.runs = {k: r for k, r in self.runs.items() if r["end"] != "late" or r.get("most", plan.MOST) >= plan.MOST}
             self.runs.update(kept.read(earlier, self.runs))
-        self.refusals = gate.refusals(list(self.runs.values()))
         path = folder / "second.json"
         for engine, s in json.loads(path.read_text()).items() if path.exists() else ():
             run = self.runs.get((plan.SECOND_SCENE, self.first(engine).key, plan.STEP))
             if run:
                 run["judged"]["measures"]["second_m"] = s["distance_m"]
+        self.refusals = gate.refusals(list(self.runs.values()))
         self.times = times.read(folder)
         if earlier:
             self.times = times.merged(self.times, times.kept(earlier.parent / "times.csv"))
@@ -116,9 +116,19 @@ class Page:
                            "momentum, relative", "thrown body: off its parabola [mm]"], rows)
 
     def published(self):
-        rows = [[e.label, "{:.3g}, {:.3g}".format(*plan.PUBLISHED[e.label]) if e.label in plan.PUBLISHED else "",
-                 self.cell("published_body", e, "parabola_mm", "momentum", h=plan.PUBLISHED_STEP)] for e in self.present("drift")]
-        return self.table(["off the parabola [mm], angular momentum, relative", "published, 2015", "here"], rows)
+        """Of each scene of others: what they published, and what came out here."""
+        rows = []
+        for e in plan.ENTRIES:
+            if e.role == "gate" or e.key not in {key[1] for key in self.runs}:
+                continue
+            cells = []
+            for scene, (names, figures) in plan.PUBLISHED.items():
+                there = ", ".join(f"{x:.3g}" for x in figures.get(e.label, ()))
+                cells += [there, self.cell(scene, e, *names, h=plan.PUBLISHED_STEP) if plan.takes_part(e, scene) else ""]
+            rows.append([e.label] + cells)
+        return self.table(["", "box `complex`: off the parabola [mm], angular momentum, relative, published", "here",
+                           "ball that bounces for ever: energy, mean square [J²], published", "here",
+                           "25 balls on a pushed box: velocities, mean square [m²/s²], published", "here"], rows)
 
     def thrown(self):
         rows = []
@@ -205,27 +215,35 @@ class Page:
              "refused": "refused", None: "–"}
     # A column of the matrix: its entry for contacts, and for smooth motion.
     MATRIX = {"ours": ("ours", "ours"), "ours, elliptic": ("ours, elliptic", "ours"), "MuJoCo": ("MuJoCo", "MuJoCo"),
-              "MuJoCo, best": ("MuJoCo, elliptic, noslip", "MuJoCo, RK4"), "DART": ("DART", "DART"),
+              "MuJoCo, best": ("MuJoCo, elliptic, noslip", "MuJoCo, RK4"), "DART": ("DART", "DART"), "DART, best": ("DART, PGS", "DART"),
               "Bullet, library": ("Bullet, library", "Bullet"), "Bullet, best": ("Bullet", "Bullet, RK4"), "ODE": ("ODE", "ODE"),
               "ODE, quick": ("ODE, quick", "ODE, quick"), "Simbody": ("Simbody", "Simbody"),
-              "Simbody, best": ("Simbody, 1e-5", "Simbody, 1e-5"), "Rapier": ("Rapier", "Rapier"), "Jolt": ("Jolt", "Jolt")}
+              "Simbody, best": ("Simbody, 1e-5", "Simbody, 1e-5"), "Rapier": ("Rapier", "Rapier"), "Rapier, best": ("Rapier, 8 iterations", "Rapier, 8 iterations"),
+              "Jolt": ("Jolt", "Jolt"), "Jolt, best": ("Jolt, 50 iterations", "Jolt, 50 iterations")}
 
     def matrix_columns(self):
         """Those that have run, each with its two entries."""
         labels = {e.label: e for e in plan.ENTRIES if e.key in {k[1] for k in self.runs}}
         return {name: (labels[c], labels[s]) for name, (c, s) in self.MATRIX.items() if c in labels and s in labels}
 
-    def verdict(self, case, column):
+    def verdict(self, case, column, factor=1.0):
         entry = column[0 if plan.kind_of(case[1][0]) in plan.CONTACT else 1]
-        found = verdicts.verdict(case, entry, self.runs, self.refusals)
+        found = verdicts.verdict(case, entry, self.runs, self.refusals, factor)
         npm = [e for e in plan.ENTRIES if (e.engine, e.settings) == (entry.engine + "_npm", entry.settings)]
         # Where an engine has not run natively, as npm has it.
-        return found or (verdicts.verdict(case, npm[0], self.runs, self.refusals) if npm else None)
+        return found or (verdicts.verdict(case, npm[0], self.runs, self.refusals, factor) if npm else None)
 
     def matrix(self):
         columns = self.matrix_columns()
         rows = [[case[0]] + [self.WORDS[self.verdict(case, c)] for c in columns.values()] for case in verdicts.CASES]
         return self.table(["at 2 ms", *columns], rows)
+
+    def sensitivity(self):
+        """How many cases each column holds with narrower and wider bounds."""
+        columns = self.matrix_columns()
+        count = lambda c, f: sum(self.verdict(case, c, f) == "held" for case in verdicts.CASES)
+        return self.table(["cases held", *columns],
+                          [[f"bounds × {f:g}"] + [str(count(c, f)) for c in columns.values()] for f in (0.1, 0.5, 1, 2, 10)])
 
     def gate(self):
         none = sum(r["end"] in ("cannot express", "crashed") for r in self.runs.values())
@@ -278,7 +296,7 @@ class Page:
 
     SECTIONS = {"line": line, "versions": versions, "gate": gate, "chain_20": lambda s: s.smooth("chain_20"),
                 "humanoid_in_the_air": lambda s: s.smooth("humanoid_in_the_air"), "drift": drift, "published": published, "thrown": thrown, "friction": friction, "bounce": bounce,
-                "hold": hold, "work": work, "machines": machines, "softness": softness, "matrix": matrix, "slower": slower, "times": time_table}
+                "hold": hold, "work": work, "machines": machines, "softness": softness, "matrix": matrix, "sensitivity": sensitivity, "slower": slower, "times": time_table}
 
     def fill(self, text):
         for name, make in self.SECTIONS.items():

@@ -13,12 +13,13 @@ import verdicts
 
 matplotlib.rcParams.update({"font.size": 9, "svg.hashsalt": "softgauss", "svg.fonttype": "none", "axes.spines.top": False, "axes.spines.right": False})
 INK = {"ours": "#0b6e75", "ours, elliptic": "#e07b39", "ours, RK4": "#5fb3b3", "ours, Dormand-Prince 1e-5": "#e07b39",
-       "MuJoCo": "#d9534f", "Bullet, RK4": "#7a5195", "ODE": "#7f8c8d"}
+       "MuJoCo": "#d9534f", "MuJoCo, elliptic, noslip": "#c27ba0", "Bullet": "#7a5195", "Bullet, RK4": "#7a5195", "ODE": "#7f8c8d"}
 SIZE_INK = {"ours": "#0b6e75", "MuJoCo": "#d9534f", "DART": "#7a5195", "Bullet, library": "#e07b39", "ODE": "#7f8c8d", "ODE, quick": "#b3b9ba"}
 COLOURS = {"held": "#7fbf8e", "missed": "#d9534f", "diverged": "#8c2d2a", "late": "#b0763f", "cannot": "#d8d8d8",
            "refused": "#ffffff", None: "#ffffff"}
-# At most six curves a picture, each labelled at its end.
+# At most six curves a picture, each labelled at its end: of motion, and of contact.
 CURVES = ("ours", "ours, RK4", "ours, Dormand-Prince 1e-5", "MuJoCo", "Bullet, RK4", "ODE")
+CONTACT_CURVES = ("ours", "ours, elliptic", "MuJoCo", "MuJoCo, elliptic, noslip", "Bullet", "ODE")
 
 
 def save(figure, path):
@@ -46,15 +47,17 @@ def label(axes, ends, x, least):
         axes.annotate(name, (x, 10 ** y if axes.get_yscale() == "log" else y), color=colour, va="center", annotation_clip=False)
 
 
-def smooth(page, scene, path):
+def work(page, scene, path):
     """Error over the step, and over the CPU time that it takes."""
+    measure, axis, title = plan.WORK[scene]
+    curves = CURVES if plan.kind_of(scene) in plan.MOTION else CONTACT_CURVES
     found = times.figures(page.times)
     figure, panels = plt.subplots(1, 2, figsize=(9.6, 3.6), sharey=True, gridspec_kw={"wspace": 0.7})
     ends = ([], [])
-    for entry in page.present("smooth"):
-        if entry.label not in CURVES:
+    for entry in page.present(plan.kind_of(scene)):
+        if entry.label not in curves:
             continue
-        errors = {h: m["error_m"] for h in plan.STEPS if not isinstance(m := page.measures(scene, entry, h), str)}
+        errors = {h: abs(m[measure]) for h in plan.STEPS if not isinstance(m := page.measures(scene, entry, h), str)}
         cost = {h: found[scene, entry.key, h].median / h for h in errors if (scene, entry.key, h) in found}
         colour = None
         for axes, at, points in zip(panels, ends, ([(1e3 * h, e) for h, e in errors.items()], [(cost[h], errors[h]) for h in cost])):
@@ -67,8 +70,8 @@ def smooth(page, scene, path):
         right = 1.15 * max(x for line in axes.lines for x in line.get_xdata()) if axes.lines else 1
         label(axes, at, right, 0.055 * decades(axes))
     panels[0].set_xlabel("step [ms]")
-    panels[0].set_ylabel("error [m]")
-    panels[0].set_title(scene.replace("_", " ") + ": root mean square, from Simbody at 1e-12", loc="left", fontsize=9)
+    panels[0].set_ylabel(axis)
+    panels[0].set_title(title, loc="left", fontsize=9)
     panels[0].set_xticks([1e3 * h for h in plan.STEPS], [f"{1e3 * h:g}" for h in plan.STEPS])
     panels[0].minorticks_off()
     panels[1].set_xlabel("CPU time of a second, times the calibration")
@@ -143,8 +146,8 @@ def size(page, path):
 
 
 def draw(page, folder):
-    for scene in plan.SMOOTH:
-        smooth(page, scene, folder / f"{scene}.svg")
+    for scene in plan.WORK:
+        work(page, scene, folder / f"{scene}.svg")
     matrix(page, folder / "matrix.svg")
     thrown(page, folder / "thrown.svg")
     size(page, folder / "size.svg")

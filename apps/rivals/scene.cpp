@@ -37,6 +37,7 @@ Body body(const json& j) {
           vector(j.at("angular_velocity"))},
          {}};
   for (const json& s : j.at("shapes")) b.shapes.push_back(shape(s));
+  if (j.contains("force")) b.force = vector(j.at("force"));
   return b;
 }
 
@@ -123,6 +124,7 @@ Scene parseScene(const std::string& text) {
   for (const json& b : j.at("bodies")) s.bodies.push_back(body(b));
   for (const json& x : j.at("joints")) s.joints.push_back(joint(x));
   s.restitution = j.value("restitution", 0.0);
+  if (j.contains("ground_friction")) s.groundFriction = j.at("ground_friction").get<double>();
   return s;
 }
 

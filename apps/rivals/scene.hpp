@@ -46,6 +46,8 @@ struct Body {
   Vector3d inertia;  ///< principal moments [kg m²]
   BodyState start;
   std::vector<Shape> shapes;
+  Vector3d force =
+      Vector3d::Zero();  ///< that acts at the centre of mass, constant, world [N]; of free bodies
 };
 
 /// A `tie` is a ball joint that closes no tree: what an engine has to hold by a constraint.
@@ -71,7 +73,7 @@ struct Scene {
   std::string name;
   std::string measure;  ///< what the judge looks at
   Vector3d gravity;
-  double friction;          ///< Coulomb's coefficient of every pair
+  double friction;          ///< Coulomb's coefficient of every pair, or of all but the ground's
   bool ground;              ///< the half space z < 0
   bool collide;             ///< bodies touch one another, not the ground alone
   double duration, sample;  ///< [s]
@@ -79,7 +81,9 @@ struct Scene {
   std::vector<Joint> joints;
   /// Of every pair: speed after an impact over speed before it.
   double restitution = 0.0;
+  std::optional<double> groundFriction = {};  ///< of pairs with the ground, where it is another
 
+  double frictionOnGround() const { return groundFriction.value_or(friction); }
   double mass() const;
   /// Speed at which the first body, a ball or a box that lies flat, meets the ground in a free fall
   /// from where it starts at rest [m/s].

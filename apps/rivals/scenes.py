@@ -54,6 +54,19 @@ def published_body():
                  duration=10, sample=0.01, gravity=(0, 0, -9.8))
 
 
+def published_bounce():
+    """One of the 49 balls of SimBenchmark's bouncing, which do not touch one another and lose nothing."""
+    return scene("elastic", [sphere("ball", 10, 0.1, (0, 0, 5))], duration=20, sample=0.001, ground=True, restitution=1.0)
+
+
+def published_rolling():
+    """SimBenchmark's rolling: a box is pushed askew on the ground and carries 25 balls. Theirs begin 20 µm deep."""
+    pushed = 150 * np.array([0.5, math.sqrt(0.75), 0])
+    bodies = [box("box", 10, (10, 10, 0.5), (0, 0, 0.5), force=list(pushed))]
+    bodies += [sphere(f"ball{i}{j}", 1, 0.5, (2 * i - 4, 2 * j - 4, 1.5)) for i in range(5) for j in range(5)]
+    return scene("pushed", bodies, duration=4, sample=0.001, friction=0.8, ground=True, collide=True, ground_friction=0.4)
+
+
 def top():
     R = turn((1, 0, 0), math.radians(20))
     spin = R @ [0, 0, 100]
@@ -312,7 +325,7 @@ def all_scenes():
         "top": top(),
         "free_body": free_body(),
         "thrown_body": thrown_body(),
-        "published_body": published_body(),
+        "published_body": published_body(), "published_bounce": published_bounce(), "published_rolling": published_rolling(),
         "slides_37": incline(math.radians(37), 0.5, 1, measure="slides"),
         "creep_15": incline(math.radians(15), 1.0, 10, half=(0.1, 0.1, 0.1)),
         "creep_50": of_cone(0.5, 0.5),

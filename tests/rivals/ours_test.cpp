@@ -59,6 +59,31 @@ TEST(RivalsOurs, StartsAsTheSceneSaysAndKeepsItsMomentum) {
   EXPECT_LT(measure(scene, run).at("energy_percent"), 1e-5);
 }
 
+// A force in the world on a free body that spins, and friction of the ground that is another than
+// that of bodies: F t/m in the air, (F - mu m g) t/m on the ground.
+TEST(RivalsOurs, PushesAFreeBodyOverTheGround) {
+  Scene scene = hinged();
+  scene.joints.clear();
+  scene.bodies.resize(1);
+  scene.bodies[0].start.velocity.setZero();
+  scene.bodies[0].force = Vector3d(3, -1, 2);
+  const auto flying = engineFor(scene, 0.01, {});
+  ASSERT_TRUE(flying->step(50));
+  const Vector3d gained = 0.5 * scene.bodies[0].force / scene.bodies[0].mass;
+  EXPECT_LT((flying->state()[0].velocity - gained).norm(), 1e-9);
+
+  Body& box = scene.bodies[0];
+  box.start = {Vector3d(0, 0, 0.1), Quaterniond::Identity(), Vector3d::Zero(), Vector3d::Zero()};
+  box.shapes = {{ShapeKind::box, Vector3d(0.3, 0.3, 0.1)}};
+  box.force = Vector3d(12, 0, 0);
+  scene.gravity = Vector3d(0, 0, -10);
+  scene.ground = scene.collide = true;
+  scene.friction = 0.9, scene.groundFriction = 0.4;
+  const auto pushed = engineFor(scene, 0.01, {});
+  ASSERT_TRUE(pushed->step(50));
+  EXPECT_NEAR(pushed->state()[0].velocity[0], 0.5 * (12.0 - 8.0) / 2.0, 1e-2);
+}
+
 // A slider between two bodies that is pushed for 0.1 s, and pulled back for 0.1 s: they rest again,
 // apart by a t² of what they gain on one another, and their common centre is where it was.
 TEST(RivalsOurs, DrivesByAProgram) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Bullet in the study, the build with doubles. Trees are a btMultiBody (trees=constraints: rigid
 /// bodies with constraints), all else rigid bodies. preset=pybullet: the solver settings that
-/// PyBullet has; solver=dantzig: the direct solver; integrator=rk4: of btMultiBody.
+/// PyBullet has; erp2=number: of contacts; solver=dantzig: the direct solver; integrator=rk4: of
+/// btMultiBody; free=multibody: free bodies are trees too.
 ///
 /// Friction and restitution of a pair are products, so that each has the root. Bullet's own damping
 /// of multibodies, 0.04/s, and its limit of 100 rad/s are switched off, and so is sleep.
@@ -49,15 +50,17 @@ class Bullet final : public Engine {
       info.m_linearSlop = 1e-5;
       info.m_leastSquaresResidualThreshold = 1e-7;
     }
+    info.m_erp2 = settings.number("erp2", info.m_erp2);
     useTrees_ = settings.word("trees", "multibody") == "multibody";
     rungeKutta_ = settings.word("integrator", "euler") == "rk4";
+    const bool freeTrees = settings.word("free", "rigid") == "multibody";
     for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
       const bool carries =
           std::any_of(scene.joints.begin(), scene.joints.end(), [&](const Joint& j) {
             return j.parent == static_cast<int>(i) && j.kind != JointKind::tie;
           });
       const Joint* carrier = scene.carrier(static_cast<int>(i));
-      if (!useTrees_ || (!carrier && !carries))
+      if (!useTrees_ || (!carrier && !carries && !freeTrees))
         addRigid(static_cast<int>(i));
       else if (!carrier || carrier->parent < 0)
         addTree(static_cast<int>(i));
@@ -79,6 +82,8 @@ class Bullet final : public Engine {
     for (int k = 0; k < count; ++k) {
       for (const auto& [tree, link, joint] : forces_)
         tree->addJointTorque(link, joint->forceAt(steps_ * h_));
+      for (std::size_t i = 0; i < bodies_.size(); ++i)
+        if (bodies_[i].rigid) bodies_[i].rigid->applyCentralForce(toBt(scene_.bodies[i].force));
       world_->stepSimulation(h_, 0);
       ++steps_;
     }
@@ -319,7 +324,7 @@ class Bullet final : public Engine {
   void addGround() {
     auto* ground =
         keep<btRigidBody>(0.0, nullptr, keep<btStaticPlaneShape>(btVector3(0, 0, 1), 0.0));
-    ground->setFriction(std::sqrt(scene_.friction));
+    ground->setFriction(scene_.frictionOnGround() / std::sqrt(scene_.friction));
     ground->setRestitution(std::sqrt(scene_.restitution));
     world_->addRigidBody(ground, kGround, kBody);
   }

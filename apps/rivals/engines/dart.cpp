@@ -37,6 +37,8 @@ class Dart final : public Engine {
   bool step(int count) override {
     for (int k = 0; k < count; ++k) {
       for (const auto& [dof, joint] : forces_) dof->setForce(joint->forceAt(world_->getTime()));
+      for (std::size_t i = 0; i < nodes_.size(); ++i)
+        if (!scene_.bodies[i].force.isZero()) nodes_[i]->addExtForce(scene_.bodies[i].force);
       world_->step();
     }
     return true;
@@ -155,7 +157,7 @@ class Dart final : public Engine {
     auto* body = ground->createJointAndBodyNodePair<dd::WeldJoint>().second;
     auto* node = body->createShapeNodeWith<dd::CollisionAspect, dd::DynamicsAspect>(
         std::make_shared<dd::PlaneShape>(Vector3d::UnitZ(), 0.0));
-    node->getDynamicsAspect()->setFrictionCoeff(scene_.friction);
+    node->getDynamicsAspect()->setFrictionCoeff(scene_.frictionOnGround());
     node->getDynamicsAspect()->setRestitutionCoeff(std::sqrt(scene_.restitution));
     world_->addSkeleton(ground);
     if (scene_.collide) return;

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/rivals/engines/mjcf.hpp"
 
-#include <cmath>
 #include <sstream>
+
+#include "apps/rivals/engines/bounce.hpp"
 
 namespace rivals {
 namespace {
@@ -35,8 +36,8 @@ class Writer {
     out_ << "<worldbody>";
     // Bit 1 is the ground, bit 2 the bodies that touch one another.
     if (scene.ground) {
-      out_ << "<geom type=\"plane\" size=\"0 0 1\" contype=\"1\" conaffinity=\"1\"";
-      friction();
+      out_ << "<geom type=\"plane\" size=\"0 0 1\" contype=\"1\" conaffinity=\"1\" priority=\"1\"";
+      friction(scene.frictionOnGround());
       out_ << "/>";
     }
     for (std::size_t i = 0; i < scene.bodies.size(); ++i)
@@ -54,18 +55,13 @@ class Writer {
   }
 
   /// A restitution is a spring and a damper that an impact leaves after thirty steps (solref in its
-  /// direct form), damped so that e = exp(−2 ζ/√(1 − ζ²) atan(√(1 − ζ²)/ζ)).
-  void friction() {
-    out_ << " friction=\"" << scene_.friction << " 0.005 0.0001\"";
+  /// direct form).
+  void friction(double coefficient) {
+    out_ << " friction=\"" << coefficient << " 0.005 0.0001\"";
     if (scene_.restitution == 0.0) return;
-    double low = 0.0, high = 1.0;
-    for (int i = 0; i < 60; ++i) {
-      const double zeta = 0.5 * (low + high), root = std::sqrt(1.0 - zeta * zeta);
-      const double e = std::exp(-2.0 * zeta / root * std::atan(root / zeta));
-      (e > scene_.restitution ? low : high) = zeta;
-    }
     const double omega = EIGEN_PI / (30.0 * h_);
-    out_ << " solref=\"" << -omega * omega << ' ' << -2.0 * low * omega << "\"";
+    out_ << " solref=\"" << -omega * omega << ' ' << -2.0 * dampingOfBounce(scene_, omega) * omega
+         << "\"";
   }
 
   void body(int i) {
@@ -82,7 +78,7 @@ class Writer {
       out_ << "<geom type=\"" << type << "\" size=\"" << numbers(s.size) << "\"" << frame(s.pose)
            << " contype=\"" << (scene_.collide ? 3 : 0) << "\" conaffinity=\""
            << (scene_.collide ? 3 : 1) << "\"";
-      friction();
+      friction(scene_.friction);
       out_ << "/>";
     }
     for (std::size_t k = 0; k < scene_.bodies.size(); ++k)

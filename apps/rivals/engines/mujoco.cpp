@@ -37,6 +37,9 @@ class Mujoco final : public Engine {
     data_ = mj_makeData(model_);
     mju_user_warning = [](const char*) {};
     for (std::size_t i = 0; i < scene.bodies.size(); ++i) place(static_cast<int>(i));
+    for (std::size_t i = 0; i < scene.bodies.size(); ++i)
+      for (int k = 0; k < 3; ++k)
+        data_->xfrc_applied[6 * bodies_[i] + k] = scene.bodies[i].force[k];
     mj_forward(model_, data_);
   }
   ~Mujoco() override {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Jolt from npm (JoltPhysics.js), in single precision. Friction of a pair is the root of the product, restitution the larger.
 // Bodies without a shape have a sensor for one. Damping, sleep and the limit of 47 rad/s are off, gyroscopic forces on; slop 2 cm as it comes,
-// slop=metres another.
+// slop=metres another; velocity_steps, position_steps=number: iterations of its solver.
 import {bodyOf, cross, directionIn, forceAt, isDriven, times, turned} from './npm_vectors.mjs';
 
 const kFixed = 0, kMoving = 1;  // layers
@@ -49,10 +49,13 @@ export async function makeJolt(packages, scene, h, settings) {
   const physics = system.GetPhysicsSettings();
   physics.mAllowSleeping = false;
   if (settings.slop) physics.mPenetrationSlop = Number(settings.slop);
+  if (settings.velocity_steps) physics.mNumVelocitySteps = Number(settings.velocity_steps);
+  if (settings.position_steps) physics.mNumPositionSteps = Number(settings.position_steps);
   system.SetPhysicsSettings(physics);
+  const forces = [];  // a body, what the force's reaction acts on, an axis, and what tells the force along it
   const makeGround = () => {
     const c = new J.BodyCreationSettings(new J.BoxShape(V([50, 50, 1]), 0.05), R([0, 0, -1]), Q([1, 0, 0, 0]), J.EMotionType_Static, kFixed);
-    c.mFriction = scene.friction;
+    c.mFriction = (scene.ground_friction ?? scene.friction) ** 2 / scene.friction;
     c.mRestitution = scene.restitution ?? 0;
     interface_.AddBody(interface_.CreateBody(c).GetID(), J.EActivation_DontActivate);
   };
@@ -69,10 +72,11 @@ export async function makeJolt(packages, scene, h, settings) {
     interface_.AddBody(made.GetID(), J.EActivation_Activate);
     made.SetLinearVelocity(V(b.velocity));
     made.SetAngularVelocity(V(b.angular_velocity));
+    if (b.force) forces.push([made, undefined, b.force, {force: 1}]);
     return made;
   };
   if (scene.ground) makeGround();
-  const bodies = scene.bodies.map(makeBody), forces = [], force = V([0, 0, 0]);
+  const bodies = scene.bodies.map(makeBody), force = V([0, 0, 0]);
   let steps = 0;
   for (const j of scene.joints) {
     const parent = j.parent < 0 ? J.JoltInterface.prototype.sGetFixedToWorldBody() : bodies[j.parent];

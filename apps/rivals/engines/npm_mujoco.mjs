@@ -5,16 +5,18 @@ import {bodyOf, carrierOf, conjugate, directionIn, forceAt, jointSpeed, minus, p
 
 const text = (v) => v.join(' ');
 
-// A restitution: an impact of thirty steps, on a spring and damper of that e (solref in its direct form).
-function solref(e, h) {
+// A restitution: an impact of thirty steps, on a spring and damper of that e (solref in its direct form), less what gravity takes.
+function solref(scene, h) {
+  const e = scene.restitution, omega = Math.PI / (30 * h);
   if (!e) return '';
+  const s = scene.bodies[0].shapes[0], under = s.kind === 'box' ? s.size[2] : s.size[0], g = Math.hypot(...scene.gravity);
+  const pull = g / (omega * Math.sqrt(2 * g * (scene.bodies[0].position[2] - under)));
   let low = 0, high = 1;
   for (let i = 0; i < 60; ++i) {
     const zeta = 0.5 * (low + high), root = Math.sqrt(1 - zeta * zeta);
-    if (Math.exp(-2 * zeta / root * Math.atan2(root, zeta)) > e) low = zeta;
+    if (Math.exp(-2 * zeta / root * Math.atan2(root, zeta)) - 3.5 * zeta * pull > e) low = zeta;
     else high = zeta;
   }
-  const omega = Math.PI / (30 * h);
   return ` solref="${-omega * omega} ${-2 * low * omega}"`;
 }
 
@@ -31,7 +33,7 @@ function bodyXml(scene, i, h) {
   x += `<inertial pos="0 0 0" mass="${b.mass}" diaginertia="${text(b.inertia)}"/>`;
   for (const s of b.shapes)
     x += `<geom type="${s.kind}" size="${text(s.size)}" pos="${text(s.position)}" quat="${text(s.orientation)}" ` +
-      `friction="${scene.friction} 0.005 0.0001"${solref(scene.restitution, h)} contype="${scene.collide ? 3 : 0}" conaffinity="${scene.collide ? 3 : 1}"/>`;
+      `friction="${scene.friction} 0.005 0.0001"${solref(scene, h)} contype="${scene.collide ? 3 : 0}" conaffinity="${scene.collide ? 3 : 1}"/>`;
   scene.bodies.forEach((_, k) => {
     if (carrierOf(scene, k)?.parent === i) x += bodyXml(scene, k, h);
   });
@@ -43,7 +45,7 @@ function mjcf(scene, h, settings) {
   let x = '<mujoco><compiler angle="radian" balanceinertia="false" boundmass="0" boundinertia="0"/>' +
     `<option timestep="${h}" gravity="${text(scene.gravity)}" integrator="${integrator}" cone="${cone}" ` +
     `noslip_iterations="${noslip}" impratio="${impratio}"/><size memory="200M"/><worldbody>`;
-  if (scene.ground) x += `<geom type="plane" size="0 0 1" friction="${scene.friction} 0.005 0.0001"${solref(scene.restitution, h)} contype="1" conaffinity="1"/>`;
+  if (scene.ground) x += `<geom type="plane" size="0 0 1" friction="${scene.ground_friction ?? scene.friction} 0.005 0.0001" priority="1"${solref(scene, h)} contype="1" conaffinity="1"/>`;
   scene.bodies.forEach((_, i) => {
     if ((carrierOf(scene, i)?.parent ?? -1) < 0) x += bodyXml(scene, i, h);
   });
@@ -69,6 +71,7 @@ export async function makeMujoco(packages, scene, h, settings) {
       forces.push([v, j]);
     }
   });
+  scene.bodies.forEach((b, i) => (b.force ?? []).forEach((x, k) => (d.xfrc_applied[6 * bodies[i] + k] = x)));
   M.mj_forward(m, d);
   const bad = [M.mjtWarning.mjWARN_BADQPOS, M.mjtWarning.mjWARN_BADQVEL, M.mjtWarning.mjWARN_BADQACC].map((w) => w.value);
   return {

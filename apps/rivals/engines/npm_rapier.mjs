@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rapier from npm, in single precision. Friction and restitution of a pair are means. Joints are impulse joints.
+// Rapier from npm, in single precision. Friction and restitution of a pair are means. iterations=number: of its solver. Joints are impulse joints.
 import {bodyOf, directionIn, forceAt, isDriven, pointIn, times, turned} from './npm_vectors.mjs';
 
 const V = ([x, y, z]) => ({x, y, z}), Q = ([w, x, y, z]) => ({x, y, z, w});
@@ -26,14 +26,15 @@ function jointData(R, scene, j) {
   return R.JointData.spherical(...at);
 }
 
-export async function makeRapier(packages, scene, h) {
+export async function makeRapier(packages, scene, h, settings) {
   const R = (await import(`${packages}/@dimforge/rapier3d-compat/dist/rapier.mjs`)).default;
   await R.init();
   const world = new R.World(V(scene.gravity));
   world.timestep = h;
-  const fixed = world.createRigidBody(R.RigidBodyDesc.fixed());
+  if (settings.iterations) world.numSolverIterations = Number(settings.iterations);
+  const fixed = world.createRigidBody(R.RigidBodyDesc.fixed()), forces = [];
   if (scene.ground)
-    world.createCollider(R.ColliderDesc.cuboid(50, 50, 1).setTranslation(0, 0, -1).setFriction(scene.friction)
+    world.createCollider(R.ColliderDesc.cuboid(50, 50, 1).setTranslation(0, 0, -1).setFriction(2 * (scene.ground_friction ?? scene.friction) - scene.friction)
         .setRestitution(scene.restitution ?? 0).setCollisionGroups((kGround << 16) | kBody), fixed);
   const bodies = scene.bodies.map((b) => {
     const r = world.createRigidBody(R.RigidBodyDesc.dynamic().setTranslation(...b.position).setRotation(Q(b.orientation))
@@ -42,9 +43,9 @@ export async function makeRapier(packages, scene, h) {
     for (const s of b.shapes) world.createCollider(collider(R, s, scene), r);
     r.setLinvel(V(b.velocity), true);
     r.setAngvel(V(b.angular_velocity), true);
+    if (b.force) forces.push([r, undefined, b.force, {force: 1}]);
     return r;
   });
-  const forces = [];
   let steps = 0;
   for (const j of scene.joints) {
     const joint = world.createImpulseJoint(jointData(R, scene, j), j.parent < 0 ? fixed : bodies[j.parent], bodies[j.child], true);

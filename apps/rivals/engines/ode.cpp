@@ -57,6 +57,10 @@ class Ode final : public Engine {
         });
       for (const auto& [slider, joint] : forces_)
         dJointAddSliderForce(slider, joint->forceAt(steps_ * h_));
+      for (std::size_t i = 0; i < bodies_.size(); ++i) {
+        const Vector3d& f = scene_.bodies[i].force;
+        dBodyAddForce(bodies_[i], f[0], f[1], f[2]);
+      }
       ++steps_;
       const int ok = quick_ ? dWorldQuickStep(world_, h_) : dWorldStep(world_, h_);
       dJointGroupEmpty(contacts_);
@@ -109,7 +113,7 @@ class Ode final : public Engine {
     for (int i = 0; i < count; ++i) {
       std::memset(&found[i].surface, 0, sizeof found[i].surface);
       found[i].surface.mode = dContactApprox1;
-      found[i].surface.mu = scene_.friction;
+      found[i].surface.mu = x && y ? scene_.friction : scene_.frictionOnGround();
       if (scene_.restitution > 0.0) {
         found[i].surface.mode |= dContactBounce;
         found[i].surface.bounce = scene_.restitution;

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "apps/rivals/engine.hpp"
+#include "apps/rivals/engines/bounce.hpp"
 #include "softgauss/collision/scene_contacts.hpp"
 #include "softgauss/collision/unit_contacts.hpp"
 #include "softgauss/engine/dynamics/energy.hpp"
@@ -38,19 +39,11 @@ void apply(Settings& settings, double h, sg::Options& o) {
 }
 
 /// The recipe of docs/guide/contact.md for a body that is to bounce: an impact lasts thirty steps,
-/// and gravity and the step take from the damping ratio. A box that lies flat has four contacts,
-/// each a quarter of the spring.
+/// and gravity and the step take from the damping ratio, which is none where they take it all. A
+/// box that lies flat has four contacts, each a quarter of the spring.
 sg::ContactSpring bouncy(const Scene& scene, const Body& body, double h) {
   const double omega = std::numbers::pi / (30.0 * h);
-  const double gravity = scene.gravity.norm() / (omega * scene.fallSpeed());
-  double low = 0.0, high = 1.0;
-  for (int i = 0; i < 60; ++i) {
-    const double zeta = 0.5 * (low + high), root = std::sqrt(1.0 - zeta * zeta);
-    const double e = std::exp(-2.0 * zeta / root * std::atan(root / zeta));
-    (e - 3.5 * zeta * gravity > scene.restitution ? low : high) = zeta;
-  }
-  const double zeta = low - 0.25 * omega * h;
-  if (zeta < 0.0) throw CannotExpress("a bounce of so high a restitution at this step");
+  const double zeta = std::max(dampingOfBounce(scene, omega) - 0.25 * omega * h, 0.0);
   const double share = body.mass / (body.shapes[0].kind == ShapeKind::box ? 4.0 : 1.0);
   sg::ContactSpring spring;
   spring.stiffness = share * omega * omega;
@@ -139,7 +132,8 @@ class Ours final : public Engine {
     if (scene.ground) {
       sg::GeometrySpec ground;
       ground.name = "ground", ground.link = "world", ground.shape = sg::Shape::plane();
-      ground.material.slidingFriction = scene.friction;
+      ground.material.slidingFriction = scene.frictionOnGround();
+      ground.material.priority = scene.groundFriction ? 1 : 0;
       builder.geometry(ground);
     }
     builder.options.gravity = scene.gravity;
@@ -234,6 +228,8 @@ class Ours final : public Engine {
       if (!j) {
         state_.v.segment<3>(b.v) = start.velocity;
         state_.v.segment<3>(b.v + 3) = start.orientation.conjugate() * start.angularVelocity;
+        if (const Vector3d& f = scene_.bodies[i].force; !f.isZero())
+          input_.wrenches.push_back({body, {Vector3d::Zero(), f}});
       } else if (j->kind == JointKind::ball) {
         placeBall(*j, start, b.q - 2, b.v - 2);
       } else {

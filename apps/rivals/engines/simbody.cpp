@@ -57,7 +57,7 @@ class Simbody final : public Engine {
                                    ? (1.0 - scene.restitution) / scene.fallSpeed()
                                    : settings.number("dissipation", 1.0);
     const SimTK::ContactMaterial material(settings.number("stiffness", 1e7), dissipation,
-                                          scene.friction, scene.friction, 0.0);
+                                          scene.frictionOnGround(), scene.frictionOnGround(), 0.0);
     if (scene.ground) {
       const SimTK::Rotation up(SimTK::Pi / 2, SimTK::YAxis);  // the half space is x > 0
       matter_.Ground().updBody().addContactSurface(
@@ -72,6 +72,8 @@ class Simbody final : public Engine {
           SimTK::MassProperties(b.mass, SimTK::Vec3(0), SimTK::Inertia(toSim(b.inertia))));
       for (const Shape& s : b.shapes) addShape(body, s, material, clique);
       mobilize(static_cast<int>(i), body);
+      if (!b.force.isZero())
+        SimTK::Force::ConstantForce(forces_, mobilized_.back(), SimTK::Vec3(0), toSim(b.force));
     }
     for (const Joint& j : scene.joints) {
       if (j.kind != JointKind::tie) continue;

@@ -11,6 +11,7 @@
 
 #include "apps/rivals/judge/machines.hpp"
 #include "apps/rivals/judge/overlap.hpp"
+#include "apps/rivals/judge/published.hpp"
 
 namespace rivals {
 namespace {
@@ -259,12 +260,26 @@ Measures pile(const Scene& scene, const Trajectory& run) {
 }
 
 using Measure = Measures (*)(const Scene&, const Trajectory&);
-const std::map<std::string, Measure> kMeasures = {
-    {"smooth", smooth},   {"free", freeFlight}, {"top", top},         {"thrown", thrown},
-    {"slides", slides},   {"creep", creep},     {"rolling", rolling}, {"drop", drop},
-    {"tower", tower},     {"grip", grip},       {"rope", rope},       {"pile", pile},
-    {"carried", carried}, {"cart", cart},       {"peg", peg},         {"bounce", measureBounce},
-    {"nut", measureNut},  {"feet", measureFeet}};
+const std::map<std::string, Measure> kMeasures = {{"smooth", smooth},
+                                                  {"free", freeFlight},
+                                                  {"top", top},
+                                                  {"thrown", thrown},
+                                                  {"slides", slides},
+                                                  {"creep", creep},
+                                                  {"rolling", rolling},
+                                                  {"drop", drop},
+                                                  {"tower", tower},
+                                                  {"grip", grip},
+                                                  {"rope", rope},
+                                                  {"pile", pile},
+                                                  {"carried", carried},
+                                                  {"cart", cart},
+                                                  {"peg", peg},
+                                                  {"bounce", measureBounce},
+                                                  {"nut", measureNut},
+                                                  {"feet", measureFeet},
+                                                  {"elastic", measureElastic},
+                                                  {"pushed", measurePushed}};
 
 }  // namespace
 

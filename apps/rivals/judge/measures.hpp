@@ -56,7 +56,8 @@ Energies energiesOf(const Scene& scene, const std::vector<BodyState>& states);
 ///   carried  slipped_mm, turned_deg of the last body in the first one, lost: 1 where it fell
 ///   cart     off_mm: along, aside_mm: from where its wheels slide and then roll
 ///   bounce   top1_mm, top2_mm, top3_mm: heights after the impacts; off_percent: the worst of the
-///            three from e²ⁿ times the fall, in percent of the fall; deepest_mm, and turned_deg until the fourth impact
+///            three from e²ⁿ times the fall, in percent of the fall; deepest_mm, and turned_deg
+///            until the fourth impact
 ///   nut      off_mm: sunk more than truth_mm, creep_mm_s over the second half, turned_deg, and
 ///            off_thread_mm: what it has sunk but not turned; aside_mm, leans_deg
 ///   feet     off_mm: the worse frame, along, aside_mm, turned_deg, slip_mm: the most that a frame
