@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apps/live/goal_settings.hpp"
 #include "apps/python/arrays.hpp"
 
 namespace softgauss::python {
@@ -152,6 +153,18 @@ class Handle {
     return *weight;
   }
 
+  double& setting(double* live::GoalSettings::*place, const char* what) const {
+    double* number = live::settingsOf(get()).*place;
+    if (!number) throw py::type_error("goal '" + get().name() + "' has no " + what);
+    return *number;
+  }
+  void setSetting(double* live::GoalSettings::*place, const char* what, double value) const {
+    if (!(value >= 0.0 && value < kInfinity))
+      throw py::value_error(std::string(what) + ": found " + numberText(value) +
+                            ", expected a finite number >= 0");
+    setting(place, what) = value;
+  }
+
   void setWeight(double weight) const {
     this->weight() = checkedWeight(weight);
     held_.sim().goals.weighDefaults();
@@ -233,6 +246,13 @@ py::list kept(const py::object& self, const std::vector<gdd::Goal*>& goals) {
   return out;
 }
 
+auto gainOf(double* live::GoalSettings::*place, const char* what) {
+  return [=](Handle& h) { return h.setting(place, what); };
+}
+auto setGain(double* live::GoalSettings::*place, const char* what) {
+  return [=](Handle& h, double value) { h.setSetting(place, what, value); };
+}
+
 void bindHandle(py::module_& m) {
   py::class_<Handle>(m, "Goal", "A goal of a simulation, until its goals are cleared.")
       .def_property_readonly(
@@ -249,6 +269,14 @@ void bindHandle(py::module_& m) {
           "[rad/s or m/s] of each joint of a joint_posture. At first 0. TypeError as for target.")
       .def_property("acceleration", &Handle::acceleration, &Handle::setAcceleration,
                     "The rate of that velocity.")
+      .def_property("stiffness", gainOf(&live::GoalSettings::stiffness, "stiffness"),
+                    setGain(&live::GoalSettings::stiffness, "stiffness"),
+                    "Of the spring by which it is sought [1/s²], ≥ 0. TypeError where it has none.")
+      .def_property("damping", gainOf(&live::GoalSettings::damping, "damping"),
+                    setGain(&live::GoalSettings::damping, "damping"), "Of that spring [1/s], ≥ 0.")
+      .def_property("rate", gainOf(&live::GoalSettings::rate, "rate"),
+                    setGain(&live::GoalSettings::rate, "rate"),
+                    "At which a velocity is sought [1/s], ≥ 0.")
       .def_property("weight", &Handle::weight, &Handle::setWeight, "In the unit of its kind, ≥ 0.")
       .def_property(
           "start", [](Handle& h) { return h.get().startTime; }, &Handle::setStart,

@@ -30,9 +30,11 @@ std::optional<OptionValue> optionValue(const py::handle& given) {
   }
 }
 
-/// A flag that is none of the program's, which has --passive and --servos; null: of another name.
+/// A flag that is none of the program's, which has --passive, --servos and --view; null: of another
+/// name.
 bool SimulationOptions::*ownFlag(const std::string& name) {
   if (name == "without_goals") return &SimulationOptions::withoutGoals;
+  if (name == "visual_meshes") return &SimulationOptions::visualMeshes;
   return name == "without_servos" ? &SimulationOptions::withoutServos : nullptr;
 }
 
@@ -64,7 +66,7 @@ SimulationOptions optionsFrom(const py::kwargs& keywords) {
       std::string known;
       for (const NamedOption& other : NamedOption::all()) known += std::string(other.name) + ", ";
       throw py::type_error("found the option '" + name + "', expected one of " + known +
-                           "without_goals, without_servos");
+                           "without_goals, without_servos, visual_meshes");
     }
     if (set(name, value, options)) continue;
     const std::string problem =

@@ -54,6 +54,15 @@ void bindStepping(HeldClass& sim) {
       "Back to where save() was called. Raises ModelError where the bytes are of another scene\n"
       "or were changed; the state is then as it was.");
   sim.def(
+      "record", [](Held& h) { h.sim().record(); },
+      "From here on the run is recorded, for save_replay(); again: anew. Goals that are set later\n"
+      "are not shown.");
+  sim.def(
+      "save_replay", [](Held& h, const std::filesystem::path& file) { h.sim().saveReplay(file); },
+      py::arg("file"),
+      "Writes what was recorded until now as a page that any browser shows. RuntimeError where\n"
+      "nothing is recorded, ModelError where the file cannot be made.");
+  sim.def(
       "stand_on_ground", [](Held& h) { h.sim().standOnGround(); },
       "Every floating base is moved up or down until its lowest point touches the ground.");
 }
@@ -141,7 +150,8 @@ void bindSimulation(py::module_&, HeldClass& sim) {
           "zero_effort,\n"
           "infer_inertia, ignore_velocity_limits, no_balance, gdd_solver, control_cost, "
           "budget, meshes, collision,\n"
-          "compatibility, package_paths, most_dofs; and without_goals, without_servos. Raises "
+          "compatibility, package_paths, most_dofs; and without_goals, without_servos, "
+          "visual_meshes. Raises "
           "ModelError and "
           "OptionError.");
   sim.def_property_readonly(

@@ -18,6 +18,7 @@ from softgauss_env import VectorEnv as VectorEnv
 
 Array = NDArray[np.float64]
 Path = str | os.PathLike[str]
+Given = ArrayLike | None
 GoalDict = Mapping[str, Mapping[str, Any]]
 Goals_ = str | GoalDict | Sequence[GoalDict]
 
@@ -45,6 +46,9 @@ class Goal:
     velocity: Array  # of the target that is moved step by step
     acceleration: Array
     weight: float
+    stiffness: float  # [1/s²], damping and rate [1/s]: of those goals that have them
+    damping: float
+    rate: float
     start: float
     end: float
     @property
@@ -210,6 +214,7 @@ class Simulation:
         package_paths: Sequence[Path] = ...,
         without_goals: bool = ...,
         without_servos: bool = ...,
+        visual_meshes: bool = ...,
     ) -> None: ...
     @property
     def goals(self) -> Goals: ...
@@ -218,6 +223,8 @@ class Simulation:
     def reset(self) -> None: ...
     def save(self) -> bytes: ...
     def restore(self, saved: bytes) -> None: ...
+    def record(self) -> None: ...
+    def save_replay(self, file: Path) -> None: ...
     def stand_on_ground(self) -> None: ...
     @property
     def time(self) -> float: ...
@@ -248,50 +255,40 @@ class Simulation:
         """Force (3,) [N] and moment (3,) [N m] in every step from now on; zero: nothing."""
     @property
     def contacts(self) -> Contacts: ...
-    def solve(self, q: ArrayLike | None = None, v: ArrayLike | None = None) -> Solution:
+    def solve(self, q: Given = None, v: Given = None) -> Solution:
         """The controller without a step, at q (nq,) and v (nv,) or at the present ones."""
-    def forward_dynamics(
-        self, tau: ArrayLike | None = None, q: ArrayLike | None = None, v: ArrayLike | None = None
-    ) -> Array:
+    def forward_dynamics(self, tau: Given = None, q: Given = None, v: Given = None) -> Array:
         """(nv,) acceleration under tau (nv,)"""
-    def inverse_dynamics(
-        self, a: ArrayLike, q: ArrayLike | None = None, v: ArrayLike | None = None
-    ) -> Array:
+    def inverse_dynamics(self, a: ArrayLike, q: Given = None, v: Given = None) -> Array:
         """(nv,) force under which the acceleration is a (nv,)"""
-    def inverse_dynamics_jacobian(
-        self, a: ArrayLike, q: ArrayLike | None = None, v: ArrayLike | None = None
-    ) -> Array:
+    def inverse_dynamics_jacobian(self, a: ArrayLike, q: Given = None, v: Given = None) -> Array:
         """(nv, nv) P = ∂τ/∂a"""
-    def mass_matrix(self, q: ArrayLike | None = None) -> Array:
+    def mass_matrix(self, q: Given = None) -> Array:
         """(nv, nv)"""
-    def jacobian(
-        self, link: str, point: ArrayLike = (0, 0, 0), q: ArrayLike | None = None
-    ) -> Array:
+    def jacobian(self, link: str, point: ArrayLike = (0, 0, 0), q: Given = None) -> Array:
         """(6, nv): velocity of the point, then angular velocity, world axes"""
-    def bias_forces(self, q: ArrayLike | None = None, v: ArrayLike | None = None) -> Array:
+    def bias_forces(self, q: Given = None, v: Given = None) -> Array:
         """(nv,) gravity, Coriolis and centripetal forces b of M a + b = τ"""
-    def energy(
-        self, q: ArrayLike | None = None, v: ArrayLike | None = None
-    ) -> tuple[float, float]:
+    def energy(self, q: Given = None, v: Given = None) -> tuple[float, float]:
         """(kinetic, potential) [J]"""
-    def momentum(self, q: ArrayLike | None = None, v: ArrayLike | None = None) -> Array:
+    def momentum(self, q: Given = None, v: Given = None) -> Array:
         """(6,) linear, then angular about the centre of mass, world axes"""
-    def center_of_mass(self, q: ArrayLike | None = None) -> Array: ...
-    def center_of_mass_jacobian(self, q: ArrayLike | None = None) -> Array: ...
+    def center_of_mass(self, q: Given = None) -> Array: ...
+    def center_of_mass_jacobian(self, q: Given = None) -> Array: ...
     def integrate(self, q: ArrayLike, v: ArrayLike, seconds: float = 1.0) -> Array:
         """(nq,) where q is after so many seconds at v"""
     def difference(self, q0: ArrayLike, q1: ArrayLike) -> Array:
         """(nv,) with integrate(q0, difference(q0, q1)) = q1"""
     def inverse_dynamics_derivatives(
-        self, a: ArrayLike, q: ArrayLike | None = None, v: ArrayLike | None = None
+        self, a: ArrayLike, q: Given = None, v: Given = None
     ) -> tuple[Array, Array, Array]:
         """(∂τ/∂q, ∂τ/∂v, ∂τ/∂a), (nv, nv) each"""
     def forward_dynamics_derivatives(
-        self, tau: ArrayLike | None = None, q: ArrayLike | None = None, v: ArrayLike | None = None
+        self, tau: Given = None, q: Given = None, v: Given = None
     ) -> tuple[Array, Array, Array]:
         """(∂a/∂q, ∂a/∂v, ∂a/∂τ), (nv, nv) each"""
     def step_derivatives(
-        self, tau: ArrayLike | None = None, q: ArrayLike | None = None, v: ArrayLike | None = None
+        self, tau: Given = None, q: Given = None, v: Given = None
     ) -> tuple[Array, Array]:
         """(A, B): ∂(q, v)/∂(q, v) (2 nv, 2 nv) and ∂(q, v)/∂τ (2 nv, nv) of one bare step"""
     @property
@@ -327,9 +324,7 @@ class States:
     """Many states of one simulation's scene, for runs that go on. One thread at a time."""
 
     def __init__(self, sim: Simulation, n: int) -> None: ...
-    def reset(
-        self, rows: ArrayLike | None = None, q: ArrayLike | None = None, v: ArrayLike | None = None
-    ) -> None:
+    def reset(self, rows: Given = None, q: Given = None, v: Given = None) -> None:
         """rows: indices or a mask (n,); all where they are not said."""
     @property
     def q(self) -> Array:
@@ -378,12 +373,12 @@ class Rollout:
         steps: int,
         *,
         runs: int | None = None,
-        q0: ArrayLike | None = None,
-        v0: ArrayLike | None = None,
-        tau: ArrayLike | None = None,
+        q0: Given = None,
+        v0: Given = None,
+        tau: Given = None,
         parameters: Mapping[str, ArrayLike] | None = None,
         goals: Goals_ | None = None,
-        targets: ArrayLike | None = None,
+        targets: Given = None,
         pushes: Mapping[str, ArrayLike] | None = None,
         states: States | None = None,
         outputs: Sequence[str] = ("q", "v"),

@@ -64,7 +64,7 @@ LiveRun::LiveRun(const SimulateOptions& options, const Scene& scene, live::Hands
     record_.emplace(options.record, model_.name, model_.options.timestep);
   scene_.command = options.commandLine;
   scene_.hulls = collidingHulls(scene);
-  scene_.images = visualImages(model_, options, status_.told);
+  scene_.images = visualImages(model_, options.largestMesh, status_.told);
   takeInitial(start, scene_);
   if (!live::isLoopback(options.liveAddress)) token_ = live::makeToken();
   live::ServerOptions server;

@@ -3,10 +3,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <map>
 
 namespace softgauss::app {
 namespace {
@@ -21,35 +19,6 @@ std::string sizeOf(const std::filesystem::path& target) {
 constexpr double kUnknownDuration = 60.0;  // [s] for which memory is fetched of a run without end
 
 }  // namespace
-
-std::vector<std::shared_ptr<const Mesh>> collidingHulls(const Scene& scene) {
-  std::vector<std::shared_ptr<const Mesh>> hulls(scene.model.geometries.size());
-  std::map<const collision::ConvexHull*, std::shared_ptr<const Mesh>> made;
-  for (std::size_t i = 0; i < hulls.size(); ++i) {
-    const collision::ConvexHull* hull = scene.contacts->hull(static_cast<int>(i));
-    if (!hull) continue;
-    std::shared_ptr<const Mesh>& mesh = made[hull];
-    if (!mesh) mesh = std::make_shared<const Mesh>(collision::triangulated(*hull));
-    hulls[i] = mesh;
-  }
-  return hulls;
-}
-
-std::map<const Mesh*, io::MeshImages> visualImages(const Model& model,
-                                                   const SimulateOptions& options,
-                                                   std::vector<std::string>& warnings) {
-  std::map<const Mesh*, io::MeshImages> all;
-  const auto largest = static_cast<std::uintmax_t>(options.largestMesh * (1 << 20));
-  for (const Visual& visual : model.visuals) {
-    const Mesh* mesh = visual.shape.mesh.get();
-    if (!mesh || all.contains(mesh)) continue;
-    io::MeshImages& images = all[mesh] = io::imagesOf(*mesh, largest);
-    for (const std::string& text : images.notShown)
-      if (std::find(warnings.begin(), warnings.end(), "not shown: " + text) == warnings.end())
-        warnings.push_back("not shown: " + text);
-  }
-  return all;
-}
 
 std::string runBeside(const SimulateOptions& options) {
   return options.viewWith.empty() ? std::string() : io::runInPage(options.viewWith);
@@ -93,7 +62,7 @@ Replay::Replay(const SimulateOptions& options, const Scene& scene,
   recording_->reserve(static_cast<std::size_t>(duration / scene.model.options.timestep), duration);
   if (!page_) return;
   recording_->hulls = collidingHulls(scene);
-  recording_->images = visualImages(scene.model, options, warnings_);
+  recording_->images = visualImages(scene.model, options.largestMesh, warnings_);
 }
 
 std::vector<std::string> Replay::finish(const io::StepRecord& last, const Data& data,

@@ -3,24 +3,15 @@
 
 /// --view and --plot: the run, recorded as it goes, written as a page and as drawings at its end.
 
-#include <map>
 #include <optional>
 
 #include "apps/simulate_gdd/scene.hpp"
 #include "softgauss/io/replay/page.hpp"
 #include "softgauss/io/replay/plot.hpp"
+#include "softgauss/io/simulation/run_recording.hpp"
 #include "softgauss/io/summary.hpp"
 
 namespace softgauss::app {
-
-/// A mesh collides as its convex hull, so that is what is shown: by geometry, null where the shape
-/// itself collides.
-std::vector<std::shared_ptr<const Mesh>> collidingHulls(const Scene& scene);
-
-/// Images that cover visual meshes of the model. `warnings`: those that cannot be shown, and why.
-std::map<const Mesh*, io::MeshImages> visualImages(const Model& model,
-                                                   const SimulateOptions& options,
-                                                   std::vector<std::string>& warnings);
 
 /// The run of --view-with, or nothing. Throws ModelError.
 std::string runBeside(const SimulateOptions& options);

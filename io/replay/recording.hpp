@@ -6,6 +6,7 @@
 /// The recorder turns steps into frames (poses, contacts, goals) and series (curves over time). It
 /// reads the engine's Snapshot and the goals' marks; engine and gdd know nothing of it.
 
+#include <algorithm>
 #include <map>
 #include <memory>
 #include <string>
@@ -83,6 +84,9 @@ class Recording {
   /// forces of the last step, which led there; curves of what a solve gives end before it.
   void finish(const StepRecord& last, const Data& data);
 
+  /// The goals are there no more, and have no marks from here on.
+  void forgetGoals() { std::fill(goals_.begin(), goals_.end(), nullptr); }
+
   /// What was recorded, for a run that goes on later.
   template <class Archive>
   void archive(Archive& a) {
@@ -98,8 +102,8 @@ class Recording {
   const std::vector<const gdd::Goal*>& places() const { return goals_; }
   /// Of one of them; nothing while it does not act.
   std::optional<gdd::GoalMark> markOf(std::size_t place, const gdd::GoalContext& context) const {
-    const gdd::Goal& goal = *goals_[place];
-    return goal.actsAt(context.state.time) ? goal.mark(context) : std::nullopt;
+    const gdd::Goal* goal = goals_[place];
+    return goal && goal->actsAt(context.state.time) ? goal->mark(context) : std::nullopt;
   }
   /// The plots, without those that are zero throughout, and without curves that are, such as the
   /// force on a link that nothing touched; joints at rest beside others that move are kept.

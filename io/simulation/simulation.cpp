@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 
 #include "softgauss/engine/core/bytes.hpp"
 #include "softgauss/engine/core/sealed.hpp"
@@ -18,6 +19,8 @@
 
 namespace softgauss {
 namespace {
+
+using Clock = std::chrono::steady_clock;
 
 constexpr std::string_view kSavedKind = "SGSIMUL\n";
 constexpr std::uint32_t kSavedVersion = 1;
@@ -82,11 +85,16 @@ SolveStatus Simulation::step() noexcept {
   const Model& model = p.scene->model;
   const Input& input = p.inputOfStep();
   const double start = p.state.time;
+  if (p.recording) p.recording->beforeStep();
+  const Clock::time_point begun = p.recording ? Clock::now() : Clock::time_point();
   const SolveStatus status =
       p.controller->goals.empty()
           ? softgauss::step(model, input, p.state, *p.data, &p.scene->source())
           : p.controller->step(model, input, p.state, *p.data, &p.scene->source());
-  if (!isRefused(status)) p.state.time = p.grid.after(start, model.options.timestep);
+  if (isRefused(status)) return status;
+  p.state.time = p.grid.after(start, model.options.timestep);
+  if (p.recording)
+    p.recording->afterStep(std::chrono::duration<double, std::micro>(Clock::now() - begun).count());
   return status;
 }
 
@@ -217,6 +225,14 @@ void Simulation::restore(std::string_view bytes) {
   const State restored = softgauss::restore(model(), saved);
   state() = restored;  // copied: its vectors stay where they are
   parts_->grid = grid;
+}
+
+void Simulation::record() { parts_->recording = std::make_unique<RunRecording>(*parts_); }
+
+void Simulation::saveReplay(const std::filesystem::path& file) const {
+  if (!parts_->recording)
+    throw std::logic_error("saveReplay: nothing was recorded, expected record() before the run");
+  parts_->recording->write(file);
 }
 
 void Simulation::standOnGround() {

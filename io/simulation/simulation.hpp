@@ -83,6 +83,13 @@ class Simulation {
   /// Throws ModelError where the bytes are no save() of the same scene with the same options, or
   /// were changed; the state is then as it was.
   void restore(std::string_view bytes);
+  /// From the present state on the run is recorded, for saveReplay(); again: anew. Steps then
+  /// allocate memory, and goals that are set later are not shown.
+  void record();
+  /// Writes what was recorded until now as a replay page, which any browser shows. Throws
+  /// std::logic_error where nothing is recorded, ModelError where the file cannot be made and
+  /// std::runtime_error where it cannot be written.
+  void saveReplay(const std::filesystem::path& file) const;
   /// Every floating base is raised or lowered until its lowest point touches the ground plane.
   /// Throws NameError where there is none.
   void standOnGround();

@@ -103,6 +103,7 @@ std::vector<gdd::Goal*> SimulationGoals::addAll(io::GoalFile asked) {
 }
 
 void SimulationGoals::clear() {
+  if (parts_->recording) parts_->recording->forgetGoals();
   parts_->controller->goals.clear();
   parts_->hasRegularisers = parts_->hasBalance = false;
   parts_->regularisers = 0;

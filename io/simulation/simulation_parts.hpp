@@ -4,6 +4,7 @@
 /// What Simulation and its goals share.
 
 #include "softgauss/io/contact_links.hpp"
+#include "softgauss/io/simulation/run_recording.hpp"
 #include "softgauss/io/simulation/simulation.hpp"
 #include "softgauss/io/simulation/time_grid.hpp"
 
@@ -34,6 +35,7 @@ struct SimulationParts {
   Kinematics kinematics;
   io::ContactLinks links;
   TimeGrid grid;
+  std::unique_ptr<RunRecording> recording;  ///< of the run, where one was asked for
 };
 
 }  // namespace softgauss
