@@ -103,6 +103,7 @@ std::vector<EventType> makeTypes() {
       {EventKind::state, "state", "the run is put into a state", {name("state", K::state)}},
       {EventKind::store, "store", "the state is kept", {slot}},
       {EventKind::recall, "recall", "the run is put into a state that was kept", {slot}},
+      {EventKind::reload, "reload", "a live run begins anew with its files as they are now", {}},
   };
 }
 

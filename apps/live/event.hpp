@@ -36,7 +36,8 @@ enum class EventKind {
   effect,
   state,
   store,
-  recall
+  recall,
+  reload
 };
 
 /// What a field holds.

@@ -97,6 +97,8 @@ std::string Hands::apply(const Event& event) {
     case EventKind::store:
     case EventKind::recall:
       return keyframe(event);
+    case EventKind::reload:
+      return "a file of events is of one model, which a live run alone can read anew";
   }
   return "";
 }

@@ -82,12 +82,13 @@ std::string statusMessage(const Status& status, const Hands& hands) {
         {"targets", status.targets},
         {"stored", hands.keyframes().stored()},
         {"pages", status.pages},
+        {"loads", status.loads},
         {"holding", hands.holding()},
         {"goals", goals}}}};
   return out.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
 
-std::string liveHeader(const Names& names, const std::string& token, bool passive, double weight) {
+std::string liveHeader(const Names& names, const LivePage& page) {
   ordered_json joints = ordered_json::array();
   for (const JointName& joint : names.joints) {
     ordered_json out = {{"name", joint.name}, {"unit", joint.turns ? "rad" : "m"}};
@@ -95,9 +96,10 @@ std::string liveHeader(const Names& names, const std::string& token, bool passiv
     if (std::isfinite(joint.upper)) out["upper"] = joint.upper;
     joints.push_back(out);
   }
-  const ordered_json out = {{"path", token.empty() ? "/run" : "/run?token=" + token},
-                            {"passive", passive},
-                            {"weight", weight},
+  const ordered_json out = {{"path", page.token.empty() ? "/run" : "/run?token=" + page.token},
+                            {"loads", page.loads},
+                            {"passive", page.passive},
+                            {"weight", page.weight},
                             {"joints", joints},
                             {"effects", names.effects},
                             {"states", names.states}};

@@ -56,12 +56,20 @@ struct Status {
   std::vector<double> joints;   ///< positions, in the order of Names::joints
   std::vector<double> targets;  ///< where a posture seeks them; empty: nowhere
   int pages = 0;
+  int loads = 0;  ///< LivePage::loads of the run
+};
+
+/// What a page knows from the start, besides the scene.
+struct LivePage {
+  std::string token;     ///< that it needs; empty: none
+  int loads = 0;         ///< how often the files were read: a page of another time begins anew
+  bool passive = false;  ///< nothing drives the run
+  double weight = 0.0;   ///< of all that moves [N], by which it scales arrows
 };
 
 std::string statusMessage(const Status& status, const Hands& hands);
 
-/// What a page knows from the start: where the run is, joints with their ranges, effects, and the
-/// weight of all that moves [N], by which it scales arrows.
-std::string liveHeader(const Names& names, const std::string& token, bool passive, double weight);
+/// The page's header: where the run is, joints with their ranges, effects and states.
+std::string liveHeader(const Names& names, const LivePage& page);
 
 }  // namespace softgauss::live

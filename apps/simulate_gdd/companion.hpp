@@ -21,6 +21,8 @@ class Companion {
   /// The run has ended after so many steps. Throws std::runtime_error where a file could not be
   /// written.
   virtual void finish(long taken) = 0;
+  /// Whether it ended the run for another one with the files as they are now.
+  virtual bool reloads() const { return false; }
   /// What it has to say of the run in the end.
   virtual void conclude(io::Summary&) {}
 };

@@ -31,7 +31,7 @@ class Company {
   template <class Back>
   Next next(Back&& back) {
     if (companion_) {
-      if (!companion_->before(taken_)) return Next::interrupted;
+      if (!companion_->before(taken_)) return companion_->reloads() ? Next::end : Next::interrupted;
       if (hands_ && hands_->jumped()) back(state_.time);
     }
     return taken_ < steps_ ? Next::step : Next::end;

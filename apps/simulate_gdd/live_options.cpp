@@ -32,7 +32,11 @@ std::vector<std::string> argumentsOf(int argc, char** argv) {
 void addLiveOptions(CLI::App& app, SimulateOptions& options) {
   const char* const live = "Live";
   app.add_option_function<int>(
-         "--live", [&options](int port) { options.live = static_cast<unsigned short>(port); },
+         "--live",
+         [&options](int port) {
+           options.live = std::make_shared<LivePlace>();
+           options.live->port = static_cast<unsigned short>(port);
+         },
          "[PORT]: run in real time and serve a page on 127.0.0.1 that shows the run and in which\n"
          "links are dragged by the mouse, until interrupted or for --duration; default 8080,\n"
          "0: any port that is free")

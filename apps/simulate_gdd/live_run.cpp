@@ -66,20 +66,26 @@ LiveRun::LiveRun(const SimulateOptions& options, const Scene& scene, live::Hands
   scene_.hulls = collidingHulls(scene);
   scene_.images = visualImages(model_, options.largestMesh, status_.told);
   takeInitial(start, scene_);
-  if (!live::isLoopback(options.liveAddress)) token_ = live::makeToken();
+  LivePlace& place = *options.live;
+  if (place.token.empty() && !live::isLoopback(options.liveAddress))
+    place.token = live::makeToken();
+  ++place.loads;
   live::ServerOptions server;
   server.address = options.liveAddress;
-  server.port = *options.live;
-  server.access = {token_.empty(), token_, live::hostOf(options.liveAddress)};
+  server.port = place.port;
+  server.access = {place.token.empty(), place.token, live::hostOf(options.liveAddress)};
   server.page = io::livePage(
       scene_, std::string("softgauss ") + SOFTGAUSS_VERSION,
-      live::liveHeader(hands.names(), token_, controller.goals.empty(), weightOf(model_)),
+      live::liveHeader(hands.names(),
+                       {place.token, place.loads, controller.goals.empty(), weightOf(model_)}),
       runBeside(options));
   try {
     server_ = std::make_unique<live::Server>(std::move(server), hands.names());
   } catch (const std::runtime_error& error) {
     throw UsageError(fmt::format("--live: {}; --live 0 takes any port that is free", error.what()));
   }
+  place.port = server_->port();
+  status_.loads = place.loads;
   frame_.origin = scene_.frames().origin;
   showState();
 }
@@ -87,10 +93,11 @@ LiveRun::LiveRun(const SimulateOptions& options, const Scene& scene, live::Hands
 LiveRun::~LiveRun() = default;
 
 std::string LiveRun::announcement() const {
-  const bool loopback = token_.empty();
+  const std::string& token = options_.live->token;
+  const bool loopback = token.empty();
   const std::string host = live::hostOf(options_.liveAddress);
   const std::string address = fmt::format("live: http://{}:{}/{}\n", host, server_->port(),
-                                          loopback ? "" : "?token=" + token_);
+                                          loopback ? "" : "?token=" + token);
   return address + (loopback
                         ? fmt::format("  Open it in a browser here; from elsewhere: ssh -L "
                                       "{0}:{1}:{0} THIS_MACHINE. ctrl-c ends the run.\n",
@@ -105,7 +112,7 @@ bool LiveRun::before(long taken) {
   taken_ = taken;
   for (;;) {
     const bool changed = takeEvents();
-    if (interrupted()) return false;
+    if (interrupted() || reloads()) return false;
     const Clock::time_point now = Clock::now();
     if (changed) nextStatus_ = now;
     if (hands_.paused()) {
@@ -145,11 +152,27 @@ bool LiveRun::takeEvents() {
         event.kind == live::EventKind::release ? !hands_.holding().empty() : hands_.pushes();
     if (sender.client == 0 && !holds) continue;
     event.step = taken_;
-    const std::string refused = hands_.apply(event);
-    if (refused.empty() && record_) record_->write(event);
+    const bool isReload = event.kind == live::EventKind::reload;
+    const std::string refused = isReload ? reload() : hands_.apply(event);
+    if (refused.empty() && record_ && !isReload) record_->write(event);
     if (sender.client != 0) server_->answer(sender, live::answer(sender.id, refused));
   }
   return !asked_.empty();
+}
+
+/// Why the files cannot be read anew, and the run goes on; empty: it ends, and they are.
+std::string LiveRun::reload() {
+  if (options_.model == "-") return "what came from standard input cannot be read anew";
+  try {
+    const std::unique_ptr<Scene> scene = loadScene(options_);
+    gdd::GoalDirectedController controller(scene->model);
+    setUp(options_, *scene, controller);
+  } catch (const std::exception& error) {
+    tell(error.what());
+    return error.what();
+  }
+  options_.live->reload = true;
+  return "";
 }
 
 void LiveRun::after(const SeenStep& step, const Verdict& verdict) {

@@ -33,10 +33,12 @@ class LiveRun final : public Companion {
   bool before(long taken) override;
   void after(const SeenStep& step, const Verdict& verdict) override;
   void tell(const std::string& message) override;
+  bool reloads() const override { return options_.live->reload; }
   void finish(long taken) override;
 
  private:
   bool takeEvents();
+  std::string reload();
   void pause();
   void showErrors(const GoalRecord& goals);
   void showState();
@@ -60,7 +62,6 @@ class LiveRun final : public Companion {
   live::Pace pace_;
   live::StepTimes times_;
   live::Status status_;
-  std::string token_;
   std::unique_ptr<live::Server> server_;
   long taken_ = 0;
   long begun_ = -1;  ///< steps before the one that was let go last

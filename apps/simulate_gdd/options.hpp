@@ -24,6 +24,14 @@ struct ReachArgument {
   std::optional<double> weight;  ///< absent: the goal's own [kg]
 };
 
+/// Where pages find a live run, which stays when its files are read anew.
+struct LivePlace {
+  unsigned short port = 0;  ///< 0: any that is free, until one is found
+  std::string token;        ///< that pages need; empty: none
+  int loads = 0;            ///< how often the files were read
+  bool reload = false;      ///< they are to be read again: the run ends for that
+};
+
 /// What is loaded how, and what is done with it.
 struct SimulateOptions : SimulationOptions {
   std::filesystem::path model;
@@ -50,8 +58,8 @@ struct SimulateOptions : SimulationOptions {
   bool details = false;  ///< what the solver did, in the table at the end
   long logEvery = 1;     ///< steps from one row of the log to the next
   std::filesystem::path log, contacts, summary, view, plot;
-  std::filesystem::path viewWith;      ///< a page whose run the page shows too
-  std::optional<unsigned short> live;  ///< port; 0: any that is free
+  std::filesystem::path viewWith;   ///< a page whose run the page shows too
+  std::shared_ptr<LivePlace> live;  ///< a live run
   std::string liveAddress = "127.0.0.1";
   std::filesystem::path record, play;  ///< what is done to a live run, to a file and from one
   bool acted() const { return live || !play.empty(); }  ///< somebody acts on the run

@@ -58,6 +58,10 @@ export class Link extends Emitter {
     }
     const message = JSON.parse(data);
     if (message.status) {
+      if (message.status.loads !== this.run.live.loads) {
+        window.location.reload(); // the run has begun anew, with other files than this page has
+        return;
+      }
       this.status = message.status;
       this.#acknowledge();
       this.emit('status', message.status);

@@ -92,6 +92,19 @@ function saveReplay(run, recorder, pageText) {
   return button;
 }
 
+/** The model's files as they are now. */
+const reload = (link) =>
+  element(
+    'button',
+    {
+      type: 'button',
+      class: 'wide',
+      title: 'Reads the model and its goals again and begins from their start; what is wrong with them is told',
+      onclick: () => link.tell({ reload: {} }),
+    },
+    'Reload model',
+  );
+
 /** `pageText`: this page without a run. */
 export function livePanel(host, link, run, settings, pageText) {
   const state = element('p', { class: 'live-state', role: 'status', id: 'live-state' });
@@ -126,6 +139,7 @@ export function livePanel(host, link, run, settings, pageText) {
       write,
       goalList(link, run, settings),
       saveReplay(run, new Recorder(run, link), pageText),
+      reload(link),
       states(link, run),
       figures(link),
       world(link, run),
