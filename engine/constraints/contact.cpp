@@ -180,7 +180,10 @@ std::optional<Touch> touchAt(const Assembly& in, int i, PairSurface& pair) {
   const bool apart = touch.distance >= touchingWithin(model.options, c.p_WC);
   if (apart && (material.spring || !beginsNow(in, c, touch.distance))) return std::nullopt;
   touch.frictionDim = pair.frictionDim;
-  double weight = weightAt(in, c.bodyA, c.p_WC) + weightAt(in, c.bodyB, c.p_WC);
+  const double turnedA = turnedWeight(in, c.bodyA, c.p_WC);
+  const double turnedB = turnedWeight(in, c.bodyB, c.p_WC);
+  touch.turnedWeight = turnedA + turnedB;
+  double weight = weightAt(in, c.bodyA, turnedA) + weightAt(in, c.bodyB, turnedB);
   double load = in.load ? in.load->mass(model, c.bodyA, c.bodyB) : 0.0;
   touch.nearRigid = pair.nearRigid;
   touch.supportsOthers =

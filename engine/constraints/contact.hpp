@@ -50,6 +50,7 @@ struct Touch {
   Softness softness;                 ///< of an edge, or of the row along the normal
   double loadStiffening = 1.0;       ///< of it by the load it carries (5.1): (w_A + w_B)/A, ≥ 1
   double inverseMass = 0.0;          ///< A [1/kg]
+  double turnedWeight = 0.0;         ///< what turns both bodies by a push here [1/kg]
   bool nearRigid = false;            ///< nobody gave its softness (3.15)
   bool supportsOthers = false;       ///< L > 0: other trees stand on each other here
   std::array<double, 5> friction{};  ///< μ_k of frictionDim directions

@@ -8,12 +8,6 @@
 namespace softgauss {
 namespace {
 
-/// What turns a body by a push at p_W, as an inverse weight there [1/kg].
-double turnedWeight(const Assembly& in, int body, const Vector3& p_W) {
-  const Vector3 lever = p_W - in.kinematics.X_WB[body] * in.model.bodies[body].com;
-  return in.weights.rotation[body] * lever.squaredNorm();
-}
-
 /// Where the centre of mass cannot move, a wheel's on its stand, a push moves p by turning the body
 /// alone: this share of that counts at least, or the row's mass would be without bound.
 constexpr double kTurned = 1e-4;
@@ -58,17 +52,22 @@ double brakesPerPush(const Assembly& in, const Contact& c, const Touch& touch, c
 
 /// Whether slip may push the bodies of a contact apart: nothing glides whose centre of mass cannot
 /// move.
-bool mayGlide(const Assembly& in, const Contact& c) {
+bool mayGlide(const Assembly& in, const Contact& c, const Touch& touch) {
   return in.weights.translation[c.bodyA] + in.weights.translation[c.bodyB] >
-         kTurned * (turnedWeight(in, c.bodyA, c.p_WC) + turnedWeight(in, c.bodyB, c.p_WC));
+         kTurned * touch.turnedWeight;
 }
 
 }  // namespace
 
-double weightAt(const Assembly& in, int body, const Vector3& p_W) {
+double turnedWeight(const Assembly& in, int body, const Vector3& p_W) {
+  const Vector3 lever = p_W - in.kinematics.X_WB[body] * in.model.bodies[body].com;
+  return in.weights.rotation[body] * lever.squaredNorm();
+}
+
+double weightAt(const Assembly& in, int body, double turned) {
   const double ofCentre = in.weights.translation[body];
   if (in.model.options.constraintModel == ConstraintModel::mujoco) return ofCentre;
-  return std::max(ofCentre, kTurned * turnedWeight(in, body, p_W));
+  return std::max(ofCentre, kTurned * turned);
 }
 
 double gainOf(const Options& options, const Touch& touch, const Softness& soft) {
@@ -107,7 +106,7 @@ WishedTangent tangentOf(const Assembly& in, const Contact& contact, const Touch&
   constexpr double kTurnsStably = 0.5;
   const Options& options = in.model.options;
   if (touch.frictionDim == 0 || options.cone != Cone::pyramidal || !options.correctsSlip() ||
-      !mayGlide(in, contact))
+      !mayGlide(in, contact, touch))
     return {contact.tangent_W};
   const Softness& s = touch.softness;
   const double normal = contact.n_W.dot(slips_W.linear);
@@ -139,7 +138,7 @@ Slip ContactBlocks::slipOf(const Assembly& in, const Touch& touch, const Softnes
   slip.asked = soft.damping * slipSpeed(touch, moves.velocity);
   if (!(slip.asked > 0.0)) return slip;
   const Contact& contact = in.contacts.contacts[contactsWithRows_.back().contact];
-  if (!mayGlide(in, contact)) return slip;
+  if (!mayGlide(in, contact, touch)) return slip;
   for (int k = 0; k < slip.dim; ++k)
     slip.direction[k] = -touch.friction[k] * soft.damping * moves.velocity[k + 1] / slip.asked;
   const double m = mobilityOf(in, contact, touch, slip.direction);

@@ -21,6 +21,38 @@ inline double* numbers(Force& F) { return reinterpret_cast<double*>(&F); }
 inline constexpr int kSixRow = 8;               ///< numbers of a row
 inline constexpr int kSixMatrix = 6 * kSixRow;  ///< numbers of a matrix
 
+/// Two numbers that are treated apart.
+using Two [[gnu::vector_size(16), gnu::aligned(8), gnu::may_alias]] = double;
+
+/// Six numbers in registers. What is stored as six is loaded as six: other loads would wait for the
+/// memory.
+struct Six {
+  Four low;
+  Two high;
+};
+
+[[gnu::always_inline]] inline Six loadSix(const double* x) {
+  return {*reinterpret_cast<const Four*>(x), *reinterpret_cast<const Two*>(x + 4)};
+}
+
+[[gnu::always_inline]] inline void storeSix(const Six& x, double* y) {
+  *reinterpret_cast<Four*>(y) = x.low;
+  *reinterpret_cast<Two*>(y + 4) = x.high;
+}
+
+/// y ← y + c x.
+[[gnu::always_inline]] inline void addSix(double c, const Six& x, Six& y) {
+  y.low += c * x.low;
+  y.high += c * x.high;
+}
+
+/// x·y of six.
+[[gnu::always_inline]] inline double dotSix(const Six& x, const Six& y) {
+  const Four low = x.low * y.low;
+  const Two high = x.high * y.high;
+  return ((low[0] + low[2]) + high[0]) + ((low[1] + low[3]) + high[1]);
+}
+
 /// x·y of six.
 [[gnu::always_inline]] inline double dotSix(const double* x, const double* y) {
   return ((x[0] * y[0] + x[2] * y[2]) + x[4] * y[4]) + ((x[1] * y[1] + x[3] * y[3]) + x[5] * y[5]);

@@ -98,6 +98,69 @@ SOFTGAUSS_VECTOR_CLONES int eliminateAll(const Arrays& a) {
   return -1;
 }
 
+/// What both sweeps of a solve share.
+struct Solve {
+  const Model& model;
+  const EliminationOrder& order;
+  std::span<const EliminationOrder::Step> steps;
+  const Motion* S;
+  const double *U, *V;
+  const int* firstV;
+  const double* inversePivot;
+  double* u;
+  Force* p;
+  double* x;
+  Motion* A;
+};
+
+/// u and p of all bodies, in the order of elimination.
+SOFTGAUSS_VECTOR_CLONES void sweepIn(const Solve& a) {
+  for (const EliminationOrder::Step& step : a.steps) {
+    const Body& body = a.model.bodies[idx(step.body)];
+    const int last = body.v + body.dofs - 1;
+    Six p = loadSix(numbers(a.p[step.body]));
+    for (int i = last; i >= body.v; --i) {
+      a.u[i] = (a.x[i] - dotSix(loadSix(numbers(a.S[i])), p)) * a.inversePivot[i];
+      addSix(a.u[i], loadSix(a.U + kSixRow * i), p);
+    }
+    const Coupling* coupling = a.order.couplings(step);
+    for (int c = 0; c < step.couplings; ++c) {
+      const double* V = a.V + a.firstV[step.body] + kSixRow * c;
+      double* other = numbers(a.p[coupling[c].body]);
+      Six sum = loadSix(other);
+      for (int i = last; i >= body.v; --i, V += kSixRow * step.couplings)
+        addSix(a.u[i], loadSix(V), sum);
+      storeSix(sum, other);
+    }
+    if (body.parent == 0) continue;
+    Six parent = loadSix(numbers(a.p[body.parent]));
+    parent.low += p.low;
+    parent.high += p.high;
+    storeSix(parent, numbers(a.p[body.parent]));
+  }
+}
+
+/// x and the motions, the other way.
+SOFTGAUSS_VECTOR_CLONES void sweepOut(const Solve& a) {
+  for (std::size_t s = a.steps.size(); s-- > 0;) {
+    const EliminationOrder::Step& step = a.steps[s];
+    const Body& body = a.model.bodies[idx(step.body)];
+    const Coupling* coupling = a.order.couplings(step);
+    const int row = kSixRow * step.couplings;
+    const double* V = a.V + a.firstV[step.body] + row * body.dofs;
+    Six moves = loadSix(numbers(a.A[body.parent]));
+    for (int i = body.v; i < body.v + body.dofs; ++i) {
+      V -= row;
+      double sum = dotSix(loadSix(a.U + kSixRow * i), moves);
+      for (int c = 0; c < step.couplings; ++c)
+        sum += dotSix(loadSix(V + kSixRow * c), loadSix(numbers(a.A[coupling[c].body])));
+      a.x[i] = a.u[i] - a.inversePivot[i] * sum;
+      addSix(a.x[i], loadSix(numbers(a.S[i])), moves);
+    }
+    storeSix(moves, numbers(a.A[step.body]));
+  }
+}
+
 /// A ← A + c Lᵀ H R for rows of eight, at most six.
 template <int dim>
 [[gnu::always_inline]] inline void addProductOf(double c, const double* L, const double* H,
@@ -247,42 +310,12 @@ void ArticulatedFactor::solve(const Model& model, const Kinematics& k, VectorX& 
 
 void ArticulatedFactor::solveTree(const Model& model, const Kinematics& k, VectorX& x,
                                   std::vector<Motion>& A) {
-  const auto VOf = [&](const EliminationOrder::Step& step, int i) {
-    const Body& body = model.bodies[idx(step.body)];
-    return V_.data() + firstV_[idx(step.body)] +
-           kSixRow * step.couplings * (body.v + body.dofs - 1 - i);
-  };
-  const std::span<const EliminationOrder::Step> steps = order_.steps(part_);
   for (const Segment s : bodies_) std::fill(p_.begin() + s.begin, p_.begin() + s.end, Force{});
-  for (const EliminationOrder::Step& step : steps) {
-    const Body& body = model.bodies[idx(step.body)];
-    const Coupling* coupling = order_.couplings(step);
-    double* p = numbers(p_[idx(step.body)]);
-    for (int i = body.v + body.dofs - 1; i >= body.v; --i) {
-      const double u = (x[i] - dotSix(numbers(k.S[idx(i)]), p)) * inversePivot_[idx(i)];
-      u_[idx(i)] = u;
-      addSix(u, U_.data() + kSixRow * i, p);
-      const double* V = VOf(step, i);
-      for (int c = 0; c < step.couplings; ++c)
-        addSix(u, V + kSixRow * c, numbers(p_[idx(coupling[c].body)]));
-    }
-    if (body.parent != 0) p_[idx(body.parent)] += p_[idx(step.body)];
-  }
-  for (std::size_t s = steps.size(); s-- > 0;) {
-    const EliminationOrder::Step& step = steps[s];
-    const Body& body = model.bodies[idx(step.body)];
-    const Coupling* coupling = order_.couplings(step);
-    Motion moves = A[idx(body.parent)];
-    for (int i = body.v; i < body.v + body.dofs; ++i) {
-      double sum = dotSix(U_.data() + kSixRow * i, numbers(moves));
-      const double* V = VOf(step, i);
-      for (int c = 0; c < step.couplings; ++c)
-        sum += dotSix(V + kSixRow * c, numbers(A[idx(coupling[c].body)]));
-      x[i] = u_[idx(i)] - inversePivot_[idx(i)] * sum;
-      addSix(x[i], numbers(k.S[idx(i)]), numbers(moves));
-    }
-    A[idx(step.body)] = moves;
-  }
+  const Solve arrays{model,     order_,         order_.steps(part_),  k.S.data(), U_.data(),
+                     V_.data(), firstV_.data(), inversePivot_.data(), u_.data(),  p_.data(),
+                     x.data(),  A.data()};
+  sweepIn(arrays);
+  sweepOut(arrays);
 }
 
 }  // namespace softgauss
