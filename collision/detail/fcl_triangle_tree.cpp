@@ -115,7 +115,6 @@ void TriangleTree::near(const TriangleTree& other, const Transform& X, double re
       waiting[idx(count++)] =
           goDown ? std::pair(node.first + next, j) : std::pair(i, far.first + next);
   }
-  std::sort(found.begin(), found.end());
 }
 
 bool TriangleTree::anyWithin(const Box& box) const {

@@ -28,7 +28,7 @@ class TriangleTree {
   /// Whether there is any.
   bool anyWithin(const Box& box) const;
   /// Pairs of a triangle of this tree and one of another, at pose X in the axes of this one, whose
-  /// own boxes come nearer than `reach`, in rising order, into `found` (cleared first).
+  /// own boxes come nearer than `reach`, in the order of the trees, into `found` (cleared first).
   void near(const TriangleTree& other, const Transform& X, double reach,
             std::vector<std::pair<int, int>>& found) const;
   std::size_t bytes() const { return nodes_.capacity() * sizeof(Node); }

@@ -91,7 +91,7 @@ void SurfacePairs::findTouching(const Query& q) {
   const double reach = std::max(q.margin, 0.0) + kTouch * q.size;
   q.b.tree().near(q.a.tree(), q.X_BA, reach, found_);
   for (const auto& [t, s] : found_) {
-    const Separation found = separateTriangles(q.triangleA(s), q.b.triangle(t));
+    const Separation found = separateTriangles(q.triangleA(s), q.b.triangle(t), reach);
     if (found.distance < reach) touching_.push_back({s, t, -found.n_W, found.distance});
   }
   // The least deep first.
@@ -138,7 +138,7 @@ bool SurfacePairs::isFreed(const Query& q, const Touching& pair) const {
     Triangle moved = s;
     const double way = kSearchTilt * q.size + std::max(0.0, -meeting.distance);
     for (Vector3& x : moved.corners) x += way * meeting.m;
-    return separateTriangles(moved, t).distance >= 0.0;
+    return separateTriangles(moved, t, 0.0).distance >= 0.0;
   });
 }
 

@@ -15,8 +15,11 @@ Vector3 side(const Triangle& t, std::size_t k) { return t.corners[(k + 1) % 3] -
 /// Keeps the best of the directions that it is shown.
 struct Best {
   const Triangle &a, &b;
+  double enough;
   Separation found{Vector3::UnitZ(), -kInfinity};
 
+  /// Whether nothing more is asked.
+  bool isEnough() const { return found.distance >= enough; }
   void offer(const Vector3& n, double handicap) {
     for (const double sign : {1.0, -1.0}) {
       const double separation = separationAlong(a, b, sign * n);
@@ -34,14 +37,15 @@ double separationAlong(const Triangle& a, const Triangle& b, const Vector3& n) {
   return lowest - highest;
 }
 
-Separation separateTriangles(const Triangle& a, const Triangle& b) {
-  Best best{a, b};
+Separation separateTriangles(const Triangle& a, const Triangle& b, double enough) {
+  Best best{a, b, enough};
   best.offer(b.normal, 0.0);
+  if (best.isEnough()) return best.found;
   best.offer(a.normal, 0.0);
   double size = 0.0;
   for (std::size_t k = 0; k < 3; ++k) size = std::max(size, side(a, k).squaredNorm());
   const double handicap = kFacePreference * std::sqrt(size);
-  for (std::size_t i = 0; i < 3; ++i) {
+  for (std::size_t i = 0; i < 3 && !best.isEnough(); ++i) {
     best.offer(a.normal.cross(side(a, i)).normalized(), handicap);
     best.offer(b.normal.cross(side(b, i)).normalized(), handicap);
     for (std::size_t k = 0; k < 3; ++k) {

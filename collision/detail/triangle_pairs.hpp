@@ -14,8 +14,9 @@
 namespace softgauss::collision::detail {
 
 /// Of two triangles in one frame: the best direction, from a to b, and the separation along it.
-/// Normals of the two come first, to rounding.
-Separation separateTriangles(const Triangle& a, const Triangle& b);
+/// Normals of the two come first, to rounding. Once they are `enough` apart along one [m], no other
+/// direction is looked for.
+Separation separateTriangles(const Triangle& a, const Triangle& b, double enough = kInfinity);
 
 /// min over b of n·x − max over a of n·x.
 double separationAlong(const Triangle& a, const Triangle& b, const Vector3& n);
