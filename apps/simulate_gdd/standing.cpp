@@ -14,6 +14,7 @@ constexpr double kComesToStand = 0.1;  // [s] after the first contact
 constexpr double kStillTouches = 0.1;  // [s] without contact: it bounces or rolls
 constexpr double kStillLies = 1.0;     // [s] without contact of links that do not stand
 constexpr double kFallenShare = 0.25;  // of the base's height
+constexpr double kSunkShare = 0.05;    // of it: less is no way from standing to lying
 constexpr double kFallenTilt = M_PI / 9.0;
 constexpr double kTippedTilt = M_PI / 36.0;  // of what stood flat on its root
 constexpr double kFallSpeed = 0.2;           // [m/s]
@@ -110,6 +111,8 @@ std::vector<StandingOutcome> Standing::outcomes(const Kinematics& end, double ti
       o.since = robot.lies;
     }
     const bool lower = o.cameDown > kFallenShare * robot.height;
+    // A caster that comes to touch beside the wheels is no trunk on the ground.
+    baseLies = baseLies && (o.cameDown > kSunkShare * robot.height || o.tilt > kTippedTilt);
     const bool down = lower || o.tilt > (robot.stoodOnRoot ? kTippedTilt : kFallenTilt);
     o.fell =
         (down && !o.onGround.empty()) || baseLies || (o.tilt > kLiesTilt && (baseTouches || lower));

@@ -47,7 +47,8 @@ std::string plainUri(const std::string& uri) {
 std::pair<std::string, std::string> inPackage(const std::string& uri) {
   for (const std::string_view scheme : {"package://", "model://"}) {
     if (!uri.starts_with(scheme)) continue;
-    const std::string rest = uri.substr(scheme.size());
+    std::string rest = uri.substr(scheme.size());
+    rest.erase(0, rest.find_first_not_of('/'));  // package:///name/…, as some write it
     const std::size_t slash = std::min(rest.find('/'), rest.size());
     return {rest.substr(0, slash), rest.substr(std::min(slash + 1, rest.size()))};
   }

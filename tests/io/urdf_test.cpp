@@ -244,9 +244,9 @@ TEST(UrdfMesh, MayBeNamedAsAModelByPercentsAndByBackslashes) {
                                                  "<mesh filename=\"" + uri + "\"/>")));
     return std::filesystem::path(m.geometries[0].shape.mesh->file).lexically_normal();
   };
-  for (const char* uri :
-       {"model://pkg/my meshes/t.stl", "package://pkg/my%20meshes/t.stl", "my%20meshes\\t.stl",
-        "package:\\\\pkg\\my meshes\\t.stl", "model://pkg/my%20meshes%2Ft.stl"})
+  for (const char* uri : {"model://pkg/my meshes/t.stl", "package://pkg/my%20meshes/t.stl",
+                          "my%20meshes\\t.stl", "package:///pkg/my meshes/t.stl",
+                          "package:\\\\pkg\\my meshes\\t.stl", "model://pkg/my%20meshes%2Ft.stl"})
     EXPECT_EQ(found(uri), folder.path() / "pkg/my meshes/t.stl") << uri;
   EXPECT_EQ(found("a%20b.stl"), folder.path() / "pkg/a%20b.stl");
   EXPECT_THROW(found("a%2xb.stl"), ModelError);

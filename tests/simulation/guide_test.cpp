@@ -36,7 +36,7 @@ int firstProgram() {
   // clang-format off
   softgauss::Simulation sim = softgauss::Simulation::load("data/robots/humanoid.urdf");
   sim.goals.reach("right_hand", {0.4, -0.2, 1.1}).weight = 1e5;
-  sim.goals.posture(1000);  // a reach alone does not balance
+  sim.goals.posture(1000);
   while (sim.time() < 2.0)
     if (softgauss::isRefused(sim.step())) {
       std::puts(sim.failure().c_str());
