@@ -97,13 +97,22 @@ void TriangleTree::near(const TriangleTree& other, const Transform& X, double re
                         std::vector<std::pair<int, int>>& found) const {
   found.clear();
   const Turned there(X, reach), back(X.inverse(), reach);
-  std::array<std::pair<int, int>, 2 * kWaiting> waiting;
+  // Two nodes, and the box of each in the axes of the other.
+  struct Two {
+    int i, j;
+    Box farHere, nodeThere;
+  };
+  std::array<Two, 2 * kWaiting> waiting;
   int count = 0;
-  waiting[idx(count++)] = {0, 0};
+  const auto wait = [&](const Two& two) {
+    if (two.farHere.overlaps(nodes_[idx(two.i)].box) &&
+        two.nodeThere.overlaps(other.nodes_[idx(two.j)].box))
+      waiting[idx(count++)] = two;
+  };
+  wait({0, 0, there(other.nodes_[0].box), back(nodes_[0].box)});
   while (count > 0) {
-    const auto [i, j] = waiting[idx(--count)];
-    const Node &node = nodes_[idx(i)], &far = other.nodes_[idx(j)];
-    if (!there(far.box).overlaps(node.box) || !back(node.box).overlaps(far.box)) continue;
+    const Two two = waiting[idx(--count)];
+    const Node &node = nodes_[idx(two.i)], &far = other.nodes_[idx(two.j)];
     if (node.first < 0 && far.first < 0) {
       found.push_back({-node.first - 1, -far.first - 1});
       continue;
@@ -111,9 +120,13 @@ void TriangleTree::near(const TriangleTree& other, const Transform& X, double re
     const bool goDown =
         far.first < 0 || (node.first >= 0 && (node.box.upper - node.box.lower).squaredNorm() >
                                                  (far.box.upper - far.box.lower).squaredNorm());
-    for (const int next : {1, 0})
-      waiting[idx(count++)] =
-          goDown ? std::pair(node.first + next, j) : std::pair(i, far.first + next);
+    for (const int next : {1, 0}) {
+      if (goDown)
+        wait({node.first + next, two.j, two.farHere, back(nodes_[idx(node.first + next)].box)});
+      else
+        wait({two.i, far.first + next, there(other.nodes_[idx(far.first + next)].box),
+              two.nodeThere});
+    }
   }
 }
 
