@@ -205,20 +205,9 @@ class Runner {
   void record() {
     const bool gdd = !controller_.goals.empty();
     const StepStats& stats = data_.stats;
-    record_.a = data_.plan.drifts ? data_.acceleration : data_.forward.a;
-    appliedForces(data_, record_.u);
-    record_.contacts = stats.contacts;
-    record_.constraints = stats.rows;
-    record_.iterations = gdd ? controller_.report.iterations : stats.iterations;
-    record_.dualUpdates = gdd ? controller_.report.dualUpdates : 0;
-    record_.gddViolation = gdd ? controller_.report.violation : 0.0;
-    record_.stationarity = gdd ? controller_.report.stationarity : 0.0;
-    record_.realised = stats.realised;
-    record_.gddUs = gdd ? 1e6 * controller_.solveTime : 0.0;
-    record_.forwardUs = record_.stepUs - record_.gddUs;
+    recordSolve(data_, controller_, record_.stepUs, record_);
     record_.physicsViolation =
         islands_ ? islands_->physicsViolation() : physicsViolation(model_, data_, scratch_);
-    record_.maxPenetration = stats.maxPenetration;
     measure(record_, kinematics_);
     if (islands_)
       touching_ = islands_->contacts();

@@ -40,6 +40,25 @@ std::map<const Mesh*, io::MeshImages> visualImages(const Model& model, double la
   return all;
 }
 
+void recordSolve(const Data& data, const gdd::GoalDirectedController& controller, double stepUs,
+                 io::StepRecord& record) {
+  const bool controlled = !controller.goals.empty();
+  const StepStats& stats = data.stats;
+  record.a = data.plan.drifts ? data.acceleration : data.forward.a;
+  appliedForces(data, record.u);
+  record.contacts = stats.contacts;
+  record.constraints = stats.rows;
+  record.iterations = controlled ? controller.report.iterations : stats.iterations;
+  record.dualUpdates = controlled ? controller.report.dualUpdates : 0;
+  record.gddViolation = controlled ? controller.report.violation : 0.0;
+  record.stationarity = controlled ? controller.report.stationarity : 0.0;
+  record.realised = stats.realised;
+  record.stepUs = stepUs;
+  record.gddUs = controlled ? 1e6 * controller.solveTime : 0.0;
+  record.forwardUs = stepUs - record.gddUs;
+  record.maxPenetration = stats.maxPenetration;
+}
+
 io::Recording RunRecording::begin(SimulationParts& parts) {
   const Model& model = parts.scene->model;
   Data start(model, Data::Evaluation{});
@@ -66,19 +85,7 @@ void RunRecording::beforeStep() {
 
 void RunRecording::afterStep(double stepUs) {
   Data& data = *parts_.data;
-  const gdd::GoalDirectedController& controller = *parts_.controller;
-  const bool controlled = !controller.goals.empty();
-  record_.a = data.plan.drifts ? data.acceleration : data.forward.a;
-  appliedForces(data, record_.u);
-  record_.contacts = data.stats.contacts;
-  record_.constraints = data.stats.rows;
-  record_.iterations = controlled ? controller.report.iterations : data.stats.iterations;
-  record_.dualUpdates = controlled ? controller.report.dualUpdates : 0;
-  record_.gddViolation = controlled ? controller.report.violation : 0.0;
-  record_.stepUs = stepUs;
-  record_.gddUs = controlled ? 1e6 * controller.solveTime : 0.0;
-  record_.forwardUs = stepUs - record_.gddUs;
-  record_.maxPenetration = data.stats.maxPenetration;
+  recordSolve(data, *parts_.controller, stepUs, record_);
   const Energy energy = computeEnergy(parts_.scene->model, kinematics_, record_.q, record_.v);
   record_.energy = energy.total();
   record_.kineticEnergy = energy.kinetic;

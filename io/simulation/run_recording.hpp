@@ -25,6 +25,11 @@ std::vector<std::shared_ptr<const Mesh>> collidingHulls(const Scene& scene);
 std::map<const Mesh*, io::MeshImages> visualImages(const Model& model, double largest,
                                                    std::vector<std::string>& warnings);
 
+/// What the stages of a step and its controller say of it, which took `stepUs` [µs]. `record` has
+/// time, q and v of the step's start already.
+void recordSolve(const Data& data, const gdd::GoalDirectedController& controller, double stepUs,
+                 io::StepRecord& record);
+
 class RunRecording {
  public:
   /// Begins with the present state. Goals are shown that are there now. The parts outlive it.
