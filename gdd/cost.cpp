@@ -36,6 +36,7 @@ SOFTGAUSS_VECTOR_CLONES void addRankOne(const double* y, double scale, MatrixX& 
 
 void GoalCost::clear(const ForceMetric& R) {
   rows_.clear();
+  share_ = 1.0;
   weight_.clear();
   target_.clear();
   denseWeight_.clear();
@@ -68,7 +69,7 @@ void GoalCost::addPoint(const Model& model, const Kinematics& k, const TreeSpars
   motion.p_WA = motion.p_WB = p_WP;
   motion.linearDim = 3;
   rows_.add(model, k, tree, motion);
-  weight_.push_back(weight);
+  weight_.push_back(share_ * weight);
   target_.push_back(target);
 }
 
@@ -80,7 +81,7 @@ void GoalCost::addRows(const Eigen::Ref<const MatrixX>& J, double weight,
     dense_.conservativeResize(J.cols(), 2 * used + J.rows());  // room that later steps keep
   dense_.middleCols(used, J.rows()) = J.transpose();
   for (Eigen::Index i = 0; i < J.rows(); ++i) {
-    denseWeight_.push_back(weight);
+    denseWeight_.push_back(share_ * weight);
     denseTarget_.push_back(target[i]);
   }
 }
@@ -91,7 +92,7 @@ GoalCost::OneSided& GoalCost::addSide(double weight, double least) {
   if (dense_.cols() <= room) dense_.conservativeResize(dofWeight_.size(), 2 * room + 1);
   denseWeight_.push_back(0.0);
   denseTarget_.push_back(least);
-  sides_.push_back({used, weight});
+  sides_.push_back({used, share_ * weight});
   return sides_.back();
 }
 
@@ -128,8 +129,8 @@ bool GoalCost::chooseSides(const VectorX& a, bool first) {
 }
 
 void GoalCost::addDof(int dof, double weight, double target) {
-  dofWeight_[dof] += weight;
-  dofOffset_[dof] -= weight * target;
+  dofWeight_[dof] += share_ * weight;
+  dofOffset_[dof] -= share_ * weight * target;
 }
 
 double GoalCost::value(const VectorX& a, const VectorX& Ma) const {

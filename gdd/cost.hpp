@@ -41,6 +41,7 @@ struct GoalWorkspace {
   MatrixX placeRows, placeHalf;  ///< (nv × k)
   MatrixX placeInertia;          ///< (k × k)
   VectorX placePull;             ///< (k)
+  double placeShare = 1.0;       ///< how far it yields to them
   Eigen::LLT<MatrixX> placeFactor;
   VectorX pull;  ///< (nv)
 
@@ -64,6 +65,8 @@ class GoalCost {
   void reserve(int controls, int contacts);
   /// No goals; force costs ½ gᵀR g.
   void clear(const ForceMetric& R = {});
+  /// From here on weights of rows, dofs and metric count so many times; 1 after clear().
+  void setShare(double share) { share_ = share; }
   /// ½ weight |J a − target|² for the world acceleration J a of the point p_WP of `body`.
   void addPoint(const Model& model, const Kinematics& k, const TreeSparsity& tree, int body,
                 const Vector3& p_WP, double weight, const Vector3& target);
@@ -83,8 +86,8 @@ class GoalCost {
   /// ½ weight (a − target)ᵀ M (a − target), up to a constant.
   template <class Target>
   void addMetric(double weight, const TreeMatrix& M, const Eigen::MatrixBase<Target>& target) {
-    metricWeight_ += weight;
-    workspace_.dofs = -weight * target;
+    metricWeight_ += share_ * weight;
+    workspace_.dofs = -share_ * weight * target;
     M.multiply(workspace_.dofs, scratch_);
     metricSlope_ += scratch_;
   }
@@ -153,6 +156,7 @@ class GoalCost {
   };
   OneSided& addSide(double weight, double least);
 
+  double share_ = 1.0;
   BlockJacobian rows_;
   std::vector<double> weight_;  ///< one a block
   std::vector<Vector3> target_;

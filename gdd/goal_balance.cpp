@@ -106,12 +106,12 @@ void GoalBalance::listTerms(double time) {
   }
 }
 
-void GoalBalance::findWaiting(const State& state) {
-  for (Term& term : terms_)
-    for (int i = 0; i < goalCount(); ++i)
-      if (const auto* balance = dynamic_cast<const StandingBalance*>(terms_[idx(i)].goal))
-        if (balance->holdsBack({model_, state, data_}, controller_.goals, *term.goal))
-          term.waitsFor = i;
+void GoalBalance::findShares(const State& state) {
+  for (Term& term : terms_) {
+    int by = -1;
+    term.share = shareAmong(controller_.goals, *term.goal, {model_, state, data_}, &by);
+    if (by >= 0) term.fadesFor = find(*controller_.goals[idx(by)], "");
+  }
 }
 
 int GoalBalance::find(const Goal& goal, const std::string& name) const {
@@ -127,10 +127,7 @@ int GoalBalance::find(const Goal& goal, const std::string& name) const {
 /// ∇ℓ_k at a, for the rows as they were last evaluated; leaves the goal's prices in cost_.
 VectorX GoalBalance::slopeOf(const Term& term, const State& state, const VectorX& a) {
   cost_.clear();
-  if (term.own)
-    term.own->addCost({model_, state, data_}, cost_);
-  else
-    addCostAmong(controller_.goals, *term.goal, {model_, state, data_}, cost_);
+  addCostAmong(controller_.goals, *term.goal, {model_, state, data_}, cost_, term.own.get());
   if (cost_.hasSides()) cost_.chooseSides(a);
   VectorX Ma(model_.nv), slope = VectorX::Zero(model_.nv);
   if (cost_.hasFunctions() && !cost_.expand(data_.inertia.M, a, 0.0)) return slope;
@@ -273,7 +270,7 @@ bool GoalBalance::solve(const Input& input, const State& state, ContactSource* c
   listTerms(state.time);
   findStillSlopes(held, state, contacts);
   if (isRefused(computeStages(model_, held, state, data_, contacts))) return false;
-  findWaiting(state);
+  findShares(state);
   if (!findAcceleration(state)) return false;
   inverseDynamicsJacobian(data_, P_);
   if (!factor_.compute(P_) || !massFactor_.compute(data_.inertia.hat())) return false;
@@ -353,7 +350,7 @@ void GoalBalance::split(const Goal& goal, int dof, VectorX& slope, VectorX& othe
 
 Opposition GoalBalance::against(int i, int dof) {
   const Term& goal = terms_[idx(i)];
-  if (goal.waitsFor >= 0) return {{{Kind::goal, goal.waitsFor, -1, 1.0}}, 1.0};
+  if (goal.share == 0.0) return {{{Kind::goal, goal.fadesFor, -1, 1.0}}, 1.0};
   Opposition result;
   VectorX slope = goal.slope, still = goal.still, others, stillOthers;
   split(*goal.goal, dof, slope, others);
@@ -393,6 +390,8 @@ Opposition GoalBalance::against(int i, int dof) {
     sum.add({fast ? Kind::velocityLimit : Kind::range, j}, motionSlope_[j] * d[j]);
   }
   addRows(d, sum);
+  if (goal.share < 1.0)  // what the balance has taken from it would pull as well
+    sum.add({Kind::goal, goal.fadesFor}, pull * (1.0 / goal.share - 1.0));
   result.opponents = sum.opponents();
   return result;
 }

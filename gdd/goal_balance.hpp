@@ -91,12 +91,13 @@ class GoalBalance {
     /// Of a reach: the largest ∇ℓ·D⁻¹∇ℓ that it would have at this distance, 2 ℓ tr(D⁻¹∇²ℓ); else
     /// 0.
     double most = 0.0;
-    int waitsFor = -1;  ///< the term of a balance that holds it back
+    double share = 1.0;  ///< of it, what balances leave to act
+    int fadesFor = -1;   ///< the term of the balance that leaves least of it
   };
   struct Sum;
 
   void listTerms(double time);
-  void findWaiting(const State& state);
+  void findShares(const State& state);
   VectorX slopeOf(const Term& term, const State& state, const VectorX& a);
   double mostSlope(const VectorX& a);
   void findStillSlopes(const Input& input, State state, ContactSource* contacts);

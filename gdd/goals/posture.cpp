@@ -83,7 +83,7 @@ void Posture::yield(const GoalContext& context, GoalWorkspace& work, VectorX& pu
   x.setZero();
   for (Eigen::Index i = 0; i < used; ++i) x += work.placePull[i] * Jt.col(i);
   factor.solve(x);
-  pull -= x;
+  pull -= work.placeShare * x;
 }
 
 /// q* ⊖ q (nv).

@@ -2,27 +2,37 @@
 #include "softgauss/gdd/goals/standing_balance.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "softgauss/engine/core/rotation.hpp"
+#include "softgauss/engine/dynamics/jacobian.hpp"
+#include "softgauss/gdd/goals/posture.hpp"
 #include "softgauss/gdd/goals/reach.hpp"
+#include "softgauss/gdd/goals/support_polygon.hpp"
 
 namespace softgauss::gdd {
 namespace {
 
-constexpr double kTimesReach = 30.0;
+constexpr double kTimesReach = 100.0;
 constexpr double kSwing = 0.1;          // what angular momentum counts against linear [m²]
+constexpr double kFlatShare = 0.03;     // of w: of points on which a foot stands
+constexpr double kFlatRate = 20.0;      // γ [1/s]
+constexpr double kFlatPlay = 0.5e-3;    // z₀ [m]
 constexpr double kRotationShare = 1.0;  // w_r over w of the base [m²]
 constexpr double kFootShare = 0.01;     // the same of links on the ground [m²]
+constexpr double kHeldShare = 0.3;      // of w: of what is held while a foot is lifted
 constexpr double kWithin = 0.75;        // λ
+constexpr double kSteady = 0.3;         // ρ at which goals begin to fade
+constexpr double kUnsteady = 0.8;       // ρ at which nothing is left of them
+constexpr double kTurned = 0.3;         // turn of the base at which goals begin to fade [rad]
+constexpr double kStrongest = 0.2;      // a place that is farther pulls no more than this far [m]
 constexpr double kUnloaded = 0.9;       // of the support, for what is to be lifted
 constexpr double kFar = 0.01;           // [m]
 constexpr double kLowered = 5e-3;       // [m]
 constexpr double kRisen = 2e-3;         // [m] above where it stood: it has left the ground
 constexpr int kLeastFeet = 2;           // on which the robot stands while others are lifted
+constexpr double kNoRise = 0.04;        // [m/s²]: what rises by 1 mm/s while all is steady stays
 constexpr double kNoEdge = 20.0;        // [m/s²]: what allows as much is no edge
-constexpr double kNoArea = 1e-8;        // [m²]: corners in a line
 
 /// The other geometry's body is the world.
 int bodyOnWorld(const Contact& c) {
@@ -34,99 +44,6 @@ Vector3 upOf(const Model& model) {
   const double g = model.options.gravity.norm();
   const bool pulls = model.options.effects.has(Effect::gravity) && g > 0.0;
   return pulls ? Vector3(-model.options.gravity / g) : Vector3::Zero();
-}
-
-/// The convex hull of points, seen from above.
-class Support {
- public:
-  struct Edge {
-    Vector3 n;     ///< outwards, of length 1
-    double reach;  ///< n·p ≤ reach
-  };
-
-  explicit Support(const Vector3& up) : up_(up) {
-    const Vector3 x = std::abs(up.x()) < 0.9 ? Vector3::UnitX() : Vector3::UnitY();
-    t_ = (x - x.dot(up) * up).normalized();
-    s_ = up.cross(t_);
-  }
-  void add(const Vector3& p) {
-    if (count_ < kMostPoints) points_[idx(count_++)] = {t_.dot(p), s_.dot(p)};
-    height_ = std::min(height_, up_.dot(p));
-  }
-  bool empty() const { return count_ == 0; }
-  double height() const { return height_; }  ///< of the lowest point
-  /// Finds edges and middle: to be called when all points are there.
-  void close();
-  const Edge* begin() const { return edges_.data(); }
-  const Edge* end() const { return edges_.data() + edgeCount_; }
-  /// n·x on the edge of the support shrunk to `share` about its middle.
-  double bound(const Edge& edge, double share) const {
-    const double m = edge.n.dot(middle_);
-    return m + share * (edge.reach - m);
-  }
-  bool has(const Vector3& p, double share) const {
-    return std::all_of(begin(), end(),
-                       [&](const Edge& edge) { return edge.n.dot(p) <= bound(edge, share); });
-  }
-
- private:
-  static constexpr int kMostPoints = 128;
-  using Point = Eigen::Vector2d;
-
-  static double cross(const Point& a, const Point& b) { return a.x() * b.y() - a.y() * b.x(); }
-  int hull(std::array<Point, 2 * kMostPoints>& corners);
-  void addEdge(const Point& n, const Point& p) {
-    edges_[idx(edgeCount_++)] = {n.x() * t_ + n.y() * s_, n.dot(p)};
-  }
-
-  Vector3 up_, t_, s_, middle_ = Vector3::Zero();
-  std::array<Point, kMostPoints> points_;
-  std::array<Edge, kMostPoints + 4> edges_;
-  int count_ = 0, edgeCount_ = 0;
-  double height_ = kInfinity;
-};
-
-/// Corners, counter-clockwise (Andrew's monotone chain); how many.
-int Support::hull(std::array<Point, 2 * kMostPoints>& corners) {
-  std::sort(points_.begin(), points_.begin() + count_, [](const Point& a, const Point& b) {
-    return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y());
-  });
-  int n = 0, first = 0;
-  const auto add = [&](const Point& p) {
-    while (n >= first + 2 &&
-           cross(corners[idx(n - 1)] - corners[idx(n - 2)], p - corners[idx(n - 1)]) <= kNoArea)
-      --n;
-    corners[idx(n++)] = p;
-  };
-  for (int i = 0; i < count_; ++i) add(points_[idx(i)]);
-  first = --n;
-  for (int i = count_; i-- > 0;) add(points_[idx(i)]);
-  return std::max(1, n - 1);
-}
-
-void Support::close() {
-  std::array<Point, 2 * kMostPoints> corners;
-  const int n = hull(corners);
-  Point middle = Point::Zero();
-  double area = 0.0;
-  for (int i = 0; i < n; ++i) {
-    const Point &a = corners[idx(i)], &b = corners[idx((i + 1) % n)];
-    const Point along = b - a;
-    if (n > 2 || (n == 2 && i == 0)) {
-      const Point normal = Point(along.y(), -along.x()).normalized();
-      addEdge(normal, a);
-      if (n == 2)
-        addEdge(-normal, a), addEdge(along.normalized(), b), addEdge(-along.normalized(), a);
-    }
-    const double twice = cross(a - corners[0], b - corners[0]);
-    area += twice;
-    middle += n > 2 ? Point(twice / 3.0 * (a + b + corners[0])) : Point(a / n);
-  }
-  if (n == 1)
-    for (const Point& axis : {Point(1, 0), Point(-1, 0), Point(0, 1), Point(0, -1)})
-      addEdge(axis, corners[0]);
-  if (n > 2) middle /= area;
-  middle_ = middle.x() * t_ + middle.y() * s_;
 }
 
 /// The centre of mass of a robot, and its velocity.
@@ -158,6 +75,7 @@ StandingBalance::StandingBalance(const Model& model, int tree, const Kinematics&
     : base(model.trees[idx(tree)].rootBody), X_WBase(start.X_WB[idx(base)]), defaultWeight(0.0) {
   isRegulariser = true;
   robot = model.bodies[idx(base)].robot;
+  p_WStart = MassCenter(model, start, robot).p;
   weight = kTimesReach * kReachWeightPerMass * massOfRobot(model, robot);
   defaultWeight = DefaultWeight(weight);
 }
@@ -180,7 +98,7 @@ StandingBalance::Goals StandingBalance::ofRobotsThatStand(const Model& model, co
     const Tree& tree = model.trees[idx(t)];
     if (!model.floats(t) || !tree.actuated) continue;
     std::unique_ptr<StandingBalance> goal(new StandingBalance(model, t, k));
-    Support support(up);
+    SupportPolygon support(up);
     std::vector<int> carries(idx(model.bodyCount()), 0);  // feet that a body moves
     for (const Contact& c : touching.contacts) {
       const int body = bodyOnWorld(c);
@@ -189,20 +107,19 @@ StandingBalance::Goals StandingBalance::ofRobotsThatStand(const Model& model, co
       auto foot = std::find_if(goal->feet.begin(), goal->feet.end(),
                                [&](const Foot& known) { return known.body == body; });
       if (foot == goal->feet.end()) {
-        goal->feet.push_back({body, {}, {}, kInfinity});
+        goal->feet.push_back({body, {}, {}});
         foot = goal->feet.end() - 1;
         for (int b = body; b > 0; b = model.bodies[idx(b)].parent) ++carries[idx(b)];
       }
-      foot->p_BP.push_back(kLow.X_WB[idx(body)].inverse() * c.p_WC);
-      foot->height = std::min(foot->height, up.dot(k.X_WB[idx(body)] * foot->p_BP.back()));
+      const Vector3 p_BP = kLow.X_WB[idx(body)].inverse() * c.p_WC;
+      foot->points.push_back({p_BP, up.dot(k.X_WB[idx(body)] * p_BP)});
     }
     for (Foot& foot : goal->feet)
       for (int b = foot.body; b != goal->base && carries[idx(b)] == 1;
            b = model.bodies[idx(b)].parent)
         foot.leg.push_back(b);
     support.close();
-    if (!support.empty() && support.has(MassCenter(model, k, goal->robot).p, 1.0))
-      goals.push_back(std::move(goal));
+    if (!support.empty() && support.has(goal->p_WStart, 1.0)) goals.push_back(std::move(goal));
   }
   return goals;
 }
@@ -212,18 +129,18 @@ namespace {
 /// Whether the foot touches the world or has not left where it stood, and the points on which it
 /// stands: of one that rolls those where it touches.
 bool addCarried(const StandingBalance::Foot& foot, const GoalContext& context, const Vector3& up,
-                Support* support) {
+                SupportPolygon* support) {
   const Transform& X = context.data.kinematics.X_WB[idx(foot.body)];
   const auto& contacts = context.data.contacts.contacts;
   const auto isOfFoot = [&](const Contact& c) { return bodyOnWorld(c) == foot.body; };
   const bool touches = std::any_of(contacts.begin(), contacts.end(), isOfFoot);
-  double lowest = kInfinity;
-  for (const Vector3& p : foot.p_BP) lowest = std::min(lowest, up.dot(X * p));
-  const bool stands = lowest < foot.height + kRisen;
+  const bool stands = std::any_of(foot.points.begin(), foot.points.end(), [&](const auto& point) {
+    return up.dot(X * point.p_BP) < point.height + kRisen;
+  });
   if (!touches && !stands) return false;
   if (!support) return true;
   if (stands)
-    for (const Vector3& p : foot.p_BP) support->add(X * p);
+    for (const auto& point : foot.points) support->add(X * point.p_BP);
   else
     for (const Contact& c : contacts)
       if (isOfFoot(c)) support->add(c.p_WC);
@@ -267,73 +184,110 @@ bool StandingBalance::isLifted(const GoalContext& context, const Goals& others,
          }) >= kLeastFeet;
 }
 
-bool StandingBalance::holdsBack(const GoalContext& context, const Goals& others,
-                                const Goal& goal) const {
-  if (goal.linkFrame() < 0) return false;
+/// The points of the feet that stand and that no goal lifts.
+SupportPolygon StandingBalance::rest(const GoalContext& context, const Goals& others) const {
   const Vector3 up = upOf(context.model);
+  SupportPolygon support(up);
+  for (const Foot& foot : feet)
+    if (!isLifted(context, others, foot)) addCarried(foot, context, up, &support);
+  if (!support.empty()) support.close();
+  return support;
+}
+
+double StandingBalance::steadiness(const GoalContext& context, const Goals& others) const {
+  const SupportPolygon support = rest(context, others);
+  if (support.empty()) return 1.0;
+  const Vector3 up = upOf(context.model);
+  const MassCenter center(context.model, context.data.kinematics, robot);
+  const double omega = swayRate(context.model, up.dot(center.p) - support.height());
+  if (omega == 0.0) return 1.0;
+  const Matrix3& R = context.data.kinematics.X_WB[idx(base)].R;
+  const double turn = quaternionLog(Quaternion(Matrix3(X_WBase.R * R.transpose()))).norm();
+  const double away = support.wayToEdge(p_WStart, center.p + center.v / omega, kWithin);
+  const auto fade = [](double x, double from, double to) {  // smoothly from 1 to 0
+    const double s = std::clamp((to - x) / (to - from), 0.0, 1.0);
+    return s * s * (3.0 - 2.0 * s);
+  };
+  return fade(away, kSteady, kUnsteady) * fade(turn, kTurned, 2.0 * kTurned);
+}
+
+double StandingBalance::share(const GoalContext& context, const Goals& others,
+                              const Goal& goal) const {
+  const Vector3 up = upOf(context.model);
+  if (goal.linkFrame() < 0 || up.isZero()) return 1.0;
   const auto of = std::find_if(feet.begin(), feet.end(),
                                [&](const Foot& foot) { return lifts(context, goal, foot); });
-  if (of == feet.end()) return false;
-  if (up.isZero()) return false;
-  if (!isLifted(context, others, *of) || presses(context, goal, *of, up)) return true;
-  if (!addCarried(*of, context, up, nullptr)) return false;
-  Support rest(up);
-  for (const Foot& foot : feet)
-    if (!isLifted(context, others, foot)) addCarried(foot, context, up, &rest);
-  if (rest.empty()) return false;
-  rest.close();
+  if (of == feet.end()) {
+    const std::optional<double> away = goal.error(context);
+    return std::min(1.0, kStrongest / std::max(away.value_or(0.0), kStrongest)) *
+           steadiness(context, others);
+  }
+  if (!isLifted(context, others, *of) || presses(context, goal, *of, up)) return 0.0;
+  if (!addCarried(*of, context, up, nullptr)) return 1.0;
+  const SupportPolygon support = rest(context, others);
+  if (support.empty()) return 1.0;
   const MassCenter center(context.model, context.data.kinematics, robot);
-  const double omega = swayRate(context.model, up.dot(center.p) - rest.height());
-  return omega > 0.0 && !rest.has(center.p + center.v / omega, kUnloaded);
+  const double omega = swayRate(context.model, up.dot(center.p) - support.height());
+  return omega > 0.0 && !support.has(center.p + center.v / omega, kUnloaded) ? 0.0 : 1.0;
 }
 
 void StandingBalance::keepUp(const GoalContext& context, const Vector3& up, GoalCost& cost) const {
   const Kinematics& k = context.data.kinematics;
+  const double held = kHeldShare * weight;
   const Transform& X = k.X_WB[idx(base)];
   {
     const LinkRows rows(context, base, X.p, cost.workspace());
     const Vector3 turn = quaternionLog(Quaternion(Matrix3(X_WBase.R * X.R.transpose())));
     const Vector3 alpha =
         stiffness * turn - damping * rows.velocity.tail<3>() - rows.bias.tail<3>();
-    cost.addRows(rows.J.bottomRows<3>(), kRotationShare * weight, alpha);
+    cost.addRows(rows.J.bottomRows<3>(), kRotationShare * held, alpha);
     const Eigen::Matrix<double, 1, 1> wished(stiffness * up.dot(X_WBase.p - X.p) -
                                              damping * up.dot(rows.velocity.head<3>()) -
                                              up.dot(rows.bias.head<3>()));
     cost.workspace().rows.row(0).noalias() = up.transpose() * rows.J.topRows<3>();
-    cost.addRows(cost.workspace().rows.topRows(1), weight, wished);
+    cost.addRows(cost.workspace().rows.topRows(1), held, wished);
   }
   for (const Foot& foot : feet) {
     if (!addCarried(foot, context, up, nullptr)) continue;
     Vector3 middle = Vector3::Zero();
-    for (const Vector3& p : foot.p_BP) middle += p / static_cast<double>(foot.p_BP.size());
+    for (const auto& point : foot.points)
+      middle += point.p_BP / static_cast<double>(foot.points.size());
     const LinkRows rows(context, foot.body, k.X_WB[idx(foot.body)] * middle, cost.workspace());
     const Vector6 wished = -damping * rows.velocity;
-    const bool isFlat = foot.p_BP.size() > 2;  // a ball or an edge turns about where it stands
-    addLinkCost(context, rows, wished.head(isFlat ? 6 : 3), {weight, kFootShare * weight}, cost);
+    addLinkCost(context, rows, wished.head(foot.isFlat() ? 6 : 3), {held, kFootShare * held}, cost);
   }
 }
 
-void StandingBalance::addCost(const GoalContext& context, const Goals& others,
-                              GoalCost& cost) const {
-  const Vector3 up = upOf(context.model);
-  if (up.isZero()) return;
-  Support support(up);
-  bool lifted = false;
-  for (const Foot& foot : feet) lifted = lifted || isLifted(context, others, foot);
-  for (const Foot& foot : feet)
-    if (!lifted || !isLifted(context, others, foot)) addCarried(foot, context, up, &support);
-  if (support.empty()) return;
-  support.close();
-  if (lifted) keepUp(context, up, cost);
-  Centroidal& c = cost.workspace().centroidal;
-  computeCentroidal(context.model, context.data.kinematics, context.data.inertia, robot, c);
-  const double omega = swayRate(context.model, up.dot(c.p_WC) - support.height());
-  if (omega == 0.0) return;
-  if (lifted) {  // else arms and trunk swing for what the feet cannot do
-    const Vector3 slows = -rate * c.momentum.tail<3>() - c.bias.tail<3>();
-    cost.addRows(c.A.bottomRows<3>(), weight / (c.mass * c.mass * kSwing), slows);
+/// What keeps a foot flat on the ground: of one that rolls, where it touches.
+void StandingBalance::keepFlat(const Foot& foot, bool steady, const GoalContext& context,
+                               const Vector3& up, GoalCost& cost) const {
+  const Kinematics& k = context.data.kinematics;
+  const auto keep = [&](const Vector3& p, double height) {
+    const double v = up.dot(pointVelocity(context.model, k, foot.body, p));
+    const double most =
+        -kFlatRate *
+        (2.0 * v + kFlatRate * std::max(0.0, height - kFlatPlay));  // of the acceleration upwards
+    if (most > (steady ? -kNoRise : kNoEdge)) return;
+    GoalWorkspace& work = cost.workspace();
+    pointJacobian(context.model, k, foot.body, p, work.J.topRows<3>());
+    work.dofs.noalias() = work.J.topRows<3>().transpose() * -up;
+    cost.addOneSided(work.dofs, kFlatShare * weight,
+                     up.dot(pointBiasAcceleration(context.model, k, foot.body, p)) - most);
+  };
+  if (foot.isFlat()) {
+    const Transform& X = k.X_WB[idx(foot.body)];
+    for (const auto& point : foot.points)
+      keep(X * point.p_BP, up.dot(X * point.p_BP) - point.height);
+  } else {
+    for (const Contact& c : context.data.contacts.contacts)
+      if (bodyOnWorld(c) == foot.body) keep(c.p_WC, c.distance);
   }
-  for (const Support::Edge& edge : support) {
+}
+
+/// What slows the capture point towards the edges of the support.
+void StandingBalance::keepWithin(const SupportPolygon& support, double omega, const Centroidal& c,
+                                 GoalCost& cost) const {
+  for (const SupportPolygon::Edge& edge : support) {
     const double v = edge.n.dot(c.v_WC);
     const double beyond = edge.n.dot(c.p_WC) + v / omega - support.bound(edge, kWithin);
     const double most = -omega * (v + rate * beyond);  // of n·ẍ
@@ -341,6 +295,31 @@ void StandingBalance::addCost(const GoalContext& context, const Goals& others,
     cost.workspace().dofs.noalias() = c.A.topRows<3>().transpose() * (edge.n / -c.mass);
     cost.addOneSided(cost.workspace().dofs, weight, edge.n.dot(c.bias.head<3>()) / c.mass - most);
   }
+}
+
+void StandingBalance::addCost(const GoalContext& context, const Goals& others,
+                              GoalCost& cost) const {
+  const Vector3 up = upOf(context.model);
+  if (up.isZero()) return;
+  const SupportPolygon support = rest(context, others);
+  if (support.empty()) return;
+  const bool lifted = std::any_of(
+      feet.begin(), feet.end(), [&](const Foot& foot) { return isLifted(context, others, foot); });
+  if (lifted) keepUp(context, up, cost);
+  const double steadiness = this->steadiness(context, others);
+  for (const Foot& foot : feet)
+    if (!isSought(context, others, foot) && addCarried(foot, context, up, nullptr))
+      keepFlat(foot, steadiness == 1.0, context, up, cost);
+  Centroidal& c = cost.workspace().centroidal;
+  computeCentroidal(context.model, context.data.kinematics, context.data.inertia, robot, c);
+  const double omega = swayRate(context.model, up.dot(c.p_WC) - support.height());
+  if (omega == 0.0) return;
+  const double unsteady = lifted ? kHeldShare : 1.0 - steadiness;
+  if (unsteady > 0.0) {  // else arms and trunk swing for what the feet cannot do
+    const Vector3 slows = -rate * c.momentum.tail<3>() - c.bias.tail<3>();
+    cost.addRows(c.A.bottomRows<3>(), unsteady * weight / (c.mass * c.mass * kSwing), slows);
+  }
+  keepWithin(support, omega, c, cost);
 }
 
 std::unique_ptr<Goal> StandingBalance::within(const Model& whole, const SubModel& island) const {
@@ -354,15 +333,34 @@ std::unique_ptr<Goal> StandingBalance::within(const Model& whole, const SubModel
   return part;
 }
 
-void addCostAmong(const std::vector<std::unique_ptr<Goal>>& goals, const Goal& goal,
-                  const GoalContext& context, GoalCost& cost) {
-  for (const auto& other : goals) {
-    const auto* balance = dynamic_cast<const StandingBalance*>(other.get());
+double shareAmong(const std::vector<std::unique_ptr<Goal>>& goals, const Goal& goal,
+                  const GoalContext& context, int* by) {
+  double share = 1.0;
+  for (std::size_t i = 0; i < goals.size(); ++i) {
+    const auto* balance = dynamic_cast<const StandingBalance*>(goals[i].get());
     if (!balance || !balance->actsAt(context.state.time)) continue;
-    if (balance == &goal) return balance->addCost(context, goals, cost);
-    if (balance->holdsBack(context, goals, goal)) return;
+    const double least = balance->share(context, goals, goal);
+    if (least < share && by) *by = static_cast<int>(i);
+    share = std::min(share, least);
   }
-  goal.addCost(context, cost);
+  return share;
+}
+
+void addCostAmong(const std::vector<std::unique_ptr<Goal>>& goals, const Goal& goal,
+                  const GoalContext& context, GoalCost& cost, const Goal* part) {
+  if (const auto* balance = dynamic_cast<const StandingBalance*>(&goal))
+    return balance->addCost(context, goals, cost);
+  const double share = shareAmong(goals, goal, context);
+  if (share == 0.0) return;
+  cost.setShare(share);
+  cost.workspace().placeShare = 1.0;
+  if (dynamic_cast<const Posture*>(&goal))
+    for (const auto& other : goals)
+      if (const auto* balance = dynamic_cast<const StandingBalance*>(other.get());
+          balance && balance->actsAt(context.state.time))
+        cost.workspace().placeShare *= balance->steadiness(context, goals);
+  (part ? *part : goal).addCost(context, cost);
+  cost.setShare(1.0);
 }
 
 }  // namespace softgauss::gdd

@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <random>
 
 #include "softgauss/io/simulation/simulation.hpp"
 #include "tests/io/temp_folder.hpp"
@@ -108,6 +109,39 @@ TEST_F(StandingBalance, WhatWouldThrowItOverWaits) {
   humanoid.run(2.0);
   EXPECT_LT(tilt(humanoid, "pelvis"), M_PI / 360.0);
   EXPECT_LT((humanoid.pose("right_foot").p - foot).norm(), 1e-3);
+}
+
+/// Whether the humanoid stands after 6 s in which the link sought the place.
+bool stands(const std::string& link, const Vector3& place) {
+  Simulation sim = Simulation::load(robot("humanoid"));
+  const double height = sim.pose("pelvis").p.z();
+  sim.goals.reach(link, place);
+  sim.run(6.0);
+  // On the ground the pelvis is 0.1 m high; at rest on bent legs no lower than 0.5 m.
+  return sim.pose("pelvis").p.z() > 0.55 * height && tilt(sim, "pelvis") < M_PI / 4.0;
+}
+
+// A place beyond reach pulls for good: no weight of the balance holds against that. The goal fades
+// instead, and posture and feet hold the robot.
+TEST_F(StandingBalance, PlacesOutOfReachThrowNothingOver) {
+  EXPECT_TRUE(stands("right_hand", {1.5, -0.2, 1.1})) << "far in front";
+  EXPECT_TRUE(stands("right_hand", {0.3, -0.2, 0.1})) << "by the feet";
+  EXPECT_TRUE(stands("right_hand", {0.4, -0.2, 1.8})) << "above the head";
+}
+
+// Twenty places in a box as large as the robot, more than half of them beyond its reach. That none
+// falls is no law: a robot at the ends of its joints may. Without fading 17 fell.
+TEST_F(StandingBalance, PlacesAnywhereThrowNothingOverLong) {
+  std::mt19937 random(7);
+  const auto between = [&](double a, double b) {
+    return std::uniform_real_distribution<double>(a, b)(random);
+  };
+  int fallen = 0;
+  for (int i = 0; i < 20; ++i) {
+    const double x = between(-0.3, 1.0), y = between(-0.8, 0.5), z = between(0.2, 1.8);
+    fallen += !stands("right_hand", {x, y, z});
+  }
+  EXPECT_LE(fallen, 2);
 }
 
 TEST_F(StandingBalance, ComesWithAReachOfWhatStandsAndIsLeftOutOnDemand) {
