@@ -215,6 +215,8 @@ double StandingBalance::share(const GoalContext& context, const Goals& others,
                               const Goal& goal) const {
   const Vector3 up = upOf(context.model);
   if (goal.linkFrame() < 0 || up.isZero()) return 1.0;
+  const int body = context.model.frames[idx(goal.linkFrame())].body;
+  if (context.model.bodies[idx(body)].robot != robot) return 1.0;
   const auto of = std::find_if(feet.begin(), feet.end(),
                                [&](const Foot& foot) { return lifts(context, goal, foot); });
   if (of == feet.end()) {

@@ -129,6 +129,31 @@ TEST_F(StandingBalance, PlacesOutOfReachThrowNothingOver) {
   EXPECT_TRUE(stands("right_hand", {0.4, -0.2, 1.8})) << "above the head";
 }
 
+// What a robot does that is about to fall is its own: the goals of one beside it do not fade.
+TEST_F(StandingBalance, FadesGoalsOfItsOwnRobotOnly) {
+  const std::string urdf = robot("humanoid");
+  const std::string scene = (folder.path() / "two.yaml").string();
+  std::ofstream(scene) << fmt::format(
+      "robots:\n- {{name: a, urdf: {0}}}\n- {{name: b, urdf: {0}, position: [0, 3, 0]}}\n", urdf);
+  Simulation sim = Simulation::load(scene);
+  gdd::Goal& far = sim.goals.reach("a/right_hand", {2.5, 0.0, 1.1});
+  gdd::Goal& near = sim.goals.reach("b/right_hand", sim.pose("b/right_hand").p);
+  sim.step();
+  const gdd::GoalContext context{sim.model(), sim.state(), sim.data()};
+  int balances = 0;
+  for (std::size_t i = 0; i < sim.goals.size(); ++i) {
+    const auto* balance = dynamic_cast<const gdd::StandingBalance*>(&sim.goals[i]);
+    if (!balance) continue;
+    const bool isOfA = balance->X_WBase.p.y() < 1.5;
+    EXPECT_EQ(balance->share(context, {}, isOfA ? near : far), 1.0);
+    if (isOfA) {
+      EXPECT_LT(balance->share(context, {}, far), 0.2);
+    }
+    ++balances;
+  }
+  EXPECT_EQ(balances, 2);
+}
+
 // Twenty places in a box as large as the robot, more than half of them beyond its reach. That none
 // falls is no law: a robot at the ends of its joints may. Without fading 17 fell.
 TEST_F(StandingBalance, PlacesAnywhereThrowNothingOverLong) {
