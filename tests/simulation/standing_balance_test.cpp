@@ -155,7 +155,7 @@ TEST_F(StandingBalance, FadesGoalsOfItsOwnRobotOnly) {
 }
 
 // Twenty places in a box as large as the robot, more than half of them beyond its reach. That none
-// falls is no law: a robot at the ends of its joints may. Without fading 17 fell.
+// falls is no law: a robot at the ends of its joints may. Without fading 11 fell.
 TEST_F(StandingBalance, PlacesAnywhereThrowNothingOverLong) {
   std::mt19937 random(7);
   const auto between = [&](double a, double b) {
