@@ -8,7 +8,6 @@
 #include "softgauss/engine/dynamics/jacobian.hpp"
 #include "softgauss/gdd/goals/posture.hpp"
 #include "softgauss/gdd/goals/reach.hpp"
-#include "softgauss/gdd/goals/support_polygon.hpp"
 
 namespace softgauss::gdd {
 namespace {
@@ -184,7 +183,6 @@ bool StandingBalance::isLifted(const GoalContext& context, const Goals& others,
          }) >= kLeastFeet;
 }
 
-/// The points of the feet that stand and that no goal lifts.
 SupportPolygon StandingBalance::rest(const GoalContext& context, const Goals& others) const {
   const Vector3 up = upOf(context.model);
   SupportPolygon support(up);
@@ -194,21 +192,33 @@ SupportPolygon StandingBalance::rest(const GoalContext& context, const Goals& ot
   return support;
 }
 
-double StandingBalance::steadiness(const GoalContext& context, const Goals& others) const {
-  const SupportPolygon support = rest(context, others);
-  if (support.empty()) return 1.0;
-  const Vector3 up = upOf(context.model);
+/// ξ; nothing where the robot stands on nothing or is no pendulum.
+std::optional<Vector3> StandingBalance::capturePoint(const GoalContext& context,
+                                                     const SupportPolygon& support) const {
+  if (support.empty()) return std::nullopt;
   const MassCenter center(context.model, context.data.kinematics, robot);
-  const double omega = swayRate(context.model, up.dot(center.p) - support.height());
-  if (omega == 0.0) return 1.0;
+  const double omega =
+      swayRate(context.model, upOf(context.model).dot(center.p) - support.height());
+  if (omega == 0.0) return std::nullopt;
+  return center.p + center.v / omega;
+}
+
+/// The rotation vector of the base back to where it was at the start.
+Vector3 StandingBalance::turnBack(const GoalContext& context) const {
   const Matrix3& R = context.data.kinematics.X_WB[idx(base)].R;
-  const double turn = quaternionLog(Quaternion(Matrix3(X_WBase.R * R.transpose()))).norm();
-  const double away = support.wayToEdge(p_WStart, center.p + center.v / omega, kWithin);
+  return quaternionLog(Quaternion(Matrix3(X_WBase.R * R.transpose())));
+}
+
+double StandingBalance::steadiness(const GoalContext& context,
+                                   const SupportPolygon& support) const {
+  const std::optional<Vector3> point = capturePoint(context, support);
+  if (!point) return 1.0;
   const auto fade = [](double x, double from, double to) {  // smoothly from 1 to 0
     const double s = std::clamp((to - x) / (to - from), 0.0, 1.0);
     return s * s * (3.0 - 2.0 * s);
   };
-  return fade(away, kSteady, kUnsteady) * fade(turn, kTurned, 2.0 * kTurned);
+  return fade(support.wayToEdge(p_WStart, *point, kWithin), kSteady, kUnsteady) *
+         fade(turnBack(context).norm(), kTurned, 2.0 * kTurned);
 }
 
 double StandingBalance::share(const GoalContext& context, const Goals& others,
@@ -222,15 +232,13 @@ double StandingBalance::share(const GoalContext& context, const Goals& others,
   if (of == feet.end()) {
     const std::optional<double> away = goal.error(context);
     return std::min(1.0, kStrongest / std::max(away.value_or(0.0), kStrongest)) *
-           steadiness(context, others);
+           steadiness(context, rest(context, others));
   }
   if (!isLifted(context, others, *of) || presses(context, goal, *of, up)) return 0.0;
   if (!addCarried(*of, context, up, nullptr)) return 1.0;
   const SupportPolygon support = rest(context, others);
-  if (support.empty()) return 1.0;
-  const MassCenter center(context.model, context.data.kinematics, robot);
-  const double omega = swayRate(context.model, up.dot(center.p) - support.height());
-  return omega > 0.0 && !support.has(center.p + center.v / omega, kUnloaded) ? 0.0 : 1.0;
+  const std::optional<Vector3> point = capturePoint(context, support);
+  return point && !support.has(*point, kUnloaded) ? 0.0 : 1.0;
 }
 
 void StandingBalance::keepUp(const GoalContext& context, const Vector3& up, GoalCost& cost) const {
@@ -239,9 +247,8 @@ void StandingBalance::keepUp(const GoalContext& context, const Vector3& up, Goal
   const Transform& X = k.X_WB[idx(base)];
   {
     const LinkRows rows(context, base, X.p, cost.workspace());
-    const Vector3 turn = quaternionLog(Quaternion(Matrix3(X_WBase.R * X.R.transpose())));
     const Vector3 alpha =
-        stiffness * turn - damping * rows.velocity.tail<3>() - rows.bias.tail<3>();
+        stiffness * turnBack(context) - damping * rows.velocity.tail<3>() - rows.bias.tail<3>();
     cost.addRows(rows.J.bottomRows<3>(), kRotationShare * held, alpha);
     const Eigen::Matrix<double, 1, 1> wished(stiffness * up.dot(X_WBase.p - X.p) -
                                              damping * up.dot(rows.velocity.head<3>()) -
@@ -308,15 +315,15 @@ void StandingBalance::addCost(const GoalContext& context, const Goals& others,
   const bool lifted = std::any_of(
       feet.begin(), feet.end(), [&](const Foot& foot) { return isLifted(context, others, foot); });
   if (lifted) keepUp(context, up, cost);
-  const double steadiness = this->steadiness(context, others);
+  const double steady = steadiness(context, support);
   for (const Foot& foot : feet)
     if (!isSought(context, others, foot) && addCarried(foot, context, up, nullptr))
-      keepFlat(foot, steadiness == 1.0, context, up, cost);
+      keepFlat(foot, steady == 1.0, context, up, cost);
   Centroidal& c = cost.workspace().centroidal;
   computeCentroidal(context.model, context.data.kinematics, context.data.inertia, robot, c);
   const double omega = swayRate(context.model, up.dot(c.p_WC) - support.height());
   if (omega == 0.0) return;
-  const double unsteady = lifted ? kHeldShare : 1.0 - steadiness;
+  const double unsteady = lifted ? kHeldShare : 1.0 - steady;
   if (unsteady > 0.0) {  // else arms and trunk swing for what the feet cannot do
     const Vector3 slows = -rate * c.momentum.tail<3>() - c.bias.tail<3>();
     cost.addRows(c.A.bottomRows<3>(), unsteady * weight / (c.mass * c.mass * kSwing), slows);
@@ -335,12 +342,22 @@ std::unique_ptr<Goal> StandingBalance::within(const Model& whole, const SubModel
   return part;
 }
 
+namespace {
+
+/// The goal as a balance that acts now, else null.
+const StandingBalance* actingBalance(const Goal& goal, double time) {
+  const auto* balance = dynamic_cast<const StandingBalance*>(&goal);
+  return balance && balance->actsAt(time) ? balance : nullptr;
+}
+
+}  // namespace
+
 double shareAmong(const std::vector<std::unique_ptr<Goal>>& goals, const Goal& goal,
                   const GoalContext& context, int* by) {
   double share = 1.0;
   for (std::size_t i = 0; i < goals.size(); ++i) {
-    const auto* balance = dynamic_cast<const StandingBalance*>(goals[i].get());
-    if (!balance || !balance->actsAt(context.state.time)) continue;
+    const StandingBalance* balance = actingBalance(*goals[i], context.state.time);
+    if (!balance) continue;
     const double least = balance->share(context, goals, goal);
     if (least < share && by) *by = static_cast<int>(i);
     share = std::min(share, least);
@@ -354,13 +371,12 @@ void addCostAmong(const std::vector<std::unique_ptr<Goal>>& goals, const Goal& g
     return balance->addCost(context, goals, cost);
   const double share = shareAmong(goals, goal, context);
   if (share == 0.0) return;
-  cost.setShare(share);
-  cost.workspace().placeShare = 1.0;
+  double& placeShare = cost.workspace().placeShare = 1.0;
   if (dynamic_cast<const Posture*>(&goal))
     for (const auto& other : goals)
-      if (const auto* balance = dynamic_cast<const StandingBalance*>(other.get());
-          balance && balance->actsAt(context.state.time))
-        cost.workspace().placeShare *= balance->steadiness(context, goals);
+      if (const StandingBalance* balance = actingBalance(*other, context.state.time))
+        placeShare *= balance->steadiness(context, balance->rest(context, goals));
+  cost.setShare(share);
   (part ? *part : goal).addCost(context, cost);
   cost.setShare(1.0);
 }

@@ -77,8 +77,10 @@ class StandingBalance final : public Goal {
   void addCost(const GoalContext& context, GoalCost& cost) const override {
     addCost(context, {}, cost);
   }
+  /// The support: of the feet that stand and that no goal lifts.
+  SupportPolygon rest(const GoalContext& context, const Goals& others) const;
   /// s above but for the distance: 1 of a robot that stands safely, 0 of one that is about to fall.
-  double steadiness(const GoalContext& context, const Goals& others) const;
+  double steadiness(const GoalContext& context, const SupportPolygon& support) const;
   /// s of another goal; 0 where it waits until what it lifts is unloaded.
   double share(const GoalContext& context, const Goals& others, const Goal& goal) const;
   std::unique_ptr<Goal> within(const Model& whole, const SubModel& island) const override;
@@ -90,7 +92,9 @@ class StandingBalance final : public Goal {
                const Vector3& up) const;
   bool isSought(const GoalContext& context, const Goals& others, const Foot& foot) const;
   bool isLifted(const GoalContext& context, const Goals& others, const Foot& foot) const;
-  SupportPolygon rest(const GoalContext& context, const Goals& others) const;
+  std::optional<Vector3> capturePoint(const GoalContext& context,
+                                      const SupportPolygon& support) const;
+  Vector3 turnBack(const GoalContext& context) const;
   void keepUp(const GoalContext& context, const Vector3& up, GoalCost& cost) const;
   void keepFlat(const Foot& foot, bool steady, const GoalContext& context, const Vector3& up,
                 GoalCost& cost) const;
