@@ -104,22 +104,24 @@ void SceneContacts::Scene::choosePosed() {
     if (paired[i] && model.geometries[i].body != 0) posed.push_back(static_cast<int>(i));
 }
 
+void SceneContacts::Scene::poseOne(const Kinematics& kinematics, std::size_t i) {
+  const Geometry& g = model.geometries[i];
+  const Transform& X_WB = kinematics.X_WB[static_cast<std::size_t>(g.body)];
+  Transform& X = X_WG[i];
+  X.p.noalias() = X_WB.R * g.X_BG.p;
+  X.p += X_WB.p;
+  if (turn[i] == Turn::axis)
+    X.R.col(2).noalias() = X_WB.R * g.X_BG.R.col(2);
+  else if (turn[i] == Turn::full)
+    X.R.noalias() = X_WB.R * g.X_BG.R;
+  centre[i] = X.p;
+  if (set.hull[i] || set.surface[i]) centre[i].noalias() += X.R * set.centreInG[i];
+}
+
 void SceneContacts::Scene::pose(const Kinematics& kinematics, bool all) {
   const std::size_t count = all ? X_WG.size() : posed.size();
-  for (std::size_t n = 0; n < count; ++n) {
-    const std::size_t i = all ? n : static_cast<std::size_t>(posed[n]);
-    const Geometry& g = model.geometries[i];
-    const Transform& X_WB = kinematics.X_WB[static_cast<std::size_t>(g.body)];
-    Transform& X = X_WG[i];
-    X.p.noalias() = X_WB.R * g.X_BG.p;
-    X.p += X_WB.p;
-    if (turn[i] == Turn::axis)
-      X.R.col(2).noalias() = X_WB.R * g.X_BG.R.col(2);
-    else if (turn[i] == Turn::full)
-      X.R.noalias() = X_WB.R * g.X_BG.R;
-    centre[i] = X.p;
-    if (set.hull[i] || set.surface[i]) centre[i].noalias() += X.R * set.centreInG[i];
-  }
+  for (std::size_t n = 0; n < count; ++n)
+    poseOne(kinematics, all ? n : static_cast<std::size_t>(posed[n]));
 }
 
 void SceneContacts::Scene::placeInitially() {
@@ -271,6 +273,21 @@ void SceneContacts::detect(const Model& model, const Kinematics& kinematics,
     for (const int r : *list) {
       const Scene::Row& row = (*of)[static_cast<std::size_t>(r)];
       if (scene.within(row, scene.wayOf(row))) scene.report(row, contacts);
+    }
+}
+
+void SceneContacts::detectPair(const Model&, const Kinematics& kinematics, int geometryA,
+                               int geometryB, ContactSet& contacts) noexcept {
+  contacts.clear();
+  Scene& scene = *scene_;
+  for (const int g : {geometryA, geometryB})
+    if (scene.model.geometries[static_cast<std::size_t>(g)].body != 0)
+      scene.poseOne(kinematics, static_cast<std::size_t>(g));
+  for (const auto& [list, of] :
+       {std::pair(&scene.nearPlaneRows, &scene.planeRows), std::pair(&scene.nearRows, &scene.rows)})
+    for (const int r : *list) {
+      const Scene::Row& row = (*of)[static_cast<std::size_t>(r)];
+      if (row.a == geometryA && row.b == geometryB) scene.report(row, contacts);
     }
 }
 

@@ -45,6 +45,8 @@ class SceneContacts final : public ContactSource {
   /// `model` must be the one given to the constructor.
   void detect(const Model& model, const Kinematics& kinematics,
               ContactSet& contacts) noexcept override;
+  void detectPair(const Model& model, const Kinematics& kinematics, int geometryA, int geometryB,
+                  ContactSet& contacts) noexcept override;
 
   double tunnellingTimeBound(const Model& model, const Kinematics& kinematics, double longest,
                              TimeDirection direction) noexcept override;

@@ -32,6 +32,7 @@ struct SceneContacts::Scene {
   Scene(const Model& model, PreparedMeshes& meshes);
   /// Poses of the geometries of some pair that move, or of all.
   void pose(const Kinematics& kinematics, bool all = false);
+  void poseOne(const Kinematics& kinematics, std::size_t geometry);
   void choosePosed();
   void makeMovingShapes();
   void chooseSlack(const std::vector<GeometryPair>& pairs);

@@ -66,25 +66,31 @@ std::optional<ContactPointVelocity> alongSurface(const Shape& shape, const Trans
 
 }  // namespace
 
+std::optional<bool> flatIsA(const Model& model, const Kinematics& k, const Contact& c) {
+  const Geometry &A = model.geometries[c.geometryA], &B = model.geometries[c.geometryB];
+  const Transform X_WA = k.X_WB[c.bodyA] * A.X_BG, X_WB = k.X_WB[c.bodyB] * B.X_BG;
+  const bool flatA = isFlat(A.shape, X_WA, c.n_W), flatB = isFlat(B.shape, X_WB, c.n_W);
+  if (!flatA && !flatB) return std::nullopt;
+  if (flatA != flatB) return flatA;
+  // Of two faces the one that has its corner or edge here is carried along with it.
+  return insetOf(A.shape, X_WA, c.n_W, c.p_WC) >= insetOf(B.shape, X_WB, c.n_W, c.p_WC);
+}
+
 std::optional<ContactBias> contactBias(const Model& model, const Kinematics& k, const Contact& c) {
   // What looks within the step asks for the rate at each of its places.
   const double h = model.options.isMultiStage() ? 0.0 : model.options.timestep;
   const Motion &V_A = k.midstepVelocities()[c.bodyA], &V_B = k.midstepVelocities()[c.bodyB];
   if (!(h * std::max(c.n_W.cross(V_A.angular).norm(), c.n_W.cross(V_B.angular).norm()) <= kMaxTilt))
     return std::nullopt;
-  const Geometry &A = model.geometries[c.geometryA], &B = model.geometries[c.geometryB];
-  const Transform X_WA = k.X_WB[c.bodyA] * A.X_BG, X_WB = k.X_WB[c.bodyB] * B.X_BG;
-  bool flatA = isFlat(A.shape, X_WA, c.n_W);
-  const bool flatB = isFlat(B.shape, X_WB, c.n_W);
-  if (!flatA && !flatB) return std::nullopt;
-  // Of two faces the one that has its corner or edge here is carried along with it.
-  if (flatA && flatB)
-    flatA = insetOf(A.shape, X_WA, c.n_W, c.p_WC) >= insetOf(B.shape, X_WB, c.n_W, c.p_WC);
+  const std::optional<bool> flat = flatIsA(model, k, c);
+  if (!flat) return std::nullopt;
+  const bool flatA = *flat;
+  const Geometry& other = model.geometries[flatA ? c.geometryB : c.geometryA];
 
   const Motion &V_flat = flatA ? V_A : V_B, &V_other = flatA ? V_B : V_A;
   const Vector3 n = flatA ? c.n_W : -c.n_W, turns = V_other.angular - V_flat.angular;
   const std::optional<ContactPointVelocity> moves =
-      alongSurface(flatA ? B.shape : A.shape, flatA ? X_WB : X_WA, n, turns, c, h);
+      alongSurface(other.shape, k.X_WB[other.body] * other.X_BG, n, turns, c, h);
   if (!moves) return std::nullopt;
 
   const Vector3 v_A = pointMidstepVelocity(model, k, c.bodyA, c.p_WC),
@@ -102,7 +108,7 @@ std::optional<ContactBias> contactBias(const Model& model, const Kinematics& k, 
                      V_B.angular.cross(v_P - v_B) - V_A.angular.cross(v_P - v_A) -
                      V_flat.angular.cross(slips);
   // A wheel of many faces would be lifted by ω² r of each of its corners.
-  const ShapeKind kind = (flatA ? B : A).shape.kind;
+  const ShapeKind kind = other.shape.kind;
   if (kind == ShapeKind::mesh || kind == ShapeKind::triangles) {
     bias.leftOut = c.n_W.dot(bias.rate.linear);
     bias.rate.linear -= *bias.leftOut * c.n_W;

@@ -47,7 +47,7 @@ inline double dot(const Motion& m, const Force& f) {
 }
 
 /// m1 × m2: rate of a motion m2 that is carried along by m1.
-inline Motion cross(const Motion& a, const Motion& b) {
+[[gnu::always_inline]] inline Motion cross(const Motion& a, const Motion& b) {
   return {a.angular.cross(b.angular), a.angular.cross(b.linear) + a.linear.cross(b.angular)};
 }
 
@@ -95,7 +95,7 @@ struct Inertia {
   Vector3 h = Vector3::Zero();
   Symmetric3 I_O;
 
-  Force operator*(const Motion& V) const {
+  [[gnu::always_inline]] Force operator*(const Motion& V) const {
     return {I_O * V.angular + h.cross(V.linear), mass * V.linear - h.cross(V.angular)};
   }
   Inertia& operator+=(const Inertia& o) {

@@ -4,6 +4,7 @@
 /// Where contacts come from: the engine's only virtual call, once per step.
 
 #include <cstdint>
+#include <vector>
 
 #include "softgauss/engine/constraints/contact_set.hpp"
 #include "softgauss/engine/dynamics/kinematics.hpp"
@@ -23,6 +24,16 @@ class ContactSource {
   /// answered is counted in contacts.pairsSkipped.
   virtual void detect(const Model& model, const Kinematics& kinematics,
                       ContactSet& contacts) noexcept = 0;
+
+  /// The contacts of these two geometries alone, A and B as in detect(), after a detect() near
+  /// these poses.
+  virtual void detectPair(const Model& model, const Kinematics& kinematics, int geometryA,
+                          int geometryB, ContactSet& contacts) noexcept {
+    detect(model, kinematics, contacts);
+    std::erase_if(contacts.contacts, [&](const Contact& c) {
+      return c.geometryA != geometryA || c.geometryB != geometryB;
+    });
+  }
 
   /// Which way a motion is followed from a state.
   enum class TimeDirection : std::uint8_t { forward, backward };

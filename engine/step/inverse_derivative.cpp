@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "softgauss/engine/step/inverse_derivative.hpp"
 
+#include <functional>
+
 #include "softgauss/engine/forces/external_wrench_derivative.hpp"
 #include "softgauss/engine/step/integrators/implicit_forces.hpp"
 #include "softgauss/engine/step/integrators/leapfrog.hpp"
@@ -12,6 +14,7 @@ InverseDerivative::InverseDerivative(const Model& model)
     : tree_(model),
       scalars_(model),
       contacts_(model),
+      pairs_(model),
       differences_(model, Plan(model).rows),
       q_(MatrixX::Zero(model.nv, model.nv)),
       v_(MatrixX::Zero(model.nv, model.nv)),
@@ -51,8 +54,15 @@ SolveStatus InverseDerivative::compute(const Model& model, const Input& input, c
     in.load = &load_;
   }
   scalars_.addTo(in, data.constraints, data.inertia, q_, v_);
-  contacts_.addTo(in, data.constraints, a, q_, v_);
-  differences_.addTo(in, a, contacts_.unknown(), contacts, q_, v_);
+  bool begun = false;
+  const auto measure = [&](int contact) -> ContactShift::Measured {
+    if (!contacts) return ContactShift::Measured::Zero();
+    if (!begun) pairs_.begin(data.kinematics);
+    begun = true;
+    return pairs_.of(model, data.contacts, contact, *contacts);
+  };
+  contacts_.addTo(in, data.constraints, a, std::cref(measure), q_, v_);
+  differences_.addTo(in, a, q_, v_);
   return status;
 }
 

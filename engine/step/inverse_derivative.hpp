@@ -4,19 +4,21 @@
 /// How inverse dynamics g(q, v, a) (1.2) changes: ∂g/∂q, ∂g/∂v, and ∂g/∂a = P (1.3).
 ///
 /// Analytic for the tree (D.4), springs, damping and wrenches, limits and dry friction (D.5), and
-/// contacts (D.8); central differences of those rows alone for equality constraints and for
-/// contacts of shapes without a closed form (row_differences.hpp). q changes by its tangent, as
+/// contacts (D.8), of shapes without a closed form by differences of where they touch
+/// (pair_differences.hpp); central differences of their rows alone for equality constraints
+/// (row_differences.hpp). q changes by its tangent, as
 /// integratePosition() takes it: g(q ⊕ δ) = g(q) + Gq δ.
 ///
 /// g is smooth but for kinks: breakpoints of penalties, where a contact begins or breaks, sticks or
 /// slides, a limit is reached, dry friction slips. There these are the derivatives of the side on
-/// which the rows are, breakpoints as free ones. Loads that contacts carry, and a₋ of State::a, are
-/// constants.
+/// which the rows are, breakpoints as free ones. Loads that contacts carry, margins that follow
+/// speeds, and a₋ of State::a, are constants.
 
 #include "softgauss/engine/constraints/derivative/contact_derivative.hpp"
 #include "softgauss/engine/constraints/derivative/scalar_row_derivative.hpp"
 #include "softgauss/engine/dynamics/rnea_derivative.hpp"
 #include "softgauss/engine/step/data.hpp"
+#include "softgauss/engine/step/pair_differences.hpp"
 #include "softgauss/engine/step/row_differences.hpp"
 
 namespace softgauss {
@@ -42,6 +44,7 @@ class InverseDerivative {
   RneaDerivative tree_;
   ScalarRowDerivative scalars_;
   ContactDerivative contacts_;
+  PairDifferences pairs_;
   RowDifferences differences_;
   SupportedMass load_;
   MatrixX q_, v_;

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "softgauss/engine/step/row_differences.hpp"
 
-#include <algorithm>
-
 namespace softgauss {
 namespace {
 
@@ -15,18 +13,6 @@ RowKinds equalities(RowKinds planned) {
   return kinds;
 }
 
-template <class Rows>
-void addForce(const Assembly& in, const VectorX& a, Rows& rows, VectorX& tau) {
-  rows.assemble(in);
-  if (rows.rowCount() == 0) return;
-  rows.multiply(a, rows.x);
-  for (std::size_t i = 0; i < rows.x.size(); ++i) rows.x[i] -= rows.reference[i];
-  bool changed = false;
-  rows.evaluate(changed);
-  for (double& f : rows.f) f = -f;
-  rows.addTransposed(rows.f, tau);
-}
-
 }  // namespace
 
 RowDifferences::RowDifferences(const Model& model, RowKinds planned)
@@ -37,8 +23,7 @@ RowDifferences::RowDifferences(const Model& model, RowKinds planned)
       kinematics_(model),
       equalities_(equalities(planned)) {}
 
-void RowDifferences::force(const Assembly& in, const VectorX& a, ContactSource* contacts,
-                           VectorX& tau) {
+void RowDifferences::force(const Assembly& in, const VectorX& a, VectorX& tau) {
   const Model& model = in.model;
   computeKinematics(model, state_, kinematics_);
   Assembly now{model,   state_,   kinematics_, in.contacts, in.weights,
@@ -48,49 +33,32 @@ void RowDifferences::force(const Assembly& in, const VectorX& a, ContactSource* 
     setMidstepVelocity(model, midstep_, kinematics_);
     now.midstepVelocity = &midstep_;
   }
+  equalities_.assemble(now);
+  equalities_.setResidual(a);
+  bool changed = false;
+  equalities_.evaluate(changed);
   tau.setZero();
-  if (!equalities_.planned().empty()) {
-    equalities_.assemble(now);
-    equalities_.setResidual(a);
-    bool changed = false;
-    equalities_.evaluate(changed);
-    equalities_.addForce(tau);
-    tau = -tau;
-  }
-  if (pairs_.empty() || !contacts) return;
-  contacts->detect(model, kinematics_, found_);
-  kept_.clear();
-  for (const Contact& c : found_.contacts)
-    if (std::find(pairs_.begin(), pairs_.end(), std::pair(c.geometryA, c.geometryB)) !=
-        pairs_.end())
-      kept_.add(c);
-  const Assembly touching{model,   state_,   kinematics_,         kept_,   in.weights,
-                          in.tree, in.input, now.midstepVelocity, in.load, nullptr};
-  addForce(touching, a, pyramid_, tau);
-  addForce(touching, a, cone_, tau);
+  equalities_.addForce(tau);
+  tau = -tau;
 }
 
-void RowDifferences::addTo(const Assembly& in, const VectorX& a,
-                           std::span<const std::pair<int, int>> pairs, ContactSource* contacts,
-                           MatrixX& Gq, MatrixX& Gv) {
-  // Impedances bend over a millimetre; what is found by iterations has noise.
-  const double step = pairs.empty() ? 1e-7 : 1e-6;
-  pairs_ = pairs;
-  if (equalities_.planned().empty() && (pairs.empty() || !contacts)) return;
+void RowDifferences::addTo(const Assembly& in, const VectorX& a, MatrixX& Gq, MatrixX& Gv) {
+  constexpr double kStep = 1e-7;  // impedances bend over a millimetre
+  if (equalities_.planned().empty()) return;
   state_ = in.state;
   for (int j = 0; j < in.model.nv; ++j) {
     for (const bool ofPosition : {true, false}) {
       for (const double sign : {1.0, -1.0}) {
-        along_[j] = sign * step;
+        along_[j] = sign * kStep;
         if (ofPosition)
           integratePosition(in.model, along_, 1.0, state_.q);
         else
           state_.v += along_;
-        force(in, a, contacts, sign > 0.0 ? more_ : less_);
+        force(in, a, sign > 0.0 ? more_ : less_);
         state_.q = in.state.q, state_.v = in.state.v;
       }
       along_[j] = 0.0;
-      (ofPosition ? Gq : Gv).col(j) += (more_ - less_) / (2.0 * step);
+      (ofPosition ? Gq : Gv).col(j) += (more_ - less_) / (2.0 * kStep);
     }
   }
 }

@@ -66,6 +66,23 @@ class Transition {
       VB.template middleCols<3>(r.dof).noalias() += v * r.B;
     }
   }
+  /// AX ← Aᵀ X and BX ← Bᵀ X of X (2 nv × columns).
+  template <class In, class OutA, class OutB>
+  void multiplyTransposed(const In& X, OutA& AX, OutB& BX) const {
+    const Eigen::Index n = D1_.size();
+    for (Eigen::Index j = 0; j < X.cols(); ++j) {
+      const auto q = X.col(j).head(n), v = X.col(j).tail(n);
+      AX.col(j).head(n) = q;
+      AX.col(j).tail(n) = v + h_ * q;
+      BX.col(j) = B_.cwiseProduct(q) + h_ * v;
+      for (const Rotation& r : rotations_) {
+        const Vector3 rq = q.template segment<3>(r.dof), rv = v.template segment<3>(r.dof);
+        AX.col(j).template segment<3>(r.dof) = r.A_q.transpose() * rq;
+        AX.col(j).template segment<3>(n + r.dof) = rv + r.A_v.transpose() * rq;
+        BX.col(j).template segment<3>(r.dof) = r.B.transpose() * rq + h_ * rv;
+      }
+    }
+  }
   /// Derivatives by q_m and v → by q and v: Gq ← Gq ∂q_m/∂q, Gv ← Gv + Gq ∂q_m/∂v (rows × nv).
   template <class Q, class V>
   void fromMiddle(Q& Gq, V& Gv) const {

@@ -43,11 +43,11 @@ ContactDerivative::ContactDerivative(const Model& model)
       velocity_(VectorX::Zero(model.nv)),
       a_(VectorX::Zero(model.nv)) {
   dofs_.reserve(2 * model.dofs.size());
+  columns_.reserve(2 * model.dofs.size());
 }
 
 void ContactDerivative::addTo(const Assembly& in, const Constraints& rows, const VectorX& a,
-                              MatrixX& Gq, MatrixX& Gv) {
-  unknown_.clear();
+                              const Measure& measure, MatrixX& Gq, MatrixX& Gv) {
   if (rows.contact.rowCount() == 0 && rows.ellipticContact.rowCount() == 0) return;
   const Model& model = in.model;
   a_ = a;
@@ -57,60 +57,60 @@ void ContactDerivative::addTo(const Assembly& in, const Constraints& rows, const
     for (int i = body.v; i < body.v + body.dofs; ++i) W_[b] += in.kinematics.S[i] * a[i];
   }
   law_.begin(in);
-  rows.visitContacts([&](const auto& contacts) { addContacts(in, contacts, Gq, Gv); });
+  rows.visitContacts([&](const auto& contacts) { addContacts(in, contacts, measure, Gq, Gv); });
 }
 
 template <class Contacts>
-void ContactDerivative::addContacts(const Assembly& in, const Contacts& contacts, MatrixX& Gq,
-                                    MatrixX& Gv) {
-  for (int i = 0; i < static_cast<int>(contacts.contactsWithRows().size()); ++i) {
-    const ContactRows& made = contacts.contactsWithRows()[i];
-    const Contact& c = in.contacts.contacts[made.contact];
-    if (const auto shift = ContactShift::of(in.model, in.kinematics, c, made.alongGravity)) {
-      addContact(in, contacts, i, *shift, Gq, Gv);
-      continue;
-    }
-    const std::pair pair(made.geometryA, made.geometryB);
-    if (std::find(unknown_.begin(), unknown_.end(), pair) == unknown_.end())
-      unknown_.push_back(pair);
+void ContactDerivative::addContacts(const Assembly& in, const Contacts& contacts,
+                                    const Measure& measure, MatrixX& Gq, MatrixX& Gv) {
+  const auto& made = contacts.contactsWithRows();
+  for (int i = 0; i < static_cast<int>(made.size()); ++i) {
+    const auto isOfPair = [&](int other) {
+      return made[other].bodyA == made[i].bodyA && made[other].bodyB == made[i].bodyB;
+    };
+    if (i == 0 || !isOfPair(i - 1)) beginPair(in, made[i].bodyA, made[i].bodyB);
+    const int contact = made[i].contact;
+    const Contact& c = in.contacts.contacts[contact];
+    auto shift = ContactShift::of(in.model, in.kinematics, c, made[i].alongGravity);
+    if (!shift)
+      shift = ContactShift::of(in.model, in.kinematics, c, made[i].alongGravity, measure(contact));
+    addContact(in, contacts, i, *shift);
+    if (i + 1 == static_cast<int>(made.size()) || !isOfPair(i + 1)) endPair(in, Gq, Gv);
   }
 }
 
-void ContactDerivative::setSides(const Assembly& in, const ContactRows& made) {
+void ContactDerivative::beginPair(const Assembly& in, int bodyA, int bodyB) {
   const Model& model = in.model;
   const Kinematics& k = in.kinematics;
-  const Vector3& p = in.contacts.contacts[made.contact].p_WC;
   dofs_.clear();
   for (const int o : {0, 1}) {
     Side& side = side_[o];
     side = {};
-    side.body = o == 0 ? made.bodyA : made.bodyB;
+    side.body = o == 0 ? bodyA : bodyB;
     side.sign = o == 0 ? -1.0 : 1.0;
     if (side.body == 0) continue;
-    side.r = p - k.p_WO[model.bodies[side.body].tree];
     side.V = k.V[side.body];
     side.turning = k.midstepVelocities()[side.body];
     side.W = W_[side.body];
     side.A = k.A_bias[side.body];
-    side.velocity = at(side.V, side.r);
-    side.turningVelocity = at(side.turning, side.r);
-    side.wrench = {side.sign * (side.r.cross(force_) + moment_), side.sign * force_};
     for (int j = model.lastDof(side.body); j >= 0; j = model.dofs[j].parent) dofs_.push_back(j);
   }
   std::sort(dofs_.begin(), dofs_.end());
   dofs_.erase(std::unique(dofs_.begin(), dofs_.end()), dofs_.end());
-  relativeVelocity_ = {side_[1].velocity - side_[0].velocity,
-                       side_[1].V.angular - side_[0].V.angular};
-  relativeAcceleration_ = {at(side_[1].W, side_[1].r) - at(side_[0].W, side_[0].r),
-                           side_[1].W.angular - side_[0].W.angular};
+  columns_.clear();
+  for (const int j : dofs_)
+    for (const bool ofPosition : {true, false}) {
+      Column& column = columns_.emplace_back();
+      column.dof = j, column.ofPosition = ofPosition;
+      setColumn(in, column);
+    }
 }
 
-void ContactDerivative::setColumn(const Assembly& in, int j, bool ofPosition,
-                                  const ContactShift& shift) {
+void ContactDerivative::setColumn(const Assembly& in, Column& column) {
   const Model& model = in.model;
   const Kinematics& k = in.kinematics;
+  const int j = column.dof;
   const Motion& S = k.S[j];
-  column_ = {};
   const int b = model.dofs[j].body;
   const Body& body = model.bodies[b];
   const bool floats = body.joint == JointKind::floating, translates = floats && j - body.v < 3;
@@ -120,147 +120,188 @@ void ContactDerivative::setColumn(const Assembly& in, int j, bool ofPosition,
   for (const int o : {0, 1}) {
     const Side& side = side_[o];
     if (side.body < b || side.body >= body.subtreeEnd) continue;
-    if (!ofPosition) {
-      column_.V[o] = column_.turning[o] = S;
-      column_.A[o] = coriolisRate(translates, floats && !translates, S, k.midstepVelocities()[b]) -
-                     cross(side.turning, S);
+    if (!column.ofPosition) {
+      column.V[o] = column.turning[o] = S;
+      column.A[o] = coriolisRate(translates, floats && !translates, S, k.midstepVelocities()[b]) -
+                    cross(side.turning, S);
       continue;
     }
-    column_.moved[o] = {at(S, side.r), S.angular};
+    column.moves[o] = true;
     if (floats) velocity_.segment<3>(body.v) = k.V[b].linear;
-    column_.V[o] = cross(S, side.V - against(k.V, velocity_));
-    column_.W[o] = cross(S, side.W - against(W_, a_));
+    column.V[o] = cross(S, side.V - against(k.V, velocity_));
+    column.W[o] = cross(S, side.W - against(W_, a_));
     if (floats) velocity_.segment<3>(body.v) = k.midstepVelocities()[b].linear;
     const Motion turnsAgainst = against(k.midstepVelocities(), velocity_);
     // A floating joint's bias is that of its rotations.
     const Motion A = floats ? Motion{} : k.A_bias[body.parent];
-    column_.turning[o] = cross(S, side.turning - turnsAgainst);
-    column_.A[o] =
-        cross(S, side.A - A) + cross(cross(turnsAgainst, S), side.turning - turnsAgainst);
+    column.turning[o] = cross(S, side.turning - turnsAgainst);
+    column.A[o] = cross(S, side.A - A) + cross(cross(turnsAgainst, S), side.turning - turnsAgainst);
   }
-  if (ofPosition) column_.shift = shift.change(column_.moved[0], column_.moved[1]);
+}
+
+void ContactDerivative::endPair(const Assembly& in, MatrixX& Gq, MatrixX& Gv) {
+  const Model& model = in.model;
+  const std::vector<Motion>& S = in.kinematics.S;
+  for (const Column& column : columns_) {
+    const int j = column.dof;
+    MatrixX& G = column.ofPosition ? Gq : Gv;
+    for (const int o : {0, 1}) {
+      const Side& side = side_[o];
+      if (side.body == 0) continue;
+      const Force& change = column.change[o];
+      const Force carried = column.moves[o] ? change - crossForce(S[j], side.wrench) : change;
+      for (int i = model.lastDof(side.body); i >= 0; i = model.dofs[i].parent)
+        G(i, j) -= dot(S[i], column.moves[o] && movesAxis(model, j, i) ? carried : change);
+    }
+  }
 }
 
 PointMotion ContactDerivative::biasChange(const ContactShift& shift, const Contact& c,
-                                          const Column& change) const {
+                                          const Column& column, const Seen& seen) const {
   const Side &A = side_[0], &B = side_[1];
   const int flat = shift.flatIsA() ? 0 : 1, other = 1 - flat;
-  const Vector3 dp = change.shift.p, n = shift.normal();
+  const Vector3 dp = seen.shift.p, n = shift.normal();
   const double d = shift.distance(), sign = shift.flatIsA() ? 1.0 : -1.0;
-  const Vector3 dn = sign * change.shift.n;
+  const Vector3 dn = sign * seen.shift.n;
   Vector3 dv[2], da[2];
   for (const int o : {0, 1}) {
-    dv[o] = at(change.turning[o], side_[o].r) + side_[o].turning.angular.cross(dp);
-    da[o] = at(change.A[o], side_[o].r) + side_[o].A.angular.cross(dp);
+    dv[o] = at(column.turning[o], side_[o].r) + side_[o].turning.angular.cross(dp);
+    da[o] = at(column.A[o], side_[o].r) + side_[o].A.angular.cross(dp);
   }
   const Vector3 turns = B.turning.angular - A.turning.angular,
-                dTurns = change.turning[1].angular - change.turning[0].angular;
+                dTurns = column.turning[1].angular - column.turning[0].angular;
   const Vector3 slips = B.turningVelocity - A.turningVelocity, dSlips = dv[1] - dv[0];
   const Vector3 omega = sign * turns, dOmega = sign * dTurns;  // of O against F
-  const double rate = c.n_W.dot(slips), dRate = change.shift.n.dot(slips) + c.n_W.dot(dSlips);
+  const double rate = c.n_W.dot(slips), dRate = seen.shift.n.dot(slips) + c.n_W.dot(dSlips);
   const Vector3 pdot =
       side_[other].turningVelocity + shift.along(omega) + 0.5 * d * omega.cross(n) - 0.5 * rate * n;
   const Vector3 dPdot =
-      dv[other] +
-      shift.alongChange(omega, dOmega, dn, change.moved[other], dp, change.shift.distance) +
-      0.5 * (change.shift.distance * omega.cross(n) + d * (dOmega.cross(n) + omega.cross(dn))) -
+      dv[other] + shift.alongChange(omega, dOmega, dn, seen.moved[other], dp, seen.shift.distance) +
+      0.5 * (seen.shift.distance * omega.cross(n) + d * (dOmega.cross(n) + omega.cross(dn))) -
       0.5 * (dRate * n + rate * dn);
-  const Vector3 &wF = side_[flat].turning.angular, &dwF = change.turning[flat].angular;
+  const Vector3 &wF = side_[flat].turning.angular, &dwF = column.turning[flat].angular;
   PointMotion bias = {
       da[1] - da[0] + dTurns.cross(pdot) + turns.cross(dPdot) - dwF.cross(slips) - wF.cross(dSlips),
-      change.A[1].angular - change.A[0].angular - dwF.cross(turns) - wF.cross(dTurns)};
+      column.A[1].angular - column.A[0].angular - dwF.cross(turns) - wF.cross(dTurns)};
   if (leftOut_)  // b − n (n·b)
-    bias.linear -= *leftOut_ * change.shift.n +
-                   (change.shift.n.dot(bias_.linear) + c.n_W.dot(bias.linear)) * c.n_W;
+    bias.linear -= *leftOut_ * seen.shift.n +
+                   (seen.shift.n.dot(bias_.linear) + c.n_W.dot(bias.linear)) * c.n_W;
   return bias;
 }
 
 ContactDerivative::Response ContactDerivative::respond(const ContactShift& shift, const Contact& c,
-                                                       bool hasBias) {
-  const ContactShift::Change& s = column_.shift;
+                                                       const Column& column,
+                                                       const Seen& seen) const {
+  const ContactShift::Change& s = seen.shift;
   const auto relative = [&](const Motion* change, const Motion& A, const Motion& B) {
     return PointMotion{
         at(change[1], side_[1].r) - at(change[0], side_[0].r) + (B.angular - A.angular).cross(s.p),
         change[1].angular - change[0].angular};
   };
-  const auto inFrame = [&](const PointMotion& change, const PointMotion& of, const Vector3& turn) {
+  const auto against = [](const PointMotion& change, const PointMotion& of, const Vector3& turn) {
     Vector6 x;
-    x << C_.transpose() * (change.linear - turn.cross(of.linear)),
-        C_.transpose() * (change.angular - turn.cross(of.angular));
+    x << change.linear - turn.cross(of.linear), change.angular - turn.cross(of.angular);
     return x;
   };
   Eigen::Matrix<double, ContactLawDerivative::kInputs, 1> z;
   z[0] = s.distance;
   z.segment<6>(ContactLawDerivative::kVelocity) =
-      inFrame(relative(column_.V, side_[0].V, side_[1].V), relativeVelocity_, s.turn);
+      against(relative(column.V, side_[0].V, side_[1].V), relativeVelocity_, s.turn);
   z.tail<6>().setZero();
-  if (hasBias) z.tail<6>() = inFrame(biasChange(shift, c, column_), bias_, s.turn);
-  const Vector3 turn = s.turn + C_ * (turn_ * z);
+  if (hasBias_) z.tail<6>() = against(biasChange(shift, c, column, seen), bias_, s.turn);
+  Vector3 turn = s.turn;
+  if (isTurned_) turn.noalias() += turn_ * z;
   const Vector6 y =
-      inFrame(relative(column_.W, side_[0].W, side_[1].W), relativeAcceleration_, turn);
-  Vector6 phi = response_ * z;
+      against(relative(column.W, side_[0].W, side_[1].W), relativeAcceleration_, turn);
+  Vector6 phi;
+  phi.noalias() = response_ * z;
   phi.noalias() -= H_ * y;
-  return {C_ * phi.head<3>() + turn.cross(force_), C_ * phi.tail<3>() + turn.cross(moment_)};
+  return {phi.head<3>() + turn.cross(force_), phi.tail<3>() + turn.cross(moment_)};
 }
 
-void ContactDerivative::accumulate(const Assembly& in, int j, bool ofPosition,
-                                   const Response& response, MatrixX& G) {
-  const Model& model = in.model;
-  const std::vector<Motion>& S = in.kinematics.S;
-  const Body& body = model.bodies[model.dofs[j].body];
-  for (const Side& side : side_) {
+void ContactDerivative::setPlace(const Assembly& in, const Vector3& p_WC) {
+  for (Side& side : side_) {
     if (side.body == 0) continue;
-    Force change{side.sign * (side.r.cross(response.force) + response.moment),
-                 side.sign * response.force};
-    if (ofPosition) change.moment += side.sign * column_.shift.p.cross(force_);
-    const bool moves = ofPosition && side.body >= model.dofs[j].body && side.body < body.subtreeEnd;
-    const Force carried = moves ? change - crossForce(S[j], side.wrench) : change;
-    for (int i = model.lastDof(side.body); i >= 0; i = model.dofs[i].parent)
-      G(i, j) -= dot(S[i], moves && movesAxis(model, j, i) ? carried : change);
+    side.r = p_WC - in.kinematics.p_WO[in.model.bodies[side.body].tree];
+    side.velocity = at(side.V, side.r);
+    side.turningVelocity = at(side.turning, side.r);
+    side.wrench += {side.sign * (side.r.cross(force_) + moment_), side.sign * force_};
   }
+  relativeVelocity_ = {side_[1].velocity - side_[0].velocity,
+                       side_[1].V.angular - side_[0].V.angular};
+  relativeAcceleration_ = {at(side_[1].W, side_[1].r) - at(side_[0].W, side_[0].r),
+                           side_[1].W.angular - side_[0].W.angular};
 }
 
 template <class Contacts>
-void ContactDerivative::addContact(const Assembly& in, const Contacts& contacts, int i,
-                                   const ContactShift& shift, MatrixX& Gq, MatrixX& Gv) {
+void ContactDerivative::setLaw(const Assembly& in, const Contacts& contacts, int i, int dim,
+                               const ContactShift& shift) {
+  using L = ContactLawDerivative;
   const ContactRows& made = contacts.contactsWithRows()[i];
   const Contact& c = in.contacts.contacts[made.contact];
-  double H[36];
-  dim_ = contacts.frameCurvature(i, H);
-  if (std::all_of(H, H + dim_ * dim_, [](double x) { return x == 0.0; })) return;
-  H_.setZero();
-  for (int row = 0; row < dim_; ++row)
-    for (int col = 0; col < dim_; ++col) H_(row, col) = H[row * dim_ + col];
-  C_ = made.R_WC;
   const auto phi = contacts.frameForce(i);
-  force_ = contacts.linearInWorld(i, phi);
-  moment_ = contacts.angularInWorld(i, phi);
-  setSides(in, made);
-
   bias_ = {};
   leftOut_.reset();
   PointMotion byDistance;
   std::optional<ContactBias> bias;
   if (shift.hasFlat()) bias = contactBias(in.model, in.kinematics, c);
+  hasBias_ = bias.has_value();
   if (bias) {
     bias_ = {bias->rate.linear, bias->rate.angular};
     leftOut_ = bias->leftOut;
-    column_ = {};
-    column_.shift.distance = 1.0;
-    byDistance = biasChange(shift, c, column_);
+    Seen nearer;
+    nearer.shift.distance = 1.0;
+    byDistance = biasChange(shift, c, {}, nearer);
   }
+  const Matrix3& C = made.R_WC;
   Vector6 inFrame;
-  inFrame << C_.transpose() * byDistance.linear, C_.transpose() * byDistance.angular;
-  const ContactLawDerivative& law = law_.of(in, contacts, i, inFrame);
-  response_ = pushed(contacts, made, dim_, H_, law.reference);
-  for (int k = 0; k < dim_; ++k) response_.row(k) += phi[idx(k)] * law.stiffness;
-  turn_ = law.turn;
+  inFrame << C.transpose() * byDistance.linear, C.transpose() * byDistance.angular;
+  const L& law = law_.of(in, contacts, i, inFrame);
+  response_ = pushed(contacts, made, dim, H_, law.reference);
+  for (int k = 0; k < dim; ++k) response_.row(k) += phi[idx(k)] * law.stiffness;
+  // Into world axes.
+  Matrix6 R = Matrix6::Zero();
+  R.topLeftCorner<3, 3>() = R.bottomRightCorner<3, 3>() = C;
+  H_ = R * H_ * R.transpose();
+  response_ = R * response_;
+  isTurned_ = !law.turn.isZero(0.0);
+  turn_ = C * law.turn;
+  for (const int first : {L::kVelocity, L::kBias}) {
+    response_.middleCols<6>(first) = response_.middleCols<6>(first) * R.transpose();
+    turn_.middleCols<6>(first) = turn_.middleCols<6>(first) * R.transpose();
+  }
+}
 
-  for (const int j : dofs_)
-    for (const bool ofPosition : {true, false}) {
-      setColumn(in, j, ofPosition, shift);
-      accumulate(in, j, ofPosition, respond(shift, c, bias.has_value()), ofPosition ? Gq : Gv);
+template <class Contacts>
+void ContactDerivative::addContact(const Assembly& in, const Contacts& contacts, int i,
+                                   const ContactShift& shift) {
+  const Contact& c = in.contacts.contacts[contacts.contactsWithRows()[i].contact];
+  double H[36];
+  const int dim = contacts.frameCurvature(i, H);
+  H_.setZero();
+  for (int row = 0; row < dim; ++row)
+    for (int col = 0; col < dim; ++col) H_(row, col) = H[row * dim + col];
+  if (H_.isZero(0.0)) return;
+  const auto phi = contacts.frameForce(i);
+  force_ = contacts.linearInWorld(i, phi);
+  moment_ = contacts.angularInWorld(i, phi);
+  setPlace(in, c.p_WC);
+  setLaw(in, contacts, i, dim, shift);
+  for (Column& column : columns_) {
+    const Motion& S = in.kinematics.S[column.dof];
+    Seen seen;
+    for (const int o : {0, 1})
+      if (column.moves[o]) seen.moved[o] = {at(S, side_[o].r), S.angular};
+    if (column.ofPosition) seen.shift = shift.change(seen.moved[0], seen.moved[1]);
+    const Response response = respond(shift, c, column, seen);
+    for (const int o : {0, 1}) {
+      const Side& side = side_[o];
+      const Vector3 lever = column.ofPosition ? seen.shift.p : Vector3(Vector3::Zero());
+      column.change[o] +=
+          {side.sign * (side.r.cross(response.force) + response.moment + lever.cross(force_)),
+           side.sign * response.force};
     }
+  }
 }
 
 }  // namespace softgauss

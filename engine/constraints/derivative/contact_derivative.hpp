@@ -18,7 +18,7 @@
 /// the second term where j moves S_i; r is p from O. With v_j, nothing moves: δV = S_j and
 /// δA_b = E_j − V_b × S_j of (2.9).
 
-#include <utility>
+#include <functional>
 #include <vector>
 
 #include "softgauss/engine/constraints/derivative/contact_law.hpp"
@@ -30,28 +30,37 @@ class ContactDerivative {
  public:
   explicit ContactDerivative(const Model& model);
 
+  /// How a contact of in.contacts moves whose pair of shapes has no closed form.
+  using Measure = std::function<ContactShift::Measured(int contact)>;
+
   /// Adds the contacts' part of ∂g/∂q and ∂g/∂v (nv × nv) at a, at which `rows` were evaluated.
-  /// Contacts of shapes that are not known here are left out and told by unknown().
-  void addTo(const Assembly& in, const Constraints& rows, const VectorX& a, MatrixX& Gq,
-             MatrixX& Gv);
-  /// Pairs of geometries whose contacts were left out, each once.
-  const std::vector<std::pair<int, int>>& unknown() const { return unknown_; }
+  void addTo(const Assembly& in, const Constraints& rows, const VectorX& a, const Measure& measure,
+             MatrixX& Gq, MatrixX& Gv);
 
  private:
   using Vector6 = Eigen::Matrix<double, 6, 1>;
-  /// One body of the contact.
+  using Matrix6 = Eigen::Matrix<double, 6, 6>;
+  using ByInputs = Eigen::Matrix<double, 6, ContactLawDerivative::kInputs>;
+  /// One body of the contact. Spatial vectors are about O of its tree.
   struct Side {
     int body = 0;
-    double sign = 0.0;            ///< of the force on it
-    Vector3 r = Vector3::Zero();  ///< p from O
-    Motion V, turning, W, A;      ///< V, that of turning, Σ S a, J̇ v
+    double sign = 0.0;        ///< of the force on it
+    Motion V, turning, W, A;  ///< V, that of turning, Σ S a, J̇ v
+    Force wrench;             ///< on it, by all contacts of the pair
+    // Of the contact in hand.
+    Vector3 r = Vector3::Zero();                                            ///< p from O
     Vector3 velocity = Vector3::Zero(), turningVelocity = Vector3::Zero();  ///< of its point at p
-    Force wrench;                                                           ///< on it, about O
   };
-  /// A change of the bodies' motions, and of where they touch.
+  /// How the motions of the two bodies change with q or v of one dof, and how the forces on them.
   struct Column {
-    PointMotion moved[2];
+    int dof = 0;
+    bool ofPosition = true, moves[2] = {false, false};
     Motion V[2], W[2], A[2], turning[2];
+    Force change[2];
+  };
+  /// A change as a contact sees it.
+  struct Seen {
+    PointMotion moved[2];
     ContactShift::Change shift;
   };
   struct Response {
@@ -59,32 +68,40 @@ class ContactDerivative {
   };
 
   template <class Contacts>
-  void addContacts(const Assembly& in, const Contacts& contacts, MatrixX& Gq, MatrixX& Gv);
+  void addContacts(const Assembly& in, const Contacts& contacts, const Measure& measure,
+                   MatrixX& Gq, MatrixX& Gv);
+  /// The bodies of the contacts to come, and their columns.
+  void beginPair(const Assembly& in, int bodyA, int bodyB);
+  void setColumn(const Assembly& in, Column& column);
+  /// Adds what the contacts of the pair make of its columns to G.
+  void endPair(const Assembly& in, MatrixX& Gq, MatrixX& Gv);
   template <class Contacts>
-  void addContact(const Assembly& in, const Contacts& contacts, int i, const ContactShift& shift,
-                  MatrixX& Gq, MatrixX& Gv);
-  void setSides(const Assembly& in, const ContactRows& made);
-  void setColumn(const Assembly& in, int j, bool ofPosition, const ContactShift& shift);
+  void addContact(const Assembly& in, const Contacts& contacts, int i, const ContactShift& shift);
+  void setPlace(const Assembly& in, const Vector3& p_WC);
+  /// What the law of a contact of `dim` directions gives, in world axes: H_ becomes so too.
+  template <class Contacts>
+  void setLaw(const Assembly& in, const Contacts& contacts, int i, int dim,
+              const ContactShift& shift);
   /// δ(J̇ v), world axes.
-  PointMotion biasChange(const ContactShift& shift, const Contact& c, const Column& change) const;
-  Response respond(const ContactShift& shift, const Contact& c, bool hasBias);
-  void accumulate(const Assembly& in, int j, bool ofPosition, const Response& response, MatrixX& G);
+  PointMotion biasChange(const ContactShift& shift, const Contact& c, const Column& column,
+                         const Seen& seen) const;
+  Response respond(const ContactShift& shift, const Contact& c, const Column& column,
+                   const Seen& seen) const;
 
   ContactLaw law_;
   std::vector<Motion> W_;
-  std::vector<int> dofs_;  ///< that move the contact
-  std::vector<std::pair<int, int>> unknown_;
-  VectorX velocity_, a_;  ///< (nv) translations of floating joints
+  std::vector<int> dofs_;        ///< that move the pair
+  std::vector<Column> columns_;  ///< of each of them by q and by v
+  VectorX velocity_, a_;         ///< (nv) translations of floating joints
   Side side_[2];
-  Column column_;
   // Of the contact in hand.
-  int dim_ = 0;
-  Matrix3 C_;
+  bool isTurned_ = false, hasBias_ = false;
   Vector3 force_, moment_;                                      ///< on body B, world
   PointMotion relativeVelocity_, relativeAcceleration_, bias_;  ///< world axes
   std::optional<double> leftOut_;                               ///< ContactBias::leftOut
-  Eigen::Matrix<double, 6, 6> H_;
-  Eigen::Matrix<double, 6, ContactLawDerivative::kInputs> response_;  ///< ∂φ/∂z at fixed y
+  // In world axes: H, ∂φ/∂z at fixed y, and what the frame turns by with z.
+  Matrix6 H_;
+  ByInputs response_;
   Eigen::Matrix<double, 3, ContactLawDerivative::kInputs> turn_;
 };
 

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "softgauss/engine/constraints/contact_motion.hpp"
+
 namespace softgauss {
 namespace {
 
@@ -95,15 +97,35 @@ std::optional<ContactShift> ContactShift::of(const Model& model, const Kinematic
   if (planeA ? !touchesPlanes(kindB) : planeB ? !touchesPlanes(kindA) : !faceA && !faceB)
     return std::nullopt;
   s.flatIsA_ = planeA || (!planeB && faceA);
-  s.n_ = s.flatIsA_ ? c.n_W : -c.n_W;
   const int other = s.flatIsA_ ? c.geometryB : c.geometryA;
-  const Shape& shape = model.geometries[other].shape;
-  const bool capsule = shape.kind == ShapeKind::capsule;
-  if (capsule || shape.kind == ShapeKind::sphere) s.radius_ = shape.radius;
-  if (shape.kind == ShapeKind::cylinder) s.setRim(model, k, c, other);
+  s.setOther(model, k, c, other);
+  const bool capsule = model.geometries[other].shape.kind == ShapeKind::capsule;
   const Wish ofCapsule = capsule == s.flatIsA_ ? Wish::ofB : Wish::ofA;
   s.setTangent(c, alongGravity ? Wish::world : ofCapsule, wished);
   return s;
+}
+
+ContactShift ContactShift::of(const Model& model, const Kinematics& k, const Contact& c,
+                              bool alongGravity, const Measured& measured) {
+  ContactShift s;
+  s.measured_ = measured;
+  s.d_ = c.distance;
+  const std::optional<bool> flat = softgauss::flatIsA(model, k, c);
+  s.round_ = !flat;
+  s.flatIsA_ = flat.value_or(true);
+  s.setOther(model, k, c, s.flatIsA_ ? c.geometryB : c.geometryA);
+  s.setTangent(c, alongGravity ? Wish::world : Wish::measured,
+               alongGravity ? model.options.gravity : c.tangent_W);
+  return s;
+}
+
+/// What touches the flat one.
+void ContactShift::setOther(const Model& model, const Kinematics& k, const Contact& c,
+                            int geometry) {
+  n_ = flatIsA_ ? c.n_W : -c.n_W;
+  const Shape& shape = model.geometries[geometry].shape;
+  if (isRound(shape.kind)) radius_ = shape.radius;
+  if (shape.kind == ShapeKind::cylinder) setRim(model, k, c, geometry);
 }
 
 Vector3 ContactShift::along(const Vector3& angular) const {
@@ -130,10 +152,8 @@ Vector3 ContactShift::alongChange(const Vector3& angular, const Vector3& dAngula
          turns / slope2 * (da.cross(fromCentre_) + a.cross(ds));
 }
 
-double ContactShift::spin(const Change& change, const PointMotion& A, const PointMotion& B) const {
-  Vector3 wished = Vector3::Zero();
-  if (wish_ != Wish::world) wished = (wish_ == Wish::ofA ? A : B).angular.cross(wished_);
-  return (wished.dot(t2_) - contactNormal_.dot(wished_) * change.n.dot(t2_)) / wishedLength_;
+double ContactShift::spin(const Change& change, const Vector3& wishedMoves) const {
+  return (wishedMoves.dot(t2_) - contactNormal_.dot(wished_) * change.n.dot(t2_)) / wishedLength_;
 }
 
 std::pair<Vector3, Vector3> ContactShift::centresMove(const PointMotion& A,
@@ -153,7 +173,23 @@ std::pair<Vector3, Vector3> ContactShift::centresMove(const PointMotion& A,
   return {cA, cB};
 }
 
+ContactShift::Change ContactShift::measuredChange(const PointMotion& A,
+                                                  const PointMotion& B) const {
+  Eigen::Matrix<double, 6, 1> relative;
+  relative << B.linear - A.linear, B.angular - A.angular;
+  const Eigen::Matrix<double, 10, 1> x = *measured_ * relative;
+  Change c;
+  c.distance = x[0];
+  c.n = A.angular.cross(contactNormal_) + x.segment<3>(1);
+  c.p = A.linear + x.segment<3>(4);
+  Vector3 wished = Vector3::Zero();
+  if (wish_ == Wish::measured) wished = A.angular.cross(wished_) + x.tail<3>();
+  c.turn = contactNormal_.cross(c.n) + spin(c, wished) * contactNormal_;
+  return c;
+}
+
 ContactShift::Change ContactShift::change(const PointMotion& A, const PointMotion& B) const {
+  if (measured_) return measuredChange(A, B);
   Change c;
   if (round_) {
     const auto [cA, cB] = centresMove(A, B);
@@ -169,7 +205,9 @@ ContactShift::Change ContactShift::change(const PointMotion& A, const PointMotio
     c.p = other.linear + nu + 0.5 * d_ * turns.cross(n_) - 0.5 * c.distance * n_;
     c.n = (flatIsA_ ? 1.0 : -1.0) * flat.angular.cross(n_);
   }
-  c.turn = contactNormal_.cross(c.n) + spin(c, A, B) * contactNormal_;
+  Vector3 wished = Vector3::Zero();
+  if (wish_ != Wish::world) wished = (wish_ == Wish::ofA ? A : B).angular.cross(wished_);
+  c.turn = contactNormal_.cross(c.n) + spin(c, wished) * contactNormal_;
   return c;
 }
 

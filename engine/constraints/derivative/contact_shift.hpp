@@ -17,6 +17,9 @@
 /// direction t̂, which the capsule or the flat body carries along, or of an axis of the world:
 ///
 ///   s = (δt̂·t₂ − (n·t̂)(δn·t₂))/|u|
+///
+/// Of other pairs of shapes δd, δn, δp and δt̂ are measured: both bodies move as A does, and then B
+/// against A.
 
 #include <optional>
 #include <utility>
@@ -40,12 +43,19 @@ class ContactShift {
     double distance = 0.0;
   };
 
+  /// How δd, δn, δp and δt̂ of Contact::tangent_W, in this order, follow t and θ of B about p, where
+  /// A stays.
+  using Measured = Eigen::Matrix<double, 10, 6>;
+
   /// Nothing where the pair of shapes has no closed form here.
   static std::optional<ContactShift> of(const Model& model, const Kinematics& k, const Contact& c,
                                         bool alongGravity);
+  static ContactShift of(const Model& model, const Kinematics& k, const Contact& c,
+                         bool alongGravity, const Measured& measured);
 
   Change change(const PointMotion& A, const PointMotion& B) const;
 
+  /// Whether J̇ v of (4.10) may be known.
   bool hasFlat() const { return !round_; }
   bool flatIsA() const { return flatIsA_; }
   /// ν for a turning by `angular` of O against F.
@@ -58,7 +68,7 @@ class ContactShift {
   double distance() const { return d_; }
 
  private:
-  enum class Wish { world, ofA, ofB };
+  enum class Wish { world, ofA, ofB, measured };
   /// What a ball or capsule is about: a point or a segment.
   struct Core {
     Vector3 centre = Vector3::Zero();  ///< the point nearest to the other, c − p
@@ -74,8 +84,11 @@ class ContactShift {
   std::pair<Vector3, Vector3> centresMove(const PointMotion& A, const PointMotion& B) const;
   void setTangent(const Contact& c, Wish carriedBy, const Vector3& wished);
   void setRim(const Model& model, const Kinematics& k, const Contact& c, int geometry);
-  double spin(const Change& change, const PointMotion& A, const PointMotion& B) const;
+  void setOther(const Model& model, const Kinematics& k, const Contact& c, int geometry);
+  double spin(const Change& change, const Vector3& wishedMoves) const;
+  Change measuredChange(const PointMotion& A, const PointMotion& B) const;
 
+  std::optional<Measured> measured_;
   bool round_ = false, flatIsA_ = true, rim_ = false;
   Vector3 n_ = Vector3::UnitZ();
   double d_ = 0.0;

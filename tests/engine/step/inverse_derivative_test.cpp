@@ -283,6 +283,41 @@ TEST(InverseDerivative, OfContactsOfShapesWithoutAClosedForm) {
       [](Scene&) {}, {}, 0.5, 1e-6);  // themselves differences
 }
 
+// They touch at two points or three, whose shares follow the angle between them. The one that does
+// not move is the first of the pair, or the second.
+TEST(InverseDerivative, OfCapsulesThatLieAlongside) {
+  const Transform fixed{Matrix3::Identity(), {0.1, 0.2, 0.3}};
+  Count count;
+  for (const bool worldFirst : {true, false}) {
+    for (const double angle : {0.0, 0.03, 0.08}) {
+      Random random(7);
+      ModelBuilder b("bar");
+      b.link(emptyLink("world"));
+      b.link(randomLink("bar", random));
+      b.joint(jointSpec("free", JointType::floating, "world", "bar"));
+      const auto add = [&](const char* link, const Transform& X) {
+        b.geometry(geometrySpec(link, Shape::capsule(0.1, 0.4), 1.0, X));
+      };
+      if (worldFirst) add("world", fixed);
+      add("bar", {});
+      if (!worldFirst) add("world", fixed);
+      Scene s(b.build());
+      s.state.v = random.vector(6, 0.3);
+      const Vector3 place = fixed.p + Vector3(0.1993, 0.01, 0.02);  // 0.7 mm deep or a little less
+      const Quaternion turned = quaternionExp({angle, 0.0, 0.0});
+      s.state.q << place, turned.w(), turned.x(), turned.y(), turned.z();
+      s.contacts = std::make_shared<collision::SceneContacts>(s.model);
+      s.input.controlled = allTrees(s.model);
+      s.stages();
+      EXPECT_GE(s.data->contacts.size(), 2);
+      EXPECT_EQ(s.data->contacts.contacts[0].bodyA == 0, worldFirst);
+      SCOPED_TRACE(testing::Message() << angle << worldFirst);
+      expectDerivative(s, random.vector(6, 3.0), count, 1e-6);
+    }
+  }
+  expectFewKinks(count);
+}
+
 // Of servos at their limit and within it.
 TEST(InverseDerivative, OfServos) {
   for (const std::uint64_t seed : {1, 2, 3, 4}) {
