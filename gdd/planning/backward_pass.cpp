@@ -105,158 +105,180 @@ void BoxProgram::gain(const MatrixX& X, MatrixX& K) {
 BackwardPass::BackwardPass(const Model& model, std::vector<int> controlled)
     : n_(model.nv),
       controlled_(std::move(controlled)),
-      factor_(model.nv),
+      overA_(n_, 2 * n_),
+      overU_(static_cast<int>(controlled_.size()), 2 * n_),
+      raised_(VectorX::Zero(n_)),
+      dynamics_(n_, paddedSize(n_) + overU_.columnsOfX() + static_cast<int>(controlled_.size())),
+      solved_(dynamics_),
+      weighed_(n_, dynamics_.stride() - paddedSize(n_)),
+      half_(n_, overU_.columnsOfX()),
       box_(static_cast<int>(controlled_.size())) {
   const int n = n_, m = static_cast<int>(controlled_.size());
-  for (MatrixX* X : {&VA_, &AVA_, &Qxx_}) *X = MatrixX::Zero(2 * n, 2 * n);
-  for (MatrixX* X : {&VB_, &AVB_}) *X = MatrixX::Zero(2 * n, n);
-  for (MatrixX* X : {&Qax_, &WG_, &ax_, &FaaAx_}) *X = MatrixX::Zero(n, 2 * n);
-  for (MatrixX* X : {&Qaa_, &WP_, &raised_}) *X = MatrixX::Zero(n, n);
-  transposed_ = MatrixX::Zero(2 * n, 2 * n);
-  for (VectorX* x : {&Qa_, &Bv_, &root_}) *x = VectorX::Zero(n);
+  for (MatrixX* X : {&VA_, &Qxx_, &KQK_}) *X = MatrixX::Zero(2 * n, 2 * n);
+  for (MatrixX* X : {&VB_, &Qxa_}) *X = MatrixX::Zero(2 * n, n);
+  BVA_ = MatrixX::Zero(n, 2 * n);
+  Qaa_ = MatrixX::Zero(n, n);
+  Qa_ = VectorX::Zero(n);
   for (VectorX* x : {&Qx_, &Av_}) *x = VectorX::Zero(2 * n);
   Quu_ = raisedControls_ = MatrixX::Zero(m, m);
-  Qux_ = MatrixX::Zero(m, 2 * n);
-  QK_ = MatrixX::Zero(n, 2 * n);
-  S_ = FaaS_ = MatrixX::Zero(n, m);
-  lower_ = upper_ = VectorX::Zero(m);
-  Qk_ = VectorX::Zero(n);
+  Qux_ = QK_ = MatrixX::Zero(m, 2 * n);
+  lower_ = upper_ = Qk_ = VectorX::Zero(m);
 }
 
 void BackwardPass::withoutForces(const Knot& knot, const ValueModel& next,
                                  const ValueModel& state) {
-  const int n = n_;
   const Transition& T = knot.transition;
   T.multiply(next.curvature, VA_, VB_);
-  // Aᵀ(V A) = ((V A)ᵀA)ᵀ, and V is symmetric.
-  transposed_ = VA_.transpose();
-  T.multiply(transposed_, AVA_, AVB_);
-  Qxx_.triangularView<Eigen::Lower>() = AVA_;
-  Qxx_.triangularView<Eigen::Lower>() += state.curvature;
-  Qax_ = AVB_.transpose();
-  // Bᵀ(V B), of the upper and lower half of V B.
-  raised_ = VB_.topRows(n).transpose();
-  Qaa_.noalias() = raised_ * T.byAcceleration().asDiagonal();
-  for (const Transition::Rotation& r : T.rotations())
-    Qaa_.middleCols<3>(r.dof).noalias() = raised_.middleCols<3>(r.dof) * r.B;
-  Qaa_ += T.timestep() * VB_.bottomRows(n).transpose();
-  T.transposed(next.slope, Av_, Bv_);
+  T.multiplyTransposed(VA_, Qxx_, BVA_);
+  T.multiplyTransposed(VB_, Qxa_, Qaa_);
+  Qxx_ += state.curvature;
+  T.transposed(next.slope, Av_, Qa_);
   Qx_ = state.slope + Av_;
-  Qa_ = Bv_;
-}
-
-void BackwardPass::setValue(const MatrixX& Quu, const MatrixX& Qux, Feedback& f,
-                            ValueModel& value) {
-  auto Qk = Qk_.head(f.k.size());
-  auto QK = QK_.topRows(f.k.size());
-  Qk.noalias() = Quu.selfadjointView<Eigen::Lower>() * f.k;
-  linear_ += f.k.dot(f.slope);
-  quadratic_ += 0.5 * f.k.dot(Qk);
-  Qk += f.slope;
-  value.slope = Qx_;
-  value.slope.noalias() += f.K.transpose() * Qk;
-  value.slope.noalias() += Qux.transpose() * f.k;
-  // Kᵀ(Q_uu K + Q_ux) + Q_uxᵀK, symmetric.
-  QK.noalias() = 0.5 * (Quu.selfadjointView<Eigen::Lower>() * f.K);
-  QK += Qux;
-  transposed_.noalias() = f.K.transpose() * QK;
-  value.curvature.triangularView<Eigen::Lower>() = Qxx_;
-  value.curvature.triangularView<Eigen::Lower>() += transposed_;
-  value.curvature.triangularView<Eigen::Lower>() += transposed_.transpose();
-  value.mirror();
 }
 
 bool BackwardPass::overAccelerations(const Knot& knot, const ValueModel& next,
                                      const ValueModel& state, const VectorX& w, const VectorX& W,
                                      double rho, Feedback& f, ValueModel& value) {
   withoutForces(knot, next, state);
-  // √W on both sides.
-  root_ = W.cwiseSqrt();
-  WG_.noalias() = root_.asDiagonal() * knot.G;
-  WP_.noalias() = root_.asDiagonal() * knot.P;
-  Qxx_.selfadjointView<Eigen::Lower>().rankUpdate(WG_.transpose());
-  Qaa_.selfadjointView<Eigen::Lower>().rankUpdate(WP_.transpose());
-  Qax_.noalias() += WP_.transpose() * WG_;
   Qx_.noalias() += knot.G.transpose() * w;
   Qa_.noalias() += knot.P * w;
+  overA_.clear();
+  for (int i = 0; i < n_; ++i) {
+    double* row = overA_.rowOfA(i);
+    std::copy_n(Qaa_.col(i).data(), n_, row);
+    std::copy_n(Qxa_.col(i).data(), 2 * n_, row + overA_.first());
+    row[overA_.first() + 2 * n_] = Qa_[i];
+  }
+  for (int i = 0; i < 2 * n_; ++i) {
+    std::copy_n(Qxx_.col(i).data() + i, 2 * n_ - i, overA_.rowOfX(i) + i);
+    overA_.rowOfX(i)[2 * n_] = Qx_[i];
+  }
+  overA_.addSquares(W, knot.P, knot.G);
+  f.slope = Qa_;
+  for (int i = 0; i < n_; ++i) f.diagonal[i] = overA_.rowOfA(i)[i];
   // What is left of it where nothing costs: rounding of the largest.
   constexpr double kRounding = 1e-12;
-  f.slope = Qa_;
-  f.diagonal = Qaa_.diagonal();
-  root_ = rho * f.diagonal;
-  root_.array() += kRounding * f.diagonal.maxCoeff();
-  raised_ = Qaa_;
-  raised_.diagonal() += root_;
-  factor_.compute(raised_);
-  if (factor_.info() != Eigen::Success) return false;
-  setValueOfFactor(rho > 0.0, f, value);
+  raised_ = rho * f.diagonal;
+  raised_.array() += kRounding * f.diagonal.maxCoeff();
+  for (int i = 0; i < n_; ++i) overA_.rowOfA(i)[i] += raised_[i];
+  if (!overA_.factor()) return false;
+  overA_.gain(f.K, f.k);
+  setValue(overA_, rho, f, value);
   return value.slope.allFinite() && value.curvature.allFinite();
 }
 
-/// V_t where L Lᵀ = Q_aa + E, E = diag(root_), of which KᵀE K is rounding unless raised by ρ. With
-/// Y = L⁻¹Q_ax and y = L⁻¹Q_a, K = −L⁻ᵀY and k = −L⁻ᵀy, what setValue() gives is Q_xx − YᵀY − KᵀE K
-/// and Q_x − Yᵀy − KᵀE k.
-void BackwardPass::setValueOfFactor(bool raised, Feedback& f, ValueModel& value) {
-  const auto L = factor_.matrixL();
-  f.k = -Qa_;
-  f.K = -Qax_;
-  L.solveInPlace(f.k);
-  L.solveInPlace(f.K);
-  value.slope = Qx_;
-  value.slope.noalias() -= f.K.transpose() * f.k;
-  Qxx_.selfadjointView<Eigen::Lower>().rankUpdate(f.K.transpose(), -1.0);
-  factor_.matrixU().solveInPlace(f.k);
-  factor_.matrixU().solveInPlace(f.K);
-  Qk_ = root_.cwiseProduct(f.k);
-  linear_ += f.k.dot(Qa_);
-  quadratic_ -= 0.5 * (f.k.dot(Qa_) + f.k.dot(Qk_));
-  value.slope.noalias() -= f.K.transpose() * Qk_;
-  if (raised) {
-    QK_.noalias() = root_.cwiseSqrt().asDiagonal() * f.K;
-    Qxx_.selfadjointView<Eigen::Lower>().rankUpdate(QK_.transpose(), -1.0);
-  }
-  value.curvature.triangularView<Eigen::Lower>() = Qxx_;
+void BackwardPass::setValue(PartialMinimum& minimum, double rho, Feedback& f, ValueModel& value) {
+  const double kQk = f.k.dot(f.slope);
+  linear_ += kQk;
+  quadratic_ -= 0.5 * (kQk + f.k.dot(raised_.head(f.k.size()).cwiseProduct(f.k)));
+  // V is what the function is worth that is not raised.
+  minimum.value(rho > 0.0 ? &raised_ : nullptr, value.curvature, value.slope);
   value.mirror();
+}
+
+bool BackwardPass::solveAccelerations(const Knot& knot) {
+  const int n = n_, ofX = paddedSize(n), ofU = ofX + overU_.columnsOfX();
+  dynamics_.setZero();
+  for (int i = 0; i < n; ++i) {
+    double* row = dynamics_[i];
+    std::copy_n(knot.P.col(i).data(), n, row);
+    for (int j = 0; j < 2 * n; ++j) row[ofX + j] = -knot.G(i, j);
+  }
+  for (std::size_t j = 0; j < controlled_.size(); ++j)
+    dynamics_[controlled_[j]][ofU + static_cast<int>(j)] = 1.0;
+  if (!factorRows(dynamics_, n)) return false;
+  solveRows(dynamics_, n, ofX, solved_);
+  return true;
+}
+
+void BackwardPass::setControls(const Knot& knot, const VectorX& R) {
+  const int n = n_, m = static_cast<int>(controlled_.size()), columns = overU_.columnsOfX();
+  const Block ax(solved_, paddedSize(n)), S(solved_, paddedSize(n) + columns);
+  overU_.clear();
+  weighed_.setZero();
+  addProduct({Qaa_.data(), n}, ax, n, n, weighed_.stride(), weighed_[0], weighed_.stride());
+  // F_aa a_x + F_ax, with F_a behind; ½ F_aa a_x + F_ax, of which a_xᵀ takes twice the symmetric
+  // part.
+  for (int k = 0; k < n; ++k) {
+    double *whole = weighed_[k], *half = half_[k];
+    for (int j = 0; j < 2 * n; ++j) {
+      half[j] = 0.5 * whole[j] + Qxa_(j, k);
+      whole[j] += Qxa_(j, k);
+    }
+    half[2 * n] = whole[2 * n] = Qa_[k];
+  }
+  addUpperProduct(1.0, S, {weighed_, columns}, n, m, paddedSize(m), overU_.rowOfA(0),
+                  overU_.stride());
+  addProduct(S, weighed_, n, m, columns, overU_.rowOfA(0) + overU_.first(), overU_.stride());
+  for (int i = 0; i < 2 * n; ++i) {
+    std::copy_n(Qxx_.col(i).data() + i, 2 * n - i, overU_.rowOfX(i) + i);
+    overU_.rowOfX(i)[2 * n] = Qx_[i];
+  }
+  addUpperProduct(1.0, ax, half_, n, 2 * n, columns, overU_.rowOfX(0), overU_.stride());
+  addUpperProduct(1.0, half_, ax, n, 2 * n, columns, overU_.rowOfX(0), overU_.stride());
+  for (int j = 0; j < m; ++j) {
+    const int i = controlled_[idx(j)];
+    overU_.rowOfA(j)[j] += R[i];
+    overU_.rowOfA(j)[overU_.first() + 2 * n] += R[i] * knot.tau[i];
+  }
+}
+
+bool BackwardPass::setBoundedValue(Feedback& f, ValueModel& value) {
+  const int n = n_, m = static_cast<int>(controlled_.size());
+  for (int i = 0; i < m; ++i) {
+    const double* row = overU_.rowOfA(i);
+    for (int j = i; j < m; ++j) Quu_(i, j) = Quu_(j, i) = row[j];
+    for (int j = 0; j < 2 * n; ++j) Qux_(i, j) = row[overU_.first() + j];
+  }
+  raisedControls_ = Quu_;
+  raisedControls_.diagonal() += raised_.head(m);
+  f.k.setZero();
+  if (!box_.solve(raisedControls_, f.slope, lower_, upper_, f.k)) return false;
+  box_.gain(Qux_, f.K);
+  Qk_.noalias() = Quu_ * f.k;
+  linear_ += f.k.dot(f.slope);
+  quadratic_ += 0.5 * f.k.dot(Qk_);
+  Qk_ += f.slope;
+  for (int i = 0; i < 2 * n; ++i) value.slope[i] = overU_.rowOfX(i)[2 * n];
+  value.slope.noalias() += f.K.transpose() * Qk_;
+  value.slope.noalias() += Qux_.transpose() * f.k;
+  // Kᵀ(Q_uu K + Q_ux) + Q_uxᵀK, symmetric.
+  QK_.noalias() = 0.5 * Quu_ * f.K;
+  QK_ += Qux_;
+  KQK_.noalias() = f.K.transpose() * QK_;
+  for (int i = 0; i < 2 * n; ++i)
+    for (int j = i; j < 2 * n; ++j)
+      value.curvature(j, i) = overU_.rowOfX(i)[j] + KQK_(i, j) + KQK_(j, i);
+  value.mirror();
+  return true;
 }
 
 bool BackwardPass::overControls(const Knot& knot, const ValueModel& next, const ValueModel& state,
                                 const VectorX& R, const VectorX& lower, const VectorX& upper,
                                 double rho, Feedback& f, ValueModel& value) {
-  withoutForces(knot, next, state);
-  factor_.compute(knot.P);
-  if (factor_.info() != Eigen::Success) return false;
-  ax_ = -knot.G;
-  factor_.solveInPlace(ax_);
-  S_.setZero();
   const int m = static_cast<int>(controlled_.size());
-  for (int j = 0; j < m; ++j) S_(controlled_[idx(j)], j) = 1.0;
-  factor_.solveInPlace(S_);
-
-  FaaAx_.noalias() = Qaa_ * ax_;
-  FaaS_.noalias() = Qaa_ * S_;
-  Quu_.noalias() = S_.transpose() * FaaS_;
-  FaaAx_ += Qax_;
-  Qux_.noalias() = S_.transpose() * FaaAx_;
-  // F_axᵀa_x + a_xᵀF_ax + a_xᵀF_aa a_x.
-  transposed_.noalias() = ax_.transpose() * FaaAx_;
-  transposed_.noalias() += Qax_.transpose() * ax_;
-  Qxx_.triangularView<Eigen::Lower>() += transposed_;
-  Qx_.noalias() += ax_.transpose() * Qa_;
-  f.slope.noalias() = S_.transpose() * Qa_;
+  withoutForces(knot, next, state);
+  if (!solveAccelerations(knot)) return false;
+  setControls(knot, R);
+  raised_.setZero();
   for (int j = 0; j < m; ++j) {
+    double* row = overU_.rowOfA(j);
     const int i = controlled_[idx(j)];
-    Quu_(j, j) += R[i];
-    f.slope[j] += R[i] * knot.tau[i];
+    f.slope[j] = row[overU_.first() + 2 * n_];
+    f.diagonal[j] = row[j];
     lower_[j] = lower[i] - knot.tau[i];
     upper_[j] = upper[i] - knot.tau[i];
+    raised_[j] = rho * row[j];
+    row[j] += raised_[j];
   }
-  f.diagonal = Quu_.diagonal();
-  raisedControls_ = Quu_;
-  raisedControls_.diagonal() += rho * f.diagonal;
-  f.k.setZero();
-  if (!box_.solve(raisedControls_, f.slope, lower_, upper_, f.k)) return false;
-  box_.gain(Qux_, f.K);
-  setValue(Quu_, Qux_, f, value);
+  if (!overU_.factor()) return false;
+  overU_.gain(f.K, f.k);
+  if ((f.k.array() >= lower_.array()).all() && (f.k.array() <= upper_.array()).all()) {
+    setValue(overU_, rho, f, value);
+  } else {
+    setControls(knot, R);
+    if (!setBoundedValue(f, value)) return false;
+  }
   return value.slope.allFinite() && value.curvature.allFinite();
 }
 

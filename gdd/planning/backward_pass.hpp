@@ -19,8 +19,7 @@
 /// Of the control d = k + K δx that Q gives, with Q_uu raised by ρ diag(Q_uu) and within bounds,
 /// V_t is what the Q that is not raised is worth. Nothing here allocates after construction.
 
-#include <Eigen/Cholesky>
-
+#include "softgauss/gdd/planning/partial_minimum.hpp"
 #include "softgauss/gdd/planning/plan_dynamics.hpp"
 
 namespace softgauss::planning {
@@ -87,17 +86,26 @@ class BackwardPass {
  private:
   /// F of (P.5): Q without what forces cost.
   void withoutForces(const Knot& knot, const ValueModel& next, const ValueModel& state);
-  /// V_t of Q, k and K.
-  void setValue(const MatrixX& Quu, const MatrixX& Qux, Feedback& feedback, ValueModel& value);
-  void setValueOfFactor(bool raised, Feedback& feedback, ValueModel& value);
-
+  /// a_x and S of (P.5); false where P is not positive definite.
+  bool solveAccelerations(const Knot& knot);
+  /// Q of (P.5) in overU_.
+  void setControls(const Knot& knot, const VectorX& R);
+  /// K, k and V_t of a function that is raised by raised_ on its diagonal.
+  void setValue(PartialMinimum& minimum, double rho, Feedback& feedback, ValueModel& value);
+  /// The same where some of k is at its bounds.
+  bool setBoundedValue(Feedback& feedback, ValueModel& value);
   int n_;
   std::vector<int> controlled_;
-  MatrixX VA_, VB_, transposed_, AVA_, AVB_, Qaa_, Qax_, Qxx_, WG_, WP_, raised_;
-  VectorX Qa_, Qx_, Av_, Bv_, root_;
-  MatrixX Quu_, raisedControls_, Qux_, S_, ax_, FaaAx_, FaaS_, QK_;
+  MatrixX VA_, VB_, BVA_, Qaa_, Qxa_, Qxx_;
+  VectorX Qa_, Qx_, Av_;
+  PartialMinimum overA_, overU_;
+  VectorX raised_;
+  // Of (P.5), by rows of dofs: (P −G 1), (· a_x S), F_aa (a_x S), ½ F_aa a_x + F_ax with F_a
+  // behind.
+  DenseRows dynamics_, solved_, weighed_, half_;
+  // Where bounds are active.
+  MatrixX Quu_, raisedControls_, Qux_, QK_, KQK_;
   VectorX lower_, upper_, Qk_;
-  Eigen::LLT<MatrixX> factor_;
   BoxProgram box_;
   double linear_ = 0.0, quadratic_ = 0.0;
 };

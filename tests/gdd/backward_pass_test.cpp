@@ -75,5 +75,67 @@ TEST(BackwardPass, ValueIsThatOfTheFeedback) {
   }
 }
 
+/// Q of forces u on the controlled dofs, of which `by` adds to those of the knot, and no others.
+double ofControls(RandomPass& r, const VectorX& R, const VectorX& dx, const VectorX& by) {
+  VectorX after(2 * r.model.nv);
+  const VectorX da = r.knot.P.ldlt().solve(by - r.knot.G * dx);
+  r.knot.transition.next(dx, da, after);
+  const MatrixX cost = r.cost.curvature.selfadjointView<Eigen::Lower>();
+  return r.cost.slope.dot(dx) + 0.5 * dx.dot(cost * dx) + r.next.slope.dot(after) +
+         0.5 * after.dot(r.next.curvature * after) + 0.5 * (r.knot.tau + by).cwiseAbs2().dot(R) -
+         0.5 * r.knot.tau.cwiseAbs2().dot(R);
+}
+
+// The same of forces, (P.5) multiplied out, in bounds that are far away and in narrow ones: what is
+// at a bound stays there whatever δx is, and within them nothing is better than k.
+TEST(BackwardPass, ValueIsThatOfTheFeedbackOfBoundedControls) {
+  int held = 0, free = 0;
+  for (int seed = 0; seed < 10; ++seed) {
+    ModelBuilder builder = randomFloatingTree(seed);
+    builder.options = StepDerivative::bareStep(builder.options);
+    builder.options.timestep = 0.02;
+    const Model model = builder.build();
+    const int n = model.nv;
+    std::vector<int> controlled;
+    for (int i = 6; i < n; ++i) controlled.push_back(i);
+    const auto m = static_cast<int>(controlled.size());
+    for (const double width : {kInfinity, 1.0, 0.01}) {
+      RandomPass r(seed, model);
+      ASSERT_EQ(r.dynamics.linearise(r.knot), SolveStatus::converged);
+      const VectorX R = r.W, lower = r.knot.tau.array() - width, upper = r.knot.tau.array() + width;
+      BackwardPass pass(model, controlled);
+      Feedback f(m, n);
+      ValueModel value(n);
+      ASSERT_TRUE(pass.overControls(r.knot, r.next, r.cost, R, lower, upper, 0.0, f, value));
+      const auto Q = [&](const VectorX& dx, const VectorX& du) {
+        VectorX by = VectorX::Zero(n);
+        by.tail(m) = du;
+        return ofControls(r, R, dx, by);
+      };
+      Random random(seed + 7);
+      const double none = Q(VectorX::Zero(2 * n), f.k);
+      EXPECT_NEAR(none, pass.linear() + pass.quadratic(), 1e-8 * std::max(1.0, std::abs(none)));
+      for (int i = 0; i < 5; ++i) {
+        const VectorX dx = random.vector(2 * n, 1.0);
+        const double expected = Q(dx, f.k + f.K * dx) - none;
+        EXPECT_NEAR(value.slope.dot(dx) + 0.5 * dx.dot(value.curvature * dx), expected,
+                    1e-8 * std::max(1.0, std::abs(Q(dx, VectorX::Zero(m)))))
+            << seed << ' ' << width;
+        const VectorX other = (f.k + random.vector(m, 0.1)).cwiseMax(-width).cwiseMin(width);
+        EXPECT_GE(Q(VectorX::Zero(2 * n), other), none - 1e-9 * std::abs(none));
+      }
+      for (int i = 0; i < m; ++i) {
+        const bool isHeld = f.K.row(i).isZero(0.0);
+        ++(isHeld ? held : free);
+        if (isHeld) {
+          EXPECT_NEAR(std::abs(f.k[i]), width, 1e-12);  // τ ± width − τ
+        }
+      }
+    }
+  }
+  EXPECT_GT(held, 10);
+  EXPECT_GT(free, 10);
+}
+
 }  // namespace
 }  // namespace softgauss::test
