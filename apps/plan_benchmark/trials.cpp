@@ -52,6 +52,17 @@ double iterationSeconds(Planner& planner, const io::PlanTask& task, const State&
   return (many - few) / (kMany - kFew);
 }
 
+/// Costs by iterations, which go on where a stage counts its own anew.
+struct Curve {
+  std::vector<std::pair<int, double>> points;
+  int before = 0;
+  void add(int iteration, double cost) {
+    const int last = points.empty() ? 0 : points.back().first;
+    if (before + iteration < last) before = last;
+    points.emplace_back(before + iteration, cost);
+  }
+};
+
 }  // namespace
 
 std::string planMethodName(PlanMethod method) {
@@ -93,6 +104,12 @@ PlanTrials runTrials(const std::filesystem::path& file, PlanMethod method,
   for (int i = 0; i < choice.starts && !interrupted(); ++i) {
     const auto start = randomStart(scene->model, task.steps.knots, task.spread,
                                    choice.seed + static_cast<unsigned>(i));
+    Curve curve;
+    planner.progress = [&](const MotionPlan& now) {
+      if (planner.feasible().hasTrajectory())
+        curve.add(now.iterations, planner.feasible().trajectory().cost);
+      return true;
+    };
     const double begin = cpuSeconds();
     const MotionPlan& plan =
         method == PlanMethod::ailqr
@@ -104,6 +121,8 @@ PlanTrials runTrials(const std::filesystem::path& file, PlanMethod method,
     trial.rootForce = plan.rootForce, trial.gap = plan.gap;
     trial.iterations = plan.iterations;
     trial.seconds = cpuSeconds() - begin;
+    if (found) curve.add(plan.iterations, plan.cost);
+    trial.curve = std::move(curve.points);
     trial.status = planStatusName(plan.status);
   }
   return all;

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace softgauss::app {
@@ -23,6 +24,9 @@ struct PlanTrial {
   int iterations = 0;
   double seconds = 0.0;  ///< of the plan, of this thread
   std::string status;
+  /// Of the best feasible trajectory there was, after so many iterations of all stages; a stage's
+  /// cost is that on its contacts.
+  std::vector<std::pair<int, double>> curve;
 };
 
 struct PlanTrials {
@@ -46,6 +50,10 @@ struct TrialChoice {
 /// Throws ModelError where the file is at fault.
 PlanTrials runTrials(const std::filesystem::path& file, PlanMethod method,
                      const TrialChoice& choice);
+
+/// Draws cost over iterations of each task's first start, its methods side by side, as SVG. Throws
+/// std::runtime_error where gnuplot is missing or the file cannot be written.
+void drawCurves(const std::vector<PlanTrials>& all, const std::filesystem::path& file);
 
 /// Tables of all tasks, for people.
 std::string planTables(const std::vector<PlanTrials>& all);

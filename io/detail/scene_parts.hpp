@@ -15,9 +15,9 @@ namespace softgauss::io::detail {
 
 /// The keys of a scene file.
 inline const std::vector<std::string> kSceneKeys = {
-    "name",     "timestep", "gravity",   "ground",       "materials",
-    "robots",   "objects",  "actuators", "constraints",  "pairs",
-    "wrenches", "options",  "goals",     "control_cost", "collision", "plan"};
+    "name",    "timestep",     "gravity",     "ground", "materials", "robots",
+    "objects", "actuators",    "constraints", "pairs",  "wrenches",  "options",
+    "goals",   "control_cost", "collision",   "plan"};
 
 /// Materials by name; "default" is there from the start.
 using Materials = std::map<std::string, Material>;

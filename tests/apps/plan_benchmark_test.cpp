@@ -50,9 +50,9 @@ TEST(PlanBenchmark, RecedingPlansBringBackWhatIsDisturbed) {
   const io::TempFolder folder;
   const std::string file = folder.path() / "runs.json";
   const auto runs = [&](const char* seed) {
-    const Outcome outcome =
-        runProgram("plan_benchmark", {dataFile("plans/cart_pole.yaml"), "--mpc", "--runs", "2",
-                                      "--seed", seed, "--json", file});
+    const Outcome outcome = runProgram(
+        "plan_benchmark",
+        {dataFile("plans/cart_pole.yaml"), "--mpc", "--runs", "2", "--seed", seed, "--json", file});
     EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
     EXPECT_NE(outcome.out.find(" 2/2 "), std::string::npos) << outcome.out;
     return PlanJson::parse(readFile(file))[0]["runs"];
@@ -64,7 +64,43 @@ TEST(PlanBenchmark, RecedingPlansBringBackWhatIsDisturbed) {
   for (const PlanJson& run : first) EXPECT_EQ(run["failed_ticks"], 0);
 }
 
+// An acrobot that swings up and holds is unstable: what the plan costs is kept by goal directed
+// dynamics and by the feedback, for both know the value model.
+TEST(PlanBenchmark, ActsPlansOutByThreeLaws) {
+  const io::TempFolder folder;
+  const std::string file = folder.path() / "runs.json";
+  const Outcome outcome = runProgram(
+      "plan_benchmark", {dataFile("plans/acrobot.yaml"), "--act", "--runs", "2", "--json", file});
+  ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+  const PlanJson laws = PlanJson::parse(readFile(file));
+  ASSERT_EQ(laws.size(), 3u);
+  for (const PlanJson& law : laws) {
+    EXPECT_EQ(law["planned"], laws[0]["planned"]);
+    EXPECT_EQ(law["costs"].size(), 2u);
+    if (law["law"] == "u + PD") continue;
+    EXPECT_EQ(law["carried_out"], 2) << law["law"];
+    // Steps of 2 ms in place of 50.
+    EXPECT_NEAR(law["undisturbed"], law["planned"], 0.1 * law["planned"].get<double>());
+  }
+}
+
+TEST(PlanBenchmark, DrawsCostsOverIterations) {
+  const io::TempFolder folder;
+  const std::string file = folder.path() / "curves.svg";
+  const Outcome outcome = runProgram(
+      "plan_benchmark", {dataFile("plans/acrobot.yaml"), "--starts", "1", "--picture", file});
+  if (outcome.err.find("gnuplot") != std::string::npos) GTEST_SKIP() << outcome.err;
+  ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+  const std::string svg = readFile(file);
+  for (const char* name : {"<svg", "acrobot", "AILQR", "phase F", "iLQR"})
+    EXPECT_NE(svg.find(name), std::string::npos) << name;
+}
+
 TEST(PlanBenchmark, TellsWhatIsWrong) {
+  const Outcome runs =
+      runProgram("plan_benchmark", {dataFile("plans/acrobot.yaml"), "--runs", "1"});
+  EXPECT_EQ(runs.exitCode, 2);
+  EXPECT_NE(runs.err.find("--mpc or --act"), std::string::npos) << runs.err;
   EXPECT_NE(runProgram("plan_benchmark", {"nowhere.yaml"}).exitCode, 0);
   const Outcome pushed =
       runProgram("plan_benchmark", {dataFile("plans/acrobot.yaml"), "--push", "1"});
