@@ -42,6 +42,9 @@ ContactBlocks::FrameVector rowInFrame(const EllipticContact&, const ContactRows&
 void ContactLaw::begin(const Assembly& in) {
   kinematics_ = in.kinematics;
   if (kinematics_.V_midstep.empty()) kinematics_.V_midstep = kinematics_.V;
+  if (!in.state.hasAcceleration) return;
+  last_.resize(in.model.bodies.size());
+  moveBodies(in.model, in.kinematics, in.state.a, last_);
 }
 
 template <class Contacts>
@@ -64,7 +67,8 @@ bool ContactLaw::sample(const Assembly& in, const ContactRows& made, Contacts& r
   move(L::kVelocity, V);
   move(L::kBias, A);
   rows.assemble({in.model, in.state, kinematics_, contact_, in.weights, in.tree, in.input,
-                 in.midstepVelocity, in.load, nullptr});
+                 in.midstepVelocity, in.load, nullptr, false,
+                 in.state.hasAcceleration ? &last_ : nullptr});
   V = keptV, A = keptA;
   out.rows = rows.rowCount();
   if (out.rows == 0) return false;

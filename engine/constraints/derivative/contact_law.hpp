@@ -57,6 +57,7 @@ class ContactLaw {
   void difference(int input, const Sample& more, const Sample& less, double apart);
 
   Kinematics kinematics_;
+  std::vector<Motion> last_;  ///< (bodies) by State::a
   ContactSet contact_;
   PyramidalContact pyramid_;
   EllipticContact cone_;
