@@ -55,19 +55,6 @@ void Transition::next(const VectorX& x, const VectorX& da, VectorX& next) const 
         r.A_q * x.segment<3>(r.dof) + r.A_v * x.segment<3>(n + r.dof) + r.B * da.segment<3>(r.dof);
 }
 
-void Transition::transposed(const VectorX& y, VectorX& Ay, VectorX& By) const {
-  const Eigen::Index n = D1_.size();
-  Ay.head(n) = y.head(n);
-  Ay.tail(n) = y.tail(n) + h_ * y.head(n);
-  By = B_.cwiseProduct(y.head(n)) + h_ * y.tail(n);
-  for (const Rotation& r : rotations_) {
-    const Vector3 yq = y.segment<3>(r.dof), yv = y.segment<3>(n + r.dof);
-    Ay.segment<3>(r.dof) = r.A_q.transpose() * yq;
-    Ay.segment<3>(n + r.dof) = r.A_v.transpose() * yq + yv;
-    By.segment<3>(r.dof) = r.B.transpose() * yq + h_ * yv;
-  }
-}
-
 void Transition::toMiddle(const Model& model, const VectorX& v, VectorX& q) const {
   scaled_ = D1_.cwiseProduct(v);
   integratePosition(model, scaled_, 1.0, q);

@@ -47,8 +47,6 @@ class Transition {
 
   /// (δq⁺, δv⁺) of (δq, δv) and δa; x, next (2 nv), da (nv); next is not x.
   void next(const VectorX& x, const VectorX& da, VectorX& next) const;
-  /// Aᵀy and Bᵀy of y (2 nv).
-  void transposed(const VectorX& y, VectorX& Ay, VectorX& By) const;
   /// VA ← V A and VB ← V B of V (rows × 2 nv).
   template <class In, class OutA, class OutB>
   void multiply(const In& V, OutA& VA, OutB& VB) const {
@@ -66,19 +64,30 @@ class Transition {
       VB.template middleCols<3>(r.dof).noalias() += v * r.B;
     }
   }
-  /// AX ← Aᵀ X and BX ← Bᵀ X of X (2 nv × columns).
-  template <class In, class OutA, class OutB>
-  void multiplyTransposed(const In& X, OutA& AX, OutB& BX) const {
+  /// AX ← Aᵀ X of X (2 nv × columns).
+  template <class In, class Out>
+  void multiplyByATransposed(const In& X, Out& AX) const {
     const Eigen::Index n = D1_.size();
     for (Eigen::Index j = 0; j < X.cols(); ++j) {
       const auto q = X.col(j).head(n), v = X.col(j).tail(n);
       AX.col(j).head(n) = q;
       AX.col(j).tail(n) = v + h_ * q;
-      BX.col(j) = B_.cwiseProduct(q) + h_ * v;
       for (const Rotation& r : rotations_) {
         const Vector3 rq = q.template segment<3>(r.dof), rv = v.template segment<3>(r.dof);
         AX.col(j).template segment<3>(r.dof) = r.A_q.transpose() * rq;
         AX.col(j).template segment<3>(n + r.dof) = rv + r.A_v.transpose() * rq;
+      }
+    }
+  }
+  /// BX ← Bᵀ X of X (2 nv × columns).
+  template <class In, class Out>
+  void multiplyByBTransposed(const In& X, Out& BX) const {
+    const Eigen::Index n = D1_.size();
+    for (Eigen::Index j = 0; j < X.cols(); ++j) {
+      const auto q = X.col(j).head(n), v = X.col(j).tail(n);
+      BX.col(j) = B_.cwiseProduct(q) + h_ * v;
+      for (const Rotation& r : rotations_) {
+        const Vector3 rq = q.template segment<3>(r.dof), rv = v.template segment<3>(r.dof);
         BX.col(j).template segment<3>(r.dof) = r.B.transpose() * rq + h_ * rv;
       }
     }

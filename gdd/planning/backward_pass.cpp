@@ -116,7 +116,6 @@ BackwardPass::BackwardPass(const Model& model, std::vector<int> controlled)
   const int n = n_, m = static_cast<int>(controlled_.size());
   for (MatrixX* X : {&VA_, &Qxx_, &KQK_}) *X = MatrixX::Zero(2 * n, 2 * n);
   for (MatrixX* X : {&VB_, &Qxa_}) *X = MatrixX::Zero(2 * n, n);
-  BVA_ = MatrixX::Zero(n, 2 * n);
   Qaa_ = MatrixX::Zero(n, n);
   Qa_ = VectorX::Zero(n);
   for (VectorX* x : {&Qx_, &Av_}) *x = VectorX::Zero(2 * n);
@@ -129,10 +128,12 @@ void BackwardPass::withoutForces(const Knot& knot, const ValueModel& next,
                                  const ValueModel& state) {
   const Transition& T = knot.transition;
   T.multiply(next.curvature, VA_, VB_);
-  T.multiplyTransposed(VA_, Qxx_, BVA_);
-  T.multiplyTransposed(VB_, Qxa_, Qaa_);
+  T.multiplyByATransposed(VA_, Qxx_);
+  T.multiplyByATransposed(VB_, Qxa_);
+  T.multiplyByBTransposed(VB_, Qaa_);
   Qxx_ += state.curvature;
-  T.transposed(next.slope, Av_, Qa_);
+  T.multiplyByATransposed(next.slope, Av_);
+  T.multiplyByBTransposed(next.slope, Qa_);
   Qx_ = state.slope + Av_;
 }
 
@@ -149,10 +150,7 @@ bool BackwardPass::overAccelerations(const Knot& knot, const ValueModel& next,
     std::copy_n(Qxa_.col(i).data(), 2 * n_, row + overA_.first());
     row[overA_.first() + 2 * n_] = Qa_[i];
   }
-  for (int i = 0; i < 2 * n_; ++i) {
-    std::copy_n(Qxx_.col(i).data() + i, 2 * n_ - i, overA_.rowOfX(i) + i);
-    overA_.rowOfX(i)[2 * n_] = Qx_[i];
-  }
+  overA_.setX(Qxx_, Qx_);
   overA_.addSquares(W, knot.P, knot.G);
   f.slope = Qa_;
   for (int i = 0; i < n_; ++i) f.diagonal[i] = overA_.rowOfA(i)[i];
@@ -210,10 +208,7 @@ void BackwardPass::setControls(const Knot& knot, const VectorX& R) {
   addUpperProduct(1.0, S, {weighed_, columns}, n, m, paddedSize(m), overU_.rowOfA(0),
                   overU_.stride());
   addProduct(S, weighed_, n, m, columns, overU_.rowOfA(0) + overU_.first(), overU_.stride());
-  for (int i = 0; i < 2 * n; ++i) {
-    std::copy_n(Qxx_.col(i).data() + i, 2 * n - i, overU_.rowOfX(i) + i);
-    overU_.rowOfX(i)[2 * n] = Qx_[i];
-  }
+  overU_.setX(Qxx_, Qx_);
   addUpperProduct(1.0, ax, half_, n, 2 * n, columns, overU_.rowOfX(0), overU_.stride());
   addUpperProduct(1.0, half_, ax, n, 2 * n, columns, overU_.rowOfX(0), overU_.stride());
   for (int j = 0; j < m; ++j) {

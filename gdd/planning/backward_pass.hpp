@@ -94,9 +94,10 @@ class BackwardPass {
   void setValue(PartialMinimum& minimum, double rho, Feedback& feedback, ValueModel& value);
   /// The same where some of k is at its bounds.
   bool setBoundedValue(Feedback& feedback, ValueModel& value);
+
   int n_;
   std::vector<int> controlled_;
-  MatrixX VA_, VB_, BVA_, Qaa_, Qxa_, Qxx_;
+  MatrixX VA_, VB_, Qaa_, Qxa_, Qxx_;
   VectorX Qa_, Qx_, Av_;
   PartialMinimum overA_, overU_;
   VectorX raised_;

@@ -13,6 +13,13 @@ PartialMinimum::PartialMinimum(int n, int m)
       Q_(first_ + paddedSize(m + 1), first_ + m + 1),
       rows_(n, first_ + m + 1) {}
 
+void PartialMinimum::setX(const MatrixX& Qxx, const VectorX& Qx) {
+  for (int i = 0; i < m_; ++i) {
+    std::copy_n(Qxx.col(i).data() + i, m_ - i, rowOfX(i) + i);
+    rowOfX(i)[m_] = Qx[i];
+  }
+}
+
 void PartialMinimum::addSquares(const VectorX& W, const MatrixX& P, const MatrixX& G) {
   int count = 0;
   for (int r = 0; r < n_; ++r) {
@@ -44,8 +51,10 @@ void PartialMinimum::value(const VectorX* E, MatrixX& curvature, VectorX& slope)
   };
   subtract(Q_);
   if (E) {
-    for (int i = 0; i < n_; ++i)
-      for (int j = first_; j < stride(); ++j) rows_[i][j] *= std::sqrt((*E)[i]);
+    for (int i = 0; i < n_; ++i) {
+      const double root = std::sqrt((*E)[i]);
+      for (int j = first_; j < stride(); ++j) rows_[i][j] *= root;
+    }
     subtract(rows_);
   }
   for (int j = 0; j < m_; ++j) {

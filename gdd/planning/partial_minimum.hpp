@@ -24,11 +24,12 @@ class PartialMinimum {
   /// left of the diagonal is not read.
   double* rowOfA(int i) { return Q_[i]; }
   double* rowOfX(int i) { return Q_[first_ + i] + first_; }
-  const double* rowOfX(int i) const { return Q_[first_ + i] + first_; }
   int stride() const { return Q_.stride(); }
   int first() const { return first_; }                     ///< the place of x in a row of a
   int columnsOfX() const { return Q_.stride() - first_; }  ///< of x and 1, padded
 
+  /// Sets Q_xx (m × m) by its lower triangle, and Q_x (m).
+  void setX(const MatrixX& Qxx, const VectorX& Qx);
   /// Adds ½ Σ_r W_r (P_r a + G_r x)² for the rows of P (n × n, symmetric) and G (n × m); W (n) ≥ 0.
   void addSquares(const VectorX& W, const MatrixX& P, const MatrixX& G);
 

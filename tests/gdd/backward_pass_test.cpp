@@ -35,14 +35,27 @@ struct RandomPass {
   VectorX w, W;
 };
 
+Model bareTree(int seed) {
+  ModelBuilder builder = randomFloatingTree(seed);
+  builder.options = StepDerivative::bareStep(builder.options);
+  builder.options.timestep = 0.02;
+  return builder.build();
+}
+
+/// What δx, and the next state by δa, cost.
+double ofStates(const RandomPass& r, const VectorX& dx, const VectorX& da) {
+  VectorX after(2 * r.model.nv);
+  r.knot.transition.next(dx, da, after);
+  const MatrixX cost = r.cost.curvature.selfadjointView<Eigen::Lower>();
+  return r.cost.slope.dot(dx) + 0.5 * dx.dot(cost * dx) + r.next.slope.dot(after) +
+         0.5 * after.dot(r.next.curvature * after);
+}
+
 // Of k + K δx, at any δx and ρ, V is what Q(δx, k + K δx) is worth, where ρ raises Q for k and K
 // alone: (P.4), multiplied out.
 TEST(BackwardPass, ValueIsThatOfTheFeedback) {
   for (int seed = 0; seed < 10; ++seed) {
-    ModelBuilder builder = randomFloatingTree(seed);
-    builder.options = StepDerivative::bareStep(builder.options);
-    builder.options.timestep = 0.02;
-    const Model model = builder.build();
+    const Model model = bareTree(seed);
     const int n = model.nv;
     for (const double rho : {0.0, 0.3}) {
       RandomPass r(seed, model);
@@ -51,15 +64,10 @@ TEST(BackwardPass, ValueIsThatOfTheFeedback) {
       Feedback f(n, n);
       ValueModel value(n);
       ASSERT_TRUE(pass.overAccelerations(r.knot, r.next, r.cost, r.w, r.W, rho, f, value));
-      const MatrixX cost = r.cost.curvature.selfadjointView<Eigen::Lower>();
       // As functions of δx and δa.
       const auto Q = [&](const VectorX& dx, const VectorX& da) {
-        VectorX after(2 * n);
-        r.knot.transition.next(dx, da, after);
         const VectorX dtau = r.knot.G * dx + r.knot.P * da;
-        return r.cost.slope.dot(dx) + 0.5 * dx.dot(cost * dx) + r.next.slope.dot(after) +
-               0.5 * after.dot(r.next.curvature * after) + r.w.dot(dtau) +
-               0.5 * dtau.dot(r.W.asDiagonal() * dtau);
+        return ofStates(r, dx, da) + r.w.dot(dtau) + 0.5 * dtau.dot(r.W.asDiagonal() * dtau);
       };
       Random random(seed + 7);
       const double none = Q(VectorX::Zero(2 * n), f.k);
@@ -76,13 +84,9 @@ TEST(BackwardPass, ValueIsThatOfTheFeedback) {
 }
 
 /// Q of forces u on the controlled dofs, of which `by` adds to those of the knot, and no others.
-double ofControls(RandomPass& r, const VectorX& R, const VectorX& dx, const VectorX& by) {
-  VectorX after(2 * r.model.nv);
+double ofControls(const RandomPass& r, const VectorX& R, const VectorX& dx, const VectorX& by) {
   const VectorX da = r.knot.P.ldlt().solve(by - r.knot.G * dx);
-  r.knot.transition.next(dx, da, after);
-  const MatrixX cost = r.cost.curvature.selfadjointView<Eigen::Lower>();
-  return r.cost.slope.dot(dx) + 0.5 * dx.dot(cost * dx) + r.next.slope.dot(after) +
-         0.5 * after.dot(r.next.curvature * after) + 0.5 * (r.knot.tau + by).cwiseAbs2().dot(R) -
+  return ofStates(r, dx, da) + 0.5 * (r.knot.tau + by).cwiseAbs2().dot(R) -
          0.5 * r.knot.tau.cwiseAbs2().dot(R);
 }
 
@@ -91,10 +95,7 @@ double ofControls(RandomPass& r, const VectorX& R, const VectorX& dx, const Vect
 TEST(BackwardPass, ValueIsThatOfTheFeedbackOfBoundedControls) {
   int held = 0, free = 0;
   for (int seed = 0; seed < 10; ++seed) {
-    ModelBuilder builder = randomFloatingTree(seed);
-    builder.options = StepDerivative::bareStep(builder.options);
-    builder.options.timestep = 0.02;
-    const Model model = builder.build();
+    const Model model = bareTree(seed);
     const int n = model.nv;
     std::vector<int> controlled;
     for (int i = 6; i < n; ++i) controlled.push_back(i);
