@@ -16,14 +16,19 @@ namespace {
 }  // namespace
 
 ForceMetric ForceMetric::diagonal(const VectorX& r) {
+  ForceMetric metric;
+  metric.setDiagonal(r);
+  return metric;
+}
+
+void ForceMetric::setDiagonal(const VectorX& r) {
   for (Eigen::Index i = 0; i < r.size(); ++i)
     if (!(r[i] > 0.0) || !std::isfinite(r[i]))
       fail("entry " + std::to_string(i) + " is " + std::to_string(r[i]) +
            ", expected a finite number above 0");
-  ForceMetric metric;
-  metric.dofs_ = static_cast<int>(r.size());
-  metric.diagonal_ = r;
-  return metric;
+  dofs_ = static_cast<int>(r.size());
+  diagonal_ = r;
+  root_.resize(0, 0);
 }
 
 ForceMetric ForceMetric::dense(const MatrixX& R) {

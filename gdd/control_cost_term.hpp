@@ -22,6 +22,8 @@ class ForceMetric {
   ForceMetric() = default;  ///< M⁻¹
   /// diag(r). Throws ModelError unless every entry is finite and > 0.
   static ForceMetric diagonal(const VectorX& r);
+  /// The same in place, without allocation where it is of that size already.
+  void setDiagonal(const VectorX& r);
   /// R (nv × nv). Throws ModelError unless it is symmetric and positive definite.
   static ForceMetric dense(const MatrixX& R);
 

@@ -121,7 +121,7 @@ void readSteps(const YamlMap& map, const Model& model, PlanTask& task) {
 
 /// From which it is planned anew while it is acted out.
 void readReceding(const YamlMap& map, PlanTask& task) {
-  map.expectOnly({"rate", "iterations", "contacts", "keep"});
+  map.expectOnly({"rate", "iterations", "contacts", "keep", "seconds"});
   if (const auto* entry = map.find("keep")) task.mpc.keepsEnd = map.boolean(*entry);
   if (const auto* entry = map.find("contacts"))
     task.recedesOnOwnContacts = map.choice(*entry, {"own", "planning"}) == "own";
@@ -138,6 +138,7 @@ void readReceding(const YamlMap& map, PlanTask& task) {
   }
   mpc.period = std::min(1.0 / rate, task.steps.step);
   mpc.iterations = readCount(map, "iterations", 0, mpc.iterations);
+  map.read("seconds", mpc.seconds, Range::positive);
 }
 
 void readTarget(const YamlMap& map, const Model& model, const Degrees& degrees, const State& start,
@@ -146,8 +147,16 @@ void readTarget(const YamlMap& map, const Model& model, const Degrees& degrees, 
   VectorX &q = task.q[0], &v = task.v[0];
   if (const auto* entry = map.find("joints")) {
     const YamlMap joints = map.map(*entry);
-    for (const YamlMap::Entry& joint : joints.entries())
-      q[degrees.joint(joints, joint).q] = joints.number(joint);
+    for (const YamlMap::Entry& joint : joints.entries()) {
+      const Body& body = degrees.joint(joints, joint);
+      const double target = q[body.q] = joints.number(joint);
+      for (const JointRange& range : model.ranges)
+        if (&model.bodies[idx(range.body)] == &body &&
+            !(target >= range.lower && target <= range.upper))
+          joints.fail(joint, fmt::format("found {}, expected within the joint's range {:.4g} .. "
+                                         "{:.4g}",
+                                         target, range.lower, range.upper));
+    }
   }
   if (const auto* entry = map.find("position"))
     q.segment<3>(degrees.base(map, *entry).q) = map.vector3(*entry);

@@ -192,7 +192,7 @@ struct Series {
 
 /// A plan, and what became of it (planning::MotionPlan).
 struct PlanOutcome {
-  std::string status, outcome;               ///< as planned; "carried out", "lost", "cut short"
+  std::string status, outcome;               ///< as planned; "carried out", "lost", …
   double planned = 0.0, finalPlanned = 0.0;  ///< cost, and of it that of the final terms
   int iterations = 0;
   double seconds = 0.0;  ///< of planning

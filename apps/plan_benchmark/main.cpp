@@ -137,10 +137,14 @@ int run(int argc, char** argv) {
   parser.add_option("--methods", choice.methods, "default all")
       ->check(CLI::IsMember(known))
       ->delimiter(',');
+  int threads = 1;
+  CLI::Option* over = parser.add_option("--threads", threads, "over which the knots of a plan go")
+                          ->check(CLI::Range(1, 1024));
   CLI::Option* mpc =
       parser.add_flag("--mpc", recedes, "plans that recede while something disturbs");
-  CLI::Option* acting =
-      parser.add_flag("--act", acts, "plans acted out by three laws of control")->excludes(mpc);
+  CLI::Option* acting = parser.add_flag("--act", acts, "plans acted out by three laws of control")
+                            ->excludes(mpc)
+                            ->excludes(over);
   int runs = 0;
   parser.add_option("--runs", runs, "of each task: by --mpc 20, by --act 8 with each law")
       ->check(CLI::Range(1, 10000));
@@ -156,6 +160,7 @@ int run(int argc, char** argv) {
   parser.add_option("--json", choice.file, "write every trial to this file too");
   CLI11_PARSE(parser, argc, argv);
   app::catchInterrupts();
+  choice.receding.threads = choice.trials.threads = threads;
   choice.receding.seed = choice.acting.seed = choice.trials.seed;
   if (runs > 0 && !recedes && !acts) {
     app::tell("plan_benchmark: --runs is of --mpc or --act, expected one of them");

@@ -113,8 +113,9 @@ RecedingRuns runReceding(const std::filesystem::path& file, const RecedingChoice
     options.q0.clear();
     if (!all.floats) options.q0 = disturbed(*scene, choice.disturbed, random);
     Simulation sim = Simulation::load(file, options);
-    PlanControl control(sim.scene(), io::readPlanTask(file, sim.model(), sim.scene().initial),
-                        true);
+    io::PlanTask task = io::readPlanTask(file, sim.model(), sim.scene().initial);
+    task.steps.threads = choice.threads;
+    PlanControl control(sim.scene(), std::move(task), true);
     const Push push = randomPush(sim.model(), choice, control.duration(), random);
     all.runs.push_back(act(sim, control, push, choice, all));
   }

@@ -17,6 +17,7 @@ namespace softgauss::app {
 struct RecedingChoice {
   int runs = 20;
   unsigned seed = 1;
+  int threads = 1;          ///< over which knots go
   double push = 0.5;        ///< [m/s]
   double disturbed = 0.05;  ///< [rad or m]
   double timestep = 1e-3;   ///< of the simulator [s]

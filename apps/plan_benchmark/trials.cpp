@@ -6,6 +6,7 @@
 
 #include "apps/shared/cpu_time.hpp"
 #include "apps/shared/interrupt.hpp"
+#include "apps/shared/wall_clock.hpp"
 #include "softgauss/collision/scene_contacts.hpp"
 #include "softgauss/io/plan_task.hpp"
 #include "softgauss/io/simulation/scene.hpp"
@@ -33,6 +34,11 @@ PlanOptions feasibleOptions(PlanMethod method, const TrialChoice& choice) {
   return options;
 }
 
+/// CPU time of this thread; where others help, wall time [s].
+double secondsNow(const io::PlanTask& task) {
+  return task.steps.threads > 1 ? secondsSince(Clock::time_point{}) : cpuSeconds();
+}
+
 /// Of phase I, on the contacts on which it begins and from rest: what many iterations take beyond
 /// few, each with one pass in the end. The least of some repeats.
 double iterationSeconds(Planner& planner, const io::PlanTask& task, const State& start) {
@@ -42,9 +48,9 @@ double iterationSeconds(Planner& planner, const io::PlanTask& task, const State&
     PlanOptions options = task.options;
     options.infeasible = options.passEvery = iterations;
     options.feasible = 0;
-    const double begin = cpuSeconds();
+    const double begin = secondsNow(task);
     planner.solve(start, options);
-    return cpuSeconds() - begin;
+    return secondsNow(task) - begin;
   };
   double few = kInfinity, many = kInfinity;
   for (int i = 0; i < kRepeats; ++i)
@@ -93,7 +99,8 @@ int PlanTrials::within(double best, double share) const {
 PlanTrials runTrials(const std::filesystem::path& file, PlanMethod method,
                      const TrialChoice& choice) {
   const auto scene = loadScene(file);
-  const io::PlanTask task = io::readPlanTask(file, scene->model, scene->initial);
+  io::PlanTask task = io::readPlanTask(file, scene->model, scene->initial);
+  task.steps.threads = choice.threads;
   Planner planner(scene->model, task.steps, [](const Model& model) {
     return std::make_unique<collision::SceneContacts>(model);
   });
@@ -108,9 +115,9 @@ PlanTrials runTrials(const std::filesystem::path& file, PlanMethod method,
     planner.progress = [&](const MotionPlan& now) {
       if (planner.feasible().hasTrajectory())
         curve.add(now.iterations, planner.feasible().trajectory().cost);
-      return true;
+      return !interrupted();
     };
-    const double begin = cpuSeconds();
+    const double begin = secondsNow(task);
     const MotionPlan& plan =
         method == PlanMethod::ailqr
             ? task.solve(planner, scene->initial, start)
@@ -120,7 +127,7 @@ PlanTrials runTrials(const std::filesystem::path& file, PlanMethod method,
     trial.cost = found ? plan.cost : kInfinity;
     trial.rootForce = plan.rootForce, trial.gap = plan.gap;
     trial.iterations = plan.iterations;
-    trial.seconds = cpuSeconds() - begin;
+    trial.seconds = secondsNow(task) - begin;
     if (found) curve.add(plan.iterations, plan.cost);
     trial.curve = std::move(curve.points);
     trial.status = planStatusName(plan.status);

@@ -22,7 +22,7 @@ struct PlanTrial {
   double cost = 0.0;
   double rootForce = 0.0, gap = 0.0;
   int iterations = 0;
-  double seconds = 0.0;  ///< of the plan, of this thread
+  double seconds = 0.0;  ///< of the plan
   std::string status;
   /// Of the best feasible trajectory there was, after so many iterations of all stages; a stage's
   /// cost is that on its contacts.
@@ -45,6 +45,7 @@ struct TrialChoice {
   int starts = 8;
   int iterations = 200;  ///< of phase F alone, and of iLQR, on each of the contacts
   unsigned seed = 1;
+  int threads = 1;  ///< over which knots go
 };
 
 /// Throws ModelError where the file is at fault.

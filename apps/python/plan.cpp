@@ -39,10 +39,10 @@ struct Plan {
 /// The simulation of a task, by whose controller its plan is acted out.
 class Mpc {
  public:
-  Mpc(const std::filesystem::path& file, SimulationOptions options, bool receding = true)
+  Mpc(const std::filesystem::path& file, int threads, SimulationOptions options,
+      bool receding = true)
       : sim_(Simulation::load(file, withoutGoals(std::move(options)))),
-        control_(sim_.scene(), io::readPlanTask(file, sim_.model(), sim_.scene().initial),
-                 receding) {
+        control_(sim_.scene(), task(file, threads), receding) {
     const py::gil_scoped_release release;
     control_.planner().progress = [](const planning::MotionPlan&) {
       seeSignals();
@@ -80,6 +80,11 @@ class Mpc {
   const planning::HorizonReport& report() const { return control_.report(); }
 
  private:
+  io::PlanTask task(const std::filesystem::path& file, int threads) const {
+    io::PlanTask task = io::readPlanTask(file, sim_.model(), sim_.scene().initial);
+    task.steps.threads = threads;
+    return task;
+  }
   static SimulationOptions withoutGoals(SimulationOptions options) {
     options.withoutGoals = true;
     return options;
@@ -137,12 +142,12 @@ void bindPlanClass(py::module_& m) {
 void bindMpc(py::module_& m) {
   py::class_<Mpc>(m, "Mpc",
                   "Control by a plan that is made anew from the present state, at plan.mpc.rate.")
-      .def(py::init([](const std::filesystem::path& file, const py::kwargs& options) {
-             return std::make_unique<Mpc>(file, optionsFrom(options));
+      .def(py::init([](const std::filesystem::path& file, int threads, const py::kwargs& options) {
+             return std::make_unique<Mpc>(file, threads, optionsFrom(options));
            }),
-           py::arg("file"),
-           "A scene with a key plan, which is planned here; options as of Simulation. Raises\n"
-           "ModelError, OptionError and PlanError.")
+           py::arg("file"), py::kw_only(), py::arg("threads") = 1,
+           "A scene with a key plan, which is planned here; options as of Simulation. Any number\n"
+           "of threads gives the same bits. Raises ModelError, OptionError and PlanError.")
       .def(
           "update", &Mpc::update, py::arg("q"), py::arg("v"), py::arg("time") = py::none(),
           "The control (nv,) at q (nq,) and v (nv,). `time` [s] begins with the first call; where\n"
@@ -171,12 +176,12 @@ void bindPlans(py::module_& m) {
   bindMpc(m);
   m.def(
       "plan",
-      [](const std::filesystem::path& file, const py::kwargs& options) {
-        return Mpc(file, optionsFrom(options), false).plan();
+      [](const std::filesystem::path& file, int threads, const py::kwargs& options) {
+        return Mpc(file, threads, optionsFrom(options), false).plan();
       },
-      py::arg("file"),
-      "Plans what the key plan of a scene asks for; options as of Simulation. Ctrl-C ends it.\n"
-      "Raises ModelError, OptionError and PlanError.");
+      py::arg("file"), py::kw_only(), py::arg("threads") = 1,
+      "Plans what the key plan of a scene asks for; options as of Simulation. Any number of\n"
+      "threads gives the same bits. Ctrl-C ends it. Raises ModelError, OptionError and PlanError.");
 }
 
 }  // namespace softgauss::python

@@ -154,7 +154,7 @@ class Plan:
 class Mpc:
     """Control by a plan that is made anew from the present state, at plan.mpc.rate."""
 
-    def __init__(self, file: Path, **options: Any) -> None: ...
+    def __init__(self, file: Path, *, threads: int = 1, **options: Any) -> None: ...
     def update(self, q: ArrayLike, v: ArrayLike, time: float | None = None) -> Array:
         """The control (nv,) at q (nq,) and v (nv,)."""
     @property
@@ -172,7 +172,7 @@ class Mpc:
     @property
     def cost(self) -> float: ...
 
-def plan(file: Path, **options: Any) -> Plan:
+def plan(file: Path, *, threads: int = 1, **options: Any) -> Plan:
     """Plans what the key plan of a scene asks for; options as of Simulation."""
 
 class Simulation:

@@ -45,4 +45,9 @@ void catchInterrupts() {
 
 bool interrupted() { return interruptRequested != 0; }
 
+void forgetInterrupts() {
+  interruptRequested = 0;
+  for (auto& one : seen) one = 0;
+}
+
 }  // namespace softgauss::app

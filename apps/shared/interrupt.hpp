@@ -11,5 +11,7 @@ namespace softgauss::app {
 void catchInterrupts();
 
 bool interrupted();
+/// The run goes on with something else, which a signal ends as if it were the first.
+void forgetInterrupts();
 
 }  // namespace softgauss::app

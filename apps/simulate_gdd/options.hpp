@@ -46,6 +46,7 @@ struct SimulateOptions : SimulationOptions {
   bool passive = false;
   bool servos = false;
   bool plan = false, mpc = false;            ///< what the scene's key plan asks for
+  int planThreads = 1;
   std::shared_ptr<PlanControl> planControl;  ///< of it, once it is read
   bool hasDuration = false;                  ///< it was typed
   std::filesystem::path goals, torques;

@@ -35,11 +35,19 @@ void addPlanOptions(CLI::App& app, SimulateOptions& options) {
                "the same, planned anew from the present state 50 times a second, or as often as\n"
                "plan.mpc.rate says (receding horizon)")
       ->group(group);
+  app.add_option("--threads", options.planThreads,
+                 "over which --plan and --mpc plan, with the same result for any number; default 1")
+      ->check(CLI::Range(1, 1024))
+      ->group(group);
 }
 
 void finishPlanOptions(const CLI::App& app, SimulateOptions& options) {
   options.hasDuration = app.count("--duration") > 0;
-  if (!options.plan && !options.mpc) return;
+  if (!options.plan && !options.mpc) {
+    if (app.count("--threads") > 0)
+      throw UsageError("--threads: nothing is planned, expected --plan or --mpc beside it");
+    return;
+  }
   const char* const asked = options.plan ? "--plan" : "--mpc";
   if (options.plan && options.mpc) throw UsageError("choose one of --plan and --mpc");
   for (const auto& [option, why] : kNotBeside)

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "apps/shared/interrupt.hpp"
+#include "apps/shared/standard_streams.hpp"
 #include "apps/shared/wall_clock.hpp"
 #include "apps/simulate_gdd/names.hpp"
 #include "apps/simulate_gdd/progress.hpp"
@@ -33,6 +34,7 @@ std::string farthestText(const Model& model, const std::pair<int, double>& farth
 
 void readPlan(SimulateOptions& options, const Scene& scene) {
   io::PlanTask task = io::readPlanTask(options.model, scene.model, scene.initial);
+  task.steps.threads = options.planThreads;
   options.planControl = std::make_shared<PlanControl>(scene, std::move(task), options.mpc);
   if (!options.hasDuration) options.duration = options.planControl->duration();
   checkSteps(options, scene.model.options.timestep, scene.timestepWhere);
@@ -68,10 +70,16 @@ bool makePlan(const SimulateOptions& options) {
   } catch (const PlanError&) {
     progress.clear();
     if (!interrupted()) throw;
+    return false;
   }
   progress.clear();
   plan.planner().progress = {};
-  return !interrupted();
+  if (!interrupted()) return true;
+  app::tell(
+      "simulate_gdd: interrupted while it planned: the best plan so far is acted out; ctrl-c again "
+      "ends the run");
+  forgetInterrupts();
+  return true;
 }
 
 std::string planText(const PlanControl& plan) {
@@ -108,6 +116,13 @@ void PlanRun::concludeTicks(io::Summary& summary, io::PlanOutcome& outcome) cons
                   1e3 * plan_.task().mpc.period));
 }
 
+/// What somebody would say who watched, of a motion whose final terms cost this where it ended.
+const char* PlanRun::outcomeOf(double final) {
+  if (plan_.isLost(final)) return "lost";
+  if (!plan_.recedes() && plan_.isLost(plan_.finalCost(state_))) return "lost after its end";
+  return plan_.isNoNearer(final) ? "no nearer" : "carried out";
+}
+
 void PlanRun::conclude(io::Summary& summary) {
   const MotionPlan& plan = plan_.planner().plan();
   const Model& model = plan_.planner().model();
@@ -123,9 +138,8 @@ void PlanRun::conclude(io::Summary& summary) {
   summary.verdict.emplace_back(
       "planned", fmt::format("cost {:.4g}, {:.4g} of it at the end; {} iterations in {:.3g} s, {}",
                              o.planned, o.finalPlanned, o.iterations, o.seconds, o.status));
-  const bool lost = plan_.isLost(cost.final);
   const bool early = !plan_.recedes() && !plan_.hasEnded(state_.time);
-  o.outcome = early ? "cut short" : lost ? "lost" : "carried out";
+  o.outcome = early ? "cut short" : outcomeOf(cost.final);
   const char* const aim = plan_.recedes() ? "the target" : "the plan's end";
   summary.verdict.emplace_back(
       o.outcome,

@@ -38,6 +38,7 @@ class PlanRun final : public Companion {
   void conclude(io::Summary& summary) override;
 
  private:
+  const char* outcomeOf(double final);
   void concludeTicks(io::Summary& summary, io::PlanOutcome& outcome) const;
 
   PlanControl& plan_;

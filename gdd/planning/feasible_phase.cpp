@@ -6,19 +6,21 @@
 
 namespace softgauss::planning {
 
-FeasiblePhase::FeasiblePhase(const Problem& problem, PlanDynamics& dynamics)
+FeasiblePhase::FeasiblePhase(const Problem& problem, KnotThreads& threads)
     : problem_(problem),
-      dynamics_(dynamics),
+      threads_(threads),
+      dynamics_(threads.own()),
       cost_(problem),
       backward_(problem.model, problem.controlled),
       controller_(problem.model),
-      x_(problem, dynamics),
+      x_(problem, dynamics_),
       trial_(x_),
       reference_(x_),
       values_(static_cast<std::size_t>(problem.knots) + 1, ValueModel(problem.model.nv)),
-      shifted_(values_),
+      otherValues_(values_),
       feedback_(static_cast<std::size_t>(problem.knots),
                 Feedback(static_cast<int>(problem.controlled.size()), problem.model.nv)),
+      otherFeedback_(feedback_),
       knotCost_(problem.model.nv),
       R_(VectorX::Zero(problem.model.nv)),
       metric_(VectorX::Ones(problem.model.nv)),
@@ -40,6 +42,8 @@ void FeasiblePhase::reset(const FeasibleOptions& options) {
   controller_.limits.lower = problem_.lower;
   controller_.limits.upper = problem_.upper;
   has_ = false;
+  refusedKnot_ = -1;
+  promised_ = kInfinity;
 }
 
 void FeasiblePhase::difference(const Knot& from, const Knot& to) {
@@ -71,8 +75,8 @@ bool FeasiblePhase::solveGoal(int t, Knot& knot, double alpha) {
     control_[i] =
         std::clamp(old.tau[i] + alpha * f.k[row] + du_[row], problem_.lower[i], problem_.upper[i]);
   }
-  if (!metric_.allFinite() || !free_.allFinite()) return false;
-  controller_.forceMetric = gdd::ForceMetric::diagonal(metric_);
+  if (!(metric_.minCoeff() > 0.0) || !metric_.allFinite() || !free_.allFinite()) return false;
+  controller_.forceMetric.setDiagonal(metric_);
   value_->freeControl = free_;
   WarmStart& warm = dynamics_.middle.warmstart;
   warm.a = warm.gddA = old.a;
@@ -144,18 +148,18 @@ bool FeasiblePhase::shift(int knots, const Knot& start) {
   for (int t = 0; t <= last; ++t) {
     const int from = std::min(t + knots, last);
     reference_.knots[idx(t)].copyState(x_.knots[idx(from)]);
-    shifted_[idx(t)].slope = values_[idx(from)].slope;
-    shifted_[idx(t)].curvature = values_[idx(from)].curvature;
+    otherValues_[idx(t)].slope = values_[idx(from)].slope;
+    otherValues_[idx(t)].curvature = values_[idx(from)].curvature;
     if (t == last) continue;
     const Knot& move = x_.knots[idx(std::min(from, last - 1))];
     reference_.knots[idx(t)].a = move.a, reference_.knots[idx(t)].tau = move.tau;
   }
   forgetFeedback();
-  values_.swap(shifted_);
+  values_.swap(otherValues_);
   trial_.knots[0].copyState(start);
   rho_ = 0.0;
   if (!pass(1.0, true, trial_)) {
-    values_.swap(shifted_);
+    values_.swap(otherValues_);
     return false;
   }
   begin();
@@ -192,29 +196,38 @@ bool FeasiblePhase::rollOut(const Knot& start, const std::vector<VectorX>& contr
 }
 
 bool FeasiblePhase::backward() {
+  const int last = problem_.knots;
   backward_.begin();
-  cost_.expand(problem_, x_.knots.back(), problem_.knots, values_.back());
-  values_.back().mirror();
-  for (int t = problem_.knots - 1; t >= 0; --t) {
+  ValueModel* next = &otherValues_.back();
+  refusedKnot_ = last;
+  if (!cost_.expand(problem_, x_.knots.back(), last, *next)) return false;
+  refusedKnot_ = -1;
+  next->mirror();
+  for (int t = last - 1; t >= 0; --t) {
     const Knot& knot = x_.knots[idx(t)];
-    cost_.expand(problem_, knot, t, knotCost_);
-    if (!backward_.overControls(knot, values_[idx(t + 1)], knotCost_, R_, problem_.lower,
-                                problem_.upper, rho_, feedback_[idx(t)], values_[idx(t)]))
+    ValueModel& value = otherValues_[idx(t)];
+    refusedKnot_ = t;
+    if (!cost_.expand(problem_, knot, t, knotCost_)) return false;
+    refusedKnot_ = -1;
+    if (!backward_.overControls(knot, *next, knotCost_, R_, problem_.lower, problem_.upper, rho_,
+                                otherFeedback_[idx(t)], value))
       return false;
+    refusedKnot_ = value.slope.allFinite() && value.curvature.allFinite() ? -1 : t;
+    if (refusedKnot_ >= 0) return false;
+    next = &value;
   }
+  values_.swap(otherValues_);
+  feedback_.swap(otherFeedback_);
   promised_ = -(backward_.linear() + backward_.quadratic());
   return true;
 }
 
 bool FeasiblePhase::linearise() {
-  for (int t = 0; t < problem_.knots; ++t) {
-    Knot& knot = x_.knots[idx(t)];
-    control_ = knot.tau;  // what was applied; g is it to rounding
-    if (isRefused(dynamics_.linearise(knot))) return false;
-    knot.tau = control_;
-  }
-  fresh_ = false;
-  return true;
+  fresh_ = !threads_.atAll(problem_.knots, [&](PlanDynamics& dynamics, int t) {
+    constexpr bool kKeepsForce = true;  // what was applied; g is it to rounding
+    return !isRefused(dynamics.linearise(x_.knots[idx(t)], kKeepsForce));
+  });
+  return !fresh_;
 }
 
 bool FeasiblePhase::iterate() {

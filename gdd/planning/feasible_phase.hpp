@@ -28,7 +28,7 @@ struct FeasibleOptions {
 
 class FeasiblePhase {
  public:
-  FeasiblePhase(const Problem& problem, PlanDynamics& dynamics);
+  FeasiblePhase(const Problem& problem, KnotThreads& threads);
 
   /// Without a trajectory; what the problem asks for has perhaps changed.
   void reset(const FeasibleOptions& options = {});
@@ -44,7 +44,8 @@ class FeasiblePhase {
   /// from `start`. False where it is not finite: then nothing has changed but what a pass has
   /// tried.
   bool shift(int knots, const Knot& start);
-  /// Value models and feedback about the trajectory as it is. False where no control has a minimum.
+  /// Value models and feedback about the trajectory as it is. False where no control has a minimum:
+  /// then those before stay.
   bool refresh();
   /// One iteration; false where no step was found, which raises ρ for the next.
   bool iterate();
@@ -56,6 +57,9 @@ class FeasiblePhase {
   double stepLength() const { return alpha_; }
   double rho() const { return rho_; }
   double promised() const { return promised_; }  ///< decrease by the model, at α = 1
+  /// The knot at which the last backward pass has found a cost or a value model that is not finite;
+  /// −1: none.
+  int refusedKnot() const { return refusedKnot_; }
   /// The largest of |a of forward dynamics − a of the trajectory| that its controls have, over
   /// max(1, |a|∞), step by step: how far it is from what the engine does.
   double gap();
@@ -71,18 +75,20 @@ class FeasiblePhase {
   void difference(const Knot& from, const Knot& to);
 
   const Problem& problem_;
-  PlanDynamics& dynamics_;
+  KnotThreads& threads_;
+  PlanDynamics& dynamics_;  ///< of the calling thread
   FeasibleOptions options_;
   TrajectoryCost cost_;
   BackwardPass backward_;
   gdd::GoalDirectedController controller_;
   gdd::QuadraticValue* value_;
   Trajectory x_, trial_, reference_;
-  std::vector<ValueModel> values_, shifted_;
-  std::vector<Feedback> feedback_;
+  std::vector<ValueModel> values_, otherValues_;
+  std::vector<Feedback> feedback_, otherFeedback_;
   ValueModel knotCost_;
   VectorX R_, metric_, free_, dx_, dq_, du_, control_;
   double rho_ = 0.0, growth_ = 1.0, alpha_ = 0.0, promised_ = 0.0;
+  int refusedKnot_ = -1;
   bool has_ = false, fresh_ = true;
 };
 

@@ -12,12 +12,12 @@ constexpr double kLeastRho = 1e-3, kMostRho = 1e8;
 
 }  // namespace
 
-InfeasiblePhase::InfeasiblePhase(const Problem& problem, PlanDynamics& dynamics)
+InfeasiblePhase::InfeasiblePhase(const Problem& problem, KnotThreads& threads)
     : problem_(problem),
-      dynamics_(dynamics),
+      threads_(threads),
       cost_(problem),
       pass_(problem.model, problem.controlled),
-      x_(problem, dynamics),
+      x_(problem, threads.own()),
       trial_(x_),
       values_(static_cast<std::size_t>(problem.knots) + 1, ValueModel(problem.model.nv)),
       feedback_(static_cast<std::size_t>(problem.knots),
@@ -65,25 +65,30 @@ bool InfeasiblePhase::start(const Trajectory& x, const InfeasibleOptions& option
   mu_ = options_.mu * problem_.rootCost;
   for (VectorX& l : lambda_) l.setZero();
   rho_ = options_.rho, lastViolation_ = kInfinity, sinceUpdate_ = 0, fresh_ = true;
-  if (!x_.integrate(dynamics_) || !x_.findForces(dynamics_)) return false;
+  refusedKnot_ = -1;
+  if (!x_.integrate(threads_.own()) || !x_.findForces(threads_)) return false;
   L_ = evaluate(x_);
+  refusedKnot_ = x_.notFinite;
   return std::isfinite(L_);
 }
 
 bool InfeasiblePhase::linearise() {
-  for (int t = 0; t < problem_.knots; ++t)
-    if (isRefused(dynamics_.linearise(x_.knots[idx(t)]))) return false;
-  fresh_ = false;
-  return true;
+  fresh_ = !threads_.atAll(problem_.knots, [&](PlanDynamics& dynamics, int t) {
+    return !isRefused(dynamics.linearise(x_.knots[idx(t)]));
+  });
+  return !fresh_;
 }
 
 bool InfeasiblePhase::backward() {
   pass_.begin();
-  cost_.expand(problem_, x_.knots.back(), problem_.knots, values_.back());
+  refusedKnot_ = problem_.knots;
+  if (!cost_.expand(problem_, x_.knots.back(), problem_.knots, values_.back())) return false;
   values_.back().mirror();
   for (int t = problem_.knots - 1; t >= 0; --t) {
     const Knot& knot = x_.knots[idx(t)];
-    cost_.expand(problem_, knot, t, knotCost_);
+    refusedKnot_ = t;
+    if (!cost_.expand(problem_, knot, t, knotCost_)) return false;
+    refusedKnot_ = -1;
     for (int i = 0; i < problem_.model.nv; ++i) {
       const ForceCost c = forceCost(t, i, knot.tau[i]);
       w_[i] = c.slope, W_[i] = c.curvature;
@@ -113,7 +118,7 @@ bool InfeasiblePhase::search() {
   for (int halving = 0; halving <= options_.halvings; ++halving, alpha_ *= 0.5) {
     for (int t = 0; t < problem_.knots; ++t)
       trial_.knots[idx(t)].a = x_.knots[idx(t)].a + alpha_ * direction_[idx(t)];
-    if (!trial_.integrate(dynamics_) || !trial_.findForces(dynamics_)) continue;
+    if (!trial_.integrate(threads_.own()) || !trial_.findForces(threads_)) continue;
     const double L = evaluate(trial_);
     const double promised = -(alpha_ * pass_.linear() + alpha_ * alpha_ * pass_.quadratic());
     if (!(L_ - L > kArmijo * std::max(promised, 0.0) && L < L_)) continue;

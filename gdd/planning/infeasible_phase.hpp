@@ -29,7 +29,7 @@ struct InfeasibleOptions {
 
 class InfeasiblePhase {
  public:
-  InfeasiblePhase(const Problem& problem, PlanDynamics& dynamics);
+  InfeasiblePhase(const Problem& problem, KnotThreads& threads);
 
   /// From knots[0] by the accelerations of `x`, with λ = 0. False where that is not finite.
   bool start(const Trajectory& x, const InfeasibleOptions& options = {});
@@ -41,6 +41,9 @@ class InfeasiblePhase {
   double lagrangian() const { return L_; }
   double stepLength() const { return alpha_; }  ///< α of the last iteration
   double rho() const { return rho_; }
+  /// The knot at which the last start() or iterate() has found a force, a cost or a model of it
+  /// that is not finite; −1: none.
+  int refusedKnot() const { return refusedKnot_; }
 
  private:
   struct ForceCost {
@@ -55,7 +58,7 @@ class InfeasiblePhase {
   void updateMultipliers();
 
   const Problem& problem_;
-  PlanDynamics& dynamics_;
+  KnotThreads& threads_;
   InfeasibleOptions options_;
   TrajectoryCost cost_;
   BackwardPass pass_;
@@ -66,7 +69,7 @@ class InfeasiblePhase {
   ValueModel knotCost_;
   VectorX mu_, w_, W_, dx_, dxNext_;
   double L_ = 0.0, rho_ = 0.0, alpha_ = 0.0, lastViolation_ = kInfinity;
-  int sinceUpdate_ = 0;
+  int sinceUpdate_ = 0, refusedKnot_ = -1;
   bool fresh_ = true;
 };
 

@@ -48,12 +48,12 @@ SolveStatus PlanDynamics::inverse(Knot& knot) {
   return isRefused(status) ? status : inverseDynamics(model, knot.a, *data_, knot.tau);
 }
 
-SolveStatus PlanDynamics::linearise(Knot& knot) {
+SolveStatus PlanDynamics::linearise(Knot& knot, bool keepsForce) {
   SolveStatus status = stages(knot);
   if (!isRefused(status))
     status = derivative_.compute(model, input_, middle, knot.a, contacts_, *data_);
   if (isRefused(status)) return status;
-  knot.tau = derivative_.force();
+  if (!keepsForce) knot.tau = derivative_.force();
   const int n = model.nv;
   knot.G.leftCols(n) = derivative_.q();
   knot.G.rightCols(n) = derivative_.v();

@@ -31,7 +31,7 @@ struct Knot {
   bool hasLast = false;
 };
 
-/// One a thread.
+/// One a thread (knot_threads.hpp).
 class PlanDynamics {
  public:
   /// `model` has the options of a bare step; `contacts` may be null. Both must outlive this.
@@ -49,8 +49,8 @@ class PlanDynamics {
   SolveStatus stages(const Knot& knot);
   /// knot.tau ← g(q, v, a).
   SolveStatus inverse(Knot& knot);
-  /// Also G, P and the transition.
-  SolveStatus linearise(Knot& knot);
+  /// G, P and the transition; knot.tau too, unless it is kept.
+  SolveStatus linearise(Knot& knot, bool keepsForce = false);
   /// a of (1.1) under data().forces.tau ← tau, from the stages; `guess` may be null.
   SolveStatus forward(const VectorX& tau, const VectorX* guess);
   /// Sets the state of `next` to that in which the step from `knot` by its a ends.

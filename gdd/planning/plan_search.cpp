@@ -33,7 +33,7 @@ void addSmoothMotion(NormalNumbers& random, double sigma, double step, std::vect
 const MotionPlan& Planner::search(const State& state, const PlanSearch& search,
                                   const PlanOptions& options) {
   constexpr double kLeast = 0.02;  // of reach
-  if (!feasible_.hasTrajectory()) return plan_;
+  if (!feasible_.hasTrajectory() || stopped_) return plan_;
   NormalNumbers random(search.seed);
   MotionPlan best = plan_;
   keep();
@@ -51,6 +51,7 @@ const MotionPlan& Planner::search(const State& state, const PlanSearch& search,
     keep();
   }
   plan_ = best;
+  if (stopped_) plan_.status = PlanStatus::interrupted;
   takeKept();
   return plan_;
 }

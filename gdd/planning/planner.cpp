@@ -38,6 +38,8 @@ std::string_view planStatusName(PlanStatus status) {
       return "converged";
     case PlanStatus::iterationLimit:
       return "iteration limit";
+    case PlanStatus::interrupted:
+      return "interrupted";
     case PlanStatus::noDescent:
       return "no descent";
     case PlanStatus::infeasible:
@@ -51,14 +53,12 @@ std::string_view planStatusName(PlanStatus status) {
 Planner::Planner(const Model& model, const PlanSteps& steps, const Contacts& contacts)
     : rootCost(VectorX::Zero(model.nv)),
       model_(planned(model, steps)),
-      makesContacts_(contacts),
-      contacts_(contacts ? contacts(*model_) : nullptr),
       knots_(steps.knots),
-      dynamics_(std::make_unique<PlanDynamics>(*model_, contacts_.get())),
+      threads_(*model_, contacts, steps.threads),
       problem_(problem()),
-      infeasible_(problem_, *dynamics_),
-      feasible_(problem_, *dynamics_),
-      begin_(problem_, *dynamics_),
+      infeasible_(problem_, threads_),
+      feasible_(problem_, threads_),
+      begin_(problem_, threads_.own()),
       kept_(begin_),
       keptAccelerations_(idx(steps.knots), VectorX::Zero(model.nv)),
       keptValues_(idx(steps.knots) + 1, ValueModel(model.nv)) {
@@ -90,8 +90,7 @@ void Planner::makeContacts(const F& material) {
   auto own = own_.begin();
   for (Geometry& geometry : model_->geometries) geometry.material = material(*own++, 0.5);
   for (ContactPair& pair : model_->contactPairs) pair.material = material(*own++, 1.0);
-  if (makesContacts_) contacts_ = makesContacts_(*model_);
-  dynamics_->restart(contacts_.get());
+  threads_.restart();
 }
 
 Problem Planner::problem() {
@@ -142,6 +141,10 @@ void Planner::runFeasible(const PlanOptions& options, double start) {
     const bool moved = feasible_.iterate();
     const double after = feasible_.trajectory().cost;
     ++plan_.feasible, ++plan_.iterations;
+    if (feasible_.refusedKnot() >= 0) {
+      plan_.status = PlanStatus::refused;
+      break;
+    }
     plan_.cost = after, plan_.rootForce = 0.0;
     plan_.costs.push_back(after);
     plan_.certificate = feasible_.promised() / std::max(std::abs(before), 1e-300);
@@ -194,6 +197,7 @@ bool Planner::start(const State& state, const PlanOptions& options,
                     const std::vector<VectorX>& accelerations) {
   plan_.status = PlanStatus::refused;
   plan_.infeasible = plan_.feasible = 0;
+  plan_.refusedKnot = -1;
   plan_.costs.clear();
   stopped_ = false;
   setPrices();
@@ -217,7 +221,10 @@ void Planner::run(const State& state, const PlanOptions& options,
                   const std::vector<VectorX>& accelerations, bool goesOn) {
   const double begin = now();
   if (!start(state, options, accelerations)) return;
-  if (!infeasible_.start(begin_, options.inPhaseI)) return;
+  if (!infeasible_.start(begin_, options.inPhaseI)) {
+    plan_.refusedKnot = infeasible_.refusedKnot();
+    return;
+  }
   if (goesOn) feasible_.take(kept_, keptValues_);
   runInfeasible(options, begin);
   finish(options, begin);
@@ -226,11 +233,14 @@ void Planner::run(const State& state, const PlanOptions& options,
 /// Phase F, and the plan.
 void Planner::finish(const PlanOptions& options, double begin) {
   if (!feasible_.hasTrajectory()) {
-    plan_.status = PlanStatus::infeasible;
+    plan_.refusedKnot = infeasible_.refusedKnot();
+    plan_.status = plan_.refusedKnot < 0 ? PlanStatus::infeasible : PlanStatus::refused;
     publish(infeasible_.trajectory());
     plan_.gap = kInfinity;
   } else {
     runFeasible(options, begin);
+    plan_.refusedKnot = feasible_.refusedKnot();
+    if (stopped_ && plan_.status != PlanStatus::refused) plan_.status = PlanStatus::interrupted;
     publish(feasible_.trajectory());
     plan_.gap = feasible_.gap();
   }
@@ -242,7 +252,7 @@ const MotionPlan& Planner::solveFeasible(const State& state, const PlanOptions& 
   constexpr double kPosition = 1000.0, kVelocity = 10.0;
   const double begin = now();
   plan_.iterations = 0;
-  if (start(state, options, accelerations) && begin_.integrate(*dynamics_)) {
+  if (start(state, options, accelerations) && begin_.integrate(threads_.own())) {
     for (ValueModel& value : keptValues_) {
       value.slope.setZero();
       value.curvature.setZero();
@@ -294,6 +304,7 @@ const MotionPlan& Planner::solve(const State& state, const Continuation& continu
     run(state, next < last ? between : options, keptAccelerations_, goesOn);
     const bool found = feasible_.hasTrajectory();
     if (goesOn && step > kShortest && !(found && plan_.cost <= continuation.lost * before)) {
+      if (stopped_) break;
       step *= 0.5;
       plan_.cost = before;
       continue;
@@ -302,8 +313,19 @@ const MotionPlan& Planner::solve(const State& state, const Continuation& continu
     goesOn = found;
     if (found) keep();
   }
+  if (stopped_ && stage < last && goesOn) settle(state, options);
   plan_.seconds = now() - start;
   return plan_;
+}
+
+/// Of a plan that was interrupted between stages, the last of which is kept: one pass on the
+/// model's own contacts makes a plan of them.
+void Planner::settle(const State& state, const PlanOptions& options) {
+  setOwnContacts();
+  if (!start(state, options, keptAccelerations_)) return;
+  stopped_ = true;
+  feasible_.take(kept_, keptValues_);
+  finish(options, now());
 }
 
 }  // namespace softgauss::planning

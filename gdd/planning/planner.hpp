@@ -8,7 +8,7 @@
 ///   const planning::MotionPlan& plan = planner.solve(state.q, state.v);
 ///
 /// Phase I (infeasible_phase.hpp) finds a trajectory in accelerations, through root forces if need
-/// be. Every third iteration goal directed dynamics make a feasible one of its value models, and
+/// be. At every iteration goal directed dynamics make a feasible one of its value models, and
 /// phase F (feasible_phase.hpp) goes on from the best of these. A plan is what the actuators can
 /// cause: its root forces are 0, its controls in their bounds, and a bare step by them gives it.
 
@@ -26,6 +26,7 @@ namespace softgauss::planning {
 struct PlanSteps {
   double step = 0.05;  ///< h [s]
   int knots = 20;      ///< N
+  int threads = 1;     ///< over which the knots go; the bits are the same for any number
 };
 
 struct PlanOptions {
@@ -52,9 +53,10 @@ struct Continuation {
 enum class PlanStatus {
   converged,       ///< the cost falls by less than the tolerance
   iterationLimit,  ///< or time: the best feasible plan
+  interrupted,     ///< by Planner::progress: the best feasible plan there was
   noDescent,       ///< no step lowers the cost: at a kink, or where rounding ends
   infeasible,      ///< no feasible trajectory was found: plan is that of phase I, with root forces
-  refused          ///< the start, or the cost, is not finite
+  refused  ///< the start, or what comes of it or what it costs at refusedKnot, is not finite
 };
 std::string_view planStatusName(PlanStatus status);
 
@@ -65,6 +67,7 @@ struct MotionPlan {
   double cost = 0.0;                 ///< J (P.3)
   double rootForce = 0.0;            ///< largest force where nobody pulls [N, N m]
   double gap = 0.0;                  ///< FeasiblePhase::gap()
+  int refusedKnot = -1;              ///< where the last model was none (FeasiblePhase), or -1
   double certificate = 0.0;          ///< decrease that the last model promises still, over the cost
   int infeasible = 0, feasible = 0;  ///< iterations of the last stage, phase by phase
   int iterations = 0;                ///< of all stages and tries
@@ -75,7 +78,7 @@ struct MotionPlan {
 
 class Planner {
  public:
-  using Contacts = std::function<std::unique_ptr<ContactSource>(const Model&)>;
+  using Contacts = KnotThreads::Contacts;
 
   /// Plans with a copy of the model, whose steps are bare and of steps.step; `contacts` makes what
   /// finds its contacts (empty: nothing collides). Throws ModelError where steps are none.
@@ -85,7 +88,7 @@ class Planner {
   PlanCost cost;  ///< none; effort is 0.01 on every actuated dof
   /// Called between iterations with the plan's figures so far: the cost, of phase I its Lagrangian,
   /// the root force left and the iterations; where it says false, planning ends with the best
-  /// feasible plan there is.
+  /// feasible plan there is, on the model's own contacts where that is where it was to end.
   std::function<bool(const MotionPlan&)> progress;
   VectorX rootCost;  ///< (nv) at first, of forces that no actuator causes; a hundred times effort
 
@@ -109,7 +112,7 @@ class Planner {
                                   const std::vector<VectorX>& accelerations = {});
   /// What finds contacts as plans do, for their model as it is; null where nothing collides.
   std::unique_ptr<ContactSource> contactsFor(const Model& model) const {
-    return makesContacts_ ? makesContacts_(model) : nullptr;
+    return threads_.contactsFor(model);
   }
   /// What the next plan's contacts are: these, or the model's own.
   void setContacts(const PlanningContacts& contacts);
@@ -141,17 +144,16 @@ class Planner {
            const std::vector<VectorX>& accelerations, bool goesOn);
   void finish(const PlanOptions& options, double begin);
   void keep();
+  void settle(const State& state, const PlanOptions& options);
   void takeKept();
   template <class F>
   void makeContacts(const F& material);
 
   std::unique_ptr<Model> model_;
-  Contacts makesContacts_;
   MechanismSet mechanisms_ = MechanismSet::none();  ///< of the model's own contacts
   std::vector<Material> own_;  ///< of the model's geometries, then of its pairs
-  std::unique_ptr<ContactSource> contacts_;
   int knots_;
-  std::unique_ptr<PlanDynamics> dynamics_;
+  KnotThreads threads_;
   Problem problem_;
   InfeasiblePhase infeasible_;
   FeasiblePhase feasible_;

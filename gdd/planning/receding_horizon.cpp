@@ -73,7 +73,7 @@ double RecedingHorizon::knotAt(double time) const {
 void RecedingHorizon::update(const State& state) {
   if (state.time >= due_ - kRounding * options_.period) {
     tick(state);
-    due_ += options_.period;
+    while (due_ <= state.time + kRounding * options_.period) due_ += options_.period;
   }
   if (goal_) setGoal(state.time, *goal_);
 }

@@ -26,10 +26,11 @@ void Trajectory::copyMotion(const Trajectory& from) {
   }
 }
 
-bool Trajectory::findForces(PlanDynamics& dynamics) {
-  for (std::size_t t = 0; t + 1 < knots.size(); ++t)
-    if (isRefused(dynamics.inverse(knots[t])) || !knots[t].tau.allFinite()) return false;
-  return true;
+bool Trajectory::findForces(KnotThreads& threads) {
+  return threads.atAll(static_cast<int>(knots.size()) - 1, [&](PlanDynamics& dynamics, int t) {
+    Knot& knot = knots[idx(t)];
+    return !isRefused(dynamics.inverse(knot)) && knot.tau.allFinite();
+  });
 }
 
 void TrajectoryCost::begin(const Problem& problem) {
@@ -64,19 +65,19 @@ double TrajectoryCost::value(const Problem& problem, const Knot& knot, int t) {
   return cost;
 }
 
-double TrajectoryCost::expand(const Problem& problem, const Knot& knot, int t, ValueModel& model) {
+bool TrajectoryCost::expand(const Problem& problem, const Knot& knot, int t, ValueModel& model) {
   const KnotView at = view(problem, knot, t);
   model.slope.setZero();
   model.curvature.setZero();
-  double cost = 0.0;
   forTerms(problem, t, [&](CostTerm& term, double scale) {
-    cost += scale * term.expand(at, scale, model.slope, model.curvature);
+    term.expand(at, scale, model.slope, model.curvature);
   });
-  return cost;
+  return model.slope.allFinite() && model.curvature.allFinite();
 }
 
 void TrajectoryCost::evaluate(const Problem& problem, Trajectory& x) {
   x.cost = value(problem, x.knots.back(), problem.knots);
+  x.notFinite = std::isfinite(x.cost) ? -1 : problem.knots;
   x.rootForce = x.excess = 0.0;
   for (int t = 0; t < problem.knots; ++t) {
     const Knot& knot = x.knots[idx(t)];
@@ -90,6 +91,7 @@ void TrajectoryCost::evaluate(const Problem& problem, Trajectory& x) {
         x.rootForce = std::max(x.rootForce, std::abs(f));
       }
     }
+    if (x.notFinite < 0 && !std::isfinite(x.cost)) x.notFinite = t;
   }
 }
 

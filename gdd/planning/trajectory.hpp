@@ -4,6 +4,7 @@
 /// A trajectory of a plan with its models, and what it costs.
 
 #include "softgauss/gdd/planning/backward_pass.hpp"
+#include "softgauss/gdd/planning/knot_threads.hpp"
 #include "softgauss/gdd/planning/plan_cost.hpp"
 
 namespace softgauss::planning {
@@ -30,6 +31,7 @@ class Trajectory {
   double cost = 0.0;       ///< J (P.3) of the controls, root forces apart
   double rootForce = 0.0;  ///< largest |τ| of dofs without an actuator [N, N m]
   double excess = 0.0;     ///< by which τ leaves its bounds, the largest [N, N m]
+  int notFinite = -1;      ///< the first knot at which state, force or cost is not; -1: none
 
   /// Sets q and v of all knots by the exact step from knots[0] by their accelerations. False where
   /// they are not finite.
@@ -37,7 +39,7 @@ class Trajectory {
   /// q, v, a and tau of another; models stay.
   void copyMotion(const Trajectory& from);
   /// Sets tau of all knots.
-  bool findForces(PlanDynamics& dynamics);
+  bool findForces(KnotThreads& threads);
 };
 
 /// J, and its models knot by knot.
@@ -51,9 +53,9 @@ class TrajectoryCost {
 
   /// Of a knot's state, h times the running terms, and of the last one the final ones (P.3).
   double value(const Problem& problem, const Knot& knot, int t);
-  /// Its slope and curvature (lower triangle).
-  double expand(const Problem& problem, const Knot& knot, int t, ValueModel& model);
-  /// Sets cost, rootForce and excess from q, v and tau.
+  /// Its slope and curvature (lower triangle). False where they are not finite.
+  bool expand(const Problem& problem, const Knot& knot, int t, ValueModel& model);
+  /// Sets cost, rootForce, excess and notFinite from q, v and tau.
   void evaluate(const Problem& problem, Trajectory& trajectory);
 
  private:

@@ -53,9 +53,13 @@ PlanControl::PlanControl(const Scene& scene, io::PlanTask task, bool receding)
 const planning::MotionPlan& PlanControl::solve() {
   plan_ = task_.solve(planner_, scene_.initial);
   if (plan_.status == PlanStatus::refused)
-    throw PlanError(
-        "no plan was found: its start, its cost or the motion from rest is not finite; try a "
-        "shorter plan.step, smaller weights or a start without overlaps");
+    throw PlanError(fmt::format(
+        "no plan was found: {} is not finite; try a shorter plan.step, smaller weights or a start "
+        "without overlaps",
+        plan_.refusedKnot < 0
+            ? "its start or the motion from rest"
+            : fmt::format("a force or a cost at knot {}, {:.4g} s on,", plan_.refusedKnot,
+                          plan_.refusedKnot * task_.steps.step)));
   if (plan_.status == PlanStatus::infeasible)
     throw PlanError(fmt::format(
         "no plan was found that the actuators can cause: after {} iterations forces of {:.3g} N or "

@@ -66,6 +66,14 @@ class PlanControl {
     constexpr double kShare = 0.1;
     return !(final <= finalPlanned_ + kShare * std::max(finalAtStart_ - finalPlanned_, 0.0));
   }
+  /// Whether such a motion is hardly nearer to the target than where the plan began, though that
+  /// was away from it.
+  bool isNoNearer(double final) const {
+    constexpr double kShare = 0.9, kAway = 0.01;
+    return finalAtStart_ > kAway * plan_.cost && final > kShare * finalAtStart_;
+  }
+  /// What the final terms cost there.
+  double finalCost(const State& state);
   /// How far `state` is from the plan's end, or a receding one's target: the degree of freedom that
   /// is farthest, and by how much [m, rad].
   std::pair<int, double> farthest(const State& state) const;
@@ -82,7 +90,6 @@ class PlanControl {
   static constexpr double kRounding = 1e-9;  // [s]
   double sumOf(const std::vector<std::unique_ptr<planning::CostTerm>>& terms, const State& state,
                int knot);
-  double finalCost(const State& state);  ///< of the final terms there
 
   const Scene& scene_;
   io::PlanTask task_;

@@ -83,6 +83,45 @@ TEST(PlanRun, IsJudgedByWhatIsMissing) {
   EXPECT_NE(lost.out.find("\nlost:"), std::string::npos) << lost.out;
 }
 
+// A hinge that is driven to nowhere: its effort is too dear, so that a plan holds still; one that
+// is up falls when the plan has ended, for nothing is planned anew.
+TEST(PlanRun, SaysWhatSomebodyWouldWhoWatched) {
+  const io::TempFolder folder;
+  const std::string text = "robots:\n  - urdf: " + dataFile("plans/cart_pole.urdf") +
+                           "\nplan:\n  knots: 10\n  effort: 1e9\n  final: {position: 1}\n"
+                           "  target: {joints: {slide: 1}}\n";
+  const Outcome still = simulate({folder.write("still.yaml", text), "--plan"});
+  EXPECT_NE(still.out.find("\nno nearer:"), std::string::npos) << still.out;
+  const Outcome fell = simulate({task("acrobot"), "--plan", "--duration", "6"});
+  EXPECT_NE(fell.out.find("\nlost after its end:"), std::string::npos) << fell.out;
+}
+
+TEST(PlanRun, AHopperHopsHalfAMetreAndStands) {
+  const io::TempFolder folder;
+  const std::string file = folder.path() / "hop.csv";
+  const Outcome hop = simulate({task("hop"), "--plan", "--log", file});
+  EXPECT_NE(hop.out.find("\ncarried out:"), std::string::npos) << hop.out;
+  std::istringstream log(readFile(file));
+  std::string line;
+  std::getline(log, line);
+  double flight = 0.0, longest = 0.0, x = 0.0, last = 0.0;
+  while (std::getline(log, line)) {
+    double t, z, pitch, knee, ankle;
+    if (std::sscanf(line.c_str(), "%lf,%lf,%lf,%lf,%lf,%lf", &t, &x, &z, &pitch, &knee, &ankle) !=
+        6)
+      continue;
+    // Of the foot's two balls, from the torso's place by the lengths of thigh and shank.
+    const double foot = pitch + knee + ankle,
+                 height = z - 0.2 * std::cos(pitch) - 0.4 * std::cos(pitch + knee),
+                 lowest = std::min(height - 0.15 * std::sin(foot), height + 0.05 * std::sin(foot)) -
+                          0.03;
+    flight = lowest > 0.01 ? flight + t - last : 0.0;
+    longest = std::max(longest, flight), last = t;
+  }
+  EXPECT_GT(longest, 0.15);
+  EXPECT_NEAR(x, 0.5, 0.02);
+}
+
 TEST(PlanRun, IsExplained) {
   const Outcome outcome = simulate({task("hopper"), "--mpc", "--explain"});
   EXPECT_EQ(outcome.exitCode, 0) << outcome.err;

@@ -20,11 +20,11 @@ std::unique_ptr<ContactSource> contactsOf(const Model& model) {
 
 /// A task of data/plans with its planner.
 struct PlannedTask {
-  explicit PlannedTask(const std::string& name)
+  explicit PlannedTask(const std::string& name, int threads = 1)
       : file(std::string(SOFTGAUSS_SOURCE_DIR) + "/data/plans/" + name + ".yaml"),
         scene(loadScene(file)),
         task(io::readPlanTask(file, scene->model, scene->initial)),
-        planner(scene->model, task.steps, contactsOf) {
+        planner(scene->model, {task.steps.step, task.steps.knots, threads}, contactsOf) {
     task.setCosts(planner);
   }
   const MotionPlan& solve(const std::vector<VectorX>& start = {}) {
@@ -162,8 +162,7 @@ TEST(PlanningContacts, PhaseIAllocatesNothing) {
     Planner& planner = planned.planner;
     planner.setContacts(planned.task.contacts->contacts);
     const Model& model = planner.model();
-    const auto contacts = contactsOf(model);
-    PlanDynamics dynamics(model, contacts.get());
+    KnotThreads threads(model, contactsOf, 2);
     Problem problem{model,
                     planner.cost,
                     planned.task.steps.knots,
@@ -178,8 +177,8 @@ TEST(PlanningContacts, PhaseIAllocatesNothing) {
         problem.upper[i] = model.dofs[idx(i)].effortUpper;
         problem.rootCost[i] = planner.cost.effort[i];
       }
-    InfeasiblePhase phase(problem, dynamics);
-    Trajectory begin(problem, dynamics);
+    InfeasiblePhase phase(problem, threads);
+    Trajectory begin(problem, threads.own());
     begin.knots[0].q = planned.scene->initial.q;
     ASSERT_TRUE(phase.start(begin));
     for (int i = 0; i < 10; ++i) phase.iterate();
@@ -210,6 +209,51 @@ TEST(PlanningContacts, ASearchFindsBetterPlansAndTheSameAgain) {
     EXPECT_EQ(plan.q, again.planner.search(again.scene->initial, search).q);
   }
   EXPECT_GT(better, 0);
+}
+
+// Interrupted whenever, in a stage of planning contacts too, the plan there is is one of the scene.
+TEST(PlanningContacts, AnInterruptedPlanIsOneOfTheScene) {
+  for (const char* name : {"hopper", "spinner"}) {
+    PlannedTask whole(name);
+    whole.task.search.tries = 0;
+    const int iterations = whole.solve().iterations;
+    int found = 0;
+    for (const double share : {0.05, 0.3, 0.6, 0.9}) {
+      PlannedTask planned(name);
+      const int most = static_cast<int>(share * iterations);
+      planned.planner.progress = [&](const MotionPlan& now) { return now.iterations < most; };
+      const MotionPlan& plan = planned.solve();
+      if (plan.status == PlanStatus::infeasible) continue;  // none yet that holds there
+      ++found;
+      EXPECT_EQ(plan.status, PlanStatus::interrupted) << name << ", " << share;
+      expectWithinWhatActuatorsDo(planned.planner.model(), plan);
+    }
+    EXPECT_GE(found, 3) << name;
+  }
+}
+
+// Knots go over threads, more of them than knots too, and each is what it is alone. The humanoid's
+// contacts are of pairs with and without a closed form of their derivatives.
+TEST(PlanningContacts, GiveTheSameBitsOnAnyNumberOfThreads) {
+  for (const char* name : {"hopper", "humanoid_rises"}) {
+    PlannedTask alone(name);
+    PlanOptions some;
+    some.infeasible = some.feasible = 10;
+    const auto plan = [&](PlannedTask& planned) {
+      planned.task.options = some;
+      planned.task.contacts->stages = 1;
+      return planned.solve();
+    };
+    const MotionPlan a = plan(alone);
+    for (const int threads : {2, 3, 64}) {
+      PlannedTask together(name, threads);
+      const MotionPlan b = plan(together);
+      EXPECT_EQ(a.costs, b.costs) << name << ", " << threads;
+      EXPECT_EQ(a.q, b.q) << name << ", " << threads;
+      EXPECT_EQ(a.tau, b.tau) << name << ", " << threads;
+    }
+  }
+  EXPECT_THROW(PlannedTask("hopper", 0), ModelError);
 }
 
 // A planner that has planned before, on other contacts and another start, plans as a new one does.

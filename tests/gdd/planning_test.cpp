@@ -261,6 +261,39 @@ TEST(Planner, RefusesWhatIsNotFinite) {
   EXPECT_THROW(Planner(model, {0.05, 0}), ModelError);
 }
 
+/// A cost, or its slope, that is not a number at a knot.
+struct NotFinite final : CostTerm {
+  int knot;
+  bool inSlope;
+  NotFinite(int k, bool slope) : knot(k), inSlope(slope) {}
+  double of(const KnotView& at, bool bad) const {
+    return bad && at.knot == knot ? std::numeric_limits<double>::quiet_NaN() : 0.0;
+  }
+  double value(const KnotView& at) override { return of(at, !inSlope); }
+  double expand(const KnotView& at, double, VectorX& slope, MatrixX&) override {
+    slope[1] += of(at, inSlope);
+    return of(at, !inSlope);
+  }
+};
+
+TEST(Planner, TellsTheKnotThatItRefuses) {
+  const Model model = cartPole({});
+  for (const bool inSlope : {false, true})
+    for (const int knot : {0, 3, 5}) {
+      Planner planner(model, {0.05, 5});
+      swingUp(planner);
+      auto& terms = knot == 5 ? planner.cost.final : planner.cost.running;
+      terms.push_back(std::make_unique<NotFinite>(knot, inSlope));
+      const MotionPlan& plan = planner.solve(model.q0, VectorX::Zero(2));
+      EXPECT_EQ(plan.status, PlanStatus::refused) << knot << inSlope;
+      EXPECT_EQ(plan.refusedKnot, knot) << inSlope;
+      // The planner goes on as before.
+      terms.pop_back();
+      EXPECT_EQ(planner.solve(model.q0, VectorX::Zero(2)).refusedKnot, -1);
+      EXPECT_LT(planner.plan().gap, 1e-10);
+    }
+}
+
 // ---- The backward pass and the goal -------------------------------------------------------------
 
 TEST(BackwardPass, AllocatesNothing) {

@@ -8,6 +8,7 @@
 #include "softgauss/engine/step/step.hpp"
 #include "softgauss/io/plan_task.hpp"
 #include "softgauss/io/simulation/scene.hpp"
+#include "tests/support/allocation_guard.hpp"
 #include "tests/support/matchers.hpp"
 
 namespace softgauss::test {
@@ -85,6 +86,82 @@ TEST(RecedingHorizon, ActsAPlanOutWithoutMakingItAnew) {
   const VectorX off = positionDifference(acted.scene->model, acted.planner.plan().q.back(), end.q);
   EXPECT_LT(off.cwiseAbs().maxCoeff(), 0.01);
   EXPECT_EQ(acted.report.ticks, 0);
+}
+
+/// Nothing, but for a while not a number: in its slope at the knot.
+struct Broken final : CostTerm {
+  int knot;
+  const bool& on;
+  Broken(int k, const bool& isOn) : knot(k), on(isOn) {}
+  double value(const KnotView&) override { return 0.0; }
+  double expand(const KnotView& at, double, VectorX& slope, MatrixX&) override {
+    if (on && at.knot >= knot) slope[0] = std::numeric_limits<double>::quiet_NaN();
+    return 0.0;
+  }
+};
+
+// A tick whose models are not finite leaves those before, at the end of the plan and within it; the
+// next one plans as ever.
+TEST(RecedingHorizon, GoesOnAfterACostThatWasNotFinite) {
+  for (const int knot : {60, 30}) {
+    ActedTask acted("cart_pole");
+    acted.plan(false);
+    bool broken = false;
+    auto& terms = knot == 60 ? acted.planner.cost.final : acted.planner.cost.running;
+    terms.push_back(std::make_unique<Broken>(knot, broken));
+    const Model& model = acted.scene->model;
+    RecedingHorizon horizon(acted.planner, {.period = 0.02, .keepsEnd = true});
+    gdd::GoalDirectedController controller(model);
+    horizon.attach(controller);
+    State state = acted.scene->initial;
+    ASSERT_TRUE(horizon.begin(state));
+    Data data(model);
+    for (int i = 0; i < 900; ++i) {  // 4.5 s
+      broken = state.time > 0.49 && state.time < 0.55;
+      horizon.update(state);
+      ASSERT_FALSE(isRefused(controller.step(model, {}, state, data, nullptr))) << state.time;
+    }
+    EXPECT_EQ(horizon.report().failed, 3) << knot;
+    EXPECT_LT(farthest(acted, state), 0.05) << knot;
+  }
+}
+
+// Who has not called for a second plans once, and then at the rate again.
+TEST(RecedingHorizon, ALateCallerPlansOnce) {
+  ActedTask acted("cart_pole");
+  acted.plan(false);
+  RecedingHorizon horizon(acted.planner, {.period = 0.02});
+  State state = acted.scene->initial;
+  ASSERT_TRUE(horizon.begin(state));
+  const auto ticksAt = [&](double time) {
+    state.time = time;
+    horizon.update(state);
+    return horizon.report().ticks;
+  };
+  EXPECT_EQ(ticksAt(0.02), 1);
+  EXPECT_EQ(ticksAt(1.03), 2);
+  EXPECT_EQ(ticksAt(1.031), 2);
+  EXPECT_EQ(ticksAt(1.04), 3);
+}
+
+// After the first ticks, in which buffers grow.
+TEST(RecedingHorizon, ATickAllocatesNothing) {
+  ActedTask acted("cart_pole");
+  acted.plan(false);
+  RecedingHorizon horizon(acted.planner, {.period = 0.02, .iterations = 2});
+  gdd::GoalDirectedController controller(acted.scene->model);
+  horizon.attach(controller);
+  State state = acted.scene->initial;
+  ASSERT_TRUE(horizon.begin(state));
+  const auto tick = [&](int i) {
+    state.time = 0.02 * i;
+    horizon.update(state);
+  };
+  for (int i = 1; i <= 2; ++i) tick(i);
+  const AllocationGuard guard;
+  for (int i = 3; i <= 6; ++i) tick(i);
+  EXPECT_EQ(guard.count(), 0);
+  EXPECT_EQ(horizon.report().ticks, 6);
 }
 
 /// A state of a plan's step and what is left of it.

@@ -26,6 +26,13 @@ def test_a_plan_is_what_its_controls_cause():
     assert plan.q[-1] == pytest.approx([0.0, np.pi], abs=0.05)
 
 
+def test_threads_change_no_bit():
+    alone, together = (softgauss.plan(PLANS / "hopper.yaml", threads=n) for n in (1, 2))
+    assert np.array_equal(alone.q, together.q) and alone.costs == together.costs
+    with pytest.raises(softgauss.ModelError, match="threads are 0"):
+        softgauss.plan(PLANS / "acrobot.yaml", threads=0)
+
+
 def test_mpc_swings_up_a_pole_that_is_simulated_elsewhere():
     mpc = softgauss.Mpc(PLANS / "cart_pole.yaml")
     sim = softgauss.Simulation(PLANS / "cart_pole.yaml")
