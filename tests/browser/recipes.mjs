@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pictures of docs/guide/recipes.md, from the pages that its commands have written; and the moving
+// The pictures of docs/guide/recipes.md and plans.md, from the pages that its commands have written; and the moving
 // picture of the README, an animated PNG of one of them.
 //
 //   node recipes.mjs FOLDER CHROMIUM PICTURES
@@ -21,13 +21,21 @@ const shots = [
   { name: 'grip', time: 2, view: { forces: false } },
   { name: 'steps', time: 3.88, view: { preset: 'front' } },
   { name: 'balance', time: 0.75, view: { preset: 'side' } },
+  { name: 'swing', time: 0.4, frame: 'home' },
+  { name: 'rise', time: 0.25, frame: 'home' },
+  { name: 'hop', time: 1.3, frame: 'side' },
+  { name: 'trot', time: 0.5, frame: 'home' },
 ];
 const MOVING = { name: 'reach', from: 0, to: 1.2, frames: 12, width: 360 };
 
 const browser = await Browser.launch(folder, chromium);
 
-for (const { name, time, view: settings } of shots) {
+for (const { name, time, view: settings, frame } of shots) {
   const { page, picture } = await still(browser, `recipe_${name}`, settings);
+  if (frame) {  // where everything is then
+    await picture(time);
+    await page.evaluate((preset) => window.softgauss.setView({ preset }), frame);
+  }
   writeFileSync(join(pictures, `recipe_${name}.png`), await picture(time));
   await page.context().close();
 }
