@@ -24,7 +24,7 @@ const shots = [
   { name: 'swing', time: 0.4, frame: 'home' },
   { name: 'rise', time: 0.25, frame: 'home' },
   { name: 'hop', time: 1.3, frame: 'side' },
-  { name: 'trot', time: 0.5, frame: 'home' },
+  { name: 'ahead', time: 0.6, frame: 'home' },
 ];
 const MOVING = { name: 'reach', from: 0, to: 1.2, frames: 12, width: 360 };
 
