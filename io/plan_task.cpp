@@ -141,6 +141,13 @@ void readReceding(const YamlMap& map, PlanTask& task) {
   map.read("seconds", mpc.seconds, Range::positive);
 }
 
+Matrix3 rotationOf(const Vector3& rpy) {
+  return (Eigen::AngleAxisd(rpy.z(), Vector3::UnitZ()) *
+          Eigen::AngleAxisd(rpy.y(), Vector3::UnitY()) *
+          Eigen::AngleAxisd(rpy.x(), Vector3::UnitX()))
+      .toRotationMatrix();
+}
+
 void readTarget(const YamlMap& map, const Model& model, const Degrees& degrees, const State& start,
                 PlanTask& task) {
   map.expectOnly({"joints", "position", "rpy", "move", "steady"});
@@ -162,9 +169,7 @@ void readTarget(const YamlMap& map, const Model& model, const Degrees& degrees, 
     q.segment<3>(degrees.base(map, *entry).q) = map.vector3(*entry);
   if (const auto* entry = map.find("rpy")) {
     const Vector3 rpy = map.vector3(*entry);
-    const Quaternion turned(Eigen::AngleAxisd(rpy.z(), Vector3::UnitZ()) *
-                            Eigen::AngleAxisd(rpy.y(), Vector3::UnitY()) *
-                            Eigen::AngleAxisd(rpy.x(), Vector3::UnitX()));
+    const Quaternion turned(rotationOf(rpy));
     const int at = degrees.base(map, *entry).q;
     q.segment<4>(at + 3) << turned.w(), turned.x(), turned.y(), turned.z();
   }
@@ -180,6 +185,49 @@ void readTarget(const YamlMap& map, const Model& model, const Degrees& degrees, 
   for (int t = 0; t <= knots; ++t)
     integratePosition(model, moved, static_cast<double>(t) / knots, task.q[idx(t)]);
   task.v.back().setZero();
+}
+
+/// f(map, link) of each link that the map under `key` names, of a target and a weight.
+template <class F>
+void forLinks(const YamlMap& terms, const std::string& key, const Model& model, const F& f) {
+  const YamlMap::Entry* entry = terms.find(key);
+  if (!entry) return;
+  std::set<std::string> links;
+  for (const Frame& frame : model.frames) links.insert(frame.name);
+  const YamlMap some = terms.map(*entry);
+  for (const YamlMap::Entry& link : some.entries()) {
+    if (links.count(link.key) == 0)
+      some.fail(link, "found no link of that name" +
+                          detail::offered(link.key, {links.begin(), links.end()}));
+    f(some.map(link), link.key);
+  }
+}
+
+double readWeight(const YamlMap& map) {
+  return map.number(map.required("weight", "a number > 0"), Range::positive);
+}
+
+void readTerms(const YamlMap& map, const Model& model, PlanTask::StateWeights& terms) {
+  forLinks(map, "points", model, [&](const YamlMap& of, const std::string& link) {
+    of.expectOnly({"target", "weight", "velocity", "point"});
+    PlanTask::Point& point = terms.points.emplace_back();
+    point.link = link;
+    point.target = of.vector3(of.required("target", "a place in the world [m]"));
+    point.weight = readWeight(of);
+    of.read("velocity", point.velocity, Range::notNegative);
+    of.read("point", point.p_LP);
+  });
+  forLinks(map, "orientations", model, [&](const YamlMap& of, const std::string& link) {
+    of.expectOnly({"rpy", "weight"});
+    const Vector3 rpy = of.vector3(of.required("rpy", "roll, pitch and yaw in the world [rad]"));
+    terms.orientations.push_back({link, rotationOf(rpy), readWeight(of)});
+  });
+  if (const auto* entry = map.find("center_of_mass")) {
+    const YamlMap of = map.map(*entry);
+    of.expectOnly({"target", "weight"});
+    const Vector3 target = of.vector3(of.required("target", "a place in the world [m]"));
+    terms.centerOfMass = {target, readWeight(of)};
+  }
 }
 
 PlanTask readPlan(const YamlMap& map, const Model& model, const State& start) {
@@ -211,9 +259,10 @@ PlanTask readPlan(const YamlMap& map, const Model& model, const State& start) {
     const auto* entry = map.find(key);
     if (!entry) return;
     const YamlMap state = map.map(*entry);
-    state.expectOnly({"position", "velocity"});
+    state.expectOnly({"position", "velocity", "points", "orientations", "center_of_mass"});
     degrees.readWeights(state, "position", weights.position);
     degrees.readWeights(state, "velocity", weights.velocity);
+    readTerms(state, model, weights);
   };
   readState("running", task.running);
   readState("final", task.final);
@@ -241,6 +290,23 @@ PlanTask readPlan(const YamlMap& map, const Model& model, const State& start) {
 
 }  // namespace
 
+namespace {
+
+void addTerms(const Model& model, const PlanTask::StateWeights& terms,
+              std::vector<std::unique_ptr<planning::CostTerm>>& cost) {
+  for (const PlanTask::Point& p : terms.points)
+    cost.push_back(std::make_unique<planning::PointCost>(model, p.link, p.p_LP, p.target, p.weight,
+                                                         p.velocity));
+  for (const PlanTask::Orientation& o : terms.orientations)
+    cost.push_back(std::make_unique<planning::OrientationCost>(model, o.link, o.target, o.weight));
+  if (!terms.centerOfMass) return;
+  auto centre = std::make_unique<planning::CentroidalCost>(model);
+  centre->centre(terms.centerOfMass->first, terms.centerOfMass->second);
+  cost.push_back(std::move(centre));
+}
+
+}  // namespace
+
 void PlanTask::setCosts(planning::Planner& planner) const {
   const auto term = [&](const StateWeights& weights, bool last) {
     auto state = std::make_unique<planning::StateCost>(planner.model(), q[0]);
@@ -253,6 +319,8 @@ void PlanTask::setCosts(planning::Planner& planner) const {
   };
   planner.cost.running.push_back(term(running, false));
   planner.cost.final.push_back(term(final, true));
+  addTerms(planner.model(), running, planner.cost.running);
+  addTerms(planner.model(), final, planner.cost.final);
   planner.cost.effort = effort;
   planner.rootCost = rootForce;
 }

@@ -10,13 +10,16 @@
 ///                iterations: 5}        # in each stage
 ///     iterations: {infeasible: 15, feasible: 60, rho: 0.03}  # ρ with which phase I starts
 ///     running: {position: 2, velocity: {all: 0.1, wheel: 2}}   # ½ w e², times h at each knot
-///     final: {position: {base_position: 400, base_rotation: 100, all: 10}, velocity: 1}
+///     final: {position: {base_position: 400, base_rotation: 100, all: 10}, velocity: 1,
+///             points: {hand: {target: [0.4, 0, 0.3], weight: 100, velocity: 1, point: [0, 0, 0]}},
+///             orientations: {head: {rpy: [0, 0, 0], weight: 10}},
+///             center_of_mass: {target: [0, 0, 0.9], weight: 100}}
 ///     effort: 2e-4                     # of u [1/(N² m² s)]
 ///     root_force: 0.02                 # of forces that nobody causes, in phase I
 ///     search: {tries: 40, reach: 0.5}  # better plans near the one that is found
 ///     mpc: {rate: 50, iterations: 0, seconds: 0.01, contacts: own, keep: true}   # planned anew
-///                      # [1/s], with phase F beside each pass, in that time, on these contacts; the
-///                      # final terms are kept
+///                      # [1/s], with phase F beside each pass, in that time, on these contacts;
+///                      the # final terms are kept
 ///     spread: 0.1                      # of random starts, for plan_benchmark
 ///     best: 3.8                        # least cost that is known, for plan_benchmark
 ///     target: {joints: {wheel: 2}, move: [0.4, 0, 0], steady: true}
@@ -25,7 +28,9 @@
 /// base_rotation are what floats. The target is the start at rest but for what is given: joints,
 /// position [m] and rpy of the one floating base, or by how much it moves; steady has it move there
 /// at one speed. `contacts` are those with which it plans; from there stages lead to the scene's
-/// own, but with `end: planning`. Strict, as scenes are.
+/// own, but with `end: planning`. Running terms, and final ones, are also of `points` of links,
+/// given in the link's frame, and their speed, of `orientations` of links, both in the world, and
+/// of the centre of mass of all that moves. Strict, as scenes are.
 
 #include <filesystem>
 #include <optional>
@@ -43,8 +48,21 @@ struct PlanTask {
   planning::HorizonOptions mpc = {.period = 0.02, .keepsEnd = true};
   bool recedesOnOwnContacts = true;  ///< else on the planning ones, 5 mm apart at most
   bool endsOnOwnContacts = true;     ///< else on the planning ones
+  struct Point {
+    std::string link;
+    Vector3 p_LP = Vector3::Zero(), target = Vector3::Zero();  ///< world [m]
+    double weight = 0.0, velocity = 0.0;                       ///< [1/m²], [s²/m²]
+  };
+  struct Orientation {
+    std::string link;
+    Matrix3 target = Matrix3::Identity();  ///< world
+    double weight = 0.0;                   ///< [1/rad²]
+  };
   struct StateWeights {
     VectorX position, velocity;  ///< (nv)
+    std::vector<Point> points;
+    std::vector<Orientation> orientations;
+    std::optional<std::pair<Vector3, double>> centerOfMass;  ///< target [m], weight [1/m²]
   };
   StateWeights running, final;
   VectorX effort, rootForce;  ///< (nv)

@@ -2,6 +2,7 @@
 #include "softgauss/gdd/planning/backward_pass.hpp"
 
 #include "softgauss/engine/step/forward_derivative.hpp"
+#include "tests/support/allocation_guard.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/scene.hpp"
 
@@ -136,6 +137,31 @@ TEST(BackwardPass, ValueIsThatOfTheFeedbackOfBoundedControls) {
   }
   EXPECT_GT(held, 10);
   EXPECT_GT(free, 10);
+}
+
+TEST(BackwardPass, AllocatesNothing) {
+  const Model model = bareTree(1);
+  const int n = model.nv;
+  PlanDynamics dynamics(model, nullptr);
+  Knot knot(model, dynamics.step());
+  ASSERT_EQ(dynamics.linearise(knot), SolveStatus::converged);
+  std::vector<int> all;
+  for (int i = 0; i < n; ++i) all.push_back(i);
+  BackwardPass pass(model, all);
+  ValueModel next(n), cost(n), value(n);
+  next.curvature.setIdentity();
+  Feedback feedback(n, n);
+  const VectorX w = VectorX::Ones(n), W = VectorX::Ones(n), far = VectorX::Constant(n, 1e3),
+                near = -far;
+  const auto both = [&] {
+    return pass.overAccelerations(knot, next, cost, w, W, 0.0, feedback, value) &&
+           pass.overControls(knot, next, cost, W, near, far, 0.0, feedback, value);
+  };
+  EXPECT_TRUE(both());
+  AllocationGuard guard;
+  const bool done = both();
+  EXPECT_EQ(guard.count(), 0);
+  EXPECT_TRUE(done);
 }
 
 }  // namespace

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <Eigen/Eigenvalues>
 #include <numbers>
 #include <optional>
 
@@ -9,7 +8,6 @@
 #include "softgauss/gdd/goals/quadratic_value.hpp"
 #include "softgauss/gdd/planning/planner.hpp"
 #include "tests/gdd/rails.hpp"
-#include "tests/support/allocation_guard.hpp"
 #include "tests/support/finite_difference.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/scene.hpp"
@@ -18,80 +16,6 @@ namespace softgauss::test {
 namespace {
 
 using namespace planning;
-
-// ---- Costs and the program in a box -------------------------------------------------------------
-
-/// Slope and curvature of a term that is ½ |r|² are those of r, by differences of its value.
-void expectModel(CostTerm& term, int seed) {
-  Random random(seed);
-  const Model model = randomFloatingTree(seed).build();
-  const int n = model.nv;
-  State state = randomState(model, random);
-  Kinematics k(model);
-  const auto value = [&](const VectorX& q, const VectorX& v) {
-    State at = state;
-    at.q = q, at.v = v;
-    computeKinematics(model, at, k);
-    return VectorX(VectorX::Constant(1, term.value({model, at.q, at.v, 0, &k})));
-  };
-  MatrixX expected(1, 2 * n);
-  expected << configurationGradient(model, state.q,
-                                    [&](const VectorX& q) { return value(q, state.v); }),
-      gradient(state.v, [&](const VectorX& v) { return value(state.q, v); });
-  value(state.q, state.v);
-  ValueModel found(n);
-  const double at =
-      term.expand({model, state.q, state.v, 0, &k}, 2.0, found.slope, found.curvature);
-  EXPECT_APPROX(found.slope.transpose(), 2.0 * expected, 1e-7) << seed;
-  EXPECT_NEAR(at, value(state.q, state.v)[0], 1e-12 * std::abs(at));
-  const MatrixX full = MatrixX(found.curvature.selfadjointView<Eigen::Lower>());
-  EXPECT_GE(full.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff(), -1e-9 * full.norm());
-}
-
-TEST(PlanCost, SlopesAreThoseOfTheValue) {
-  for (int seed = 0; seed < 10; ++seed) {
-    Random random(seed + 50);
-    const Model model = randomFloatingTree(seed).build();
-    StateCost states(model, randomState(model, random).q);
-    states.positionWeight = random.vector(model.nv, 1.0).cwiseAbs();
-    states.velocityWeight = random.vector(model.nv, 1.0).cwiseAbs();
-    expectModel(states, seed);
-    const std::string frame = model.frames.back().name;
-    PointCost point(model, frame, random.vector3(0.2), random.vector3(1.0), 2.0, 0.5);
-    expectModel(point, seed);
-    OrientationCost orientation(model, frame, random.rotation(), 3.0);
-    expectModel(orientation, seed);
-    CentroidalCost centroidal(model);
-    centroidal.centre(random.vector3(1.0), 5.0);
-    centroidal.momentum(random.vector3(1.0), 0.5);
-    centroidal.angularMomentum(0.3);
-    expectModel(centroidal, seed);
-  }
-}
-
-TEST(BoxProgram, IsAtItsMinimum) {
-  Random random(7);
-  for (int trial = 0; trial < 200; ++trial) {
-    const int m = 1 + random.index(8);
-    MatrixX A(m, m);
-    for (double& x : A.reshaped()) x = random.uniform(-1.0, 1.0);
-    const MatrixX H = A * A.transpose() + 0.1 * MatrixX::Identity(m, m);
-    const VectorX g = random.vector(m, 3.0), lower = -random.vector(m, 1.0).cwiseAbs(),
-                  upper = random.vector(m, 1.0).cwiseAbs();
-    VectorX x = VectorX::Zero(m);
-    BoxProgram program(m);
-    ASSERT_TRUE(program.solve(H, g, lower, upper, x));
-    const VectorX slope = H * x + g;
-    for (int i = 0; i < m; ++i) {
-      EXPECT_GE(x[i], lower[i]);
-      EXPECT_LE(x[i], upper[i]);
-      if (x[i] > lower[i] && x[i] < upper[i])
-        EXPECT_NEAR(slope[i], 0.0, 1e-9);
-      else
-        EXPECT_GE(slope[i] * (x[i] == lower[i] ? 1.0 : -1.0), -1e-9);
-    }
-  }
-}
 
 // ---- A linear system ----------------------------------------------------------------------------
 
@@ -238,6 +162,61 @@ TEST(Planner, SwingsUpWithinBoundsByWhatTheStepDoes) {
   }
 }
 
+// Off kinks phase F takes the steps of iterative LQR: its control k + K δx is that of Riccati's
+// recursion over controls, here with differences of step() itself.
+TEST(Planner, OffKinksPhaseFHasTheFeedbackOfIterativeLqr) {
+  constexpr double kStep = 0.05, kDelta = 1e-5;
+  const Model model = cartPole({});
+  Planner planner(model, {kStep, 20});
+  swingUp(planner);
+  PlanOptions options;
+  options.infeasible = options.feasible = 4;  // not at the minimum
+  const MotionPlan plan = planner.solve(model.q0, VectorX::Zero(2), options);
+  ASSERT_TRUE(planner.refresh());
+  ASSERT_EQ(planner.feasible().rho(), 0.0);
+  const Model& bare = planner.model();
+  Data data(bare);
+  Input input;
+  input.controlled = allTrees(bare);
+  const auto next = [&](const VectorX& at) {  // of (q, v, u)
+    State state(bare);
+    state.q = at.head(2), state.v = at.segment(2, 2);
+    input.tau = Eigen::Vector2d(at[4], 0.0);
+    EXPECT_EQ(softgauss::step(bare, input, state, data, nullptr), SolveStatus::converged);
+    VectorX x(4);
+    x << state.q, state.v;
+    return x;
+  };
+  const auto error = [&](std::size_t t) {
+    VectorX e(4);
+    e << plan.q[t] - VectorX(Eigen::Vector2d(0.0, std::numbers::pi)), plan.v[t];
+    return e;
+  };
+  const VectorX running = kStep * Eigen::Vector4d(0.2, 0.2, 0.02, 0.02),
+                last = Eigen::Vector4d(200.0, 200.0, 20.0, 20.0);
+  const double R = kStep * 0.02;
+  MatrixX V = last.asDiagonal();
+  VectorX s = last.cwiseProduct(error(plan.tau.size()));
+  for (std::size_t t = plan.tau.size(); t-- > 0;) {
+    VectorX at(5);
+    at << plan.q[t], plan.v[t], plan.tau[t][0];
+    MatrixX J(4, 5);
+    for (int i = 0; i < 5; ++i) {
+      const VectorX d = kDelta * VectorX::Unit(5, i);
+      J.col(i) = (next(at + d) - next(at - d)) / (2.0 * kDelta);
+    }
+    const MatrixX A = J.leftCols(4), B = J.rightCols(1);
+    const MatrixX Qux = B.transpose() * V * A;
+    const double Quu = R + (B.transpose() * V * B)(0), Qu = R * at[4] + B.col(0).dot(s);
+    const Feedback& found = planner.feasible().feedback()[t];
+    EXPECT_APPROX(found.K, MatrixX(-Qux / Quu), 1e-6) << t;
+    EXPECT_NEAR(found.k[0], -Qu / Quu, 1e-6 * std::max(1.0, std::abs(Qu / Quu))) << t;
+    s = VectorX(running.cwiseProduct(error(t)) + A.transpose() * s - Qux.transpose() * (Qu / Quu));
+    V = MatrixX(MatrixX(running.asDiagonal()) + A.transpose() * V * A -
+                Qux.transpose() * Qux / Quu);
+  }
+}
+
 TEST(Planner, GivesTheSameBitsAgain) {
   std::vector<MotionPlan> plans;
   for (int i = 0; i < 2; ++i) {
@@ -294,32 +273,7 @@ TEST(Planner, TellsTheKnotThatItRefuses) {
     }
 }
 
-// ---- The backward pass and the goal -------------------------------------------------------------
-
-TEST(BackwardPass, AllocatesNothing) {
-  const Model model = railsOf(0.02);
-  const int n = model.nv;
-  PlanDynamics dynamics(model, nullptr);
-  Knot knot(model, dynamics.step());
-  ASSERT_EQ(dynamics.linearise(knot), SolveStatus::converged);
-  std::vector<int> all;
-  for (int i = 0; i < n; ++i) all.push_back(i);
-  BackwardPass pass(model, all);
-  ValueModel next(n), cost(n), value(n);
-  next.curvature.setIdentity();
-  Feedback feedback(n, n);
-  const VectorX w = VectorX::Ones(n), W = VectorX::Ones(n), far = VectorX::Constant(n, 1e3),
-                near = -far;
-  const auto both = [&] {
-    return pass.overAccelerations(knot, next, cost, w, W, 0.0, feedback, value) &&
-           pass.overControls(knot, next, cost, W, near, far, 0.0, feedback, value);
-  };
-  EXPECT_TRUE(both());
-  AllocationGuard guard;
-  const bool done = both();
-  EXPECT_EQ(guard.count(), 0);
-  EXPECT_TRUE(done);
-}
+// ---- The goal ----------------------------------------------------------------------------------
 
 // ℓ(a) is V at the state where the step by a ends, to the order that the expansion has.
 TEST(QuadraticValue, IsTheValueAtTheStepsEnd) {

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "softgauss/io/plan_task.hpp"
 
+#include <fmt/format.h>
+
 #include "scene_folder.hpp"
+#include "softgauss/engine/dynamics/energy.hpp"
 #include "tests/support/matchers.hpp"
 
 namespace softgauss::test {
@@ -67,6 +70,50 @@ TEST(PlanTask, HasTheWeightsAndTheTargetOfItsFile) {
   EXPECT_EQ(task.v.back()[0], 0.0);
 }
 
+/// Where the scene starts.
+State startOf(const SceneFolder& folder, const Model& model) {
+  return folder.read().initialState(model);
+}
+
+// A link's point, its turn and the centre of mass, off by known amounts from where the robot
+// starts.
+TEST(PlanTask, PricesPlacesOfLinks) {
+  const SceneFolder bare(sceneThatPlans("plan: {}\n"));
+  const Model model = bare.read().builder.build();
+  const State start = startOf(bare, model);
+  Kinematics kinematics(model);
+  computeKinematics(model, start, kinematics);
+  const Transform X = framePose(model, kinematics, model.findFrame("arm"));
+  const Vector3 offset(0.1, 0.2, 0.3), p = X * offset, c = centerOfMass(model, kinematics);
+  const auto list = [](const Vector3& x) {
+    return fmt::format("[{:.17g}, {:.17g}, {:.17g}]", x[0], x[1], x[2]);
+  };
+  const Matrix3& R = X.R;
+  const Vector3 rpy(std::atan2(R(2, 1), R(2, 2)), -std::asin(R(2, 0)) + 0.1,
+                    std::atan2(R(1, 0), R(0, 0)));
+  const SceneFolder folder(sceneThatPlans(
+      "plan:\n  final:\n    points: {arm: {target: " + list(p + Vector3(0.3, 0, 0.4)) +
+      ", weight: 8, point: [0.1, 0.2, 0.3]}}\n  running:\n    orientations: {arm: {rpy: " +
+      list(rpy) + ", weight: 200}}\n    center_of_mass: {target: " + list(c + Vector3(0, 2, 0)) +
+      ", weight: 3}\n"));
+  const io::PlanTask task = planOf(folder);
+  planning::Planner planner(model, task.steps);
+  task.setCosts(planner);
+  const auto costs = [&](const auto& terms) {
+    std::vector<double> found;
+    for (const auto& term : terms)
+      found.push_back(term->value({model, start.q, start.v, 0, &kinematics}));
+    return found;
+  };
+  const std::vector<double> last = costs(planner.cost.final), running = costs(planner.cost.running);
+  ASSERT_EQ(last.size(), 2u);  // the state's is first
+  EXPECT_NEAR(last[1], 0.5 * 8.0 * 0.25, 1e-12);
+  ASSERT_EQ(running.size(), 3u);
+  // Pitch is not about a fixed axis where there is a roll, but the angle is the same.
+  EXPECT_NEAR(running[1], 0.5 * 200.0 * 0.01, 1e-9);
+  EXPECT_NEAR(running[2], 0.5 * 3.0 * 4.0, 1e-12);
+}
+
 TEST(PlanTask, TellsWhatIsWrongAndWhere) {
   const struct {
     const char *plan, *says;
@@ -85,6 +132,12 @@ TEST(PlanTask, TellsWhatIsWrongAndWhere) {
       {"plan: {knots: 100001}\n", "from 1 to 100000"},
       {"plan: {mpc: {rate: 19}}\n", "at least 20"},
       {"plan: {mpc: {rate: 50, contacts: none}}\n", "planning"},
+      {"plan: {mpc: {seconds: 0}}\n", "seconds"},
+      {"plan: {final: {points: {amr: {target: [0, 0, 1], weight: 1}}}}\n", "did you mean 'arm'"},
+      {"plan: {final: {points: {arm: {weight: 1}}}}\n", "a place in the world"},
+      {"plan: {final: {points: {arm: {target: [0, 0, 1], weight: 0}}}}\n", "weight"},
+      {"plan: {running: {orientations: {arm: {weight: 1}}}}\n", "roll, pitch and yaw"},
+      {"plan: {final: {center_of_mass: {target: [0, 0]}}}\n", "center_of_mass"},
   };
   for (const auto& c : cases) {
     const SceneFolder folder(sceneThatPlans(c.plan));
