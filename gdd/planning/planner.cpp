@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "softgauss/gdd/planning/planner.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
@@ -54,7 +55,7 @@ Planner::Planner(const Model& model, const PlanSteps& steps, const Contacts& con
     : rootCost(VectorX::Zero(model.nv)),
       model_(planned(model, steps)),
       knots_(steps.knots),
-      threads_(*model_, contacts, steps.threads),
+      threads_(*model_, contacts, std::min(steps.threads, steps.knots)),
       problem_(problem()),
       infeasible_(problem_, threads_),
       feasible_(problem_, threads_),
