@@ -141,11 +141,15 @@ void readReceding(const YamlMap& map, PlanTask& task) {
   map.read("seconds", mpc.seconds, Range::positive);
 }
 
-Matrix3 rotationOf(const Vector3& rpy) {
-  return (Eigen::AngleAxisd(rpy.z(), Vector3::UnitZ()) *
-          Eigen::AngleAxisd(rpy.y(), Vector3::UnitY()) *
-          Eigen::AngleAxisd(rpy.x(), Vector3::UnitX()))
-      .toRotationMatrix();
+/// A joint's place, within its range.
+double readPlace(const YamlMap& joints, const YamlMap::Entry& joint, const Model& model,
+                 const Body& body) {
+  const double place = joints.number(joint);
+  for (const JointRange& range : model.ranges)
+    if (&model.bodies[idx(range.body)] == &body && !(place >= range.lower && place <= range.upper))
+      joints.fail(joint, fmt::format("found {}, expected within the joint's range {:.4g} .. {:.4g}",
+                                     place, range.lower, range.upper));
+  return place;
 }
 
 void readTarget(const YamlMap& map, const Model& model, const Degrees& degrees, const State& start,
@@ -156,20 +160,14 @@ void readTarget(const YamlMap& map, const Model& model, const Degrees& degrees, 
     const YamlMap joints = map.map(*entry);
     for (const YamlMap::Entry& joint : joints.entries()) {
       const Body& body = degrees.joint(joints, joint);
-      const double target = q[body.q] = joints.number(joint);
-      for (const JointRange& range : model.ranges)
-        if (&model.bodies[idx(range.body)] == &body &&
-            !(target >= range.lower && target <= range.upper))
-          joints.fail(joint, fmt::format("found {}, expected within the joint's range {:.4g} .. "
-                                         "{:.4g}",
-                                         target, range.lower, range.upper));
+      q[body.q] = readPlace(joints, joint, model, body);
     }
   }
   if (const auto* entry = map.find("position"))
     q.segment<3>(degrees.base(map, *entry).q) = map.vector3(*entry);
   if (const auto* entry = map.find("rpy")) {
     const Vector3 rpy = map.vector3(*entry);
-    const Quaternion turned(rotationOf(rpy));
+    const Quaternion turned(rpyRotation(rpy));
     const int at = degrees.base(map, *entry).q;
     q.segment<4>(at + 3) << turned.w(), turned.x(), turned.y(), turned.z();
   }
@@ -220,7 +218,7 @@ void readTerms(const YamlMap& map, const Model& model, PlanTask::StateWeights& t
   forLinks(map, "orientations", model, [&](const YamlMap& of, const std::string& link) {
     of.expectOnly({"rpy", "weight"});
     const Vector3 rpy = of.vector3(of.required("rpy", "roll, pitch and yaw in the world [rad]"));
-    terms.orientations.push_back({link, rotationOf(rpy), readWeight(of)});
+    terms.orientations.push_back({link, rpyRotation(rpy), readWeight(of)});
   });
   if (const auto* entry = map.find("center_of_mass")) {
     const YamlMap of = map.map(*entry);
@@ -287,10 +285,6 @@ PlanTask readPlan(const YamlMap& map, const Model& model, const State& start) {
     readTarget(map.map(*entry), model, degrees, start, task);
   return task;
 }
-
-}  // namespace
-
-namespace {
 
 void addTerms(const Model& model, const PlanTask::StateWeights& terms,
               std::vector<std::unique_ptr<planning::CostTerm>>& cost) {

@@ -17,9 +17,9 @@
 ///     effort: 2e-4                     # of u [1/(N² m² s)]
 ///     root_force: 0.02                 # of forces that nobody causes, in phase I
 ///     search: {tries: 40, reach: 0.5}  # better plans near the one that is found
-///     mpc: {rate: 50, iterations: 0, seconds: 0.01, contacts: own, keep: true}   # planned anew
-///                      # [1/s], with phase F beside each pass, in that time, on these contacts;
-///                      the # final terms are kept
+///     mpc: {rate: 50, iterations: 0, seconds: 0.01, contacts: own, keep: true}
+///                      # planned anew [1/s], with phase F beside each pass, in that time, on
+///                      # these contacts; the final terms are kept
 ///     spread: 0.1                      # of random starts, for plan_benchmark
 ///     best: 3.8                        # least cost that is known, for plan_benchmark
 ///     target: {joints: {wheel: 2}, move: [0.4, 0, 0], steady: true}

@@ -75,7 +75,7 @@ bool makePlan(const SimulateOptions& options) {
   progress.clear();
   plan.planner().progress = {};
   if (!interrupted()) return true;
-  app::tell(
+  tell(
       "simulate_gdd: interrupted while it planned: the best plan so far is acted out; ctrl-c again "
       "ends the run");
   forgetInterrupts();

@@ -195,25 +195,26 @@ bool FeasiblePhase::rollOut(const Knot& start, const std::vector<VectorX>& contr
   return true;
 }
 
+bool FeasiblePhase::refuse(int knot) {
+  refusedKnot_ = knot;
+  return false;
+}
+
 bool FeasiblePhase::backward() {
   const int last = problem_.knots;
   backward_.begin();
-  ValueModel* next = &otherValues_.back();
-  refusedKnot_ = last;
-  if (!cost_.expand(problem_, x_.knots.back(), last, *next)) return false;
   refusedKnot_ = -1;
+  ValueModel* next = &otherValues_.back();
+  if (!cost_.expand(problem_, x_.knots.back(), last, *next)) return refuse(last);
   next->mirror();
   for (int t = last - 1; t >= 0; --t) {
     const Knot& knot = x_.knots[idx(t)];
     ValueModel& value = otherValues_[idx(t)];
-    refusedKnot_ = t;
-    if (!cost_.expand(problem_, knot, t, knotCost_)) return false;
-    refusedKnot_ = -1;
+    if (!cost_.expand(problem_, knot, t, knotCost_)) return refuse(t);
     if (!backward_.overControls(knot, *next, knotCost_, R_, problem_.lower, problem_.upper, rho_,
                                 otherFeedback_[idx(t)], value))
       return false;
-    refusedKnot_ = value.slope.allFinite() && value.curvature.allFinite() ? -1 : t;
-    if (refusedKnot_ >= 0) return false;
+    if (!value.slope.allFinite() || !value.curvature.allFinite()) return refuse(t);
     next = &value;
   }
   values_.swap(otherValues_);

@@ -67,6 +67,7 @@ class FeasiblePhase {
  private:
   void begin();
   bool backward();
+  bool refuse(int knot);
   bool linearise();
   void forgetFeedback();
   bool pass(double alpha, bool goalDirected, Trajectory& y);

@@ -79,16 +79,20 @@ bool InfeasiblePhase::linearise() {
   return !fresh_;
 }
 
+bool InfeasiblePhase::refuse(int knot) {
+  refusedKnot_ = knot;
+  return false;
+}
+
 bool InfeasiblePhase::backward() {
   pass_.begin();
-  refusedKnot_ = problem_.knots;
-  if (!cost_.expand(problem_, x_.knots.back(), problem_.knots, values_.back())) return false;
+  refusedKnot_ = -1;
+  if (!cost_.expand(problem_, x_.knots.back(), problem_.knots, values_.back()))
+    return refuse(problem_.knots);
   values_.back().mirror();
   for (int t = problem_.knots - 1; t >= 0; --t) {
     const Knot& knot = x_.knots[idx(t)];
-    refusedKnot_ = t;
-    if (!cost_.expand(problem_, knot, t, knotCost_)) return false;
-    refusedKnot_ = -1;
+    if (!cost_.expand(problem_, knot, t, knotCost_)) return refuse(t);
     for (int i = 0; i < problem_.model.nv; ++i) {
       const ForceCost c = forceCost(t, i, knot.tau[i]);
       w_[i] = c.slope, W_[i] = c.curvature;

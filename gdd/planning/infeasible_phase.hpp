@@ -53,6 +53,7 @@ class InfeasiblePhase {
   double evaluate(Trajectory& x);
   bool linearise();
   bool backward();
+  bool refuse(int knot);
   void findDirection();
   bool search();
   void updateMultipliers();

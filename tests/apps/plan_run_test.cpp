@@ -83,8 +83,8 @@ TEST(PlanRun, IsJudgedByWhatIsMissing) {
   EXPECT_NE(lost.out.find("\nlost:"), std::string::npos) << lost.out;
 }
 
-// A hinge that is driven to nowhere: its effort is too dear, so that a plan holds still; one that
-// is up falls when the plan has ended, for nothing is planned anew.
+// A cart whose effort is too dear, so that its plan holds still, and an acrobot that is up and falls
+// when its plan has ended, for nothing is planned anew.
 TEST(PlanRun, SaysWhatSomebodyWouldWhoWatched) {
   const io::TempFolder folder;
   const std::string text = "robots:\n  - urdf: " + dataFile("plans/cart_pole.urdf") +
