@@ -118,16 +118,10 @@ void SceneContacts::Scene::poseOne(const Kinematics& kinematics, std::size_t i) 
   if (set.hull[i] || set.surface[i]) centre[i].noalias() += X.R * set.centreInG[i];
 }
 
-void SceneContacts::Scene::pose(const Kinematics& kinematics, bool all) {
-  const std::size_t count = all ? X_WG.size() : posed.size();
-  for (std::size_t n = 0; n < count; ++n)
-    poseOne(kinematics, all ? n : static_cast<std::size_t>(posed[n]));
-}
-
 void SceneContacts::Scene::placeInitially() {
   Kinematics kinematics(model);
   computeKinematics(model, State(model), kinematics);
-  pose(kinematics, true);
+  for (std::size_t i = 0; i < X_WG.size(); ++i) poseOne(kinematics, i);
 }
 
 double SceneContacts::Scene::distance(const GeometryPair& pair) {
@@ -261,19 +255,35 @@ std::size_t SceneContacts::bytes() const noexcept {
 
 SceneContacts::~SceneContacts() = default;
 
-void SceneContacts::detect(const Model& model, const Kinematics& kinematics,
-                           ContactSet& contacts) noexcept {
+template <class Takes>
+void SceneContacts::detectThose(const Model& model, const Kinematics& kinematics, Takes&& takes,
+                                ContactSet& contacts) {
   contacts.clear();
   Scene& scene = *scene_;
-  scene.pose(kinematics);
-  if (model.options.hasRowLaw()) scene.setWays(kinematics, model.options.timeToNextRows());
+  scene.pose(kinematics, takes);
+  if (model.options.hasRowLaw()) scene.setWays(kinematics, model.options.timeToNextRows(), takes);
   if (scene.moved()) scene.findNear();
   for (const auto& [list, of] :
        {std::pair(&scene.nearPlaneRows, &scene.planeRows), std::pair(&scene.nearRows, &scene.rows)})
     for (const int r : *list) {
       const Scene::Row& row = (*of)[static_cast<std::size_t>(r)];
-      if (scene.within(row, scene.wayOf(row))) scene.report(row, contacts);
+      if (takes(row.a) && takes(row.b) && scene.within(row, scene.wayOf(row)))
+        scene.report(row, contacts);
     }
+}
+
+void SceneContacts::detect(const Model& model, const Kinematics& kinematics,
+                           ContactSet& contacts) noexcept {
+  detectThose(
+      model, kinematics, [](int) { return true; }, contacts);
+}
+
+void SceneContacts::detectAmong(const Model& model, const Kinematics& kinematics,
+                                const TreeSelection& trees, ContactSet& contacts) noexcept {
+  const auto takes = [&](int geometry) {
+    return trees.holds(model, model.geometries[static_cast<std::size_t>(geometry)].body);
+  };
+  detectThose(model, kinematics, takes, contacts);
 }
 
 void SceneContacts::detectPair(const Model&, const Kinematics& kinematics, int geometryA,

@@ -45,6 +45,8 @@ class SceneContacts final : public ContactSource {
   /// `model` must be the one given to the constructor.
   void detect(const Model& model, const Kinematics& kinematics,
               ContactSet& contacts) noexcept override;
+  void detectAmong(const Model& model, const Kinematics& kinematics, const TreeSelection& trees,
+                   ContactSet& contacts) noexcept override;
   void detectPair(const Model& model, const Kinematics& kinematics, int geometryA, int geometryB,
                   ContactSet& contacts) noexcept override;
 
@@ -64,6 +66,10 @@ class SceneContacts final : public ContactSource {
 
  private:
   struct Scene;
+  /// Of the geometries that `take`.
+  template <class Takes>
+  void detectThose(const Model& model, const Kinematics& kinematics, Takes&& takes,
+                   ContactSet& contacts);
   static std::unique_ptr<Scene> makeScene(const Model& model, PreparedMeshes* meshes);
   void setUp(int broadphasePairs, bool pruning);
 

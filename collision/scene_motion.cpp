@@ -22,7 +22,7 @@ void SceneContacts::Scene::makeMovingShapes() {
 }
 
 bool SceneContacts::Scene::setMotion(const Kinematics& kinematics, double longest, double sign) {
-  pose(kinematics);
+  pose(kinematics, [](int) { return true; });
   bool any = false;
   for (const int g : posed) {
     const auto i = static_cast<std::size_t>(g);
@@ -37,14 +37,11 @@ bool SceneContacts::Scene::setMotion(const Kinematics& kinematics, double longes
   return any;
 }
 
-void SceneContacts::Scene::setWays(const Kinematics& kinematics, double time) {
-  for (const int g : posed) {
-    const auto i = static_cast<std::size_t>(g);
-    const int body = model.geometries[i].body;
-    const Vector3& omega = kinematics.V[static_cast<std::size_t>(body)].angular;
-    way[i] = time * (pointVelocity(model, kinematics, body, centre[i]).norm() +
-                     omega.norm() * moving[i].extent.lever);
-  }
+void SceneContacts::Scene::setWay(const Kinematics& kinematics, double time, std::size_t i) {
+  const int body = model.geometries[i].body;
+  const Vector3& omega = kinematics.V[static_cast<std::size_t>(body)].angular;
+  way[i] = time * (pointVelocity(model, kinematics, body, centre[i]).norm() +
+                   omega.norm() * moving[i].extent.lever);
 }
 
 double SceneContacts::Scene::tunnellingTimeBound(const Kinematics& kinematics, double longest,

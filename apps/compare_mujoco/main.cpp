@@ -162,14 +162,14 @@ class Comparison {
     mujoco_.set(state, tau);
     if (theirWarmStart_.size() > 0) mujoco_.setWarmStart(theirWarmStart_);
     Duel::time(forward_.ours, [&] {
-      computeStages(model_, input_, state, data_, &contacts_);
+      computeBodyStages(model_, input_, state, data_, &contacts_);
       forwardDynamics(model_, state, data_);
     });
     Duel::time(forward_.mujoco, [&] { mujoco_.forward(); });
     const VectorX a = data_.forward.a;
     mujoco_.setAcceleration(a);
     Duel::time(inverse_.ours, [&] {
-      computeStages(model_, input_, state, data_, &contacts_);
+      computeBodyStages(model_, input_, state, data_, &contacts_);
       inverseDynamics(model_, a, data_, scratch_);
     });
     Duel::time(inverse_.mujoco, [&] { mujoco_.inverse(); });

@@ -75,7 +75,8 @@ class Race {
     input_.tau = window.torques[1];
     VectorX a, tau;
     const auto stages = [&] {
-      computeStages(scene_->model, input_, scene_->state, *scene_->data, scene_->contacts.get());
+      computeBodyStages(scene_->model, input_, scene_->state, *scene_->data,
+                        scene_->contacts.get());
     };
     stages();
     forwardDynamics(scene_->model, scene_->state, *scene_->data);

@@ -12,7 +12,7 @@ namespace {
 VectorX forward(Held& held, const py::object& tau, const py::object& q, const py::object& v) {
   return held.alone([&](Simulation& sim) {
     const AtState at(sim, q, v);
-    computeStagesUnder(sim, forceOf(sim, tau));
+    computeStagesUnder(sim, forceOf(sim, tau), false);
     expectSolved(sim, forwardDynamics(sim.model(), sim.state(), sim.data()));
     return sim.data().forward.a;
   });
@@ -23,7 +23,7 @@ VectorX inverse(Simulation& sim, const py::object& a, const py::object& q, const
                 RowMajorMatrixX* P) {
   const AtState at(sim, q, v);
   const VectorX wished = accelerationOf(sim, a);
-  computeStagesUnder(sim, {});
+  computeStagesUnder(sim, {}, P != nullptr);
   VectorX tau;
   inverseDynamics(sim.model(), wished, sim.data(), tau);
   if (P) {

@@ -66,7 +66,7 @@ py::tuple inverseDerivatives(Simulation& sim, const py::object& a, const py::obj
                              const py::object& v) {
   const AtState at(sim, q, v);
   const VectorX wished = accelerationOf(sim, a);
-  const Input input = computeStagesUnder(sim, {});
+  const Input input = computeStagesUnder(sim, {}, true);
   InverseDerivative of(sim.model());
   expectSolved(sim,
                of.compute(sim.model(), input, sim.state(), wished, &sim.contacts(), sim.data()));
@@ -76,7 +76,7 @@ py::tuple inverseDerivatives(Simulation& sim, const py::object& a, const py::obj
 py::tuple forwardDerivatives(Simulation& sim, const py::object& tau, const py::object& q,
                              const py::object& v) {
   const AtState at(sim, q, v);
-  const Input input = computeStagesUnder(sim, forceOf(sim, tau));
+  const Input input = computeStagesUnder(sim, forceOf(sim, tau), true);
   expectSolved(sim, forwardDynamics(sim.model(), sim.state(), sim.data()));
   ForwardDerivative of(sim.model());
   expectSolved(sim, of.compute(sim.model(), input, sim.state(), &sim.contacts(), sim.data()));

@@ -34,10 +34,11 @@ inline Input inputUnder(Simulation& sim, const VectorX& tau) {
   return input;
 }
 
-/// The stages under it; what acts. Throws StepError.
-inline Input computeStagesUnder(Simulation& sim, const VectorX& tau) {
+/// The stages under it, with M and J where `matrices`; what acts. Throws StepError.
+inline Input computeStagesUnder(Simulation& sim, const VectorX& tau, bool matrices) {
   Input input = inputUnder(sim, tau);
-  expectSolved(sim, computeStages(sim.model(), input, sim.state(), sim.data(), &sim.contacts()));
+  const auto compute = matrices ? computeStages : computeBodyStages;
+  expectSolved(sim, compute(sim.model(), input, sim.state(), sim.data(), &sim.contacts()));
   return input;
 }
 

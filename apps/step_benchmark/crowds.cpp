@@ -199,6 +199,43 @@ Pair joint(const std::string& folder) {
   return timePair([&] { islands.step(); }, [&] { scene->step(); }, 5, 5);
 }
 
+/// A rod that hangs by its end from a point 50 m away, and turns about it at 40 rad/s.
+ModelBuilder spinner() {
+  ModelBuilder builder("spinner");
+  builder.base = BaseKind::floating;
+  builder.X_WRoot.p = Vector3(50.0, 0.0, 5.0);
+  LinkSpec rod;
+  rod.name = "rod";
+  rod.mass = 1.0;
+  rod.I_Lcm = Vector3(0.02, 0.02, 0.001).asDiagonal();
+  builder.link(rod);
+  ConnectSpec end;
+  end.linkA = "rod";
+  end.linkB = "world";
+  end.p_LAP.z() = 0.25;
+  end.p_LBP = builder.X_WRoot.p + end.p_LAP;
+  builder.connect(end);
+  return builder;
+}
+
+/// A scene beside the rod, over the scene and the rod each alone.
+Pair besideSpinner(const ModelBuilder& scene, const std::function<void(Scene&)>& goals = nullptr) {
+  const auto make = [&](const ModelBuilder* rest, bool spins) {
+    ModelBuilder builder = rest ? *rest : ModelBuilder("rod");
+    if (spins) builder.add(spinner(), "");
+    std::unique_ptr<Scene> made = makeScene(builder.build());
+    if (spins) made->state.v.tail<6>() << -0.75, 10.0, 0.0, 40.0, 3.0, 0.0;  // about that end
+    if (rest && goals) goals(*made);
+    for (int i = 0; i < 500; ++i) made->step();
+    return made;
+  };
+  const auto both = make(&scene, true), without = make(&scene, false), alone = make(nullptr, true);
+  const std::vector<double> times = timeInTurn({{nullptr, [&] { both->step(); }, 50},
+                                                {nullptr, [&] { without->step(); }, 50},
+                                                {nullptr, [&] { alone->step(); }, 50}});
+  return {times[0], times[1] + times[2]};
+}
+
 }  // namespace
 
 std::map<std::string, double> crowdFigures(const std::string& robotsFolder,
@@ -212,7 +249,14 @@ std::map<std::string, double> crowdFigures(const std::string& robotsFolder,
       {"islands_joint", [&] { return joint(robotsFolder); }},
       {"islands_reacher", [&] { return reacher(robotsFolder); }},
       {"islands_goals", [&] { return goals(robotsFolder, 8); }},
-      {"islands_goals_joint", [&] { return jointGoals(robotsFolder, 8); }}};
+      {"islands_goals_joint", [&] { return jointGoals(robotsFolder, 8); }},
+      {"parts_boxes", [] { return besideSpinner(boxesOnGround(50, 0.3)); }},
+      {"parts_humanoid", [&] { return besideSpinner(humanoidsOnGround(robotsFolder, 1)); }},
+      {"parts_reach", [&] {
+         return besideSpinner(humanoidsOnGround(robotsFolder, 1), [](Scene& scene) {
+           addReach(scene, "humanoid0/right_hand", Vector3(0.45, -0.25, 1.1));
+         });
+       }}};
   std::map<std::string, double> figures;
   for (const auto& [name, time] : pairs) {
     if (!std::regex_search(name, std::regex(filter))) continue;

@@ -18,6 +18,9 @@ namespace softgauss::app {
 ///   islands_reacher  an arm that reaches among 1,000 sleeping boxes, over the arm alone
 ///   islands_goals    8 humanoids that reach, each with its goals, over one, per humanoid
 ///   islands_goals_joint  those 8 in islands, over the joint solve of all
+///   parts_boxes      50 boxes at rest beside a rod that spins, whose steps go in parts, over the
+///                    boxes alone and the rod alone together
+///   parts_humanoid, parts_reach  the same of a humanoid that stands, and of one that reaches
 /// `first.us` and `second.us` are medians of CPU time per step, `ratio` that of the medians.
 std::map<std::string, double> crowdFigures(const std::string& robots, const std::string& filter);
 

@@ -12,7 +12,7 @@
 
 namespace softgauss::app {
 
-Model humanoids(const std::string& robots, int count) {
+ModelBuilder humanoidsOnGround(const std::string& robots, int count) {
   ModelBuilder one = io::readUrdf(robots + "/humanoid.urdf");
   const Model alone = one.build();
   Kinematics k(alone);
@@ -25,7 +25,11 @@ Model humanoids(const std::string& robots, int count) {
     builder.add(one, fmt::format("humanoid{}", i));
   }
   addGround(builder);
-  return builder.build();
+  return builder;
+}
+
+Model humanoids(const std::string& robots, int count) {
+  return humanoidsOnGround(robots, count).build();
 }
 
 ModelBuilder boxesOnGround(int count, double spacing) {

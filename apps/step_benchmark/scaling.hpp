@@ -12,6 +12,7 @@
 namespace softgauss::app {
 
 /// Humanoids that stand in rows on a ground, 2.5 m apart.
+ModelBuilder humanoidsOnGround(const std::string& robots, int count);
 Model humanoids(const std::string& robots, int count);
 std::unique_ptr<Scene> makeHumanoids(const std::string& robots, int count);
 /// freeBoxes() that lie on a ground.

@@ -30,8 +30,12 @@ struct SceneContacts::Scene {
   enum class Turn : std::uint8_t { none, axis, full };
 
   Scene(const Model& model, PreparedMeshes& meshes);
-  /// Poses of the geometries of some pair that move, or of all.
-  void pose(const Kinematics& kinematics, bool all = false);
+  /// Poses of the geometries of some pair that move and that `take`.
+  template <class Takes>
+  void pose(const Kinematics& kinematics, Takes&& takes) {
+    for (const int g : posed)
+      if (takes(g)) poseOne(kinematics, static_cast<std::size_t>(g));
+  }
   void poseOne(const Kinematics& kinematics, std::size_t geometry);
   void choosePosed();
   void makeMovingShapes();
@@ -54,8 +58,13 @@ struct SceneContacts::Scene {
   bool moved() const;
   void findNear();
   void sweep();
-  /// How far each shape goes in `time` [s], where rows begin before they touch (3.16).
-  void setWays(const Kinematics& kinematics, double time);
+  /// How far each shape that `takes` goes in `time` [s], where rows begin before they touch (3.16).
+  template <class Takes>
+  void setWays(const Kinematics& kinematics, double time, Takes&& takes) {
+    for (const int g : posed)
+      if (takes(g)) setWay(kinematics, time, static_cast<std::size_t>(g));
+  }
+  void setWay(const Kinematics& kinematics, double time, std::size_t geometry);
   /// By how much nearer a pair may be at the end of the step [m].
   double wayOf(const Row& row) const {
     return way[static_cast<std::size_t>(row.a)] + way[static_cast<std::size_t>(row.b)];

@@ -11,6 +11,7 @@
 #include "softgauss/engine/constraints/supported_mass.hpp"
 #include "softgauss/engine/dynamics/kinematics.hpp"
 #include "softgauss/engine/dynamics/tree_matrix.hpp"
+#include "softgauss/engine/dynamics/tree_selection.hpp"
 
 namespace softgauss {
 
@@ -32,6 +33,11 @@ struct Assembly {
   /// The velocity with which joints turn through the step (nv).
   const VectorX& coriolisVelocity() const { return midstepVelocity ? *midstepVelocity : state.v; }
 
+  /// Whether rows of these bodies are wanted.
+  bool takesPart(int bodyA, int bodyB = 0) const {
+    return !trees || trees->holds(model, bodyA, bodyB);
+  }
+
   /// Counts where the mechanism `did` something.
   void count(Mechanism mechanism, bool did) const {
     if (acted) (*acted)[mechanism] += did;
@@ -49,6 +55,7 @@ struct Assembly {
   MechanismCounts* acted = nullptr;          ///< null: nobody counts
   bool columns = true;  ///< whether blocks list the dofs that move them (BlockJacobian)
   const std::vector<Motion>* lastMotion = nullptr;  ///< (bodies) by State::a, without columns
+  const TreeSelection* trees = nullptr;             ///< whose rows are made; null: of all
 };
 
 }  // namespace softgauss

@@ -61,8 +61,12 @@ RelativeMotion offsetMotion(int bodyA, const Vector3& p_WA, int bodyB, const Vec
 void ConnectionRows::assemble(const Assembly& in) {
   const Model& model = in.model;
   clearBlocks();
+  connections_.clear();
   if (model.options.effects.has(Effect::equality)) {
-    for (const Connection& c : model.connections) {
+    for (std::size_t i = 0; i < model.connections.size(); ++i) {
+      const Connection& c = model.connections[i];
+      if (!in.takesPart(c.bodyA, c.bodyB)) continue;
+      connections_.push_back(static_cast<int>(i));
       const PointOffset offset(in, c.bodyA, c.p_AP, c.bodyB, c.p_BP);
       const Softness soft =
           equalitySoftness(c.impedance, offset.r.norm(),

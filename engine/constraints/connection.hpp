@@ -19,6 +19,12 @@ namespace softgauss {
 class ConnectionRows : public BlockRows {
  public:
   void assemble(const Assembly& in);
+  /// Places in Model::connections of those that have rows, three each.
+  const std::vector<int>& connections() const { return connections_; }
+  std::size_t bytes() const { return BlockRows::bytes() + bytesOfAll(connections_); }
+
+ private:
+  std::vector<int> connections_;
 };
 
 /// Where a point of A is against a point of B, both given in their bodies' frames, and how that

@@ -2,6 +2,7 @@
 #include "softgauss/engine/constraints/constraints.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace softgauss {
 namespace {
@@ -28,7 +29,9 @@ void Constraints::assemble(const Assembly& given) {
   }
   if (!in.columns && in.state.hasAcceleration && in.contacts.size() > 0) {
     lastMotion_.resize(in.model.bodies.size());
-    moveBodies(in.model, in.kinematics, in.state.a, lastMotion_);
+    const Segment all = allBodies(in.model);
+    moveBodies(in.model, in.kinematics, in.trees ? in.trees->bodies() : Segments(&all, 1),
+               in.state.a, lastMotion_);
     in.lastMotion = &lastMotion_;
   }
   active_ = RowKinds::none();
@@ -88,12 +91,12 @@ void Constraints::connectionForces(const Model& model, const Kinematics& k,
     const int tree = treeOf(body);
     return trees.empty() || (tree >= 0 && trees[static_cast<std::size_t>(tree)] != 0);
   };
-  for (std::size_t i = 0; i < model.connections.size(); ++i) {
-    const Connection& c = model.connections[i];
+  const double* f = connection.f.data();
+  for (const int i : connection.connections()) {
+    const Connection& c = model.connections[idx(i)];
+    const Eigen::Map<const Vector3> f_W(std::exchange(f, f + 3));
     if (!meant(c.bodyA) && !meant(c.bodyB)) continue;
-    forces.segment<9>(9 * static_cast<Eigen::Index>(i))
-        << Eigen::Map<const Vector3>(connection.f.data() + 3 * i),
-        onTree(c.bodyA), onTree(c.bodyB);
+    forces.segment<9>(9 * static_cast<Eigen::Index>(i)) << f_W, onTree(c.bodyA), onTree(c.bodyB);
   }
 }
 

@@ -172,6 +172,7 @@ std::optional<Touch> touchAt(const Assembly& in, int i, PairSurface& pair) {
   const Model& model = in.model;
   const Contact& c = in.contacts.contacts[i];
   if (model.bodies[c.bodyA].dofs == 0 && model.bodies[c.bodyB].dofs == 0) return std::nullopt;
+  if (!in.takesPart(c.bodyA, c.bodyB)) return std::nullopt;
   findPair(model, c, pair);
   const Material& material = pair.material;
   Touch touch;

@@ -28,7 +28,7 @@ void DryFriction::assemble(const Assembly& in) {
   if (model.options.effects.has(Effect::dryFriction)) {
     for (int i = 0; i < model.nv; ++i) {
       const Dof& dof = model.dofs[i];
-      if (dof.dryFriction == 0.0) continue;
+      if (dof.dryFriction == 0.0 || !in.takesPart(dof.body)) continue;
       const double rate = in.state.v[i];
       const double A = in.weights.dof[i];
       Softness soft = model.options.hasRowLaw()

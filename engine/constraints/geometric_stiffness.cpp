@@ -33,7 +33,7 @@ void GeometricStiffness::assemble(const Assembly& in) {
   if (!in.state.connectionForces.isZero(0.0) && model.options.effects.has(Effect::equality)) {
     findConnectionForces(in);
     for (const Tree& tree : model.trees)
-      if (model.floats(model.bodies[tree.rootBody].tree))
+      if (in.takesPart(tree.rootBody) && model.floats(model.bodies[tree.rootBody].tree))
         for (int b = tree.rootBody; b < tree.bodyEnd; ++b) findShare(in, b);
     for (std::size_t i = 0; i < connectionForces_.size(); ++i) {
       const double share = bodyStiffness_[connectionForces_[i].body].share;
@@ -75,6 +75,10 @@ void GeometricStiffness::findConnectionForces(const Assembly& in) {
   treeForce_.assign(model.trees.size(), Vector3::Zero());
   const double* force = in.state.connectionForces.data();
   for (const Connection& c : model.connections) {
+    if (!in.takesPart(c.bodyA, c.bodyB)) {
+      force += 9;
+      continue;
+    }
     addConnectionForces(in, c.bodyA, c.bodyB, in.kinematics.X_WB[c.bodyA] * c.p_AP,
                         in.kinematics.X_WB[c.bodyB] * c.p_BP,
                         Vector3(force[0], force[1], force[2]));
@@ -86,7 +90,8 @@ void GeometricStiffness::findConnectionForces(const Assembly& in) {
     force += 3;
   }
   for (const Tree& tree : model.trees)
-    if (model.floats(model.bodies[tree.rootBody].tree)) addJointForces(in, tree);
+    if (in.takesPart(tree.rootBody) && model.floats(model.bodies[tree.rootBody].tree))
+      addJointForces(in, tree);
 }
 
 void GeometricStiffness::addConnectionForces(const Assembly& in, int bodyA, int bodyB,

@@ -47,6 +47,7 @@ void CouplingRows::assemble(const Assembly& in) {
   clearRows();
   if (model.options.effects.has(Effect::equality)) {
     for (const JointCoupling& c : model.couplings) {
+      if (!in.takesPart(c.follower, c.leader)) continue;
       const Body &follower = model.bodies[c.follower], &leader = model.bodies[c.leader];
       Pair pair{follower.v, follower.v};
       double r = in.state.q[follower.q] - c.polynomial[0];

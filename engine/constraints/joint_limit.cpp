@@ -48,6 +48,7 @@ void JointLimit::assemble(const Assembly& in) {
   clear();
   if (model.options.effects.has(Effect::jointLimit)) {
     for (const JointRange& range : model.ranges) {
+      if (!in.takesPart(range.body)) continue;
       const Body& body = model.bodies[range.body];
       for (const double sign : {1.0, -1.0}) {
         const double bound = sign > 0.0 ? range.lower : range.upper;

@@ -20,7 +20,7 @@ void ServoDrive::assemble(const Assembly& in) {
   for (int i = 0; options.effects.has(Effect::actuation) && i < model.nv; ++i) {
     const Dof& dof = model.dofs[i];
     const Servo& servo = dof.servo;
-    if (!servo.exists() || in.controlled(dof.body)) continue;
+    if (!servo.exists() || in.controlled(dof.body) || !in.takesPart(dof.body)) continue;
     const double u = asked(in.input, &Input::setPoint, i, servo.setPoint);
     const double rate = asked(in.input, &Input::setPointRate, i, servo.setPointRate);
     const Softness soft = springLaw(servo.kp, servo.kd, in.weights.dof[i], options);

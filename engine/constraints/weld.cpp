@@ -40,6 +40,7 @@ void WeldRows::assemble(const Assembly& in) {
   clearBlocks();
   if (model.options.effects.has(Effect::equality)) {
     for (const Weld& weld : model.welds) {
+      if (!in.takesPart(weld.bodyA, weld.bodyB)) continue;
       const Transform X_WA = k.X_WB[weld.bodyA] * weld.X_AF, X_WB = k.X_WB[weld.bodyB] * weld.X_BF;
       const PointOffset point(in, weld.bodyA, weld.X_AF.p, weld.bodyB, weld.X_BF.p);
       const RotationOffset turn(in, weld, X_WA.R, X_WB.R);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "softgauss/engine/core/check.hpp"
 #include "softgauss/engine/core/six_vectors.hpp"
 #include "softgauss/engine/core/vector_clones.hpp"
 #include "softgauss/engine/dynamics/body_motion.hpp"
@@ -209,24 +210,37 @@ ArticulatedFactor::ArticulatedFactor(const Model& model)
       motions_(model.bodies.size()) {
   std::vector<std::pair<int, int>> none;
   order_.find(none);
+  steps_.reserve(model.trees.size() + 1);
   bodies_.reserve(model.trees.size() + 1);
 }
 
 void ArticulatedFactor::begin(const Model& model, const MassMatrix& inertia, double rowScale) {
   rowScale_ = rowScale;
   const Segment all = allBodies(model);
-  begin(model, inertia, {&all, 1}, 0);
+  steps_.assign(1, order_.part(0).steps);
+  beginBodies(model, inertia, {&all, 1});
+  beginBlocks(model, order_.part(0).blocks);
+}
+
+void ArticulatedFactor::begin(const Model& model, const MassMatrix& inertia, Segments bodies) {
+  SOFTGAUSS_ASSERT(order_.blocks() == 0);
+  rowScale_ = 1.0;
+  steps_.clear();
+  for (const Segment s : bodies)  // leaves first, which is the last body first
+    steps_.push_back({model.bodyCount() - s.end, model.bodyCount() - s.begin});
+  beginBodies(model, inertia, bodies);
 }
 
 void ArticulatedFactor::begin(const Model& model, const MassMatrix& inertia,
                               const TreeIslands& islands, int island) {
   rowScale_ = 1.0;
-  begin(model, inertia, islands.bodies(island), island);
+  steps_.assign(1, order_.part(island).steps);
+  beginBodies(model, inertia, islands.bodies(island));
+  beginBlocks(model, order_.part(island).blocks);
 }
 
-void ArticulatedFactor::begin(const Model& model, const MassMatrix& inertia, Segments bodies,
-                              int island) {
-  part_ = order_.part(island);
+void ArticulatedFactor::beginBodies(const Model& model, const MassMatrix& inertia,
+                                    Segments bodies) {
   bodies_.assign(bodies.begin(), bodies.end());
   pairs_.clear();
   const bool armature = model.options.effects.has(Effect::armature);
@@ -241,12 +255,15 @@ void ArticulatedFactor::begin(const Model& model, const MassMatrix& inertia, Seg
       for (int i = body.v; i < body.v + body.dofs; ++i)
         diagonal_[idx(i)] = (armature ? model.dofs[idx(i)].armature : 0.0) + inertia.added[i];
     }
+}
+
+void ArticulatedFactor::beginBlocks(const Model& model, Segment blocks) {
   if (order_.blocks() == 0) return;
   block_.resize(idx(kSixMatrix * order_.blocks()));
-  std::fill(block_.begin() + kSixMatrix * part_.blocks.begin,
-            block_.begin() + kSixMatrix * part_.blocks.end, 0.0);
+  std::fill(block_.begin() + kSixMatrix * blocks.begin, block_.begin() + kSixMatrix * blocks.end,
+            0.0);
   int numbers = 0;
-  for (const EliminationOrder::Step& step : order_.steps(part_)) {
+  for (const EliminationOrder::Step& step : order_.steps(steps_.front())) {
     firstV_[idx(step.body)] = numbers;
     numbers += kSixRow * step.couplings * model.bodies[idx(step.body)].dofs;
   }
@@ -268,12 +285,16 @@ void ArticulatedFactor::addRows(const BodyPair& pair, const double* H) {
 }
 
 bool ArticulatedFactor::factor(const Model& model, const Kinematics& k) {
-  const Arrays arrays{
-      model,           order_,        order_.steps(part_), k.S.data(), diagonal_.data(),
-      inertia_.data(), block_.data(), U_.data(),           V_.data(),  inversePivot_.data(),
-      firstV_.data()};
-  failedJoint_ = eliminateAll(arrays);
-  return failedJoint_ < 0 && (pairs_.empty() || factorPairs(model, k));
+  failedJoint_ = -1;
+  for (const Segment steps : steps_) {
+    const Arrays arrays{
+        model,           order_,        order_.steps(steps), k.S.data(), diagonal_.data(),
+        inertia_.data(), block_.data(), U_.data(),           V_.data(),  inversePivot_.data(),
+        firstV_.data()};
+    failedJoint_ = eliminateAll(arrays);
+    if (failedJoint_ >= 0) return false;
+  }
+  return pairs_.empty() || factorPairs(model, k);
 }
 
 bool ArticulatedFactor::factorPairs(const Model& model, const Kinematics& k) {
@@ -311,11 +332,13 @@ void ArticulatedFactor::solve(const Model& model, const Kinematics& k, VectorX& 
 void ArticulatedFactor::solveTree(const Model& model, const Kinematics& k, VectorX& x,
                                   std::vector<Motion>& A) {
   for (const Segment s : bodies_) std::fill(p_.begin() + s.begin, p_.begin() + s.end, Force{});
-  const Solve arrays{model,     order_,         order_.steps(part_),  k.S.data(), U_.data(),
-                     V_.data(), firstV_.data(), inversePivot_.data(), u_.data(),  p_.data(),
-                     x.data(),  A.data()};
-  sweepIn(arrays);
-  sweepOut(arrays);
+  for (const Segment steps : steps_) {
+    const Solve arrays{model,     order_,         order_.steps(steps),  k.S.data(), U_.data(),
+                       V_.data(), firstV_.data(), inversePivot_.data(), u_.data(),  p_.data(),
+                       x.data(),  A.data()};
+    sweepIn(arrays);
+    sweepOut(arrays);
+  }
 }
 
 }  // namespace softgauss

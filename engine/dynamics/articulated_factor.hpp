@@ -58,7 +58,10 @@ class ArticulatedFactor {
   /// Begins anew with the inertias of the bodies, and the armature and MassMatrix::added of the
   /// joints. What is added then counts `rowScale` times.
   void begin(const Model& model, const MassMatrix& inertia, double rowScale = 1.0);
-  /// The same of one island, to which all that follows is confined.
+  /// The same of these bodies, of whole trees, where no rows are of two bodies: to them all that
+  /// follows is confined.
+  void begin(const Model& model, const MassMatrix& inertia, Segments bodies);
+  /// The same of one island.
   void begin(const Model& model, const MassMatrix& inertia, const TreeIslands& islands, int island);
   /// Adds h to the diagonal of joint i.
   void addJoint(int i, double h) { diagonal_[idx(i)] += rowScale_ * h; }
@@ -82,13 +85,14 @@ class ArticulatedFactor {
     double inverseCurvature = 0.0;
     double of(const VectorX& x) const { return x[first] - slope * x[second]; }
   };
-  void begin(const Model& model, const MassMatrix& inertia, Segments bodies, int island);
+  void beginBodies(const Model& model, const MassMatrix& inertia, Segments bodies);
+  void beginBlocks(const Model& model, Segment blocks);
   bool factorPairs(const Model& model, const Kinematics& k);
   void solveTree(const Model& model, const Kinematics& k, VectorX& x, std::vector<Motion>& A);
 
   EliminationOrder order_;
-  EliminationOrder::Part part_;  ///< of the island
-  std::vector<Segment> bodies_;  ///< of the island
+  std::vector<Segment> steps_;   ///< of the order, that are taken
+  std::vector<Segment> bodies_;  ///< theirs
   double rowScale_ = 1.0;
   int failedJoint_ = -1;
   std::vector<double> diagonal_;      ///< (nv) d

@@ -27,9 +27,6 @@ struct BodyForce {
   std::vector<Force>& body;  ///< (bodies)
 };
 
-/// All bodies but the world.
-inline Segment allBodies(const Model& model) { return {1, model.bodyCount()}; }
-
 /// A_b of these bodies, of whole trees, for the joint acceleration a, without Ṡ v.
 void moveBodies(const Model& model, const Kinematics& k, Segments bodies, const VectorX& a,
                 std::vector<Motion>& A);

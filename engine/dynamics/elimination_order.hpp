@@ -56,8 +56,8 @@ class EliminationOrder {
     Segment steps, blocks;
   };
   const Part& part(int island) const { return parts_[idx(island)]; }
-  std::span<const Step> steps(const Part& part) const {
-    return std::span(steps_).subspan(idx(part.steps.begin), idx(part.steps.end - part.steps.begin));
+  std::span<const Step> steps(Segment of) const {
+    return std::span(steps_).subspan(idx(of.begin), idx(of.end - of.begin));
   }
   const Coupling* couplings(const Step& s) const { return couplings_.data() + s.coupling; }
   /// Blocks of each two couplings of a step, the first with the second, the first with the third, …

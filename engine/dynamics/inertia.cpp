@@ -15,11 +15,11 @@ MassMatrix::MassMatrix(const Model& model)
   forceScale = motionScale = added = VectorX::Zero(model.nv);
 }
 
-void computeMassMatrix(const Model& model, const Kinematics& k, MassMatrix& stage, bool whole) {
-  const int bodies = model.bodyCount();
+namespace {
 
-  // Inertia of each body in the coordinates of its tree.
-  for (int b = 1; b < bodies; ++b) {
+/// Inertias of these bodies in the coordinates of their trees, and of their subtrees.
+void findInertias(const Model& model, const Kinematics& k, Segment bodies, MassMatrix& stage) {
+  for (int b = bodies.begin; b < bodies.end; ++b) {
     const Body& body = model.bodies[b];
     if (!body.massless) {
       const Transform& X = k.X_WB[b];
@@ -28,21 +28,35 @@ void computeMassMatrix(const Model& model, const Kinematics& k, MassMatrix& stag
     }
     stage.composite[b] = stage.body[b];
   }
-  for (int b = bodies - 1; b > 0; --b)
+  for (int b = bodies.end - 1; b >= bodies.begin; --b)
     if (model.bodies[b].parent != 0) stage.composite[model.bodies[b].parent] += stage.composite[b];
+}
 
-  const bool armature = model.options.effects.has(Effect::armature);
-  for (int i = model.nv - 1; i >= 0; --i) {
-    const Dof& dof = model.dofs[i];
-    const Force F = stage.composite[dof.body] * k.S[i];
-    double* row = stage.M.row(i);
-    for (const Segment* s = stage.sparsity.begin(i);
-         (whole || kChecked) && s != stage.sparsity.end(i); ++s)
-      for (int j = s->begin; j < s->end; ++j) row[j] = whole ? dot(k.S[j], F) : kNaN;
-    row[i] = dot(k.S[i], F);
-    if (armature) row[i] += dof.armature;
-    stage.motionScale[i] = 1.0 / std::sqrt(row[i]);
-  }
+/// Row i of M.
+void findRow(const Model& model, const Kinematics& k, int i, bool whole, MassMatrix& stage) {
+  const Dof& dof = model.dofs[i];
+  const Force F = stage.composite[dof.body] * k.S[i];
+  double* row = stage.M.row(i);
+  for (const Segment* s = stage.sparsity.begin(i);
+       (whole || kChecked) && s != stage.sparsity.end(i); ++s)
+    for (int j = s->begin; j < s->end; ++j) row[j] = whole ? dot(k.S[j], F) : kNaN;
+  row[i] = dot(k.S[i], F);
+  if (model.options.effects.has(Effect::armature)) row[i] += dof.armature;
+  stage.motionScale[i] = 1.0 / std::sqrt(row[i]);
+}
+
+}  // namespace
+
+void computeMassMatrix(const Model& model, const Kinematics& k, MassMatrix& stage, bool whole) {
+  const Segment bodies = allBodies(model), dofs{0, model.nv};
+  computeMassMatrix(model, k, {&bodies, 1}, {&dofs, 1}, stage, whole);
+}
+
+void computeMassMatrix(const Model& model, const Kinematics& k, Segments bodies, Segments dofs,
+                       MassMatrix& stage, bool whole) {
+  for (const Segment s : bodies) findInertias(model, k, s, stage);
+  for (const Segment s : dofs)
+    for (int i = s.begin; i < s.end; ++i) findRow(model, k, i, whole, stage);
   stage.forceScale = stage.motionScale;
   stage.whole = whole;
   stage.added.setZero();

@@ -40,5 +40,8 @@ struct MassMatrix {
 /// `whole`: else the diagonal of M alone, in O(n), which is all that a solve on bodies needs.
 void computeMassMatrix(const Model& model, const Kinematics& kinematics, MassMatrix& stage,
                        bool whole = true);
+/// The same of these bodies and their dofs, of whole trees.
+void computeMassMatrix(const Model& model, const Kinematics& kinematics, Segments bodies,
+                       Segments dofs, MassMatrix& stage, bool whole);
 
 }  // namespace softgauss

@@ -30,69 +30,73 @@ void floatingJoint(const Body& body, const VectorX& q, int b, Kinematics& k) {
   }
 }
 
-}  // namespace
+/// Pose and axes of one body.
+void pose(const Model& model, const VectorX& q, int b, Kinematics& k) {
+  const Body& body = model.bodies[b];
+  if (body.joint == JointKind::floating) {
+    floatingJoint(body, q, b, k);
+    return;
+  }
+  // Pose: the joint moves the body by q along or about its axis.
+  const Transform& X_WP = k.X_WB[body.parent];
+  Transform& X = k.X_WB[b];
+  const double displacement = q[body.q];
+  X.p.noalias() = X_WP.R * body.X_PB.p;
+  X.p += X_WP.p;
+  Matrix3 R_WJ;
+  R_WJ.noalias() = X_WP.R * body.X_PB.R;
+  Vector3 axis_W;
+  axis_W.noalias() = R_WJ * body.axis;
+  if (body.parent == 0) k.p_WO[body.tree] = X.p;
+  const Vector3 r = X.p - k.p_WO[body.tree];
 
-void computePoses(const Model& model, const VectorX& q, Kinematics& k) {
-  const int bodies = model.bodyCount();
-  for (int b = 1; b < bodies; ++b) {
-    const Body& body = model.bodies[b];
-    if (body.joint == JointKind::floating) {
-      floatingJoint(body, q, b, k);
-      continue;
-    }
-    // Pose: the joint moves the body by q along or about its axis.
-    const Transform& X_WP = k.X_WB[body.parent];
-    Transform& X = k.X_WB[b];
-    const double displacement = q[body.q];
-    X.p.noalias() = X_WP.R * body.X_PB.p;
-    X.p += X_WP.p;
-    Matrix3 R_WJ;
-    R_WJ.noalias() = X_WP.R * body.X_PB.R;
-    Vector3 axis_W;
-    axis_W.noalias() = R_WJ * body.axis;
-    if (body.parent == 0) k.p_WO[body.tree] = X.p;
-    const Vector3 r = X.p - k.p_WO[body.tree];
-
-    Motion& S = k.S[body.v];
-    if (body.joint == JointKind::revolute) {
-      X.R.noalias() = R_WJ * axisRotation(body.axis, displacement);
-      S = {axis_W, r.cross(axis_W)};
-    } else {
-      X.R = R_WJ;
-      X.p += displacement * axis_W;
-      S = {Vector3::Zero(), axis_W};
-    }
+  Motion& S = k.S[body.v];
+  if (body.joint == JointKind::revolute) {
+    X.R.noalias() = R_WJ * axisRotation(body.axis, displacement);
+    S = {axis_W, r.cross(axis_W)};
+  } else {
+    X.R = R_WJ;
+    X.p += displacement * axis_W;
+    S = {Vector3::Zero(), axis_W};
   }
 }
 
-void computeKinematics(const Model& model, const State& state, Kinematics& k) {
-  computePoses(model, state.q, k);
-  computeVelocities(model, k, state.v, k.V, k.A_bias);
+}  // namespace
+
+void computePoses(const Model& model, const VectorX& q, Segments bodies, Kinematics& k) {
+  for (const Segment s : bodies)
+    for (int b = s.begin; b < s.end; ++b) pose(model, q, b, k);
+}
+
+void computeKinematics(const Model& model, const State& state, Segments bodies, Kinematics& k) {
+  computePoses(model, state.q, bodies, k);
+  computeVelocities(model, k, state.v, bodies, k.V, k.A_bias);
   k.V_midstep.clear();
 }
 
-void setMidstepVelocity(const Model& model, const VectorX& v, Kinematics& k) {
+void setMidstepVelocity(const Model& model, const VectorX& v, Segments bodies, Kinematics& k) {
   k.V_midstep.resize(model.bodies.size());
-  computeVelocities(model, k, v, k.V_midstep, k.A_bias);
+  computeVelocities(model, k, v, bodies, k.V_midstep, k.A_bias);
 }
 
-void computeVelocities(const Model& model, const Kinematics& k, const VectorX& v,
+void computeVelocities(const Model& model, const Kinematics& k, const VectorX& v, Segments bodies,
                        std::vector<Motion>& V, std::vector<Motion>& A_bias) {
-  for (int b = 1; b < model.bodyCount(); ++b) {
-    const Body& body = model.bodies[b];
-    if (body.joint == JointKind::floating) {
-      const Vector3 pdot = v.segment<3>(body.v);
-      const Vector3 omega = k.X_WB[b].R * v.segment<3>(body.v + 3);
-      V[b] = {omega, pdot};
-      // Ṡ v: the rotation axes are carried along with the body's origin.
-      A_bias[b] = {Vector3::Zero(), pdot.cross(omega)};
-      continue;
+  for (const Segment s : bodies)
+    for (int b = s.begin; b < s.end; ++b) {
+      const Body& body = model.bodies[b];
+      if (body.joint == JointKind::floating) {
+        const Vector3 pdot = v.segment<3>(body.v);
+        const Vector3 omega = k.X_WB[b].R * v.segment<3>(body.v + 3);
+        V[b] = {omega, pdot};
+        // Ṡ v: the rotation axes are carried along with the body's origin.
+        A_bias[b] = {Vector3::Zero(), pdot.cross(omega)};
+        continue;
+      }
+      // Ṡ = V_P × S, as S × S = 0.
+      const Motion Sv = k.S[body.v] * v[body.v];
+      V[b] = V[body.parent] + Sv;
+      A_bias[b] = A_bias[body.parent] + cross(V[body.parent], Sv);
     }
-    // Ṡ = V_P × S, as S × S = 0.
-    const Motion Sv = k.S[body.v] * v[body.v];
-    V[b] = V[body.parent] + Sv;
-    A_bias[b] = A_bias[body.parent] + cross(V[body.parent], Sv);
-  }
 }
 
 namespace {

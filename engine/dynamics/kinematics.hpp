@@ -8,6 +8,7 @@
 
 #include <vector>
 
+#include "softgauss/engine/core/segment.hpp"
 #include "softgauss/engine/model/state.hpp"
 
 namespace softgauss {
@@ -29,17 +30,33 @@ struct Kinematics {
   explicit Kinematics(const Model& model);
 };
 
-/// Poses and axes from q.
-void computePoses(const Model& model, const VectorX& q, Kinematics& kinematics);
-/// These, and velocities from v, also those of turning.
-void computeKinematics(const Model& model, const State& state, Kinematics& kinematics);
+/// All bodies but the world.
+inline Segment allBodies(const Model& model) { return {1, model.bodyCount()}; }
 
-/// Velocities and bias accelerations of all bodies for the joint velocity v, at the poses of k.
-void computeVelocities(const Model& model, const Kinematics& k, const VectorX& v,
+/// Poses and axes from q; `bodies`, here and below: of whole trees.
+void computePoses(const Model& model, const VectorX& q, Segments bodies, Kinematics& kinematics);
+inline void computePoses(const Model& model, const VectorX& q, Kinematics& kinematics) {
+  const Segment all = allBodies(model);
+  computePoses(model, q, {&all, 1}, kinematics);
+}
+/// These, and velocities from v, also those of turning.
+void computeKinematics(const Model& model, const State& state, Segments bodies,
+                       Kinematics& kinematics);
+inline void computeKinematics(const Model& model, const State& state, Kinematics& kinematics) {
+  const Segment all = allBodies(model);
+  computeKinematics(model, state, {&all, 1}, kinematics);
+}
+
+/// Velocities and bias accelerations of bodies for the joint velocity v, at the poses of k.
+void computeVelocities(const Model& model, const Kinematics& k, const VectorX& v, Segments bodies,
                        std::vector<Motion>& V, std::vector<Motion>& A_bias);
 
 /// What turns, does so by this velocity (nv): Coriolis forces and J̇ v are of it, V of State::v.
-void setMidstepVelocity(const Model& model, const VectorX& v, Kinematics& k);
+void setMidstepVelocity(const Model& model, const VectorX& v, Segments bodies, Kinematics& k);
+inline void setMidstepVelocity(const Model& model, const VectorX& v, Kinematics& k) {
+  const Segment all = allBodies(model);
+  setMidstepVelocity(model, v, {&all, 1}, k);
+}
 
 /// Pose of a named frame in the world.
 inline Transform framePose(const Model& model, const Kinematics& k, int frame) {

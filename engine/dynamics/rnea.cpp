@@ -13,13 +13,15 @@ Force bodyForce(const Inertia& I, const Motion& V, Motion A, const Vector3& g, b
 }
 
 /// Adds the forces of the subtrees up to the root and projects them on the joints.
-void project(const Model& model, const Kinematics& k, RneaWorkspace& work, VectorX& tau) {
-  for (int b = model.bodyCount() - 1; b > 0; --b) {
-    const Body& body = model.bodies[b];
-    const Force& F = work.F[b];
-    for (int i = body.v; i < body.v + body.dofs; ++i) tau[i] = dot(k.S[i], F);
-    if (body.parent != 0) work.F[body.parent] += F;
-  }
+void project(const Model& model, const Kinematics& k, Segments bodies, RneaWorkspace& work,
+             VectorX& tau) {
+  for (const Segment s : bodies)
+    for (int b = s.end - 1; b >= s.begin; --b) {
+      const Body& body = model.bodies[b];
+      const Force& F = work.F[b];
+      for (int i = body.v; i < body.v + body.dofs; ++i) tau[i] = dot(k.S[i], F);
+      if (body.parent != 0) work.F[body.parent] += F;
+    }
 }
 
 Vector3 gravityOf(const Model& model) {
@@ -27,28 +29,30 @@ Vector3 gravityOf(const Model& model) {
 }
 
 void biasFrom(const Model& model, const Kinematics& k, const std::vector<Motion>& V,
-              const std::vector<Motion>& A_bias, const MassMatrix& inertia, RneaWorkspace& work,
-              VectorX& bias) {
+              const std::vector<Motion>& A_bias, const MassMatrix& inertia, Segments bodies,
+              RneaWorkspace& work, VectorX& bias) {
   const Vector3 g = gravityOf(model);
   const bool coriolis = model.options.effects.has(Effect::coriolis);
-  for (int b = 1; b < model.bodyCount(); ++b)
-    work.F[b] = model.bodies[b].massless ? Force{}
-                                         : bodyForce(inertia.body[b], V[b],
-                                                     coriolis ? A_bias[b] : Motion{}, g, coriolis);
-  project(model, k, work, bias);
+  for (const Segment s : bodies)
+    for (int b = s.begin; b < s.end; ++b)
+      work.F[b] =
+          model.bodies[b].massless
+              ? Force{}
+              : bodyForce(inertia.body[b], V[b], coriolis ? A_bias[b] : Motion{}, g, coriolis);
+  project(model, k, bodies, work, bias);
 }
 
 }  // namespace
 
 void computeBias(const Model& model, const Kinematics& k, const MassMatrix& inertia,
-                 RneaWorkspace& work, VectorX& bias) {
-  biasFrom(model, k, k.midstepVelocities(), k.A_bias, inertia, work, bias);
+                 Segments bodies, RneaWorkspace& work, VectorX& bias) {
+  biasFrom(model, k, k.midstepVelocities(), k.A_bias, inertia, bodies, work, bias);
 }
 
 void computeBiasAt(const Model& model, const Kinematics& k, const MassMatrix& inertia,
-                   const VectorX& v, RneaWorkspace& work, VectorX& bias) {
-  computeVelocities(model, k, v, work.V, work.A);
-  biasFrom(model, k, work.V, work.A, inertia, work, bias);
+                   const VectorX& v, Segments bodies, RneaWorkspace& work, VectorX& bias) {
+  computeVelocities(model, k, v, bodies, work.V, work.A);
+  biasFrom(model, k, work.V, work.A, inertia, bodies, work, bias);
 }
 
 void inverseDynamicsTree(const Model& model, const Kinematics& k, const MassMatrix& inertia,
@@ -66,7 +70,8 @@ void inverseDynamicsTree(const Model& model, const Kinematics& k, const MassMatr
                     ? Force{}
                     : bodyForce(inertia.body[b], V[b], coriolis ? A + k.A_bias[b] : A, g, coriolis);
   }
-  project(model, k, work, tau);
+  const Segment all = allBodies(model);
+  project(model, k, {&all, 1}, work, tau);
   if (model.options.effects.has(Effect::armature))
     for (int i = 0; i < model.nv; ++i) tau[i] += model.dofs[i].armature * vdot[i];
 }

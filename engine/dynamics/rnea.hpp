@@ -25,13 +25,24 @@ struct RneaWorkspace {
 };
 
 /// Bias force b(q, v): gravity, Coriolis and centripetal terms, as options.effects has them.
-/// M v̇ + b = τ.
+/// M v̇ + b = τ. `bodies`: of whole trees.
 void computeBias(const Model& model, const Kinematics& kinematics, const MassMatrix& inertia,
-                 RneaWorkspace& work, VectorX& bias);
+                 Segments bodies, RneaWorkspace& work, VectorX& bias);
+inline void computeBias(const Model& model, const Kinematics& kinematics, const MassMatrix& inertia,
+                        RneaWorkspace& work, VectorX& bias) {
+  const Segment all = allBodies(model);
+  computeBias(model, kinematics, inertia, {&all, 1}, work, bias);
+}
 
 /// The same for another velocity v in the same configuration.
 void computeBiasAt(const Model& model, const Kinematics& kinematics, const MassMatrix& inertia,
-                   const VectorX& v, RneaWorkspace& work, VectorX& bias);
+                   const VectorX& v, Segments bodies, RneaWorkspace& work, VectorX& bias);
+inline void computeBiasAt(const Model& model, const Kinematics& kinematics,
+                          const MassMatrix& inertia, const VectorX& v, RneaWorkspace& work,
+                          VectorX& bias) {
+  const Segment all = allBodies(model);
+  computeBiasAt(model, kinematics, inertia, v, {&all, 1}, work, bias);
+}
 
 /// τ = M v̇ + b by the recursion, never forming M (armature included).
 void inverseDynamicsTree(const Model& model, const Kinematics& kinematics,

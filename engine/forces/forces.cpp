@@ -9,12 +9,12 @@ namespace softgauss {
 
 void computeSmoothForces(const Model& model, const Plan& plan, const State& state,
                          const Input& input, const Kinematics& k, const MassMatrix& inertia,
-                         SmoothForces& stage) {
+                         Segments bodies, SmoothForces& stage) {
   SmoothForces::Calls& calls = stage.calls;
   if (plan.gravity || plan.coriolis) {  // else the bias stays zero
     calls.gravity += plan.gravity;
     calls.coriolis += plan.coriolis;
-    computeBias(model, k, inertia, stage.work, stage.bias);
+    computeBias(model, k, inertia, bodies, stage.work, stage.bias);
   }
   stage.c = stage.bias;
   if (plan.hasDamping()) {

@@ -39,9 +39,10 @@ struct SmoothForces {
         work(model, plan.gravity || plan.coriolis, plan.drifts) {}
 };
 
+/// `bodies`: those of whole trees whose bias is found.
 void computeSmoothForces(const Model& model, const Plan& plan, const State& state,
                          const Input& input, const Kinematics& kinematics,
-                         const MassMatrix& inertia, SmoothForces& stage);
+                         const MassMatrix& inertia, Segments bodies, SmoothForces& stage);
 
 /// Replaces the applied force, e.g. by a control that was found after the other forces.
 void setAppliedForce(const VectorX& tau, SmoothForces& stage);

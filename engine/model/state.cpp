@@ -62,16 +62,24 @@ std::uint64_t hash(const State& state) {
 }
 
 void integratePosition(const Model& model, const VectorX& v, double h, VectorX& q) {
-  for (const Body& body : model.bodies) {
-    if (body.joint == JointKind::floating) {
-      q.segment<3>(body.q) += h * v.segment<3>(body.v);
-      const Quaternion r =
-          readQuaternion(q, body.q + 3) * quaternionExp(h * Vector3(v.segment<3>(body.v + 3)));
-      q.segment<4>(body.q + 3) = Eigen::Vector4d(r.w(), r.x(), r.y(), r.z()) / r.norm();
-    } else if (body.joint != JointKind::world) {
-      q[body.q] += h * v[body.v];
+  const Segment all{1, model.bodyCount()};
+  integratePosition(model, v, h, {&all, 1}, q);
+}
+
+void integratePosition(const Model& model, const VectorX& v, double h, Segments bodies,
+                       VectorX& q) {
+  for (const Segment s : bodies)
+    for (int b = s.begin; b < s.end; ++b) {
+      const Body& body = model.bodies[idx(b)];
+      if (body.joint == JointKind::floating) {
+        q.segment<3>(body.q) += h * v.segment<3>(body.v);
+        const Quaternion r =
+            readQuaternion(q, body.q + 3) * quaternionExp(h * Vector3(v.segment<3>(body.v + 3)));
+        q.segment<4>(body.q + 3) = Eigen::Vector4d(r.w(), r.x(), r.y(), r.z()) / r.norm();
+      } else if (body.joint != JointKind::world) {
+        q[body.q] += h * v[body.v];
+      }
     }
-  }
 }
 
 VectorX positionDifference(const Model& model, const VectorX& q0, const VectorX& q1) {

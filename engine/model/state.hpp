@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "softgauss/engine/core/segment.hpp"
 #include "softgauss/engine/model/model.hpp"
 
 namespace softgauss {
@@ -100,6 +101,8 @@ std::uint64_t hash(const State& state);
 
 /// q ← q ⊕ h v on the configuration manifold; v in the convention of JointKind.
 void integratePosition(const Model& model, const VectorX& v, double h, VectorX& q);
+/// The same of these bodies alone.
+void integratePosition(const Model& model, const VectorX& v, double h, Segments bodies, VectorX& q);
 
 /// The v with q1 = q0 ⊕ v (the inverse of integratePosition with h = 1).
 VectorX positionDifference(const Model& model, const VectorX& q0, const VectorX& q1);

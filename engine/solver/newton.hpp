@@ -90,12 +90,13 @@ concept NewtonObjective = requires(O o, VectorX& g, VectorX& d, double alpha) {
   o.advance(d, alpha);
 };
 
+/// Where rounding ends progress before the tolerance: this much of it is still called converged.
+inline constexpr double kRoundingFloor = 1e3;
+
 /// From a point whose scaled gradient `residual`, and gradient g, are known.
 template <NewtonObjective Objective>
 NewtonReport minimize(Objective& objective, double tolerance, int maxIterations, double residual,
                       VectorX& g, VectorX& d) {
-  /// Where rounding ends progress before the tolerance: this much is still called converged.
-  constexpr double kRoundingFloor = 1e3;
   constexpr int kSlowSteps = 3;
   NewtonReport report;
   double previous = kInfinity;

@@ -8,6 +8,7 @@
 
 #include "softgauss/engine/constraints/contact_set.hpp"
 #include "softgauss/engine/dynamics/kinematics.hpp"
+#include "softgauss/engine/dynamics/tree_selection.hpp"
 #include "softgauss/engine/model/model.hpp"
 
 namespace softgauss {
@@ -24,6 +25,14 @@ class ContactSource {
   /// answered is counted in contacts.pairsSkipped.
   virtual void detect(const Model& model, const Kinematics& kinematics,
                       ContactSet& contacts) noexcept = 0;
+
+  /// Those of these trees, with each other and with the world.
+  virtual void detectAmong(const Model& model, const Kinematics& kinematics,
+                           const TreeSelection& trees, ContactSet& contacts) noexcept {
+    detect(model, kinematics, contacts);
+    std::erase_if(contacts.contacts,
+                  [&](const Contact& c) { return !trees.holds(model, c.bodyA, c.bodyB); });
+  }
 
   /// The contacts of these two geometries alone, A and B as in detect(), after a detect() near
   /// these poses.

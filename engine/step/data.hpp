@@ -101,6 +101,7 @@ struct Data {
   Data& operator=(const Data&) = delete;
 
   const Plan plan;         ///< what runs
+  TreeSelection active;    ///< of which trees the stages are: all, but in island_substeps.hpp
   InverseWeights weights;  ///< constants
   Kinematics kinematics;
   MassMatrix inertia;

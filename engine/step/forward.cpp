@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "softgauss/engine/core/check.hpp"
+#include "softgauss/engine/step/substep_workspace.hpp"
 
 namespace softgauss {
 namespace {
@@ -29,6 +30,18 @@ struct SmoothStart {
   }
 };
 
+/// Whether the solve is repeated, but not for this island: its prediction holds, and the guess is
+/// what it has come to. Goals find another.
+bool isHeld(const Model& model, const Data& data, int island) {
+  if (!data.parts || !data.parts->repeats || data.inertia.whole) return false;
+  const auto missed = [&](const Segment& bodies) {
+    for (int b = bodies.begin; b < bodies.end; ++b)
+      if (data.parts->mispredicted[idx(model.bodies[idx(b)].tree)]) return true;
+    return false;
+  };
+  return std::ranges::none_of(data.bodies.islands.bodies(island), missed);
+}
+
 /// One island: Newton's method from `guess` or, where that is far away, from the unconstrained
 /// acceleration if it costs less.
 NewtonReport solveIsland(const Model& model, const VectorX* guess, int island, SmoothStart& smooth,
@@ -45,6 +58,9 @@ NewtonReport solveIsland(const Model& model, const VectorX* guess, int island, S
     warmCost = objective.moveTo(*guess);
     residual = objective.gradient(s.gradient);
   }
+  // Converged already; found anew, its gradient may have gone up by rounding.
+  if (warm && isHeld(model, data, island) && residual <= kRoundingFloor * model.options.tolerance)
+    return {.residual = residual};
   if (!(residual <= (rows > 0 ? kNear : model.options.tolerance))) {
     if (!smooth.find(model, data)) return {.status = SolveStatus::notFinite};
     const double smoothCost = objective.moveTo(s.start);
@@ -56,13 +72,23 @@ NewtonReport solveIsland(const Model& model, const VectorX* guess, int island, S
                   s.direction);
 }
 
+/// Of this solve, and not left to parts of its own.
+bool isSolved(const Model& model, const Data& data, int island) {
+  const int body = data.bodies.islands.bodies(island).front().begin;
+  return data.active.holds(model, body) && !(data.parts && data.parts->leaves(body));
+}
+
 void solveRows(const Model& model, const VectorX* guess, Data& data) {
   ForwardSolution& s = data.forward;
   data.bodies.divide(model, data.inertia, data.constraints);
   if (guess && !guess->allFinite()) guess = nullptr;
   SmoothStart smooth;
   for (int i = 0; i < data.bodies.islands.size() && !isRefused(s.report.status); ++i)
-    s.report.add(solveIsland(model, guess, i, smooth, data));
+    if (isSolved(model, data, i))
+      s.report.add(solveIsland(model, guess, i, smooth, data));
+    else
+      for (const Segment dofs : data.bodies.islands.dofs(i))
+        s.a.segment(dofs.begin, dofs.end - dofs.begin).setZero();
   data.constraints.selectAll();
   data.stats.roundingLimitedSolves += s.report.roundingLimited;
   if (s.report.status == SolveStatus::notFinite && data.stats.badDof < 0)
@@ -124,19 +150,23 @@ int mostIterations(int option, int rows) {
 bool solveMass(const Model& model, Data& data, const VectorX* diagonal, VectorX& x) {
   const TreeMatrix& M = data.inertia.hat();
   if (data.plan.diagonal) {
-    for (int i = 0; i < M.size(); ++i) {
-      const double pivot = M.row(i)[i] + (diagonal ? (*diagonal)[i] : 0.0);
-      if (!(pivot > 0.0)) {
-        data.stats.badDof = i;
-        return false;
+    for (const Segment s : data.active.dofs())
+      for (int i = s.begin; i < s.end; ++i) {
+        const double pivot = M.row(i)[i] + (diagonal ? (*diagonal)[i] : 0.0);
+        if (!(pivot > 0.0)) {
+          data.stats.badDof = i;
+          return false;
+        }
+        x[i] /= pivot;
       }
-      x[i] /= pivot;
-    }
     return true;
   }
   BodySolution& s = data.bodies;
   if (diagonal || !s.massFactored) {
-    s.massFactor.begin(model, data.inertia);
+    if (data.active.all())
+      s.massFactor.begin(model, data.inertia);
+    else
+      s.massFactor.begin(model, data.inertia, data.active.bodies());
     for (int i = 0; diagonal && i < model.nv; ++i) s.massFactor.addJoint(i, (*diagonal)[i]);
     const bool factored = s.massFactor.factor(model, data.kinematics);
     s.massFactored = factored && !diagonal;

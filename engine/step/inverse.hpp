@@ -10,7 +10,7 @@
 
 namespace softgauss {
 
-/// tau ← g(a) at the state of the stages in `data` (kinematics … constraints). Leaves the rows
+/// tau ← g(a) at the state of the stages in `data`, those of computeBodyStages(). Leaves the rows
 /// evaluated at a. Returns badInput where a has another size than (nv), data.stats.badInput tells
 /// it, and notFinite where a is not finite; tau is then as it was.
 SolveStatus inverseDynamics(const Model& model, const VectorX& a, Data& data, VectorX& tau);

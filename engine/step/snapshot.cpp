@@ -2,6 +2,7 @@
 #include "softgauss/engine/step/snapshot.hpp"
 
 #include "softgauss/engine/dynamics/energy.hpp"
+#include "softgauss/engine/step/substep_workspace.hpp"
 
 namespace softgauss {
 namespace {
@@ -31,6 +32,13 @@ std::optional<Vector3> centerOfPressure(const Model& model,
 
 void contactForces(const Data& data, std::vector<Snapshot::ContactForce>& contacts) {
   contacts.clear();
+  appendContactForces(data, contacts);
+  if (!data.parts || !data.parts->leavesAny()) return;
+  const std::vector<Snapshot::ContactForce>& others = data.parts->islands->contacts();
+  contacts.insert(contacts.end(), others.begin(), others.end());
+}
+
+void appendContactForces(const Data& data, std::vector<Snapshot::ContactForce>& contacts) {
   const PyramidalContact& pyramids = data.constraints.contact;
   const EllipticContact& cones = data.constraints.ellipticContact;
   const int pyramidCount = static_cast<int>(pyramids.contactsWithRows().size());
@@ -43,8 +51,9 @@ void contactForces(const Data& data, std::vector<Snapshot::ContactForce>& contac
     const Contact& c = data.contacts.contacts[pyramid ? pyramids.contactsWithRows()[i].contact
                                                       : cones.contactsWithRows()[k].contact];
     const Vector3 force = pyramid ? pyramids.force(i) : cones.force(k);
-    contacts.push_back({c.geometryA, c.geometryB, c.p_WC, c.n_W, force});
     ++(pyramid ? i : k);
+    if (data.parts && data.parts->leaves(c.bodyA != 0 ? c.bodyA : c.bodyB)) continue;
+    contacts.push_back({c.geometryA, c.geometryB, c.p_WC, c.n_W, force});
   }
 }
 

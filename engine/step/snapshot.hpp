@@ -38,8 +38,11 @@ struct Snapshot {
 std::optional<Vector3> centerOfPressure(const Model& model,
                                         const std::vector<Snapshot::ContactForce>& contacts);
 
-/// The contacts of the last solve, with their forces.
+/// The contacts of the last solve, with their forces; those of islands that took parts of their own
+/// (island_substeps.hpp) after the others.
 void contactForces(const Data& data, std::vector<Snapshot::ContactForce>& contacts);
+/// Appends those of the solve of `data` itself.
+void appendContactForces(const Data& data, std::vector<Snapshot::ContactForce>& contacts);
 
 /// Of the last solve: what acts on each dof from controls, Input::tau and servos (nv) [N m or N].
 void appliedForces(const Data& data, VectorX& tau);

@@ -43,70 +43,6 @@ int worstDof(const Model& model, const Data& data, const State& state) {
   return worst;
 }
 
-}  // namespace
-
-Data::~Data() = default;
-
-Data::Data(const Model& model) : Data(model, Evaluation{}) {
-  if (model.options.isMultiStage()) stages = std::make_unique<IntegratorStages>(model);
-  if (plan.drifts) parts = std::make_unique<SubstepWorkspace>(model);
-}
-
-Data::Data(const Model& model, Evaluation)
-    : plan(model),
-      weights(model),
-      kinematics(model),
-      inertia(model),
-      forces(model, plan),
-      constraints(plan.rows),
-      exactDiagonal(model.options.exactDiagonal ? model.nv : 0),
-      bodies(model),
-      midstepVelocity(VectorX::Zero(plan.drifts ? model.nv : 0)),
-      acceleration(VectorX::Zero(model.nv)),
-      derivative(isImplicit(model.options.integrator) ? std::make_unique<VelocityDerivative>(model)
-                                                      : nullptr) {
-  ForwardSolution& s = forward;
-  for (VectorX* x : {&s.a, &s.gradient, &s.direction, &s.diagonal, &s.scale, &s.start})
-    *x = VectorX::Zero(model.nv);
-  // Rows exist before the first step, so that stages may be read in any state.
-  constraints.assemble({model, State(model), kinematics, contacts, weights, inertia.sparsity});
-}
-
-bool StepStats::refuse(const Model& model, const BadInput& bad) {
-  if (!bad) return false;
-  *this = {};
-  status = SolveStatus::badInput;
-  badInput = bad;
-  if (bad.kind == BadInputKind::quaternion) badDof = model.bodies[bad.index].v;
-  if (bad.kind == BadInputKind::controlLimits) badDof = bad.index;
-  return true;
-}
-
-void StepStats::add(const StepStats& other) {
-  status = std::max(status, other.status);
-  residual = std::max(residual, other.residual);
-  realised = std::max(realised, other.realised);
-  maxPenetration = std::max(maxPenetration, other.maxPenetration);
-  pairsSkipped += other.pairsSkipped;
-  parts = std::max(parts, other.parts);
-  for (int StepStats::*count :
-       {&StepStats::contacts, &StepStats::rows, &StepStats::iterations, &StepStats::factorizations,
-        &StepStats::substeppedTrees, &StepStats::abandonedTrees, &StepStats::stabilisedBodies,
-        &StepStats::substeps, &StepStats::repeats, &StepStats::evaluations, &StepStats::rejections,
-        &StepStats::minimumStepsAccepted, &StepStats::tunnellingSplits,
-        &StepStats::unconvergedSolves, &StepStats::roundingLimitedSolves,
-        &StepStats::invalidWarmStarts, &StepStats::possibleTunnelling})
-    this->*count += other.*count;
-  acted.add(other.acted);
-  badDof = std::max(badDof, other.badDof);
-  if (other.badInput) badInput = other.badInput;
-  for (double StepTimes::*time : {&StepTimes::kinematics, &StepTimes::collision, &StepTimes::rows,
-                                  &StepTimes::solve, &StepTimes::integrate})
-    times.*time += other.times.*time;
-}
-
-namespace {
-
 /// What a step is given besides the state.
 struct Given {
   const Input& input;
@@ -118,14 +54,15 @@ struct Given {
 void computeForces(const Model& model, const Input& input, const State& state, Data& data,
                    Clock::time_point& clock) {
   if (data.plan.drifts) predictMidstepVelocity(model, state, data);
-  computeSmoothForces(model, data.plan, state, input, data.kinematics, data.inertia, data.forces);
+  computeSmoothForces(model, data.plan, state, input, data.kinematics, data.inertia,
+                      data.active.bodies(), data.forces);
   if (data.plan.inSolve) addImplicitForces(model, state, data);
   data.stats.times.kinematics += lap(clock);
 }
 
-/// Whether M and J are matrices: the solve is not on bodies, goals act, or M is differentiated.
-bool needsMatrices(const Model& model, const Data& data, const Given& given) {
-  return given.control || model.options.exactDiagonal || data.derivative;
+/// Whether M and J are matrices without goals: the solve is not on bodies, or M is differentiated.
+bool needsMatrices(const Model& model, const Data& data) {
+  return model.options.exactDiagonal || data.derivative;
 }
 
 void assembleRows(const Model& model, const Input& input, const State& state, Data& data,
@@ -134,6 +71,7 @@ void assembleRows(const Model& model, const Input& input, const State& state, Da
   Assembly assembly{
       model, state, data.kinematics, data.contacts, data.weights, data.inertia.sparsity, &input};
   assembly.columns = matrices;
+  assembly.trees = &data.active;
   if (data.plan.drifts && predictsMidstepVelocity(model, state))
     assembly.midstepVelocity = &data.midstepVelocity;
   data.constraints.assemble(assembly);
@@ -151,21 +89,26 @@ SolveStatus computeStages(const Model& model, const Input& input, const State& s
                           bool matrices = true) noexcept {
   SOFTGAUSS_ASSERT(data.plan.fits(model));
   data.stats = {};
+  if (data.parts) data.parts->begin();
   if (!isFinite(input, state)) {
     data.stats.status = SolveStatus::notFinite;
     data.stats.badDof = firstBadDof(model, input, state);
     return data.stats.status;
   }
   clock = Clock::now();
-  if (!posed) computeKinematics(model, state, data.kinematics);
-  computeMassMatrix(model, data.kinematics, data.inertia, matrices);
+  const TreeSelection& active = data.active;
+  if (!posed) computeKinematics(model, state, active.bodies(), data.kinematics);
+  computeMassMatrix(model, data.kinematics, active.bodies(), active.dofs(), data.inertia, matrices);
   if (data.plan.inSolve) addImplicitInertia(model, data);
   data.bodies.massFactored = false;
   computeForces(model, input, state, data, clock);
 
   if (looksForContacts(data, contacts)) {
     ++data.contacts.detections;
-    contacts->detect(model, data.kinematics, data.contacts);
+    if (active.all())
+      contacts->detect(model, data.kinematics, data.contacts);
+    else
+      contacts->detectAmong(model, data.kinematics, active, data.contacts);
     data.stats.contacts = data.contacts.size();
     data.stats.pairsSkipped = data.contacts.pairsSkipped;
     for (const Contact& c : data.contacts.contacts)
@@ -222,21 +165,24 @@ SolveStatus integrate(const Model& model, const Given& given, const State& start
   return SolveStatus::notFinite;
 }
 
-/// The largest |moved − solved| over max(|solved|∞, 1), of accelerations. Trees that are `followed`
-/// by themselves do not count, but for those that a control acts on.
-double deviation(const Model& model, const SubstepSelection* followed, bool controlled,
+/// The largest |moved − solved| over max(|solved|∞, 1), of accelerations. Trees that take parts of
+/// their own do not count, nor those that are followed by themselves, where `follows`, but for
+/// those that a control acts on.
+double deviation(const Model& model, const Data& data, bool follows, bool controlled,
                  const VectorX& moved, const VectorX& solved) {
-  if (solved.size() == 0) return 0.0;
-  double worst = 0.0;
+  double worst = 0.0, most = 1.0;
   for (std::size_t t = 0; t < model.trees.size(); ++t) {
     const Tree& tree = model.trees[t];
-    const auto actuated = [&](int i) { return model.dofs[i].actuated; };
-    bool counts = !followed || !followed->free[t];
-    for (int i = tree.firstDof; i < tree.dofEnd && !counts; ++i) counts = controlled && actuated(i);
-    for (int i = tree.firstDof; i < tree.dofEnd && counts; ++i)
-      worst = std::max(worst, std::abs(moved[i] - solved[i]));
+    if (!data.active.has(static_cast<int>(t))) continue;
+    if (data.parts && data.parts->leaves(tree.rootBody)) continue;
+    const bool counts =
+        !follows || !data.parts->substepSelection.free[t] || (controlled && tree.actuated);
+    for (int i = tree.firstDof; i < tree.dofEnd; ++i) {
+      most = std::max(most, std::abs(solved[i]));
+      if (counts) worst = std::max(worst, std::abs(moved[i] - solved[i]));
+    }
   }
-  return worst / std::max(solved.cwiseAbs().maxCoeff(), 1.0);
+  return worst / most;
 }
 
 /// How often each mechanism has acted in what is now a step, or a part of one.
@@ -250,6 +196,17 @@ void countMechanisms(const Model& model, const State& start, Data& data) {
 
 enum class Tried : std::uint8_t { taken, refused, unresolved };
 
+/// Whether the islands that need parts are left to them, in a step that is not a part itself.
+bool leavesIslands(const Model& model, const Given& given, const State& state, Data& data) {
+  SubstepWorkspace& p = *data.parts;
+  const bool isPart = model.options.outerTimestep != 0.0;
+  if (isPart || !p.islands || !p.islands->divide(model, given.control != nullptr, data))
+    return false;
+  p.predicted = state.a;
+  p.predictedForces = state.connectionForces;
+  return true;
+}
+
 /// A step, or a part of one, from `start`, which is the state: drift, stages, (8), (13), (23).
 /// Where motion needs more than `most` parts of it (6.3) it ends before the solve.
 Tried tryStep(const Model& model, const Given& given, const State& start, int most, bool posed,
@@ -258,7 +215,7 @@ Tried tryStep(const Model& model, const Given& given, const State& start, int mo
   StepStats& stats = data.stats;
   const bool drifts = data.plan.drifts, resolves = drifts && !model.options.stepDoubling;
   if (drifts) driftBefore(model, data, state);
-  const bool matrices = needsMatrices(model, data, given);
+  const bool matrices = given.control || needsMatrices(model, data);
   if (isRefused(
           computeStages(model, given.input, state, data, given.contacts, clock, posed, matrices)))
     return Tried::refused;
@@ -266,11 +223,13 @@ Tried tryStep(const Model& model, const Given& given, const State& start, int mo
   for (bool again = false;; again = true) {
     if (resolves) {
       data.parts->substepSelection.find(model, state, given.control && given.control->acts(), data);
-      if (data.parts->substepSelection.parts > most) return Tried::unresolved;
+      if (data.parts->substepSelection.parts > most && !leavesIslands(model, given, state, data))
+        return Tried::unresolved;
     }
     if (isRefused(solve(model, given, state, data, aim, clock))) return Tried::refused;
     if (!drifts || again || !predictionFailed(model, data, state)) break;
     ++stats.repeats;
+    data.parts->repeats = true;
     stats.residual = 0.0;  // what was predicted by it does not move
     stats.roundingLimitedSolves = 0;
     state.warmstart.a = data.forward.a;  // nearer than the last step's
@@ -293,8 +252,7 @@ Tried tryStep(const Model& model, const Given& given, const State& start, int mo
   }
   if (drifts) data.parts->moved = (state.v - start.v) / model.options.timestep;
   stats.realised =
-      deviation(model, resolves ? &data.parts->substepSelection : nullptr,
-                given.control && given.control->acts(),
+      deviation(model, data, resolves, given.control && given.control->acts(),
                 drifts ? data.parts->moved : data.acceleration, aim ? *aim : data.forward.a);
   countMechanisms(model, start, data);
   stats.unconvergedSolves += stats.status != SolveStatus::converged;
@@ -338,6 +296,33 @@ Tried stepInParts(const Model& model, const Given& given, int parts, State& stat
   return tried;
 }
 
+/// The step in as few parts as resolve it, at least those that the selection has found.
+Tried stepInParts(const Model& model, const Given& given, State& state, Data& data) noexcept {
+  Tried tried = Tried::unresolved;
+  for (int parts = 1; tried == Tried::unresolved;) {
+    parts = std::min(SubstepSelection::kMaxDivisions, parts * data.parts->substepSelection.parts);
+    tried = stepInParts(model, given, parts, state, data);
+  }
+  return tried;
+}
+
+/// The step of every island that the others have left to its own parts.
+Tried stepIslands(const Model& model, const Given& given, State& state, Data& data) noexcept {
+  SubstepWorkspace& p = *data.parts;
+  IslandSubsteps& islands = *p.islands;
+  const Given alone{given.input, given.contacts, nullptr};
+  for (int island = 0; island < islands.islands(); ++island) {
+    if (islands.parts(island) == 1) continue;
+    islands.begin(model, island, p.before, p.predicted, p.predictedForces);
+    const Tried tried = stepInParts(model, alone, islands.state, islands.data);
+    islands.data.stats.contacts = islands.data.stats.rows = 0;  // the whole step's count
+    data.stats.add(islands.data.stats);
+    if (tried != Tried::taken) return tried;
+    islands.finish(model, island, data, state);
+  }
+  return Tried::taken;
+}
+
 }  // namespace
 
 SolveStatus computeStages(const Model& model, const Input& input, const State& state, Data& data,
@@ -345,6 +330,14 @@ SolveStatus computeStages(const Model& model, const Input& input, const State& s
   if (data.stats.refuse(model, findBadInput(model, input, state))) return data.stats.status;
   Clock::time_point clock;
   return computeStages(model, input, state, data, contacts, clock);
+}
+
+SolveStatus computeBodyStages(const Model& model, const Input& input, const State& state,
+                              Data& data, ContactSource* contacts) noexcept {
+  if (data.stats.refuse(model, findBadInput(model, input, state))) return data.stats.status;
+  Clock::time_point clock;
+  return computeStages(model, input, state, data, contacts, clock, false,
+                       needsMatrices(model, data));
 }
 
 void poseForStep(const Model& model, const State& state, Data& data) {
@@ -368,11 +361,12 @@ SolveStatus step(const Model& model, const Input& input, State& state, Data& dat
   p.before = state;
   const int most = model.options.stepDoubling ? kAny : 1;
   Tried tried = tryStep(model, given, p.before, most, posed, state, data);
-  p.predicted = state.a;
-  p.predictedForces = state.connectionForces;
-  for (int parts = 1; tried == Tried::unresolved;) {
-    parts = std::min(SubstepSelection::kMaxDivisions, parts * p.substepSelection.parts);
-    tried = stepInParts(model, given, parts, state, data);
+  if (tried == Tried::unresolved) {
+    p.predicted = state.a;
+    p.predictedForces = state.connectionForces;
+    tried = stepInParts(model, given, state, data);
+  } else if (tried == Tried::taken && p.leavesAny()) {
+    tried = stepIslands(model, given, state, data);
   }
   if (tried == Tried::refused) state = p.before;
   return data.stats.status;

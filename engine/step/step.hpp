@@ -13,6 +13,9 @@ namespace softgauss {
 /// or the input is not finite, badInput when it does not fit the model.
 SolveStatus computeStages(const Model& model, const Input& input, const State& state, Data& data,
                           ContactSource* contacts) noexcept;
+/// The same without M and J, which forward and inverse dynamics do not need: in O(n + rows).
+SolveStatus computeBodyStages(const Model& model, const Input& input, const State& state,
+                              Data& data, ContactSource* contacts) noexcept;
 
 /// One step: the stages; `control`, where there is one, finds the applied force (8); forward
 /// dynamics the acceleration (13); the integrator moves the state on by options.timestep (23).

@@ -14,14 +14,6 @@ namespace softgauss {
 
 namespace {
 
-double contactRate(const Model& model, const Data& data) {
-  double rate = 0.0;
-  for (const Contact& c : data.contacts.contacts)
-    if (!(model.options.hasRowLaw() && c.distance > 0.0))
-      rate = std::max(rate, contactRotationRate(model, data.kinematics, c));
-  return rate;
-}
-
 /// Of the direction (1, −p′) in which a coupling holds its two joints.
 double couplingRate(const Model& model, const State& state, const JointCoupling& c) {
   if (c.leader == 0) return 0.0;
@@ -30,25 +22,16 @@ double couplingRate(const Model& model, const State& state, const JointCoupling&
   return std::abs(c.curvature(q) * state.v[leader.v]) / (1.0 + slope * slope);
 }
 
-double tieRate(const Model& model, const State& state, const Data& data) {
-  double fastest = 0.0;
-  const auto add = [&](int body) {
-    fastest = std::max(fastest, data.kinematics.midstepVelocities()[body].angular.norm());
-  };
-  for (const Connection& c : model.connections) add(c.bodyA), add(c.bodyB);
-  for (const Weld& w : model.welds) add(w.bodyA), add(w.bodyB);
-  for (const JointCoupling& c : model.couplings)
-    fastest = std::max(fastest, couplingRate(model, state, c));
-  return 4.0 * fastest;
-}
-
 }  // namespace
 
 SubstepSelection::SubstepSelection(const Model& model)
-    : coriolisChange(model.trees.size(), 0.0),
+    : partsOf(model.trees.size(), 1),
+      coriolisChange(model.trees.size(), 0.0),
       free(model.trees.size(), 0),
       hasEquality_(model.trees.size(), 0),
       touched_(model.trees.size(), 0),
+      turns_(model.trees.size(), 0),
+      rate_(model.trees.size(), 0.0),
       change_(VectorX::Zero(model.nv)),
       velocity_(change_),
       bias_(change_),
@@ -62,8 +45,8 @@ SubstepSelection::SubstepSelection(const Model& model)
 }
 
 std::size_t SubstepSelection::bytes() const {
-  return bytesOfAll(coriolisChange, free, hasEquality_, touched_, change_, velocity_, bias_, alone_,
-                    midstep_);
+  return bytesOfAll(partsOf, coriolisChange, free, hasEquality_, touched_, turns_, rate_, change_,
+                    velocity_, bias_, alone_, midstep_);
 }
 
 void SubstepSelection::findTouched(const Model& model, const Data& data) {
@@ -100,20 +83,23 @@ double SubstepSelection::coriolisChangeBy(const Model& model, int t, const State
   return std::max(turned, h * energyRate(square(change_), moving));
 }
 
-/// turn of every tree that is not free, of Δb = b(q, v′) − b(q, v) with v′ the velocity of turning.
+/// turn of every tree that may turn far, of Δb = b(q, v′) − b(q, v) with v′ the velocity of
+/// turning.
 void SubstepSelection::findCoriolisChanges(const Model& model, const State& state, Data& data) {
-  computeBiasAt(model, data.kinematics, data.inertia, state.v, data.forces.work, bias_);
+  computeBiasAt(model, data.kinematics, data.inertia, state.v, data.active.bodies(),
+                data.forces.work, bias_);
   ++data.forces.calls.coriolis;
   change_ = data.forces.bias - bias_;
   if (!solveMass(model, data, nullptr, change_)) return;  // the solve will say so
   for (int t = 0; t < static_cast<int>(model.trees.size()); ++t)
-    if (!free[t]) coriolisChange[t] = coriolisChangeBy(model, t, state, state.a, data);
+    if (turns_[t]) coriolisChange[t] = coriolisChangeBy(model, t, state, state.a, data);
 }
 
 /// change_ ← M⁻¹Δb of v″ = v′ + ½ h alone_, alone_ = −M⁻¹c with the Coriolis forces c(q, v′).
 bool SubstepSelection::findAlone(const Model& model, Data& data) {
   const auto bias = [&](const VectorX& v, VectorX& b) {
-    computeBiasAt(model, data.kinematics, data.inertia, v, data.forces.work, b);
+    computeBiasAt(model, data.kinematics, data.inertia, v, data.active.bodies(), data.forces.work,
+                  b);
     ++data.forces.calls.coriolis;
   };
   alone_.setZero();
@@ -141,23 +127,53 @@ void SubstepSelection::findFree(const Model& model, const Data& data, const Stat
                                 bool controlled) {
   findTouched(model, data);
   for (std::size_t t = 0; t < model.trees.size(); ++t) {
-    free[t] = !touched_[t] && !stopsWithin(model, model.trees[t], data) &&
+    free[t] = data.active.has(static_cast<int>(t)) && !touched_[t] &&
+              !stopsWithin(model, model.trees[t], data) &&
               !movesEvenly(model, model.trees[t], state.v) &&
               !driven(model, data, state, static_cast<int>(t), controlled);
     anyFree = anyFree || free[t];
   }
 }
 
-/// The fastest of (6.3) of all trees that are not free.
-double SubstepSelection::partRate(const Model& model, const State& state, Data& data) {
+/// r of the trees of two bodies ← at least rate(), where one of them may turn far.
+template <class Rate>
+void SubstepSelection::raise(const Model& model, int bodyA, int bodyB, Rate&& rate) {
+  const int trees[] = {model.bodies[bodyA].tree, model.bodies[bodyB].tree};
+  if (std::ranges::none_of(trees, [&](int t) { return t >= 0 && turns_[t]; })) return;
+  const double r = rate();
+  for (const int t : trees)
+    if (t >= 0) rate_[t] = std::max(rate_[t], r);
+}
+
+void SubstepSelection::findContactRates(const Model& model, const Data& data) {
+  for (const Contact& c : data.contacts.contacts)
+    if (!(model.options.hasRowLaw() && c.distance > 0.0))
+      raise(model, c.bodyA, c.bodyB,
+            [&] { return contactRotationRate(model, data.kinematics, c); });
+}
+
+void SubstepSelection::findTieRates(const Model& model, const Data& data, const State& state) {
+  const std::vector<Motion>& V = data.kinematics.midstepVelocities();
+  const auto tie = [&](int a, int b) {
+    raise(model, a, b, [&] { return 4.0 * std::max(V[a].angular.norm(), V[b].angular.norm()); });
+  };
+  for (const Connection& c : model.connections) tie(c.bodyA, c.bodyB);
+  for (const Weld& w : model.welds) tie(w.bodyA, w.bodyB);
+  for (const JointCoupling& c : model.couplings)
+    raise(model, c.leader, c.follower, [&] { return 4.0 * couplingRate(model, state, c); });
+}
+
+/// (6.3) of every tree that is not free.
+void SubstepSelection::findRates(const Model& model, const State& state, Data& data) {
   constexpr double kLeast = 1e-4;  // of turn
   const double h = model.options.timestep, angle = model.options.substepAngle;
   if (state.hasAcceleration) findCoriolisChanges(model, state, data);
-  double rate = std::max(contactRate(model, data), tieRate(model, state, data));
+  findContactRates(model, data);
+  findTieRates(model, data, state);
   const auto rateOf = [&](std::size_t t) { return 4.0 * std::sqrt(2.0 * coriolisChange[t]) / h; };
   bool alone = false;
   for (std::size_t t = 0; t < model.trees.size(); ++t) {
-    if (free[t] || !(coriolisChange[t] > kLeast)) continue;
+    if (!turns_[t] || !(coriolisChange[t] > kLeast)) continue;
     const int tree = static_cast<int>(t);
     const bool tooMany = !(h * rateOf(t) <= kMaxDivisions * angle);
     if (tooMany && model.options.uses(Mechanism::treeSubstepping) && !touched_[t] &&
@@ -171,24 +187,40 @@ double SubstepSelection::partRate(const Model& model, const State& state, Data& 
         coriolisChange[t] =
             std::min(coriolisChange[t], coriolisChangeBy(model, tree, state, state.a, data));
     }
-    rate = std::max(rate, rateOf(t));
+    rate_[t] = std::max(rate_[t], rateOf(t));
   }
-  return rate;
+}
+
+/// turns_; false where no tree does.
+bool SubstepSelection::findTurning(const Model& model, const Data& data, const State& state) {
+  bool any = false;
+  for (std::size_t t = 0; t < model.trees.size(); ++t) {
+    turns_[t] = data.active.has(static_cast<int>(t)) && !free[t] &&
+                mayRotateFar(model, model.trees[t], data, state.v, state.a);
+    any = any || turns_[t];
+  }
+  return any;
 }
 
 void SubstepSelection::find(const Model& model, const State& state, bool controlled, Data& data) {
   parts = 1;
   anyFree = false;
+  std::fill(partsOf.begin(), partsOf.end(), 1);
   std::fill(free.begin(), free.end(), 0);
   std::fill(coriolisChange.begin(), coriolisChange.end(), 0.0);
   if (!data.plan.coriolis || model.options.substepAngle == kInfinity) return;
   if (model.options.uses(Mechanism::treeSubstepping)) findFree(model, data, state, controlled);
-  if (!mayRotateFar(model, data, free, state.v, state.a)) return;
-  const double rate = partRate(model, state, data);
+  if (!findTurning(model, data, state)) return;
+  std::fill(rate_.begin(), rate_.end(), 0.0);
+  findRates(model, state, data);
   if (!model.options.uses(Mechanism::substepping)) return;
-  const double needed =
-      std::ceil(model.options.timestep * rate / model.options.substepAngle - 1e-9);
-  parts = needed < kMaxDivisions ? std::max(1, static_cast<int>(needed)) : kMaxDivisions;
+  for (std::size_t t = 0; t < model.trees.size(); ++t) {
+    if (free[t]) continue;
+    const double needed =
+        std::ceil(model.options.timestep * rate_[t] / model.options.substepAngle - 1e-9);
+    partsOf[t] = needed < kMaxDivisions ? std::max(1, static_cast<int>(needed)) : kMaxDivisions;
+    parts = std::max(parts, partsOf[t]);
+  }
 }
 
 }  // namespace softgauss

@@ -113,7 +113,8 @@ void solveInto(SimulationParts& p, ContactSource& contacts, ControlSolution& ans
   p.held = p.inputOfStep();
   if (controlled) p.controller->markControlled(model, p.held.controlled);
   answer.report = {};
-  answer.status = computeStages(model, p.held, p.state, *p.data, &contacts);
+  const auto compute = controlled ? computeStages : computeBodyStages;
+  answer.status = compute(model, p.held, p.state, *p.data, &contacts);
   if (isRefused(answer.status)) return;
   const VectorX* guess = p.state.warmstart.valid ? &p.state.warmstart.a : nullptr;
   if (controlled) {

@@ -101,5 +101,38 @@ TEST(NearPairs, AreFoundOnceAtRest) {
   EXPECT_EQ(source->sweeps(), 1);
 }
 
+// Of some trees: those of all that none of the others has part in, wherever these are thought to
+// be.
+TEST(NearPairs, AmongSomeTreesAreThoseOfAll) {
+  for (const int broadphasePairs : {0, 100000}) {
+    Scene s(heap(12));
+    const auto source = std::make_shared<SceneContacts>(s.model, broadphasePairs, true);
+    s.contacts = source;
+    TreeSelection some(s.model);
+    ContactSet all, among;
+    int found = 0, left = 0;
+    for (int i = 0; i < 300; ++i) {
+      s.step();
+      source->detect(s.model, s.data->kinematics, all);
+      some.select(s.model, [&](int tree) { return (tree + i / 50) % 3 != 0; });
+      Kinematics moved = s.data->kinematics;
+      for (int b = 1; b < s.model.bodyCount(); ++b)
+        if (!some.holds(s.model, b)) moved.X_WB[b].p.x() += 100.0;
+      source->detectAmong(s.model, moved, some, among);
+      const std::size_t of = all.contacts.size();
+      std::erase_if(all.contacts,
+                    [&](const Contact& c) { return !some.holds(s.model, c.bodyA, c.bodyB); });
+      ASSERT_EQ(among.contacts.size(), all.contacts.size()) << i;
+      for (std::size_t k = 0; k < all.contacts.size(); ++k) {
+        ASSERT_EQ(among.contacts[k].p_WC, all.contacts[k].p_WC) << i;
+        ASSERT_EQ(among.contacts[k].distance, all.contacts[k].distance) << i;
+      }
+      found += all.contacts.size() > 0, left += of > all.contacts.size();
+    }
+    EXPECT_GT(found, 100);
+    EXPECT_GT(left, 100);
+  }
+}
+
 }  // namespace
 }  // namespace softgauss::test

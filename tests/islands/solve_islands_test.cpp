@@ -11,14 +11,9 @@ namespace {
 
 /// A scene that is stepped as one.
 struct Joint {
-  explicit Joint(ModelBuilder builder)
-      : model(wholeSteps(builder).build()), contacts(model), state(model), data(model) {}
+  explicit Joint(const ModelBuilder& builder)
+      : model(builder.build()), contacts(model), state(model), data(model) {}
 
-  /// Whether a step is divided is asked of the scene.
-  static ModelBuilder& wholeSteps(ModelBuilder& builder) {
-    builder.options.substepAngle = kInfinity;
-    return builder;
-  }
   void step() {
     ASSERT_EQ(softgauss::step(model, {}, state, data, &contacts), SolveStatus::converged);
   }
@@ -59,7 +54,7 @@ TEST(SolveIslands, DoNotFeelWhoElseIsThere) {
       ASSERT_EQ(beside.of("crowd4"), together.of("crowd4"));
       const int a = alone.data.stats.iterations, b = beside.data.stats.iterations;
       // A solve that is repeated for one is, for the other, at its end.
-      if (together.data.stats.repeats == 0) {
+      if (together.data.stats.repeats == 0 && together.data.stats.parts == 1) {
         ASSERT_EQ(together.data.stats.iterations, std::max(a, b));
       }
       differ += a != b;

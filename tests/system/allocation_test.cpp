@@ -9,6 +9,7 @@
 #include "apps/control_latency/loops.hpp"
 #include "softgauss/collision/clearance.hpp"
 #include "softgauss/collision/scene_contacts.hpp"
+#include "softgauss/engine/step/substep_workspace.hpp"
 #include "softgauss/io/simulation/simulation.hpp"
 #include "tests/gdd/robot_scene.hpp"
 #include "tests/support/allocation_guard.hpp"
@@ -142,6 +143,26 @@ TEST(Allocation, NoneInTheStepWithEveryEffect) {
     s.state.connectionForces = State(s.model).connectionForces;  // it was made before them
     EXPECT_EQ(allocationsOfSteadySteps(s, 20), 0) << "seed " << seed;
   }
+}
+
+// A box that lies, beside one that spins about its middle.
+TEST(Allocation, NoneInStepsThatIslandsTakeInPartsOfTheirOwn) {
+  SKIP_WITHOUT_HOOK();
+  ModelBuilder builder = boxOnPlane({0.1, 0.1, 0.1}, 1.0, 1.0), other("spinner");
+  other.base = BaseKind::floating;
+  other.X_WRoot.p = Vector3(5.0, 0.0, 2.0);
+  other.link(boxLink("spinning", 1.0, {0.1, 0.2, 0.3}));
+  ConnectSpec corner;
+  corner.linkA = "spinning", corner.linkB = "world";
+  corner.p_LBP = other.X_WRoot.p;
+  other.connect(corner);
+  builder.add(other, "");
+  Scene s(builder.build(), std::make_shared<SampleContacts>());
+  s.state.v.tail<3>() << 20.0, 30.0, 40.0;
+  s.steps(2);
+  EXPECT_GT(s.data->stats.parts, 1);
+  EXPECT_TRUE(s.data->parts->leavesAny());
+  EXPECT_EQ(allocationsOfSteadySteps(s, 100), 0);
 }
 
 /// A chair at rest on hills, a ring through which a ball lies on them, and a box, a capsule, a

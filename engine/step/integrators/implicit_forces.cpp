@@ -41,11 +41,12 @@ void addImplicitInertia(const Model& model, Data& data) {
   inertia.anyAdded = (inertia.added.array() != 0.0).any();
   if (!inertia.anyAdded) return;
   if (inertia.whole) inertia.Mhat.assign(inertia.M);
-  for (int i = 0; i < model.nv; ++i) {
-    double& pivot = inertia.Mhat.row(i)[i];
-    pivot = inertia.M.row(i)[i] + inertia.added[i];
-    inertia.forceScale[i] = 1.0 / std::sqrt(pivot);
-  }
+  for (const Segment s : data.active.dofs())
+    for (int i = s.begin; i < s.end; ++i) {
+      double& pivot = inertia.Mhat.row(i)[i];
+      pivot = inertia.M.row(i)[i] + inertia.added[i];
+      inertia.forceScale[i] = 1.0 / std::sqrt(pivot);
+    }
 }
 
 void setImplicitForces(const Model& model, const State& state, Data& data, VectorX& net) {

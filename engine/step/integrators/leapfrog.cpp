@@ -38,7 +38,7 @@ void driftBefore(const Model& model, Data& data, State& state) {
   VectorX& v = data.forward.direction;
   v = state.v;
   scaleStiff(model, data, 0.0, v);
-  integratePosition(model, v, 0.5 * model.options.timestep, state.q);
+  integratePosition(model, v, 0.5 * model.options.timestep, data.active.bodies(), state.q);
 }
 
 bool predictsMidstepVelocity(const Model& model, const State& state) {
@@ -48,7 +48,7 @@ bool predictsMidstepVelocity(const Model& model, const State& state) {
 void predictMidstepVelocity(const Model& model, const State& state, Data& data) {
   if (!predictsMidstepVelocity(model, state)) return;
   data.midstepVelocity = state.v + 0.5 * model.options.timestep * state.a;
-  setMidstepVelocity(model, data.midstepVelocity, data.kinematics);
+  setMidstepVelocity(model, data.midstepVelocity, data.active.bodies(), data.kinematics);
 }
 
 bool predictionFailed(const Model& model, Data& data, State& state) {
@@ -60,6 +60,7 @@ bool predictionFailed(const Model& model, Data& data, State& state) {
   bool any = false;
   for (std::size_t t = 0; t < model.trees.size(); ++t) {
     const Tree& tree = model.trees[t];
+    if (!data.active.has(static_cast<int>(t)) || data.parts->leaves(tree.rootBody)) continue;
     // A joint alone has nothing to turn against.
     if (data.parts->substepSelection.free[t] || tree.dofEnd - tree.firstDof == 1) continue;
     const double off = 0.5 * h * h * worstTurn(model, tree, a, state.a);
@@ -81,7 +82,7 @@ bool kickAndDrift(const Model& model, Data& data, State& state) {
   if (tooFast(model, v)) return false;
   state.v = v;
   scaleStiff(model, data, 2.0, v);
-  integratePosition(model, v, 0.5 * h, state.q);
+  integratePosition(model, v, 0.5 * h, data.active.bodies(), state.q);
   state.a = data.acceleration;
   state.hasAcceleration = true;
   keepConnectionForces(model, data, state);

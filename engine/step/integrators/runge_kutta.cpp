@@ -30,7 +30,7 @@ void displacementRate(const Tableau& t, const Model& model, const VectorX& phi, 
 bool evaluate(const Tableau& t, const Model& model, ContactSource* contacts, IntegratorStages& s,
               int i, const VectorX& guess, StepStats& stats) {
   Data& data = s.data;
-  if (isRefused(computeStages(model, s.input, s.state, data, contacts))) return false;
+  if (isRefused(computeBodyStages(model, s.input, s.state, data, contacts))) return false;
   forwardDynamics(model, &guess, data);
   if (!countEvaluation(data, stats)) return false;
   s.acceleration[i] = data.forward.a;

@@ -18,7 +18,7 @@ bool take(double h, ContactSource* contacts, IntegratorStages& s, State& state, 
   Model& model = *s.part;
   model.options.timestep = h;
   if (s.data.plan.drifts) driftBefore(model, s.data, state);
-  if (isRefused(computeStages(model, s.input, state, s.data, contacts))) return false;
+  if (isRefused(computeBodyStages(model, s.input, state, s.data, contacts))) return false;
   forwardDynamics(model, state, s.data);
   if (!countEvaluation(s.data, stats)) return false;
   if (!moveOnce(model, s.data, state)) return false;

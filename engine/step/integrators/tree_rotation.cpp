@@ -85,31 +85,26 @@ double treeSpeed(const Tree& tree, const Data& data, const VectorX& v, const Vec
   return speed;
 }
 
-bool mayRotateFar(const Model& model, const Data& data, const std::vector<std::uint8_t>& free,
-                  const VectorX& v, const VectorX& a) {
+bool mayRotateFar(const Model& model, const Tree& tree, const Data& data, const VectorX& v,
+                  const VectorX& a) {
   const double h = model.options.timestep, fast = 0.003 / h;
-  for (std::size_t t = 0; t < model.trees.size(); ++t) {
-    if (free[t]) continue;
-    const Tree& tree = model.trees[t];
-    double slides = 0.0, lightest = kInfinity;
-    for (int b = tree.rootBody; b < tree.bodyEnd; ++b) {
-      if (data.kinematics.V[idx(b)].angular.squaredNorm() > fast * fast) return true;
-      const Body& body = model.bodies[idx(b)];
-      const bool floats = body.joint == JointKind::floating;
-      for (int i = body.v + (floats ? 3 : 0); i < body.v + (floats ? 6 : 1); ++i) {
-        const double ends = std::abs(v[i] + h * a[i]);
-        const double root = 1.0 / data.inertia.motionScale[i];  // √M_ii
-        if (body.joint == JointKind::prismatic) {
-          slides = std::max(slides, ends * root);
-          continue;
-        }
-        if (ends > fast) return true;
-        lightest = std::min(lightest, root);
+  double slides = 0.0, lightest = kInfinity;
+  for (int b = tree.rootBody; b < tree.bodyEnd; ++b) {
+    if (data.kinematics.V[idx(b)].angular.squaredNorm() > fast * fast) return true;
+    const Body& body = model.bodies[idx(b)];
+    const bool floats = body.joint == JointKind::floating;
+    for (int i = body.v + (floats ? 3 : 0); i < body.v + (floats ? 6 : 1); ++i) {
+      const double ends = std::abs(v[i] + h * a[i]);
+      const double root = 1.0 / data.inertia.motionScale[i];  // √M_ii
+      if (body.joint == JointKind::prismatic) {
+        slides = std::max(slides, ends * root);
+        continue;
       }
+      if (ends > fast) return true;
+      lightest = std::min(lightest, root);
     }
-    if (slides > fast * lightest) return true;
   }
-  return false;
+  return slides > fast * lightest;
 }
 
 }  // namespace softgauss

@@ -32,10 +32,10 @@ double treeSpeed(const Tree& tree, const Data& data, const VectorX& v, const Vec
 /// Applied forces, wrenches included, change the tree's motion by more than a thousandth in the
 /// step.
 bool drives(const Tree& tree, const Data& data, const VectorX& v, const VectorX& a, double h);
-/// Of the trees that are not `free`: a body turns by more than 0.003 rad in the step, or a joint
-/// does by the velocity v + h a that it ends with, or slides with as much energy, v_i √M_ii, as the
-/// joint of its tree that turns most easily would have so. Below that (6.4) need not be worked out.
-bool mayRotateFar(const Model& model, const Data& data, const std::vector<std::uint8_t>& free,
-                  const VectorX& v, const VectorX& a);
+/// A body of the tree turns by more than 0.003 rad in the step, or a joint does by the velocity
+/// v + h a that it ends with, or slides with as much energy, v_i √M_ii, as the joint of the tree
+/// that turns most easily would have so. Below that (6.3) need not be worked out.
+bool mayRotateFar(const Model& model, const Tree& tree, const Data& data, const VectorX& v,
+                  const VectorX& a);
 
 }  // namespace softgauss

@@ -212,7 +212,7 @@ TEST(EliminationOrder, PutsBodiesAfterTheirChildren) {
       if (a != b) pairs.emplace_back(a, b);
     }
     order.find(pairs);
-    ASSERT_EQ(order.steps(order.part(0)).size(), model.bodies.size() - 1);
+    ASSERT_EQ(order.steps(order.part(0).steps).size(), model.bodies.size() - 1);
     for (int b = 1; b < model.bodyCount(); ++b) {
       if (model.bodies[b].parent == 0) continue;
       EXPECT_TRUE(order.isBefore(b, model.bodies[b].parent));

@@ -3,6 +3,7 @@
 
 #include "softgauss/engine/step/forward.hpp"
 #include "softgauss/engine/step/inverse.hpp"
+#include "softgauss/engine/step/step.hpp"
 #include "tests/support/gauss_objective.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/scene.hpp"
@@ -82,6 +83,28 @@ TEST(BodyObjective, HasTheGradientOfMatrices) {
     VectorX tau;
     inverseDynamics(s.model, a, *s.data, tau);
     EXPECT_APPROX(tau, g + s.data->forces.net + s.data->forces.c, 1e-12) << "seed " << seed;
+  }
+}
+
+// Forward and inverse dynamics need neither M nor J.
+TEST(BodyStages, HaveWhatForwardAndInverseDynamicsNeed) {
+  for (std::uint64_t seed = 0; seed < 100; ++seed) {
+    Scene s = bodyScene(seed, seed % 2 == 0 ? Cone::pyramidal : Cone::elliptic);
+    ASSERT_EQ(forwardDynamics(s.model, nullptr, *s.data), SolveStatus::converged);
+    const VectorX a = s.data->forward.a;
+    Random random(seed);
+    const VectorX wished = a + random.vector(s.model.nv, 10.0);
+    VectorX tau, onBodies;
+    inverseDynamics(s.model, wished, *s.data, tau);
+    TreeMatrix P;
+    EXPECT_TRUE(inverseDynamicsJacobian(*s.data, P));
+    ASSERT_EQ(computeBodyStages(s.model, s.input, s.state, *s.data, s.contacts.get()),
+              SolveStatus::converged);
+    inverseDynamics(s.model, wished, *s.data, onBodies);
+    EXPECT_APPROX(onBodies, tau, 1e-12) << "seed " << seed;
+    EXPECT_FALSE(inverseDynamicsJacobian(*s.data, P));
+    ASSERT_EQ(forwardDynamics(s.model, nullptr, *s.data), SolveStatus::converged);
+    EXPECT_APPROX(s.data->forward.a, a, 1e-12) << "seed " << seed;
   }
 }
 
