@@ -62,12 +62,12 @@ double residualUnder(double acceleration, const Options& options, const Touch& t
 
 /// Speed at which it creeps under its weight [m/s].
 double creepUnderWeight(const Options& options, const Touch& touch) {
-  return residualUnder(options.gravity.norm(), options, touch) / touch.softness.damping;
+  return residualUnder(touch.gravity, options, touch) / touch.softness.damping;
 }
 
 /// What presses by the weight and by J̇ v [m/s²].
-double presses(const Options& options, const Vector3& n_W, const ContactBias& bias) {
-  return options.gravity.norm() + std::max(0.0, -n_W.dot(bias.rate.linear));
+double presses(const Touch& touch, const Vector3& n_W, const ContactBias& bias) {
+  return touch.gravity + std::max(0.0, -n_W.dot(bias.rate.linear));
 }
 
 /// Whether J̇ v counts as deep as the contact lies: as deep as that says, and deeper where it lies
@@ -156,14 +156,21 @@ bool beginsNow(const Assembly& in, const Contact& c, double distance) {
 }
 
 /// pair ← that of the contact, where it is not so already.
-void findPair(const Model& model, const Contact& c, PairSurface& pair) {
+void findPair(const Assembly& in, const Contact& c, PairSurface& pair) {
   if (pair.geometryA == c.geometryA && pair.geometryB == c.geometryB) return;
+  const Model& model = in.model;
   const Material surface = pairMaterial(model, c.geometryA, c.geometryB);
   pair.geometryA = c.geometryA, pair.geometryB = c.geometryB;
   pair.material = effectiveMaterial(surface, reducedMass(model, c.bodyA, c.bodyB), model.options);
   pair.nearRigid =
       model.options.hasRowLaw() && !pair.material.spring && pair.material.impedance == Impedance{};
   pair.frictionDim = frictionDim(pair.material, model.options.effects);
+  pair.comA = in.kinematics.X_WB[c.bodyA] * model.bodies[c.bodyA].com;
+  pair.comB = in.kinematics.X_WB[c.bodyB] * model.bodies[c.bodyB].com;
+  pair.poses = posesOf(model, in.kinematics, c);
+  pair.load = in.load ? in.load->mass(model, c.bodyA, c.bodyB) : 0.0;
+  pair.leastLoad = in.load ? in.load->contactShare(model, c.bodyA, c.bodyB) : 0.0;
+  pair.gravity = model.options.gravity.norm();
 }
 
 }  // namespace
@@ -173,7 +180,7 @@ std::optional<Touch> touchAt(const Assembly& in, int i, PairSurface& pair) {
   const Contact& c = in.contacts.contacts[i];
   if (model.bodies[c.bodyA].dofs == 0 && model.bodies[c.bodyB].dofs == 0) return std::nullopt;
   if (!in.takesPart(c.bodyA, c.bodyB)) return std::nullopt;
-  findPair(model, c, pair);
+  findPair(in, c, pair);
   const Material& material = pair.material;
   Touch touch;
   touch.distance = c.distance - material.margin;
@@ -181,15 +188,16 @@ std::optional<Touch> touchAt(const Assembly& in, int i, PairSurface& pair) {
   const bool apart = touch.distance >= touchingWithin(model.options, c.p_WC);
   if (apart && (material.spring || !beginsNow(in, c, touch.distance))) return std::nullopt;
   touch.frictionDim = pair.frictionDim;
-  const double turnedA = turnedWeight(in, c.bodyA, c.p_WC);
-  const double turnedB = turnedWeight(in, c.bodyB, c.p_WC);
+  const double turnedA = in.weights.rotation[c.bodyA] * (c.p_WC - pair.comA).squaredNorm();
+  const double turnedB = in.weights.rotation[c.bodyB] * (c.p_WC - pair.comB).squaredNorm();
   touch.turnedWeight = turnedA + turnedB;
   double weight = weightAt(in, c.bodyA, turnedA) + weightAt(in, c.bodyB, turnedB);
-  double load = in.load ? in.load->mass(model, c.bodyA, c.bodyB) : 0.0;
+  double load = pair.load;
+  touch.gravity = pair.gravity;
   touch.nearRigid = pair.nearRigid;
   touch.supportsOthers =
       load > 0.0 && !material.spring;  // springs keep their penetration at rest and bounce
-  if (in.load) load = std::max(load, in.load->contactShare(model, c.bodyA, c.bodyB));
+  load = std::max(load, pair.leastLoad);
   if (!material.spring) touch.loadStiffening = std::max(1.0, load * weight);
   in.count(Mechanism::supportedMass, load * weight > 1.0);
   weight = cappedInverseMass(weight, load);
@@ -203,11 +211,13 @@ std::optional<Touch> touchAt(const Assembly& in, int i, PairSurface& pair) {
     const double spin = std::max(material.torsionalFriction, kSmallestFriction);
     const double roll = std::max(material.rollingFriction, kSmallestFriction);
     touch.friction = {mu, mu, spin, roll, roll};
+    touch.holdsWeight = holdsWeight(in, c, touch);
   }
   return touch;
 }
 
-ContactBlocks::BlockMotion ContactBlocks::addBlock(const Assembly& in, int i, const Touch& touch,
+ContactBlocks::BlockMotion ContactBlocks::addBlock(const Assembly& in, int i,
+                                                   const PairSurface& pair, const Touch& touch,
                                                    int row) {
   const Model& model = in.model;
   const Contact& c = in.contacts.contacts[i];
@@ -239,9 +249,9 @@ ContactBlocks::BlockMotion ContactBlocks::addBlock(const Assembly& in, int i, co
   BlockMotion moves;
   moves.velocity = inFrame(R_WC, touch.frictionDim, slips);
   if (!model.options.uses(Mechanism::contactBiasAcceleration)) return moves;
-  if (const std::optional<ContactBias> bias = contactBias(model, k, c)) {
+  if (const std::optional<ContactBias> bias = contactBias(model, k, pair.poses, c)) {
     const Vector3 tangents = bias->rate.linear - c.n_W * c.n_W.dot(bias->rate.linear);
-    const double load = presses(model.options, c.n_W, *bias);
+    const double load = presses(touch, c.n_W, *bias);
     if (isWithinBiasDepth(model.options, touch, load, *bias)) {
       contactsWithRows_.back().share =
           stickingShare(model.options, touch, load, moves.velocity, tangents);
@@ -278,7 +288,7 @@ Softness ContactBlocks::soften(const Assembly& in, const Touch& touch,
   // Of free bodies that rest on one another friction stays softer: with a, heaps would take a third
   // more time.
   const bool maySqueeze = !touch.supportsOthers || jointsPress(in.model, contact);
-  if (maySqueeze && holdsWeight(in, contact, touch)) {
+  if (maySqueeze && touch.holdsWeight) {
     speeds.sticks = std::max(0.0, 1.0 - slipNumber(in, contact, touch, velocity));
     if (in.model.options.cone == Cone::elliptic)
       speeds.slidesFrom = coneCreep(touch.mu() / std::sqrt(in.model.options.impedanceRatio));

@@ -17,6 +17,7 @@
 
 #include "softgauss/engine/constraints/assembly.hpp"
 #include "softgauss/engine/constraints/block_jacobian.hpp"
+#include "softgauss/engine/constraints/contact_motion.hpp"
 #include "softgauss/engine/constraints/impedance.hpp"
 #include "softgauss/engine/constraints/law/slip.hpp"
 #include "softgauss/engine/constraints/rows.hpp"
@@ -53,6 +54,8 @@ struct Touch {
   double turnedWeight = 0.0;         ///< what turns both bodies by a push here [1/kg]
   bool nearRigid = false;            ///< nobody gave its softness (3.15)
   bool supportsOthers = false;       ///< L > 0: other trees stand on each other here
+  double gravity = 0.0;              ///< g [m/s²]
+  bool holdsWeight = false;          ///< friction does, holdsWeight()
   std::array<double, 5> friction{};  ///< μ_k of frictionDim directions
 
   double mu() const { return friction[0]; }  ///< of sliding; 0 when frictionless
@@ -64,6 +67,11 @@ struct PairSurface {
   Material material;       ///< as it acts on their masses
   bool nearRigid = false;  ///< nobody gave it a softness
   int frictionDim = 0;
+  Vector3 comA, comB;      ///< centres of mass of their bodies, world [m]
+  GeometryPoses poses;     ///< theirs
+  double load = 0.0;       ///< L of SupportedMass::mass() [kg]
+  double leastLoad = 0.0;  ///< what they bear at least [kg]
+  double gravity = 0.0;    ///< g [m/s²]
 };
 
 /// Contact i of the scene; nothing where it makes no rows: its bodies cannot move, or are apart.
@@ -131,8 +139,9 @@ class ContactBlocks {
     jacobian_.clear();
     contactsWithRows_.clear();
   }
-  /// The block of contact i, whose rows begin at `row`.
-  BlockMotion addBlock(const Assembly& in, int i, const Touch& touch, int row);
+  /// The block of contact i, of the pair, whose rows begin at `row`.
+  BlockMotion addBlock(const Assembly& in, int i, const PairSurface& pair, const Touch& touch,
+                       int row);
   /// |(μ_k ẏ_k)|, of all directions of friction in the units of the normal [m/s].
   static double slipSpeed(const Touch& touch, const FrameVector& velocity);
   /// How soft the last block is: as it is, or harder where it sticks (5.7).

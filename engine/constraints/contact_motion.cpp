@@ -66,23 +66,30 @@ std::optional<ContactPointVelocity> alongSurface(const Shape& shape, const Trans
 
 }  // namespace
 
-std::optional<bool> flatIsA(const Model& model, const Kinematics& k, const Contact& c) {
+GeometryPoses posesOf(const Model& model, const Kinematics& k, const Contact& c) {
+  return {k.X_WB[c.bodyA] * model.geometries[c.geometryA].X_BG,
+          k.X_WB[c.bodyB] * model.geometries[c.geometryB].X_BG};
+}
+
+std::optional<bool> flatIsA(const Model& model, const GeometryPoses& at, const Contact& c) {
   const Geometry &A = model.geometries[c.geometryA], &B = model.geometries[c.geometryB];
-  const Transform X_WA = k.X_WB[c.bodyA] * A.X_BG, X_WB = k.X_WB[c.bodyB] * B.X_BG;
+  const Transform &X_WA = at.X_WA, &X_WB = at.X_WB;
   const bool flatA = isFlat(A.shape, X_WA, c.n_W), flatB = isFlat(B.shape, X_WB, c.n_W);
   if (!flatA && !flatB) return std::nullopt;
   if (flatA != flatB) return flatA;
+  if (A.shape.kind == ShapeKind::plane) return true;
   // Of two faces the one that has its corner or edge here is carried along with it.
   return insetOf(A.shape, X_WA, c.n_W, c.p_WC) >= insetOf(B.shape, X_WB, c.n_W, c.p_WC);
 }
 
-std::optional<ContactBias> contactBias(const Model& model, const Kinematics& k, const Contact& c) {
+std::optional<ContactBias> contactBias(const Model& model, const Kinematics& k,
+                                       const GeometryPoses& at, const Contact& c) {
   // What looks within the step asks for the rate at each of its places.
   const double h = model.options.isMultiStage() ? 0.0 : model.options.timestep;
   const Motion &V_A = k.midstepVelocities()[c.bodyA], &V_B = k.midstepVelocities()[c.bodyB];
   if (!(h * std::max(c.n_W.cross(V_A.angular).norm(), c.n_W.cross(V_B.angular).norm()) <= kMaxTilt))
     return std::nullopt;
-  const std::optional<bool> flat = flatIsA(model, k, c);
+  const std::optional<bool> flat = flatIsA(model, at, c);
   if (!flat) return std::nullopt;
   const bool flatA = *flat;
   const Geometry& other = model.geometries[flatA ? c.geometryB : c.geometryA];
@@ -90,11 +97,12 @@ std::optional<ContactBias> contactBias(const Model& model, const Kinematics& k, 
   const Motion &V_flat = flatA ? V_A : V_B, &V_other = flatA ? V_B : V_A;
   const Vector3 n = flatA ? c.n_W : -c.n_W, turns = V_other.angular - V_flat.angular;
   const std::optional<ContactPointVelocity> moves =
-      alongSurface(other.shape, k.X_WB[other.body] * other.X_BG, n, turns, c, h);
+      alongSurface(other.shape, flatA ? at.X_WB : at.X_WA, n, turns, c, h);
   if (!moves) return std::nullopt;
 
-  const Vector3 v_A = pointMidstepVelocity(model, k, c.bodyA, c.p_WC),
-                v_B = pointMidstepVelocity(model, k, c.bodyB, c.p_WC);
+  const MidstepPoint A = midstepPoint(model, k, c.bodyA, c.p_WC),
+                     B = midstepPoint(model, k, c.bodyB, c.p_WC);
+  const Vector3 &v_A = A.velocity, &v_B = B.velocity;
   const Vector3 slips = v_B - v_A;
   const Vector3 v_P = (flatA ? v_B : v_A) + moves->along + 0.5 * c.distance * turns.cross(n) -
                       0.5 * c.n_W.dot(slips) * n;
@@ -103,9 +111,7 @@ std::optional<ContactBias> contactBias(const Model& model, const Kinematics& k, 
   bias.loadedBiasDepth = moves->loadedBiasDepth;
   bias.rate.angular = k.A_bias[c.bodyB].angular - k.A_bias[c.bodyA].angular -
                       V_flat.angular.cross(V_B.angular - V_A.angular);
-  bias.rate.linear = pointBiasAcceleration(model, k, c.bodyB, c.p_WC) -
-                     pointBiasAcceleration(model, k, c.bodyA, c.p_WC) +
-                     V_B.angular.cross(v_P - v_B) - V_A.angular.cross(v_P - v_A) -
+  bias.rate.linear = B.bias - A.bias + V_B.angular.cross(v_P - v_B) - V_A.angular.cross(v_P - v_A) -
                      V_flat.angular.cross(slips);
   // A wheel of many faces would be lifted by ω² r of each of its corners.
   const ShapeKind kind = other.shape.kind;

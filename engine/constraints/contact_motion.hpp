@@ -41,14 +41,23 @@ struct ContactBias {
   double biasDepth = 0.0, loadedBiasDepth = 0.0;
 };
 
+/// Where the two geometries of a contact are.
+struct GeometryPoses {
+  Transform X_WA, X_WB;
+};
+GeometryPoses posesOf(const Model& model, const Kinematics& kinematics, const Contact& contact);
+
 /// Whether A is the flat one, or B, of two faces the one whose edge is farther; nothing where
 /// neither surface is flat.
-std::optional<bool> flatIsA(const Model& model, const Kinematics& kinematics,
-                            const Contact& contact);
+std::optional<bool> flatIsA(const Model& model, const GeometryPoses& at, const Contact& contact);
 
 /// Nothing where J̇ v is not known: neither surface is flat; or, in a step that knows its start
 /// alone, a body tilts by more than 0.3 rad or the place on a rim goes round by more than 1.
 std::optional<ContactBias> contactBias(const Model& model, const Kinematics& kinematics,
-                                       const Contact& contact);
+                                       const GeometryPoses& at, const Contact& contact);
+inline std::optional<ContactBias> contactBias(const Model& model, const Kinematics& kinematics,
+                                              const Contact& contact) {
+  return contactBias(model, kinematics, posesOf(model, kinematics, contact), contact);
+}
 
 }  // namespace softgauss

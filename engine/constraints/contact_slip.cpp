@@ -17,7 +17,7 @@ constexpr double kTurned = 1e-4;
 double slipNumber(const Options& options, const Touch& touch, double slip, double presses) {
   const double horizon = std::max(options.timestep, 1.0 / touch.softness.damping);
   const double load = gainOf(options, touch, touch.softness) * std::max(0.0, presses);
-  const double stopped = touch.mu() * horizon * std::max(options.gravity.norm(), load);
+  const double stopped = touch.mu() * horizon * std::max(touch.gravity, load);
   return stopped > 0.0 ? slip / stopped : (slip > 0.0 ? kInfinity : 0.0);
 }
 
@@ -58,11 +58,6 @@ bool mayGlide(const Assembly& in, const Contact& c, const Touch& touch) {
 }
 
 }  // namespace
-
-double turnedWeight(const Assembly& in, int body, const Vector3& p_W) {
-  const Vector3 lever = p_W - in.kinematics.X_WB[body] * in.model.bodies[body].com;
-  return in.weights.rotation[body] * lever.squaredNorm();
-}
 
 double weightAt(const Assembly& in, int body, double turned) {
   const double ofCentre = in.weights.translation[body];
@@ -124,7 +119,7 @@ WishedTangent tangentOf(const Assembly& in, const Contact& contact, const Touch&
     const double slides = touch.friction[3] * turns / (touch.mu() * touch.inverseMass);
     if (turnsStably(roll.norm() / slides)) return {roll};
   }
-  if (holdsWeight(in, contact, touch)) return {options.gravity, true};
+  if (touch.holdsWeight) return {options.gravity, true};
   return {contact.tangent_W};
 }
 
@@ -151,7 +146,7 @@ Slip ContactBlocks::slipOf(const Assembly& in, const Touch& touch, const Softnes
   slip.met = metLast(in, moves, slip, brakes);
   const double gain = gainOf(options, touch, soft);
   const double push = soft.referenceAcceleration(moves.velocity[0], touch.distance);
-  const double load = std::max(options.gravity.norm(), slip.met / brakes);
+  const double load = std::max(touch.gravity, slip.met / brakes);
   slip.met += brakes * std::max(0.0, (gain * push - load) / (1.0 + gain));
   slip.met = std::clamp(slip.met, -slip.asked, slip.asked);
   return slip;

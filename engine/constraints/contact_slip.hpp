@@ -8,11 +8,9 @@
 
 namespace softgauss {
 
-/// The inverse weight of a body at p_W [1/kg]: that of its centre of mass, if that can move.
-/// `turned`: turnedWeight() there.
+/// The inverse weight of a body where it is pushed [1/kg]: that of its centre of mass, if that can
+/// move. `turned`: what turns it by a push there, as an inverse weight.
 double weightAt(const Assembly& in, int body, double turned);
-/// What turns a body by a push at p_W, as an inverse weight there [1/kg].
-double turnedWeight(const Assembly& in, int body, const Vector3& p_W);
 
 /// n A/R: what the n rows of a contact answer to a residual along the normal, of what would undo it
 /// [-].

@@ -17,7 +17,7 @@ void EllipticContact::assemble(const Assembly& in) {
     for (int i = 0; i < in.contacts.size(); ++i) {
       const std::optional<Touch> touch = touchAt(in, i, pair);
       if (!touch || touch->frictionDim == 0) continue;
-      const BlockMotion moves = addBlock(in, i, *touch, static_cast<int>(reference.size()));
+      const BlockMotion moves = addBlock(in, i, pair, *touch, static_cast<int>(reference.size()));
       Softness soft = soften(in, *touch, moves.velocity);
       const double ratio = touch->mu() / std::sqrt(options.impedanceRatio);
       double push = soft.referenceAcceleration(moves.velocity[0], touch->distance);

@@ -26,7 +26,7 @@ void PyramidalContact::assemble(const Assembly& in) {
   for (int i = 0; i < in.contacts.size(); ++i) {
     const std::optional<Touch> touch = touchAt(in, i, pair);
     if (!touch || (touch->frictionDim > 0 && options.cone != Cone::pyramidal)) continue;
-    const BlockMotion moves = addBlock(in, i, *touch, static_cast<int>(reference.size()));
+    const BlockMotion moves = addBlock(in, i, pair, *touch, static_cast<int>(reference.size()));
     double velocity[10], bias[10];
     toEdges(moves.velocity.data(), touch->frictionDim, touch->friction, velocity);
     toEdges(moves.bias.data(), touch->frictionDim, touch->friction, bias);
@@ -39,10 +39,8 @@ void PyramidalContact::assemble(const Assembly& in) {
       soft = soft.hardened(
           levelPyramid(slipOf(in, *touch, soft, moves),
                        soft.referenceAcceleration(moves.velocity[0], touch->distance), asks));
-    for (int edge = 0; edge < edges; ++edge) {
-      reference.push_back(asks[edge] - bias[edge]);
-      pushSoftness(soft);
-    }
+    for (int edge = 0; edge < edges; ++edge) asks[edge] -= bias[edge];
+    pushRows(soft, asks, static_cast<std::size_t>(edges));
   }
   resizeRows(reference.size());
   indexRows(reference.size());

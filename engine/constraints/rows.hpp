@@ -73,6 +73,12 @@ class ScalarRows {
     D.push_back(1.0 / softness.R);
     perInertia.push_back(softness.perInertia);
   }
+  /// Rows of one softness, with these a_ref.
+  void pushRows(const Softness& softness, const double* references, std::size_t rows) {
+    reference.insert(reference.end(), references, references + rows);
+    D.insert(D.end(), rows, 1.0 / softness.R);
+    perInertia.insert(perInertia.end(), rows, softness.perInertia);
+  }
   /// Drops all rows; keeps the memory.
   void clearRows() {
     reference.clear();

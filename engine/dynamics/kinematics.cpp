@@ -119,16 +119,20 @@ Vector3 pointMidstepVelocity(const Model& model, const Kinematics& k, int body,
   return pointAt(model, k, k.midstepVelocities(), body, p_WP);
 }
 
-Vector3 pointBiasAcceleration(const Model& model, const Kinematics& k, int body,
-                              const Vector3& p_WP) {
-  if (body == 0) return Vector3::Zero();
+MidstepPoint midstepPoint(const Model& model, const Kinematics& k, int body, const Vector3& p_WP) {
+  if (body == 0) return {Vector3::Zero(), Vector3::Zero()};
   const Vector3 r = p_WP - k.p_WO[model.bodies[body].tree];
   const Motion& A = k.A_bias[body];
   const Motion& V = k.midstepVelocities()[body];
   const Vector3& omega = V.angular;
   const Vector3 v = V.linear + omega.cross(r);
   // Classical from spatial acceleration: a = A_lin + α × r + ω × v.
-  return A.linear + A.angular.cross(r) + omega.cross(v);
+  return {v, A.linear + A.angular.cross(r) + omega.cross(v)};
+}
+
+Vector3 pointBiasAcceleration(const Model& model, const Kinematics& k, int body,
+                              const Vector3& p_WP) {
+  return midstepPoint(model, k, body, p_WP).bias;
 }
 
 }  // namespace softgauss

@@ -71,6 +71,12 @@ Vector3 pointVelocity(const Model& model, const Kinematics& k, int body, const V
 Vector3 pointMidstepVelocity(const Model& model, const Kinematics& k, int body,
                              const Vector3& p_WP);
 
+/// The same, and the acceleration at v̇ = 0 of pointBiasAcceleration().
+struct MidstepPoint {
+  Vector3 velocity, bias;
+};
+MidstepPoint midstepPoint(const Model& model, const Kinematics& k, int body, const Vector3& p_WP);
+
 /// Acceleration [m/s²] at v̇ = 0 (that is, J̇ v, of turning) of the point of `body` that is now at
 /// p_WP.
 Vector3 pointBiasAcceleration(const Model& model, const Kinematics& k, int body,

@@ -110,7 +110,7 @@ ContactShift ContactShift::of(const Model& model, const Kinematics& k, const Con
   ContactShift s;
   s.measured_ = measured;
   s.d_ = c.distance;
-  const std::optional<bool> flat = softgauss::flatIsA(model, k, c);
+  const std::optional<bool> flat = softgauss::flatIsA(model, posesOf(model, k, c), c);
   s.round_ = !flat;
   s.flatIsA_ = flat.value_or(true);
   s.setOther(model, k, c, s.flatIsA_ ? c.geometryB : c.geometryA);
