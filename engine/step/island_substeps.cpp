@@ -30,6 +30,11 @@ std::size_t IslandSubsteps::bytes() const {
   return bytesOfAll(parts_, pairs_, contacts_) + data.parts->substepSelection.bytes();
 }
 
+void IslandSubsteps::reserve(std::size_t contacts) {
+  contacts_.reserve(contacts);
+  pairs_.reserve(2 * contacts + data.bodies.pairs.size());
+}
+
 void IslandSubsteps::findPairs(const Model& model, bool controlled, const Data& whole) {
   pairs_.clear();
   for (const Contact& c : whole.contacts.contacts)

@@ -23,6 +23,8 @@ class IslandSubsteps {
  public:
   explicit IslandSubsteps(const Model& model);
 
+  /// Makes room for so many contacts.
+  void reserve(std::size_t contacts);
   /// All take the step whole.
   void clear() { any_ = false; }
   /// Finds the islands, of the stages of `whole`, and which of them need parts. False where all

@@ -51,6 +51,9 @@ void reserveRows(const Model& model, std::span<const std::pair<int, int>> geomet
   if (!data.parts) return;
   for (State* kept : {&data.parts->before, &data.parts->start})
     kept->warmstart.breakpoints.reserve(idx(data.constraints.rowCount()));
+  if (!data.parts->islands) return;
+  reserveRows(model, geometries, contacts, data.parts->islands->data);
+  data.parts->islands->reserve(data.contacts.contacts.capacity());
 }
 
 }  // namespace softgauss
