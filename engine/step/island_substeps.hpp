@@ -44,7 +44,7 @@ class IslandSubsteps {
   /// What the island has come to becomes part of the whole.
   void finish(const Model& model, int island, Data& whole, State& state);
 
-  /// Of the contacts of those that have finished: forces at the ends of their steps.
+  /// Contacts of those that have finished, with the forces of their last parts.
   const std::vector<Snapshot::ContactForce>& contacts() const { return contacts_; }
   std::size_t bytes() const;
 
