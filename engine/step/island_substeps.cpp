@@ -26,10 +26,6 @@ IslandSubsteps::IslandSubsteps(const Model& model)
   parts_.reserve(model.trees.size());
 }
 
-std::size_t IslandSubsteps::bytes() const {
-  return bytesOfAll(parts_, pairs_, contacts_) + data.parts->substepSelection.bytes();
-}
-
 void IslandSubsteps::reserve(std::size_t contacts) {
   contacts_.reserve(contacts);
   pairs_.reserve(2 * contacts + data.bodies.pairs.size());

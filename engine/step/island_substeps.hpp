@@ -46,7 +46,6 @@ class IslandSubsteps {
 
   /// Contacts of those that have finished, with the forces of their last parts.
   const std::vector<Snapshot::ContactForce>& contacts() const { return contacts_; }
-  std::size_t bytes() const;
 
   Data data;
   State state;
