@@ -215,7 +215,8 @@ void ActiveSet::finish(const Model& model, const ControlLimits& limits, const Go
     data.constraints.setResidual(path_.a);
     data.constraints.evaluate(changed);
     computeResidual(data);
-    if (residual_.cwiseAbs().maxCoeff() <= kRounding * scale || searched) break;
+    exact_ = residual_.cwiseAbs().maxCoeff() <= kRounding * scale;
+    if (exact_ || searched) break;
     if (k < kCorrections) {
       cell_.solve(residual_);
       path_.a += residual_;
@@ -300,6 +301,7 @@ GddReport ActiveSet::solve(const Model& model, GoalCost& cost, const ControlLimi
                            Data& data, const WarmStart& warm) {
   SOFTGAUSS_ASSERT(data.constraints.piecewiseQuadratic());
   report_ = {};
+  exact_ = false;
   searchAge_ = 0;
   searchWait_ = 1;
   if (model.nv == 0) return report_;
@@ -366,6 +368,7 @@ bool ActiveSet::startAgain(const Model& model, const GoalCost& cost, const Contr
   const bool better = sound && second.objective < wanted;
   if (!better) {
     bool changed = false;
+    exact_ = false;  // residual_ is the other's
     badDof_ = -1;
     data.stats.badDof = -1;
     report_ = first_.report;

@@ -62,6 +62,9 @@ class ActiveSet {
   int badDof() const { return badDof_; }
   const VectorX& acceleration() const { return path_.a; }
   const VectorX& force() const { return force_; }  ///< B u, within the limits (nv)
+  /// Whether a is f(u) but for residual(), which is rounding.
+  bool isExact() const { return exact_; }
+  const VectorX& residual() const { return residual_; }  ///< B u − g(a) (nv)
 
  private:
   enum class Next { done, cell, undecided };
@@ -122,6 +125,7 @@ class ActiveSet {
   bool known_ = false;     ///< started from a last step
   bool ready_ = false;     ///< R is that of this solve
   bool entered_ = false;   ///< the response is that of the cell at a
+  bool exact_ = false;
   GddReport report_;
   Solution first_;      ///< while another is looked for
   int searchAge_ = 0;   ///< WarmStart::gddSearchAge

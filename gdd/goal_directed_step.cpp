@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <tuple>
+#include <type_traits>
 
 #include "softgauss/gdd/goals/standing_balance.hpp"
 
@@ -45,6 +46,7 @@ const VectorX* GoalDirectedController::solve(Solver& used, const Model& model, c
                                              Data& data) {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point start = Clock::now();
+  solved_ = false;
   // A disturbance is not the control's: it belongs to what the control has to cope with.
   data.forces.c -= data.forces.tau;
   addCost(model, state, data, holding_, cost_);
@@ -52,6 +54,11 @@ const VectorX* GoalDirectedController::solve(Solver& used, const Model& model, c
   expansion.iterationsLeft = iterationBudget;
   expansion.deadline = Deadline::in(timeBudget);
   report = solveOneSided(expansion, used, model, cost_, limits, data, state.warmstart, between_);
+  if constexpr (std::is_same_v<Solver, ActiveSet>)
+    if (used.isExact() && !cost_.hasFunctions()) {
+      solved_ = true;
+      data.forward.gradient = -used.residual();
+    }
   const GddReport solved = report;
   report.addEarlier(earlier_);
   earlier_.addCounts(solved);

@@ -84,6 +84,7 @@ class GoalDirectedController final : public StepControl {
   /// Before apply() outside step(): what the report counts begins anew.
   void begin() noexcept;
   const VectorX* apply(const Model& model, const State& state, Data& data) noexcept override;
+  bool isSolved() const noexcept override { return solved_; }
   bool acts() const noexcept override { return limits.open(); }
   void keep(WarmStart& warmstart) noexcept override;
   /// cost ← that of the price of force, the goals that act and the motion limits, at the stages in
@@ -97,7 +98,8 @@ class GoalDirectedController final : public StepControl {
   template <class Solver>
   const VectorX* solve(Solver& used, const Model& model, const State& state, Data& data);
 
-  GddReport earlier_;  ///< parts of the step that are taken, and what was spent beside
+  bool solved_ = false;  ///< isSolved()
+  GddReport earlier_;    ///< parts of the step that are taken, and what was spent beside
   GoalCost cost_;
   GravityCompensation holding_;
   WarmStart between_;    ///< from one solve to the next of a step

@@ -179,6 +179,15 @@ bool solveMass(const Model& model, Data& data, const VectorX* diagonal, VectorX&
   return true;
 }
 
+SolveStatus takeSolution(const Model& model, const VectorX& a, Data& data) noexcept {
+  ForwardSolution& s = data.forward;
+  s.a = a;
+  const Segment all{0, model.nv};
+  setForceScale({&all, 1}, data);
+  s.report = {.residual = s.gradient.cwiseProduct(s.scale).cwiseAbs().maxCoeff()};
+  return s.report.status;
+}
+
 SolveStatus forwardDynamics(const Model& model, const VectorX* guess, Data& data) noexcept {
   if (!begin(model, guess, data)) return data.forward.report.status;
   if (hasRows(data))

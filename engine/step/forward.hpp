@@ -16,6 +16,8 @@ namespace softgauss {
 /// Acceleration for data.forces.net. Reads the stages up to constraints, writes data.forward.
 /// Starts from `guess` (null: none) or the unconstrained acceleration, whichever costs less.
 SolveStatus forwardDynamics(const Model& model, const VectorX* guess, Data& data) noexcept;
+/// The same where the solution is known (StepControl::isSolved()).
+SolveStatus takeSolution(const Model& model, const VectorX& a, Data& data) noexcept;
 
 /// Of Newton's iterations: a step ends in another cell or at the minimum, and the more rows, the
 /// more cells lie on the way. Options::maxIterations are for every thousand rows. (200 bodies that

@@ -121,6 +121,8 @@ SolveStatus computeStages(const Model& model, const Input& input, const State& s
   return SolveStatus::converged;
 }
 
+bool leavesAny(const Data& data) { return data.parts && data.parts->leavesAny(); }
+
 /// (8) where goals choose the control, then (13): what moves under it. `aim`: the acceleration that
 /// goals ask for.
 SolveStatus solve(const Model& model, const Given& given, const State& state, Data& data,
@@ -132,7 +134,9 @@ SolveStatus solve(const Model& model, const Given& given, const State& state, Da
     if (!guess) return stats.status;
     lap(clock);
   }
-  stats.status = forwardDynamics(model, guess, data);  // (13)
+  // (13), but for islands that take parts of their own
+  const bool known = given.control && given.control->isSolved() && !leavesAny(data);
+  stats.status = known ? takeSolution(model, *aim, data) : forwardDynamics(model, guess, data);
   stats.iterations += data.forward.report.iterations;
   stats.factorizations += data.forward.report.factorizations;
   stats.residual = std::max(stats.residual, data.forward.report.residual);

@@ -21,6 +21,11 @@ class StepControl {
   /// Whether there is anything to choose: a control that is always zero leaves motion passive.
   virtual bool acts() const noexcept { return true; }
 
+  /// Whether the acceleration that apply() has returned is that of forward dynamics, to rounding:
+  /// the rows are evaluated there, and data.forward.gradient is what is left of the equation of
+  /// motion.
+  virtual bool isSolved() const noexcept { return false; }
+
   /// What apply() has found has been done: keeps where the next solve may start.
   virtual void keep(WarmStart& warmstart) noexcept = 0;
 };

@@ -126,7 +126,8 @@ void solveInto(SimulationParts& p, ContactSource& contacts, ControlSolution& ans
       return;
     }
   }
-  answer.status = forwardDynamics(model, guess, *p.data);
+  answer.status = controlled && p.controller->isSolved() ? takeSolution(model, *guess, *p.data)
+                                                         : forwardDynamics(model, guess, *p.data);
   answer.tau = controlled ? p.controller->control : p.data->forces.tau;
   answer.a = p.data->forward.a;
   contactForces(*p.data, answer.contacts);

@@ -217,5 +217,29 @@ TEST(RealisedGoals, HoldWithARopeThatIsStabilised) {
     }
 }
 
+// A control that is exact is not solved for again. What forward dynamics finds from nowhere, of the
+// same stages, is the same: its minimum is the only one.
+TEST(Realised, AnExactControlCausesWhatForwardDynamicsFinds) {
+  for (const char* robot : {"humanoid", "arm"}) {
+    RobotScene r(robot);
+    const bool stands = r.model.floats(0);
+    r.addReach(stands ? "right_hand" : "hand",
+               stands ? Vector3(0.45, -0.25, 1.10) : Vector3(0.5, 0.3, 0.5));
+    r.addDamping();
+    int exact = 0;
+    for (int i = 0; i < 300; ++i) {
+      ASSERT_EQ(r.step(), SolveStatus::converged);
+      if (!r.controller.isSolved()) continue;
+      ++exact;
+      const VectorX a = r.data.forward.a;
+      EXPECT_SMALL(r.data.forward.report.residual, r.model.options.tolerance);
+      ASSERT_EQ(forwardDynamics(r.model, nullptr, r.data), SolveStatus::converged);
+      EXPECT_SMALL((r.data.forward.a - a).cwiseAbs().maxCoeff(),
+                   1e-9 * std::max(1.0, a.cwiseAbs().maxCoeff()));
+    }
+    EXPECT_GT(exact, 250) << robot;
+  }
+}
+
 }  // namespace
 }  // namespace softgauss::test
