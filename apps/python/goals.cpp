@@ -127,13 +127,12 @@ Vector3 finiteVector3Of(const py::object& given, const char* name) {
 /// A goal as Python holds it: it looks whether the goal is there still.
 class Handle {
  public:
-  Handle(Held& held, gdd::Goal& goal)
-      : held_(held), goal_(&goal), goalsCleared_(held.goalsCleared()) {}
+  Handle(Held& held, gdd::Goal& goal) : held_(held), goal_(&goal), since_(held.goalsLeft()) {}
 
   gdd::Goal& get() const {
     static_cast<void>(held_.sim());  // throws where another thread steps
-    if (held_.goalsCleared() != goalsCleared_)
-      throw std::runtime_error("this goal is gone: the goals of its simulation were cleared");
+    if (held_.hasLeft(goal_, since_))
+      throw std::runtime_error("this goal is gone: it was removed from its simulation");
     return *goal_;
   }
 
@@ -178,6 +177,8 @@ class Handle {
     held_.sim().goals.weighDefaults();
   }
 
+  void remove() const { held_.removeGoal(get()); }
+
   std::vector<std::pair<std::string, double>> heldBack() const {
     const gdd::Goal& goal = get();
     std::vector<std::pair<std::string, double>> causes;
@@ -217,8 +218,8 @@ class Handle {
   }
 
   Held& held_;
-  gdd::Goal* goal_;  ///< dangles once goals were cleared since
-  unsigned long goalsCleared_;
+  gdd::Goal* goal_;  ///< dangles once it has left
+  unsigned long since_;
 };
 
 }  // namespace
@@ -254,7 +255,7 @@ auto setGain(double* live::GoalSettings::*place, const char* what) {
 }
 
 void bindHandle(py::module_& m) {
-  py::class_<Handle>(m, "Goal", "A goal of a simulation, until its goals are cleared.")
+  py::class_<Handle>(m, "Goal", "A goal of a simulation, until it is removed.")
       .def_property_readonly(
           "name", [](Handle& h) { return h.get().name(); },
           "As in the summary: 'reach right_hand'.")
@@ -288,6 +289,9 @@ void bindHandle(py::module_& m) {
            "first;\n"
            "shares add up to 1. [('posture', 0.97), ('range of elbow', 0.03)] says that a larger\n"
            "weight helps. Empty where it does not act, or pulls no more.")
+      .def("remove", &Handle::remove,
+           "It acts no more, and is gone; damping, balance and a weak posture that came with it\n"
+           "stay, until Goals.clear().")
       .def("__repr__", [](Handle& h) { return "<softgauss.Goal '" + h.get().name() + "'>"; });
 }
 
@@ -372,6 +376,9 @@ void bindGoals(py::module_& m) {
           py::arg("file"), "The same from a YAML file.")
       .def(
           "clear", [](GoalList& g) { g.held.clearGoals(); }, "No goals: robots are passive.")
+      .def(
+          "__delitem__", [](GoalList& g, long i) { g.held.removeGoal(goalAt(g, i)); }, py::arg("i"),
+          "Removes goal i, as Goal.remove().")
       .def("__len__", [](GoalList& g) { return g.held.sim().goals.size(); })
       .def(
           "__getitem__", [](GoalList& g, long i) { return Handle(g.held, goalAt(g, i)); },

@@ -35,7 +35,13 @@ Simulation& Held::sim() {
 
 void Held::clearGoals() {
   sim().goals.clear();
-  ++goalsCleared_;
+  goalsCleared_ = ++goalsLeft_;
+  left_.clear();
+}
+
+void Held::removeGoal(const gdd::Goal& goal) {
+  sim().goals.remove(goal);
+  left_[&goal] = ++goalsLeft_;
 }
 
 void Held::step(long n) {

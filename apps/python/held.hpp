@@ -4,6 +4,7 @@
 /// A Simulation as Python holds it.
 
 #include <atomic>
+#include <map>
 
 #include "apps/python/made.hpp"
 #include "apps/python/pushes.hpp"
@@ -41,12 +42,18 @@ class Held {
   void step(long n);
   void run(double seconds);
   Pushes& pushes() { return pushes_; }
-  /// Goals leave by this alone.
+  /// Goals leave by these two alone.
   void clearGoals();
-  /// How often goals were cleared: a goal is there as long as this is what it was at its coming.
-  unsigned long goalsCleared() const { return goalsCleared_; }
+  void removeGoal(const gdd::Goal& goal);
+  /// How often goals have left.
+  unsigned long goalsLeft() const { return goalsLeft_; }
+  /// Whether a goal has left since goalsLeft() was that: another may be in its place in memory.
+  bool hasLeft(const gdd::Goal* goal, unsigned long since) const {
+    const auto left = left_.find(goal);
+    return since < goalsCleared_ || (left != left_.end() && since < left->second);
+  }
   /// Whether its goals are those of its file.
-  bool hasGoalsOfFile() { return goalsCleared_ == 0 && sim().goals.size() == goalsOfFile_; }
+  bool hasGoalsOfFile() { return goalsLeft_ == 0 && sim().goals.size() == goalsOfFile_; }
 
   template <class F>
   auto alone(F&& f) {
@@ -58,7 +65,8 @@ class Held {
   Simulation sim_;
   std::size_t goalsOfFile_;
   Pushes pushes_;
-  unsigned long goalsCleared_ = 0;
+  unsigned long goalsLeft_ = 0, goalsCleared_ = 0;  ///< and when all have left
+  std::map<const gdd::Goal*, unsigned long> left_;  ///< when the last one of that place has
   std::atomic<bool> busy_ = false;
 };
 

@@ -7,6 +7,7 @@
 #include "softgauss/engine/dynamics/energy.hpp"
 #include "softgauss/engine/dynamics/jacobian.hpp"
 #include "softgauss/engine/step/forward_derivative.hpp"
+#include "softgauss/io/names.hpp"
 
 namespace softgauss::python {
 namespace {
@@ -43,6 +44,35 @@ Vector6 momentum(const Posed& at) {
   Vector6 both;
   both << m.linear, m.angular - centerOfMass(at.model, at.k).cross(m.linear);
   return both;
+}
+
+/// Of a point of a link, then of the link's rotation.
+using LinkMotion = Vector6 (*)(const Posed& at, int body, const Vector3& p_WP);
+
+Vector6 velocityOf(const Posed& at, int body, const Vector3& p_WP) {
+  Vector6 both;
+  both << pointVelocity(at.model, at.k, body, p_WP), at.k.V[idx(body)].angular;
+  return both;
+}
+
+Vector6 biasAccelerationOf(const Posed& at, int body, const Vector3& p_WP) {
+  Vector6 both;
+  both << pointBiasAcceleration(at.model, at.k, body, p_WP), at.k.A_bias[idx(body)].angular;
+  return both;
+}
+
+auto ofLink(const char* what, LinkMotion motion) {
+  return [=](Held& held, const std::string& link, const py::object& point, const py::object& q,
+             const py::object& v) {
+    return held.alone([&](Simulation& sim) -> VectorX {
+      const int index = sim.model().findFrame(link);
+      if (index < 0) throw NameError(what + (": " + io::linkProblem(sim.model(), link)));
+      const Frame& frame = sim.model().frames[idx(index)];
+      const Posed at(sim, q, v);
+      const Vector3 p_WP = at.k.X_WB[idx(frame.body)] * (frame.X_BF * vector3Of(point, "point"));
+      return motion(at, frame.body, p_WP);
+    });
+  };
 }
 
 RowMajorMatrixX centerOfMassJacobian(const Posed& at) {
@@ -138,6 +168,14 @@ void bindQuantities(HeldClass& sim) {
           "(3,) of all moving links, world [m].");
   sim.def("center_of_mass_jacobian", configured(centerOfMassJacobian), q,
           "(3, nv): times v the velocity of center_of_mass() [m/s].");
+  const auto point = py::arg("point") = py::make_tuple(0.0, 0.0, 0.0);
+  sim.def("link_velocity", ofLink("link_velocity", velocityOf), py::arg("link"), point, q, v,
+          "(6,) of a point (3,) of the link [m], world axes: its velocity [m/s], then the link's\n"
+          "angular velocity [rad/s]. UnknownName.");
+  sim.def("link_bias_acceleration", ofLink("link_bias_acceleration", biasAccelerationOf),
+          py::arg("link"), point, q, v,
+          "(6,) J̇ v: that of the point [m/s²] and the link [rad/s²] where the joints do not\n"
+          "accelerate; under an acceleration a it is jacobian() @ a more. UnknownName.");
   sim.def(
       "integrate",
       [](Held& held, const py::object& from, const py::object& by, double seconds) {

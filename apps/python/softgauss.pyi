@@ -12,9 +12,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from softgauss_env import Box as Box
-from softgauss_env import Env as Env
-from softgauss_env import VectorEnv as VectorEnv
+from softgauss_env import Box as Box, Env as Env, VectorEnv as VectorEnv
 
 Array = NDArray[np.float64]
 Path = str | os.PathLike[str]
@@ -26,21 +24,17 @@ __version__: str
 
 class ModelError(ValueError):
     """A model, scene or goal that cannot be simulated."""
-
 class OptionError(ValueError):
     """An option that does not fit what is loaded."""
-
 class UnknownName(LookupError):
     """A link, joint or parameter that the model lacks, with the nearest that it has."""
-
 class StepError(ArithmeticError):
     """A step that was refused: the time, the joint, the deepest contact."""
-
 class PlanError(ArithmeticError):
     """No plan that the actuators can cause was found: what is left, and what to try."""
 
 class Goal:
-    """A goal of a simulation, until its goals are cleared."""
+    """A goal of a simulation, until it is removed."""
 
     target: Array
     velocity: Array  # of the target that is moved step by step
@@ -55,6 +49,7 @@ class Goal:
     def name(self) -> str: ...
     def held_back(self) -> list[tuple[str, float]]:
         """What holds it back now, and its share: the largest first, they add up to 1."""
+    def remove(self) -> None: ...
 
 class Goals:
     """The goals of a simulation. Reach, hold and posture come with virtual damping."""
@@ -78,6 +73,7 @@ class Goals:
     def clear(self) -> None: ...
     def __len__(self) -> int: ...
     def __getitem__(self, i: int) -> Goal: ...
+    def __delitem__(self, i: int) -> None: ...
 
 class Contacts:
     """Contacts, one a row, world axes."""
@@ -275,6 +271,14 @@ class Simulation:
         """(6,) linear, then angular about the centre of mass, world axes"""
     def center_of_mass(self, q: Given = None) -> Array: ...
     def center_of_mass_jacobian(self, q: Given = None) -> Array: ...
+    def link_velocity(
+        self, link: str, point: ArrayLike = (0, 0, 0), q: Given = None, v: Given = None
+    ) -> Array:
+        """(6,) of the point, then angular, world axes"""
+    def link_bias_acceleration(
+        self, link: str, point: ArrayLike = (0, 0, 0), q: Given = None, v: Given = None
+    ) -> Array:
+        """(6,) J̇ v: the acceleration is jacobian() @ a more"""
     def integrate(self, q: ArrayLike, v: ArrayLike, seconds: float = 1.0) -> Array:
         """(nq,) where q is after so many seconds at v"""
     def difference(self, q0: ArrayLike, q1: ArrayLike) -> Array:

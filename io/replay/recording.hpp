@@ -86,6 +86,9 @@ class Recording {
 
   /// The goals are there no more, and have no marks from here on.
   void forgetGoals() { std::fill(goals_.begin(), goals_.end(), nullptr); }
+  void forgetGoal(const gdd::Goal& goal) {
+    std::replace(goals_.begin(), goals_.end(), &goal, static_cast<const gdd::Goal*>(nullptr));
+  }
 
   /// What was recorded, for a run that goes on later.
   template <class Archive>

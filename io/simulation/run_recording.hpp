@@ -40,6 +40,7 @@ class RunRecording {
   void afterStep(double stepUs);
   /// The goals go: what they sought is shown no more.
   void forgetGoals() { recording_.forgetGoals(); }
+  void forgetGoal(const gdd::Goal& goal) { recording_.forgetGoal(goal); }
   /// What was recorded until now. Throws ModelError where the file cannot be made, and
   /// std::runtime_error where it cannot be written.
   void write(const std::filesystem::path& file) const;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "softgauss/io/simulation/simulation_goals.hpp"
 
+#include <algorithm>
+
 #include "softgauss/io/names.hpp"
 #include "softgauss/io/simulation/simulation_parts.hpp"
 
@@ -75,10 +77,20 @@ gdd::Hold& SimulationGoals::hold(const std::string& link) {
   return static_cast<gdd::Hold&>(addOwn(std::make_unique<gdd::Hold>(parts_->scene->model, link)));
 }
 
-gdd::Posture& SimulationGoals::posture(double weight) {
+/// The posture among the regularisers, anew where it was removed.
+gdd::Posture& SimulationGoals::ownPosture(double weight) {
   auto& goals = parts_->controller->goals;
+  for (std::size_t i = goals.size() - parts_->regularisers; i < goals.size(); ++i)
+    if (auto* posture = dynamic_cast<gdd::Posture*>(goals[i].get())) return *posture;
+  for (auto& goal : regularisers(parts_->scene->initial.q, weight))
+    if (dynamic_cast<gdd::Posture*>(goal.get())) goals.push_back(std::move(goal));
+  ++parts_->regularisers;
+  return static_cast<gdd::Posture&>(*goals.back());
+}
+
+gdd::Posture& SimulationGoals::posture(double weight) {
   addRegularisers(weight);
-  auto& posture = static_cast<gdd::Posture&>(*goals[goals.size() - 2]);
+  gdd::Posture& posture = ownPosture(weight);
   posture.weight = weight;
   posture.isRegulariser = false;
   weighDefaults();
@@ -100,6 +112,19 @@ std::vector<gdd::Goal*> SimulationGoals::addAll(io::GoalFile asked) {
   std::vector<gdd::Goal*> added;
   for (auto& goal : asked.goals) added.push_back(&add(std::move(goal)));
   return added;
+}
+
+void SimulationGoals::remove(const gdd::Goal& goal) {
+  auto& goals = parts_->controller->goals;
+  const auto place = std::find_if(goals.begin(), goals.end(),
+                                  [&](const auto& mine) { return mine.get() == &goal; });
+  if (place == goals.end())
+    throw std::invalid_argument("remove: found a goal that this simulation does not have");
+  if (goals.end() - place <= static_cast<std::ptrdiff_t>(parts_->regularisers))
+    --parts_->regularisers;
+  if (parts_->recording) parts_->recording->forgetGoal(goal);
+  goals.erase(place);
+  weighDefaults();
 }
 
 void SimulationGoals::clear() {

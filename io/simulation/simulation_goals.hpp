@@ -37,7 +37,7 @@ class SimulationGoals {
   /// A point of the link, given in the link's frame [m], seeks a place in the world [m]; without a
   /// weight [kg] 2.5 times the robot's mass, times the weight of the strongest posture beside it
   /// where that is above 1. Where that point has such a goal already, its place,
-  /// and the weight if one is given, become these. The goal lives until clear().
+  /// and the weight if one is given, become these. The goal lives until remove() or clear().
   gdd::Reach& reach(const std::string& link, const Vector3& p_WTarget,
                     const Vector3& p_LP = Vector3::Zero(),
                     std::optional<double> weight = std::nullopt);
@@ -54,6 +54,9 @@ class SimulationGoals {
   /// Weights that nobody has given, again as they are beside the postures: after a posture's
   /// weight, or the times of a goal, were changed.
   void weighDefaults();
+  /// Removes one of the goals; what came with it stays. Throws std::invalid_argument where it is
+  /// none of these.
+  void remove(const gdd::Goal& goal);
   void clear();
 
   std::size_t size() const;
@@ -65,6 +68,7 @@ class SimulationGoals {
   gdd::Goal& addOwn(std::unique_ptr<gdd::Goal> goal);
   void addRegularisers(std::optional<double> postureWeight);
   void addBalance();
+  gdd::Posture& ownPosture(double weight);
   void expectLink(const std::string& goal, const std::string& link) const;
 
   SimulationParts* parts_;

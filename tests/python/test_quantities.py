@@ -57,3 +57,24 @@ def test_bias_forces_do_what_energy_says(arm, seed):
     # vᵀ (C v) = ½ vᵀ Ṁ v
     turning = arm.bias_forces(q, v) - arm.bias_forces(q, np.zeros(arm.nv))
     assert turning @ v == pytest.approx(0.5 * v @ rate(arm, arm.mass_matrix, q, v) @ v, abs=1e-6)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_motion_of_links_is_the_rate_of_where_they_are(humanoid, seed):
+    link, point = "right_hand", [0.05, -0.02, 0.1]
+    q, v = some_state(humanoid, seed)
+    moves = humanoid.link_velocity(link, point, q, v)
+    assert np.allclose(humanoid.jacobian(link, point, q) @ v, moves, rtol=0, atol=1e-12)
+
+    def place(at):
+        humanoid.q = at
+        pose = humanoid.pose(link)
+        return pose[:3, :3] @ point + pose[:3, 3]
+
+    assert np.allclose(rate(humanoid, place, q, v), moves[:3], rtol=0, atol=1e-7)
+    # J̇ v, where v goes on as it is.
+    turns = rate(humanoid, lambda at: humanoid.link_velocity(link, point, at, v), q, v)
+    bias = humanoid.link_bias_acceleration(link, point, q, v)
+    assert np.allclose(turns, bias, rtol=0, atol=1e-6)
+    with pytest.raises(LookupError, match="link_velocity: .*right_hand"):
+        humanoid.link_velocity("right_hnd")

@@ -65,12 +65,13 @@ def test_recording_changes_nothing_and_goes_on_and_back(tmp_path):
     assert times[-1] == pytest.approx(0.1, abs=1e-9) and np.all(np.diff(times) > 0)
 
 
-def test_goals_that_are_cleared_are_shown_no_more(tmp_path):
+@pytest.mark.parametrize("leave", ["clear", "remove"])
+def test_goals_that_have_left_are_shown_no_more(leave, tmp_path):
     sim = softgauss.Simulation(ROBOTS / "arm.urdf")
-    sim.goals.reach("hand", [0.5, 0.3, 0.5])
+    goal = sim.goals.reach("hand", [0.5, 0.3, 0.5])
     sim.record()
     sim.run(0.1)
-    sim.goals.clear()
+    goal.remove() if leave == "remove" else sim.goals.clear()
     sim.run(0.1)
     sim.save_replay(tmp_path / "run.html")
     header, array = run_in(tmp_path / "run.html")

@@ -10,6 +10,7 @@ import pytest
 
 import softgauss
 
+SPECIAL = ("__len__", "__getitem__", "__delitem__")
 STUBS = ast.parse((pathlib.Path(softgauss.__file__).parent / "softgauss.pyi").read_text())
 CLASSES = {node.name: node for node in STUBS.body if isinstance(node, ast.ClassDef)}
 NATIVE = [
@@ -40,7 +41,7 @@ def test_members_are_the_same(name):
     own = {
         member
         for member in vars(getattr(softgauss, name))
-        if not member.startswith("_") or member in ("__len__", "__getitem__")
+        if not member.startswith("_") or member in SPECIAL
     }
     stubs = {member for member in members(name) if member != "__init__"}
     assert own == stubs
@@ -51,7 +52,7 @@ def test_arguments_are_the_same(name):
     for member, node in members(name).items():
         native = getattr(softgauss, name).__dict__.get(member)
         isproperty = isinstance(node, ast.AnnAssign) or node.decorator_list
-        if isproperty or member in ("__len__", "__getitem__"):
+        if isproperty or member in SPECIAL:
             continue
         signature = re.match(r"\w+\((.*)\) ->", native.__doc__, re.S).group(1)
         own = [arg for arg in re.findall(r"(\w+): ", signature) if arg not in ("self", "kwargs")]
@@ -68,7 +69,7 @@ def test_everything_is_documented(name):
     bare = [
         member
         for member in members(name)
-        if member not in ("__len__", "__getitem__")
+        if member not in SPECIAL
         and not (vars(getattr(softgauss, name))[member].__doc__ or "").strip()
     ]
     assert getattr(softgauss, name).__doc__ and not bare
