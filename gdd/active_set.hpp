@@ -125,7 +125,7 @@ class ActiveSet {
   bool known_ = false;     ///< started from a last step
   bool ready_ = false;     ///< R is that of this solve
   bool entered_ = false;   ///< the response is that of the cell at a
-  bool exact_ = false;
+  bool exact_ = false;     ///< isExact()
   GddReport report_;
   Solution first_;      ///< while another is looked for
   int searchAge_ = 0;   ///< WarmStart::gddSearchAge

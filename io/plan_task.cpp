@@ -9,6 +9,7 @@
 #include "softgauss/engine/core/rotation.hpp"
 #include "softgauss/io/detail/input_file.hpp"
 #include "softgauss/io/detail/scene_parts.hpp"
+#include "softgauss/io/detail/unit_mistakes.hpp"
 #include "softgauss/io/detail/yaml.hpp"
 
 namespace softgauss::io {
@@ -147,8 +148,13 @@ double readPlace(const YamlMap& joints, const YamlMap::Entry& joint, const Model
   const double place = joints.number(joint);
   for (const JointRange& range : model.ranges)
     if (&model.bodies[idx(range.body)] == &body && !(place >= range.lower && place <= range.upper))
-      joints.fail(joint, fmt::format("found {}, expected within the joint's range {:.4g} .. {:.4g}",
-                                     place, range.lower, range.upper));
+      joints.fail(
+          joint,
+          fmt::format("found {}{}, expected within the joint's range {:.4g} .. {:.4g}", place,
+                      body.joint == JointKind::revolute
+                          ? detail::radiansMeant(place, range.lower, range.upper)
+                          : "",
+                      range.lower, range.upper));
   return place;
 }
 
