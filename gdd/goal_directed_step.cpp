@@ -3,7 +3,6 @@
 
 #include <chrono>
 #include <tuple>
-#include <type_traits>
 
 #include "softgauss/gdd/goals/standing_balance.hpp"
 
@@ -28,6 +27,12 @@ bool refuses(const ActiveSet&, const WarmStart& warm) {
 bool refuses(const AugmentedLagrangian&, const WarmStart& warm) {
   return warm.gddValid && !(warm.gddA.allFinite() && warm.multipliers.allFinite());
 }
+
+/// What is left of the equation of motion where the solver has ended on it, or null.
+const VectorX* exactResidual(const ActiveSet& solver) {
+  return solver.isExact() ? &solver.residual() : nullptr;
+}
+const VectorX* exactResidual(const AugmentedLagrangian&) { return nullptr; }
 
 }  // namespace
 
@@ -54,11 +59,10 @@ const VectorX* GoalDirectedController::solve(Solver& used, const Model& model, c
   expansion.iterationsLeft = iterationBudget;
   expansion.deadline = Deadline::in(timeBudget);
   report = solveOneSided(expansion, used, model, cost_, limits, data, state.warmstart, between_);
-  if constexpr (std::is_same_v<Solver, ActiveSet>)
-    if (used.isExact() && !cost_.hasFunctions()) {
-      solved_ = true;
-      data.forward.gradient = -used.residual();
-    }
+  if (const VectorX* residual = exactResidual(used); residual && !cost_.hasFunctions()) {
+    solved_ = true;
+    data.forward.gradient = -*residual;
+  }
   const GddReport solved = report;
   report.addEarlier(earlier_);
   earlier_.addCounts(solved);

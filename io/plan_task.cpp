@@ -151,10 +151,7 @@ double readPlace(const YamlMap& joints, const YamlMap::Entry& joint, const Model
       joints.fail(
           joint,
           fmt::format("found {}{}, expected within the joint's range {:.4g} .. {:.4g}", place,
-                      body.joint == JointKind::revolute
-                          ? detail::radiansMeant(place, range.lower, range.upper)
-                          : "",
-                      range.lower, range.upper));
+                      detail::radiansMeant(model, range, place), range.lower, range.upper));
   return place;
 }
 

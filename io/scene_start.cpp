@@ -24,16 +24,12 @@ State SceneFile::initialState(const Model& model, std::vector<std::string>* warn
   for (const auto& [joint, value, where, element] : positions) {
     const int body = model.findJoint(joint);
     const auto range = ranges.find(body);
-    const bool turns = model.bodies[static_cast<std::size_t>(body)].joint == JointKind::revolute;
-    const std::string meant =
-        range != ranges.end() && turns
-            ? detail::radiansMeant(value, range->second->lower, range->second->upper)
-            : "";
     if (range != ranges.end() && (value < range->second->lower || value > range->second->upper))
       throw ModelError(where, element,
                        fmt::format("found {:g}{}, expected a position within the joint's range, "
                                    "{:g} to {:g}",
-                                   value, meant, range->second->lower, range->second->upper));
+                                   value, detail::radiansMeant(model, *range->second, value),
+                                   range->second->lower, range->second->upper));
     state.q[model.bodies[static_cast<std::size_t>(body)].q] = value;
   }
   std::set<int> placed;

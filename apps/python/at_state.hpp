@@ -7,6 +7,7 @@
 #include <string>
 
 #include "apps/python/arrays.hpp"
+#include "softgauss/io/names.hpp"
 #include "softgauss/io/simulation/simulation.hpp"
 
 namespace softgauss::python {
@@ -54,5 +55,28 @@ class AtState {
   State& state_;
   std::optional<State> own_;
 };
+
+/// A simulation at some q and v, with poses there.
+struct Posed : AtState {
+  Posed(Simulation& sim, const py::object& q, const py::object& v)
+      : AtState(sim, q, v), model(sim.model()), state(sim.state()), k(model) {
+    computeKinematics(model, state, k);
+  }
+  /// Where a point (3,) of a link's frame is in the world [m].
+  Vector3 placeOf(const Frame& frame, const py::object& point) const {
+    return k.X_WB[idx(frame.body)] * (frame.X_BF * vector3Of(point, "point"));
+  }
+
+  const Model& model;
+  const State& state;
+  Kinematics k;
+};
+
+/// The frame of a link. Throws NameError, which begins with who asks.
+inline const Frame& frameOf(const Model& model, const std::string& link, const std::string& who) {
+  const int index = model.findFrame(link);
+  if (index < 0) throw NameError(who + ": " + io::linkProblem(model, link));
+  return model.frames[idx(index)];
+}
 
 }  // namespace softgauss::python

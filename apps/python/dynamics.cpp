@@ -4,7 +4,6 @@
 #include "apps/python/at_state.hpp"
 #include "apps/python/held.hpp"
 #include "apps/python/stages.hpp"
-#include "softgauss/io/names.hpp"
 
 namespace softgauss::python {
 namespace {
@@ -34,18 +33,10 @@ VectorX inverse(Simulation& sim, const py::object& a, const py::object& q, const
   return tau;
 }
 
-/// Poses at q, or at the present configuration, with velocities of the present.
-Kinematics kinematicsAt(Simulation& sim, const py::object& q) {
-  const AtState at(sim, q, py::none());
-  Kinematics kinematics(sim.model());
-  computeKinematics(sim.model(), sim.state(), kinematics);
-  return kinematics;
-}
-
 RowMajorMatrixX massMatrix(Held& held, const py::object& q) {
   return held.alone([&](Simulation& sim) -> RowMajorMatrixX {
     MassMatrix mass(sim.model());
-    computeMassMatrix(sim.model(), kinematicsAt(sim, q), mass);
+    computeMassMatrix(sim.model(), Posed(sim, q, py::none()).k, mass);
     return mass.M.dense();
   });
 }
@@ -54,14 +45,11 @@ RowMajorMatrixX jacobian(Held& held, const std::string& link, const py::object& 
                          const py::object& q) {
   return held.alone([&](Simulation& sim) -> RowMajorMatrixX {
     const Model& model = sim.model();
-    const int index = model.findFrame(link);
-    if (index < 0) throw NameError("jacobian: " + io::linkProblem(model, link));
-    const Frame& frame = model.frames[static_cast<std::size_t>(index)];
-    const Kinematics k = kinematicsAt(sim, q);
-    const Vector3 p_WP = k.X_WB[frame.body] * (frame.X_BF * vector3Of(point, "point"));
+    const Frame& frame = frameOf(model, link, "jacobian");
+    const Posed at(sim, q, py::none());
     Eigen::Matrix<double, 3, Eigen::Dynamic> linear(3, model.nv), angular(3, model.nv);
-    pointJacobian(model, k, frame.body, p_WP, linear);
-    rotationJacobian(model, k, frame.body, angular);
+    pointJacobian(model, at.k, frame.body, at.placeOf(frame, point), linear);
+    rotationJacobian(model, at.k, frame.body, angular);
     RowMajorMatrixX J(6, model.nv);
     J << linear, angular;
     return J;

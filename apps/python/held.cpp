@@ -34,9 +34,10 @@ Simulation& Held::sim() {
 }
 
 void Held::clearGoals() {
-  sim().goals.clear();
-  goalsCleared_ = ++goalsLeft_;
-  left_.clear();
+  SimulationGoals& goals = sim().goals;
+  ++goalsLeft_;
+  for (std::size_t i = 0; i < goals.size(); ++i) left_[&goals[i]] = goalsLeft_;
+  goals.clear();
 }
 
 void Held::removeGoal(const gdd::Goal& goal) {

@@ -50,7 +50,7 @@ class Held {
   /// Whether a goal has left since goalsLeft() was that: another may be in its place in memory.
   bool hasLeft(const gdd::Goal* goal, unsigned long since) const {
     const auto left = left_.find(goal);
-    return since < goalsCleared_ || (left != left_.end() && since < left->second);
+    return left != left_.end() && since < left->second;
   }
   /// Whether its goals are those of its file.
   bool hasGoalsOfFile() { return goalsLeft_ == 0 && sim().goals.size() == goalsOfFile_; }
@@ -65,7 +65,7 @@ class Held {
   Simulation sim_;
   std::size_t goalsOfFile_;
   Pushes pushes_;
-  unsigned long goalsLeft_ = 0, goalsCleared_ = 0;  ///< and when all have left
+  unsigned long goalsLeft_ = 0;
   std::map<const gdd::Goal*, unsigned long> left_;  ///< when the last one of that place has
   std::atomic<bool> busy_ = false;
 };

@@ -7,22 +7,9 @@
 #include "softgauss/engine/dynamics/energy.hpp"
 #include "softgauss/engine/dynamics/jacobian.hpp"
 #include "softgauss/engine/step/forward_derivative.hpp"
-#include "softgauss/io/names.hpp"
 
 namespace softgauss::python {
 namespace {
-
-/// A simulation at some q and v, with poses there.
-struct Posed : AtState {
-  Posed(Simulation& sim, const py::object& q, const py::object& v)
-      : AtState(sim, q, v), model(sim.model()), state(sim.state()), k(model) {
-    computeKinematics(model, state, k);
-  }
-
-  const Model& model;
-  const State& state;
-  Kinematics k;
-};
 
 VectorX biasForces(const Posed& at) {
   MassMatrix inertia(at.model);
@@ -65,12 +52,9 @@ auto ofLink(const char* what, LinkMotion motion) {
   return [=](Held& held, const std::string& link, const py::object& point, const py::object& q,
              const py::object& v) {
     return held.alone([&](Simulation& sim) -> VectorX {
-      const int index = sim.model().findFrame(link);
-      if (index < 0) throw NameError(what + (": " + io::linkProblem(sim.model(), link)));
-      const Frame& frame = sim.model().frames[idx(index)];
+      const Frame& frame = frameOf(sim.model(), link, what);
       const Posed at(sim, q, v);
-      const Vector3 p_WP = at.k.X_WB[idx(frame.body)] * (frame.X_BF * vector3Of(point, "point"));
-      return motion(at, frame.body, p_WP);
+      return motion(at, frame.body, at.placeOf(frame, point));
     });
   };
 }

@@ -49,7 +49,8 @@ class Goal:
     def name(self) -> str: ...
     def held_back(self) -> list[tuple[str, float]]:
         """What holds it back now, and its share: the largest first, they add up to 1."""
-    def remove(self) -> None: ...
+    def remove(self) -> None:
+        """It acts no more; what came with it stays."""
 
 class Goals:
     """The goals of a simulation. Reach, hold and posture come with virtual damping."""

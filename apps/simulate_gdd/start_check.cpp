@@ -21,10 +21,9 @@ std::vector<std::string> inDegrees(const Model& model,
                                    const gdd::GoalDirectedController& controller) {
   std::vector<std::string> found;
   const auto look = [&](const gdd::Goal& goal, int body, double value) {
-    if (model.bodies[idx(body)].joint != JointKind::revolute) return;
     for (const JointRange& range : model.ranges) {
       if (range.body != body) continue;
-      const std::string meant = io::detail::radiansMeant(value, range.lower, range.upper);
+      const std::string meant = io::detail::radiansMeant(model, range, value);
       if (!meant.empty())
         found.push_back(fmt::format("{} sends {} to {:.6g}, beyond its range {:.6g} .. {:.6g}{}",
                                     goal.name(), nameText(model.jointNames[idx(body)]), value,

@@ -211,11 +211,12 @@ std::vector<std::string> meshes(const UrdfDescription& urdf, double robot, MeshB
 
 }  // namespace
 
-std::string radiansMeant(double position, double lower, double upper) {
+std::string radiansMeant(const Model& model, const JointRange& range, double position) {
   constexpr double kLeastDegrees = 5.0;  // less is no angle that people give in degrees
   const double radians = position * kDegree;
-  const bool isBeyond = position < lower || position > upper;
-  if (!isBeyond || std::abs(position) < kLeastDegrees || radians < lower || radians > upper)
+  const auto isBeyond = [&](double q) { return q < range.lower || q > range.upper; };
+  if (model.bodies[idx(range.body)].joint != JointKind::revolute || !isBeyond(position) ||
+      isBeyond(radians) || std::abs(position) < kLeastDegrees)
     return {};
   return fmt::format(" ({} rad if it is in degrees)", shortNumber(radians));
 }

@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "softgauss/engine/model/model.hpp"
 #include "softgauss/io/detail/urdf_description.hpp"
 #include "softgauss/io/detail/urdf_xml.hpp"
 
@@ -23,9 +24,9 @@ namespace softgauss::io::detail {
 /// "0 0 1.5708 rad" for angles of a pose that are probably degrees, or nothing.
 std::string radiansMeant(const std::vector<double>& angles);
 
-/// " (0.5236 rad if it is in degrees)" for a position of a hinge beyond its range that degrees
+/// " (0.5236 rad if it is in degrees)" for a position beyond the range of a hinge that degrees
 /// would bring into it, or nothing.
-std::string radiansMeant(double position, double lower, double upper);
+std::string radiansMeant(const Model& model, const JointRange& range, double position);
 
 /// One warning of each kind. Meshes of `urdf` count where they have been read.
 std::vector<std::string> unitMistakes(const XmlElement& robot, const UrdfDescription& urdf);

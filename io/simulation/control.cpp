@@ -28,10 +28,7 @@ void setJointPositions(const Model& model, const std::vector<std::pair<std::stri
     for (const JointRange& range : model.ranges)
       if (range.body == body && (value < range.lower || value > range.upper))
         fail(fmt::format("{} lies outside the joint's range {} .. {}{}", value, range.lower,
-                         range.upper,
-                         model.bodies[body].joint == JointKind::revolute
-                             ? io::detail::radiansMeant(value, range.lower, range.upper)
-                             : ""));
+                         range.upper, io::detail::radiansMeant(model, range, value)));
     state.q[model.bodies[body].q] = value;
     placed.insert(body);
   }
