@@ -17,8 +17,11 @@ ActiveSet::ActiveSet(const Model& model) : path_(model) {
 
 /// B u − g(a), with the rows as they were last evaluated.
 void ActiveSet::computeResidual(const Data& data) {
-  data.inertia.M.multiply(path_.a, Ma_);
-  residual_ = force_ - Ma_ - data.inertia.added.cwiseProduct(path_.a) - data.forces.c;
+  data.inertia.M.multiply(dofs_, path_.a, Ma_);
+  for (const Segment s : dofs_)
+    part(residual_, s) = part(force_, s) - part(Ma_, s) -
+                         part(data.inertia.added, s).cwiseProduct(part(path_.a, s)) -
+                         part(data.forces.c, s);
   data.constraints.addForce(residual_);
 }
 
@@ -116,8 +119,8 @@ double ActiveSet::solveProgram() {
 bool ActiveSet::isRounding(const Data& data) {
   constexpr double kRounding = 1e-14;
   cell_.force(program_.solution(), rate_);
-  return rate_.cwiseAbs().maxCoeff() <=
-         kRounding * std::max(data.forces.c.cwiseAbs().maxCoeff(), force_.cwiseAbs().maxCoeff());
+  return largest(dofs_, rate_) <=
+         kRounding * std::max(largest(dofs_, data.forces.c), largest(dofs_, force_));
 }
 
 /// Moves along the path of the program's solution.
@@ -169,7 +172,7 @@ ActiveSet::Next ActiveSet::tryNeighbourCell(Data& data) {
   for (int k = 0; k < n; ++k) {
     const HeldBreakpoint& h = row(k);
     const double pull = forces_.pull(h.breakpoint, data.constraints);
-    const double change = h.sign * h.jump * (h.J.dot(adjoint_) + pull);
+    const double change = h.sign * h.jump * (dot(dofs_, h.J, adjoint_) + pull);
     const double other = change - h.multiplier;
     const double tolerance = kTolerance * (std::abs(change) + h.multiplier);
     if (other >= -tolerance) continue;
@@ -207,15 +210,14 @@ void ActiveSet::finish(const Model& model, const ControlLimits& limits, const Go
                        Data& data) {
   constexpr int kCorrections = 3;
   constexpr double kRounding = 1e-13;
-  const double scale =
-      std::max({1.0, data.forces.c.cwiseAbs().maxCoeff(), force_.cwiseAbs().maxCoeff()});
+  const double scale = std::max({1.0, largest(dofs_, data.forces.c), largest(dofs_, force_)});
   setAppliedForce(force_, data.forces);
   bool changed = false, anew = false, searched = false;
   for (int k = 0;; ++k) {
     data.constraints.setResidual(path_.a);
     data.constraints.evaluate(changed);
     computeResidual(data);
-    exact_ = residual_.cwiseAbs().maxCoeff() <= kRounding * scale;
+    exact_ = largest(dofs_, residual_) <= kRounding * scale;
     if (exact_ || searched) break;
     if (k < kCorrections) {
       cell_.solve(residual_);
@@ -233,7 +235,7 @@ void ActiveSet::finish(const Model& model, const ControlLimits& limits, const Go
     }
   }
   rate_ = force_ - residual_;  // g(a)
-  report_.violation = limits.violation(rate_);
+  report_.violation = limits.violation(dofs_, rate_);
   forces_.evaluate(data.constraints);
   path_.value = cost.value(path_.a, Ma_);
   report_.objective = objective();
@@ -321,8 +323,10 @@ GddReport ActiveSet::solve(const Model& model, GoalCost& cost, const ControlLimi
   finish(model, limits, cost, data);
 
   if (!known_) return report_;  // a cold start has looked
-  searchAge_ = warm.gddSearchAge;
-  searchWait_ = warm.gddSearchWait;
+  if (tree_ < warm.gddSearchAge.size() && tree_ < warm.gddSearchWait.size()) {
+    searchAge_ = warm.gddSearchAge[tree_];
+    searchWait_ = warm.gddSearchWait[tree_];
+  }
   // An expansion of functions is good near its point alone.
   const bool canSearch =
       data.constraints.rowCount() > 0 && cell_.columns() > 0 && !cost.hasFunctions();

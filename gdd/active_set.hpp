@@ -15,6 +15,10 @@
 /// point promises nothing: all of them at once where the multipliers say so (10.10), one by one
 /// otherwise.
 ///
+/// Solves for the trees that are active in the data (Data::active), with the rows and the cost that
+/// are selected: all, or an island (goal_islands.hpp). Vectors that come out are of their dofs, and
+/// zero elsewhere.
+///
 /// Needs rows that are piecewise quadratic: no elliptic cones.
 
 #include <cstdint>
@@ -102,6 +106,8 @@ class ActiveSet {
                   Data& data);
   void finish(const Model& model, const ControlLimits& limits, const GoalCost& cost, Data& data);
 
+  Segments dofs_;                     ///< that are solved for
+  std::size_t tree_ = 0, trees_ = 0;  ///< the first tree of these; trees of the model
   CellResponse cell_;
   QuadraticProgram program_;
   ForwardPath path_;                  ///< holds a and the rows at their breakpoints

@@ -49,7 +49,7 @@ double ActiveSet::moveTo(const Model& model, const GoalCost& cost, const VectorX
 /// the way. Returns F, ∞ where it has not come there.
 double ActiveSet::moveAlongPath(const GoalCost& cost, const VectorX& a, Data& data) {
   bool changed = false;
-  path_.a = a;
+  copyOnly(dofs_, a, path_.a);
   data.constraints.setResidual(path_.a);
   data.constraints.evaluate(changed);
   ++report_.factorizations;
@@ -66,7 +66,7 @@ double ActiveSet::moveAlongPath(const GoalCost& cost, const VectorX& a, Data& da
 
 /// ℓ and ∇ℓ at a.
 void ActiveSet::evaluateCost(const GoalCost& cost, const Data& data) {
-  data.inertia.M.multiply(path_.a, Ma_);
+  data.inertia.M.multiply(dofs_, path_.a, Ma_);
   cost.gradient(path_.a, Ma_, path_.slope);
   path_.value = cost.value(path_.a, Ma_);
 }
@@ -122,7 +122,8 @@ void ActiveSet::chooseStart(const Model& model, const GoalCost& cost, Data& data
   if (data.constraints.rowCount() > 0 && u_.size() > 0 && std::isfinite(least)) {
     const auto moveWithoutRows = [&] {
       cell_.enterWithoutRows();
-      path_.a = force_ - data.forces.c;
+      path_.a = force_;
+      for (const Segment s : dofs_) part(path_.a, s) -= part(data.forces.c, s);
       cell_.solve(path_.a);
     };
     moveWithoutRows();
@@ -157,12 +158,17 @@ GddStatus ActiveSet::start(const Model& model, const GoalCost& cost, const Contr
                            Data& data, const WarmStart& warm) {
   badDof_ = -1;
   ready_ = entered_ = false;
+  dofs_ = data.active.dofs();
+  const int body = model.dofs[idx(dofs_.front().begin)].body;
+  tree_ = idx(model.bodies[idx(body)].tree);
+  trees_ = model.trees.size();
+  for (VectorX* x : {&force_, &Ma_, &adjoint_, &residual_, &rate_}) x->setZero();
   forces_.setCost(cost.forces());
   tried_.clear();
   path_.held.clear();
   breakpoints_.clear();
   constrained_.clear();
-  cell_.setDriven(model, limits);
+  cell_.setDriven(model, limits, dofs_);
   cell_.pick(limits.lower, lower_);
   cell_.pick(limits.upper, upper_);
   u_.setZero(cell_.columns());
@@ -192,8 +198,10 @@ void ActiveSet::keepWarmStart(WarmStart& warm) const {
   cell_.place(u_, warm.control);
   warm.multipliers.setZero(force_.size());
   warm.breakpoints = breakpoints_;
-  warm.gddSearchAge = searchAge_;
-  warm.gddSearchWait = searchWait_;
+  warm.gddSearchAge.assign(trees_, 0);
+  warm.gddSearchWait.assign(trees_, 1);
+  warm.gddSearchAge[tree_] = searchAge_;
+  warm.gddSearchWait[tree_] = searchWait_;
   warm.gddValid = true;
 }
 

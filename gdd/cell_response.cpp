@@ -19,36 +19,45 @@ SOFTGAUSS_VECTOR_CLONES void subtractRankTwo(const double* s, const double* b, i
   }
 }
 
-/// S ← S − scale · y sᵀ.
-SOFTGAUSS_VECTOR_CLONES void subtractRankOne(const double* y, const double* s, double scale,
-                                             RowMajorMatrixX& S) {
-  const int rows = static_cast<int>(S.rows()), columns = static_cast<int>(S.cols());
-  for (int i = 0; i < rows; ++i) addScaled(-scale * y[i], s, columns, S.data() + i * columns);
+/// S ← S − scale · y sᵀ, of these rows.
+SOFTGAUSS_VECTOR_CLONES void subtractRankOne(Segments rows, const double* y, const double* s,
+                                             double scale, RowMajorMatrixX& S) {
+  const int columns = static_cast<int>(S.cols());
+  for (const Segment part : rows)
+    for (int i = part.begin; i < part.end; ++i)
+      addScaled(-scale * y[i], s, columns, S.data() + i * columns);
 }
 
-/// K ← K + Σ_k c_k y_k y_kᵀ (n × n), y_k row k of Y, which is zero but in range k.
+/// K ← K + Σ_k c_k y_k y_kᵀ (n × n) over the dofs of a factor, y_k row k of Y, which is zero but in
+/// range k.
 SOFTGAUSS_VECTOR_CLONES void addWeightedGram(const RowMajorMatrixX& Y, const TreeFactor& factor,
                                              const std::vector<Segment>& range, MatrixX& K) {
-  const int n = static_cast<int>(Y.cols()), rows = static_cast<int>(Y.rows());
-  for (int k = 0, end; k < rows; k = end) {
-    const Segment r = range[k];
-    end = endOfRun(range, k, rows);
-    const double *y = Y.data() + k * n, *inverse = factor.inversePivots() + k;
-    double* to = K.data();
-    for (int i = r.begin; i < r.end; ++i)
-      addSum(
-          end - k, [=](int j) { return inverse[j] * y[j * n + i]; },
-          [=](int j) { return y + j * n + r.begin; }, r.end - r.begin, to + i * n + r.begin);
-  }
+  const int n = static_cast<int>(Y.cols());
+  for (const Segment part : factor.dofs())
+    for (int k = part.begin, end; k < part.end; k = end) {
+      const Segment r = range[k];
+      end = endOfRun(range, k, part.end);
+      const double *y = Y.data() + k * n, *inverse = factor.inversePivots() + k;
+      double* to = K.data();
+      for (int i = r.begin; i < r.end; ++i)
+        addSum(
+            end - k, [=](int j) { return inverse[j] * y[j * n + i]; },
+            [=](int j) { return y + j * n + r.begin; }, r.end - r.begin, to + i * n + r.begin);
+    }
 }
 
 }  // namespace
 
-void CellResponse::setDriven(const Model& model, const ControlLimits& limits) {
+void CellResponse::setDriven(const Model& model, const ControlLimits& limits, Segments dofs) {
+  dofs_ = dofs;
   driven_.clear();
-  fixed_ = limits.lower;
-  for (int i = 0; i < model.nv; ++i)
-    if (limits.lower[i] < limits.upper[i]) driven_.push_back(i), fixed_[i] = 0.0;
+  fixed_.setZero(model.nv);
+  for (const Segment s : dofs_)
+    for (int i = s.begin; i < s.end; ++i)
+      if (limits.lower[i] < limits.upper[i])
+        driven_.push_back(i);
+      else
+        fixed_[i] = limits.lower[i];
   transmission_ = limits.transmission;
   givenForce_ = fixed_;
   if (!transmission_) return;
@@ -60,8 +69,12 @@ void CellResponse::setDriven(const Model& model, const ControlLimits& limits) {
 /// X ← B, and the range of each row.
 void CellResponse::setColumns(RowMajorMatrixX& X) {
   const int n = M_->size();
-  X.setZero(n, padded());
-  range_.assign(static_cast<std::size_t>(n), Segment{});
+  X.resize(n, padded());
+  range_.resize(static_cast<std::size_t>(n));
+  for (const Segment s : dofs_) {
+    X.middleRows(s.begin, s.end - s.begin).setZero();
+    std::fill(range_.begin() + s.begin, range_.begin() + s.end, Segment{});
+  }
   const auto set = [&](int dof, int c, double x) {
     X(dof, c) = x;
     Segment& range = range_[dof];
@@ -73,8 +86,9 @@ void CellResponse::setColumns(RowMajorMatrixX& X) {
       set(driven_[c], c, 1.0);
       continue;
     }
-    for (int i = 0; i < n; ++i)
-      if (B_(i, c) != 0.0) set(i, c, B_(i, c));
+    for (const Segment s : dofs_)
+      for (int i = s.begin; i < s.end; ++i)
+        if (B_(i, c) != 0.0) set(i, c, B_(i, c));
   }
 }
 
@@ -82,11 +96,11 @@ bool CellResponse::setInertia(const Data& data, const GoalCost& cost) {
   M_ = &data.inertia.M;
   cost_ = &cost;
   controlCost_ = cost.controlCost();
-  if (!massFactor_.compute(data.inertia.hat())) return false;
+  if (!massFactor_.compute(data.inertia.hat(), dofs_)) return false;
   // Goals weigh by M itself.
   goalMassFactor_ = data.inertia.anyAdded ? &ownGoalMassFactor_ : &massFactor_;
   if (data.inertia.anyAdded && cost.metricWeight() != 0.0 &&
-      !ownGoalMassFactor_.compute(data.inertia.M))
+      !ownGoalMassFactor_.compute(data.inertia.M, dofs_))
     return false;
   controlCost_.prepare(massFactor_);
   computeControlCost();
@@ -121,8 +135,14 @@ void CellResponse::computeControlCost() {
 
 void CellResponse::multiplyTransposed(const VectorX& x, VectorX& y) const {
   padded_.setZero(padded());
-  addWeightedRows(x.data(), S_.data(), static_cast<int>(S_.rows()), padded(), padded_.data());
+  addWeighted(S_, x, padded_);
   y = padded_.head(columns());
+}
+
+void CellResponse::addWeighted(const RowMajorMatrixX& X, const VectorX& x, VectorX& y) const {
+  for (const Segment s : dofs_)
+    addWeightedRows(x.data() + s.begin, X.data() + s.begin * padded(), s.end - s.begin, padded(),
+                    y.data());
 }
 
 void CellResponse::multiplyControlCost(const VectorX& p, VectorX& y) const {
@@ -137,10 +157,10 @@ bool CellResponse::enter(Data& data) {
     return true;
   }
   P_.resize(data.constraints.sparsity());
-  P_.assign(data.inertia.hat());
+  P_.assign(data.inertia.hat(), dofs_);
   data.constraints.addCurvature(P_);
   enterWith(cellFactor_);
-  return cellFactor_.compute(P_);
+  return cellFactor_.compute(P_, dofs_);
 }
 
 void CellResponse::reserve(int crossings) {
@@ -164,7 +184,7 @@ void CellResponse::solve(VectorX& x) const {
   factor_->solve(x);
   for (int k = 0; k < correctionCount_; ++k) {
     const Correction& c = corrections_[k];
-    x -= c.scale * c.y.dot(scratch_) * c.y;
+    x -= c.scale * dot(dofs_, c.y, scratch_) * c.y;
   }
 }
 
@@ -183,10 +203,10 @@ const CellResponse::Correction& CellResponse::cross(const VectorX& J, double jum
     c.By.head(columns()).noalias() = B_.transpose() * c.y;
   else
     for (int i = 0; i < columns(); ++i) c.By[i] = c.y[driven_[i]];
-  c.scale = jump / (1.0 + jump * J.dot(c.y));
+  c.scale = jump / (1.0 + jump * dot(dofs_, J, c.y));
   if (correctionsInS_ >= 0) {
-    My_.resize(c.y.size());
-    M_->multiply(c.y, My_);
+    My_.setZero(c.y.size());
+    M_->multiply(dofs_, c.y, My_);
     cost_->multiplyCurvature(c.y, My_, c.Hy);
   }
   return c;
@@ -204,8 +224,8 @@ void CellResponse::computeHessian() {
     setColumns(S_);
     factor_->solve(S_, range_);
     for (int k = 0; k < correctionCount_; ++k)
-      subtractRankOne(corrections_[k].y.data(), corrections_[k].By.data(), corrections_[k].scale,
-                      S_);
+      subtractRankOne(dofs_, corrections_[k].y.data(), corrections_[k].By.data(),
+                      corrections_[k].scale, S_);
     K_ = reducedControlCost_;
     rootS_.resize(S_.rows(), S_.cols());
     cost_->addReducedCurvature(*goalMassFactor_, S_, rootS_, K_);
@@ -218,10 +238,10 @@ void CellResponse::computeHessian() {
 /// K and S of the cell behind one more crossing.
 void CellResponse::addToHessian(const Correction& c) {
   b_.setZero(padded());
-  addWeightedRows(c.Hy.data(), S_.data(), static_cast<int>(S_.rows()), padded(), b_.data());
-  b_ = c.scale * b_ - 0.5 * c.scale * c.scale * c.y.dot(c.Hy) * c.By;
+  addWeighted(S_, c.Hy, b_);
+  b_ = c.scale * b_ - 0.5 * c.scale * c.scale * dot(dofs_, c.y, c.Hy) * c.By;
   subtractRankTwo(c.By.data(), b_.data(), padded(), K_.data());
-  subtractRankOne(c.y.data(), c.By.data(), c.scale, S_);
+  subtractRankOne(dofs_, c.y.data(), c.By.data(), c.scale, S_);
 }
 
 void CellResponse::select(const VectorX& x, VectorX& y) const {

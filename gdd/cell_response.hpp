@@ -5,6 +5,7 @@
 ///
 ///   S = P⁻¹B,   K = BᵀR B + Sᵀ∇²ℓ S,   P = M + Jᵀ∇²s J
 ///
+/// of some dofs, which nothing couples with others: vectors of all nv have zeros elsewhere.
 /// R holds the prices W. B has a column for each coordinate of force whose box is open
 /// (problem.hpp): a unit column where that is the force on a dof. All columns are solved for at
 /// once. Where a row changes its piece, P changes by Δs″ JᵀJ, and nothing is factored anew (10.9):
@@ -13,6 +14,7 @@
 
 #include <vector>
 
+#include "softgauss/engine/core/segment_vectors.hpp"
 #include "softgauss/engine/core/vector_kernels.hpp"
 #include "softgauss/engine/step/data.hpp"
 #include "softgauss/gdd/cost.hpp"
@@ -26,8 +28,8 @@ class CellResponse {
   CellResponse(const CellResponse&) = delete;  // factors are pointed at
   CellResponse& operator=(const CellResponse&) = delete;
 
-  /// Takes B from the limits.
-  void setDriven(const Model& model, const ControlLimits& limits);
+  /// Takes B from the limits, of these dofs, which must stay.
+  void setDriven(const Model& model, const ControlLimits& limits, Segments dofs);
   /// Takes R from the cost and M̂, and ∇²ℓ from the cost; M and the cost must stay. Returns false
   /// when M is not positive definite.
   bool setInertia(const Data& data, const GoalCost& cost);
@@ -67,7 +69,10 @@ class CellResponse {
   void solve(VectorX& x) const;                         ///< x ← P⁻¹x
   /// y ← Sᵀx and a ← S p, after computeHessian().
   void multiplyTransposed(const VectorX& x, VectorX& y) const;
-  void multiply(const VectorX& p, VectorX& a) const { a.noalias() = S_.leftCols(columns()) * p; }
+  void multiply(const VectorX& p, VectorX& a) const {
+    for (const Segment s : dofs_)
+      part(a, s).noalias() = S_.middleRows(s.begin, s.end - s.begin).leftCols(columns()) * p;
+  }
   void multiplyR(const VectorX& x, VectorX& Rx) const;                 ///< Rx ← R x
   const ControlCostTerm& controlCost() const { return controlCost_; }  ///< prepared
   void multiplyControlCost(const VectorX& p, VectorX& y) const;        ///< y ← BᵀR B p
@@ -77,6 +82,8 @@ class CellResponse {
 
  private:
   void enterWith(const TreeFactor& factor);
+  /// y ← y + Xᵀx, for X (nv × padded).
+  void addWeighted(const RowMajorMatrixX& X, const VectorX& x, VectorX& y) const;
   int padded() const { return paddedSize(columns()); }
   void setColumns(RowMajorMatrixX& X);
   void computeControlCost();
@@ -84,6 +91,7 @@ class CellResponse {
 
   static constexpr int kMaxCorrections = 16;
 
+  Segments dofs_;
   std::vector<int> driven_;
   std::shared_ptr<const Transmission> transmission_;  ///< null: B selects
   MatrixX B_;                                         ///< empty where B selects

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "softgauss/engine/core/check.hpp"
+#include "softgauss/engine/core/segment_vectors.hpp"
 
 namespace softgauss::gdd {
 namespace {
@@ -53,14 +54,16 @@ ForceMetric ForceMetric::dense(const MatrixX& R) {
 void ControlCostTerm::set(const ForceMetric& R) {
   SOFTGAUSS_ASSERT(R.isInverseMass() || R.dofs() == diagonal_.size());
   inverseMass_ = R.isInverseMass();
-  if (R.entries().size() > 0)
-    diagonal_ = R.entries();
+  metric_ = R.entries();
+  if (metric_.size() > 0)
+    diagonal_ = metric_;
   else
     diagonal_.setZero();
   count_ = 0;
   hasFree_ = false;
   freeCost_ = 0.0;
   for (Eigen::Index k = 0; k < R.root().cols(); ++k) add(R.root().col(k), 1.0);
+  metricDirections_ = count_;
 }
 
 void ControlCostTerm::setFree(const VectorX& force) {
@@ -69,25 +72,35 @@ void ControlCostTerm::setFree(const VectorX& force) {
   free_ = force;
   freeSlope_.resize(force.size());  // copies keep their memory
   scratch_.resize(force.size());
-  freeExplicit_ = diagonal_.cwiseProduct(force);
-  for (int k = 0; k < count_; ++k) freeExplicit_ += direction(k).dot(force) * direction(k);
+  if (metric_.size() > 0)
+    freeExplicit_ = metric_.cwiseProduct(force);
+  else
+    freeExplicit_.setZero(force.size());
+  for (int k = 0; k < metricDirections_; ++k)
+    freeExplicit_ += direction(k).dot(force) * direction(k);
 }
 
 void ControlCostTerm::prepare(const TreeFactor& massFactor) {
   if (!hasFree_) return;
-  freeSlope_ = freeExplicit_;
+  const Segments dofs = massFactor.dofs();
+  copyOnly(dofs, freeExplicit_, freeSlope_);
   if (inverseMass_) {
-    scratch_ = free_;
+    copyOnly(dofs, free_, scratch_);
     massFactor.solve(scratch_);
     freeSlope_ += scratch_;
   }
-  freeCost_ = 0.5 * free_.dot(freeSlope_);
+  freeCost_ = 0.5 * dot(dofs, free_, freeSlope_);
 }
 
 void ControlCostTerm::add(const Eigen::Ref<const VectorX>& c, double weight) {
   SOFTGAUSS_ASSERT(c.size() == diagonal_.size() && weight >= 0.0);
   if (directions_.cols() == count_) directions_.conservativeResize(c.size(), 2 * count_ + 1);
   directions_.col(count_++) = std::sqrt(weight) * c;
+}
+
+void ControlCostTerm::appendPairs(const Model& model,
+                                  std::vector<std::pair<int, int>>& pairs) const {
+  for (int k = 0; k < count_; ++k) appendCoupledTrees(model, directions_.col(k), pairs);
 }
 
 MatrixX ControlCostTerm::dense() const {

@@ -11,7 +11,11 @@
 /// l_k l_kᵀ. W is what goals add (9.16): w on a single force adds to r, w on a force along a
 /// direction c, ½ w (c·g)², adds the column √w c.
 
+#include <utility>
+#include <vector>
+
 #include "softgauss/engine/dynamics/tree_matrix.hpp"
+#include "softgauss/gdd/coupled_trees.hpp"
 
 namespace softgauss::gdd {
 
@@ -44,21 +48,24 @@ class ControlCostTerm {
 
   /// R alone, with ĝ = 0. Keeps its memory.
   void set(const ForceMetric& R);
-  /// ĝ (nv) [N, N m]. To be called after set(), before W is added.
+  /// ĝ (nv) [N, N m]. To be called after set().
   void setFree(const VectorX& force);
   /// Adds ½ weight g_dof².
   void add(int dof, double weight) { diagonal_[dof] += weight; }
   /// Adds ½ weight (c·g)².
   void add(const Eigen::Ref<const VectorX>& c, double weight);
 
-  /// R ĝ and ½ ĝᵀR ĝ, for a factor of the M in R. To be called before freeSlope(), freeCost() and
-  /// value().
+  /// R ĝ and ½ ĝᵀR ĝ, for a factor of the M in R, and of its dofs. To be called before freeSlope(),
+  /// freeCost() and value().
   void prepare(const TreeFactor& massFactor);
 
   bool hasInverseMass() const { return inverseMass_; }
   const VectorX& diagonal() const { return diagonal_; }  ///< r (nv)
   int directionCount() const { return count_; }
   auto direction(int k) const { return directions_.col(k); }  ///< d_k (nv)
+
+  /// Appends pairs of bodies whose trees the price couples, but for M⁻¹.
+  void appendPairs(const Model& model, std::vector<std::pair<int, int>>& pairs) const;
 
   /// R + W without M⁻¹ (nv × nv).
   MatrixX dense() const;
@@ -77,6 +84,8 @@ class ControlCostTerm {
   VectorX diagonal_;
   MatrixX directions_;  ///< (nv × room), the first count_ columns are in use
   int count_ = 0;
+  VectorX metric_;            ///< of diagonal_ what is of R, or empty
+  int metricDirections_ = 0;  ///< of directions_ those of R
   bool hasFree_ = false;
   VectorX free_;          ///< ĝ (nv)
   VectorX freeExplicit_;  ///< (R − [M⁻¹]) ĝ (nv)

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "softgauss/engine/core/segment_vectors.hpp"
 #include "softgauss/engine/core/vector_clones.hpp"
 #include "softgauss/engine/core/vector_kernels.hpp"
 #include "softgauss/gdd/weighted_rows.hpp"
@@ -12,14 +13,15 @@
 namespace softgauss::gdd {
 namespace {
 
-/// K ← K + scale · YᵀY, lower triangle by columns (and what lies in its blocks of four): column i
-/// of K gains scale · Σ_k Y_ki Y_k,i…
-SOFTGAUSS_VECTOR_CLONES void addGram(const RowMajorMatrixX& Y, double scale, MatrixX& K) {
-  const int rows = static_cast<int>(Y.rows()), n = static_cast<int>(Y.cols());
+/// K ← K + scale · YᵀY of these rows of Y, lower triangle by columns (and what lies in its blocks
+/// of four): column i of K gains scale · Σ_k Y_ki Y_k,i…
+SOFTGAUSS_VECTOR_CLONES void addGram(const RowMajorMatrixX& Y, Segment rows, double scale,
+                                     MatrixX& K) {
+  const int count = rows.end - rows.begin, n = static_cast<int>(Y.cols());
+  const double* first = Y.data() + rows.begin * n;
   for (int i = 0; i < n; ++i) {
     const int from = i & ~3;
-    addCombination(scale, Y.data() + i, n, Y.data() + from, n, rows, n - from,
-                   K.data() + i * n + from);
+    addCombination(scale, first + i, n, first + from, n, count, n - from, K.data() + i * n + from);
   }
 }
 
@@ -32,9 +34,24 @@ SOFTGAUSS_VECTOR_CLONES void addRankOne(const double* y, double scale, MatrixX& 
   }
 }
 
+/// J a of row i, of these dofs.
+double rowTimes(Segments dofs, const MatrixX& rows, std::size_t i, const VectorX& a) {
+  const auto J = rows.col(static_cast<Eigen::Index>(i));
+  double sum = 0.0;
+  for (const Segment s : dofs) sum += J.segment(s.begin, s.end - s.begin).dot(part(a, s));
+  return sum;
+}
+
+/// g ← g + scale Jᵀ of row i, of these dofs.
+void addRow(Segments dofs, double scale, const MatrixX& rows, std::size_t i, VectorX& g) {
+  const auto J = rows.col(static_cast<Eigen::Index>(i));
+  for (const Segment s : dofs) part(g, s) += scale * J.segment(s.begin, s.end - s.begin);
+}
+
 }  // namespace
 
 void GoalCost::clear(const ForceMetric& R) {
+  select(-1);
   rows_.clear();
   share_ = 1.0;
   weight_.clear();
@@ -58,6 +75,8 @@ void GoalCost::reserve(int controls, int contacts) {
   for (std::vector<double>* list : {&denseWeight_, &denseTarget_})
     list->reserve(static_cast<std::size_t>(most));
   sides_.reserve(static_cast<std::size_t>(most));
+  points_.reserve(static_cast<std::size_t>(dofs), weight_.capacity());  // an island has a dof
+  denseRows_.reserve(static_cast<std::size_t>(dofs), static_cast<std::size_t>(most));
   reduced_.resize(paddedSize(controls));
   forces_.reserve(contacts);
 }
@@ -114,9 +133,10 @@ bool GoalCost::chooseSides(const VectorX& a, bool first) {
   constexpr double kRounding = 1e-10;  // either side will do
   bool changed = false;
   for (const OneSided& side : sides_) {
+    if (island_ >= 0 && !denseRows_.has(island_, static_cast<int>(side.row))) continue;
     const double least = denseTarget_[side.row];
-    const double is = side.dof >= 0 ? side.sign * a[side.dof]
-                                    : dense_.col(static_cast<Eigen::Index>(side.row)).dot(a);
+    const double is =
+        side.dof >= 0 ? side.sign * a[side.dof] : rowTimes(dofs(), dense_, side.row, a);
     const double rounding = kRounding * (1.0 + std::abs(least) + std::abs(is));
     double& weight = denseWeight_[side.row];
     const bool counts = weight > 0.0;
@@ -135,67 +155,70 @@ void GoalCost::addDof(int dof, double weight, double target) {
 
 double GoalCost::value(const VectorX& a, const VectorX& Ma) const {
   double sum = 0.0;
-  for (int i = 0; i < rows_.size(); ++i) {
+  forEachPoint([&](std::size_t i) {
     Vector3 y;
-    rows_.multiply(i, a, y.data());
+    rows_.multiply(static_cast<int>(i), a, y.data());
     sum += 0.5 * weight_[i] * (y - target_[i]).squaredNorm();
-  }
-  for (std::size_t i = 0; i < denseWeight_.size(); ++i) {
-    if (denseWeight_[i] == 0.0) continue;
-    const double error = dense_.col(static_cast<Eigen::Index>(i)).dot(a) - denseTarget_[i];
+  });
+  forEachRow([&](std::size_t i) {
+    if (denseWeight_[i] == 0.0) return;
+    const double error = rowTimes(dofs(), dense_, i, a) - denseTarget_[i];
     sum += 0.5 * denseWeight_[i] * error * error;
-  }
+  });
   if (hasFunctions()) sum += expansionValue(a);
-  sum += 0.5 * a.dot(dofWeight_.cwiseProduct(a)) + a.dot(dofOffset_);
-  return sum + 0.5 * metricWeight_ * a.dot(Ma) + a.dot(metricSlope_);
+  sum += 0.5 * dot(dofs(), a, dofWeight_, a) + dot(dofs(), a, dofOffset_);
+  return sum + 0.5 * metricWeight_ * dot(dofs(), a, Ma) + dot(dofs(), a, metricSlope_);
 }
 
 void GoalCost::gradient(const VectorX& a, const VectorX& Ma, VectorX& g) const {
-  g = metricWeight_ * Ma + metricSlope_;
-  for (int i = 0; i < rows_.size(); ++i) {
+  g.setZero(a.size());
+  for (const Segment s : dofs()) part(g, s) = metricWeight_ * part(Ma, s) + part(metricSlope_, s);
+  forEachPoint([&](std::size_t i) {
     Vector3 y;
-    rows_.multiply(i, a, y.data());
+    rows_.multiply(static_cast<int>(i), a, y.data());
     const Vector3 slope = weight_[i] * (y - target_[i]);
-    rows_.addTransposed(i, slope.data(), g);
-  }
-  for (std::size_t i = 0; i < denseWeight_.size(); ++i) {
-    if (denseWeight_[i] == 0.0) continue;
-    const auto J = dense_.col(static_cast<Eigen::Index>(i));
-    g += denseWeight_[i] * (J.dot(a) - denseTarget_[i]) * J;
-  }
-  g += dofWeight_.cwiseProduct(a) + dofOffset_;
+    rows_.addTransposed(static_cast<int>(i), slope.data(), g);
+  });
+  forEachRow([&](std::size_t i) {
+    if (denseWeight_[i] == 0.0) return;
+    const double slope = denseWeight_[i] * (rowTimes(dofs(), dense_, i, a) - denseTarget_[i]);
+    addRow(dofs(), slope, dense_, i, g);
+  });
+  for (const Segment s : dofs())
+    part(g, s) += part(dofWeight_, s).cwiseProduct(part(a, s)) + part(dofOffset_, s);
   if (hasFunctions()) g += expansionSlope_ + expansionCurvature_ * (a - expandedAt_);
 }
 
 void GoalCost::multiplyCurvature(const VectorX& d, const VectorX& Md, VectorX& Hd) const {
-  Hd = metricWeight_ * Md + dofWeight_.cwiseProduct(d);
-  for (int i = 0; i < rows_.size(); ++i) {
+  Hd.setZero(d.size());
+  for (const Segment s : dofs())
+    part(Hd, s) = metricWeight_ * part(Md, s) + part(dofWeight_, s).cwiseProduct(part(d, s));
+  forEachPoint([&](std::size_t i) {
     Vector3 y;
-    rows_.multiply(i, d, y.data());
+    rows_.multiply(static_cast<int>(i), d, y.data());
     y *= weight_[i];
-    rows_.addTransposed(i, y.data(), Hd);
-  }
-  for (std::size_t i = 0; i < denseWeight_.size(); ++i) {
-    if (denseWeight_[i] == 0.0) continue;
-    const auto J = dense_.col(static_cast<Eigen::Index>(i));
-    Hd += denseWeight_[i] * J.dot(d) * J;
-  }
+    rows_.addTransposed(static_cast<int>(i), y.data(), Hd);
+  });
+  forEachRow([&](std::size_t i) {
+    if (denseWeight_[i] == 0.0) return;
+    addRow(dofs(), denseWeight_[i] * rowTimes(dofs(), dense_, i, d), dense_, i, Hd);
+  });
   if (hasFunctions()) Hd += expansionCurvature_ * d;
 }
 
 double GoalCost::curvatureAlong(const VectorX& d, const VectorX& Md) const {
-  double sum = metricWeight_ * d.dot(Md) + d.dot(dofWeight_.cwiseProduct(d));
+  double sum = metricWeight_ * dot(dofs(), d, Md) + dot(dofs(), d, dofWeight_, d);
   if (hasFunctions()) sum += d.dot(expansionCurvature_ * d);
-  for (int i = 0; i < rows_.size(); ++i) {
+  forEachPoint([&](std::size_t i) {
     Vector3 y;
-    rows_.multiply(i, d, y.data());
+    rows_.multiply(static_cast<int>(i), d, y.data());
     sum += weight_[i] * y.squaredNorm();
-  }
-  for (std::size_t i = 0; i < denseWeight_.size(); ++i) {
-    if (denseWeight_[i] == 0.0) continue;
-    const double rate = dense_.col(static_cast<Eigen::Index>(i)).dot(d);
+  });
+  forEachRow([&](std::size_t i) {
+    if (denseWeight_[i] == 0.0) return;
+    const double rate = rowTimes(dofs(), dense_, i, d);
     sum += denseWeight_[i] * rate * rate;
-  }
+  });
   return sum;
 }
 
@@ -298,29 +321,32 @@ void GoalCost::addReducedCurvature(const TreeFactor& massFactor, const RowMajorM
                                    RowMajorMatrixX& rootS, MatrixX& K) const {
   if (metricWeight_ != 0.0) {
     massFactor.multiplyRoot(S, rootS);
-    addGram(rootS, metricWeight_, K);
+    for (const Segment s : dofs()) addGram(rootS, s, metricWeight_, K);
   }
   // One rank for each row of J, and for each dof.
-  const auto addRank = [&](const auto& row, double weight) {
-    reduced_.setZero(S.cols());
-    addWeightedRows(row.data(), S.data(), static_cast<int>(S.rows()), static_cast<int>(S.cols()),
-                    reduced_.data());
+  if (reduced_.size() < S.cols()) reduced_.resize(S.cols());
+  const auto addRank = [&](const double* row, double weight) {
+    reduced_.head(S.cols()).setZero();
+    for (const Segment s : dofs())
+      addWeightedRows(row + s.begin, &S(s.begin, 0), s.end - s.begin, static_cast<int>(S.cols()),
+                      reduced_.data());
     addRankOne(reduced_.data(), weight, K);
   };
-  for (int i = 0; i < rows_.size(); ++i) {
+  forEachPoint([&](std::size_t i) {
     for (int k = 0; k < 3; ++k) {
       const double unit[3] = {k == 0 ? 1.0 : 0.0, k == 1 ? 1.0 : 0.0, k == 2 ? 1.0 : 0.0};
       scratch_.setZero();
-      rows_.addTransposed(i, unit, scratch_);
-      addRank(scratch_, weight_[i]);
+      rows_.addTransposed(static_cast<int>(i), unit, scratch_);
+      addRank(scratch_.data(), weight_[i]);
     }
-  }
-  for (std::size_t i = 0; i < denseWeight_.size(); ++i)
-    if (denseWeight_[i] != 0.0) addRank(dense_.col(static_cast<Eigen::Index>(i)), denseWeight_[i]);
-  for (Eigen::Index i = 0; i < dofWeight_.size(); ++i) {
-    if (dofWeight_[i] == 0.0) continue;
-    addRankOne(&S(i, 0), dofWeight_[i], K);
-  }
+  });
+  forEachRow([&](std::size_t i) {
+    if (denseWeight_[i] != 0.0)
+      addRank(dense_.col(static_cast<Eigen::Index>(i)).data(), denseWeight_[i]);
+  });
+  for (const Segment s : dofs())
+    for (Eigen::Index i = s.begin; i < s.end; ++i)
+      if (dofWeight_[i] != 0.0) addRankOne(&S(i, 0), dofWeight_[i], K);
   if (hasFunctions()) K.triangularView<Eigen::Lower>() += S.transpose() * (expansionCurvature_ * S);
 }
 

@@ -16,6 +16,9 @@
 /// is given, goals add W (control_cost_term.hpp). What goals want of contact forces is kept apart
 /// (contact_force_cost.hpp): value(), gradient() and the curvatures here are without it.
 ///
+/// ℓ is a sum over islands of trees that its terms, or rows, couple, and may be that of one of them
+/// alone: select().
+///
 /// Nothing here allocates in steady state, but what is for functions does.
 
 #include <Eigen/Cholesky>
@@ -23,7 +26,9 @@
 #include <vector>
 
 #include "softgauss/engine/constraints/block_jacobian.hpp"
+#include "softgauss/engine/constraints/row_selection.hpp"
 #include "softgauss/engine/dynamics/centroidal.hpp"
+#include "softgauss/engine/dynamics/tree_islands.hpp"
 #include "softgauss/gdd/contact_force_cost.hpp"
 #include "softgauss/gdd/control_cost_term.hpp"
 
@@ -55,6 +60,7 @@ class GoalCost {
         dofOffset_(VectorX::Zero(dofs)),
         controlCost_(dofs),
         metricSlope_(VectorX::Zero(dofs)),
+        allDofs_{0, dofs},
         scratch_(VectorX::Zero(dofs)),
         workspace_(dofs) {}
 
@@ -92,8 +98,7 @@ class GoalCost {
     metricSlope_ += scratch_;
   }
 
-  /// The control cost counts from `force` (nv) [N, N m], not from 0. To be called before goals
-  /// add to the price.
+  /// The control cost counts from `force` (nv) [N, N m], not from 0.
   void setFreeControl(const VectorX& force) { controlCost_.setFree(force); }
   /// ½ weight g_dof².
   void addControlCost(int dof, double weight) { controlCost_.add(dof, weight); }
@@ -106,7 +111,18 @@ class GoalCost {
 
   /// What goals want of contact forces.
   ContactForceCost& forces() { return forces_; }
-  const ContactForceCost& forces() const { return forces_; }
+  const ContactForceCost& forces() const { return forcesCount_ ? forces_ : kNoForces; }
+
+  /// Appends pairs of bodies whose trees its terms couple: functions all, contact forces those of
+  /// all contacts that they are of.
+  void appendPairs(const Model& model, const Constraints& rows,
+                   std::vector<std::pair<int, int>>& pairs) const;
+  /// Finds the terms of each of these islands, none of which a term couples with another; they must
+  /// stay.
+  void divide(const Model& model, const Constraints& rows, const TreeIslands& islands);
+  /// From here on ℓ is that of one island, until clear(); −1: of all. Vectors that come out are
+  /// zero elsewhere.
+  void select(int island);
 
   GoalWorkspace& workspace() { return workspace_; }
   double metricWeight() const { return metricWeight_; }
@@ -155,6 +171,25 @@ class GoalCost {
     double sign = 0.0;
   };
   OneSided& addSide(double weight, double least);
+  /// What is selected.
+  Segments dofs() const { return island_ < 0 ? Segments(&allDofs_, 1) : islands_->dofs(island_); }
+  /// f(i) of each block of points, and of each dense row, a std::size_t, that is selected.
+  template <class F>
+  void forEachPoint(F&& f) const {
+    forEach(points_, rows_.size(), f);
+  }
+  template <class F>
+  void forEachRow(F&& f) const {
+    forEach(denseRows_, static_cast<int>(denseWeight_.size()), f);
+  }
+  template <class F>
+  void forEach(const SegmentSets& sets, int count, F&& f) const {
+    const Segment all{0, count};
+    for (const Segment s : island_ < 0 ? Segments(&all, 1) : sets[island_])
+      for (std::size_t i = idx(s.begin); i < idx(s.end); ++i) f(i);
+  }
+
+  static inline const ContactForceCost kNoForces;
 
   double share_ = 1.0;
   BlockJacobian rows_;
@@ -174,6 +209,12 @@ class GoalCost {
   double expansionStart_ = 0.0;          ///< φ(a_k)
   double metricWeight_ = 0.0;            ///< m
   VectorX metricSlope_;                  ///< M o
+  Segment allDofs_;
+  int island_ = -1;  ///< that is selected
+  const TreeIslands* islands_ = nullptr;
+  SegmentSets points_, denseRows_;  ///< of each island
+  int forcesIsland_ = -1;
+  bool forcesCount_ = true;
   mutable VectorX scratch_, reduced_;
   GoalWorkspace workspace_;
 };

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "softgauss/engine/core/segment_vectors.hpp"
+
 namespace softgauss::gdd {
 namespace {
 
@@ -23,6 +25,7 @@ void ForwardPath::reserve(int crossings, int controls) {
 PathEnd ForwardPath::follow(const PathStart& start, CellResponse& cell, const GoalCost& cost,
                             ContactForceTerms& forces, const VectorX& rate, Data& data) {
   Constraints& rows = data.constraints;
+  const Segments dofs = data.active.dofs();
   rate_ = rate;
   crossed_.clear();
   rows.setRay(rate_);
@@ -30,10 +33,11 @@ PathEnd ForwardPath::follow(const PathStart& start, CellResponse& cell, const Go
     if (h.atBreakpoint && h.multiplier > 0.0) rows.holdOnRay(h.breakpoint.row);
 
   PathEnd end;
-  data.inertia.M.multiply(rate_, Mrate_);
+  data.inertia.M.multiply(dofs, rate_, Mrate_);
   cost.multiplyCurvature(rate_, Mrate_, slopeRate_);
   for (;;) {
-    const double costSlope = slope.dot(rate_), costCurvature = slopeRate_.dot(rate_);
+    const double costSlope = dot(dofs, slope, rate_);
+    const double costCurvature = dot(dofs, slopeRate_, rate_);
     double descent = -(start.forceSlope + end.t * start.forceCurvature + costSlope);
     double curvature = start.forceCurvature + costCurvature;
     if (forces.active()) {

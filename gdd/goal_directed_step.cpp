@@ -3,7 +3,9 @@
 
 #include <chrono>
 #include <tuple>
+#include <type_traits>
 
+#include "softgauss/engine/core/segment_vectors.hpp"
 #include "softgauss/gdd/goals/standing_balance.hpp"
 
 namespace softgauss::gdd {
@@ -14,6 +16,8 @@ GoalDirectedController::GoalDirectedController(const Model& model)
       activeSet(model),
       expansion(model),
       control(VectorX::Zero(model.nv)),
+      islands_(model),
+      solution_(model),
       cost_(model.nv),
       holding_(model),
       coordinates_(VectorX::Zero(model.nv)) {}
@@ -36,14 +40,61 @@ const VectorX* exactResidual(const AugmentedLagrangian&) { return nullptr; }
 
 }  // namespace
 
+void GoalDirectedController::addGoals(const Model& model, const State& state, const Data& data,
+                                      GoalCost& cost) const {
+  for (const auto& goal : goals)
+    if (goal->actsAt(state.time)) addCostAmong(goals, *goal, {model, state, data}, cost);
+  if (motionLimits) motionLimits->addCost({model, state, data}, limits, cost);
+}
+
 void GoalDirectedController::addCost(const Model& model, const State& state, Data& data,
                                      GravityCompensation& holding, GoalCost& cost) const {
   cost.clear(forceMetric);
   if (controlCost == ControlCost::aboutGravity && limits.firstBad(model.nv) < 0)
     cost.setFreeControl(holding.compute(model, state, limits, data));
-  for (const auto& goal : goals)
-    if (goal->actsAt(state.time)) addCostAmong(goals, *goal, {model, state, data}, cost);
-  if (motionLimits) motionLimits->addCost({model, state, data}, limits, cost);
+  addGoals(model, state, data, cost);
+}
+
+ActiveSet& GoalDirectedController::solverOf(ActiveSet& first, const Model& model, int controls) {
+  if (islands_.size() == 1 || controls_ < 0) controls_ = controls;
+  if (controls == controls_) return first;
+  ActiveSet& other = others_.try_emplace(controls, model).first->second;
+  other.options = first.options;
+  return other;
+}
+
+/// Each island on which a control acts, or the one that there is. False where one has no solution.
+template <class Solver>
+bool GoalDirectedController::solveIslands(Solver& used, const Model& model, const State& state,
+                                          Data& data) {
+  const bool together = std::is_same_v<Solver, AugmentedLagrangian>;
+  islands_.find(model, limits, together, cost_, data);
+  islands_.addColumns(model, data);
+  // A goal may have set it: the value of a plan does.
+  const bool holds = controlCost == ControlCost::aboutGravity && !cost_.controlCost().hasFree();
+  solution_.begin(model, state, limits, islands_, data);
+  bool solved = true;
+  for (int i = 0; i < islands_.size() && solved; ++i) {
+    if (!islands_.isSolved(i)) continue;
+    islands_.select(model, i, cost_, data);
+    if (solution_.keeps(i)) {
+      report.add(solution_.keep(i, data));
+      continue;
+    }
+    if (holds) cost_.setFreeControl(holding_.compute(model, state, limits, data));
+    Solver& own = solverOf(used, model, islands_.controls(i));
+    const GddReport found =
+        solveOneSided(expansion, own, model, cost_, limits, data, state.warmstart, between_);
+    report.add(found);
+    solved = !isRefused(found.status);
+    const VectorX* residual = cost_.hasFunctions() ? nullptr : exactResidual(own);
+    if (solved)
+      solution_.take(model, i, expansion, residual, found, data);
+    else
+      data.stats.badDof = own.badDof();
+  }
+  islands_.selectAll(model, cost_, data);
+  return solved;
 }
 
 template <class Solver>
@@ -51,38 +102,35 @@ const VectorX* GoalDirectedController::solve(Solver& used, const Model& model, c
                                              Data& data) {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point start = Clock::now();
-  solved_ = false;
+  report = {};
+  if (const BadInput bad = limits.badInput(model.nv)) {
+    report.status = GddStatus::badLimits;
+    data.stats.refuse(model, bad);
+    return nullptr;
+  }
   // A disturbance is not the control's: it belongs to what the control has to cope with.
   data.forces.c -= data.forces.tau;
-  addCost(model, state, data, holding_, cost_);
+  cost_.clear(forceMetric);
+  addGoals(model, state, data, cost_);
   data.stats.invalidWarmStarts += refuses(used, state.warmstart);
   expansion.iterationsLeft = iterationBudget;
   expansion.deadline = Deadline::in(timeBudget);
-  report = solveOneSided(expansion, used, model, cost_, limits, data, state.warmstart, between_);
-  if (const VectorX* residual = exactResidual(used); residual && !cost_.hasFunctions()) {
-    solved_ = true;
-    data.forward.gradient = -*residual;
-  }
-  const GddReport solved = report;
+  const bool solved = solveIslands(used, model, state, data);
+  const GddReport own = report;
   report.addEarlier(earlier_);
-  earlier_.addCounts(solved);
+  earlier_.addCounts(own);
   solveTime += std::chrono::duration<double>(Clock::now() - start).count();
-  if (isRefused(report.status)) {
-    if (report.status == GddStatus::badLimits) {
-      data.stats.refuse(model, limits.badInput(model.nv));
-      return nullptr;
-    }
+  if (!solved) {
     data.stats.status = SolveStatus::notFinite;
-    data.stats.badDof = used.badDof();
     return nullptr;
   }
 
-  limits.clamp(expansion.force(), control, coordinates_);
+  limits.clamp(solution_.force, control, coordinates_);
   limits.commands(coordinates_, commands);
   setAppliedForce(control, data.forces);
   if (data.stages)  // an integrator that looks at the dynamics again
     held_.tau = outside_.size() == model.nv ? VectorX(outside_ + control) : control;
-  return &expansion.acceleration();
+  return &solution_.a;
 }
 
 const VectorX* GoalDirectedController::apply(const Model& model, const State& state,
@@ -105,11 +153,14 @@ void GoalDirectedController::reserve(const Model& model, const State& state, Dat
     std::tie(goals[i]->startTime, goals[i]->endTime) = times[i];
   const auto controls = (limits.lower.array() < limits.upper.array()).count();
   cost_.reserve(static_cast<int>(controls), static_cast<int>(data.contacts.contacts.capacity()));
-  if (solver == GddSolver::activeSet && data.constraints.piecewiseQuadratic())
+  if (solver == GddSolver::activeSet && data.constraints.piecewiseQuadratic()) {
     activeSet.reserve(rows);
+    for (auto& [count, other] : others_) other.reserve(rows);
+  }
   expansion.reserve(rows);
   expansion.keepWarmStart(between_);
   between_.breakpoints.reserve(static_cast<std::size_t>(rows));
+  solution_.reserve(rows);
   held_.wrenches.reserve(model.bodies.size());
   held_.controlled.reserve(model.trees.size());
   begin();
@@ -122,7 +173,7 @@ void GoalDirectedController::begin() noexcept {
 }
 
 void GoalDirectedController::keep(WarmStart& warmstart) noexcept {
-  expansion.keepWarmStart(warmstart);
+  copySolution(solution_.warm, warmstart);
   earlier_ = report;
 }
 

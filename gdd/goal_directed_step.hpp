@@ -7,9 +7,12 @@
 /// control to its limits; run forward dynamics from that acceleration; integrate. Solver 2 ends
 /// on the physics: it clamps nothing, and forward dynamics has nothing left to do.
 
+#include <cstdint>
 #include <limits>
+#include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "softgauss/engine/step/step.hpp"
@@ -17,6 +20,7 @@
 #include "softgauss/gdd/augmented_lagrangian.hpp"
 #include "softgauss/gdd/goal.hpp"
 #include "softgauss/gdd/gravity_compensation.hpp"
+#include "softgauss/gdd/island_solutions.hpp"
 #include "softgauss/gdd/motion_limits.hpp"
 #include "softgauss/gdd/one_sided_solve.hpp"
 #include "softgauss/gdd/sequential_quadratic_solve.hpp"
@@ -74,6 +78,7 @@ class GoalDirectedController final : public StepControl {
     limits.markControlled(model, trees, squares ? kControlledSoft : kControlled);
   }
   /// Makes room for steps of a model whose rows softgauss::reserveRows() has just made in `data`.
+  /// Robots make room again where they first meet.
   void reserve(const Model& model, const State& state, Data& data);
   /// One step. `input` acts besides the control (disturbances). Where isRefused() the
   /// state is left as it was; limits that are none (GddStatus::badLimits) are badInput. `posed` as
@@ -84,7 +89,11 @@ class GoalDirectedController final : public StepControl {
   /// Before apply() outside step(): what the report counts begins anew.
   void begin() noexcept;
   const VectorX* apply(const Model& model, const State& state, Data& data) noexcept override;
-  bool isSolved() const noexcept override { return solved_; }
+  std::span<const std::uint8_t> controlled() const noexcept override {
+    return solution_.controlled;
+  }
+  KnownTrees known() const noexcept override { return solution_.known; }
+  bool addsColumns() const noexcept override { return islands_.ofTree().size() > 1; }
   bool acts() const noexcept override { return limits.open(); }
   void keep(WarmStart& warmstart) noexcept override;
   /// cost ← that of the price of force, the goals that act and the motion limits, at the stages in
@@ -92,14 +101,25 @@ class GoalDirectedController final : public StepControl {
   void addCost(const Model& model, const State& state, Data& data, GravityCompensation& holding,
                GoalCost& cost) const;
   /// Of the last GDD solve, before the final forward step (nv).
-  const VectorX& acceleration() const { return expansion.acceleration(); }
+  const VectorX& acceleration() const { return solution_.a; }
+  /// Of the last GDD solve.
+  const GoalIslands& islands() const { return islands_; }
 
  private:
+  void addGoals(const Model& model, const State& state, const Data& data, GoalCost& cost) const;
   template <class Solver>
   const VectorX* solve(Solver& used, const Model& model, const State& state, Data& data);
+  template <class Solver>
+  bool solveIslands(Solver& used, const Model& model, const State& state, Data& data);
+  /// The solver of islands of so many controls: each has the memory of these.
+  ActiveSet& solverOf(ActiveSet& first, const Model& model, int controls);
+  AugmentedLagrangian& solverOf(AugmentedLagrangian& all, const Model&, int) { return all; }
 
-  bool solved_ = false;  ///< isSolved()
-  GddReport earlier_;    ///< parts of the step that are taken, and what was spent beside
+  GoalIslands islands_;
+  std::map<int, ActiveSet> others_;  ///< by controls; `activeSet` has the first
+  int controls_ = -1;                ///< of `activeSet`
+  IslandSolutions solution_;
+  GddReport earlier_;  ///< parts of the step that are taken, and what was spent beside
   GoalCost cost_;
   GravityCompensation holding_;
   WarmStart between_;    ///< from one solve to the next of a step

@@ -32,8 +32,9 @@ class GravityCompensation {
  public:
   explicit GravityCompensation(const Model& model);
 
-  /// ĝ (nv) [N, N m], from data.forces, without an applied force in it. Leaves the rows evaluated
-  /// in the fall. A dof is of z where no actuator acts on it, root forces that a price allows
+  /// ĝ (nv) [N, N m] of the trees that are active in the data, with the rows that are selected; 0
+  /// elsewhere. From data.forces, without an applied force in it. Leaves the rows evaluated in the
+  /// fall. A dof is of z where no actuator acts on it, root forces that a price allows
   /// included, or where the box fixes it; ĝ is there what the box fixes, or 0.
   const VectorX& compute(const Model& model, const State& state, const ControlLimits& limits,
                          Data& data);
@@ -42,7 +43,7 @@ class GravityCompensation {
 
  private:
   void setStatics(const Model& model, const State& state, const Data& data);
-  bool findFree(const Model& model, const ControlLimits& limits);
+  bool findFree(const Model& model, const ControlLimits& limits, Segments dofs);
   void setFall(const Model& model, const Data& data);
   void stand(const Model& model, const ControlLimits& limits, Data& data);
 

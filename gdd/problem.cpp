@@ -36,6 +36,14 @@ void ControlLimits::markControlled(const Model& model, std::vector<std::uint8_t>
   }
 }
 
+void ControlLimits::appendPairs(const Model& model, std::vector<std::pair<int, int>>& pairs) const {
+  if (!transmission) return;
+  for (const Actuator& actuator : transmission->actuators())
+    for (const Actuator::Pull& pull : actuator.pulls)
+      pairs.emplace_back(model.dofs[idx(actuator.pulls.front().dof)].body,
+                         model.dofs[idx(pull.dof)].body);
+}
+
 void ControlLimits::clamp(const VectorX& g, VectorX& tau, VectorX& y) const {
   coordinates(g, y);
   tau = g;

@@ -13,6 +13,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "softgauss/engine/model/model.hpp"
@@ -64,6 +65,8 @@ struct ControlLimits {
   /// choice.
   void markControlled(const Model& model, std::vector<std::uint8_t>& trees,
                       std::uint8_t mark = kControlled) const;
+  /// Appends the pairs of bodies whose joints an actuator pulls together.
+  void appendPairs(const Model& model, std::vector<std::pair<int, int>>& pairs) const;
   /// Opens the limits of every force that no actuator causes: root forces are then allowed, and
   /// applied.
   void allowRootForces(const Model& model) {
@@ -104,12 +107,19 @@ struct ControlLimits {
   /// How far coordinates of g are outside their bounds, as the force that this makes; the largest
   /// [N or N m].
   double violation(const VectorX& g) const {
+    const Segment all{0, static_cast<int>(g.size())};
+    return violation({&all, 1}, g);
+  }
+  /// The same of these coordinates.
+  double violation(Segments coordinates, const VectorX& g) const {
     double most = 0.0;
-    for (Eigen::Index i = 0; i < g.size(); ++i) {
-      const double y = coordinate(i, g);
-      const double over = std::abs(y - std::min(std::max(y, lower[i]), upper[i])) * forcePerUnit(i);
-      if (!(over <= most)) most = over;  // NaN stays
-    }
+    for (const Segment s : coordinates)
+      for (int i = s.begin; i < s.end; ++i) {
+        const double y = coordinate(i, g);
+        const double over =
+            std::abs(y - std::min(std::max(y, lower[i]), upper[i])) * forcePerUnit(i);
+        if (!(over <= most)) most = over;  // NaN stays
+      }
     return most;
   }
   /// tau ← the force within the limits that has the coordinates of g, clamped; y ← those.

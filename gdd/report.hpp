@@ -47,6 +47,14 @@ struct GddReport {
     cells += other.cells;
     forwardIterations += other.forwardIterations;
   }
+  /// How it has ended alone: what it has taken is counted elsewhere.
+  GddReport withoutCounts() const {
+    GddReport ended;
+    ended.add(*this);
+    ended.iterations = ended.dualUpdates = ended.factorizations = ended.cells =
+        ended.forwardIterations = 0;
+    return ended;
+  }
   /// Adds the earlier parts of a step: what is of the end stays, the rest is the worst.
   void addEarlier(const GddReport& part) {
     addCounts(part);

@@ -39,6 +39,17 @@
 
 namespace softgauss::gdd {
 
+/// to ← all that a goal directed solve leaves in a warm start.
+inline void copySolution(const WarmStart& from, WarmStart& to) {
+  to.gddA = from.gddA;
+  to.multipliers = from.multipliers;
+  to.control = from.control;
+  to.breakpoints = from.breakpoints;
+  to.gddSearchAge = from.gddSearchAge;
+  to.gddSearchWait = from.gddSearchWait;
+  to.gddValid = true;
+}
+
 class SequentialQuadraticSolve {
  public:
   double tolerance = 1e-8;  ///< of ∇φ − ∇m, scaled as GddReport::stationarity
@@ -133,15 +144,7 @@ class SequentialQuadraticSolve {
   int solves() const { return solves_; }              ///< of the last solve()
   bool mayGoOn() const { return iterationsLeft > 0 && !deadline.isOver(); }
   /// Writes the solution where the next solve starts from.
-  void keepWarmStart(WarmStart& warm) const {
-    warm.gddA = warm_.gddA;
-    warm.multipliers = warm_.multipliers;
-    warm.control = warm_.control;
-    warm.breakpoints = warm_.breakpoints;
-    warm.gddSearchAge = warm_.gddSearchAge;
-    warm.gddSearchWait = warm_.gddSearchWait;
-    warm.gddValid = true;
-  }
+  void keepWarmStart(WarmStart& warm) const { copySolution(warm_, warm); }
 
  private:
   template <class Solver>

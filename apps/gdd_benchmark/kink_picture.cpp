@@ -133,7 +133,7 @@ class KinkFinder {
   /// Of the controls that are not at a bound.
   bool findDirections(Kink& kink) {
     data_.constraints.enterPiece(kink.breakpoint, true);  // rounding must not choose
-    cell_.setDriven(model_, limits_);
+    cell_.setDriven(model_, limits_, data_.active.dofs());
     if (!cell_.setInertia(data_, cost_) || !cell_.enter(data_)) return false;
     cell_.computeHessian();
     VectorX J(model_.nv), n, u, lower, upper;

@@ -121,24 +121,6 @@ Goals reachingHands(const Model& model) {
   return goals;
 }
 
-Pair goals(const std::string& folder, int count) {
-  Crowd many(humanoids(folder, count), false, reachingHands);
-  Crowd one(humanoids(folder, 1), false, reachingHands);
-  many.steps(100), one.steps(100);
-  const Pair pair = timePair([&] { many.step(); }, [&] { one.step(); }, 5, 5);
-  return {pair.first / count, pair.second};
-}
-
-Pair jointGoals(const std::string& folder, int count) {
-  Crowd islands(humanoids(folder, count), false, reachingHands);
-  const std::unique_ptr<Scene> scene = makeHumanoids(folder, count);
-  scene->controller = std::make_unique<gdd::GoalDirectedController>(scene->model);
-  scene->controller->goals = reachingHands(scene->model);
-  islands.steps(100);
-  for (int i = 0; i < 100; ++i) scene->step();
-  return timePair([&] { islands.step(); }, [&] { scene->step(); }, 5, 5);
-}
-
 /// A ball that rolls along x between rows of boxes that sleep, `sleepers` of them.
 Model ballAmong(int sleepers) {
   ModelBuilder builder = boxesOnGround(sleepers, 0.6);
@@ -183,12 +165,21 @@ Pair robots(const std::string& folder, int count) {
   return {pair.first / count, pair.second};
 }
 
-Pair withoutIslands(const std::string& folder) {
-  const std::unique_ptr<Scene> many = makeHumanoids(folder, kHumanoids);
-  const std::unique_ptr<Scene> one = makeHumanoids(folder, 1);
-  for (int i = 0; i < 100; ++i) many->step(), one->step();
+/// A robot of many in one scene, over one alone.
+Pair withoutIslands(const std::string& folder, int count,
+                    const std::function<Goals(const Model&)>& goals = nullptr) {
+  const auto make = [&](int robots) {
+    std::unique_ptr<Scene> scene = makeHumanoids(folder, robots);
+    if (goals) {
+      scene->controller = std::make_unique<gdd::GoalDirectedController>(scene->model);
+      scene->controller->goals = goals(scene->model);
+    }
+    for (int i = 0; i < 100; ++i) scene->step();
+    return scene;
+  };
+  const auto many = make(count), one = make(1);
   const Pair pair = timePair([&] { many->step(); }, [&] { one->step(); }, 5, 5);
-  return {pair.first / kHumanoids, pair.second};
+  return {pair.first / count, pair.second};
 }
 
 Pair joint(const std::string& folder) {
@@ -218,22 +209,44 @@ ModelBuilder spinner() {
   return builder;
 }
 
-/// A scene beside the rod, over the scene and the rod each alone.
-Pair besideSpinner(const ModelBuilder& scene, const std::function<void(Scene&)>& goals = nullptr) {
-  const auto make = [&](const ModelBuilder* rest, bool spins) {
-    ModelBuilder builder = rest ? *rest : ModelBuilder("rod");
-    if (spins) builder.add(spinner(), "");
+/// A scene beside what stands on its ground, over each of the two alone. `ready` readies what has
+/// the scene, or the other, before its first step.
+Pair beside(const ModelBuilder& scene, const ModelBuilder& other,
+            const std::function<void(Scene&, bool hasScene, bool hasOther)>& ready) {
+  const auto make = [&](bool hasScene, bool hasOther) {
+    ModelBuilder builder = hasScene ? scene : ModelBuilder("ground");
+    if (!hasScene) addGround(builder);
+    if (hasOther) builder.add(other, "");
     std::unique_ptr<Scene> made = makeScene(builder.build());
-    if (spins) made->state.v.tail<6>() << -0.75, 10.0, 0.0, 40.0, 3.0, 0.0;  // about that end
-    if (rest && goals) goals(*made);
+    ready(*made, hasScene, hasOther);
     for (int i = 0; i < 500; ++i) made->step();
     return made;
   };
-  const auto both = make(&scene, true), without = make(&scene, false), alone = make(nullptr, true);
+  const auto both = make(true, true), without = make(true, false), alone = make(false, true);
   const std::vector<double> times = timeInTurn({{nullptr, [&] { both->step(); }, 50},
                                                 {nullptr, [&] { without->step(); }, 50},
                                                 {nullptr, [&] { alone->step(); }, 50}});
   return {times[0], times[1] + times[2]};
+}
+
+/// Beside the rod.
+Pair besideSpinner(const ModelBuilder& scene, const std::function<void(Scene&)>& goals = nullptr) {
+  return beside(scene, spinner(), [&](Scene& made, bool hasScene, bool spins) {
+    if (spins) made.state.v.tail<6>() << -0.75, 10.0, 0.0, 40.0, 3.0, 0.0;  // about that end
+    if (hasScene && goals) goals(made);
+  });
+}
+
+void reachWithRightHand(Scene& scene) {
+  addReach(scene, "humanoid0/right_hand", Vector3(0.45, -0.25, 1.1));
+}
+
+/// A humanoid that reaches, among boxes that lie on the ground.
+Pair amongBoxes(const std::string& robots, int count) {
+  const ModelBuilder boxes = freeBoxes(count, 0.1 - 1e-4, 0.3, Vector3(3.0, 0.0, 0.0));
+  return beside(humanoidsOnGround(robots, 1), boxes, [](Scene& made, bool hasScene, bool) {
+    if (hasScene) reachWithRightHand(made);
+  });
 }
 
 }  // namespace
@@ -245,18 +258,15 @@ std::map<std::string, double> crowdFigures(const std::string& robotsFolder,
       {"islands_mover", [&] { return mover(); }},
       {"islands_robots", [&] { return robots(robotsFolder, kHumanoids); }},
       {"islands_few", [&] { return robots(robotsFolder, 16); }},
-      {"islands_none", [&] { return withoutIslands(robotsFolder); }},
+      {"islands_none", [&] { return withoutIslands(robotsFolder, kHumanoids); }},
       {"islands_joint", [&] { return joint(robotsFolder); }},
       {"islands_reacher", [&] { return reacher(robotsFolder); }},
-      {"islands_goals", [&] { return goals(robotsFolder, 8); }},
-      {"islands_goals_joint", [&] { return jointGoals(robotsFolder, 8); }},
       {"parts_boxes", [] { return besideSpinner(boxesOnGround(50, 0.3)); }},
       {"parts_humanoid", [&] { return besideSpinner(humanoidsOnGround(robotsFolder, 1)); }},
-      {"parts_reach", [&] {
-         return besideSpinner(humanoidsOnGround(robotsFolder, 1), [](Scene& scene) {
-           addReach(scene, "humanoid0/right_hand", Vector3(0.45, -0.25, 1.1));
-         });
-       }}};
+      {"parts_reach",
+       [&] { return besideSpinner(humanoidsOnGround(robotsFolder, 1), reachWithRightHand); }},
+      {"goals_robots", [&] { return withoutIslands(robotsFolder, 8, reachingHands); }},
+      {"goals_boxes", [&] { return amongBoxes(robotsFolder, 200); }}};
   std::map<std::string, double> figures;
   for (const auto& [name, time] : pairs) {
     if (!std::regex_search(name, std::regex(filter))) continue;

@@ -74,13 +74,13 @@ void addReach(Scene& scene, const std::string& link, const Vector3& target) {
   scene.controller->goals.push_back(std::make_unique<gdd::VirtualDamping>());
 }
 
-ModelBuilder freeBoxes(int count, double height, double spacing) {
+ModelBuilder freeBoxes(int count, double height, double spacing, const Vector3& from) {
   ModelBuilder builder("boxes");
   builder.base = BaseKind::floating;
   for (int i = 0; i < count; ++i) {
     ModelBuilder one("box");
     one.base = BaseKind::floating;
-    one.X_WRoot.p = Vector3(spacing * (i % 5), spacing * (i / 5), height);
+    one.X_WRoot.p = from + Vector3(spacing * (i % 5), spacing * (i / 5), height);
     LinkSpec link;
     link.name = "body";
     link.mass = 1.0;

@@ -58,8 +58,10 @@ std::unique_ptr<Scene> makeRobot(const std::string& folder, const std::string& n
 ModelBuilder chain(int links);
 std::unique_ptr<Scene> makeChain(int links);
 
-/// Cubes of 0.2 m and 1 kg, free, `spacing` apart in rows of five, their centres at `height` [m].
-ModelBuilder freeBoxes(int count, double height, double spacing = 0.3);
+/// Cubes of 0.2 m and 1 kg, free, `spacing` apart in rows of five, their centres at `height` [m];
+/// the first of them at `from`.
+ModelBuilder freeBoxes(int count, double height, double spacing = 0.3,
+                       const Vector3& from = Vector3::Zero());
 
 /// A goal for a point of `link`, and virtual damping.
 void addReach(Scene& scene, const std::string& link, const Vector3& target);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "softgauss/engine/constraints/block_jacobian.hpp"
 #include "softgauss/engine/constraints/contact_set.hpp"
 #include "softgauss/engine/constraints/inverse_weight.hpp"
 #include "softgauss/engine/constraints/supported_mass.hpp"
@@ -53,7 +54,7 @@ struct Assembly {
   const VectorX* midstepVelocity = nullptr;  ///< null: State::v
   const SupportedMass* load = nullptr;       ///< null: no row knows of a load
   MechanismCounts* acted = nullptr;          ///< null: nobody counts
-  bool columns = true;  ///< whether blocks list the dofs that move them (BlockJacobian)
+  Columns columns = Columns::now;            ///< of blocks, the dofs that move them (BlockJacobian)
   const std::vector<Motion>* lastMotion = nullptr;  ///< (bodies) by State::a, without columns
   const TreeSelection* trees = nullptr;             ///< whose rows are made; null: of all
 };

@@ -27,23 +27,32 @@ int commonDof(const Model& model, int i, int j) {
 void BlockJacobian::clear() {
   bodies_.clear();
   blocks_.clear();
+  motions_.clear();
   segments_.clear();
   values_.clear();
 }
 
 void BlockJacobian::add(const Model& model, const Kinematics& k, const TreeSparsity& tree,
-                        const RelativeMotion& m, bool columns) {
+                        const RelativeMotion& m, Columns columns) {
   bodies_.add(model, k, m);
   JacobianBlock block;
   block.dim = m.linearDim + m.angularDim;
+  block.segmentEnd = -1;
+  if (columns == Columns::later) motions_.push_back(m);
+  if (columns == Columns::now) addColumns(model, k, tree, m, block);
+  blocks_.push_back(block);
+}
+
+void BlockJacobian::addColumns(const Model& model, const Kinematics& k, const TreeSparsity& tree,
+                               int i) {
+  if (blocks_[i].segmentEnd < 0 && idx(i) < motions_.size())
+    addColumns(model, k, tree, motions_[i], blocks_[i]);
+}
+
+void BlockJacobian::addColumns(const Model& model, const Kinematics& k, const TreeSparsity& tree,
+                               const RelativeMotion& m, JacobianBlock& block) {
   block.value = static_cast<int>(values_.size());
   block.segment = static_cast<int>(segments_.size());
-  if (!columns) {
-    block.segmentEnd = -1;
-    blocks_.push_back(block);
-    return;
-  }
-
   const int lastA = model.lastDof(m.bodyA), lastB = model.lastDof(m.bodyB);
   const int common = commonDof(model, lastA, lastB);
   block.couples = lastA > common && lastB > common;
@@ -96,7 +105,6 @@ void BlockJacobian::add(const Model& model, const Kinematics& k, const TreeSpars
     }
   }
   scratch_.resize(std::max(scratch_.size(), static_cast<std::size_t>(block.dim * block.columns)));
-  blocks_.push_back(block);
 }
 
 void BlockJacobian::multiply(int i, const VectorX& a, double* y) const {

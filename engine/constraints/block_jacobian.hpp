@@ -14,6 +14,7 @@
 /// The same rows are forces on bodies too (body_rows.hpp): what takes a BodyMotion, a BodyForce or
 /// an ArticulatedFactor in place of joint vectors and matrices works with these.
 
+#include <cstdint>
 #include <vector>
 
 #include "softgauss/engine/constraints/body_rows.hpp"
@@ -25,17 +26,23 @@ struct JacobianBlock {
   int columns = 0;       ///< entries of a row
   int value = 0;         ///< first coefficient
   int segment = 0;       ///< first segment
-  int segmentEnd = 0;    ///< −1: the block has no columns
+  int segmentEnd = 0;    ///< −1: the block has no columns, or none yet
   bool couples = false;  ///< both branches have dofs
 };
+
+/// When blocks list the dofs that move them.
+enum class Columns : std::uint8_t { never, later, now };
 
 class BlockJacobian {
  public:
   void clear();
-  /// Without `columns`, only what is on bodies works: nothing that takes vectors or matrices of
-  /// dofs.
+  /// Without columns, only what is on bodies works: nothing that takes vectors or matrices of dofs.
   void add(const Model& model, const Kinematics& k, const TreeSparsity& tree,
-           const RelativeMotion& motion, bool columns = true);
+           const RelativeMotion& motion, Columns columns = Columns::now);
+  /// Makes room for columns that come later to as many blocks as there is room for.
+  void reserveColumns() { motions_.reserve(blocks_.capacity()); }
+  /// Lists the dofs of block i, which was to be given them later and has none yet.
+  void addColumns(const Model& model, const Kinematics& k, const TreeSparsity& tree, int i);
 
   int size() const { return static_cast<int>(blocks_.size()); }
   const JacobianBlock& block(int i) const { return blocks_[idx(i)]; }
@@ -67,12 +74,16 @@ class BlockJacobian {
 
   /// Memory held [bytes].
   std::size_t bytes() const {
-    return bodies_.bytes() + bytesOfAll(blocks_, segments_, values_, scratch_);
+    return bodies_.bytes() + bytesOfAll(blocks_, motions_, segments_, values_, scratch_);
   }
 
  private:
+  void addColumns(const Model& model, const Kinematics& k, const TreeSparsity& tree,
+                  const RelativeMotion& m, JacobianBlock& block);
+
   BodyRows bodies_;
   std::vector<JacobianBlock> blocks_;
+  std::vector<RelativeMotion> motions_;  ///< (blocks) where columns come later
   std::vector<Segment> segments_;
   std::vector<double> values_;
   std::vector<double> scratch_;  ///< H J of one block

@@ -45,6 +45,10 @@ class BlockRows : public ScalarRows<Quadratic> {
     rows[i % 3] = scale;
     jacobian_.addTransposed(i / 3, rows, y);
   }
+  void reserveColumns() { jacobian_.reserveColumns(); }
+  void addColumns(const Model& model, const Kinematics& k, const TreeSparsity& tree) {
+    forEachBlock([&](int i) { jacobian_.addColumns(model, k, tree, i); });
+  }
   void appendCouplings(std::vector<Segment>& segments, std::vector<int>& setEnd) const {
     jacobian_.appendCouplings(segments, setEnd);
   }

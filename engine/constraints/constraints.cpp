@@ -22,12 +22,14 @@ bool isContact(int kind) {
 void Constraints::assemble(const Assembly& given) {
   Assembly in = given;
   acted_ = {};
+  selected_ = -1;
+  columnsComeLater_ = in.columns == Columns::later;
   in.acted = &acted_;
   if (in.model.options.uses(Mechanism::supportedMass)) {
     load_.assemble(in.model, in.kinematics, in.contacts, in.weights);
     in.load = &load_;
   }
-  if (!in.columns && in.state.hasAcceleration && in.contacts.size() > 0) {
+  if (in.columns != Columns::now && in.state.hasAcceleration && in.contacts.size() > 0) {
     lastMotion_.resize(in.model.bodies.size());
     const Segment all = allBodies(in.model);
     moveBodies(in.model, in.kinematics, in.trees ? in.trees->bodies() : Segments(&all, 1),
@@ -42,7 +44,7 @@ void Constraints::assemble(const Assembly& given) {
     c.assemble(in);
     if (c.rowCount() > 0) active_.insert(kind);
   });
-  if (active_.empty() || !in.columns) {
+  if (active_.empty() || in.columns != Columns::now) {
     sparsity_ = &in.tree;
     return;
   }
@@ -66,6 +68,20 @@ void Constraints::couple(const TreeSparsity& tree) {
     lastCouplingEnd_ = couplingEnd_;
   }
   sparsity_ = &coupled_;
+}
+
+void Constraints::addColumns(const Model& model, const Kinematics& k, const TreeSparsity& tree) {
+  visit([&](auto& c) {
+    if constexpr (requires { c.addColumns(model, k, tree); }) c.addColumns(model, k, tree);
+  });
+}
+
+void Constraints::reserve(const Model& model) {
+  lastMotion_.reserve(model.bodies.size());
+  if (model.trees.size() == 1) return;
+  visitThese(*this, planned_, [](auto& c) {
+    if constexpr (requires { c.reserveColumns(); }) c.reserveColumns();
+  });
 }
 
 void Constraints::connectionForces(const Model& model, const Kinematics& k,
@@ -232,7 +248,8 @@ std::optional<Breakpoint> Constraints::find(const BreakpointKey& name) const {
   visitOne(*this, name.kind, [&](const auto& c) {
     if constexpr (requires { c.name(0); })
       for (int row = 0; row < c.rowCount() && !found; ++row)
-        if (c.name(row) == name.row) found = Breakpoint{{name.kind, row}, name.index};
+        if (c.name(row) == name.row && c.selection.has(row))
+          found = Breakpoint{{name.kind, row}, name.index};
   });
   return found;
 }

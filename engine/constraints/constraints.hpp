@@ -106,6 +106,15 @@ class Constraints {
   }
 
   void assemble(const Assembly& in);
+  /// Whether rows were to be given their columns later (Columns).
+  bool columnsComeLater() const { return columnsComeLater_; }
+  /// Gives them to the rows that are selected; couple() once all that need some have them.
+  void addColumns(const Model& model, const Kinematics& k, const TreeSparsity& tree);
+  /// Makes room for what steps ask for besides rows, for as many as there is room for: the last
+  /// motion, and columns that come later.
+  void reserve(const Model& model);
+  /// Sets the pattern of P, of the rows that have columns.
+  void couple(const TreeSparsity& tree);
   /// forces ← those of the rows' present f, as State::connectionForces; of connections of these
   /// trees (1) alone, unless `trees` is empty.
   void connectionForces(const Model& model, const Kinematics& k,
@@ -165,13 +174,14 @@ class Constraints {
   /// Finds the rows of each island, which select() needs.
   void divide(const Model& model, const TreeIslands& islands);
   /// From here on everything that runs over the rows does over those of one island, until
-  /// selectAll() or assemble().
+  /// selectAll() or assemble(); −1: over all.
   void select(int island) {
+    selected_ = island;
     visit([&](auto& c) { c.selection.select(island); });
   }
-  void selectAll() {
-    visit([](auto& c) { c.selection.selectAll(); });
-  }
+  void selectAll() { select(-1); }
+  /// The island that is selected; −1: all.
+  int selected() const { return selected_; }
   /// Rows that are selected.
   int selectedRows() const;
   /// Whether s is a sum of piecewise quadratics at present, so that findCrossings() is complete.
@@ -196,7 +206,7 @@ class Constraints {
   double curvatureJump(Breakpoint breakpoint) const;
   /// The name by which find() has the breakpoint again in a later step.
   BreakpointKey nameOf(Breakpoint breakpoint) const;
-  /// The breakpoint of that name; nothing where its row does not exist now.
+  /// The breakpoint of that name; nothing where its row does not exist now, or is not selected.
   std::optional<Breakpoint> find(const BreakpointKey& name) const;
   /// Puts the row exactly at its breakpoint, where it is free, or next to it on the stiff side.
   void placeAtBreakpoint(Breakpoint breakpoint, bool stiffSide);
@@ -224,8 +234,6 @@ class Constraints {
     call(self.servo, RowKind::servo, kinds, f);
     call(self.geometricStiffness, RowKind::geometricStiffness, kinds, f);
   }
-  /// Sets the pattern of P.
-  void couple(const TreeSparsity& tree);
   template <class C, class F>
   static void call(C& c, RowKind kind, RowKinds kinds, F&& f) {
     if (!kBuiltRows.has(kind) || !kinds.has(kind)) return;
@@ -243,6 +251,8 @@ class Constraints {
   RowKinds planned_ = RowKinds::all();
   RowKinds active_ = RowKinds::none();
   std::array<std::int64_t, kRowKinds> calls_{};
+  int selected_ = -1;
+  bool columnsComeLater_ = false;
   SupportedMass load_;
   MechanismCounts acted_;
   const TreeSparsity* sparsity_ = nullptr;

@@ -108,6 +108,7 @@ class ContactBlocks {
     jacobian_.appendCouplings(segments, setEnd);
   }
   void appendPairs(std::vector<std::pair<int, int>>& pairs) const { jacobian_.appendPairs(pairs); }
+  void reserveColumns() { jacobian_.reserveColumns(); }
   /// Velocities ẏ, or forces and moments, in the frame of a contact.
   using FrameVector = std::array<double, 6>;
   /// Block i: from a to y of contact i.

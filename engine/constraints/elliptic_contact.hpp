@@ -28,6 +28,9 @@ class EllipticContact : public ContactBlocks {
 
   int rowCount() const { return static_cast<int>(x.size()); }
   void assemble(const Assembly& in);
+  void addColumns(const Model& model, const Kinematics& k, const TreeSparsity& tree) {
+    forEachContact(selection, [&](int i) { jacobian_.addColumns(model, k, tree, i); });
+  }
   /// `Acceleration`, `Forces`, `Curvature`: as BlockJacobian takes them.
   template <class Acceleration>
   void multiply(const Acceleration& a, std::vector<double>& y) const;

@@ -85,14 +85,14 @@ void CouplingRows::addTransposed(const std::vector<double>& y, VectorX& tau) con
 }
 
 void CouplingRows::addCurvature(TreeMatrix& P) {
-  for (std::size_t i = 0; i < pairs_.size(); ++i) {
+  selection.forEach([&](std::size_t i) {
     const Pair& pair = pairs_[i];
     P.row(pair.follower)[pair.follower] += h[i];
-    if (pair.leader == pair.follower) continue;
+    if (pair.leader == pair.follower) return;
     P.row(pair.leader)[pair.leader] += pair.slope * pair.slope * h[i];
     P.row(std::max(pair.follower, pair.leader))[std::min(pair.follower, pair.leader)] -=
         pair.slope * h[i];
-  }
+  });
 }
 
 void CouplingRows::addCurvature(ArticulatedFactor& P) {

@@ -30,7 +30,7 @@ class JointRows : public ScalarRows<Penalty> {
     this->selection.forEach([&](std::size_t i) { P.addJoint(dof_[i], this->h[i]); });
   }
   void addCurvature(TreeMatrix& P) {
-    for (std::size_t i = 0; i < dof_.size(); ++i) P.row(dof_[i])[dof_[i]] += this->h[i];
+    this->selection.forEach([&](std::size_t i) { P.row(dof_[i])[dof_[i]] += this->h[i]; });
   }
   /// y ← y + scale · (row i of J)ᵀ.
   void addRow(int i, double scale, VectorX& y) const { y[dof_[idx(i)]] += sign_[idx(i)] * scale; }

@@ -21,6 +21,9 @@ class PyramidalContact : public ScalarRows<HalfQuadratic>, public ContactBlocks 
   static constexpr Cone kCone = Cone::pyramidal;
 
   void assemble(const Assembly& in);
+  void addColumns(const Model& model, const Kinematics& k, const TreeSparsity& tree) {
+    forEachContact(selection, [&](int i) { jacobian_.addColumns(model, k, tree, i); });
+  }
   /// `Acceleration`, `Forces`, `Curvature`: as BlockJacobian takes them.
   template <class Acceleration>
   void multiply(const Acceleration& a, std::vector<double>& y) const;

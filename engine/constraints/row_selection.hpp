@@ -22,12 +22,16 @@ class RowSelection {
     islands_.reserve(most, 0);
     islands_.divide(all_, islands, islandOf);
   }
-  void selectAll() { island_ = -1; }
-  /// Of those that divide() has found.
+  /// Of those that divide() has found; −1: all.
   void select(int island) { island_ = island; }
 
   /// The rows that are walked, ascending.
   Segments segments() const { return island_ < 0 ? Segments(&all_, 1) : islands_[island_]; }
+  bool has(int row) const {
+    for (const Segment s : segments())
+      if (s.begin <= row && row < s.end) return true;
+    return false;
+  }
   int count() const {
     int rows = 0;
     for (const Segment s : segments()) rows += s.end - s.begin;

@@ -59,7 +59,7 @@ class ScalarRows {
   std::vector<double> f;           ///< force −s′(x)
   std::vector<double> h;           ///< curvature s″(x)
   std::vector<double> df;          ///< −s″(x) dx, rate of f along the search direction
-  RowSelection selection;          ///< what evaluate(), along(), staysInCell(), advance() walk
+  RowSelection selection;          ///< what all that runs over rows walks
 
   int rowCount() const { return static_cast<int>(x.size()); }
   Penalty penalty(std::size_t i) const {
@@ -112,11 +112,11 @@ class ScalarRows {
 
   /// The same with every row in the piece in which it was, whatever x says.
   void evaluateInPlace() {
-    for (std::size_t i = 0; i < x.size(); ++i) {
+    selection.forEach([&](std::size_t i) {
       const Jet s = penalty(i).in(piece_[i], x[i]);
       f[i] = -s.slope;
       h[i] = s.curvature;
-    }
+    });
   }
 
   /// Slope and curvature of Σ s(x + α dx) in α.
@@ -140,8 +140,8 @@ class ScalarRows {
   /// Appends the breakpoints that x + α dx meets at α ≥ 0.
   void findCrossings(int kind, std::vector<Crossing>& crossings) const {
     if constexpr (Penalty::kBreakpoints > 0) {
-      for (std::size_t i = 0; i < x.size(); ++i) {
-        if (dx[i] == 0.0) continue;
+      selection.forEach([&](std::size_t i) {
+        if (dx[i] == 0.0) return;
         const Penalty s = penalty(i);
         const bool up = dx[i] > 0.0;
         for (int k = up ? s.piece(x[i]) : s.piece(x[i]) - 1; 0 <= k && k < Penalty::kBreakpoints;
@@ -151,7 +151,7 @@ class ScalarRows {
           const double jump = up ? s.curvatureJump(k) : -s.curvatureJump(k);
           crossings.push_back({alpha, jump, dx[i], {{kind, static_cast<int>(i)}, k}});
         }
-      }
+      });
     }
   }
 
@@ -159,17 +159,17 @@ class ScalarRows {
   /// in which every row was; a row that is past its breakpoint by rounding meets it at once.
   void findNextCrossing(int kind, Crossing& next) const {
     if constexpr (Penalty::kBreakpoints > 0) {
-      for (std::size_t i = 0; i < x.size(); ++i) {
-        if (dx[i] == 0.0) continue;
+      selection.forEach([&](std::size_t i) {
+        if (dx[i] == 0.0) return;
         const bool up = dx[i] > 0.0;
         const int k = up ? piece_[i] : piece_[i] - 1;
-        if (k < 0 || k >= Penalty::kBreakpoints) continue;
+        if (k < 0 || k >= Penalty::kBreakpoints) return;
         const Penalty s = penalty(i);
         const double alpha = std::max(0.0, (s.breakpoint(k) - x[i]) / dx[i]);
-        if (!(alpha < next.alpha)) continue;
+        if (!(alpha < next.alpha)) return;
         const double jump = up ? s.curvatureJump(k) : -s.curvatureJump(k);
         next = {alpha, jump, dx[i], {{kind, static_cast<int>(i)}, k}};
-      }
+      });
     }
   }
 
@@ -214,7 +214,7 @@ class ScalarRows {
     selection.forEach([&](std::size_t i) { x[i] += alpha * dx[i]; });
   }
   void setForceRate() {
-    for (std::size_t i = 0; i < x.size(); ++i) df[i] = -h[i] * dx[i];
+    selection.forEach([&](std::size_t i) { df[i] = -h[i] * dx[i]; });
   }
 
  private:

@@ -57,6 +57,11 @@ class SegmentSets {
     const int begin = set == 0 ? 0 : end_[idx(set - 1)];
     return Segments(segments_).subspan(idx(begin), idx(end_[idx(set)] - begin));
   }
+  bool has(int set, int index) const {
+    for (const Segment s : (*this)[set])
+      if (s.begin <= index && index < s.end) return true;
+    return false;
+  }
   std::size_t bytes() const { return bytesOfAll(runs_, segments_, end_); }
 
  private:

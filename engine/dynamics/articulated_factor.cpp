@@ -232,8 +232,8 @@ void ArticulatedFactor::begin(const Model& model, const MassMatrix& inertia, Seg
 }
 
 void ArticulatedFactor::begin(const Model& model, const MassMatrix& inertia,
-                              const TreeIslands& islands, int island) {
-  rowScale_ = 1.0;
+                              const TreeIslands& islands, int island, double rowScale) {
+  rowScale_ = rowScale;
   steps_.assign(1, order_.part(island).steps);
   beginBodies(model, inertia, islands.bodies(island));
   beginBlocks(model, order_.part(island).blocks);

@@ -62,7 +62,8 @@ class ArticulatedFactor {
   /// follows is confined.
   void begin(const Model& model, const MassMatrix& inertia, Segments bodies);
   /// The same of one island.
-  void begin(const Model& model, const MassMatrix& inertia, const TreeIslands& islands, int island);
+  void begin(const Model& model, const MassMatrix& inertia, const TreeIslands& islands, int island,
+             double rowScale = 1.0);
   /// Adds h to the diagonal of joint i.
   void addJoint(int i, double h) { diagonal_[idx(i)] += rowScale_ * h; }
   /// Joint i does not move: x_i is 0.

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <numeric>
+#include <ranges>
 
 #include "softgauss/engine/core/check.hpp"
 #include "softgauss/engine/core/vector_clones.hpp"
@@ -161,18 +162,22 @@ void TreeSparsity::couple(const TreeSparsity& tree, const std::vector<Segment>& 
 
 void TreeMatrix::setZero() { std::fill(values_.begin(), values_.end(), 0.0); }
 
-void TreeMatrix::assign(const TreeMatrix& other) {
+void TreeMatrix::assign(const TreeMatrix& other, Segments rows) {
   const bool samePattern = sparsity_ == other.sparsity_;
-  if (samePattern) {
-    std::copy_n(other.values_.data(), sparsity_->storage(), values_.data());
-    return;
-  }
-  std::fill_n(values_.data(), sparsity_->storage(), 0.0);
-  for (int i = 0; i < size(); ++i) {
-    const double* from = other.row(i);
-    double* to = row(i);
-    for (const Segment* s = other.sparsity().begin(i); s != other.sparsity().end(i); ++s)
-      std::copy(from + s->begin, from + s->end, to + s->begin);
+  for (const Segment part : rows) {
+    const std::ptrdiff_t begin = sparsity_->storageBegin(part.begin);
+    const std::ptrdiff_t end = sparsity_->storageBegin(part.end);
+    if (samePattern) {
+      std::copy(other.values_.data() + begin, other.values_.data() + end, values_.data() + begin);
+      continue;
+    }
+    std::fill(values_.data() + begin, values_.data() + end, 0.0);
+    for (int i = part.begin; i < part.end; ++i) {
+      const double* from = other.row(i);
+      double* to = row(i);
+      for (const Segment* s = other.sparsity().begin(i); s != other.sparsity().end(i); ++s)
+        std::copy(from + s->begin, from + s->end, to + s->begin);
+    }
   }
 }
 
@@ -185,24 +190,24 @@ void TreeMatrix::add(const TreeMatrix& other, double scale) {
   }
 }
 
-void TreeMatrix::multiply(const VectorX& x, VectorX& y) const {
-  const int n = size();
+void TreeMatrix::multiply(Segments dofs, const VectorX& x, VectorX& y) const {
   const Rows rows = this->rows();
   const double* from = x.data();
   double* to = y.data();
-  for (int i = 0; i < n; ++i) {
-    const double* a = rows(i);
-    const double xi = from[i];
-    double sum = 0.0;
-    for (const Segment* s = sparsity_->begin(i); s != sparsity_->end(i); ++s) {
-      const int end = std::min(s->end, i);
-      for (int j = s->begin; j < end; ++j) {
-        sum += a[j] * from[j];
-        to[j] += a[j] * xi;
+  for (const Segment part : dofs)
+    for (int i = part.begin; i < part.end; ++i) {
+      const double* a = rows(i);
+      const double xi = from[i];
+      double sum = 0.0;
+      for (const Segment* s = sparsity_->begin(i); s != sparsity_->end(i); ++s) {
+        const int end = std::min(s->end, i);
+        for (int j = s->begin; j < end; ++j) {
+          sum += a[j] * from[j];
+          to[j] += a[j] * xi;
+        }
       }
+      to[i] = sum + a[i] * xi;
     }
-    to[i] = sum + a[i] * xi;
-  }
 }
 
 MatrixX TreeMatrix::dense() const {
@@ -213,16 +218,19 @@ MatrixX TreeMatrix::dense() const {
   return A;
 }
 
-SOFTGAUSS_VECTOR_CLONES bool TreeFactor::compute(const TreeMatrix& A, const double* diagonal) {
+SOFTGAUSS_VECTOR_CLONES bool TreeFactor::compute(const TreeMatrix& A, Segments dofs,
+                                                 const double* diagonal) {
   const TreeSparsity& pattern = A.sparsity();
   LD_.resize(pattern);
-  LD_.assign(A);
+  LD_.assign(A, dofs);
+  dofs_.assign(dofs.begin(), dofs.end());
   const int n = A.size();
   pivot_.resize(static_cast<std::size_t>(n));
   inversePivot_.resize(static_cast<std::size_t>(n));
   failedRow_ = -1;
   if (diagonal)
-    for (int i = 0; i < n; ++i) LD_.row(i)[i] += diagonal[i];
+    for (const Segment part : dofs_)
+      for (int i = part.begin; i < part.end; ++i) LD_.row(i)[i] += diagonal[i];
 
   coefficient_.resize(idx(n));
   eliminated_.resize(idx(n));
@@ -230,34 +238,35 @@ SOFTGAUSS_VECTOR_CLONES bool TreeFactor::compute(const TreeMatrix& A, const doub
   const double** eliminated = eliminated_.data();
   const TreeMatrix::Rows rows = LD_.rows();
   // Row i of D L from the rows below it that contain i:  A_ij − Σ_k (L_ki D_k) L_kj.
-  for (int i = n - 1; i >= 0; --i) {
-    double* Hi = LD_.row(i);
-    for (const Segment* s = pattern.columnBegin(i); s != pattern.columnEnd(i); ++s) {
-      const int from = pattern.foursBegin(s->begin)->begin, count = s->end - s->begin;
-      for (int k = 0; k < count; ++k) {
-        const double* L = rows(s->begin + k);
-        eliminated[k] = L;
-        coefficient[k] = -L[i] * pivots[s->begin + k];
+  for (const Segment part : dofs_ | std::views::reverse)
+    for (int i = part.end - 1; i >= part.begin; --i) {
+      double* Hi = LD_.row(i);
+      for (const Segment* s = pattern.columnBegin(i); s != pattern.columnEnd(i); ++s) {
+        const int from = pattern.foursBegin(s->begin)->begin, count = s->end - s->begin;
+        for (int k = 0; k < count; ++k) {
+          const double* L = rows(s->begin + k);
+          eliminated[k] = L;
+          coefficient[k] = -L[i] * pivots[s->begin + k];
+        }
+        for (const Segment* t = pattern.foursBegin(i); t != pattern.foursEnd(i); ++t) {
+          const int begin = std::max(t->begin, from);
+          if (begin >= t->end) continue;
+          addSum(
+              count, [=](int k) { return coefficient[k]; },
+              [=](int k) { return eliminated[k] + begin; }, t->end - begin, Hi + begin);
+        }
       }
-      for (const Segment* t = pattern.foursBegin(i); t != pattern.foursEnd(i); ++t) {
-        const int begin = std::max(t->begin, from);
-        if (begin >= t->end) continue;
-        addSum(
-            count, [=](int k) { return coefficient[k]; },
-            [=](int k) { return eliminated[k] + begin; }, t->end - begin, Hi + begin);
+      const double pivot = Hi[i];
+      if (!(pivot > 0.0) || !std::isfinite(pivot)) {
+        failedRow_ = i;
+        return false;
       }
+      pivots[i] = pivot;
+      inversePivot_[i] = 1.0 / pivot;
+      for (const Segment* t = pattern.foursBegin(i); t != pattern.foursEnd(i); ++t)
+        for (int j = t->begin; j < t->end; ++j) Hi[j] *= inversePivot_[i];
+      Hi[i] = pivot;
     }
-    const double pivot = Hi[i];
-    if (!(pivot > 0.0) || !std::isfinite(pivot)) {
-      failedRow_ = i;
-      return false;
-    }
-    pivots[i] = pivot;
-    inversePivot_[i] = 1.0 / pivot;
-    for (const Segment* t = pattern.foursBegin(i); t != pattern.foursEnd(i); ++t)
-      for (int j = t->begin; j < t->end; ++j) Hi[j] *= inversePivot_[i];
-    Hi[i] = pivot;
-  }
   return true;
 }
 
@@ -265,31 +274,32 @@ void TreeFactor::solveTransposed(VectorX& x) const {
   const TreeSparsity& pattern = LD_.sparsity();
   const TreeMatrix::Rows rows = LD_.rows();
   double* to = x.data();
-  for (int k = size() - 1; k > 0; --k) {
-    const double* L = rows(k);
-    const double xk = to[k];
-    if (xk == 0.0) continue;  // a row of a Jacobian has few entries
-    for (const Segment* s = pattern.begin(k); s != pattern.end(k); ++s) {
-      const int end = std::min(s->end, k);
-      for (int j = s->begin; j < end; ++j) to[j] -= L[j] * xk;
+  for (const Segment part : dofs_ | std::views::reverse)
+    for (int k = part.end - 1; k >= part.begin; --k) {
+      const double* L = rows(k);
+      const double xk = to[k];
+      if (xk == 0.0) continue;  // a row of a Jacobian has few entries
+      for (const Segment* s = pattern.begin(k); s != pattern.end(k); ++s) {
+        const int end = std::min(s->end, k);
+        for (int j = s->begin; j < end; ++j) to[j] -= L[j] * xk;
+      }
     }
-  }
 }
 
 void TreeFactor::solveLower(VectorX& x) const {
   const TreeSparsity& pattern = LD_.sparsity();
   const TreeMatrix::Rows rows = LD_.rows();
   double* to = x.data();
-  const int n = size();
-  for (int k = 1; k < n; ++k) {
-    const double* L = rows(k);
-    double sum = to[k];
-    for (const Segment* s = pattern.begin(k); s != pattern.end(k); ++s) {
-      const int end = std::min(s->end, k);
-      for (int j = s->begin; j < end; ++j) sum -= L[j] * to[j];
+  for (const Segment part : dofs_)
+    for (int k = part.begin; k < part.end; ++k) {
+      const double* L = rows(k);
+      double sum = to[k];
+      for (const Segment* s = pattern.begin(k); s != pattern.end(k); ++s) {
+        const int end = std::min(s->end, k);
+        for (int j = s->begin; j < end; ++j) sum -= L[j] * to[j];
+      }
+      to[k] = sum;
     }
-    to[k] = sum;
-  }
 }
 
 SOFTGAUSS_VECTOR_CLONES void TreeFactor::solveTransposed(RowMajorMatrixX& X,
@@ -298,67 +308,76 @@ SOFTGAUSS_VECTOR_CLONES void TreeFactor::solveTransposed(RowMajorMatrixX& X,
   const TreeSparsity& pattern = LD_.sparsity();
   const int columns = static_cast<int>(X.cols());
   const TreeMatrix::Rows L = LD_.rows();
-  for (Segment& r : range) r = {r.begin & ~3, paddedSize(r.end)};
+  for (const Segment part : dofs_)
+    for (int k = part.begin; k < part.end; ++k) {
+      Segment& r = range[idx(k)];
+      r = {r.begin & ~3, paddedSize(r.end)};
+    }
   // Row j from the rows below it that contain j, where these have entries.
-  for (int j = size() - 1; j >= 0; --j) {
-    double* xj = X.data() + j * columns;
-    for (const Segment* s = pattern.columnBegin(j); s != pattern.columnEnd(j); ++s) {
-      for (int k = s->begin, end; k < s->end; k = end) {
-        const Segment from = range[idx(k)];
-        end = endOfRun(range, k, s->end);
-        if (from.begin == from.end) continue;
-        const double* xk = X.data() + k * columns + from.begin;
-        addSum(
-            end - k, [=](int i) { return -L(k + i)[j]; }, [=](int i) { return xk + i * columns; },
-            from.end - from.begin, xj + from.begin);
-        Segment& to = range[idx(j)];
-        const bool empty = to.begin == to.end;
-        to.begin = empty ? from.begin : std::min(to.begin, from.begin);
-        to.end = std::max(to.end, from.end);
+  for (const Segment part : dofs_ | std::views::reverse)
+    for (int j = part.end - 1; j >= part.begin; --j) {
+      double* xj = X.data() + j * columns;
+      for (const Segment* s = pattern.columnBegin(j); s != pattern.columnEnd(j); ++s) {
+        for (int k = s->begin, end; k < s->end; k = end) {
+          const Segment from = range[idx(k)];
+          end = endOfRun(range, k, s->end);
+          if (from.begin == from.end) continue;
+          const double* xk = X.data() + k * columns + from.begin;
+          addSum(
+              end - k, [=](int i) { return -L(k + i)[j]; }, [=](int i) { return xk + i * columns; },
+              from.end - from.begin, xj + from.begin);
+          Segment& to = range[idx(j)];
+          const bool empty = to.begin == to.end;
+          to.begin = empty ? from.begin : std::min(to.begin, from.begin);
+          to.end = std::max(to.end, from.end);
+        }
       }
     }
-  }
 }
 
 SOFTGAUSS_VECTOR_CLONES void TreeFactor::solve(RowMajorMatrixX& X,
                                                std::vector<Segment>& range) const {
   solveTransposed(X, range);
   const TreeSparsity& pattern = LD_.sparsity();
-  const int n = size(), columns = static_cast<int>(X.cols());
-  for (int k = 0; k < n; ++k) {
-    double* xk = X.data() + k * columns;
-    const double inverse = inversePivot_[idx(k)];
-    for (int c = range[k].begin; c < range[k].end; ++c) xk[c] *= inverse;
-  }
-  for (int k = 1; k < n; ++k) {
-    const double* L = LD_.row(k);
-    for (const Segment* s = pattern.begin(k); s != pattern.end(k); ++s)
-      addCombination(-1.0, L + s->begin, 1, X.data() + s->begin * columns, columns,
-                     std::min(s->end, k) - s->begin, columns, X.data() + k * columns);
-  }
+  const int columns = static_cast<int>(X.cols());
+  for (const Segment part : dofs_)
+    for (int k = part.begin; k < part.end; ++k) {
+      double* xk = X.data() + k * columns;
+      const double inverse = inversePivot_[idx(k)];
+      for (int c = range[k].begin; c < range[k].end; ++c) xk[c] *= inverse;
+    }
+  for (const Segment part : dofs_)
+    for (int k = part.begin; k < part.end; ++k) {
+      const double* L = LD_.row(k);
+      for (const Segment* s = pattern.begin(k); s != pattern.end(k); ++s)
+        addCombination(-1.0, L + s->begin, 1, X.data() + s->begin * columns, columns,
+                       std::min(s->end, k) - s->begin, columns, X.data() + k * columns);
+    }
 }
 
 SOFTGAUSS_VECTOR_CLONES void TreeFactor::multiplyRoot(const RowMajorMatrixX& X,
                                                       RowMajorMatrixX& Y) const {
   SOFTGAUSS_ASSERT(X.cols() % 4 == 0);
   const TreeSparsity& pattern = LD_.sparsity();
-  const int n = size(), columns = static_cast<int>(X.cols());
-  for (int k = 0; k < n; ++k) {
-    const double* L = LD_.row(k);
-    const double* x = X.data() + k * columns;
-    double* y = Y.data() + k * columns;
-    for (int c = 0; c < columns; ++c) y[c] = x[c];
-    for (const Segment* s = pattern.begin(k); s != pattern.end(k); ++s)
-      addCombination(1.0, L + s->begin, 1, X.data() + s->begin * columns, columns,
-                     std::min(s->end, k) - s->begin, columns, y);
-    const double root = std::sqrt(pivot_[k]);
-    for (int c = 0; c < columns; ++c) y[c] *= root;
-  }
+  const int columns = static_cast<int>(X.cols());
+  for (const Segment part : dofs_)
+    for (int k = part.begin; k < part.end; ++k) {
+      const double* L = LD_.row(k);
+      const double* x = X.data() + k * columns;
+      double* y = Y.data() + k * columns;
+      for (int c = 0; c < columns; ++c) y[c] = x[c];
+      for (const Segment* s = pattern.begin(k); s != pattern.end(k); ++s)
+        addCombination(1.0, L + s->begin, 1, X.data() + s->begin * columns, columns,
+                       std::min(s->end, k) - s->begin, columns, y);
+      const double root = std::sqrt(pivot_[k]);
+      for (int c = 0; c < columns; ++c) y[c] *= root;
+    }
 }
 
 void TreeFactor::solve(VectorX& x) const {
   solveTransposed(x);
-  for (int k = 0; k < size(); ++k) x[k] *= inversePivot_[k];
+  for (const Segment part : dofs_)
+    for (int k = part.begin; k < part.end; ++k) x[k] *= inversePivot_[k];
   solveLower(x);
 }
 

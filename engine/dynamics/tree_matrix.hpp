@@ -56,6 +56,11 @@ class TreeSparsity {
   std::ptrdiff_t offset(int row) const { return offset_[idx(row)]; }
   const std::ptrdiff_t* offsets() const { return offset_.data(); }
   std::size_t storage() const { return storage_; }
+  /// Where in the value array these rows are.
+  std::ptrdiff_t storageBegin(int row) const {
+    return row == size() ? static_cast<std::ptrdiff_t>(storage_)
+                         : offset(row) + foursBegin(row)->begin;
+  }
 
   /// This pattern plus all products of the given dof sets, closed under elimination. `couplings`
   /// lists sets of dofs, each as segments ascending; sets are separated by `setEnd`.
@@ -100,11 +105,21 @@ class TreeMatrix {
   const double* row(int i) const { return values_.data() + sparsity_->offset(i); }
   void setZero();
   /// This ← other; the pattern of other is contained in this one.
-  void assign(const TreeMatrix& other);
+  void assign(const TreeMatrix& other) {
+    const Segment all{0, size()};
+    assign(other, {&all, 1});
+  }
+  /// The same of these rows.
+  void assign(const TreeMatrix& other, Segments rows);
   /// This ← this + scale · other; the pattern of other is contained in this one.
   void add(const TreeMatrix& other, double scale = 1.0);
   /// y ← A x.
-  void multiply(const VectorX& x, VectorX& y) const;
+  void multiply(const VectorX& x, VectorX& y) const {
+    const Segment all{0, size()};
+    multiply({&all, 1}, x, y);
+  }
+  /// The same of these dofs, which nothing couples with others.
+  void multiply(Segments dofs, const VectorX& x, VectorX& y) const;
   MatrixX dense() const;
 
  private:
@@ -113,11 +128,17 @@ class TreeMatrix {
 };
 
 /// A = LᵀDL with unit lower triangular L, in the place of A. Returns false when a pivot is not
-/// positive (A is not positive definite up to rounding, or not finite).
+/// positive (A is not positive definite up to rounding, or not finite). It may be of some dofs
+/// alone, which nothing couples with others: entries of others are then neither read nor written.
 class TreeFactor {
  public:
   /// Factors a copy of A, with `diagonal` added (may be null).
-  bool compute(const TreeMatrix& A, const double* diagonal = nullptr);
+  bool compute(const TreeMatrix& A, const double* diagonal = nullptr) {
+    const Segment all{0, A.size()};
+    return compute(A, Segments(&all, 1), diagonal);
+  }
+  /// The same of these dofs, ascending.
+  bool compute(const TreeMatrix& A, Segments dofs, const double* diagonal = nullptr);
   /// x ← A⁻¹ x.
   void solve(VectorX& x) const;
   /// X ← A⁻¹ X for many columns at once; rows of X are contiguous. `range` of a row k holds the
@@ -137,12 +158,15 @@ class TreeFactor {
   const double* lowerRow(int k) const { return LD_.row(k); }
   const TreeSparsity& sparsity() const { return LD_.sparsity(); }
   int size() const { return LD_.size(); }
+  /// What it is of.
+  Segments dofs() const { return dofs_; }
   /// The row whose pivot was not positive, −1 after success.
   int failedRow() const { return failedRow_; }
 
  private:
   TreeMatrix LD_;  ///< L below the diagonal, D on it, anything beyond
   int failedRow_ = -1;
+  std::vector<Segment> dofs_;
   std::vector<double> pivot_, inversePivot_;
   std::vector<double> coefficient_;        ///< scratch of compute()
   std::vector<const double*> eliminated_;  ///< scratch of compute()

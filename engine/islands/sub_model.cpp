@@ -203,8 +203,8 @@ void SubModel::gather(const Model& whole, const State& from, State& to) const {
   gather(whole, from.v, to.v);
   const WarmStart& ofWhole = from.warmstart;
   to.warmstart.breakpoints.clear();
-  to.warmstart.gddSearchAge = 0;
-  to.warmstart.gddSearchWait = 1;
+  to.warmstart.gddSearchAge.assign(trees.size(), 0);
+  to.warmstart.gddSearchWait.assign(trees.size(), 1);
   for (const auto warm : kWarmVectors)
     if ((ofWhole.*warm).size() == whole.nv) {
       (to.warmstart.*warm).resize(model.nv);

@@ -11,7 +11,7 @@ namespace softgauss {
 namespace {
 
 constexpr std::string_view kStateKind = "SGSTATE\n";
-constexpr std::uint32_t kStateVersion = 2;
+constexpr std::uint32_t kStateVersion = 3;
 
 }  // namespace
 
@@ -35,9 +35,11 @@ void expectStateOf(const Model& model, const State& state) {
                std::abs(state.q.segment<4>(body.q + 3).norm() - 1.0) < kRounding,
            "holds an orientation that is no rotation");
   constexpr int kMostSolves = 1 << 24;
-  expect(warm.gddSearchAge >= 0 && warm.gddSearchAge < kMostSolves && warm.gddSearchWait >= 1 &&
-             warm.gddSearchWait < kMostSolves,
-         "holds counts of solves that no run has");
+  for (const auto& [counts, least] : {std::pair(&warm.gddSearchAge, 0), {&warm.gddSearchWait, 1}}) {
+    expect(counts->size() == model.trees.size(), "holds counts that are not of the model's trees");
+    for (const int count : *counts)
+      expect(count >= least && count < kMostSolves, "holds counts of solves that no run has");
+  }
 }
 
 std::string save(const Model& model, const State& state) {

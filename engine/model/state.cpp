@@ -40,6 +40,8 @@ State::State(const Model& model)
   warmstart.gddA = VectorX::Zero(model.nv);
   warmstart.multipliers = VectorX::Zero(model.nv);
   warmstart.control = VectorX::Zero(model.nv);
+  warmstart.gddSearchAge.assign(model.trees.size(), 0);
+  warmstart.gddSearchWait.assign(model.trees.size(), 1);
 }
 
 std::uint64_t hash(const State& state) {
@@ -50,8 +52,9 @@ std::uint64_t hash(const State& state) {
   const double rest[] = {state.time, state.warmstart.valid ? 1.0 : 0.0,
                          state.warmstart.gddValid ? 1.0 : 0.0};
   mix(h, rest, 3);
-  mixBits(h, static_cast<std::uint64_t>(state.warmstart.gddSearchAge));
-  mixBits(h, static_cast<std::uint64_t>(state.warmstart.gddSearchWait));
+  for (const std::vector<int>* solves :
+       {&state.warmstart.gddSearchAge, &state.warmstart.gddSearchWait})
+    for (const int count : *solves) mixBits(h, static_cast<std::uint64_t>(count));
   for (const BreakpointKey& k : state.warmstart.breakpoints)
     for (const int part :
          {k.kind, k.row.first, k.row.second, k.row.contact, k.row.direction, k.index})

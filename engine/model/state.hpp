@@ -36,9 +36,10 @@ struct WarmStart {
   VectorX multipliers;  ///< of g_z = 0 and of the control limits, GDD solver 1 (nv)
   VectorX control;      ///< of GDD solver 2, coordinates y of its force (nv)
   std::vector<BreakpointKey> breakpoints;  ///< at which rows are, GDD solver 2
-  int gddSearchAge = 0;   ///< solves since GDD solver 2 last looked for a better minimum
-  int gddSearchWait = 1;  ///< solves from that search to the next
-  bool valid = false;     ///< a is set
+  /// (trees) Of the island whose first tree it is: solves since GDD solver 2 last looked for a
+  /// better minimum, and solves from that search to the next.
+  std::vector<int> gddSearchAge, gddSearchWait;
+  bool valid = false;  ///< a is set
   bool gddValid = false;
 };
 

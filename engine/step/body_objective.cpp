@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "softgauss/engine/core/segment_vectors.hpp"
 #include "softgauss/engine/core/six_vectors.hpp"
 #include "softgauss/engine/step/data.hpp"
 
@@ -16,34 +17,6 @@ double power(Segments bodies, const std::vector<Motion>& A, const std::vector<Fo
     for (std::size_t b = idx(s.begin); b < idx(s.end); ++b)
       sum += dotSix(numbers(A[b]), numbers(F[b]));
   return sum;
-}
-
-/// What of x is of these dofs.
-auto part(VectorX& x, Segment s) { return x.segment(s.begin, s.end - s.begin); }
-auto part(const VectorX& x, Segment s) { return x.segment(s.begin, s.end - s.begin); }
-
-double dot(Segments dofs, const VectorX& x, const VectorX& y) {
-  double sum = 0.0;
-  for (const Segment s : dofs) sum += part(x, s).dot(part(y, s));
-  return sum;
-}
-
-/// xᵀ diag(d) y.
-double dot(Segments dofs, const VectorX& x, const VectorX& d, const VectorX& y) {
-  double sum = 0.0;
-  for (const Segment s : dofs) sum += part(x, s).dot(part(d, s).cwiseProduct(part(y, s)));
-  return sum;
-}
-
-/// max |x_i| scale_i.
-double largest(Segments dofs, const VectorX& x, const VectorX& scale) {
-  double most = 0.0;
-  for (const Segment s : dofs) {
-    const double of =
-        part(x, s).cwiseProduct(part(scale, s)).cwiseAbs().maxCoeff<Eigen::PropagateNaN>();
-    if (!(of <= most)) most = of;
-  }
-  return most;
 }
 
 }  // namespace
@@ -73,6 +46,7 @@ void BodySolution::divide(const Model& model, const MassMatrix& inertia, Constra
   rows.appendPairs(pairs);
   const std::size_t ofBodies = pairs.size();
   rows.appendCoupledBodies(model, pairs);
+  pairs.insert(pairs.end(), tied.begin(), tied.end());
   if (pairs != lastPairs) {
     lastPairs = pairs;
     islands.find(model, pairs);
@@ -142,7 +116,7 @@ BodyObjective::BodyObjective(const Model& model, Data& data, int island)
 
 double BodyObjective::moveTo(const VectorX& at) {
   VectorX& a = data_.forward.a;
-  for (const Segment s : dofs_) part(a, s) = part(at, s);
+  copy(dofs_, at, a);
   s_.moveTo(model_, data_.kinematics, data_.inertia, bodies_, a);
   rows_.setResidual(BodyMotion{a, s_.A});
   const double cost = rows_.evaluate(changed_);
@@ -155,7 +129,7 @@ double BodyObjective::gradient(VectorX& g) {
   if (!fresh_) rows_.evaluate(changed_);
   fresh_ = false;
   // −g = τ − c − M a + Jᵀf
-  for (const Segment s : dofs_) part(g, s) = part(data_.forces.net, s);
+  copy(dofs_, data_.forces.net, g);
   s_.addForces(model_, data_.kinematics, rows_, bodies_, dofs_, data_.forward.a, g);
   for (const Segment s : dofs_) part(g, s) = -part(g, s);
   return largest(dofs_, g, data_.forward.scale);

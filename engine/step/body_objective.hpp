@@ -23,11 +23,13 @@ struct BodySolution {
   VectorX diagonal;                        ///< (nv) armature and MassMatrix::added
   std::vector<std::pair<int, int>> pairs;  ///< scratch: bodies that rows couple
   std::vector<std::pair<int, int>> lastPairs;  ///< those for which islands and factor are
+  std::vector<std::pair<int, int>> tied;       ///< bodies that are of one island besides: by goals
   TreeIslands islands;                         ///< of the present rows
 
   BodySolution() = default;
   explicit BodySolution(const Model& model);
-  /// Finds the islands of the rows, and readies them and the factor for each of these.
+  /// Finds the islands of the rows and of what is tied, and readies them and the factor for each of
+  /// these.
   void divide(const Model& model, const MassMatrix& inertia, Constraints& rows);
   /// A and I A of the joint acceleration a.
   void moveTo(const Model& model, const Kinematics& k, const MassMatrix& inertia, const VectorX& a);

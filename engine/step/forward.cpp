@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "softgauss/engine/core/check.hpp"
+#include "softgauss/engine/core/segment_vectors.hpp"
 #include "softgauss/engine/step/substep_workspace.hpp"
 
 namespace softgauss {
@@ -31,9 +32,9 @@ struct SmoothStart {
 };
 
 /// Whether the solve is repeated, but not for this island: its prediction holds, and the guess is
-/// what it has come to. Goals find another.
+/// what it has come to.
 bool isHeld(const Model& model, const Data& data, int island) {
-  if (!data.parts || !data.parts->repeats || data.inertia.whole) return false;
+  if (!data.parts || !data.parts->repeats) return false;
   const auto missed = [&](const Segment& bodies) {
     for (int b = bodies.begin; b < bodies.end; ++b)
       if (data.parts->mispredicted[idx(model.bodies[idx(b)].tree)]) return true;
@@ -78,18 +79,35 @@ bool isSolved(const Model& model, const Data& data, int island) {
   return data.active.holds(model, body) && !(data.parts && data.parts->leaves(body));
 }
 
-void solveRows(const Model& model, const VectorX* guess, Data& data) {
+/// Of the dofs of an island, whose solution is `a`: its rows are evaluated there, and
+/// data.forward.gradient is known.
+NewtonReport take(Segments dofs, const VectorX& a, Data& data) {
+  copy(dofs, a, data.forward.a);
+  setForceScale(dofs, data);
+  return {.residual = largest(dofs, data.forward.gradient, data.forward.scale)};
+}
+
+bool isKnown(KnownTrees known, const Model& model, const Data& data, int island) {
+  const int body = data.bodies.islands.bodies(island).front().begin;
+  return !known.empty() && known[idx(model.bodies[idx(body)].tree)] != 0;
+}
+
+void solveRows(const Model& model, const VectorX* guess, KnownTrees known, Data& data) {
   ForwardSolution& s = data.forward;
+  const int selected = data.constraints.selected();
   data.bodies.divide(model, data.inertia, data.constraints);
   if (guess && !guess->allFinite()) guess = nullptr;
   SmoothStart smooth;
-  for (int i = 0; i < data.bodies.islands.size() && !isRefused(s.report.status); ++i)
-    if (isSolved(model, data, i))
-      s.report.add(solveIsland(model, guess, i, smooth, data));
+  for (int i = 0; i < data.bodies.islands.size() && !isRefused(s.report.status); ++i) {
+    const Segments dofs = data.bodies.islands.dofs(i);
+    if (!isSolved(model, data, i))
+      for (const Segment of : dofs) part(s.a, of).setZero();
+    else if (guess && isKnown(known, model, data, i))
+      s.report.add(take(dofs, *guess, data));
     else
-      for (const Segment dofs : data.bodies.islands.dofs(i))
-        s.a.segment(dofs.begin, dofs.end - dofs.begin).setZero();
-  data.constraints.selectAll();
+      s.report.add(solveIsland(model, guess, i, smooth, data));
+  }
+  data.constraints.select(selected);
   data.stats.roundingLimitedSolves += s.report.roundingLimited;
   if (s.report.status == SolveStatus::notFinite && data.stats.badDof < 0)
     data.stats.badDof = firstNotFinite(s.a);
@@ -102,21 +120,27 @@ bool solves(const Model& model, const VectorX& a, Data& data) {
   s.gradient -= data.forces.net;
   const Segment all{0, model.nv};
   setForceScale({&all, 1}, data);
-  return s.gradient.cwiseProduct(s.scale).cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <=
-         model.options.tolerance;
+  return largest({&all, 1}, s.gradient, s.scale) <= model.options.tolerance;
 }
 
 /// Without rows the minimiser is M⁻¹(τ − c): no iteration, no residual. Where M is a matrix, goals
 /// have found it.
-void solveSmooth(const Model& model, const VectorX* guess, Data& data) {
+void solveSmooth(const Model& model, const VectorX* guess, KnownTrees known, Data& data) {
   ForwardSolution& s = data.forward;
+  const Segments active = data.active.dofs();
   if (guess && data.inertia.whole && solves(model, *guess, data)) {
     s.a = *guess;
     return;
   }
-  s.a = data.forces.net;
-  s.gradient.setZero();
+  copyOnly(active, data.forces.net, s.a);
   const bool solved = solveMass(model, data, nullptr, s.a);
+  for (std::size_t t = 0; t < model.trees.size(); ++t) {
+    const Segment dofs{model.trees[t].firstDof, model.trees[t].dofEnd};
+    if (guess && !known.empty() && known[t])
+      s.report.add(take({&dofs, 1}, *guess, data));
+    else
+      part(s.gradient, dofs).setZero();
+  }
   if (solved && s.a.allFinite()) return;
   s.report.status = SolveStatus::notFinite;
   if (solved) data.stats.badDof = firstNotFinite(s.a);
@@ -179,21 +203,18 @@ bool solveMass(const Model& model, Data& data, const VectorX* diagonal, VectorX&
   return true;
 }
 
-SolveStatus takeSolution(const Model& model, const VectorX& a, Data& data) noexcept {
-  ForwardSolution& s = data.forward;
-  s.a = a;
-  const Segment all{0, model.nv};
-  setForceScale({&all, 1}, data);
-  s.report = {.residual = s.gradient.cwiseProduct(s.scale).cwiseAbs().maxCoeff()};
-  return s.report.status;
-}
-
-SolveStatus forwardDynamics(const Model& model, const VectorX* guess, Data& data) noexcept {
+SolveStatus forwardDynamics(const Model& model, const VectorX* guess, Data& data,
+                            KnownTrees known) noexcept {
   if (!begin(model, guess, data)) return data.forward.report.status;
-  if (hasRows(data))
-    solveRows(model, guess, data);
-  else
-    solveSmooth(model, guess, data);
+  const bool leavesAny = data.parts && data.parts->leavesAny();
+  if (guess && !leavesAny && !known.empty() && std::ranges::find(known, 0) == known.end()) {
+    const Segment all{0, model.nv};
+    data.forward.report = take({&all, 1}, *guess, data);
+  } else if (hasRows(data)) {
+    solveRows(model, guess, known, data);
+  } else {
+    solveSmooth(model, guess, known, data);
+  }
   return data.forward.report.status;
 }
 

@@ -13,11 +13,15 @@
 
 namespace softgauss {
 
+/// (trees) 1 where a guess is the solution, to rounding: rows are evaluated there, and
+/// data.forward.gradient is what is left of the equation of motion. Empty: nowhere.
+using KnownTrees = std::span<const std::uint8_t>;
+
 /// Acceleration for data.forces.net. Reads the stages up to constraints, writes data.forward.
-/// Starts from `guess` (null: none) or the unconstrained acceleration, whichever costs less.
-SolveStatus forwardDynamics(const Model& model, const VectorX* guess, Data& data) noexcept;
-/// The same where the solution is known (StepControl::isSolved()).
-SolveStatus takeSolution(const Model& model, const VectorX& a, Data& data) noexcept;
+/// Starts from `guess` (null: none) or the unconstrained acceleration, whichever costs less, but
+/// where the guess is known to be the solution.
+SolveStatus forwardDynamics(const Model& model, const VectorX* guess, Data& data,
+                            KnownTrees known = {}) noexcept;
 
 /// Of Newton's iterations: a step ends in another cell or at the minimum, and the more rows, the
 /// more cells lie on the way. Options::maxIterations are for every thousand rows. (200 bodies that

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "softgauss/engine/core/segment_vectors.hpp"
 #include "softgauss/engine/step/substep_workspace.hpp"
 
 namespace softgauss {
@@ -12,10 +13,6 @@ namespace {
 Segment coordinatesOf(const Model& model, Segment bodies) {
   const Body &first = model.bodies[idx(bodies.begin)], &last = model.bodies[idx(bodies.end - 1)];
   return {first.q, last.q + (last.joint == JointKind::floating ? 7 : 1)};
-}
-
-void copy(Segment of, const VectorX& from, VectorX& to) {
-  to.segment(of.begin, of.end - of.begin) = from.segment(of.begin, of.end - of.begin);
 }
 
 }  // namespace
@@ -76,20 +73,21 @@ void IslandSubsteps::begin(const Model& model, int island, const State& before, 
 }
 
 void IslandSubsteps::finish(const Model& model, int island, Data& whole, State& to) {
-  for (const Segment bodies : islands_.bodies(island))
-    copy(coordinatesOf(model, bodies), state.q, to.q);
-  for (const Segment dofs : islands_.dofs(island)) {
-    copy(dofs, state.v, to.v);
-    copy(dofs, state.a, to.a);
-    copy(dofs, state.warmstart.a, to.warmstart.a);
-    copy(dofs, data.forward.a, whole.forward.a);
-    copy(dofs, data.acceleration, whole.acceleration);
+  for (const Segment bodies : islands_.bodies(island)) {
+    const Segment coordinates = coordinatesOf(model, bodies);
+    part(to.q, coordinates) = part(state.q, coordinates);
   }
+  const Segments dofs = islands_.dofs(island);
+  copy(dofs, state.v, to.v);
+  copy(dofs, state.a, to.a);
+  copy(dofs, state.warmstart.a, to.warmstart.a);
+  copy(dofs, data.forward.a, whole.forward.a);
+  copy(dofs, data.acceleration, whole.acceleration);
   for (std::size_t i = 0; i < model.connections.size(); ++i) {
     const Connection& c = model.connections[i];
-    const int at = 9 * static_cast<int>(i);
+    const Segment at{9 * static_cast<int>(i), 9 * static_cast<int>(i) + 9};
     if (data.active.holds(model, c.bodyA, c.bodyB))
-      copy({at, at + 9}, state.connectionForces, to.connectionForces);
+      part(to.connectionForces, at) = part(state.connectionForces, at);
   }
   const ServoDrive& servo = data.constraints.servo;
   ServoDrive& all = whole.constraints.servo;

@@ -47,6 +47,7 @@ void reserveRows(const Model& model, std::span<const std::pair<int, int>> geomet
   for (const auto& pair : geometries) source.points.push_back(touching(model, pair));
   computeStages(model, {}, state, data, &source);
   forwardDynamics(model, nullptr, data);
+  data.constraints.reserve(model);
   data.kinematics.V_midstep.reserve(model.bodies.size());
   if (!data.parts) return;
   for (State* kept : {&data.parts->before, &data.parts->start})

@@ -60,17 +60,19 @@ void computeForces(const Model& model, const Input& input, const State& state, D
   data.stats.times.kinematics += lap(clock);
 }
 
-/// Whether M and J are matrices without goals: the solve is not on bodies, or M is differentiated.
-bool needsMatrices(const Model& model, const Data& data) {
-  return model.options.exactDiagonal || data.derivative;
+/// When M and J are matrices: for goals, where the solve is not on bodies, or M is differentiated.
+Columns columnsOf(const Model& model, const StepControl* control, const Data& data) {
+  if (model.options.exactDiagonal || data.derivative) return Columns::now;
+  if (!control) return Columns::never;
+  return control->addsColumns() ? Columns::later : Columns::now;
 }
 
 void assembleRows(const Model& model, const Input& input, const State& state, Data& data,
-                  Clock::time_point& clock, bool matrices) {
+                  Clock::time_point& clock, Columns columns) {
   if (kBuiltRows.empty() || data.plan.rows.empty()) return;
   Assembly assembly{
       model, state, data.kinematics, data.contacts, data.weights, data.inertia.sparsity, &input};
-  assembly.columns = matrices;
+  assembly.columns = columns;
   assembly.trees = &data.active;
   if (data.plan.drifts && predictsMidstepVelocity(model, state))
     assembly.midstepVelocity = &data.midstepVelocity;
@@ -86,9 +88,10 @@ void assembleRows(const Model& model, const Input& input, const State& state, Da
 /// computeStages(); `clock` is when the last stage ended. A clock is read only after what has run.
 SolveStatus computeStages(const Model& model, const Input& input, const State& state, Data& data,
                           ContactSource* contacts, Clock::time_point& clock, bool posed = false,
-                          bool matrices = true) noexcept {
+                          Columns columns = Columns::now) noexcept {
   SOFTGAUSS_ASSERT(data.plan.fits(model));
   data.stats = {};
+  data.bodies.tied.clear();
   if (data.parts) data.parts->begin();
   if (!isFinite(input, state)) {
     data.stats.status = SolveStatus::notFinite;
@@ -98,7 +101,8 @@ SolveStatus computeStages(const Model& model, const Input& input, const State& s
   clock = Clock::now();
   const TreeSelection& active = data.active;
   if (!posed) computeKinematics(model, state, active.bodies(), data.kinematics);
-  computeMassMatrix(model, data.kinematics, active.bodies(), active.dofs(), data.inertia, matrices);
+  computeMassMatrix(model, data.kinematics, active.bodies(), active.dofs(), data.inertia,
+                    columns != Columns::never);
   if (data.plan.inSolve) addImplicitInertia(model, data);
   data.bodies.massFactored = false;
   computeForces(model, input, state, data, clock);
@@ -117,11 +121,9 @@ SolveStatus computeStages(const Model& model, const Input& input, const State& s
   } else {
     data.contacts.clear();
   }
-  assembleRows(model, input, state, data, clock, matrices);
+  assembleRows(model, input, state, data, clock, columns);
   return SolveStatus::converged;
 }
-
-bool leavesAny(const Data& data) { return data.parts && data.parts->leavesAny(); }
 
 /// (8) where goals choose the control, then (13): what moves under it. `aim`: the acceleration that
 /// goals ask for.
@@ -135,8 +137,8 @@ SolveStatus solve(const Model& model, const Given& given, const State& state, Da
     lap(clock);
   }
   // (13), but for islands that take parts of their own
-  const bool known = given.control && given.control->isSolved() && !leavesAny(data);
-  stats.status = known ? takeSolution(model, *aim, data) : forwardDynamics(model, guess, data);
+  stats.status =
+      forwardDynamics(model, guess, data, given.control ? given.control->known() : KnownTrees{});
   stats.iterations += data.forward.report.iterations;
   stats.factorizations += data.forward.report.factorizations;
   stats.residual = std::max(stats.residual, data.forward.report.residual);
@@ -169,21 +171,25 @@ SolveStatus integrate(const Model& model, const Given& given, const State& start
   return SolveStatus::notFinite;
 }
 
-/// The largest |moved − solved| over max(|solved|∞, 1), of accelerations. Trees that take parts of
-/// their own do not count, nor those that are followed by themselves, where `follows`, but for
-/// those that a control acts on.
-double deviation(const Model& model, const Data& data, bool follows, bool controlled,
-                 const VectorX& moved, const VectorX& solved) {
+/// The largest |moved − a| over max(|a|∞, 1), of accelerations, a of the solve, or of `aim` where a
+/// control has found one. Trees that take parts of their own do not count, nor those that are
+/// followed by themselves, where `follows`, but for those that a control acts on.
+double deviation(const Model& model, const Data& data, bool follows, const StepControl* control,
+                 const VectorX& moved, const VectorX* aim) {
+  const bool acts = control && control->acts();
+  const std::span<const std::uint8_t> of =
+      control ? control->controlled() : std::span<const std::uint8_t>{};
   double worst = 0.0, most = 1.0;
   for (std::size_t t = 0; t < model.trees.size(); ++t) {
     const Tree& tree = model.trees[t];
     if (!data.active.has(static_cast<int>(t))) continue;
     if (data.parts && data.parts->leaves(tree.rootBody)) continue;
+    const VectorX& a = aim && (of.empty() || of[t] != 0) ? *aim : data.forward.a;
     const bool counts =
-        !follows || !data.parts->substepSelection.free[t] || (controlled && tree.actuated);
+        !follows || !data.parts->substepSelection.free[t] || (acts && tree.actuated);
     for (int i = tree.firstDof; i < tree.dofEnd; ++i) {
-      most = std::max(most, std::abs(solved[i]));
-      if (counts) worst = std::max(worst, std::abs(moved[i] - solved[i]));
+      most = std::max(most, std::abs(a[i]));
+      if (counts) worst = std::max(worst, std::abs(moved[i] - a[i]));
     }
   }
   return worst / most;
@@ -219,9 +225,9 @@ Tried tryStep(const Model& model, const Given& given, const State& start, int mo
   StepStats& stats = data.stats;
   const bool drifts = data.plan.drifts, resolves = drifts && !model.options.stepDoubling;
   if (drifts) driftBefore(model, data, state);
-  const bool matrices = given.control || needsMatrices(model, data);
+  const Columns columns = columnsOf(model, given.control, data);
   if (isRefused(
-          computeStages(model, given.input, state, data, given.contacts, clock, posed, matrices)))
+          computeStages(model, given.input, state, data, given.contacts, clock, posed, columns)))
     return Tried::refused;
   const VectorX* aim = nullptr;
   for (bool again = false;; again = true) {
@@ -239,7 +245,7 @@ Tried tryStep(const Model& model, const Given& given, const State& start, int mo
     state.warmstart.a = data.forward.a;  // nearer than the last step's
     state.warmstart.valid = true;
     computeForces(model, given.input, state, data, clock);
-    assembleRows(model, given.input, state, data, clock, matrices);
+    assembleRows(model, given.input, state, data, clock, columns);
   }
   SolveStatus moved = integrate(model, given, start, data, state);
   if (!isRefused(moved) && resolves && data.parts->substepSelection.anyFree) {
@@ -255,9 +261,8 @@ Tried tryStep(const Model& model, const Given& given, const State& start, int mo
     return Tried::refused;
   }
   if (drifts) data.parts->moved = (state.v - start.v) / model.options.timestep;
-  stats.realised =
-      deviation(model, data, resolves, given.control && given.control->acts(),
-                drifts ? data.parts->moved : data.acceleration, aim ? *aim : data.forward.a);
+  stats.realised = deviation(model, data, resolves, given.control,
+                             drifts ? data.parts->moved : data.acceleration, aim);
   countMechanisms(model, start, data);
   stats.unconvergedSolves += stats.status != SolveStatus::converged;
   state.warmstart.a = data.forward.a;
@@ -341,7 +346,7 @@ SolveStatus computeBodyStages(const Model& model, const Input& input, const Stat
   if (data.stats.refuse(model, findBadInput(model, input, state))) return data.stats.status;
   Clock::time_point clock;
   return computeStages(model, input, state, data, contacts, clock, false,
-                       needsMatrices(model, data));
+                       columnsOf(model, nullptr, data));
 }
 
 void poseForStep(const Model& model, const State& state, Data& data) {

@@ -126,8 +126,8 @@ void solveInto(SimulationParts& p, ContactSource& contacts, ControlSolution& ans
       return;
     }
   }
-  answer.status = controlled && p.controller->isSolved() ? takeSolution(model, *guess, *p.data)
-                                                         : forwardDynamics(model, guess, *p.data);
+  answer.status = forwardDynamics(model, guess, *p.data,
+                                  controlled ? p.controller->known() : KnownTrees{});
   answer.tau = controlled ? p.controller->control : p.data->forces.tau;
   answer.a = p.data->forward.a;
   contactForces(*p.data, answer.contacts);

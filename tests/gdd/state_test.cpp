@@ -52,7 +52,7 @@ TEST(GddState, KnotsAndSearchesAreKeptFromStepToStep) {
       EXPECT_EQ(r->data.constraints.nameOf(*breakpoint), name);
     }
     kinks += warm.breakpoints.empty() ? 0 : 1;
-    longestWait = std::max(longestWait, warm.gddSearchWait);
+    longestWait = std::max(longestWait, warm.gddSearchWait.front());
   }
   EXPECT_GT(kinks, 0);
   EXPECT_GT(longestWait, 1);

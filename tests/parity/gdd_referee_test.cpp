@@ -157,7 +157,8 @@ TYPED_TEST(GddFound, StaysWhatItWas) {
       warm.gddA = vectorOf(recorded.at("acceleration"));
       warm.multipliers = VectorX::Zero(model.nv);
       warm.control = vectorOf(recorded.at("control"));
-      warm.gddSearchWait = 2;  // not in this solve
+      warm.gddSearchAge.assign(model.trees.size(), 0);
+      warm.gddSearchWait.assign(model.trees.size(), 2);  // not in this solve
       warm.gddValid = true;
       const gdd::GddStatus status = solver.solve(model, cost, limits, data, warm).status;
       EXPECT_TRUE(status == gdd::GddStatus::converged || status == gdd::GddStatus::nonsmoothMinimum)

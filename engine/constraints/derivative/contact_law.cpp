@@ -67,7 +67,7 @@ bool ContactLaw::sample(const Assembly& in, const ContactRows& made, Contacts& r
   move(L::kVelocity, V);
   move(L::kBias, A);
   rows.assemble({in.model, in.state, kinematics_, contact_, in.weights, in.tree, in.input,
-                 in.midstepVelocity, in.load, nullptr, false,
+                 in.midstepVelocity, in.load, nullptr, Columns::never,
                  in.state.hasAcceleration ? &last_ : nullptr});
   V = keptV, A = keptA;
   out.rows = rows.rowCount();

@@ -110,8 +110,8 @@ TEST(SavedState, ThatDoesNotFitIsRefused) {
   EXPECT_NE(problem([](State& x) { x.a.conservativeResize(x.a.size() - 1); }), "");
   EXPECT_NE(problem([](State& x) { x.a[0] = kNaN; }), "");
   EXPECT_NE(problem([](State& x) { x.warmstart.control.resize(0); }), "");
-  EXPECT_NE(problem([](State& x) { x.warmstart.gddSearchWait = 0; }), "");
-  EXPECT_NE(problem([](State& x) { x.warmstart.gddSearchAge = 1 << 30; }), "");
+  EXPECT_NE(problem([](State& x) { x.warmstart.gddSearchWait[0] = 0; }), "");
+  EXPECT_NE(problem([](State& x) { x.warmstart.gddSearchAge[0] = 1 << 30; }), "");
 }
 
 }  // namespace

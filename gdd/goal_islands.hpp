@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Islands of goal directed dynamics: two trees are of one where rows couple them, or a term of the
+/// cost, the price of force or an actuator does.
+///
+/// P, B, R and ∇²ℓ have no entry between two islands, so (8.1) is the sum of theirs and each is
+/// solved by itself, in its own cells and its own number of iterations. A robot among a thousand
+/// objects pays for those that it touches, two robots with a goal each are two problems, and what
+/// one does depends on the other in no bit. Islands without a control have nothing to choose: they
+/// are left to forward dynamics.
+
+#include <vector>
+
+#include "softgauss/gdd/cost.hpp"
+#include "softgauss/gdd/problem.hpp"
+
+namespace softgauss::gdd {
+
+class GoalIslands {
+ public:
+  explicit GoalIslands(const Model& model);
+
+  /// Finds them, of the rows in `data`, of limits that fit the model. `together`: all are one.
+  void find(const Model& model, const ControlLimits& limits, bool together, GoalCost& cost,
+            Data& data);
+
+  int size() const { return static_cast<int>(controls_.size()); }
+  /// (trees) the island of each.
+  const std::vector<int>& ofTree() const { return ofTree_; }
+  /// Whether a control acts on an island, or there is no other.
+  bool isSolved(int island) const { return size() == 1 || controls(island) > 0; }
+  /// How many coordinates of force its box leaves a choice of.
+  int controls(int island) const { return controls_[idx(island)]; }
+
+  /// Gives the rows of islands with controls their columns, where they have none.
+  void addColumns(const Model& model, Data& data) const;
+
+  /// From here on `data` and `cost` are of this island alone, until selectAll().
+  void select(const Model& model, int island, GoalCost& cost, Data& data) const;
+  void selectAll(const Model& model, GoalCost& cost, Data& data) const;
+
+ private:
+  std::vector<int> ofTree_;
+  std::vector<int> controls_;  ///< (islands)
+};
+
+}  // namespace softgauss::gdd
