@@ -249,6 +249,7 @@ int AugmentedLagrangian::badDof() const {
 void AugmentedLagrangian::keepWarmStart(WarmStart& warm) const {
   warm.gddA = a_;
   warm.multipliers = lambda_;
+  warm.control.setZero(a_.size());
   warm.breakpoints.clear();
   warm.gddValid = true;
 }

@@ -165,6 +165,8 @@ bool CellResponse::enter(Data& data) {
 
 void CellResponse::reserve(int crossings) {
   corrections_.resize(std::max(corrections_.size(), static_cast<std::size_t>(crossings)));
+  for (VectorX* x : {&My_, &scratch_}) x->setZero(M_->size());
+  b_.setZero(padded());
   for (Correction& c : corrections_) {
     for (VectorX* x : {&c.y, &c.Hy}) x->setZero(M_->size());
     c.By.setZero(padded());

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "softgauss/gdd/goal_directed_step.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <tuple>
 #include <type_traits>
@@ -31,6 +32,30 @@ bool refuses(const ActiveSet&, const WarmStart& warm) {
 bool refuses(const AugmentedLagrangian&, const WarmStart& warm) {
   return warm.gddValid && !(warm.gddA.allFinite() && warm.multipliers.allFinite());
 }
+
+/// What the islands of one control may take together: each gets its share of what the ones before
+/// have left.
+class Budget {
+ public:
+  Budget(int iterations, double seconds) : iterations_(iterations), seconds_(seconds) {
+    if (seconds_ < kInfinity) start_ = Clock::now();
+  }
+  /// Of so many islands that are left.
+  void share(int islands, SequentialQuadraticSolve& solve) const {
+    solve.iterationsLeft = islands > 1 ? std::max(iterations_ / islands, 1) : iterations_;
+    solve.deadline = {};
+    if (seconds_ == kInfinity) return;
+    const double spent = std::chrono::duration<double>(Clock::now() - start_).count();
+    solve.deadline = Deadline::in((seconds_ - spent) / islands);
+  }
+  void spend(int iterations) { iterations_ = std::max(0, iterations_ - iterations); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  int iterations_;
+  double seconds_;
+  Clock::time_point start_;
+};
 
 /// What is left of the equation of motion where the solver has ended on it, or null.
 const VectorX* exactResidual(const ActiveSet& solver) {
@@ -73,6 +98,9 @@ bool GoalDirectedController::solveIslands(Solver& used, const Model& model, cons
   // A goal may have set it: the value of a plan does.
   const bool holds = controlCost == ControlCost::aboutGravity && !cost_.controlCost().hasFree();
   solution_.begin(model, state, limits, islands_, data);
+  Budget budget(iterationBudget, timeBudget);
+  int left = 0;
+  for (int i = 0; i < islands_.size(); ++i) left += islands_.isSolved(i) && !solution_.keeps(i);
   bool solved = true;
   for (int i = 0; i < islands_.size() && solved; ++i) {
     if (!islands_.isSolved(i)) continue;
@@ -82,9 +110,11 @@ bool GoalDirectedController::solveIslands(Solver& used, const Model& model, cons
       continue;
     }
     if (holds) cost_.setFreeControl(holding_.compute(model, state, limits, data));
+    budget.share(left--, expansion);
     Solver& own = solverOf(used, model, islands_.controls(i));
     const GddReport found =
         solveOneSided(expansion, own, model, cost_, limits, data, state.warmstart, between_);
+    budget.spend(found.iterations);
     report.add(found);
     solved = !isRefused(found.status);
     const VectorX* residual = cost_.hasFunctions() ? nullptr : exactResidual(own);
@@ -113,8 +143,6 @@ const VectorX* GoalDirectedController::solve(Solver& used, const Model& model, c
   cost_.clear(forceMetric);
   addGoals(model, state, data, cost_);
   data.stats.invalidWarmStarts += refuses(used, state.warmstart);
-  expansion.iterationsLeft = iterationBudget;
-  expansion.deadline = Deadline::in(timeBudget);
   const bool solved = solveIslands(used, model, state, data);
   const GddReport own = report;
   report.addEarlier(earlier_);
@@ -149,11 +177,16 @@ void GoalDirectedController::reserve(const Model& model, const State& state, Dat
   }
   begin();
   apply(model, state, data);
+  if (model.trees.size() > 1) {  // and where nothing touches: islands of fewer controls
+    computeStages(model, {}, state, data, nullptr);
+    apply(model, state, data);
+  }
   for (std::size_t i = 0; i < goals.size(); ++i)
     std::tie(goals[i]->startTime, goals[i]->endTime) = times[i];
   const auto controls = (limits.lower.array() < limits.upper.array()).count();
   cost_.reserve(static_cast<int>(controls), static_cast<int>(data.contacts.contacts.capacity()));
-  if (solver == GddSolver::activeSet && data.constraints.piecewiseQuadratic()) {
+  const bool any = std::ranges::find(solution_.controlled, 1) != solution_.controlled.end();
+  if (any && solver == GddSolver::activeSet && data.constraints.piecewiseQuadratic()) {
     activeSet.reserve(rows);
     for (auto& [count, other] : others_) other.reserve(rows);
   }

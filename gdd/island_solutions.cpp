@@ -83,6 +83,10 @@ void IslandSolutions::take(const Model& model, int island, const SequentialQuadr
     a = solved.acceleration();
     force = solved.force();
     solved.keepWarmStart(warm);
+    if (warm.gddSearchAge.empty()) {  // solver 1 does not search
+      warm.gddSearchAge.assign(model.trees.size(), 0);
+      warm.gddSearchWait.assign(model.trees.size(), 1);
+    }
     controlled.assign(model.trees.size(), 1);
     known.assign(model.trees.size(), residual ? 1 : 0);
     return;

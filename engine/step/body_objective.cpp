@@ -45,6 +45,7 @@ void BodySolution::divide(const Model& model, const MassMatrix& inertia, Constra
   pairs.clear();
   rows.appendPairs(pairs);
   const std::size_t ofBodies = pairs.size();
+  pairs.emplace_back(0, 0);  // where those that rows couple end: the world couples nothing
   rows.appendCoupledBodies(model, pairs);
   pairs.insert(pairs.end(), tied.begin(), tied.end());
   if (pairs != lastPairs) {

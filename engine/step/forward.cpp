@@ -73,10 +73,16 @@ NewtonReport solveIsland(const Model& model, const VectorX* guess, int island, S
                   s.direction);
 }
 
-/// Of this solve, and not left to parts of its own.
+/// Of this solve, and not left to parts of their own: where goals tie trees to such as are, all of
+/// the island are solved.
 bool isSolved(const Model& model, const Data& data, int island) {
-  const int body = data.bodies.islands.bodies(island).front().begin;
-  return data.active.holds(model, body) && !(data.parts && data.parts->leaves(body));
+  const Segments bodies = data.bodies.islands.bodies(island);
+  if (!data.active.holds(model, bodies.front().begin)) return false;
+  if (!data.parts || !data.parts->leavesAny()) return true;
+  for (const Segment s : bodies)
+    for (int b = s.begin; b < s.end; ++b)
+      if (!data.parts->leaves(b)) return true;
+  return false;
 }
 
 /// Of the dofs of an island, whose solution is `a`: its rows are evaluated there, and

@@ -23,7 +23,7 @@ SolveStatus inverseDynamics(const Model& model, const VectorX& a, Data& data, Ve
 }
 
 bool inverseDynamicsJacobian(Data& data, TreeMatrix& P) {
-  if (!data.inertia.whole) return false;
+  if (!data.inertia.whole || data.constraints.columnsComeLater()) return false;
   P.resize(data.constraints.sparsity());
   P.assign(data.inertia.hat());
   data.constraints.addCurvature(P);

@@ -3,6 +3,8 @@
 /// A step with goals solves each island by itself: its robots, and what these touch.
 
 #include "softgauss/collision/scene_contacts.hpp"
+#include "softgauss/engine/model/saved_state.hpp"
+#include "softgauss/engine/step/substep_workspace.hpp"
 #include "tests/islands/goal_crowd.hpp"
 #include "tests/support/matchers.hpp"
 
@@ -174,6 +176,79 @@ TEST(GoalIslands, AreOneWhereAnythingCouplesThem) {
               c.solver = gdd::GddSolver::augmentedLagrangian;  // has no islands
             }),
             1);
+}
+
+// A budget is shared: no robot has to do with what the ones before it in the model have left.
+TEST(GoalIslands, ShareABudget) {
+  Scene scene(robotsAndCubes());
+  scene.reach("lying_3", Vector3(0.2, 0.1, 0.5)).weight = 100.0;
+  scene.reach("lifted_3", Vector3(2.0, 0.3, 0.6)).weight = 100.0;
+  scene.controller.iterationBudget = 2;
+  const Body& last = scene.body("lifted_1");
+  int changed = 0;
+  double before = 0.0;
+  for (int i = 0; i < 100; ++i) {
+    ASSERT_FALSE(isRefused(
+        scene.controller.step(scene.model, {}, scene.state, scene.data, &scene.contacts)));
+    EXPECT_LE(scene.controller.report.iterations,
+              2 * (scene.data.stats.parts + scene.data.stats.repeats));
+    changed += scene.controller.control[last.v] != before;
+    before = scene.controller.control[last.v];
+  }
+  EXPECT_GT(changed, 90);
+}
+
+/// A rod that hangs by its end from a point 5 m above p.
+ModelBuilder hangingRod(const Vector3& p) {
+  ModelBuilder builder("rod");
+  builder.base = BaseKind::floating;
+  builder.X_WRoot.p = p + Vector3(0.0, 0.0, 5.0);
+  LinkSpec rod;
+  rod.name = "rod";
+  rod.mass = 1.0;
+  rod.I_Lcm = Vector3(0.02, 0.02, 0.001).asDiagonal();
+  builder.link(rod);
+  ConnectSpec end;
+  end.linkA = "rod";
+  end.linkB = "world";
+  end.p_LAP.z() = 0.25;
+  end.p_LBP = builder.X_WRoot.p + end.p_LAP;
+  return builder.connect(end);
+}
+
+// A price ties a robot to a rod that turns so fast that it takes parts of its own: the robot moves
+// as its goal has it, though the rod comes first.
+TEST(GoalIslands, AreSolvedWhereSomeAreLeftToPartsOfTheirOwn) {
+  ModelBuilder builder = ground();
+  builder.add(hangingRod(Vector3(5.0, 0.0, 0.0)), "");
+  addCreature(builder, "robot", Vector3(2.0, 0.0, 0.05));
+  Scene scene(builder);
+  scene.reach("robot_3", Vector3(2.2, 0.1, 0.5));
+  MatrixX R = MatrixX::Identity(scene.model.nv, scene.model.nv);
+  const int first = scene.body("rod").v, second = scene.body("robot_1").v;
+  R(first, second) = R(second, first) = 0.1;
+  scene.controller.forceMetric = gdd::ForceMetric::dense(R);
+  scene.state.v.segment<6>(first) << -0.75, 10.0, 0.0, 40.0, 3.0, 0.0;  // about its end
+  int apart = 0;
+  for (int i = 0; i < 20; ++i) {
+    ASSERT_FALSE(isRefused(
+        scene.controller.step(scene.model, {}, scene.state, scene.data, &scene.contacts)));
+    apart += scene.data.parts->leavesAny();
+    EXPECT_GT(scene.data.forward.a.segment<9>(scene.body("robot_0").v).cwiseAbs().maxCoeff(), 1e-3);
+    EXPECT_LE(scene.data.stats.realised, 1e-9);
+  }
+  EXPECT_GT(apart, 10);
+}
+
+// What either solver leaves in a state is a state that can be kept.
+TEST(GoalIslands, LeaveAStateThatCanBeRestored) {
+  for (const auto solver : {gdd::GddSolver::activeSet, gdd::GddSolver::augmentedLagrangian}) {
+    Scene scene(robotsAndCubes());
+    scene.controller.solver = solver;
+    scene.reach("lying_3", Vector3(0.2, 0.1, 0.5));
+    for (int i = 0; i < 3; ++i) scene.step();
+    EXPECT_EQ(hash(restore(scene.model, save(scene.model, scene.state))), hash(scene.state));
+  }
 }
 
 // How long the search of an island has waited is of the state too.

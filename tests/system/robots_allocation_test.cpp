@@ -4,6 +4,7 @@
 
 #include "softgauss/collision/scene_contacts.hpp"
 #include "softgauss/gdd/gdd.hpp"
+#include "softgauss/io/simulation/simulation.hpp"
 #include "softgauss/io/urdf.hpp"
 #include "tests/support/allocation_guard.hpp"
 #include "tests/support/matchers.hpp"
@@ -54,6 +55,17 @@ TEST(RobotsAllocation, NoneInStepsOfSeveralRobots) {
   state = start;
   const AllocationGuard guard;
   steps();
+  EXPECT_EQ(guard.count(), 0);
+}
+
+// After reserve(), from where they are apart to where they hold a box between them.
+TEST(RobotsAllocation, NoneAfterReserve) {
+  if (!kAllocationHook) GTEST_SKIP() << "a sanitizer owns the allocator";
+  Simulation sim =
+      Simulation::load(std::string(SOFTGAUSS_SOURCE_DIR) + "/data/scenes/two_arms.yaml");
+  sim.reserve();
+  const AllocationGuard guard;
+  for (int i = 0; i < 2000; ++i) EXPECT_FALSE(isRefused(sim.step()));
   EXPECT_EQ(guard.count(), 0);
 }
 
