@@ -6,7 +6,6 @@
 #include <tuple>
 #include <type_traits>
 
-#include "softgauss/engine/core/segment_vectors.hpp"
 #include "softgauss/gdd/goals/standing_balance.hpp"
 
 namespace softgauss::gdd {

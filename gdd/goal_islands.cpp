@@ -42,9 +42,7 @@ void GoalIslands::addColumns(const Model& model, Data& data) const {
 
 void GoalIslands::select(const Model& model, int island, GoalCost& cost, Data& data) const {
   if (size() == 1) return;
-  const std::vector<int>& ofBody = data.bodies.islands.ofBody();
-  data.active.select(
-      model, [&](int tree) { return ofBody[idx(model.trees[idx(tree)].rootBody)] == island; });
+  data.active.select(model, [&](int tree) { return ofTree_[idx(tree)] == island; });
   data.bodies.massFactored = false;
   data.constraints.select(island);
   cost.select(island);

@@ -48,7 +48,10 @@ void IslandSolutions::begin(const Model& model, const State& state, const Contro
   warm.breakpoints.clear();
   keeps_.assign(idx(islands.size()), again ? 1 : 0);
   ofTree_ = islands.ofTree();
-  if (!again) return islands.size() > 1 ? reset(model, state, limits) : void();
+  if (!again) {
+    if (islands.size() > 1) reset(model, state, limits);
+    return;
+  }
   for (std::size_t t = 0; t < model.trees.size(); ++t) {
     const Segment dofs{model.trees[t].firstDof, model.trees[t].dofEnd};
     if (data.parts->mispredicted[t] != 0 || controlled[t] == 0) keeps_[idx(ofTree_[t])] = 0;
