@@ -17,4 +17,3 @@
 #include "softgauss/collision/primitive_pairs.hpp"
 #include "softgauss/collision/scene_contacts.hpp"
 #include "softgauss/collision/triangle_mesh.hpp"
-#include "softgauss/collision/unit_contacts.hpp"

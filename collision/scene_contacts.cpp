@@ -49,8 +49,12 @@ void SceneContacts::Scene::setPairs(const std::vector<GeometryPair>& pairs, int 
         turn[static_cast<std::size_t>(g)] = Turn::full;
   }
   reaches.resize(static_cast<std::size_t>(surfaces));
-  nearPlaneRows.reserve(planeRows.size());
-  if (static_cast<int>(rows.size()) <= broadphasePairs) return nearRows.reserve(rows.size());
+  for (auto* list : {&nearPlaneRows, &planeRowsAmong}) list->reserve(planeRows.size());
+  for (auto* flags : {&among, &still}) flags->reserve(model.trees.size());
+  if (static_cast<int>(rows.size()) <= broadphasePairs) {
+    for (auto* list : {&nearRows, &rowsAmong}) list->reserve(rows.size());
+    return;
+  }
 
   std::vector<bool> paired(model.geometries.size(), false);
   for (const Row& row : rows)
@@ -74,12 +78,14 @@ void SceneContacts::Scene::forget() {
   release(X_WG), release(centre), release(way), release(turn), release(posed), release(moving),
       release(fast);
   release(set.colliders), release(set.centreInG), release(set.radius);
+  posedOf = {};
 }
 
 std::size_t SceneContacts::Scene::bytes() const {
   return bytesOfAll(turn, posed, X_WG, centre, planeRows, rows, movable, movableCentre, near,
-                    nearPlaneRows, nearRows, reference, way, firstRow, moving, fast, set.colliders,
-                    set.centreInG, set.radius);
+                    nearPlaneRows, nearRows, planeRowsAmong, rowsAmong, reference, way, firstRow,
+                    moving, fast, set.colliders, set.centreInG, set.radius) +
+         posedOf.bytes();
 }
 
 /// A fifth of the mean radius of what may touch: small shapes keep few pairs near, and one that
@@ -102,6 +108,11 @@ void SceneContacts::Scene::choosePosed() {
       paired[static_cast<std::size_t>(row.a)] = paired[static_cast<std::size_t>(row.b)] = true;
   for (std::size_t i = 0; i < paired.size(); ++i)
     if (paired[i] && model.geometries[i].body != 0) posed.push_back(static_cast<int>(i));
+  posedOf.divide({0, static_cast<int>(posed.size())}, static_cast<int>(model.trees.size()),
+                 [&](int i) {
+                   const Geometry& g = model.geometries[idx(posed[idx(i)])];
+                   return model.bodies[idx(g.body)].tree;
+                 });
 }
 
 void SceneContacts::Scene::poseOne(const Kinematics& kinematics, std::size_t i) {
@@ -158,17 +169,36 @@ bool SceneContacts::Scene::within(const Row& row, double extra) const {
   return (centre[b] - centre[a]).squaredNorm() < reach * reach;
 }
 
-bool SceneContacts::Scene::moved() const {
+bool SceneContacts::Scene::moved(const TreeSelection* trees) const {
   if (reference.empty()) return true;
   // A little less than half of it each: rounding of positions does not count.
   const double allowed = 0.499 * nearWithin;
-  for (const int g : posed) {
-    const auto i = static_cast<std::size_t>(g);
+  bool any = false;
+  visitPosed(trees, [&](std::size_t i) {
     const double left = allowed - way[i];
     // Also where it is not finite.
-    if (!(left >= 0.0 && (centre[i] - reference[i]).squaredNorm() <= left * left)) return true;
-  }
-  return false;
+    any = any || !(left >= 0.0 && (centre[i] - reference[i]).squaredNorm() <= left * left);
+  });
+  return any;
+}
+
+void SceneContacts::Scene::findAmong(const TreeSelection& trees) {
+  if (sweepsAmong == sweeps && among == trees.flags() && still == trees.still()) return;
+  sweepsAmong = sweeps;
+  among = trees.flags();
+  still = trees.still();
+  const auto find = [&](const std::vector<int>& some, const std::vector<Row>& of,
+                        std::vector<int>& found) {
+    found.clear();
+    for (const int r : some) {
+      const Row& row = of[static_cast<std::size_t>(r)];
+      if (trees.meets(model, model.geometries[static_cast<std::size_t>(row.a)].body,
+                      model.geometries[static_cast<std::size_t>(row.b)].body))
+        found.push_back(r);
+    }
+  };
+  find(nearPlaneRows, planeRows, planeRowsAmong);
+  find(nearRows, rows, rowsAmong);
 }
 
 void SceneContacts::Scene::findNear() {
@@ -226,14 +256,6 @@ SceneContacts::SceneContacts(const Model& model, int broadphasePairs, bool pruni
   setUp(broadphasePairs, pruning);
 }
 
-SceneContacts::SceneContacts(const Model& model, std::vector<GeometryPair> pairs,
-                             PreparedMeshes& meshes)
-    : scene_(makeScene(model, &meshes)) {
-  scene_->placeInitially();
-  filter_.pairs = std::move(pairs);
-  setUp(kBroadphasePairs, true);
-}
-
 std::unique_ptr<SceneContacts::Scene> SceneContacts::makeScene(const Model& model,
                                                                PreparedMeshes* meshes) {
   PreparedMeshes own;
@@ -255,35 +277,42 @@ std::size_t SceneContacts::bytes() const noexcept {
 
 SceneContacts::~SceneContacts() = default;
 
-template <class Takes>
-void SceneContacts::detectThose(const Model& model, const Kinematics& kinematics, Takes&& takes,
-                                ContactSet& contacts) {
-  contacts.clear();
+void SceneContacts::prepare(const Model& model, const Kinematics& kinematics,
+                            const TreeSelection* trees) {
   Scene& scene = *scene_;
-  scene.pose(kinematics, takes);
-  if (model.options.hasRowLaw()) scene.setWays(kinematics, model.options.timeToNextRows(), takes);
-  if (scene.moved()) scene.findNear();
+  const bool goes = model.options.hasRowLaw();
+  const double time = model.options.timeToNextRows();
+  scene.visitPosed(trees, [&](std::size_t g) {
+    scene.poseOne(kinematics, g);
+    if (goes) scene.setWay(kinematics, time, g);
+  });
+  if (scene.moved(trees)) scene.findNear();
+}
+
+void SceneContacts::report(const std::vector<int>& planeRows, const std::vector<int>& rows,
+                           ContactSet& contacts) {
+  Scene& scene = *scene_;
+  contacts.clear();
   for (const auto& [list, of] :
-       {std::pair(&scene.nearPlaneRows, &scene.planeRows), std::pair(&scene.nearRows, &scene.rows)})
+       {std::pair(&planeRows, &scene.planeRows), std::pair(&rows, &scene.rows)})
     for (const int r : *list) {
       const Scene::Row& row = (*of)[static_cast<std::size_t>(r)];
-      if (takes(row.a) && takes(row.b) && scene.within(row, scene.wayOf(row)))
-        scene.report(row, contacts);
+      if (scene.within(row, scene.wayOf(row))) scene.report(row, contacts);
     }
 }
 
 void SceneContacts::detect(const Model& model, const Kinematics& kinematics,
                            ContactSet& contacts) noexcept {
-  detectThose(
-      model, kinematics, [](int) { return true; }, contacts);
+  ++fullDetections_;
+  prepare(model, kinematics, nullptr);
+  report(scene_->nearPlaneRows, scene_->nearRows, contacts);
 }
 
 void SceneContacts::detectAmong(const Model& model, const Kinematics& kinematics,
                                 const TreeSelection& trees, ContactSet& contacts) noexcept {
-  const auto takes = [&](int geometry) {
-    return trees.holds(model, model.geometries[static_cast<std::size_t>(geometry)].body);
-  };
-  detectThose(model, kinematics, takes, contacts);
+  prepare(model, kinematics, &trees);
+  scene_->findAmong(trees);
+  report(scene_->planeRowsAmong, scene_->rowsAmong, contacts);
 }
 
 void SceneContacts::detectPair(const Model&, const Kinematics& kinematics, int geometryA,

@@ -36,8 +36,6 @@ class SceneContacts final : public ContactSource {
   /// What `meshes` has is taken from there, the rest is added; null: made anew.
   explicit SceneContacts(const Model& model, int broadphasePairs = kBroadphasePairs,
                          bool pruning = true, PreparedMeshes* meshes = nullptr);
-  /// With these pairs instead of the filter's, in the order of PairFilter::pairs.
-  SceneContacts(const Model& model, std::vector<GeometryPair> pairs, PreparedMeshes& meshes);
   ~SceneContacts() override;
   SceneContacts(const SceneContacts&) = delete;
   SceneContacts& operator=(const SceneContacts&) = delete;
@@ -66,10 +64,10 @@ class SceneContacts final : public ContactSource {
 
  private:
   struct Scene;
-  /// Of the geometries that `take`.
-  template <class Takes>
-  void detectThose(const Model& model, const Kinematics& kinematics, Takes&& takes,
-                   ContactSet& contacts);
+  /// Poses, and near rows, of all trees or of these.
+  void prepare(const Model& model, const Kinematics& kinematics, const TreeSelection* trees);
+  void report(const std::vector<int>& planeRows, const std::vector<int>& rows,
+              ContactSet& contacts);
   static std::unique_ptr<Scene> makeScene(const Model& model, PreparedMeshes* meshes);
   void setUp(int broadphasePairs, bool pruning);
 

@@ -22,7 +22,7 @@ void SceneContacts::Scene::makeMovingShapes() {
 }
 
 bool SceneContacts::Scene::setMotion(const Kinematics& kinematics, double longest, double sign) {
-  pose(kinematics, [](int) { return true; });
+  visitPosed(nullptr, [&](std::size_t g) { poseOne(kinematics, g); });
   bool any = false;
   for (const int g : posed) {
     const auto i = static_cast<std::size_t>(g);

@@ -13,11 +13,11 @@
 
 #include "softgauss/engine/dynamics/energy.hpp"    // energy, momentum, centre of mass
 #include "softgauss/engine/dynamics/jacobian.hpp"  // point and rotation Jacobians
-#include "softgauss/engine/islands/islands.hpp"    // a scene in parts that sleep
 #include "softgauss/engine/model/model_builder.hpp"
 #include "softgauss/engine/model/state.hpp"
 #include "softgauss/engine/step/effect_use.hpp"  // what each effect costs
 #include "softgauss/engine/step/forward.hpp"     // (13)
 #include "softgauss/engine/step/inverse.hpp"     // (14), (15)
+#include "softgauss/engine/step/sleep.hpp"       // what rests costs nothing
 #include "softgauss/engine/step/snapshot.hpp"
 #include "softgauss/engine/step/step.hpp"

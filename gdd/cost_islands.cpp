@@ -40,8 +40,9 @@ void GoalCost::divide(const Model& model, const Constraints& rows, const TreeIsl
                  [&](int block) { return islandOf(rows_.bodyOf(block)); });
   denseRows_.divide({0, static_cast<int>(denseWeight_.size())}, islands.size(), [&](int row) {
     for (const Tree& tree : model.trees)
-      if (moves(tree, dense_.col(row))) return islandOf(tree.rootBody);
-    return 0;  // of no dof
+      if (islandOf(tree.rootBody) >= 0 && moves(tree, dense_.col(row)))
+        return islandOf(tree.rootBody);
+    return -1;  // of no dof of who is awake
   });
   forcesIsland_ = -1;
   visitContacts(forces_, rows, [&](int body) { forcesIsland_ = islandOf(body); });

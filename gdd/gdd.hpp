@@ -8,7 +8,6 @@
 ///   controller.goals.push_back(std::make_unique<gdd::VirtualDamping>());
 ///   controller.step(model, Input{}, state, data, &contacts);
 
-#include "softgauss/gdd/goal_directed_islands.hpp"
 #include "softgauss/gdd/goal_directed_step.hpp"
 #include "softgauss/gdd/goals/balance.hpp"
 #include "softgauss/gdd/goals/center_of_pressure.hpp"

@@ -3,12 +3,6 @@
 
 namespace softgauss::gdd {
 
-std::unique_ptr<Goal> Goal::within(const Model&, const SubModel&) const {
-  throw ModelError({}, "goal '" + name() + "'",
-                   "concerns all moving bodies together, expected goals of single robots and links "
-                   "where islands are solved separately");
-}
-
 void Goal::errors(const GoalContext& context, const ContactForces&,
                   std::vector<GoalError>& out) const {
   const std::optional<GoalMark> m = mark(context);

@@ -10,7 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "softgauss/engine/islands/sub_model.hpp"
 #include "softgauss/engine/step/data.hpp"
 #include "softgauss/engine/step/snapshot.hpp"
 #include "softgauss/gdd/cost.hpp"
@@ -72,10 +71,9 @@ class Goal {
   virtual std::string name() const = 0;
   /// Adds the cost of this goal at the present state.
   virtual void addCost(const GoalContext& context, GoalCost& cost) const = 0;
-  /// This goal as one of an island alone, in the island's own indices; null where it is about
-  /// nothing there. The goals of all islands together cost what this one costs. Throws ModelError
-  /// where it ties what may be apart, as any goal does that does not say otherwise.
-  virtual std::unique_ptr<Goal> within(const Model& whole, const SubModel& island) const;
+  /// Whether it may cost what a tree of the model does: while it sleeps (sleep.hpp) the goal need
+  /// not be asked, and it wakes when the goal begins, ends or changes.
+  virtual bool concerns(const Model&, int) const { return true; }
   /// Index into Model::frames of the link that it moves; −1: none, or a robot as a whole.
   virtual int linkFrame() const { return -1; }
   /// Sets the weights that nobody has given to what they are beside a posture of this weight.

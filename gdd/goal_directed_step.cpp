@@ -66,8 +66,15 @@ const VectorX* exactResidual(const AugmentedLagrangian&) { return nullptr; }
 
 void GoalDirectedController::addGoals(const Model& model, const State& state, const Data& data,
                                       GoalCost& cost) const {
+  // Of who sleeps nothing is asked.
+  const auto isAsked = [&](const Goal& goal) {
+    return goal.actsAt(state.time) &&
+           (!data.active.anyStill() || std::ranges::any_of(data.active.trees(), [&](int tree) {
+             return goal.concerns(model, tree);
+           }));
+  };
   for (const auto& goal : goals)
-    if (goal->actsAt(state.time)) addCostAmong(goals, *goal, {model, state, data}, cost);
+    if (isAsked(*goal)) addCostAmong(goals, *goal, {model, state, data}, cost);
   if (motionLimits) motionLimits->addCost({model, state, data}, limits, cost);
 }
 
@@ -80,7 +87,7 @@ void GoalDirectedController::addCost(const Model& model, const State& state, Dat
 }
 
 ActiveSet& GoalDirectedController::solverOf(ActiveSet& first, const Model& model, int controls) {
-  if (islands_.size() == 1 || controls_ < 0) controls_ = controls;
+  if (islands_.isWhole() || controls_ < 0) controls_ = controls;
   if (controls == controls_) return first;
   ActiveSet& other = others_.try_emplace(controls, model).first->second;
   other.options = first.options;
@@ -92,7 +99,7 @@ template <class Solver>
 bool GoalDirectedController::solveIslands(Solver& used, const Model& model, const State& state,
                                           Data& data) {
   const bool together = std::is_same_v<Solver, AugmentedLagrangian>;
-  islands_.find(model, limits, together, cost_, data);
+  if (!islands_.find(model, limits, together, cost_, data)) return false;
   islands_.addColumns(model, data);
   // A goal may have set it: the value of a plan does.
   const bool holds = controlCost == ControlCost::aboutGravity && !cost_.controlCost().hasFree();
@@ -138,7 +145,7 @@ const VectorX* GoalDirectedController::solve(Solver& used, const Model& model, c
     return nullptr;
   }
   // A disturbance is not the control's: it belongs to what the control has to cope with.
-  data.forces.c -= data.forces.tau;
+  for (const Segment s : data.active.dofs()) part(data.forces.c, s) -= part(data.forces.tau, s);
   cost_.clear(forceMetric);
   addGoals(model, state, data, cost_);
   data.stats.invalidWarmStarts += refuses(used, state.warmstart);
@@ -152,8 +159,7 @@ const VectorX* GoalDirectedController::solve(Solver& used, const Model& model, c
     return nullptr;
   }
 
-  limits.clamp(solution_.force, control, coordinates_);
-  limits.commands(coordinates_, commands);
+  setControl(data);
   setAppliedForce(control, data.forces);
   if (data.stages)  // an integrator that looks at the dynamics again
     held_.tau = outside_.size() == model.nv ? VectorX(outside_ + control) : control;
@@ -204,9 +210,53 @@ void GoalDirectedController::begin() noexcept {
   earlier_ = {};
 }
 
-void GoalDirectedController::keep(WarmStart& warmstart) noexcept {
-  copySolution(solution_.warm, warmstart);
+void GoalDirectedController::keep(WarmStart& warmstart, const TreeSelection& trees) noexcept {
+  copySolution(solution_.warm, trees, warmstart);
   earlier_ = report;
+}
+
+/// Who sleeps keeps its own.
+void GoalDirectedController::setControl(const Data& data) {
+  if (data.active.all()) {
+    limits.clamp(solution_.force, control, coordinates_);
+  } else {
+    limits.clamp(solution_.force, clamped_, clampedCoordinates_);
+    copy(data.active.dofs(), clamped_, control);
+    copy(data.active.dofs(), clampedCoordinates_, coordinates_);
+  }
+  limits.commands(coordinates_, commands);
+}
+
+namespace {
+
+/// Whether a goal acts at a time, 1, and its target moves, 2.
+int acting(const Goal& goal, double time) {
+  return !goal.actsAt(time) ? 0 : goal.steadyAt(time) ? 1 : 2;
+}
+
+}  // namespace
+
+/// It does not act on the tree; or else may let it rest, and what it wants stays where it is.
+bool GoalDirectedController::letsSleep(const Model& model, int tree, double time) const noexcept {
+  if (solution_.controlled[idx(tree)] == 0) return true;
+  return model.options.sleep.controlled && std::ranges::none_of(goals, [&](const auto& goal) {
+           return acting(*goal, time) == 2 && goal->concerns(model, tree);
+         });
+}
+
+bool GoalDirectedController::markChanged(const Model& model, double time,
+                                         std::span<std::uint8_t> trees) noexcept {
+  bool any = false;
+  const auto mark = [&](const Goal* goal) {
+    for (std::size_t t = 0; t < trees.size(); ++t)
+      if (goal ? goal->concerns(model, static_cast<int>(t)) : model.trees[t].actuated)
+        trees[t] = 1, any = true;
+  };
+  for (const Goal* goal : changed_) mark(goal);
+  const double before = time - model.options.timestep;
+  for (const auto& goal : goals)
+    if (acting(*goal, time) != acting(*goal, before)) mark(goal.get());
+  return any;
 }
 
 void GoalDirectedController::takeSettings(const GoalDirectedController& from) {
@@ -222,13 +272,16 @@ void GoalDirectedController::takeSettings(const GoalDirectedController& from) {
 }
 
 SolveStatus GoalDirectedController::step(const Model& model, const Input& input, State& state,
-                                         Data& data, ContactSource* contacts, bool posed) noexcept {
+                                         Data& data, ContactSource* contacts) noexcept {
   if (data.stats.refuse(model, findBadInput(model, input, state))) return data.stats.status;
   held_ = input;
   markControlled(model, held_.controlled);
   outside_ = input.tau;
   begin();
-  return softgauss::step(model, held_, state, data, contacts, this, posed);
+  report = {};
+  const SolveStatus status = softgauss::step(model, held_, state, data, contacts, this);
+  if (!isRefused(status)) changed_.clear();
+  return status;
 }
 
 }  // namespace softgauss::gdd

@@ -8,8 +8,11 @@
 /// solved by itself, in its own cells and its own number of iterations. A robot among a thousand
 /// objects pays for those that it touches, two robots with a goal each are two problems, and what
 /// one does depends on the other in no bit. Islands without a control have nothing to choose: they
-/// are left to forward dynamics.
+/// are left to forward dynamics. Who sleeps (sleep.hpp) is of none; what the cost couples with who
+/// is awake has to wake.
 
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "softgauss/gdd/cost.hpp"
@@ -22,14 +25,19 @@ class GoalIslands {
   explicit GoalIslands(const Model& model);
 
   /// Finds them, of the rows in `data`, of limits that fit the model. `together`: all are one.
-  void find(const Model& model, const ControlLimits& limits, bool together, GoalCost& cost,
+  /// False where some have to wake first: wanted().
+  bool find(const Model& model, const ControlLimits& limits, bool together, GoalCost& cost,
             Data& data);
+  /// (trees) 1: it sleeps, and is of the problem; empty: none.
+  std::span<const std::uint8_t> wanted() const { return wanted_; }
 
   int size() const { return static_cast<int>(controls_.size()); }
-  /// (trees) the island of each.
+  /// Whether there is one, of all trees.
+  bool isWhole() const { return isWhole_; }
+  /// (trees) the island of each, −1: none.
   const std::vector<int>& ofTree() const { return ofTree_; }
   /// Whether a control acts on an island, or there is no other.
-  bool isSolved(int island) const { return size() == 1 || controls(island) > 0; }
+  bool isSolved(int island) const { return isWhole_ || controls(island) > 0; }
   /// How many coordinates of force its box leaves a choice of.
   int controls(int island) const { return controls_[idx(island)]; }
 
@@ -41,7 +49,11 @@ class GoalIslands {
   void selectAll(const Model& model, GoalCost& cost, Data& data) const;
 
  private:
+  void findWanted(const Model& model, bool together, const Data& data);
+
   std::vector<int> ofTree_;
+  std::vector<std::uint8_t> wanted_;
+  bool isWhole_ = true;
   std::vector<int> controls_;  ///< (islands)
 };
 

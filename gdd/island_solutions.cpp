@@ -39,7 +39,7 @@ void IslandSolutions::reset(const Model& model, const State& state, const Contro
 void IslandSolutions::begin(const Model& model, const State& state, const ControlLimits& limits,
                             const GoalIslands& islands, const Data& data) {
   const bool again =
-      data.parts && data.parts->repeats && islands.size() > 1 && islands.ofTree() == ofTree_;
+      data.parts && data.parts->repeats && !islands.isWhole() && islands.ofTree() == ofTree_;
   if (again) {
     before_ = islands_;
     breakpointsBefore_ = warm.breakpoints;
@@ -49,10 +49,11 @@ void IslandSolutions::begin(const Model& model, const State& state, const Contro
   keeps_.assign(idx(islands.size()), again ? 1 : 0);
   ofTree_ = islands.ofTree();
   if (!again) {
-    if (islands.size() > 1) reset(model, state, limits);
+    if (!islands.isWhole()) reset(model, state, limits);
     return;
   }
-  for (std::size_t t = 0; t < model.trees.size(); ++t) {
+  for (const int of : data.active.trees()) {
+    const std::size_t t = idx(of);
     const Segment dofs{model.trees[t].firstDof, model.trees[t].dofEnd};
     if (data.parts->mispredicted[t] != 0 || controlled[t] == 0) keeps_[idx(ofTree_[t])] = 0;
     if (controlled[t] == 0) part(a, dofs) = part(state.warmstart.a, dofs);
@@ -82,7 +83,7 @@ void IslandSolutions::take(const Model& model, int island, const SequentialQuadr
   islands_[idx(island)].report = report;
   if (residual)
     for (const Segment s : dofs) part(data.forward.gradient, s) = -part(*residual, s);
-  if (islands_.size() == 1) {
+  if (data.active.all()) {
     a = solved.acceleration();
     force = solved.force();
     solved.keepWarmStart(warm);
@@ -100,8 +101,8 @@ void IslandSolutions::take(const Model& model, int island, const SequentialQuadr
   copy(dofs, found_.gddA, warm.gddA);
   copy(dofs, found_.control, warm.control);
   appendBreakpoints(island, found_.breakpoints, {0, static_cast<int>(found_.breakpoints.size())});
-  for (std::size_t t = 0; t < model.trees.size(); ++t) {
-    if (!data.active.has(static_cast<int>(t))) continue;
+  for (const int of : data.active.trees()) {
+    const std::size_t t = idx(of);
     controlled[t] = 1;
     known[t] = residual ? 1 : 0;
     warm.gddSearchAge[t] = found_.gddSearchAge[t];

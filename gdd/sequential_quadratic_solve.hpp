@@ -34,6 +34,7 @@
 #include <cmath>
 #include <limits>
 
+#include "softgauss/engine/core/segment_vectors.hpp"
 #include "softgauss/gdd/augmented_lagrangian.hpp"
 #include "softgauss/gdd/cell_model.hpp"
 
@@ -47,6 +48,18 @@ inline void copySolution(const WarmStart& from, WarmStart& to) {
   to.breakpoints = from.breakpoints;
   to.gddSearchAge = from.gddSearchAge;
   to.gddSearchWait = from.gddSearchWait;
+  to.gddValid = true;
+}
+/// The same of these trees.
+inline void copySolution(const WarmStart& from, const TreeSelection& trees, WarmStart& to) {
+  if (trees.all()) return copySolution(from, to);
+  for (VectorX WarmStart::*x : {&WarmStart::gddA, &WarmStart::multipliers, &WarmStart::control})
+    copy(trees.dofs(), from.*x, to.*x);
+  for (const int t : trees.trees()) {
+    to.gddSearchAge[idx(t)] = from.gddSearchAge[idx(t)];
+    to.gddSearchWait[idx(t)] = from.gddSearchWait[idx(t)];
+  }
+  to.breakpoints = from.breakpoints;
   to.gddValid = true;
 }
 

@@ -9,7 +9,6 @@
 #include <set>
 
 #include "softgauss/engine/core/index.hpp"
-#include "softgauss/engine/islands/units.hpp"
 #include "softgauss/io/detail/text.hpp"
 #include "softgauss/io/detail/text_table.hpp"
 #include "softgauss/io/warning_list.hpp"
@@ -49,9 +48,6 @@ std::string headText(const Model& model, const ExplainContext& context) {
                   context.contents ? ", " + counted(idx(context.contents->joints), "joint") : "",
                   model.bodies.size() - 1);
   out += fmt::format("  {} degrees of freedom, {} actuated\n", model.nv, actuated);
-  if (const int units = Units(model).size(); units > 1)
-    out += fmt::format(
-        "  {} groups of trees, solved separately with --islands while they do not touch\n", units);
   out += fmt::format("  {:.6g} kg", mass);
   if (std::abs(mass - moving) > 1e-9 * mass)
     out += fmt::format(", of which {:.6g} kg move", moving);

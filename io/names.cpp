@@ -62,4 +62,9 @@ std::optional<Integrator> integratorCalled(const std::string& name) {
   return integratorFromName(name);
 }
 
+std::optional<Sleep> sleepCalled(const std::string& name) {
+  if (name != "none" && name != "objects" && name != "all") return std::nullopt;
+  return Sleep{.enabled = name != "none", .controlled = name == "all"};
+}
+
 }  // namespace softgauss::io

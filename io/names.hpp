@@ -24,5 +24,7 @@ std::string jointProblem(const Model& model, const std::string& joint);
 /// What integrators are called, in full and in short: "runge-kutta-4", "rk4".
 std::vector<std::string> integratorNames();
 std::optional<Integrator> integratorCalled(const std::string& name);
+/// What may sleep: none, objects (what no goal controls) or all.
+std::optional<Sleep> sleepCalled(const std::string& name);
 
 }  // namespace softgauss::io

@@ -275,11 +275,11 @@ std::string Summary::json() const {
                               {"glances", integration.tunnellingSplits}};
   else if (integration.parts > static_cast<long>(steps_) || integration.repeats > 1)
     summary["integration"] = {{"parts", integration.parts}, {"repeats", integration.repeats}};
-  if (islands.on)
-    summary["islands"] = {{"most", islands.most},
-                          {"fewest_awake", islands.fewestAwake},
-                          {"asleep_share", islands.asleepShare()},
-                          {"wakeups", islands.wakeups}};
+  if (sleep.on)
+    summary["sleep"] = {{"trees", sleep.trees},
+                        {"most_asleep", sleep.most},
+                        {"asleep_share", sleep.asleepShare()},
+                        {"wakeups", sleep.wakeups}};
   if (error.estimated)
     summary["error"] = {{"position_m", error.position},
                         {"orientation_rad", error.orientation},

@@ -113,22 +113,23 @@ struct IntegrationCounts {
 /// How often each mechanism of the step has acted over a run, in the order of Mechanism.
 using MechanismActs = std::array<long, std::size(kMechanismNames)>;
 
-/// Islands over the steps of a run; sums count every step.
-struct IslandOutcomes {
+/// Who has slept over the steps of a run, counted in trees: robots and objects, or parts of a robot
+/// that stand on the world each.
+struct SleepOutcomes {
   bool on = false;
+  int trees = 0;  ///< of the model
   long steps = 0;
-  long islands = 0;  ///< sum over the steps
-  long awake = 0;    ///< sum over the steps
+  long asleep = 0;  ///< sum over the steps
   long wakeups = 0;
-  int most = 0;         ///< in a step
-  int fewestAwake = 0;  ///< in a step
+  int most = 0;  ///< asleep in a step
 
   template <class Archive>
   void archive(Archive& a) {
-    a(on, steps, islands, awake, wakeups, most, fewestAwake);
+    a(on, trees, steps, asleep, wakeups, most);
   }
   double asleepShare() const {
-    return islands > 0 ? 1.0 - static_cast<double>(awake) / static_cast<double>(islands) : 0.0;
+    const double all = static_cast<double>(trees) * static_cast<double>(steps);
+    return all > 0.0 ? static_cast<double>(asleep) / all : 0.0;
   }
 };
 
@@ -215,7 +216,7 @@ class Summary {
   /// What the steps have come to, for a run that goes on later.
   template <class Archive>
   void archive(Archive& a) {
-    a(gdd, fallbacks, integration, mechanismActs, wallSeconds, steps_, startTime_, endTime_,
+    a(gdd, fallbacks, integration, sleep, mechanismActs, wallSeconds, steps_, startTime_, endTime_,
       initialEnergy_, finalEnergy_, maxPenetration_, ratios_, forwardUs_, gddUs_, stepUs_,
       constraints_, iterations_, dualUpdates_, physicsViolation_, gddViolation_, stationarity_,
       realised_);
@@ -253,7 +254,7 @@ class Summary {
   Fallbacks fallbacks;
   IntegrationCounts integration;
   MechanismActs mechanismActs{};
-  IslandOutcomes islands;
+  SleepOutcomes sleep;
   ErrorOutcome error;
   std::optional<PlanOutcome> plan;
   std::vector<std::string> warnings;  ///< preset to the model's

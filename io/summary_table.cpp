@@ -92,9 +92,9 @@ std::string Summary::table(bool details) const {
                   simulatedSeconds(), wallSeconds, realTimeFactor(), steps_, 1e3 * timestep_,
                   integrator));
   if (details) out += detailsTable();
-  if (islands.on)
-    add(fmt::format("  islands: up to {}, {:.3g} % of them asleep over the run, {} woken",
-                    islands.most, 100.0 * islands.asleepShare(), islands.wakeups));
+  if (sleep.on)
+    add(fmt::format("  sleep: up to {} of {} trees, {:.3g} % of them over the run, {} woken",
+                    sleep.most, sleep.trees, 100.0 * sleep.asleepShare(), sleep.wakeups));
   const std::vector<ControlRatio> ratios = controlRatios();
   add(fmt::format("  energy {:.4g} J to {:.4g} J; deepest penetration {}; largest control {}",
                   initialEnergy_, finalEnergy_, lengthText(maxPenetration_),

@@ -99,7 +99,9 @@ class Recording final : public StepControl {
     setAppliedForce(records.back().control, data.forces);
     return &recorder_.acceleration();
   }
-  void keep(WarmStart& warmstart) noexcept override { recorder_.keepWarmStart(warmstart); }
+  void keep(WarmStart& warmstart, const TreeSelection&) noexcept override {
+    recorder_.keepWarmStart(warmstart);
+  }
 
  private:
   SolverUnderTest& recorder_;

@@ -40,6 +40,7 @@ Hands::Hands(const RunParts& run, bool passive, Keyframes::Named states)
 
 std::string Hands::apply(const Event& event) {
   Drag* const drag = held();
+  wakeAll(run_.state.sleep);  // whomever it may concern
   switch (event.kind) {
     case EventKind::grab:
       return grab(event);

@@ -119,6 +119,12 @@ void bindByName(HeldClass& sim) {
       "a\n"
       "robot under goals, what its drive would be sent.");
   sim.def(
+      "asleep", [](Held& h, const std::string& link) { return h.sim().asleep(link); },
+      py::arg("link"), "Whether a link sleeps, with the option sleep.");
+  sim.def(
+      "wake", [](Held& h, const std::string& link) { h.sim().wake(link); }, py::arg("link"),
+      "Wakes a link and all that sleeps with it: after its place in q was changed.");
+  sim.def(
       "pose", poseOf, py::arg("link"),
       "(4, 4) pose of the link's frame in the world, now: rotation and position [m]. StepError\n"
       "where q is no configuration.");
@@ -146,7 +152,7 @@ void bindSimulation(py::module_&, HeldClass& sim) {
           py::arg("file"),
           "A .urdf file, or a .yaml scene with its own goals. Options are those of simulate_gdd:\n"
           "base, base_height, ground, q0, srdf, state, timestep, integrator,\n"
-          "integration_tolerance, step_doubling, cone, exact_diagonal, effects, without, "
+          "integration_tolerance, step_doubling, cone, sleep, exact_diagonal, effects, without, "
           "zero_effort,\n"
           "infer_inertia, ignore_velocity_limits, no_balance, gdd_solver, control_cost, "
           "budget, meshes, collision,\n"

@@ -35,7 +35,6 @@ class PlanError(ArithmeticError):
 
 class Goal:
     """A goal of a simulation, until it is removed."""
-
     target: Array
     velocity: Array  # of the target that is moved step by step
     acceleration: Array
@@ -54,7 +53,6 @@ class Goal:
 
 class Goals:
     """The goals of a simulation. Reach, hold and posture come with virtual damping."""
-
     def reach(
         self,
         link: str,
@@ -78,7 +76,6 @@ class Goals:
 
 class Contacts:
     """Contacts, one a row, world axes."""
-
     @property
     def links(self) -> list[tuple[str, str]]: ...
     @property
@@ -200,6 +197,7 @@ class Simulation:
         collision: Literal["own", "fcl"] = ...,
         compatibility: Literal["none", "mujoco"] = ...,
         step_doubling: bool = ...,
+        sleep: Literal["none", "objects", "all"] = ...,
         exact_diagonal: bool = ...,
         effects: Literal["auto", "none"] | Sequence[str] = ...,
         without: Sequence[str] = ...,
@@ -236,6 +234,8 @@ class Simulation:
         """Of its servo [rad or m, rad/s or m/s]"""
     def set_point(self, joint: str) -> float:
         """With which its servo makes the force of the last step [rad or m]"""
+    def asleep(self, link: str) -> bool: ...
+    def wake(self, link: str) -> None: ...
     def pose(self, link: str) -> Array:
         """(4, 4) in the world, now"""
     def torque(self, joint: str) -> float:

@@ -28,13 +28,6 @@ class Trials {
         progress_(options.duration, options.quiet) {}
   ~Trials() { progress_.clear(); }
 
-  /// Whether the run can take its steps as the trial does, which lets them end on rows of a table
-  /// and where wrenches begin and end.
-  bool ofTheRun() const {
-    const double period = options_.duration / periodsOf(options_.duration);
-    return !options_.islands || !outside_.changesWithin(period, options_.duration);
-  }
-
   TrialScene over(double simulated) {
     const int periods = periodsOf(simulated);
     TrialScene trial;
@@ -158,11 +151,9 @@ std::string reach(const RunChoice& run, double duration) {
 std::string chooseAccuracy(const SimulateOptions& options, Scene& scene) {
   const double accuracy = *options.accuracy;
   Trials trials(options, scene);
-  if (!trials.ofTheRun())
+  if (scene.model.options.sleep.enabled)
     throw AccuracyError(fmt::format(
-        "--accuracy {:g}: cannot be promised: the rows of --torques do not come regularly from 0 "
-        "on, or the run is no whole number of them, or a wrench begins or ends within a step, and "
-        "with --islands no step ends on a row or there. Without --islands they do",
+        "--accuracy {:g}: cannot be promised: what sleeps is not followed, expected no --sleep",
         accuracy));
   const RunChoice run = chooseForRun(accuracy, options.duration,
                                      [&](double simulated) { return trials.over(simulated); });

@@ -15,7 +15,7 @@ namespace softgauss::app {
 namespace {
 
 constexpr std::string_view kCheckpointKind = "SGCHECK\n";
-constexpr std::uint32_t kCheckpointVersion = 6;
+constexpr std::uint32_t kCheckpointVersion = 7;
 constexpr std::uintmax_t kLargestCheckpoint = std::uintmax_t{1}
                                               << 30;  // [bytes] a recording is less
 

@@ -19,6 +19,7 @@ constexpr double kShortestPart = 1.0 / 1024.0;  // of the step
 Model halved(Model model) {
   Options& options = model.options;
   options.timestep *= 0.5;
+  options.sleep.enabled = false;
   options.integrationTolerance *= options.stepDoubling ? kDoublingShare : kDormandPrinceShare;
   return model;
 }

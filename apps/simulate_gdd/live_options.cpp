@@ -59,9 +59,6 @@ void finishLiveOptions(const CLI::App& app, SimulateOptions& options) {
       throw UsageError(fmt::format("{} is for a live run, expected --live too", option));
   if (!options.acted()) return;
   if (options.live && !options.play.empty()) throw UsageError("choose one of --live and --play");
-  if (options.islands)
-    throw UsageError(fmt::format("{} acts on the whole scene, expected no --islands",
-                                 options.live ? "--live" : "--play"));
 #ifndef SOFTGAUSS_WITH_LIVE
   if (options.live)
     throw UsageError("--live: this build has none, for Boost's headers were not found by CMake");

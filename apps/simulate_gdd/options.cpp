@@ -61,7 +61,7 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
   app.set_help_all_flag("--help-all", "all options");
   app.set_version_flag("--version", std::string("softgauss ") + SOFTGAUSS_VERSION);
   std::string base = "automatic", ground, effects, without, zeroEffort = "passive", integrator,
-              cone, solver, controlCost, budget, compatibility, islands, posture, meshes, collision;
+              cone, solver, controlCost, budget, compatibility, sleep, posture, meshes, collision;
   std::vector<std::string> reach, q0;
   for (int i = 0; i < argc; ++i)
     options.commandLine +=
@@ -233,11 +233,10 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
       ->check(CLI::IsMember({"none", "mujoco"}))
       ->group(simulation);
 
-  app.add_option("--islands", islands,
-                 "apart: robots and objects that do not touch are solved separately;\n"
-                 "sleep: and those at rest that no goal controls cost nothing until something\n"
-                 "touches or pushes them; sleep-all: robots at rest under their goals too")
-      ->check(CLI::IsMember({"apart", "sleep", "sleep-all"}))
+  app.add_option("--sleep", sleep,
+                 "objects: what is at rest and no goal controls costs nothing until something\n"
+                 "touches or pushes it; all: robots at rest under their goals too; none (default)")
+      ->check(CLI::IsMember({"none", "objects", "all"}))
       ->group(simulation);
 
   addLiveOptions(app, options);
@@ -330,12 +329,8 @@ std::optional<SimulateOptions> parseCommandLine(int argc, char** argv) {
                      : meshes == "triangles" ? io::MeshUse::triangles
                                              : io::MeshUse::automatic;
   if (!collision.empty()) options.throughFcl = collision == "fcl";
-  if (collision == "fcl" && !islands.empty())
-    throw UsageError("--collision fcl looks at the whole scene, expected no --islands");
   if (!compatibility.empty()) options.likeMujoco = compatibility == "mujoco";
-  options.islands = !islands.empty();
-  options.sleep.enabled = islands == "sleep" || islands == "sleep-all";
-  options.sleep.controlled = islands == "sleep-all";
+  if (!sleep.empty()) options.sleep = io::sleepCalled(sleep);
   options.zeroEffortIsUnlimited = zeroEffort == "unlimited";
   if (app.count("--effects") > 0) options.effects = parseEffects(effects);
   if (app.count("--without") > 0) options.mechanisms = parseWithout(without);

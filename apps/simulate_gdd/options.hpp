@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "softgauss/engine/islands/islands.hpp"
 #include "softgauss/io/simulation/options.hpp"
 #include "softgauss/io/simulation/plan_control.hpp"
 #include "softgauss/io/simulation/scene.hpp"
@@ -45,15 +44,13 @@ struct SimulateOptions : SimulationOptions {
   bool hasGoals() const { return hasOwnGoals() || !goals.empty(); }  ///< or of --goals
   bool passive = false;
   bool servos = false;
-  bool plan = false, mpc = false;            ///< what the scene's key plan asks for
+  bool plan = false, mpc = false;  ///< what the scene's key plan asks for
   int planThreads = 1;
   std::shared_ptr<PlanControl> planControl;  ///< of it, once it is read
   bool hasDuration = false;                  ///< it was typed
   std::filesystem::path goals, torques;
   bool reportError = false;
   std::optional<double> accuracy;  ///< that a setting is to be chosen for [m]
-  bool islands = false;            ///< what does not touch is solved apart
-  Sleep sleep;                     ///< and what rests costs nothing
   bool explain = false;
   bool quiet = false;
   bool details = false;  ///< what the solver did, in the table at the end

@@ -16,13 +16,6 @@ double OutsideInput::rowSpacing() const {
   return torques_->endTime() / static_cast<double>(torques_->rows() - 1);
 }
 
-bool OutsideInput::changesWithin(double h, double duration) const {
-  const long steps = torques_ || !wrenches_.empty() ? std::lround(duration / h) : 0;
-  for (long i = 0; i < steps; ++i)
-    if (lengthFrom(static_cast<double>(i) * h, h) < h) return true;
-  return false;
-}
-
 double OutsideInput::lengthFrom(double time, double most) const {
   constexpr double kRounding = 1e-6;  // of the step
   double next = wrenches_.nextChange(time);

@@ -19,10 +19,6 @@ class OutsideInput {
   /// Mean time between the rows of the table that begins at 0 and has several; else 0 [s].
   double rowSpacing() const;
 
-  /// Whether some row comes into force, or a wrench begins or ends, within a step, where all steps
-  /// are `h` and begin at 0.
-  bool changesWithin(double h, double duration) const;
-
   /// Takes a step of model.options.timestep from `state` in parts that end on the rows of the
   /// table, and where wrenches begin or end, by calls of take(), each of which moves the state on
   /// by the model's step of that time. False where one of them did not; the model's step is then

@@ -17,7 +17,7 @@ constexpr std::pair<const char*, const char*> kNotBeside[] = {
     {"--torques", "the plan is the goal"},
     {"--passive", "the plan is the goal"},
     {"--control-cost", "the plan has its own, plan.effort"},
-    {"--islands", "a plan is of the whole scene"},
+    {"--sleep", "a plan is of the whole scene"},
     {"--live", "a plan does not go back in time"},
     {"--play", "a plan does not go back in time"},
     {"--checkpoint", "a plan is no part of a checkpoint"},

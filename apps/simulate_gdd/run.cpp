@@ -14,7 +14,6 @@
 #include "apps/simulate_gdd/checkpoint.hpp"
 #include "apps/simulate_gdd/company.hpp"
 #include "apps/simulate_gdd/error_estimate.hpp"
-#include "apps/simulate_gdd/island_run.hpp"
 #include "apps/simulate_gdd/outside_input.hpp"
 #include "apps/simulate_gdd/progress.hpp"
 #include "apps/simulate_gdd/replay.hpp"
@@ -22,6 +21,7 @@
 #include "apps/simulate_gdd/run_tally.hpp"
 #include "apps/simulate_gdd/start_check.hpp"
 #include "apps/simulate_gdd/verdict.hpp"
+#include "softgauss/engine/core/segment_vectors.hpp"
 #include "softgauss/engine/engine.hpp"
 #include "softgauss/engine/model/saved_state.hpp"
 #include "softgauss/io/explain.hpp"
@@ -32,10 +32,12 @@ namespace {
 
 constexpr std::size_t kMostRefusals = 20;  // of steps of a live run that the summary tells
 
-/// Largest |g(q, v, a) − (u, 0)|: recomputed by inverse dynamics, not taken from the solver.
+/// Largest |g(q, v, a) − (u, 0)| of who is awake: recomputed by inverse dynamics, not taken from
+/// the solver.
 double physicsViolation(const Model& model, Data& data, VectorX& scratch) {
   inverseDynamics(model, data.forward.a, data, scratch);
-  return model.nv == 0 ? 0.0 : (scratch - data.forces.tau).cwiseAbs().maxCoeff();
+  scratch -= data.forces.tau;
+  return largest(data.active.dofs(), scratch);
 }
 
 /// The loop and all that it writes.
@@ -66,7 +68,8 @@ class Runner {
     for (const io::EffectNote& note : notes)
       if (note.asked && !note.on)
         summary_.warnings.push_back(fmt::format("{} is not simulated: {}", note.name, note.reason));
-    if (options.islands) islands_.emplace(model_, state_, options.sleep, controller_);
+    summary_.sleep.on = model_.options.sleep.enabled;
+    summary_.sleep.trees = static_cast<int>(model_.trees.size());
     if (options.reportError)
       errorEstimate_.emplace(model_, state_, outside_, !controller_.goals.empty());
     computeStages(model_, input_, state_, data_, &contacts_);
@@ -91,7 +94,7 @@ class Runner {
   void archive(Archive& a) {
     a(state_);
     if constexpr (Archive::kReads) expectStateOf(model_, state_);
-    if (islands_) a(*islands_);
+    if (data_.sleepers) a(*data_.sleepers, controller_);
     a(tables_, *company_, *verdict_, *replay_, summary_, stepsWithCones_);
     if (errorEstimate_) a(*errorEstimate_);
   }
@@ -178,16 +181,12 @@ class Runner {
     company_->addWrenches(kinematics_, input_);
     if (errorEstimate_) before_ = state_;
     const Clock::time_point start = Clock::now();
-    const SolveStatus status = islands_ ? islands_->step(input_)
-                               : controller_.goals.empty()
+    const SolveStatus status = controller_.goals.empty()
                                    ? softgauss::step(model_, input_, state_, data_, &contacts_)
                                    : controller_.step(model_, input_, state_, data_, &contacts_);
     record_.stepUs = 1e6 * secondsSince(start);
-    if (islands_) islands_->take(input_, state_, data_);
     if (errorEstimate_ && !isRefused(status)) estimateError();
-    const bool cones =
-        islands_ ? islands_->controlledCones() : !data_.constraints.piecewiseQuadratic();
-    if (cones) ++stepsWithCones_;
+    if (!data_.constraints.piecewiseQuadratic()) ++stepsWithCones_;
     return !isRefused(status);
   }
 
@@ -206,13 +205,9 @@ class Runner {
     const bool gdd = !controller_.goals.empty();
     const StepStats& stats = data_.stats;
     recordSolve(data_, controller_, record_.stepUs, record_);
-    record_.physicsViolation =
-        islands_ ? islands_->physicsViolation() : physicsViolation(model_, data_, scratch_);
+    record_.physicsViolation = physicsViolation(model_, data_, scratch_);
     measure(record_, kinematics_);
-    if (islands_)
-      touching_ = islands_->contacts();
-    else
-      contactForces(data_, touching_);
+    contactForces(data_, touching_);
     if (tables_.hasLog()) {
       record_.centerOfPressure = centerOfPressure(model_, touching_);
       contactLinks_.forces(touching_, record_.linkForces);
@@ -310,7 +305,6 @@ class Runner {
     summary_.finish(last);
     tellSolver();
     tellUnseen();
-    if (islands_) summary_.islands = islands_->outcomes();
     if (errorEstimate_) summary_.error = errorEstimate_->outcome();
     verdict_->tell(reason, baseWarnings_, summary_);
     company_->conclude(summary_);
@@ -355,7 +349,6 @@ class Runner {
   const OutsideInput outside_;
   Input input_;
   Kinematics kinematics_;  ///< at the step's start
-  std::optional<IslandRun> islands_;
   std::optional<ErrorEstimate> errorEstimate_;
   State before_;  ///< the step, for that
   Input held_;    ///< over the step, for that

@@ -22,6 +22,11 @@ void tally(const StepStats& stats, bool countsParts, io::Summary& summary) {
   i.repeats += stats.repeats;
   i.rejections += stats.rejections;
   i.tunnellingSplits += stats.tunnellingSplits;
+  io::SleepOutcomes& s = summary.sleep;
+  ++s.steps;
+  s.asleep += stats.asleepTrees;
+  s.wakeups += stats.wokenTrees;
+  s.most = std::max(s.most, stats.asleepTrees);
   for (const MechanismName& m : kMechanismNames)
     summary.mechanismActs[static_cast<std::size_t>(m.mechanism)] += stats.acted[m.mechanism];
 }

@@ -38,9 +38,6 @@ std::unique_ptr<Scene> loadScene(const SimulateOptions& options) {
   } catch (const OptionError& error) {
     throw UsageError("--" + std::string(error.what()));
   }
-  if (scene->fileSaysFcl && !options.throughFcl && options.islands)
-    throw ModelError(scene->collisionWhere, "key 'collision'",
-                     "found fcl, which looks at the whole scene, expected own beside --islands");
   checkSteps(options, scene->model.options.timestep, scene->timestepWhere);
   checkOutputs(options, scene->contents.files);
   checkLinks(options, scene->model);

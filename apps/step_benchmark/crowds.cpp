@@ -6,14 +6,12 @@
 #include <algorithm>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <regex>
 #include <vector>
 
 #include "apps/step_benchmark/in_turn.hpp"
 #include "apps/step_benchmark/scaling.hpp"
 #include "apps/step_benchmark/scenes.hpp"
-#include "softgauss/collision/unit_contacts.hpp"
 #include "softgauss/gdd/gdd.hpp"
 #include "softgauss/io/urdf.hpp"
 
@@ -25,32 +23,24 @@ constexpr int kSleepers = 1000;
 
 using Goals = std::vector<std::unique_ptr<gdd::Goal>>;
 
-/// A model, stepped in islands, and its goals.
-struct Crowd {
-  Model model;
-  collision::UnitContacts contacts;
-  gdd::GoalDirectedController controller;
-  std::optional<gdd::GoalDirectedIslands> controls;
-  Islands islands;
-  Crowd(Model m, bool sleeps, const std::function<Goals(const Model&)>& goals = nullptr)
-      : model(std::move(m)),
-        contacts(model),
-        controller(model),
-        islands(model, &contacts, Sleep{.enabled = sleeps}, follow(goals)) {}
-  void step() {
-    if (isRefused(islands.step({}))) throw std::runtime_error("the scene became non-finite");
-  }
-  void steps(int count) {
-    for (int i = 0; i < count; ++i) step();
-  }
+/// A scene in which objects sleep, with goals or without.
+std::unique_ptr<Scene> sleepers(ModelBuilder builder, bool sleeps = true,
+                                const std::function<Goals(const Model&)>& goals = nullptr) {
+  builder.options.sleep.enabled = sleeps;
+  std::unique_ptr<Scene> scene = makeScene(builder.build());
+  if (!goals) return scene;
+  scene->controller = std::make_unique<gdd::GoalDirectedController>(scene->model);
+  scene->controller->goals = goals(scene->model);
+  return scene;
+}
 
- private:
-  IslandControls* follow(const std::function<Goals(const Model&)>& goals) {
-    if (!goals) return nullptr;
-    controller.goals = goals(model);
-    return &controls.emplace(model, controller);
-  }
-};
+void steps(Scene& scene, int count) {
+  for (int i = 0; i < count; ++i) scene.step();
+}
+
+int awake(const Scene& scene) {
+  return static_cast<int>(scene.model.trees.size()) - scene.data->stats.asleepTrees;
+}
 
 using Step = std::function<void()>;
 
@@ -65,16 +55,16 @@ Pair timePair(const Step& first, const Step& second, int stepsOfFirst, int steps
 }
 
 Pair asleep(const std::string& robots) {
-  Crowd asleep(humanoids(robots, kHumanoids), true), awake(humanoids(robots, kHumanoids), false);
+  const auto asleep = sleepers(humanoidsOnGround(robots, kHumanoids)),
+             all = sleepers(humanoidsOnGround(robots, kHumanoids), false);
   // Each of the same humanoids lies still at the same time.
-  int steps = 0;
-  for (; asleep.islands.islandStats().awake > 0 || steps == 0; ++steps) asleep.step();
-  awake.steps(steps);
-  const Pair pair = timePair([&] { asleep.step(); }, [&] { awake.step(); }, 100, 2);
-  asleep.islands.wake(asleep.model.trees.front().rootBody);
-  asleep.step();
-  if (asleep.islands.islandStats().awake != 1)
-    throw std::runtime_error("to wake one humanoid has woken others");
+  int count = 0;
+  for (; count == 0 || awake(*asleep) > 0; ++count) asleep->step();
+  steps(*all, count);
+  const Pair pair = timePair([&] { asleep->step(); }, [&] { all->step(); }, 100, 2);
+  wake(asleep->state.sleep, 0);
+  asleep->step();
+  if (awake(*asleep) != 1) throw std::runtime_error("to wake one humanoid has woken others");
   return pair;
 }
 
@@ -86,18 +76,17 @@ Pair reacher(const std::string& folder) {
     reach.push_back(std::make_unique<gdd::VirtualDamping>());
     return reach;
   };
-  const auto make = [&](int sleepers) {
-    ModelBuilder builder = boxesOnGround(sleepers, 0.6);
+  const auto make = [&](int boxes) {
+    ModelBuilder builder = boxesOnGround(boxes, 0.6);
     ModelBuilder arm = io::readUrdf(folder + "/arm.urdf");
     arm.X_WRoot.p = Vector3(-3.0, 0.0, 0.0);
     builder.add(arm, "arm");
-    return std::make_unique<Crowd>(builder.build(), true, goals);
+    return sleepers(builder, true, goals);
   };
   const auto among = make(kSleepers), alone = make(0);
-  for (const auto& crowd : {among.get(), alone.get()}) {
-    crowd->steps(1500);
-    if (crowd->islands.islandStats().awake != 1)
-      throw std::runtime_error("the arm is not alone awake");
+  for (const auto& scene : {among.get(), alone.get()}) {
+    steps(*scene, 1500);
+    if (awake(*scene) != 1) throw std::runtime_error("the arm is not alone awake");
   }
   return timePair([&] { among->step(); }, [&] { alone->step(); }, 100, 100);
 }
@@ -121,9 +110,9 @@ Goals reachingHands(const Model& model) {
   return goals;
 }
 
-/// A ball that rolls along x between rows of boxes that sleep, `sleepers` of them.
-Model ballAmong(int sleepers) {
-  ModelBuilder builder = boxesOnGround(sleepers, 0.6);
+/// A ball that rolls along x between rows of boxes that sleep.
+ModelBuilder ballAmong(int boxes) {
+  ModelBuilder builder = boxesOnGround(boxes, 0.6);
   ModelBuilder ball("ball");
   ball.base = BaseKind::floating;
   ball.X_WRoot.p = Vector3(-1.0, 0.3, 0.1);
@@ -139,35 +128,24 @@ Model ballAmong(int sleepers) {
   shape.shape = Shape::sphere(0.1);
   ball.geometry(shape);
   builder.add(ball, "");
-  return builder.build();
+  return builder;
 }
 
 Pair mover() {
-  Crowd among(ballAmong(kSleepers), true), alone(ballAmong(0), true);
-  for (Crowd* crowd : {&among, &alone}) {
-    crowd->steps(1000);
+  const auto among = sleepers(ballAmong(kSleepers)), alone = sleepers(ballAmong(0));
+  for (Scene* scene : {among.get(), alone.get()}) {
+    steps(*scene, 1000);
     // Its rows are those of the boxes that it passes; 50 cm/s, and it never stops.
-    State state = crowd->islands.state();
-    state.v.tail<6>() << 0.5, 0.0, 0.0, 0.0, 5.0, 0.0;
-    crowd->islands.setState(state);
-    crowd->steps(500);
-    if (crowd->islands.islandStats().awake != 1)
-      throw std::runtime_error("the ball is not alone awake");
+    scene->state.v.tail<6>() << 0.5, 0.0, 0.0, 0.0, 5.0, 0.0;
+    steps(*scene, 500);
+    if (awake(*scene) != 1) throw std::runtime_error("the ball is not alone awake");
   }
-  return timePair([&] { among.step(); }, [&] { alone.step(); }, 100, 100);
-}
-
-Pair robots(const std::string& folder, int count) {
-  Crowd many(humanoids(folder, count), false), one(humanoids(folder, 1), false);
-  many.steps(100);
-  one.steps(100);
-  const Pair pair = timePair([&] { many.step(); }, [&] { one.step(); }, 5, 5);
-  return {pair.first / count, pair.second};
+  return timePair([&] { among->step(); }, [&] { alone->step(); }, 100, 100);
 }
 
 /// A robot of many in one scene, over one alone.
-Pair withoutIslands(const std::string& folder, int count,
-                    const std::function<Goals(const Model&)>& goals = nullptr) {
+Pair together(const std::string& folder, int count,
+              const std::function<Goals(const Model&)>& goals = nullptr) {
   const auto make = [&](int robots) {
     std::unique_ptr<Scene> scene = makeHumanoids(folder, robots);
     if (goals) {
@@ -180,14 +158,6 @@ Pair withoutIslands(const std::string& folder, int count,
   const auto many = make(count), one = make(1);
   const Pair pair = timePair([&] { many->step(); }, [&] { one->step(); }, 5, 5);
   return {pair.first / count, pair.second};
-}
-
-Pair joint(const std::string& folder) {
-  Crowd islands(humanoids(folder, kHumanoids), false);
-  std::unique_ptr<Scene> scene = makeHumanoids(folder, kHumanoids);
-  islands.steps(100);
-  for (int i = 0; i < 100; ++i) scene->step();
-  return timePair([&] { islands.step(); }, [&] { scene->step(); }, 5, 5);
 }
 
 /// A rod that hangs by its end from a point 50 m away, and turns about it at 40 rad/s.
@@ -254,18 +224,15 @@ Pair amongBoxes(const std::string& robots, int count) {
 std::map<std::string, double> crowdFigures(const std::string& robotsFolder,
                                            const std::string& filter) {
   const std::pair<const char*, std::function<Pair()>> pairs[] = {
-      {"islands_asleep", [&] { return asleep(robotsFolder); }},
-      {"islands_mover", [&] { return mover(); }},
-      {"islands_robots", [&] { return robots(robotsFolder, kHumanoids); }},
-      {"islands_few", [&] { return robots(robotsFolder, 16); }},
-      {"islands_none", [&] { return withoutIslands(robotsFolder, kHumanoids); }},
-      {"islands_joint", [&] { return joint(robotsFolder); }},
-      {"islands_reacher", [&] { return reacher(robotsFolder); }},
+      {"sleep_humanoids", [&] { return asleep(robotsFolder); }},
+      {"sleep_ball", [] { return mover(); }},
+      {"sleep_reacher", [&] { return reacher(robotsFolder); }},
+      {"islands_humanoids", [&] { return together(robotsFolder, kHumanoids); }},
       {"parts_boxes", [] { return besideSpinner(boxesOnGround(50, 0.3)); }},
       {"parts_humanoid", [&] { return besideSpinner(humanoidsOnGround(robotsFolder, 1)); }},
       {"parts_reach",
        [&] { return besideSpinner(humanoidsOnGround(robotsFolder, 1), reachWithRightHand); }},
-      {"goals_robots", [&] { return withoutIslands(robotsFolder, 8, reachingHands); }},
+      {"goals_robots", [&] { return together(robotsFolder, 8, reachingHands); }},
       {"goals_boxes", [&] { return amongBoxes(robotsFolder, 200); }}};
   std::map<std::string, double> figures;
   for (const auto& [name, time] : pairs) {

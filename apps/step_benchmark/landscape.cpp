@@ -92,7 +92,7 @@ ModelBuilder quadruped(const Shape& ground) {
 std::unique_ptr<Scene> standing(const Shape& ground) {
   auto scene = makeScene(quadruped(ground).build());
   for (int i = 0; i < 3000; ++i) scene->step();
-  if (scene->stats().contacts != 4) throw std::runtime_error("the quadruped does not stand");
+  if (scene->data->stats.contacts != 4) throw std::runtime_error("the quadruped does not stand");
   return scene;
 }
 

@@ -72,19 +72,19 @@ void timeScene(benchmark::State& state, const std::function<std::unique_ptr<Scen
                int warmUp) {
   const std::unique_ptr<Scene> scene = make();
   for (int i = 0; i < warmUp; ++i) scene->step();
-  const State saved = scene->now();
+  const State saved = scene->state;
   std::map<std::string, std::vector<double>> values;
   Recorder recorder;
   State before;
   for (auto _ : state) {
     for (int i = 0; i < kPieces * kTimedSteps; ++i) {
-      if (i % kTimedSteps == 0) scene->restore(saved);
+      if (i % kTimedSteps == 0) scene->state = saved;
       if (scene->recording) before = scene->state;
       const auto start = app::Clock::now();
       scene->step();
       const double seconds = app::secondsSince(start);
       if (scene->recording) recorder.addStep(*scene, before);
-      const StepStats& stats = scene->stats();
+      const StepStats& stats = scene->data->stats;
       values["step.us"].push_back(1e6 * seconds);
       values["kinematics.us"].push_back(1e6 * stats.times.kinematics);
       values["collision.us"].push_back(1e6 * stats.times.collision);

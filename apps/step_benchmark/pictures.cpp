@@ -94,9 +94,8 @@ std::string scalingScript(const Figures& figures) {
   constexpr Line kLines[] = {{"links", "links of a chain"},
                              {"bodies", "free boxes in the air"},
                              {"resting", "boxes at rest, 4 contacts each"},
-                             {"robots", "humanoids on the ground"},
-                             {"islands", "humanoids in islands"}};
-  constexpr const char* kColours[] = {"#3465a4", "#73a839", "#c17d11", "#a40000", "#75507b"};
+                             {"robots", "humanoids on the ground"}};
+  constexpr const char* kColours[] = {"#3465a4", "#73a839", "#c17d11", "#a40000"};
   const std::map<std::string, double> powers = exponents(figures);
   std::string data, plots;
   for (std::size_t n = 0; n < std::size(kLines); ++n) {

@@ -44,13 +44,6 @@ std::unique_ptr<Scene> makeHumanoids(const std::string& robots, int count) {
 
 namespace {
 
-/// The same, stepped in islands.
-std::unique_ptr<Scene> inIslands(std::unique_ptr<Scene> scene) {
-  scene->unitContacts = std::make_unique<collision::UnitContacts>(scene->model);
-  scene->islands = std::make_unique<Islands>(scene->model, scene->unitContacts.get());
-  return scene;
-}
-
 std::unique_ptr<Scene> makeBoxes(int count, bool ground) {
   return makeScene(ground ? boxesOnGround(count, 0.3) : freeBoxes(count, 10.0), false);
 }
@@ -67,9 +60,6 @@ std::vector<Rung> scaling(const std::string& robots) {
     rungs.push_back({fmt::format("resting_{}", n), [=] { return makeBoxes(n, true); }});
   for (const int n : {1, 2, 4, 8, 16})
     rungs.push_back({fmt::format("robots_{}", n), [=] { return makeHumanoids(robots, n); }});
-  for (const int n : {1, 2, 4, 8, 16})
-    rungs.push_back(
-        {fmt::format("islands_{}", n), [=] { return inIslands(makeHumanoids(robots, n)); }});
   return rungs;
 }
 

@@ -8,7 +8,6 @@
 #include <string>
 
 #include "softgauss/collision/scene_contacts.hpp"
-#include "softgauss/collision/unit_contacts.hpp"
 #include "softgauss/engine/engine.hpp"
 #include "softgauss/gdd/gdd.hpp"
 #include "softgauss/io/replay/recording.hpp"
@@ -22,25 +21,14 @@ struct Scene {
   State state;
   std::unique_ptr<Data> data;
   std::unique_ptr<gdd::GoalDirectedController> controller;  ///< null: passive
-  std::unique_ptr<collision::UnitContacts> unitContacts;
-  std::unique_ptr<Islands> islands;          ///< null: solved as one
-  std::unique_ptr<io::Recording> recording;  ///< of --view; null: none
+  std::unique_ptr<io::Recording> recording;                 ///< of --view; null: none
 
   void step() {
-    const SolveStatus status = islands ? islands->step({})
-                               : controller
+    const SolveStatus status = controller
                                    ? controller->step(model, {}, state, *data, contacts.get())
                                    : softgauss::step(model, {}, state, *data, contacts.get());
     if (isRefused(status)) throw std::runtime_error("the scene became non-finite");
   }
-  const State& now() const { return islands ? islands->state() : state; }
-  void restore(const State& saved) {
-    if (islands)
-      islands->setState(saved);
-    else
-      state = saved;
-  }
-  const StepStats& stats() const { return islands ? islands->stats() : data->stats; }
 };
 
 /// The plane z = 0.

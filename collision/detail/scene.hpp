@@ -30,11 +30,18 @@ struct SceneContacts::Scene {
   enum class Turn : std::uint8_t { none, axis, full };
 
   Scene(const Model& model, PreparedMeshes& meshes);
-  /// Poses of the geometries of some pair that move and that `take`.
-  template <class Takes>
-  void pose(const Kinematics& kinematics, Takes&& takes) {
-    for (const int g : posed)
-      if (takes(g)) poseOne(kinematics, static_cast<std::size_t>(g));
+  /// f(geometry) of those of some pair that move, of all trees or of these.
+  template <class F>
+  void visitPosed(const TreeSelection* trees, F&& f) const {
+    if (!trees) {
+      for (const int g : posed) f(static_cast<std::size_t>(g));
+      return;
+    }
+    if (posed.empty()) return;
+    for (const int t : trees->trees())
+      for (const Segment s : posedOf[t])
+        for (int i = s.begin; i < s.end; ++i)
+          f(static_cast<std::size_t>(posed[static_cast<std::size_t>(i)]));
   }
   void poseOne(const Kinematics& kinematics, std::size_t geometry);
   void choosePosed();
@@ -54,16 +61,14 @@ struct SceneContacts::Scene {
     const auto a = static_cast<std::size_t>(row.a), b = static_cast<std::size_t>(row.b);
     return row.plane || set.comesNear(row.a, centre[a], row.b, X_WG[b], row.margin + extra);
   }
-  /// Whether the rows that are not near may have come near since findNear().
-  bool moved() const;
+  /// Whether the rows that are not near may have come near since findNear(), where these trees have
+  /// moved.
+  bool moved(const TreeSelection* trees) const;
   void findNear();
   void sweep();
-  /// How far each shape that `takes` goes in `time` [s], where rows begin before they touch (3.16).
-  template <class Takes>
-  void setWays(const Kinematics& kinematics, double time, Takes&& takes) {
-    for (const int g : posed)
-      if (takes(g)) setWay(kinematics, time, static_cast<std::size_t>(g));
-  }
+  /// Finds the near rows of shapes that meet (TreeSelection::meets()), where they are not known.
+  void findAmong(const TreeSelection& trees);
+  /// How far a shape goes in `time` [s], where rows begin before they touch (3.16).
   void setWay(const Kinematics& kinematics, double time, std::size_t geometry);
   /// By how much nearer a pair may be at the end of the step [m].
   double wayOf(const Row& row) const {
@@ -82,6 +87,7 @@ struct SceneContacts::Scene {
   detail::GeometrySet set;
   std::vector<Turn> turn;
   std::vector<int> posed;  ///< geometries whose pose a step needs anew
+  SegmentSets posedOf;     ///< (trees) of which of them each has
 
   std::vector<Transform> X_WG;
   std::vector<Vector3> centre;  ///< of the bounding sphere, world
@@ -96,10 +102,14 @@ struct SceneContacts::Scene {
   std::vector<Vector3> movableCentre;
   std::vector<std::pair<int, int>> near;
   std::vector<int> nearPlaneRows, nearRows;  ///< within reach and slack at `reference`
-  double slack = 0.0;                        ///< [m]; 0: near rows are found at every step
-  double nearWithin = 0.0;                   ///< within which near rows were found [m]
-  std::vector<Vector3> reference;            ///< centres when they were found; empty: never
-  std::vector<double> way;                   ///< of each shape in a step, 0 where none counts [m]
+  // Those that meet among some trees, and of which, of what findNear() has found how often.
+  std::vector<int> planeRowsAmong, rowsAmong;
+  std::vector<std::uint8_t> among, still;
+  std::int64_t sweepsAmong = -1;
+  double slack = 0.0;              ///< [m]; 0: near rows are found at every step
+  double nearWithin = 0.0;         ///< within which near rows were found [m]
+  std::vector<Vector3> reference;  ///< centres when they were found; empty: never
+  std::vector<double> way;         ///< of each shape in a step, 0 where none counts [m]
   std::int64_t sweeps = 0;
   std::vector<MovingShape> moving;  ///< of all geometries; those of posed ones are setMotion()'s
   std::vector<std::uint8_t> fast;   ///< may pass through something as thin as itself

@@ -88,8 +88,15 @@ void Constraints::connectionForces(const Model& model, const Kinematics& k,
                                    std::span<const std::uint8_t> trees, VectorX& forces) {
   const auto numbers = 9 * static_cast<Eigen::Index>(model.connections.size());
   if (forces.size() != numbers) forces.setZero(numbers);
+  const auto treeOf = [&](int body) { return model.bodies[static_cast<std::size_t>(body)].tree; };
+  const auto meant = [&](int body) {
+    const int tree = treeOf(body);
+    return trees.empty() || (tree >= 0 && trees[static_cast<std::size_t>(tree)] != 0);
+  };
   if (!active_.has(RowKind::connection)) {
-    forces.setZero();
+    for (std::size_t i = 0; i < model.connections.size(); ++i)
+      if (meant(model.connections[i].bodyA) || meant(model.connections[i].bodyB))
+        forces.segment<9>(9 * static_cast<Eigen::Index>(i)).setZero();
     return;
   }
   rowForces_.setZero(model.nv);
@@ -97,15 +104,10 @@ void Constraints::connectionForces(const Model& model, const Kinematics& k,
   BodyForce force{rowForces_, bodyForces_};
   addForce(force);
   addBodyForces(model, k, bodyForces_, rowForces_);
-  const auto treeOf = [&](int body) { return model.bodies[static_cast<std::size_t>(body)].tree; };
   const auto onTree = [&](int body) -> Vector3 {
     const int tree = treeOf(body);
     if (tree < 0 || !model.floats(tree)) return Vector3::Zero();
     return rowForces_.segment<3>(model.trees[static_cast<std::size_t>(tree)].firstDof);
-  };
-  const auto meant = [&](int body) {
-    const int tree = treeOf(body);
-    return trees.empty() || (tree >= 0 && trees[static_cast<std::size_t>(tree)] != 0);
   };
   const double* f = connection.f.data();
   for (const int i : connection.connections()) {

@@ -29,14 +29,15 @@ class SegmentSets {
     runs_.reserve(segments);
     segments_.reserve(segments);
   }
-  /// Divides it into so many sets: setOf(i) is that of each index.
+  /// Divides it into so many sets: setOf(i) is that of each index, −1: it is of none.
   template <class SetOf>
   void divide(Segment range, int sets, SetOf&& setOf) {
     runs_.clear();
     end_.assign(idx(sets), 0);
     for (int i = range.begin; i < range.end; ++i) {
       const int set = setOf(i);
-      if (runs_.empty() || runs_.back().set != set) {
+      if (set < 0) continue;
+      if (runs_.empty() || runs_.back().set != set || runs_.back().segment.end != i) {
         runs_.push_back({set, {i, i}});
         ++end_[idx(set)];
       }

@@ -50,6 +50,16 @@ inline void copy(Segments entries, const VectorX& x, VectorX& y) {
   for (const Segment s : entries) part(y, s) = part(x, s);
 }
 
+inline void setZero(Segments entries, VectorX& y) {
+  for (const Segment s : entries) part(y, s).setZero();
+}
+
+inline bool allFinite(Segments entries, const VectorX& x) {
+  for (const Segment s : entries)
+    if (!part(x, s).allFinite()) return false;
+  return true;
+}
+
 /// y ← x of these entries, 0 elsewhere; y has the size of x.
 inline void copyOnly(Segments entries, const VectorX& x, VectorX& y) {
   y.setZero(x.size());

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "softgauss/engine/core/check.hpp"
+#include "softgauss/engine/core/segment_vectors.hpp"
 
 namespace softgauss {
 
@@ -57,9 +58,9 @@ void computeMassMatrix(const Model& model, const Kinematics& k, Segments bodies,
   for (const Segment s : bodies) findInertias(model, k, s, stage);
   for (const Segment s : dofs)
     for (int i = s.begin; i < s.end; ++i) findRow(model, k, i, whole, stage);
-  stage.forceScale = stage.motionScale;
+  copy(dofs, stage.motionScale, stage.forceScale);
   stage.whole = whole;
-  stage.added.setZero();
+  setZero(dofs, stage.added);
   stage.anyAdded = false;
 }
 

@@ -71,11 +71,12 @@ void computePoses(const Model& model, const VectorX& q, Segments bodies, Kinemat
 void computeKinematics(const Model& model, const State& state, Segments bodies, Kinematics& k) {
   computePoses(model, state.q, bodies, k);
   computeVelocities(model, k, state.v, bodies, k.V, k.A_bias);
-  k.V_midstep.clear();
+  k.hasMidstep = false;
 }
 
 void setMidstepVelocity(const Model& model, const VectorX& v, Segments bodies, Kinematics& k) {
   k.V_midstep.resize(model.bodies.size());
+  k.hasMidstep = true;
   computeVelocities(model, k, v, bodies, k.V_midstep, k.A_bias);
 }
 

@@ -21,10 +21,11 @@ struct Kinematics {
   std::vector<Motion> V;        ///< (bodies) spatial velocity about O
   std::vector<Motion> A_bias;  ///< (bodies) spatial acceleration at v̇ = 0, without gravity: J̇ v
   /// (bodies) the velocity with which bodies turn through the step, where setMidstepVelocity() has
-  /// predicted one; empty: V. A_bias is of it.
+  /// predicted one; else it is V. A_bias is of it.
   std::vector<Motion> V_midstep;
+  bool hasMidstep = false;
 
-  const std::vector<Motion>& midstepVelocities() const { return V_midstep.empty() ? V : V_midstep; }
+  const std::vector<Motion>& midstepVelocities() const { return hasMidstep ? V_midstep : V; }
 
   Kinematics() = default;
   explicit Kinematics(const Model& model);

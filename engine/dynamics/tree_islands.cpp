@@ -13,16 +13,22 @@ TreeIslands::TreeIslands(const Model& model) : ofBody_(model.bodies.size()) {
   find(model, {});
 }
 
-void TreeIslands::find(const Model& model, const std::vector<std::pair<int, int>>& pairs) {
+void TreeIslands::find(const Model& model, const std::vector<std::pair<int, int>>& pairs,
+                       std::span<const std::uint8_t> still) {
   const int trees = static_cast<int>(model.trees.size());
+  const auto isLeftOut = [&](int tree) { return !still.empty() && still[idx(tree)] != 0; };
   sets_.reset(trees);
   for (const auto& [bodyA, bodyB] : pairs) {
     const int a = model.bodies[idx(bodyA)].tree, b = model.bodies[idx(bodyB)].tree;
-    if (a >= 0 && b >= 0) sets_.unite(a, b);
+    if (a >= 0 && b >= 0 && !isLeftOut(a) && !isLeftOut(b)) sets_.unite(a, b);
   }
   int islands = 0;
   for (int t = 0; t < trees; ++t) {
     const Tree& tree = model.trees[idx(t)];
+    if (isLeftOut(t)) {
+      std::fill(ofBody_.begin() + tree.rootBody, ofBody_.begin() + tree.bodyEnd, -1);
+      continue;
+    }
     const int first = sets_.find(t);  // the first tree of its island
     const int island = first == t ? islands++ : ofBody_[idx(model.trees[idx(first)].rootBody)];
     std::fill(ofBody_.begin() + tree.rootBody, ofBody_.begin() + tree.bodyEnd, island);

@@ -6,8 +6,10 @@
 /// P = M + Jᵀ∇²s J has no entry between two islands, so the objective of (1.1) is the sum of theirs
 /// and each is minimised by itself, in its own number of iterations: what one comes to does not
 /// depend, to the last bit, on who else is in the scene. A tree without rows of two trees is an
-/// island. Islands are in the order of their first trees.
+/// island. Islands are in the order of their first trees. Trees that are asleep are of none.
 
+#include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -22,14 +24,16 @@ class TreeIslands {
   TreeIslands() = default;
   explicit TreeIslands(const Model& model);
 
-  /// Finds them anew where rows couple these pairs of bodies. The world couples nothing.
-  void find(const Model& model, const std::vector<std::pair<int, int>>& pairs);
+  /// Finds them anew where rows couple these pairs of bodies, of trees that are not `still` (trees;
+  /// empty: of all). The world couples nothing.
+  void find(const Model& model, const std::vector<std::pair<int, int>>& pairs,
+            std::span<const std::uint8_t> still = {});
 
   int size() const { return bodies_.size(); }
   /// Its bodies, and its dofs, ascending.
   Segments bodies(int island) const { return bodies_[island]; }
   Segments dofs(int island) const { return dofs_[island]; }
-  /// (bodies) the island of each; the first one for the world.
+  /// (bodies) the island of each, −1: none; the first one for the world.
   const std::vector<int>& ofBody() const { return ofBody_; }
 
  private:

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "softgauss/engine/forces/forces.hpp"
 
+#include "softgauss/engine/core/segment_vectors.hpp"
 #include "softgauss/engine/forces/damping.hpp"
 #include "softgauss/engine/forces/external_wrench.hpp"
 #include "softgauss/engine/forces/spring.hpp"
@@ -9,35 +10,37 @@ namespace softgauss {
 
 void computeSmoothForces(const Model& model, const Plan& plan, const State& state,
                          const Input& input, const Kinematics& k, const MassMatrix& inertia,
-                         Segments bodies, SmoothForces& stage) {
+                         const TreeSelection& trees, SmoothForces& stage) {
   SmoothForces::Calls& calls = stage.calls;
   if (plan.gravity || plan.coriolis) {  // else the bias stays zero
     calls.gravity += plan.gravity;
     calls.coriolis += plan.coriolis;
-    computeBias(model, k, inertia, bodies, stage.work, stage.bias);
+    computeBias(model, k, inertia, trees.bodies(), stage.work, stage.bias);
   }
-  stage.c = stage.bias;
+  const Segments dofs = trees.dofs();
+  copy(dofs, stage.bias, stage.c);
   if (plan.hasDamping()) {
     ++calls.damping;
-    addDamping(plan.damping, state.v, stage.c);
+    addDamping(dofs, plan.damping, state.v, stage.c);
   }
   if (plan.hasSprings()) {
     ++calls.spring;
-    addSprings(plan.springs, state.q, stage.c);
+    addSprings(model, plan.springs, state.q, trees, stage.c);
   }
   if (plan.hasExternalWrench()) {
-    stage.push.setZero();
+    setZero(dofs, stage.push);
     for (const ExternalWrench& wrench : input.wrenches) {
+      if (!trees.holds(model, wrench.body)) continue;
       ++calls.externalWrench;
       addExternalWrench(model, k, wrench, stage.push);
     }
-    stage.c -= stage.push;
+    for (const Segment s : dofs) part(stage.c, s) -= part(stage.push, s);
   }
   if (input.tau.size() == model.nv)
-    stage.tau = input.tau;
+    copy(dofs, input.tau, stage.tau);
   else
-    stage.tau.setZero();
-  stage.net = stage.tau - stage.c;
+    setZero(dofs, stage.tau);
+  for (const Segment s : dofs) part(stage.net, s) = part(stage.tau, s) - part(stage.c, s);
 }
 
 void setAppliedForce(const VectorX& tau, SmoothForces& stage) {

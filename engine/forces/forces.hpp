@@ -10,6 +10,7 @@
 /// c is the paper's c(q, v): all that does not depend on the control or the acceleration.
 
 #include "softgauss/engine/dynamics/rnea.hpp"
+#include "softgauss/engine/dynamics/tree_selection.hpp"
 #include "softgauss/engine/model/plan.hpp"
 
 namespace softgauss {
@@ -39,10 +40,11 @@ struct SmoothForces {
         work(model, plan.gravity || plan.coriolis, plan.drifts) {}
 };
 
-/// `bodies`: those of whole trees whose bias is found.
+/// Of these trees; what the stage has of others stays.
 void computeSmoothForces(const Model& model, const Plan& plan, const State& state,
                          const Input& input, const Kinematics& kinematics,
-                         const MassMatrix& inertia, Segments bodies, SmoothForces& stage);
+                         const MassMatrix& inertia, const TreeSelection& trees,
+                         SmoothForces& stage);
 
 /// Replaces the applied force, e.g. by a control that was found after the other forces.
 void setAppliedForce(const VectorX& tau, SmoothForces& stage);

@@ -7,12 +7,17 @@
 
 #include <vector>
 
+#include "softgauss/engine/dynamics/tree_selection.hpp"
 #include "softgauss/engine/model/plan.hpp"
 
 namespace softgauss {
 
-inline void addSprings(const std::vector<Plan::Spring>& springs, const VectorX& q, VectorX& c) {
-  for (const Plan::Spring& s : springs) c[s.dof] += s.stiffness * (q[s.q] - s.reference);
+/// Those of these trees.
+inline void addSprings(const Model& model, const std::vector<Plan::Spring>& springs,
+                       const VectorX& q, const TreeSelection& trees, VectorX& c) {
+  for (const Plan::Spring& s : springs)
+    if (trees.holds(model, model.dofs[idx(s.dof)].body))
+      c[s.dof] += s.stiffness * (q[s.q] - s.reference);
 }
 
 }  // namespace softgauss

@@ -150,6 +150,15 @@ enum class ConstraintModel : std::uint8_t {
 };
 
 /// Choices that hold for the whole simulation.
+/// What is at rest is left out of steps (step/sleep.hpp).
+struct Sleep {
+  bool enabled = false;
+  double speed = 5e-3;  ///< [m/s] of every link: its centre of mass, and its radius of gyration
+  double time = 0.5;    ///< [s] for which they have been slower, and steady
+  /// What a control acts on may sleep too: it keeps its pose, and its control the last value.
+  bool controlled = false;
+};
+
 struct Options {
   double timestep = 0.002;                     ///< h [s]
   Vector3 gravity = Vector3(0.0, 0.0, -9.81);  ///< [m/s²], world
@@ -174,6 +183,7 @@ struct Options {
   ConstraintModel constraintModel = ConstraintModel::softgauss;
   /// Of softgauss's `constraintModel` and the leapfrog, which mechanisms may be used.
   MechanismSet mechanisms = MechanismSet::all();
+  Sleep sleep;                 ///< of semi-implicit Euler and the leapfrog
   bool exactDiagonal = false;  ///< see constraints/exact_diagonal.hpp
   int maxIterations = 400;     ///< Newton
   double tolerance = 1e-12;    ///< Newton: scaled gradient, see solver/newton.hpp

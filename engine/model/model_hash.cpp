@@ -48,10 +48,12 @@ class Hasher {
   void add(const Options& o) {
     const auto& [timestep, gravity, effects, integrator, integrationTolerance, stepDoubling,
                  implicitInSolve, cone, impedanceRatio, substepAngle, outerTimestep, nextTimestep,
-                 constraintModel, mechanisms, exactDiagonal, maxIterations, tolerance] = o;
+                 constraintModel, mechanisms, sleep, exactDiagonal, maxIterations, tolerance] = o;
+    const auto& [enabled, speed, time, controlled] = sleep;
     (*this)(timestep, gravity, effects, integrator, integrationTolerance, stepDoubling,
             implicitInSolve, cone, impedanceRatio, substepAngle, outerTimestep, nextTimestep,
-            constraintModel, mechanisms, exactDiagonal, maxIterations, tolerance);
+            constraintModel, mechanisms, enabled, speed, time, controlled, exactDiagonal,
+            maxIterations, tolerance);
   }
   void add(const Body& b) {
     const auto& [joint, massless, parent, q, v, dofs, tree, robot, subtreeEnd, X_PB, axis, mass,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "softgauss/engine/model/saved_state.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "softgauss/engine/core/bytes.hpp"
@@ -11,7 +12,28 @@ namespace softgauss {
 namespace {
 
 constexpr std::string_view kStateKind = "SGSTATE\n";
-constexpr std::uint32_t kStateVersion = 3;
+constexpr std::uint32_t kStateVersion = 4;
+
+/// Whether these are of the sizes that the model has, and of islands whose first tree sleeps too.
+bool fits(const Model& model, const SleepState& sleep) {
+  const SleepState own = State(model).sleep;
+  if (sleep.island.size() != own.island.size() || sleep.restTime.size() != own.restTime.size() ||
+      sleep.restSpeed.size() != own.restSpeed.size() ||
+      sleep.restVelocity.size() != own.restVelocity.size() ||
+      sleep.setPoint.size() != own.setPoint.size() ||
+      sleep.setPointRate.size() != own.setPointRate.size())
+    return false;
+  const auto isTime = [](double x) { return x >= 0.0 && std::isfinite(x); };
+  const int trees = static_cast<int>(sleep.island.size());
+  return std::ranges::all_of(sleep.island,
+                             [&](int first) {
+                               return first == -1 || (first >= 0 && first < trees &&
+                                                      sleep.island[idx(first)] == first);
+                             }) &&
+         std::ranges::all_of(sleep.restTime, isTime) &&
+         std::ranges::all_of(sleep.restSpeed, isTime) && sleep.restVelocity.allFinite() &&
+         sleep.setPoint.allFinite() && sleep.setPointRate.allFinite();
+}
 
 }  // namespace
 
@@ -34,6 +56,7 @@ void expectStateOf(const Model& model, const State& state) {
     expect(body.joint != JointKind::floating ||
                std::abs(state.q.segment<4>(body.q + 3).norm() - 1.0) < kRounding,
            "holds an orientation that is no rotation");
+  expect(fits(model, state.sleep), "holds a sleep that no run has");
   constexpr int kMostSolves = 1 << 24;
   for (const auto& [counts, least] : {std::pair(&warm.gddSearchAge, 0), {&warm.gddSearchWait, 1}}) {
     expect(counts->size() == model.trees.size(), "holds counts that are not of the model's trees");

@@ -44,9 +44,14 @@ void archive(Archive& a, WarmStart& warmstart) {
     gddValid);
 }
 template <class Archive>
+void archive(Archive& a, SleepState& sleep) {
+  auto& [island, restTime, restSpeed, restVelocity, setPoint, setPointRate] = sleep;
+  a(island, restTime, restSpeed, restVelocity, setPoint, setPointRate);
+}
+template <class Archive>
 void archive(Archive& a, State& state) {
-  auto& [q, v, time, acceleration, hasAcceleration, connectionForces, warmstart] = state;
-  a(q, v, time, acceleration, hasAcceleration, connectionForces, warmstart);
+  auto& [q, v, time, acceleration, hasAcceleration, connectionForces, warmstart, sleep] = state;
+  a(q, v, time, acceleration, hasAcceleration, connectionForces, warmstart, sleep);
 }
 
 /// Throws BytesError where a state that was read is none of the model's.

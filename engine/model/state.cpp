@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "softgauss/engine/model/state.hpp"
 
+#include <algorithm>
 #include <cstring>
 
 #include "softgauss/engine/core/rotation.hpp"
@@ -42,6 +43,25 @@ State::State(const Model& model)
   warmstart.control = VectorX::Zero(model.nv);
   warmstart.gddSearchAge.assign(model.trees.size(), 0);
   warmstart.gddSearchWait.assign(model.trees.size(), 1);
+  if (!model.options.sleep.enabled) return;
+  sleep.island.assign(model.trees.size(), -1);
+  sleep.restTime.assign(model.trees.size(), 0.0);
+  sleep.restSpeed.assign(model.trees.size(), 0.0);
+  sleep.restVelocity = VectorX::Zero(model.nv);
+  if (std::ranges::none_of(model.dofs, [](const Dof& dof) { return dof.servo.exists(); })) return;
+  sleep.setPoint = sleep.setPointRate = VectorX::Zero(model.nv);
+}
+
+void wake(SleepState& sleep, int tree) {
+  if (!sleep.isAsleep(tree)) return;
+  const int island = sleep.island[idx(tree)];
+  for (std::size_t t = 0; t < sleep.island.size(); ++t)
+    if (sleep.island[t] == island) sleep.island[t] = -1, sleep.restTime[t] = 0.0;
+}
+
+void wakeAll(SleepState& sleep) {
+  std::ranges::fill(sleep.island, -1);
+  std::ranges::fill(sleep.restTime, 0.0);
 }
 
 std::uint64_t hash(const State& state) {
@@ -61,6 +81,12 @@ std::uint64_t hash(const State& state) {
       mixBits(h, static_cast<std::uint64_t>(part));
   if (state.hasAcceleration) mix(h, state.a.data(), state.a.size());
   mix(h, state.connectionForces.data(), state.connectionForces.size());
+  for (const int island : state.sleep.island) mixBits(h, static_cast<std::uint64_t>(island));
+  for (const std::vector<double>* x : {&state.sleep.restTime, &state.sleep.restSpeed})
+    mix(h, x->data(), static_cast<Eigen::Index>(x->size()));
+  for (const VectorX* x :
+       {&state.sleep.restVelocity, &state.sleep.setPoint, &state.sleep.setPointRate})
+    mix(h, x->data(), x->size());
   return h;
 }
 

@@ -43,6 +43,19 @@ struct WarmStart {
   bool gddValid = false;
 };
 
+/// Who sleeps, and who is about to (step/sleep.hpp). Empty where Options::sleep is off.
+struct SleepState {
+  /// (trees) The first tree of the island with which it fell asleep; −1: it is awake.
+  std::vector<int> island;
+  std::vector<double> restTime;   ///< (trees) for which it has been at rest [s]
+  std::vector<double> restSpeed;  ///< (trees) of its fastest link when it came to rest [m/s]
+  VectorX restVelocity;           ///< (nv) v then
+  /// (nv) of the servos of who sleeps, as they were told last; empty where there are none.
+  VectorX setPoint, setPointRate;
+
+  bool isAsleep(int tree) const { return !island.empty() && island[idx(tree)] >= 0; }
+};
+
 /// Everything that the next step depends on, and nothing else. Copyable.
 struct State {
   VectorX q;          ///< configuration (nq)
@@ -55,6 +68,7 @@ struct State {
   /// follows the geometric stiffness of the next step (6.8). Zero or empty: none is known.
   VectorX connectionForces;
   WarmStart warmstart;
+  SleepState sleep;
 
   State() = default;
   /// At rest in the model's initial configuration.
@@ -67,6 +81,12 @@ struct State {
     connectionForces.setZero();
   }
 };
+
+/// Wakes a tree and all that fell asleep with it; to be called where its q has been changed. A v
+/// that is not zero wakes it too.
+void wake(SleepState& sleep, int tree);
+/// Wakes all.
+void wakeAll(SleepState& sleep);
 
 /// An external force on a body: wrench about the body's origin, in world axes.
 struct ExternalWrench {

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "softgauss/engine/core/segment_vectors.hpp"
+
 namespace softgauss {
 namespace {
 
@@ -75,6 +77,12 @@ BadInput findBadInput(const Model& model, const Input& input) noexcept {
 }
 
 BadInput findBadInput(const Model& model, const Input& input, const State& state) noexcept {
+  const Segment all{1, model.bodyCount()};
+  return findBadInput(model, input, state, {&all, 1});
+}
+
+BadInput findBadInput(const Model& model, const Input& input, const State& state,
+                      Segments bodies) noexcept {
   if (const BadInput bad = checkSize(BadInputKind::q, state.q, model.nq)) return bad;
   if (const BadInput bad = checkSize(BadInputKind::v, state.v, model.nv)) return bad;
   if (state.hasAcceleration)
@@ -92,25 +100,32 @@ BadInput findBadInput(const Model& model, const Input& input, const State& state
     for (const VectorX* x : {&warm.gddA, &warm.multipliers})
       if (const BadInput bad = checkSize(BadInputKind::warmStart, *x, model.nv)) return bad;
   if (const BadInput bad = findBadInput(model, input)) return bad;
-  return findBadQuaternion(model, state.q);
+  return findBadQuaternion(model, state.q, bodies);
 }
 
 BadInput findBadQuaternion(const Model& model, const VectorX& q) noexcept {
-  for (int b = 1; b < model.bodyCount(); ++b) {
-    const Body& body = model.bodies[static_cast<std::size_t>(b)];
-    if (body.joint != JointKind::floating) continue;
-    const auto quaternion = q.segment<4>(body.q + 3);
-    const double length = quaternion.norm();
-    if (quaternion.allFinite() &&
-        !(length * kQuaternionFactor >= 1.0 && length <= kQuaternionFactor))
-      return {BadInputKind::quaternion, b, length, 1.0};
-  }
+  const Segment all{1, model.bodyCount()};
+  return findBadQuaternion(model, q, {&all, 1});
+}
+
+BadInput findBadQuaternion(const Model& model, const VectorX& q, Segments bodies) noexcept {
+  for (const Segment s : bodies)
+    for (int b = s.begin; b < s.end; ++b) {
+      const Body& body = model.bodies[static_cast<std::size_t>(b)];
+      if (body.joint != JointKind::floating) continue;
+      const auto quaternion = q.segment<4>(body.q + 3);
+      const double length = quaternion.norm();
+      if (quaternion.allFinite() &&
+          !(length * kQuaternionFactor >= 1.0 && length <= kQuaternionFactor))
+        return {BadInputKind::quaternion, b, length, 1.0};
+    }
   return {};
 }
 
-bool isFinite(const Input& input, const State& state) noexcept {
-  for (const VectorX* x : {&state.q, &state.v, &input.tau, &input.setPoint, &input.setPointRate})
-    if (!x->allFinite()) return false;
+bool isFinite(const Input& input, const State& state, const TreeSelection& trees) noexcept {
+  if (!allFinite(trees.coordinates(), state.q)) return false;
+  for (const VectorX* x : {&state.v, &input.tau, &input.setPoint, &input.setPointRate})
+    if (x->size() > 0 && !allFinite(trees.dofs(), *x)) return false;
   return std::all_of(input.wrenches.begin(), input.wrenches.end(), [&](const ExternalWrench& w) {
     return w.F_Bo_W.force.allFinite() && w.F_Bo_W.moment.allFinite();
   });

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <string>
 
-#include "softgauss/engine/model/state.hpp"
+#include "softgauss/engine/dynamics/tree_selection.hpp"
 
 namespace softgauss {
 
@@ -44,11 +44,15 @@ constexpr double kQuaternionFactor = 10.0;
 /// The first thing that does not fit the model; NaN and ∞ fit.
 BadInput findBadInput(const Model& model, const Input& input) noexcept;
 BadInput findBadInput(const Model& model, const Input& input, const State& state) noexcept;
+/// The same, of quaternions those of `bodies` alone.
+BadInput findBadInput(const Model& model, const Input& input, const State& state,
+                      Segments bodies) noexcept;
 /// Of the quaternions in q (nq) alone.
+BadInput findBadQuaternion(const Model& model, const VectorX& q, Segments bodies) noexcept;
 BadInput findBadQuaternion(const Model& model, const VectorX& q) noexcept;
 
-/// Whether neither has a NaN or an infinity.
-bool isFinite(const Input& input, const State& state) noexcept;
+/// Whether neither has a NaN or an infinity, of these trees.
+bool isFinite(const Input& input, const State& state, const TreeSelection& trees) noexcept;
 /// The first dof whose position, velocity or applied force is not finite, −1 if none is.
 int firstBadDof(const Model& model, const Input& input, const State& state) noexcept;
 

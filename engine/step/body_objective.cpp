@@ -34,23 +34,26 @@ BodySolution::BodySolution(const Model& model)
   factor.couple(pairs, islands);
 }
 
-void BodySolution::findDiagonal(const Model& model, const MassMatrix& inertia) {
-  diagonal = inertia.added;
-  if (model.options.effects.has(Effect::armature))
-    for (int i = 0; i < model.nv; ++i) diagonal[i] += model.dofs[idx(i)].armature;
+void BodySolution::findDiagonal(const Model& model, const MassMatrix& inertia, Segments dofs) {
+  copy(dofs, inertia.added, diagonal);
+  if (!model.options.effects.has(Effect::armature)) return;
+  for (const Segment s : dofs)
+    for (int i = s.begin; i < s.end; ++i) diagonal[i] += model.dofs[idx(i)].armature;
 }
 
-void BodySolution::divide(const Model& model, const MassMatrix& inertia, Constraints& rows) {
-  findDiagonal(model, inertia);
+void BodySolution::divide(const Model& model, const MassMatrix& inertia, const TreeSelection& trees,
+                          Constraints& rows) {
+  findDiagonal(model, inertia, trees.dofs());
   pairs.clear();
   rows.appendPairs(pairs);
   const std::size_t ofBodies = pairs.size();
   pairs.emplace_back(0, 0);  // where those that rows couple end: the world couples nothing
   rows.appendCoupledBodies(model, pairs);
   pairs.insert(pairs.end(), tied.begin(), tied.end());
-  if (pairs != lastPairs) {
+  if (pairs != lastPairs || trees.still() != lastStill) {
     lastPairs = pairs;
-    islands.find(model, pairs);
+    lastStill = trees.still();
+    islands.find(model, pairs, trees.still());
     pairs.resize(ofBodies);
     factor.couple(pairs, islands);
   }
@@ -59,8 +62,8 @@ void BodySolution::divide(const Model& model, const MassMatrix& inertia, Constra
 
 void BodySolution::multiplyMass(const Model& model, const Kinematics& k, const MassMatrix& inertia,
                                 const VectorX& x, VectorX& y) {
-  const Segment all = allBodies(model);
-  findDiagonal(model, inertia);
+  const Segment all = allBodies(model), dofs{0, model.nv};
+  findDiagonal(model, inertia, {&dofs, 1});
   moveBodies(model, k, x, ray);
   multiplyInertias(model, inertia, {&all, 1}, ray, force);
   y = diagonal.cwiseProduct(x);
@@ -75,8 +78,8 @@ void BodySolution::moveTo(const Model& model, const Kinematics& k, const MassMat
 
 void BodySolution::moveTo(const Model& model, const Kinematics& k, const MassMatrix& inertia,
                           const VectorX& a) {
-  const Segment all = allBodies(model);
-  findDiagonal(model, inertia);
+  const Segment all = allBodies(model), dofs{0, model.nv};
+  findDiagonal(model, inertia, {&dofs, 1});
   moveTo(model, k, inertia, {&all, 1}, a);
 }
 

@@ -22,15 +22,18 @@ struct BodySolution {
   std::vector<Force> force;                ///< (bodies) scratch
   VectorX diagonal;                        ///< (nv) armature and MassMatrix::added
   std::vector<std::pair<int, int>> pairs;  ///< scratch: bodies that rows couple
-  std::vector<std::pair<int, int>> lastPairs;  ///< those for which islands and factor are
-  std::vector<std::pair<int, int>> tied;       ///< bodies that are of one island besides: by goals
-  TreeIslands islands;                         ///< of the present rows
+  /// Those for which islands and factor are, and who was asleep.
+  std::vector<std::pair<int, int>> lastPairs;
+  std::vector<std::uint8_t> lastStill;
+  std::vector<std::pair<int, int>> tied;  ///< bodies that are of one island besides: by goals
+  TreeIslands islands;                    ///< of the present rows
 
   BodySolution() = default;
   explicit BodySolution(const Model& model);
   /// Finds the islands of the rows and of what is tied, and readies them and the factor for each of
-  /// these.
-  void divide(const Model& model, const MassMatrix& inertia, Constraints& rows);
+  /// these. `trees`: those of the stages.
+  void divide(const Model& model, const MassMatrix& inertia, const TreeSelection& trees,
+              Constraints& rows);
   /// A and I A of the joint acceleration a.
   void moveTo(const Model& model, const Kinematics& k, const MassMatrix& inertia, const VectorX& a);
   /// The same of these bodies, where the diagonal is known.
@@ -47,7 +50,7 @@ struct BodySolution {
                  Segments dofs, const VectorX& a, VectorX& tau);
 
  private:
-  void findDiagonal(const Model& model, const MassMatrix& inertia);
+  void findDiagonal(const Model& model, const MassMatrix& inertia, Segments dofs);
 };
 
 struct Data;

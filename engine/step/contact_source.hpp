@@ -26,12 +26,13 @@ class ContactSource {
   virtual void detect(const Model& model, const Kinematics& kinematics,
                       ContactSet& contacts) noexcept = 0;
 
-  /// Those of these trees, with each other and with the world.
+  /// Those of these trees, with each other, with the world and with trees that are still
+  /// (TreeSelection::setStill()).
   virtual void detectAmong(const Model& model, const Kinematics& kinematics,
                            const TreeSelection& trees, ContactSet& contacts) noexcept {
     detect(model, kinematics, contacts);
     std::erase_if(contacts.contacts,
-                  [&](const Contact& c) { return !trees.holds(model, c.bodyA, c.bodyB); });
+                  [&](const Contact& c) { return !trees.meets(model, c.bodyA, c.bodyB); });
   }
 
   /// The contacts of these two geometries alone, A and B as in detect(), after a detect() near
@@ -55,11 +56,16 @@ class ContactSource {
     return longest;
   }
 
+  /// How often detect() has found where all shapes are: detectAmong() may take those of trees that
+  /// are still from the last time.
+  std::int64_t fullDetections() const { return fullDetections_; }
+
   /// Memory that it holds for the shapes and pairs of the scene.
   virtual std::size_t bytes() const noexcept { return 0; }
 
  protected:
   bool mayTouch_ = true;
+  std::int64_t fullDetections_ = 0;
 };
 
 /// The same contacts at every step, for tests and for callers with a collision engine of their own.

@@ -5,6 +5,7 @@
 
 #include "softgauss/engine/step/integrators/stages.hpp"
 #include "softgauss/engine/step/integrators/velocity_derivative.hpp"
+#include "softgauss/engine/step/sleep.hpp"
 #include "softgauss/engine/step/substep_workspace.hpp"
 
 namespace softgauss {
@@ -12,6 +13,7 @@ namespace softgauss {
 Data::~Data() = default;
 
 Data::Data(const Model& model) : Data(model, Evaluation{}) {
+  if (model.options.sleep.enabled) sleepers = std::make_unique<Sleepers>(model);
   if (model.options.isMultiStage()) stages = std::make_unique<IntegratorStages>(model);
   if (!plan.drifts) return;
   parts = std::make_unique<SubstepWorkspace>(model);

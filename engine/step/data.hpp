@@ -51,6 +51,8 @@ struct StepStats {
   std::int64_t pairsSkipped = 0;
   int substeppedTrees = 0;       ///< that moved freely, followed within the step (6.3)
   int abandonedTrees = 0;        ///< that needed more sub-steps than allowed and took (6.2) instead
+  int asleepTrees = 0;           ///< that the step has left out (sleep.hpp)
+  int wokenTrees = 0;            ///< by this step
   int stabilisedBodies = 0;      ///< bodies that swing too fast, held by rows (6.9)
   int substeps = 0;              ///< of followed trees, over all of them; parts of a divided step
   int parts = 1;                 ///< into which the leapfrog has divided the step (6.3)
@@ -86,6 +88,7 @@ struct StepStats {
 };
 
 struct IntegratorStages;
+class Sleepers;
 struct SubstepWorkspace;
 struct VelocityDerivative;
 
@@ -100,8 +103,9 @@ struct Data {
   Data(const Data&) = delete;
   Data& operator=(const Data&) = delete;
 
-  const Plan plan;         ///< what runs
-  TreeSelection active;    ///< of which trees the stages are: all, but in island_substeps.hpp
+  const Plan plan;  ///< what runs
+  /// Of which trees the stages are: all, but in sleep.hpp and island_substeps.hpp.
+  TreeSelection active;
   InverseWeights weights;  ///< constants
   Kinematics kinematics;
   MassMatrix inertia;
@@ -113,6 +117,7 @@ struct Data {
   BodySolution bodies;      ///< of the same solve, on bodies
   VectorX midstepVelocity;  ///< (nv) of mid-step, predicted: v′ of (6.2), of the leapfrog
   VectorX acceleration;     ///< discrete, (v⁺ − v)/h (nv)
+  std::unique_ptr<Sleepers> sleepers;              ///< with Options::sleep, else null
   std::unique_ptr<SubstepWorkspace> parts;         ///< of the leapfrog, else null
   std::unique_ptr<IntegratorStages> stages;        ///< null where the step is one solve
   std::unique_ptr<VelocityDerivative> derivative;  ///< of the implicit integrators, else null

@@ -26,7 +26,7 @@ struct SmoothStart {
   /// data.forward.start ← M⁻¹(τ − c).
   bool find(const Model& model, Data& data) {
     if (known) return true;
-    data.forward.start = data.forces.net;
+    copy(data.active.dofs(), data.forces.net, data.forward.start);
     return known = solveMass(model, data, nullptr, data.forward.start);
   }
 };
@@ -98,11 +98,17 @@ bool isKnown(KnownTrees known, const Model& model, const Data& data, int island)
   return !known.empty() && known[idx(model.bodies[idx(body)].tree)] != 0;
 }
 
+/// Of all trees of the solve.
+bool areKnown(KnownTrees known, const Data& data) {
+  if (known.empty() || (data.parts && data.parts->leavesAny())) return false;
+  return std::ranges::all_of(data.active.trees(), [&](int t) { return known[idx(t)] != 0; });
+}
+
 void solveRows(const Model& model, const VectorX* guess, KnownTrees known, Data& data) {
   ForwardSolution& s = data.forward;
   const int selected = data.constraints.selected();
-  data.bodies.divide(model, data.inertia, data.constraints);
-  if (guess && !guess->allFinite()) guess = nullptr;
+  data.bodies.divide(model, data.inertia, data.active, data.constraints);
+  if (guess && !allFinite(data.active.dofs(), *guess)) guess = nullptr;
   SmoothStart smooth;
   for (int i = 0; i < data.bodies.islands.size() && !isRefused(s.report.status); ++i) {
     const Segments dofs = data.bodies.islands.dofs(i);
@@ -122,11 +128,11 @@ void solveRows(const Model& model, const VectorX* guess, KnownTrees known, Data&
 /// Whether M̂ a = τ − c as closely as a search would have it.
 bool solves(const Model& model, const VectorX& a, Data& data) {
   ForwardSolution& s = data.forward;
-  data.inertia.hat().multiply(a, s.gradient);
-  s.gradient -= data.forces.net;
-  const Segment all{0, model.nv};
-  setForceScale({&all, 1}, data);
-  return largest({&all, 1}, s.gradient, s.scale) <= model.options.tolerance;
+  const Segments dofs = data.active.dofs();
+  data.inertia.hat().multiply(dofs, a, s.gradient);
+  for (const Segment of : dofs) part(s.gradient, of) -= part(data.forces.net, of);
+  setForceScale(dofs, data);
+  return largest(dofs, s.gradient, s.scale) <= model.options.tolerance;
 }
 
 /// Without rows the minimiser is M⁻¹(τ − c): no iteration, no residual. Where M is a matrix, goals
@@ -135,19 +141,19 @@ void solveSmooth(const Model& model, const VectorX* guess, KnownTrees known, Dat
   ForwardSolution& s = data.forward;
   const Segments active = data.active.dofs();
   if (guess && data.inertia.whole && solves(model, *guess, data)) {
-    s.a = *guess;
+    copy(active, *guess, s.a);
     return;
   }
-  copyOnly(active, data.forces.net, s.a);
+  copy(active, data.forces.net, s.a);
   const bool solved = solveMass(model, data, nullptr, s.a);
-  for (std::size_t t = 0; t < model.trees.size(); ++t) {
-    const Segment dofs{model.trees[t].firstDof, model.trees[t].dofEnd};
-    if (guess && !known.empty() && known[t])
+  for (const int t : data.active.trees()) {
+    const Segment dofs{model.trees[idx(t)].firstDof, model.trees[idx(t)].dofEnd};
+    if (guess && !known.empty() && known[idx(t)])
       s.report.add(take({&dofs, 1}, *guess, data));
     else
       part(s.gradient, dofs).setZero();
   }
-  if (solved && s.a.allFinite()) return;
+  if (solved && allFinite(active, s.a)) return;
   s.report.status = SolveStatus::notFinite;
   if (solved) data.stats.badDof = firstNotFinite(s.a);
 }
@@ -156,7 +162,8 @@ void solveSmooth(const Model& model, const VectorX* guess, KnownTrees known, Dat
 bool begin(const Model& model, const VectorX* guess, Data& data) {
   ForwardSolution& s = data.forward;
   s.report = {};
-  data.stats.invalidWarmStarts += guess && !guess->allFinite();
+  const Segments active = data.active.dofs();
+  data.stats.invalidWarmStarts += guess && guess->size() == model.nv && !allFinite(active, *guess);
   if (model.nv == 0) return false;
   if (guess && guess->size() != model.nv) {
     data.stats.refuse(model, {BadInputKind::warmStart, -1, static_cast<double>(guess->size()),
@@ -164,7 +171,7 @@ bool begin(const Model& model, const VectorX* guess, Data& data) {
     s.report.status = data.stats.status;
     return false;
   }
-  if (data.forces.net.allFinite()) return true;
+  if (allFinite(active, data.forces.net)) return true;
   data.stats.badDof = firstNotFinite(data.forces.net);
   s.report.status = SolveStatus::notFinite;
   return false;
@@ -212,10 +219,8 @@ bool solveMass(const Model& model, Data& data, const VectorX* diagonal, VectorX&
 SolveStatus forwardDynamics(const Model& model, const VectorX* guess, Data& data,
                             KnownTrees known) noexcept {
   if (!begin(model, guess, data)) return data.forward.report.status;
-  const bool leavesAny = data.parts && data.parts->leavesAny();
-  if (guess && !leavesAny && !known.empty() && std::ranges::find(known, 0) == known.end()) {
-    const Segment all{0, model.nv};
-    data.forward.report = take({&all, 1}, *guess, data);
+  if (guess && areKnown(known, data)) {
+    data.forward.report = take(data.active.dofs(), *guess, data);
   } else if (hasRows(data)) {
     solveRows(model, guess, known, data);
   } else {

@@ -7,15 +7,6 @@
 #include "softgauss/engine/step/substep_workspace.hpp"
 
 namespace softgauss {
-namespace {
-
-/// The coordinates q of these bodies.
-Segment coordinatesOf(const Model& model, Segment bodies) {
-  const Body &first = model.bodies[idx(bodies.begin)], &last = model.bodies[idx(bodies.end - 1)];
-  return {first.q, last.q + (last.joint == JointKind::floating ? 7 : 1)};
-}
-
-}  // namespace
 
 IslandSubsteps::IslandSubsteps(const Model& model)
     : data(model, Data::Evaluation{}), state(model), islands_(model) {
@@ -28,12 +19,16 @@ void IslandSubsteps::reserve(std::size_t contacts) {
   pairs_.reserve(2 * contacts + data.bodies.pairs.size());
 }
 
+void appendTouching(const Model& model, const Data& data, std::vector<std::pair<int, int>>& pairs) {
+  for (const Contact& c : data.contacts.contacts)
+    if (c.bodyA != 0 && c.bodyB != 0) pairs.emplace_back(c.bodyA, c.bodyB);
+  data.constraints.appendPairs(pairs);
+  data.constraints.appendCoupledBodies(model, pairs);
+}
+
 void IslandSubsteps::findPairs(const Model& model, bool controlled, const Data& whole) {
   pairs_.clear();
-  for (const Contact& c : whole.contacts.contacts)
-    if (c.bodyA != 0 && c.bodyB != 0) pairs_.emplace_back(c.bodyA, c.bodyB);
-  whole.constraints.appendPairs(pairs_);
-  whole.constraints.appendCoupledBodies(model, pairs_);
+  appendTouching(model, whole, pairs_);
   int first = 0;
   for (const Tree& tree : model.trees)
     if (controlled && tree.actuated) {
@@ -45,27 +40,30 @@ void IslandSubsteps::findPairs(const Model& model, bool controlled, const Data& 
 bool IslandSubsteps::divide(const Model& model, bool controlled, const Data& whole) {
   any_ = false;
   findPairs(model, controlled, whole);
-  islands_.find(model, pairs_);
+  islands_.find(model, pairs_, whole.active.still());
   if (islands_.size() == 1) return false;
   parts_.assign(idx(islands_.size()), 1);
   const std::vector<int>& needed = whole.parts->substepSelection.partsOf;
   const auto partsOf = [&](const Tree& tree) -> int& {
     return parts_[idx(islands_.ofBody()[idx(tree.rootBody)])];
   };
-  for (std::size_t t = 0; t < model.trees.size(); ++t)
-    partsOf(model.trees[t]) = std::max(partsOf(model.trees[t]), needed[t]);
-  for (const Tree& tree : model.trees)
-    if (controlled && tree.actuated && partsOf(tree) > 1) return false;
+  for (const int t : whole.active.trees()) {
+    int& parts = partsOf(model.trees[idx(t)]);
+    parts = std::max(parts, needed[idx(t)]);
+  }
+  for (const int t : whole.active.trees())
+    if (controlled && model.trees[idx(t)].actuated && partsOf(model.trees[idx(t)]) > 1)
+      return false;
   contacts_.clear();
   return any_ = true;
 }
 
-void IslandSubsteps::begin(const Model& model, int island, const State& before, const VectorX& a,
-                           const VectorX& connectionForces) {
+void IslandSubsteps::begin(const Model& model, int island, const Data& whole, const State& before,
+                           const VectorX& a, const VectorX& connectionForces) {
+  data.active.setStill(whole.active.still());
   data.active.select(model, [&](int tree) {
     return islands_.ofBody()[idx(model.trees[idx(tree)].rootBody)] == island;
   });
-  data.forces.bias.setZero();  // of trees that the last island had
   data.parts->before = before;
   data.parts->predicted = a;
   data.parts->predictedForces = connectionForces;
@@ -73,10 +71,7 @@ void IslandSubsteps::begin(const Model& model, int island, const State& before, 
 }
 
 void IslandSubsteps::finish(const Model& model, int island, Data& whole, State& to) {
-  for (const Segment bodies : islands_.bodies(island)) {
-    const Segment coordinates = coordinatesOf(model, bodies);
-    part(to.q, coordinates) = part(state.q, coordinates);
-  }
+  copy(data.active.coordinates(), state.q, to.q);
   const Segments dofs = islands_.dofs(island);
   copy(dofs, state.v, to.v);
   copy(dofs, state.a, to.a);

@@ -7,7 +7,7 @@
 /// rows hold together, or contacts that may begin to within the step. Islands that need one part
 /// take the step whole; each of the others takes it in its parts, one after the other, in Data of
 /// which the stages are of its trees alone. What one does costs the others nothing, and what it
-/// comes to depends on them in no bit.
+/// comes to depends on them in no bit. Trees that are asleep are of none.
 ///
 /// A control finds one torque for all trees that it acts on: these count as one island, and where
 /// that needs parts, all the scene takes these.
@@ -18,6 +18,10 @@
 #include "softgauss/engine/step/snapshot.hpp"
 
 namespace softgauss {
+
+/// Appends the pairs of bodies that move together within the step: that touch or may, or that rows
+/// couple.
+void appendTouching(const Model& model, const Data& data, std::vector<std::pair<int, int>>& pairs);
 
 class IslandSubsteps {
  public:
@@ -38,9 +42,9 @@ class IslandSubsteps {
   int islands() const { return islands_.size(); }
   int parts(int island) const { return parts_[idx(island)]; }
 
-  /// Readies `data` for the parts of an island: from `before`, with these a₋ and f₋.
-  void begin(const Model& model, int island, const State& before, const VectorX& a,
-             const VectorX& connectionForces);
+  /// Readies `data` for the parts of an island of `whole`: from `before`, with these a₋ and f₋.
+  void begin(const Model& model, int island, const Data& whole, const State& before,
+             const VectorX& a, const VectorX& connectionForces);
   /// What the island has come to becomes part of the whole.
   void finish(const Model& model, int island, Data& whole, State& state);
 

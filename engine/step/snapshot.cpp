@@ -2,6 +2,7 @@
 #include "softgauss/engine/step/snapshot.hpp"
 
 #include "softgauss/engine/dynamics/energy.hpp"
+#include "softgauss/engine/step/sleep.hpp"
 #include "softgauss/engine/step/substep_workspace.hpp"
 
 namespace softgauss {
@@ -33,9 +34,11 @@ std::optional<Vector3> centerOfPressure(const Model& model,
 void contactForces(const Data& data, std::vector<Snapshot::ContactForce>& contacts) {
   contacts.clear();
   appendContactForces(data, contacts);
-  if (!data.parts || !data.parts->leavesAny()) return;
-  const std::vector<Snapshot::ContactForce>& others = data.parts->islands->contacts();
-  contacts.insert(contacts.end(), others.begin(), others.end());
+  if (data.parts && data.parts->leavesAny()) {
+    const std::vector<Snapshot::ContactForce>& others = data.parts->islands->contacts();
+    contacts.insert(contacts.end(), others.begin(), others.end());
+  }
+  if (data.sleepers) data.sleepers->appendContacts(contacts);
 }
 
 void appendContactForces(const Data& data, std::vector<Snapshot::ContactForce>& contacts) {
@@ -64,6 +67,7 @@ void addServoForces(const Data& data, VectorX& tau) {
 void appliedForces(const Data& data, VectorX& tau) {
   tau = data.forces.tau;
   addServoForces(data, tau);
+  if (data.sleepers) data.sleepers->copyApplied(tau);
 }
 
 void takeSnapshot(const Model& model, const Kinematics& k,

@@ -39,7 +39,7 @@ std::optional<Vector3> centerOfPressure(const Model& model,
                                         const std::vector<Snapshot::ContactForce>& contacts);
 
 /// The contacts of the last solve, with their forces; those of islands that took parts of their own
-/// (island_substeps.hpp) after the others.
+/// (island_substeps.hpp) after the others, then those of who sleeps (sleep.hpp).
 void contactForces(const Data& data, std::vector<Snapshot::ContactForce>& contacts);
 /// Appends those of the solve of `data` itself.
 void appendContactForces(const Data& data, std::vector<Snapshot::ContactForce>& contacts);

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "softgauss/engine/core/segment_vectors.hpp"
 #include "softgauss/engine/step/forward.hpp"
 #include "softgauss/engine/step/integrators/implicit_forces.hpp"
 #include "softgauss/engine/step/integrators/implicit_midpoint.hpp"
@@ -14,6 +15,8 @@
 #include "softgauss/engine/step/integrators/step_doubling.hpp"
 #include "softgauss/engine/step/integrators/tunnelling.hpp"
 #include "softgauss/engine/step/integrators/velocity_derivative.hpp"
+#include "softgauss/engine/step/realised.hpp"
+#include "softgauss/engine/step/sleep.hpp"
 #include "softgauss/engine/step/substep_workspace.hpp"
 
 namespace softgauss {
@@ -48,14 +51,15 @@ struct Given {
   const Input& input;
   ContactSource* contacts;
   StepControl* control;
+  Sleepers* sleepers = nullptr;
 };
 
 /// Smooth forces and rows, of the velocity of turning that the state predicts.
 void computeForces(const Model& model, const Input& input, const State& state, Data& data,
                    Clock::time_point& clock) {
   if (data.plan.drifts) predictMidstepVelocity(model, state, data);
-  computeSmoothForces(model, data.plan, state, input, data.kinematics, data.inertia,
-                      data.active.bodies(), data.forces);
+  computeSmoothForces(model, data.plan, state, input, data.kinematics, data.inertia, data.active,
+                      data.forces);
   if (data.plan.inSolve) addImplicitForces(model, state, data);
   data.stats.times.kinematics += lap(clock);
 }
@@ -87,20 +91,20 @@ void assembleRows(const Model& model, const Input& input, const State& state, Da
 
 /// computeStages(); `clock` is when the last stage ended. A clock is read only after what has run.
 SolveStatus computeStages(const Model& model, const Input& input, const State& state, Data& data,
-                          ContactSource* contacts, Clock::time_point& clock, bool posed = false,
+                          ContactSource* contacts, Clock::time_point& clock,
                           Columns columns = Columns::now) noexcept {
   SOFTGAUSS_ASSERT(data.plan.fits(model));
   data.stats = {};
   data.bodies.tied.clear();
   if (data.parts) data.parts->begin();
-  if (!isFinite(input, state)) {
+  if (!isFinite(input, state, data.active)) {
     data.stats.status = SolveStatus::notFinite;
     data.stats.badDof = firstBadDof(model, input, state);
     return data.stats.status;
   }
   clock = Clock::now();
   const TreeSelection& active = data.active;
-  if (!posed) computeKinematics(model, state, active.bodies(), data.kinematics);
+  computeKinematics(model, state, active.bodies(), data.kinematics);
   computeMassMatrix(model, data.kinematics, active.bodies(), active.dofs(), data.inertia,
                     columns != Columns::never);
   if (data.plan.inSolve) addImplicitInertia(model, data);
@@ -171,30 +175,6 @@ SolveStatus integrate(const Model& model, const Given& given, const State& start
   return SolveStatus::notFinite;
 }
 
-/// The largest |moved − a| over max(|a|∞, 1), of accelerations, a of the solve, or of `aim` where a
-/// control has found one. Trees that take parts of their own do not count, nor those that are
-/// followed by themselves, where `follows`, but for those that a control acts on.
-double deviation(const Model& model, const Data& data, bool follows, const StepControl* control,
-                 const VectorX& moved, const VectorX* aim) {
-  const bool acts = control && control->acts();
-  const std::span<const std::uint8_t> of =
-      control ? control->controlled() : std::span<const std::uint8_t>{};
-  double worst = 0.0, most = 1.0;
-  for (std::size_t t = 0; t < model.trees.size(); ++t) {
-    const Tree& tree = model.trees[t];
-    if (!data.active.has(static_cast<int>(t))) continue;
-    if (data.parts && data.parts->leaves(tree.rootBody)) continue;
-    const VectorX& a = aim && (of.empty() || of[t] != 0) ? *aim : data.forward.a;
-    const bool counts =
-        !follows || !data.parts->substepSelection.free[t] || (acts && tree.actuated);
-    for (int i = tree.firstDof; i < tree.dofEnd; ++i) {
-      most = std::max(most, std::abs(a[i]));
-      if (counts) worst = std::max(worst, std::abs(moved[i] - a[i]));
-    }
-  }
-  return worst / most;
-}
-
 /// How often each mechanism has acted in what is now a step, or a part of one.
 void countMechanisms(const Model& model, const State& start, Data& data) {
   MechanismCounts& acted = data.stats.acted;
@@ -204,7 +184,8 @@ void countMechanisms(const Model& model, const State& start, Data& data) {
   acted[Mechanism::geometricStiffness] = data.stats.stabilisedBodies;
 }
 
-enum class Tried : std::uint8_t { taken, refused, unresolved };
+/// `woken`: what is awake touches who sleeps; the step begins anew with them.
+enum class Tried : std::uint8_t { taken, refused, unresolved, woken };
 
 /// Whether the islands that need parts are left to them, in a step that is not a part itself.
 bool leavesIslands(const Model& model, const Given& given, const State& state, Data& data) {
@@ -212,23 +193,24 @@ bool leavesIslands(const Model& model, const Given& given, const State& state, D
   const bool isPart = model.options.outerTimestep != 0.0;
   if (isPart || !p.islands || !p.islands->divide(model, given.control != nullptr, data))
     return false;
-  p.predicted = state.a;
+  copy(data.active.dofs(), state.a, p.predicted);
   p.predictedForces = state.connectionForces;
   return true;
 }
 
 /// A step, or a part of one, from `start`, which is the state: drift, stages, (8), (13), (23).
 /// Where motion needs more than `most` parts of it (6.3) it ends before the solve.
-Tried tryStep(const Model& model, const Given& given, const State& start, int most, bool posed,
-              State& state, Data& data) noexcept {
+Tried tryStep(const Model& model, const Given& given, const State& start, int most, State& state,
+              Data& data) noexcept {
   Clock::time_point clock;
   StepStats& stats = data.stats;
   const bool drifts = data.plan.drifts, resolves = drifts && !model.options.stepDoubling;
+  const Segments dofs = data.active.dofs();
   if (drifts) driftBefore(model, data, state);
   const Columns columns = columnsOf(model, given.control, data);
-  if (isRefused(
-          computeStages(model, given.input, state, data, given.contacts, clock, posed, columns)))
+  if (isRefused(computeStages(model, given.input, state, data, given.contacts, clock, columns)))
     return Tried::refused;
+  if (given.sleepers && given.sleepers->touches(model, data.contacts)) return Tried::woken;
   const VectorX* aim = nullptr;
   for (bool again = false;; again = true) {
     if (resolves) {
@@ -236,13 +218,17 @@ Tried tryStep(const Model& model, const Given& given, const State& start, int mo
       if (data.parts->substepSelection.parts > most && !leavesIslands(model, given, state, data))
         return Tried::unresolved;
     }
-    if (isRefused(solve(model, given, state, data, aim, clock))) return Tried::refused;
+    if (isRefused(solve(model, given, state, data, aim, clock))) {
+      const bool wakes =
+          given.sleepers && given.control && given.sleepers->mark(given.control->wanted());
+      return wakes ? Tried::woken : Tried::refused;
+    }
     if (!drifts || again || !predictionFailed(model, data, state)) break;
     ++stats.repeats;
     data.parts->repeats = true;
     stats.residual = 0.0;  // what was predicted by it does not move
     stats.roundingLimitedSolves = 0;
-    state.warmstart.a = data.forward.a;  // nearer than the last step's
+    copy(dofs, data.forward.a, state.warmstart.a);  // nearer than the last step's
     state.warmstart.valid = true;
     computeForces(model, given.input, state, data, clock);
     assembleRows(model, given.input, state, data, clock, columns);
@@ -252,7 +238,7 @@ Tried tryStep(const Model& model, const Given& given, const State& start, int mo
     SubstepWorkspace& p = *data.parts;
     const bool finite =
         p.treeSubstepping.integrate(model, p.substepSelection, start, data, state) &&
-        state.v.allFinite() && state.q.allFinite();
+        allFinite(dofs, state.v) && allFinite(data.active.coordinates(), state.q);
     if (!finite) moved = SolveStatus::notFinite;
   }
   if (isRefused(moved)) {
@@ -260,14 +246,15 @@ Tried tryStep(const Model& model, const Given& given, const State& start, int mo
     stats.badDof = worstDof(model, data, state);
     return Tried::refused;
   }
-  if (drifts) data.parts->moved = (state.v - start.v) / model.options.timestep;
+  for (const Segment s : drifts ? dofs : Segments{})
+    part(data.parts->moved, s) = (part(state.v, s) - part(start.v, s)) / model.options.timestep;
   stats.realised = deviation(model, data, resolves, given.control,
                              drifts ? data.parts->moved : data.acceleration, aim);
   countMechanisms(model, start, data);
   stats.unconvergedSolves += stats.status != SolveStatus::converged;
-  state.warmstart.a = data.forward.a;
+  copy(dofs, data.forward.a, state.warmstart.a);
   state.warmstart.valid = true;
-  if (given.control) given.control->keep(state.warmstart);
+  if (given.control) given.control->keep(state.warmstart, data.active);
   stats.times.integrate = lap(clock);
   return Tried::taken;
 }
@@ -281,18 +268,18 @@ Tried stepInParts(const Model& model, const Given& given, int parts, State& stat
   p.model.options.timestep = model.options.timestep / parts;
   p.model.options.outerTimestep = model.options.timestep;
   const int most = parts < SubstepSelection::kMaxDivisions ? 2 : SubstepSelection::kMaxDivisions;
-  p.start = p.before;
-  p.start.a = p.predicted;
+  copyState(data.active, p.before, p.start);
+  copy(data.active.dofs(), p.predicted, p.start.a);
   p.start.connectionForces = p.predictedForces;
   p.start.hasAcceleration = true;
   StepStats total;
   Tried tried = Tried::taken;
   for (int k = 0; k < parts && tried == Tried::taken; ++k) {
-    state = p.start;
+    copyState(data.active, p.start, state);
     p.model.options.nextTimestep = k + 1 == parts ? model.options.timestep : 0.0;
-    tried = tryStep(p.model, given, p.start, most, false, state, data);
+    tried = tryStep(p.model, given, p.start, most, state, data);
     total.add(data.stats);
-    p.start = state;
+    copyState(data.active, state, p.start);
   }
   total.contacts = data.stats.contacts;
   total.rows = data.stats.rows;
@@ -300,7 +287,8 @@ Tried stepInParts(const Model& model, const Given& given, int parts, State& stat
   data.stats.parts = parts;
   data.stats.acted[Mechanism::substepping] = parts;
   data.stats.substeps += parts;
-  data.acceleration = (state.v - p.before.v) / model.options.timestep;
+  for (const Segment s : data.active.dofs())
+    part(data.acceleration, s) = (part(state.v, s) - part(p.before.v, s)) / model.options.timestep;
   state.time = p.before.time + model.options.timestep;
   return tried;
 }
@@ -319,10 +307,10 @@ Tried stepInParts(const Model& model, const Given& given, State& state, Data& da
 Tried stepIslands(const Model& model, const Given& given, State& state, Data& data) noexcept {
   SubstepWorkspace& p = *data.parts;
   IslandSubsteps& islands = *p.islands;
-  const Given alone{given.input, given.contacts, nullptr};
+  const Given alone{given.input, given.contacts, nullptr, given.sleepers};
   for (int island = 0; island < islands.islands(); ++island) {
     if (islands.parts(island) == 1) continue;
-    islands.begin(model, island, p.before, p.predicted, p.predictedForces);
+    islands.begin(model, island, data, p.before, p.predicted, p.predictedForces);
     const Tried tried = stepInParts(model, alone, islands.state, islands.data);
     islands.data.stats.contacts = islands.data.stats.rows = 0;  // the whole step's count
     data.stats.add(islands.data.stats);
@@ -332,52 +320,70 @@ Tried stepIslands(const Model& model, const Given& given, State& state, Data& da
   return Tried::taken;
 }
 
-}  // namespace
-
-SolveStatus computeStages(const Model& model, const Input& input, const State& state, Data& data,
-                          ContactSource* contacts) noexcept {
-  if (data.stats.refuse(model, findBadInput(model, input, state))) return data.stats.status;
-  Clock::time_point clock;
-  return computeStages(model, input, state, data, contacts, clock);
-}
-
-SolveStatus computeBodyStages(const Model& model, const Input& input, const State& state,
-                              Data& data, ContactSource* contacts) noexcept {
-  if (data.stats.refuse(model, findBadInput(model, input, state))) return data.stats.status;
-  Clock::time_point clock;
-  return computeStages(model, input, state, data, contacts, clock, false,
-                       columnsOf(model, nullptr, data));
-}
-
-void poseForStep(const Model& model, const State& state, Data& data) {
-  if (!data.plan.drifts) return computeKinematics(model, state, data.kinematics);
-  State& at = data.parts->start;
-  at = state;
-  driftBefore(model, data, at);
-  computeKinematics(model, at, data.kinematics);
-}
-
-SolveStatus step(const Model& model, const Input& input, State& state, Data& data,
-                 ContactSource* contacts, StepControl* control, bool posed) noexcept {
-  if (data.stats.refuse(model, findBadInput(model, input, state))) return data.stats.status;
+/// A step of the trees that are awake. Where it is not taken, the state has its start.
+Tried takeStep(const Model& model, const Given& given, State& state, Data& data) noexcept {
   constexpr int kAny = SubstepSelection::kMaxDivisions;
-  const Given given{input, contacts, control};
-  if (!data.plan.drifts) {
-    tryStep(model, given, state, kAny, posed, state, data);
-    return data.stats.status;
-  }
+  for (VectorX* x : {&state.a, &state.warmstart.a})  // of a state that somebody has put together
+    if (x->size() != model.nv) x->setZero(model.nv);
+  if (!data.plan.drifts) return tryStep(model, given, state, kAny, state, data);
   SubstepWorkspace& p = *data.parts;
-  p.before = state;
+  copyState(data.active, state, p.before);
   const int most = model.options.stepDoubling ? kAny : 1;
-  Tried tried = tryStep(model, given, p.before, most, posed, state, data);
+  Tried tried = tryStep(model, given, p.before, most, state, data);
   if (tried == Tried::unresolved) {
-    p.predicted = state.a;
+    copy(data.active.dofs(), state.a, p.predicted);
     p.predictedForces = state.connectionForces;
     tried = stepInParts(model, given, state, data);
   } else if (tried == Tried::taken && p.leavesAny()) {
     tried = stepIslands(model, given, state, data);
   }
-  if (tried == Tried::refused) state = p.before;
+  if (tried != Tried::taken) copyState(data.active, p.before, state);
+  return tried;
+}
+
+/// Stages of all trees, whoever sleeps. False where they are refused.
+bool beginStages(const Model& model, const Input& input, const State& state, Data& data) noexcept {
+  if (data.sleepers) data.sleepers->forget(model, data);
+  return !data.stats.refuse(model, findBadInput(model, input, state));
+}
+
+}  // namespace
+
+SolveStatus computeStages(const Model& model, const Input& input, const State& state, Data& data,
+                          ContactSource* contacts) noexcept {
+  Clock::time_point clock;
+  if (!beginStages(model, input, state, data)) return data.stats.status;
+  return computeStages(model, input, state, data, contacts, clock);
+}
+
+SolveStatus computeBodyStages(const Model& model, const Input& input, const State& state,
+                              Data& data, ContactSource* contacts) noexcept {
+  Clock::time_point clock;
+  if (!beginStages(model, input, state, data)) return data.stats.status;
+  return computeStages(model, input, state, data, contacts, clock, columnsOf(model, nullptr, data));
+}
+
+SolveStatus step(const Model& model, const Input& input, State& state, Data& data,
+                 ContactSource* contacts, StepControl* control) noexcept {
+  Sleepers* const sleepers = data.sleepers.get();
+  if (sleepers) sleepers->select(model, state, data);
+  const auto refuse = [&](const BadInput& bad) { return data.stats.refuse(model, bad); };
+  if (refuse(findBadInput(model, input, state, data.active.bodies()))) return data.stats.status;
+  if (!sleepers) {
+    takeStep(model, {input, contacts, control}, state, data);
+    return data.stats.status;
+  }
+  bool refused = refuse(sleepers->begin(model, input, control, state, data, contacts));
+  Tried tried = Tried::woken;
+  while (!refused && tried == Tried::woken) {
+    const bool chooses = !data.active.none();
+    tried = takeStep(model, {input, contacts, chooses ? control : nullptr, sleepers}, state, data);
+    if (tried == Tried::woken) refused = refuse(sleepers->wakeMarked(model, state, data, contacts));
+  }
+  if (tried == Tried::taken)
+    sleepers->finish(model, input, control, state, data);
+  else
+    sleepers->undo(state);
   return data.stats.status;
 }
 

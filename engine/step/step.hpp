@@ -19,17 +19,12 @@ SolveStatus computeBodyStages(const Model& model, const Input& input, const Stat
 
 /// One step: the stages; `control`, where there is one, finds the applied force (8); forward
 /// dynamics the acceleration (13); the integrator moves the state on by options.timestep (23).
-/// `contacts` may be null: nothing collides. `input` acts besides the control. `posed`:
-/// data.kinematics is what poseForStep() has made of this state.
+/// `contacts` may be null: nothing collides. `input` acts besides the control. With Options::sleep
+/// the stages are of the trees that are awake; those of computeStages() are of all.
 /// On SolveStatus::notFinite, integratorDiverged and badInput (isRefused()) the state is left as it
 /// was; data.stats tells the dof, or what does not fit the model. Other statuses advance the state;
 /// data.stats.residual tells how accurate the solve was.
 SolveStatus step(const Model& model, const Input& input, State& state, Data& data,
-                 ContactSource* contacts, StepControl* control = nullptr,
-                 bool posed = false) noexcept;
-
-/// data.kinematics ← where the next step looks for contacts: at the state, or in mid-step where the
-/// integrator drifts there first.
-void poseForStep(const Model& model, const State& state, Data& data);
+                 ContactSource* contacts, StepControl* control = nullptr) noexcept;
 
 }  // namespace softgauss

@@ -35,8 +35,20 @@ class StepControl {
   /// Where that is the solution of forward dynamics, which takes it.
   virtual KnownTrees known() const noexcept { return {}; }
 
-  /// What apply() has found has been done: keeps where the next solve may start.
-  virtual void keep(WarmStart& warmstart) noexcept = 0;
+  /// Whether a tree may fall asleep (sleep.hpp) after a step that has ended at this time [s], as
+  /// far as the control is concerned.
+  virtual bool letsSleep(const Model&, int tree, double) const noexcept {
+    return controlled().empty() ? !acts() : controlled()[idx(tree)] == 0;
+  }
+  /// Where apply() has returned null: (trees) 1: it sleeps, and its acceleration is to be chosen
+  /// too; the step then begins anew with those awake. Empty: none.
+  virtual std::span<const std::uint8_t> wanted() const noexcept { return {}; }
+  /// Marks (trees, 1) where what the control wants has begun, ended or changed since the last step:
+  /// what sleeps there wakes. Whether there is such a tree.
+  virtual bool markChanged(const Model&, double, std::span<std::uint8_t>) noexcept { return false; }
+
+  /// What apply() has found has been done: keeps where the next solve may start, of these trees.
+  virtual void keep(WarmStart& warmstart, const TreeSelection& trees) noexcept = 0;
 };
 
 }  // namespace softgauss

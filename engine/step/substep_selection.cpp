@@ -7,6 +7,7 @@
 
 #include "softgauss/engine/constraints/contact_rotation.hpp"
 #include "softgauss/engine/core/memory.hpp"
+#include "softgauss/engine/core/segment_vectors.hpp"
 #include "softgauss/engine/step/forward.hpp"
 #include "softgauss/engine/step/integrators/tree_rotation.hpp"
 
@@ -54,17 +55,18 @@ void SubstepSelection::findTouched(const Model& model, const Data& data) {
   for (const Contact& c : data.contacts.contacts)
     for (const int body : {c.bodyA, c.bodyB})
       if (model.bodies[body].tree >= 0) touched_[model.bodies[body].tree] = 1;
-  velocity_.setZero();
+  const Segments dofs = data.active.dofs();
+  setZero(dofs, velocity_);
   // Of joints; rows of bodies are those of connections and welds. Weights that differ, lest two
   // rows of a joint cancel.
   data.constraints.visitAllButContacts([&](const auto& c) {
     if constexpr (!std::is_base_of_v<BlockRows, std::remove_cvref_t<decltype(c)>>)
       for (int i = 0; i < c.rowCount(); ++i) c.addRow(i, 1.0 + i, velocity_);
   });
-  for (std::size_t t = 0; t < model.trees.size(); ++t) {
-    const Tree& tree = model.trees[t];
+  for (const int t : data.active.trees()) {
+    const Tree& tree = model.trees[idx(t)];
     const auto rows = velocity_.segment(tree.firstDof, tree.dofEnd - tree.firstDof);
-    if ((rows.array() != 0.0).any()) touched_[t] = 1;
+    if ((rows.array() != 0.0).any()) touched_[idx(t)] = 1;
   }
 }
 
@@ -89,9 +91,10 @@ void SubstepSelection::findCoriolisChanges(const Model& model, const State& stat
   computeBiasAt(model, data.kinematics, data.inertia, state.v, data.active.bodies(),
                 data.forces.work, bias_);
   ++data.forces.calls.coriolis;
-  change_ = data.forces.bias - bias_;
+  for (const Segment s : data.active.dofs())
+    part(change_, s) = part(data.forces.bias, s) - part(bias_, s);
   if (!solveMass(model, data, nullptr, change_)) return;  // the solve will say so
-  for (int t = 0; t < static_cast<int>(model.trees.size()); ++t)
+  for (const int t : data.active.trees())
     if (turns_[t]) coriolisChange[t] = coriolisChangeBy(model, t, state, state.a, data);
 }
 
@@ -102,13 +105,16 @@ bool SubstepSelection::findAlone(const Model& model, Data& data) {
                   b);
     ++data.forces.calls.coriolis;
   };
-  alone_.setZero();
+  const Segments dofs = data.active.dofs();
+  setZero(dofs, alone_);
   bias(alone_, change_);
-  alone_ = change_ - data.forces.bias;
+  for (const Segment s : dofs) part(alone_, s) = part(change_, s) - part(data.forces.bias, s);
   if (!solveMass(model, data, nullptr, alone_)) return false;
-  midstep_ = data.midstepVelocity + 0.5 * model.options.timestep * alone_;
+  for (const Segment s : dofs)
+    part(midstep_, s) =
+        part(data.midstepVelocity, s) + 0.5 * model.options.timestep * part(alone_, s);
   bias(midstep_, change_);
-  change_ -= data.forces.bias;
+  for (const Segment s : dofs) part(change_, s) -= part(data.forces.bias, s);
   return solveMass(model, data, nullptr, change_);
 }
 
@@ -126,11 +132,10 @@ bool SubstepSelection::driven(const Model& model, const Data& data, const State&
 void SubstepSelection::findFree(const Model& model, const Data& data, const State& state,
                                 bool controlled) {
   findTouched(model, data);
-  for (std::size_t t = 0; t < model.trees.size(); ++t) {
-    free[t] = data.active.has(static_cast<int>(t)) && !touched_[t] &&
-              !stopsWithin(model, model.trees[t], data) &&
+  for (const int t : data.active.trees()) {
+    free[t] = !touched_[t] && !stopsWithin(model, model.trees[t], data) &&
               !movesEvenly(model, model.trees[t], state.v) &&
-              !driven(model, data, state, static_cast<int>(t), controlled);
+              !driven(model, data, state, t, controlled);
     anyFree = anyFree || free[t];
   }
 }
@@ -170,11 +175,10 @@ void SubstepSelection::findRates(const Model& model, const State& state, Data& d
   if (state.hasAcceleration) findCoriolisChanges(model, state, data);
   findContactRates(model, data);
   findTieRates(model, data, state);
-  const auto rateOf = [&](std::size_t t) { return 4.0 * std::sqrt(2.0 * coriolisChange[t]) / h; };
+  const auto rateOf = [&](int t) { return 4.0 * std::sqrt(2.0 * coriolisChange[t]) / h; };
   bool alone = false;
-  for (std::size_t t = 0; t < model.trees.size(); ++t) {
+  for (const int t : data.active.trees()) {
     if (!turns_[t] || !(coriolisChange[t] > kLeast)) continue;
-    const int tree = static_cast<int>(t);
     const bool tooMany = !(h * rateOf(t) <= kMaxDivisions * angle);
     if (tooMany && model.options.uses(Mechanism::treeSubstepping) && !touched_[t] &&
         !stopsWithin(model, model.trees[t], data)) {
@@ -185,7 +189,7 @@ void SubstepSelection::findRates(const Model& model, const State& state, Data& d
       if (!alone) alone = findAlone(model, data);
       if (alone)
         coriolisChange[t] =
-            std::min(coriolisChange[t], coriolisChangeBy(model, tree, state, state.a, data));
+            std::min(coriolisChange[t], coriolisChangeBy(model, t, state, state.a, data));
     }
     rate_[t] = std::max(rate_[t], rateOf(t));
   }
@@ -194,9 +198,9 @@ void SubstepSelection::findRates(const Model& model, const State& state, Data& d
 /// turns_; false where no tree does.
 bool SubstepSelection::findTurning(const Model& model, const Data& data, const State& state) {
   bool any = false;
-  for (std::size_t t = 0; t < model.trees.size(); ++t) {
-    turns_[t] = data.active.has(static_cast<int>(t)) && !free[t] &&
-                mayRotateFar(model, model.trees[t], data, state.v, state.a);
+  std::fill(turns_.begin(), turns_.end(), 0);
+  for (const int t : data.active.trees()) {
+    turns_[t] = !free[t] && mayRotateFar(model, model.trees[t], data, state.v, state.a);
     any = any || turns_[t];
   }
   return any;
@@ -214,7 +218,7 @@ void SubstepSelection::find(const Model& model, const State& state, bool control
   std::fill(rate_.begin(), rate_.end(), 0.0);
   findRates(model, state, data);
   if (!model.options.uses(Mechanism::substepping)) return;
-  for (std::size_t t = 0; t < model.trees.size(); ++t) {
+  for (const int t : data.active.trees()) {
     if (free[t]) continue;
     const double needed =
         std::ceil(model.options.timestep * rate_[t] / model.options.substepAngle - 1e-9);

@@ -27,15 +27,6 @@ double pendulumRate(const GoalContext& context, double height) {
   return pull > 0.0 && height > 1e-3 ? std::sqrt(pull / height) : 0.0;
 }
 
-/// A goal of a robot within an island: null where the robot is not there.
-template <class RobotGoal>
-std::unique_ptr<Goal> ofRobotWithin(const RobotGoal& goal, const SubModel& island) {
-  for (const Tree& tree : island.model.trees)
-    if (island.model.bodies[tree.rootBody].robot == goal.robot)
-      return std::make_unique<RobotGoal>(goal);
-  return nullptr;
-}
-
 }  // namespace
 
 int drivenRobot(const Model& model) {
@@ -99,18 +90,6 @@ void CapturePoint::addCost(const GoalContext& context, GoalCost& cost) const {
     const double v = c.v_WC[i], away = c.p_WC[i] + v / omega - to.p[i];
     addAxis(c, i, weight, omega * (to.v[i] - rate * away - v) - 0.5 * v * c.v_WC.z() / z, cost);
   }
-}
-
-std::unique_ptr<Goal> CenterOfMass::within(const Model&, const SubModel& island) const {
-  return ofRobotWithin(*this, island);
-}
-
-std::unique_ptr<Goal> MomentumGoal::within(const Model&, const SubModel& island) const {
-  return ofRobotWithin(*this, island);
-}
-
-std::unique_ptr<Goal> CapturePoint::within(const Model&, const SubModel& island) const {
-  return ofRobotWithin(*this, island);
 }
 
 }  // namespace softgauss::gdd

@@ -26,6 +26,10 @@ namespace softgauss::gdd {
 
 /// The robot (Body::robot) of the first actuated dof. Throws ModelError when nothing is actuated.
 int drivenRobot(const Model& model);
+/// Whether a tree is of a robot.
+inline bool isOfRobot(const Model& model, int tree, int robot) {
+  return model.bodies[idx(model.trees[idx(tree)].rootBody)].robot == robot;
+}
 
 /// The target x* is a PlaceTarget.
 class CenterOfMass final : public Goal, public PlaceTarget {
@@ -43,7 +47,9 @@ class CenterOfMass final : public Goal, public PlaceTarget {
   void weighBeside(double posture) override { defaultWeight.setBeside(posture, weight); }
   bool steadyAt(double time) const override { return !targetMovesAt(time); }
   void addCost(const GoalContext& context, GoalCost& cost) const override;
-  std::unique_ptr<Goal> within(const Model& whole, const SubModel& island) const override;
+  bool concerns(const Model& model, int tree) const override {
+    return isOfRobot(model, tree, robot);
+  }
   void errors(const GoalContext& context, const ContactForces& contacts,
               std::vector<GoalError>& out) const override;
 };
@@ -61,7 +67,9 @@ class MomentumGoal final : public Goal {
 
   std::string name() const override { return "momentum"; }
   void addCost(const GoalContext& context, GoalCost& cost) const override;
-  std::unique_ptr<Goal> within(const Model& whole, const SubModel& island) const override;
+  bool concerns(const Model& model, int tree) const override {
+    return isOfRobot(model, tree, robot);
+  }
   void errors(const GoalContext& context, const ContactForces& contacts,
               std::vector<GoalError>& out) const override;
 };
@@ -84,7 +92,9 @@ class CapturePoint final : public Goal, public PlaceTarget {
   void weighBeside(double posture) override { defaultWeight.setBeside(posture, weight); }
   bool steadyAt(double time) const override { return !targetMovesAt(time); }
   void addCost(const GoalContext& context, GoalCost& cost) const override;
-  std::unique_ptr<Goal> within(const Model& whole, const SubModel& island) const override;
+  bool concerns(const Model& model, int tree) const override {
+    return isOfRobot(model, tree, robot);
+  }
   void errors(const GoalContext& context, const ContactForces& contacts,
               std::vector<GoalError>& out) const override;
   bool hasLaterErrors() const override { return true; }

@@ -54,12 +54,4 @@ std::optional<Vector3> CenterOfPressure::measured(const Data& data) const {
   return Vector3(p_WTarget + n_W.cross(moment) / load);
 }
 
-std::unique_ptr<Goal> CenterOfPressure::within(const Model&, const SubModel& island) const {
-  std::optional<ContactSelection> part = contactsWithin(contacts, island, name());
-  if (!part) return nullptr;
-  auto goal = std::make_unique<CenterOfPressure>(*this);
-  goal->contacts = std::move(*part);
-  return goal;
-}
-
 }  // namespace softgauss::gdd

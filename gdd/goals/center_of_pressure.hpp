@@ -32,7 +32,9 @@ class CenterOfPressure final : public Goal {
 
   std::string name() const override { return "center_of_pressure"; }
   void addCost(const GoalContext& context, GoalCost& cost) const override;
-  std::unique_ptr<Goal> within(const Model& whole, const SubModel& island) const override;
+  bool concerns(const Model& model, int tree) const override {
+    return contacts.concerns(model, tree);
+  }
   void errors(const GoalContext& context, const ContactForces& contacts,
               std::vector<GoalError>& out) const override;
   bool hasLaterErrors() const override { return true; }

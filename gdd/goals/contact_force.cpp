@@ -37,12 +37,4 @@ Vector3 ContactForce::measured(const Data& data) const {
   return sum;
 }
 
-std::unique_ptr<Goal> ContactForce::within(const Model&, const SubModel& island) const {
-  std::optional<ContactSelection> part = contactsWithin(contacts, island, name());
-  if (!part) return nullptr;
-  auto goal = std::make_unique<ContactForce>(*this);
-  goal->contacts = std::move(*part);
-  return goal;
-}
-
 }  // namespace softgauss::gdd

@@ -30,7 +30,9 @@ class ContactForce final : public Goal {
 
   std::string name() const override { return "contact_force " + link; }
   void addCost(const GoalContext& context, GoalCost& cost) const override;
-  std::unique_ptr<Goal> within(const Model& whole, const SubModel& island) const override;
+  bool concerns(const Model& model, int tree) const override {
+    return contacts.concerns(model, tree);
+  }
   void errors(const GoalContext& context, const ContactForces& contacts,
               std::vector<GoalError>& out) const override;
   /// Of the rows' present forces: after a step, those that acted in it [N].

@@ -23,23 +23,10 @@ std::vector<char> geometriesOfWorld(const Model& model) {
   return chosen;
 }
 
-std::optional<ContactSelection> contactsWithin(const ContactSelection& contacts,
-                                               const SubModel& island, const std::string& goal) {
-  ContactSelection part;
-  bool any = false;
-  for (std::size_t g = 0; g < island.geometries.size(); ++g) {
-    const auto ofWhole = static_cast<std::size_t>(island.geometries[g]);
-    part.on.push_back(contacts.on[ofWhole]);
-    part.by.push_back(contacts.by[ofWhole]);
-    if (!part.on.back()) continue;
-    any = true;
-    if (island.model.geometries[g].body == 0)
-      throw ModelError({}, "goal '" + goal + "'",
-                       "counts forces on the world, expected forces on moving bodies where islands "
-                       "are solved separately");
-  }
-  if (!any) return std::nullopt;
-  return part;
+bool ContactSelection::concerns(const Model& model, int tree) const {
+  for (std::size_t g = 0; g < model.geometries.size(); ++g)
+    if ((on[g] || by[g]) && model.bodies[idx(model.geometries[g].body)].tree == tree) return true;
+  return false;
 }
 
 }  // namespace softgauss::gdd

@@ -23,6 +23,8 @@ struct ContactSelection {
     return on[idx(geometryA)] && by[idx(geometryB)] ? -1.0 : 0.0;
   }
 
+  /// Whether a geometry of the tree is meant, on either side.
+  bool concerns(const Model& model, int tree) const;
   /// Calls f(contacts, i, contact, sign) for every contact meant: contacts of either cone, place in
   /// their contactsWithRows(), contact.
   template <class F>
@@ -35,12 +37,6 @@ struct ContactSelection {
     });
   }
 };
-
-/// The contacts meant within an island; nothing where none of them can be. Throws ModelError, in
-/// the name of `goal`, where forces on the world are meant: those of islands that are apart would
-/// be one sum.
-std::optional<ContactSelection> contactsWithin(const ContactSelection& contacts,
-                                               const SubModel& island, const std::string& goal);
 
 /// The geometries written in a link. Throws ModelError, in the name of `goal`, when the model has
 /// no such link or the link has no collision geometry.

@@ -43,23 +43,12 @@ void Effort::addCost(const GoalContext& context, GoalCost& cost) const {
   }
 }
 
-std::unique_ptr<Goal> Effort::within(const Model& whole, const SubModel& island) const {
-  auto part = std::make_unique<Effort>(*this);
-  part->dofs.clear();
-  for (const int dof : dofs)
-    if (const int here = island.dofOf(whole, dof); here >= 0) part->dofs.push_back(here);
-  part->directions.resize(island.model.nv, 0);
-  VectorX all = VectorX::Zero(whole.nv), c(island.model.nv);
-  for (Eigen::Index k = 0; k < directions.cols(); ++k) {
-    all = directions.col(k);
-    island.gather(whole, all, c);
-    if (c.isZero(0.0)) continue;
-    if ((c.array() != 0.0).count() != (all.array() != 0.0).count()) Goal::within(whole, island);
-    part->directions.conservativeResize(Eigen::NoChange, part->directions.cols() + 1);
-    part->directions.rightCols<1>() = c;
-  }
-  if (part->dofs.empty() && part->directions.cols() == 0) return nullptr;
-  return part;
+bool Effort::concerns(const Model& model, int tree) const {
+  const Tree& of = model.trees[idx(tree)];
+  const bool pays =
+      std::ranges::any_of(dofs, [&](int dof) { return dof >= of.firstDof && dof < of.dofEnd; });
+  if (pays || directions.size() == 0) return pays;
+  return (directions.middleRows(of.firstDof, of.dofEnd - of.firstDof).array() != 0.0).any();
 }
 
 }  // namespace softgauss::gdd

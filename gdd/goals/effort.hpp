@@ -36,7 +36,7 @@ class Effort final : public Goal {
 
   std::string name() const override { return "effort"; }
   void addCost(const GoalContext& context, GoalCost& cost) const override;
-  std::unique_ptr<Goal> within(const Model& whole, const SubModel& island) const override;
+  bool concerns(const Model& model, int tree) const override;
 };
 
 }  // namespace softgauss::gdd

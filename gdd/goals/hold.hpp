@@ -37,8 +37,8 @@ class Hold final : public Goal {
     return LedPlace{frame, p_FP, wholeLink, startTime, endTime};
   }
   void addCost(const GoalContext& context, GoalCost& cost) const override;
-  std::unique_ptr<Goal> within(const Model&, const SubModel& island) const override {
-    return ofLinkWithin(*this, island);
+  bool concerns(const Model& model, int tree) const override {
+    return isOfTree(model, frame, tree);
   }
   void errors(const GoalContext& context, const ContactForces& contacts,
               std::vector<GoalError>& out) const override;

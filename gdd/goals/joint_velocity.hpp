@@ -19,8 +19,8 @@ class JointVelocity final : public Goal {
 
   std::string name() const override { return "joint_velocity"; }
   void addCost(const GoalContext& context, GoalCost& cost) const override;
-  std::unique_ptr<Goal> within(const Model& whole, const SubModel& island) const override {
-    return ofJointsWithin(*this, whole, island);
+  bool concerns(const Model& model, int tree) const override {
+    return areOfTree(model, targets, tree);
   }
   void errors(const GoalContext& context, const ContactForces& contacts,
               std::vector<GoalError>& out) const override;

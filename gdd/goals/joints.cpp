@@ -18,14 +18,6 @@ JointTarget jointTarget(const Model& model, const std::string& joint, double val
   return {body, value};
 }
 
-std::unique_ptr<Goal> JointAcceleration::within(const Model& whole, const SubModel& island) const {
-  return ofJointsWithin(*this, whole, island);
-}
-
-std::unique_ptr<Goal> JointPosture::within(const Model& whole, const SubModel& island) const {
-  return ofJointsWithin(*this, whole, island);
-}
-
 void JointAcceleration::addCost(const GoalContext& context, GoalCost& cost) const {
   for (const JointTarget& target : targets) {
     const int dof = context.model.bodies[target.body].v;

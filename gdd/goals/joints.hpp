@@ -10,6 +10,7 @@
 /// when all others are locked: one w serves heavy and light joints. Joints that are not chosen are
 /// free to move; a Posture of the whole robot (9.7) counts their motion too.
 
+#include <algorithm>
 #include <vector>
 
 #include "softgauss/gdd/goal.hpp"
@@ -40,16 +41,10 @@ struct JointTarget {
 /// not one degree of freedom.
 JointTarget jointTarget(const Model& model, const std::string& joint, double value);
 
-/// A goal of joints within an island: of those that are there.
-template <class JointGoal>
-std::unique_ptr<Goal> ofJointsWithin(const JointGoal& goal, const Model& whole,
-                                     const SubModel& island) {
-  auto part = std::make_unique<JointGoal>(goal);
-  part->targets.clear();
-  for (JointTarget target : goal.targets)
-    if ((target.body = island.bodyOf(whole, target.body)) > 0) part->targets.push_back(target);
-  if (part->targets.empty()) return nullptr;
-  return part;
+/// Whether some of these joints are of a tree.
+inline bool areOfTree(const Model& model, const std::vector<JointTarget>& targets, int tree) {
+  return std::ranges::any_of(
+      targets, [&](const JointTarget& t) { return model.bodies[idx(t.body)].tree == tree; });
 }
 
 class JointAcceleration final : public Goal {
@@ -59,7 +54,9 @@ class JointAcceleration final : public Goal {
 
   std::string name() const override { return "acceleration"; }
   void addCost(const GoalContext& context, GoalCost& cost) const override;
-  std::unique_ptr<Goal> within(const Model& whole, const SubModel& island) const override;
+  bool concerns(const Model& model, int tree) const override {
+    return areOfTree(model, targets, tree);
+  }
   void errors(const GoalContext& context, const ContactForces& contacts,
               std::vector<GoalError>& out) const override;
 };
@@ -74,7 +71,9 @@ class JointPosture final : public Goal {
   std::string name() const override { return "joint_posture"; }
   bool steadyAt(double time) const override;
   void addCost(const GoalContext& context, GoalCost& cost) const override;
-  std::unique_ptr<Goal> within(const Model& whole, const SubModel& island) const override;
+  bool concerns(const Model& model, int tree) const override {
+    return areOfTree(model, targets, tree);
+  }
   void errors(const GoalContext& context, const ContactForces& contacts,
               std::vector<GoalError>& out) const override;
 };

@@ -79,7 +79,7 @@ std::vector<KeepClear::Pair> KeepClear::pairsOf(const Model& model, const std::s
     for (int b = 0; b < count; ++b) {
       const Geometry& other = model.geometries[idx(b)];
       const bool isMeant = from == "world" ? other.body == 0 : other.link == from;
-      if (isMeant && !areJoined(model, shape, other)) pairs.push_back({a, b, a, b});
+      if (isMeant && !areJoined(model, shape, other)) pairs.push_back({a, b});
     }
   }
   return pairs;
@@ -107,8 +107,7 @@ KeepClear::KeepClear(const Model& model, const std::string& linkName, const std:
 template <class Visit>
 void KeepClear::forPairs(const GoalContext& context, Visit&& visit) const {
   for (const Pair& pair : pairs)
-    visit(pair, shapes->between(pair.wholeA, poseOf(context, pair.a), pair.wholeB,
-                                poseOf(context, pair.b)));
+    visit(pair, shapes->between(pair.a, poseOf(context, pair.a), pair.b, poseOf(context, pair.b)));
 }
 
 std::optional<double> KeepClear::clearance(const GoalContext& context) const {
@@ -149,26 +148,11 @@ void KeepClear::addCost(const GoalContext& context, GoalCost& cost) const {
   });
 }
 
-std::unique_ptr<Goal> KeepClear::within(const Model& whole, const SubModel& island) const {
-  const auto here = [&](int geometry) {
-    const auto at = std::lower_bound(island.geometries.begin(), island.geometries.end(), geometry);
-    return at != island.geometries.end() && *at == geometry
-               ? static_cast<int>(at - island.geometries.begin())
-               : -1;
+bool KeepClear::concerns(const Model& model, int tree) const {
+  const auto isOf = [&](int geometry) {
+    return model.bodies[idx(model.geometries[idx(geometry)].body)].tree == tree;
   };
-  const auto moves = [&](int geometry) { return whole.geometries[idx(geometry)].body != 0; };
-  auto part = std::make_unique<KeepClear>(*this);
-  part->pairs.clear();
-  for (Pair pair : pairs) {
-    pair.a = here(pair.wholeA);
-    pair.b = here(pair.wholeB);
-    if (pair.a >= 0 && pair.b >= 0)
-      part->pairs.push_back(pair);
-    else if ((pair.a >= 0 || pair.b >= 0) && moves(pair.wholeA) && moves(pair.wholeB))
-      return Goal::within(whole, island);  // throws: they may be apart
-  }
-  if (part->pairs.empty()) return nullptr;
-  return part;
+  return std::ranges::any_of(pairs, [&](const Pair& p) { return isOf(p.a) || isOf(p.b); });
 }
 
 }  // namespace softgauss::gdd

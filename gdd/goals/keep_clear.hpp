@@ -32,11 +32,9 @@ inline constexpr double kClearWeightPerMass = 1e3 * kReachWeightPerMass;
 
 class KeepClear final : public Goal {
  public:
-  /// Geometries of the link and of what it keeps clear of: their indices in this model and in that
-  /// whose distances are asked for, which are others in an island.
+  /// Geometries of the link and of what it keeps clear of.
   struct Pair {
     int a, b;
-    int wholeA, wholeB;
   };
   static constexpr double kMetClearance = 1e-3;  ///< the figure counts as met up to here [m]
 
@@ -61,7 +59,7 @@ class KeepClear final : public Goal {
   std::string name() const override { return "keep_clear " + link + " from " + from; }
   void weighBeside(double posture) override { defaultWeight.setBeside(posture, weight); }
   void addCost(const GoalContext& context, GoalCost& cost) const override;
-  std::unique_ptr<Goal> within(const Model& whole, const SubModel& island) const override;
+  bool concerns(const Model& model, int tree) const override;
   void errors(const GoalContext& context, const ContactForces& contacts,
               std::vector<GoalError>& out) const override;
   /// The least distance of two shapes [m], < 0 where they overlap; nothing where it is not known.

@@ -33,14 +33,9 @@ struct LinkRows {
   LinkRows(const GoalContext& context, int body, const Vector3& p_WP, GoalWorkspace& work);
 };
 
-/// A goal of a link, `frame`, within an island: null where the link is not there.
-template <class LinkGoal>
-std::unique_ptr<Goal> ofLinkWithin(const LinkGoal& goal, const SubModel& island) {
-  const int frame = island.frameOf(goal.frame);
-  if (frame < 0) return nullptr;
-  auto part = std::make_unique<LinkGoal>(goal);
-  part->frame = frame;
-  return part;
+/// Whether a link, by its index into Model::frames, is of a tree.
+inline bool isOfTree(const Model& model, int frame, int tree) {
+  return model.bodies[idx(model.frames[idx(frame)].body)].tree == tree;
 }
 
 /// How much a goal of a link weighs.

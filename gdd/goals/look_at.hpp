@@ -40,8 +40,8 @@ class LookAt final : public Goal, public PlaceTarget {
   void weighBeside(double posture) override { defaultWeight.setBeside(posture, weight); }
   bool steadyAt(double time) const override { return !targetMovesAt(time); }
   void addCost(const GoalContext& context, GoalCost& cost) const override;
-  std::unique_ptr<Goal> within(const Model&, const SubModel& island) const override {
-    return ofLinkWithin(*this, island);
+  bool concerns(const Model& model, int tree) const override {
+    return isOfTree(model, frame, tree);
   }
   /// The point on the axis that is as far as the place, and the place.
   std::optional<GoalMark> mark(const GoalContext& context) const override;

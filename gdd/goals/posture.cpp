@@ -112,16 +112,4 @@ bool Posture::steadyAt(double time) const {
                       [&](const JointTarget& target) { return target.movesAt(time); });
 }
 
-std::unique_ptr<Goal> Posture::within(const Model& whole, const SubModel& island) const {
-  auto goal = std::make_unique<Posture>(*this);  // M ties nothing that is apart
-  island.gatherPosition(whole, q, goal->q);
-  goal->moving.clear();
-  for (JointTarget target : moving)
-    if ((target.body = island.bodyOf(whole, target.body)) > 0) goal->moving.push_back(target);
-  goal->yieldsTo.clear();
-  for (LedPlace place : yieldsTo)
-    if ((place.frame = island.frameOf(place.frame)) >= 0) goal->yieldsTo.push_back(place);
-  return goal;
-}
-
 }  // namespace softgauss::gdd

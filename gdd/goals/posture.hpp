@@ -43,7 +43,6 @@ class Posture final : public Goal {
   std::string name() const override { return "posture"; }
   bool steadyAt(double time) const override;
   void addCost(const GoalContext& context, GoalCost& cost) const override;
-  std::unique_ptr<Goal> within(const Model& whole, const SubModel& island) const override;
   void errors(const GoalContext& context, const ContactForces& contacts,
               std::vector<GoalError>& out) const override;
 

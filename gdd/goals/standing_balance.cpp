@@ -331,17 +331,6 @@ void StandingBalance::addCost(const GoalContext& context, const Goals& others,
   keepWithin(support, omega, c, cost);
 }
 
-std::unique_ptr<Goal> StandingBalance::within(const Model& whole, const SubModel& island) const {
-  std::unique_ptr<StandingBalance> part(new StandingBalance(*this));
-  part->base = island.bodyOf(whole, base);
-  if (part->base < 0) return nullptr;
-  for (Foot& foot : part->feet) {
-    foot.body = island.bodyOf(whole, foot.body);
-    for (int& body : foot.leg) body = island.bodyOf(whole, body);
-  }
-  return part;
-}
-
 namespace {
 
 /// The goal as a balance that acts now, else null.

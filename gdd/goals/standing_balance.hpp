@@ -83,7 +83,9 @@ class StandingBalance final : public Goal {
   double steadiness(const GoalContext& context, const SupportPolygon& support) const;
   /// s of another goal; 0 where it waits until what it lifts is unloaded.
   double share(const GoalContext& context, const Goals& others, const Goal& goal) const;
-  std::unique_ptr<Goal> within(const Model& whole, const SubModel& island) const override;
+  bool concerns(const Model& model, int tree) const override {
+    return model.bodies[idx(base)].tree == tree;
+  }
 
  private:
   StandingBalance(const Model& model, int tree, const Kinematics& start);

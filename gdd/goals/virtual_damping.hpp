@@ -25,9 +25,6 @@ class VirtualDamping final : public Goal {
 
   std::string name() const override { return "damping"; }
   void addCost(const GoalContext& context, GoalCost& cost) const override;
-  std::unique_ptr<Goal> within(const Model&, const SubModel&) const override {
-    return std::make_unique<VirtualDamping>(*this);  // M and M⁻¹ tie nothing that is apart
-  }
 };
 
 }  // namespace softgauss::gdd

@@ -68,9 +68,9 @@ IntegrationKeys readIntegration(const YamlMap& map, Options& options) {
 
 IntegrationKeys readOptions(const YamlMap& map, Options& options,
                             std::optional<gdd::GddSolver>& solver) {
-  map.expectOnly({"integrator", "integration_tolerance", "step_doubling", "cone", "exact_diagonal",
-                  "tolerance", "max_iterations", "impedance_ratio", "effects", "without",
-                  "compatibility", "gdd_solver"});
+  map.expectOnly({"integrator", "integration_tolerance", "step_doubling", "cone", "sleep",
+                  "exact_diagonal", "tolerance", "max_iterations", "impedance_ratio", "effects",
+                  "without", "compatibility", "gdd_solver"});
   // First, for an integrator that is named counts.
   if (const auto* entry = map.find("compatibility"))
     options.useMujocoModel(map.choice(*entry, {"none", "mujoco"}) == "mujoco");
@@ -78,6 +78,8 @@ IntegrationKeys readOptions(const YamlMap& map, Options& options,
   if (const auto* entry = map.find("cone"))
     options.cone = map.choice(*entry, {"pyramidal", "elliptic"}) == "elliptic" ? Cone::elliptic
                                                                                : Cone::pyramidal;
+  if (const auto* entry = map.find("sleep"))
+    options.sleep = *sleepCalled(map.choice(*entry, {"none", "objects", "all"}));
   if (const auto* entry = map.find("gdd_solver"))
     solver = map.choice(*entry, {"active-set", "augmented-lagrangian"}) == "active-set"
                  ? gdd::GddSolver::activeSet

@@ -137,6 +137,13 @@ bool setCone(const V& value, O& o) {
                        [&](Cone cone) { o.cone = cone; });
 }
 
+bool setSleep(const V& value, O& o) {
+  const auto* word = std::get_if<std::string>(&value);
+  const std::optional<Sleep> named = word ? io::sleepCalled(*word) : std::nullopt;
+  if (named) o.sleep = named;
+  return named.has_value();
+}
+
 bool setSolver(const V& value, O& o) {
   using gdd::GddSolver;
   return setWord<GddSolver>(value,
@@ -210,6 +217,7 @@ const std::vector<NamedOption>& NamedOption::all() {
       {"integration_tolerance", "a number above 0", false, true, setTolerance},
       {"step_doubling", "true or false", false, true, setFlag<&O::stepDoubling>},
       {"cone", "one of pyramidal, elliptic", false, true, setCone},
+      {"sleep", "one of none, objects, all", false, true, setSleep},
       {"exact_diagonal", "true or false", false, true, setFlag<&O::exactDiagonal>},
       {"effects", "auto, none or a list of effects", false, true, setEffects},
       {"without", "a list of mechanisms", false, true, setWithout},

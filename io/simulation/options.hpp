@@ -36,6 +36,7 @@ struct SimulationOptions {
   bool inferInertia = false;          ///< of links of a URDF without, from their shapes
   int mostDofs = 2000;                ///< more take minutes to load and gigabytes to hold
   std::optional<io::MeshUse> meshes;  ///< absent: automatic, or hull as MuJoCo has it
+  std::optional<Sleep> sleep;         ///< absent: the file's own, or none
   bool exactDiagonal = false;
   std::optional<Cone> cone;                     ///< absent: the file's own, or pyramidal
   std::optional<gdd::GddSolver> gddSolver;      ///< absent: the file's own, or the active set

@@ -9,6 +9,7 @@
 #include "softgauss/collision/choose_meshes.hpp"
 #include "softgauss/engine/dynamics/coupled_mass.hpp"
 #include "softgauss/engine/dynamics/regular_mass.hpp"
+#include "softgauss/engine/step/sleep.hpp"
 #include "softgauss/io/inputs.hpp"
 #include "softgauss/io/mjcf.hpp"
 #include "softgauss/io/mjcf/option.hpp"
@@ -34,6 +35,7 @@ void setOptions(const SimulationOptions& options, Options& o) {
   if (options.exactDiagonal) o.exactDiagonal = true;
   if (options.mechanisms) o.mechanisms = *options.mechanisms;
   if (options.cone) o.cone = *options.cone;
+  if (options.sleep) o.sleep = *options.sleep;
   if (options.effects) o.effects = *options.effects;
   if (options.likeMujoco) o.useMujocoModel(*options.likeMujoco);
 }
@@ -270,6 +272,8 @@ std::unique_ptr<Scene> loadScene(const std::filesystem::path& file,
   else
     loadRobot(options, *scene);
   if (options.gddSolver) scene->gddSolver = *options.gddSolver;
+  if (const Options& o = scene->model.options; o.sleep.enabled && !Sleepers::mayBeOf(o))
+    throw OptionError(fmt::format("sleep: {}", Sleepers::kIntegrators));
   expectRegularStart(*scene);
   try {
     prepareContacts(options, *scene);

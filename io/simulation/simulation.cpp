@@ -23,13 +23,20 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::string_view kSavedKind = "SGSIMUL\n";
-constexpr std::uint32_t kSavedVersion = 1;
+constexpr std::uint32_t kSavedVersion = 2;
 
 /// The body of a joint of one degree of freedom.
 const Body& scalarJoint(const Model& model, const std::string& joint) {
   if (const std::string problem = io::jointProblem(model, joint); !problem.empty())
     throw NameError(fmt::format("joint '{}': {}", joint, problem));
   return model.bodies[model.findJoint(joint)];
+}
+
+/// The body of a link.
+int bodyOf(const Model& model, const std::string& link, const char* what) {
+  const int frame = model.findFrame(link);
+  if (frame < 0) throw NameError(fmt::format("{}: {}", what, io::linkProblem(model, link)));
+  return model.frames[static_cast<std::size_t>(frame)].body;
 }
 
 /// The dof of a joint with a servo, and where asked one that has a spring.
@@ -126,8 +133,8 @@ void solveInto(SimulationParts& p, ContactSource& contacts, ControlSolution& ans
       return;
     }
   }
-  answer.status = forwardDynamics(model, guess, *p.data,
-                                  controlled ? p.controller->known() : KnownTrees{});
+  answer.status =
+      forwardDynamics(model, guess, *p.data, controlled ? p.controller->known() : KnownTrees{});
   answer.tau = controlled ? p.controller->control : p.data->forces.tau;
   answer.a = p.data->forward.a;
   contactForces(*p.data, answer.contacts);
@@ -192,7 +199,7 @@ const ControlSolution& Simulation::solve(const VectorX& q, const VectorX& v,
   }
   p.state.warmstart.a = p.solution.a;
   p.state.warmstart.valid = true;
-  if (!p.controller->goals.empty()) p.controller->keep(p.state.warmstart);
+  if (!p.controller->goals.empty()) p.controller->keep(p.state.warmstart, p.data->active);
   return p.solution;
 }
 
@@ -211,20 +218,23 @@ void Simulation::reset() { parts_->state = parts_->scene->initial; }
 std::string Simulation::save() const {
   ByteWriter content;
   content(softgauss::save(model(), state()), parts_->grid);
+  if (parts_->data->sleepers) content(*parts_->data->sleepers, *parts_->controller);
   return sealed(kSavedKind, kSavedVersion, content.bytes());
 }
 
 void Simulation::restore(std::string_view bytes) {
   std::string saved;
   TimeGrid grid;
+  State restored;
   try {
     ByteReader content(unsealed(kSavedKind, kSavedVersion, bytes));
     content(saved, grid);
+    restored = softgauss::restore(model(), saved);
+    if (parts_->data->sleepers) content(*parts_->data->sleepers, *parts_->controller);
     content.expectEnd();
   } catch (const BytesError& error) {
     throw ModelError({scene().file.string(), 0}, "saved simulation", error.what());
   }
-  const State restored = softgauss::restore(model(), saved);
   state() = restored;  // copied: its vectors stay where they are
   parts_->grid = grid;
 }
@@ -240,6 +250,7 @@ void Simulation::saveReplay(const std::filesystem::path& file) const {
 void Simulation::standOnGround() {
   if (!scene().ground) throw NameError("standOnGround: the scene has no ground plane");
   softgauss::standOnGround(model(), *scene().ground, nullptr, state());
+  wakeAll(state().sleep);
 }
 
 double Simulation::time() const { return parts_->state.time; }
@@ -254,12 +265,23 @@ double Simulation::velocity(const std::string& joint) const {
 
 void Simulation::setPosition(const std::string& joint, double q) {
   const Body& body = scalarJoint(model(), joint);
+  softgauss::wake(parts_->state.sleep, body.tree);
   parts_->state.q[body.q] = q;
   placeFollowers(model(), {model().findJoint(joint)}, parts_->state.q);
 }
 
 void Simulation::setVelocity(const std::string& joint, double v) {
   parts_->state.v[scalarJoint(model(), joint).v] = v;
+}
+
+bool Simulation::asleep(const std::string& link) const {
+  const int tree = model().bodies[bodyOf(model(), link, "asleep")].tree;
+  return tree >= 0 && parts_->state.sleep.isAsleep(tree);
+}
+
+void Simulation::wake(const std::string& link) {
+  const int tree = model().bodies[bodyOf(model(), link, "wake")].tree;
+  if (tree >= 0) softgauss::wake(parts_->state.sleep, tree);
 }
 
 Transform Simulation::pose(const std::string& link) const {

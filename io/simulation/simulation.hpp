@@ -105,6 +105,10 @@ class Simulation {
   /// What the servo of a joint is to be told to make the force of the last step: of a robot under
   /// goals, what its drive would be sent. Needs a servo of kp > 0.
   double setPoint(const std::string& joint) const;
+  /// Whether a link sleeps, with the option `sleep`.
+  bool asleep(const std::string& link) const;
+  /// Wakes a link and all that sleeps with it: after its place in state() was changed.
+  void wake(const std::string& link);
   Transform pose(const std::string& link) const;  ///< of the link's frame in the world, now
   /// Of the last step: what acts on the joint from its actuator or servo and from input().tau [N m
   /// or N].

@@ -24,6 +24,7 @@ gdd::Goal& SimulationGoals::add(std::unique_ptr<gdd::Goal> goal) {
 
 void SimulationGoals::weighDefaults() {
   gdd::weighDefaults(parts_->scene->model, parts_->controller->goals);
+  parts_->controller->changed();
 }
 
 gdd::Goal& SimulationGoals::addOwn(std::unique_ptr<gdd::Goal> goal) {
@@ -129,6 +130,7 @@ void SimulationGoals::remove(const gdd::Goal& goal) {
 
 void SimulationGoals::clear() {
   if (parts_->recording) parts_->recording->forgetGoals();
+  wakeAll(parts_->state.sleep);
   parts_->controller->goals.clear();
   parts_->hasRegularisers = parts_->hasBalance = false;
   parts_->regularisers = 0;

@@ -51,8 +51,8 @@ class SimulationGoals {
   std::vector<gdd::Goal*> readText(const std::string& text, const std::string& name = "goals");
   /// Any other goal; nothing comes with it.
   gdd::Goal& add(std::unique_ptr<gdd::Goal> goal);
-  /// Weights that nobody has given, again as they are beside the postures: after a posture's
-  /// weight, or the times of a goal, were changed.
+  /// To be called after a goal was changed: weights that nobody has given are again what they are
+  /// beside the postures, and robots that sleep under their goals wake.
   void weighDefaults();
   /// Removes one of the goals; what came with it stays. Throws std::invalid_argument where it is
   /// none of these.

@@ -32,7 +32,7 @@ std::vector<RunCase> runs() {
       {"falling", humanoid + " --passive", 0.4},
       {"grip", dataFile("scenes/hand_and_ball.yaml") + " --report-error", 0.2},
       {"dormand-prince", arm + " --passive --integrator dormand-prince --report-error", 0.3},
-      {"islands", dataFile("scenes/two_arms.yaml") + " --islands sleep-all", 0.4},
+      {"sleep", dataFile("scenes/two_arms.yaml") + " --sleep all", 0.9},
   };
 }
 

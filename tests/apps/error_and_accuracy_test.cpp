@@ -337,12 +337,12 @@ TEST(Accuracy, IsKeptUnderATableOfIrregularRows) {
   const Csv csv(readFile(log));
   EXPECT_NEAR(csv.number(static_cast<int>(csv.rows.size()) - 1, "time_s"), 0.7071, 1e-9);
 
-  // Islands take whole steps.
-  std::vector<std::string> inIslands = arguments;
-  inIslands.insert(inIslands.end(), {"--islands", "apart"});
-  const Outcome refused = simulate(inIslands);
+  // What sleeps is not followed.
+  std::vector<std::string> asleep = arguments;
+  asleep.insert(asleep.end(), {"--sleep", "objects"});
+  const Outcome refused = simulate(asleep);
   EXPECT_EQ(refused.exitCode, 2);
-  EXPECT_NE(refused.err.find("no step ends on a row"), std::string::npos) << refused.err;
+  EXPECT_NE(refused.err.find("expected no --sleep"), std::string::npos) << refused.err;
 }
 
 // What begins and ends within a step, seen by none of two references, is promised by nothing.

@@ -74,11 +74,27 @@ TEST(Meshes, ExplainCountsThem) {
   EXPECT_NE(outcome.out.find("triangle mesh 1"), std::string::npos) << outcome.out;
 }
 
-TEST(Collision, FclKnowsNoIslands) {
-  const Outcome outcome = simulate(
-      {dataFile("robots/humanoid.urdf"), "--passive", "--collision", "fcl", "--islands", "apart"});
-  EXPECT_EQ(outcome.exitCode, 2);
-  EXPECT_NE(outcome.err.find("--collision fcl"), std::string::npos) << outcome.err;
+// Sleepers are met as well where FCL finds the contacts.
+TEST(Collision, FclMeetsWhoSleeps) {
+  const io::TempFolder folder;
+  const std::string scene =
+      folder.write("scene.yaml",
+                   "ground: 0\nobjects:\n"
+                   "  - {name: box, box: {size: [0.2, 0.2, 0.2]}, mass: 1, position: [0, 0, 0.1]}\n"
+                   "  - {name: ball, sphere: {radius: 0.1}, mass: 1, position: [0, 0, 4]}\n");
+  std::string woken[2];
+  for (const bool fcl : {false, true}) {
+    const Outcome outcome = simulate(
+        {scene, "--duration", "1.5", "--sleep", "objects", "--collision", fcl ? "fcl" : "own"});
+    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    const std::size_t at = outcome.out.find("  sleep: ");
+    ASSERT_NE(at, std::string::npos) << outcome.out;
+    woken[fcl] = outcome.out.substr(at, outcome.out.find('\n', at) - at);
+  }
+  for (const std::string& line : woken) {
+    EXPECT_NE(line.find("up to 1 of 2 trees"), std::string::npos) << line;
+    EXPECT_NE(line.find("1 woken"), std::string::npos) << line;
+  }
 }
 
 TEST(Collision, ASceneMayAskForFcl) {
@@ -86,11 +102,6 @@ TEST(Collision, ASceneMayAskForFcl) {
   const std::string text = "objects: [{name: ball, sphere: {radius: 0.1}}]\ncollision: ";
   const std::string good = folder.write("good.yaml", text + "fcl\n");
   EXPECT_EQ(simulate({good, "--duration", "0.1", "--quiet"}).exitCode, 0);
-  EXPECT_EQ(simulate({good, "--duration", "0.1", "--islands", "apart", "--quiet"}).exitCode, 2);
-  EXPECT_EQ(
-      simulate({good, "--duration", "0.1", "--islands", "apart", "--collision", "own", "--quiet"})
-          .exitCode,
-      0);
   const Outcome bad = simulate({folder.write("bad.yaml", text + "bullet\n"), "--quiet"});
   EXPECT_EQ(bad.exitCode, 2);
   EXPECT_NE(bad.err.find("bad.yaml:2"), std::string::npos) << bad.err;

@@ -61,7 +61,7 @@ Names ofTheProgram() {
 
 TEST(NamedOptions, AreThoseOfTheProgram) {
   // What says how a program reads files, finds its settings or ends: no property of a simulation.
-  const Names ofProgramsAlone = {"largest_file", "largest_mesh", "duration", "accuracy", "islands"};
+  const Names ofProgramsAlone = {"largest_file", "largest_mesh", "duration", "accuracy"};
   const Names program = ofTheProgram(), all = allNames();
   ASSERT_GT(program.size(), 20u);
   for (const std::string& name : program)
@@ -100,6 +100,9 @@ TEST(NamedOptions, TakeWhatTheySayAndNothingElse) {
   EXPECT_FALSE(set("exact_diagonal", 1.0));
   EXPECT_TRUE(set("cone", std::string("elliptic")));
   EXPECT_FALSE(set("cone", std::string("round")));
+  EXPECT_TRUE(set("sleep", std::string("all")));
+  EXPECT_TRUE(options.sleep && options.sleep->enabled && options.sleep->controlled);
+  EXPECT_FALSE(set("sleep", true));
   EXPECT_TRUE(set("effects", std::vector<std::string>{std::string(kEffectNames[0].name)}));
   EXPECT_FALSE(set("effects", std::vector<std::string>{"gravitation"}));
   EXPECT_TRUE(set("without", std::vector<std::string>{"supported_mass"}));

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Saved states, islands and checkpoints with any bytes in them are restored or refused; what is
+/// Saved states, sleepers and checkpoints with any bytes in them are restored or refused; what is
 /// restored takes steps. The input is laid over bytes that were saved: a checksum would refuse all
 /// others, so it is made anew.
 
 #include "apps/simulate_gdd/checkpoint.hpp"
-#include "softgauss/collision/unit_contacts.hpp"
+#include "softgauss/collision/scene_contacts.hpp"
 #include "softgauss/engine/core/sealed.hpp"
 #include "softgauss/engine/model/model_hash.hpp"
 #include "softgauss/engine/model/saved_state.hpp"
@@ -100,33 +100,37 @@ struct Balls {
       builder.joint(joint);
       shape(ball.name, Shape::sphere(0.1));
     }
+    builder.options.sleep.enabled = true;
     return builder.build();
   }
 
   Balls() {
-    collision::UnitContacts contacts(model);
-    Islands islands(model, &contacts, {.enabled = true});
-    for (int i = 0; i < kBefore; ++i) islands.step({});
+    collision::SceneContacts contacts(model);
+    State state(model);
+    Data data(model);
+    for (int i = 0; i < kBefore; ++i) step(model, {}, state, data, &contacts);
     ByteWriter writer;
-    writer(islands);
+    writer(state, *data.sleepers);
     saved = writer.bytes();
   }
 
   void restore(std::string_view edits) const {
-    collision::UnitContacts contacts(model);
-    Islands islands(model, &contacts, {.enabled = true});
+    collision::SceneContacts contacts(model);
+    State state(model);
+    Data data(model);
     const std::string bytes = edited(saved, edits);
     try {
       ByteReader reader(bytes);
-      reader(islands);
+      reader(state, *data.sleepers);
       reader.expectEnd();
+      expectStateOf(model, state);
     } catch (const BytesError& error) {
       expectMessage(error.what());
       return;
     }
     for (int i = 0; i < kAfter; ++i)
-      if (!isRefused(islands.step({})) && !islands.state().q.allFinite())
-        throw Finding("restored islands were stepped to a state that is not finite");
+      if (!isRefused(step(model, {}, state, data, &contacts)) && !state.q.allFinite())
+        throw Finding("a restored state was stepped to one that is not finite");
   }
 };
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Velocity limits and range ends: what a controller keeps, and what it leaves as it was.
 
-#include "softgauss/engine/islands/islands.hpp"
 #include "tests/gdd/robot_scene.hpp"
 
 namespace softgauss::test {
@@ -91,23 +90,6 @@ TEST(MotionLimits, AreACostThatTorqueLimitsMayOutweigh) {
   EXPECT_EQ(arm.controller.control[shoulder], -5.0);
   while (arm.state.time < 1.0 && !testing::Test::HasFailure()) arm.advance();
   EXPECT_LT(std::abs(arm.state.v[shoulder]), 0.51);
-}
-
-TEST(MotionLimits, HoldIslandByIsland) {
-  constexpr double kLimit = 1.0;  // [rad/s]
-  Arm arm(kLimit);
-  arm.controller.motionLimits.emplace();
-  arm.target("shoulder_yaw") = 1.5;
-  gdd::GoalDirectedIslands controls(arm.model, arm.controller);
-  Islands islands(arm.model, nullptr, {}, &controls);
-  islands.setState(arm.state);
-  double most = 0.0;
-  while (islands.state().time < 1.0) {
-    ASSERT_EQ(islands.step(arm.input), SolveStatus::converged);
-    most = std::max(most, islands.state().v.cwiseAbs().maxCoeff());
-  }
-  EXPECT_GT(most, 0.9 * kLimit);
-  EXPECT_LT(most, 1.02 * kLimit);
 }
 
 }  // namespace softgauss::test

@@ -43,8 +43,8 @@ class Witness final : public StepControl {
     length_ = model.options.timestep;
     return planned;
   }
-  void keep(WarmStart& warmstart) noexcept override {
-    controller_.keep(warmstart);
+  void keep(WarmStart& warmstart, const TreeSelection& trees) noexcept override {
+    controller_.keep(warmstart, trees);
     taken_ = true;
   }
   /// The step has ended with this velocity.

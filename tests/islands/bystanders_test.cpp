@@ -3,7 +3,7 @@
 /// Physics does not depend on who has goals: what a control does not act on moves as without one.
 
 #include "softgauss/collision/scene_contacts.hpp"
-#include "tests/islands/goal_crowd.hpp"
+#include "tests/islands/crowd.hpp"
 #include "tests/support/matchers.hpp"
 
 namespace softgauss::test {
@@ -31,14 +31,6 @@ ModelBuilder robotsAndBystanders() {
   addCube(builder, "bottom", Vector3(-3.0, 0.0, 0.1));
   addCube(builder, "top", Vector3(-3.0, 0.05, 0.3));
   return builder;
-}
-
-void addGoals(const Model& model, std::vector<std::unique_ptr<gdd::Goal>>& goals) {
-  auto reach = std::make_unique<gdd::Reach>(model, "lying_3", Vector3(0.2, 0.1, 0.5));
-  reach->weight = 100.0;
-  goals.push_back(std::move(reach));
-  goals.push_back(std::make_unique<gdd::Posture>(model.q0));
-  goals.push_back(std::make_unique<gdd::VirtualDamping>());
 }
 
 // What friction holds it holds, also while somebody else reaches for something: without (5.6) the
@@ -115,48 +107,6 @@ TEST(Bystanders, HaveTheRowsOfAPassiveScene) {
   EXPECT_GT(same, 0);
   ASSERT_EQ(controlled.constraints.dryFriction.rowCount(), 1);
   EXPECT_EQ(controlled.constraints.dryFriction.D[0], passive.constraints.dryFriction.D[0]);
-}
-
-// A step of the joint solve from where the islands are ends where theirs does, heaps and dry
-// friction included: in a step both stop where rounding is left, 1e-12 of accelerations up to 100
-// m/s² at 2 ms. Over the whole run rod and cube agree too. Robots may by and by choose another of
-// several minima, for how far back a solver has searched is no part of what islands give on; and
-// where the faces of two cubes are parallel, rounding chooses which corners touch.
-TEST(Bystanders, MoveInIslandsAsInTheJointSolve) {
-  ModelBuilder builder = robotsAndBystanders();
-  builder.options.substepAngle = kInfinity;  // else each island goes in parts of its own
-  GoalCrowd crowd(builder.build());
-  const Model& model = crowd.model;
-  addGoals(model, crowd.controller.goals);
-  crowd.start();
-  gdd::GoalDirectedController joint(model);
-  addGoals(model, joint.goals);
-  collision::SceneContacts contacts(model);
-  State own(model);
-  Data data(model), ownData(model);
-  double step = 0.0, run = 0.0;
-  for (int i = 0; i < 250; ++i) {
-    State state = crowd.islands->state();
-    ASSERT_NE(joint.step(model, {}, state, data, &contacts), SolveStatus::notFinite);
-    ASSERT_NE(joint.step(model, {}, own, ownData, &contacts), SolveStatus::notFinite);
-    ASSERT_TRUE(crowd.steps(1));
-    const State& islands = crowd.islands->state();
-    const auto gap = [&](const State& other, const Tree& tree) {
-      const int first = tree.firstDof, dofs = tree.dofEnd - first;
-      const VectorX away = positionDifference(model, other.q, islands.q);
-      const VectorX faster = other.v - islands.v;
-      return std::max(away.segment(first, dofs).cwiseAbs().maxCoeff(),
-                      faster.segment(first, dofs).cwiseAbs().maxCoeff());
-    };
-    for (const Tree& tree : model.trees) {
-      step = std::max(step, gap(state, tree));
-      const std::string& name = model.bodyNames[static_cast<std::size_t>(tree.bodyEnd - 1)];
-      if (name == "rod" || name == "alone") run = std::max(run, gap(own, tree));
-    }
-  }
-  EXPECT_GT(data.stats.contacts, 8);
-  EXPECT_SMALL(step, 1e-10);
-  EXPECT_SMALL(run, 1e-9);
 }
 
 }  // namespace

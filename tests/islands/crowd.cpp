@@ -5,11 +5,6 @@
 
 namespace softgauss::test {
 
-int Crowd::body(const std::string& name) const {
-  const auto found = std::find(model.bodyNames.begin(), model.bodyNames.end(), name);
-  return static_cast<int>(found - model.bodyNames.begin());
-}
-
 ModelBuilder ground() {
   ModelBuilder builder("crowd");
   builder.geometry(groundSpec(0.8));
@@ -59,6 +54,25 @@ void addCube(ModelBuilder& builder, const std::string& name, const Vector3& p) {
 
 void addCreature(ModelBuilder& builder, const std::string& name, const Vector3& p) {
   addCreatureAt(builder, name, Transform{Matrix3::Identity(), p});
+}
+
+ModelBuilder stacks() {
+  ModelBuilder builder = ground();
+  for (int i = 0; i < 4; ++i)
+    for (int k = 0; k < 2; ++k)
+      addCube(builder, "cube" + std::to_string(i) + std::to_string(k),
+              Vector3(1.0 * i, 0.0, 0.1 + 0.2 * k));
+  return builder;
+}
+
+ModelBuilder robotsAndCubes() {
+  ModelBuilder builder = ground();
+  addCreature(builder, "lying", Vector3(0.0, 0.0, 0.05));
+  addCube(builder, "lower", Vector3(2.0, 0.0, 0.1));
+  addCube(builder, "upper", Vector3(2.0, 0.0, 0.3));
+  addCreature(builder, "lifted", Vector3(2.0, 0.0, 0.5));
+  addCube(builder, "alone", Vector3(4.0, 0.0, 0.1));
+  return builder;
 }
 
 ModelBuilder heap(int count, std::uint64_t seed) {

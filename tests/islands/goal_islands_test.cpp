@@ -5,7 +5,7 @@
 #include "softgauss/collision/scene_contacts.hpp"
 #include "softgauss/engine/model/saved_state.hpp"
 #include "softgauss/engine/step/substep_workspace.hpp"
-#include "tests/islands/goal_crowd.hpp"
+#include "tests/islands/crowd.hpp"
 #include "tests/support/matchers.hpp"
 
 namespace softgauss::test {

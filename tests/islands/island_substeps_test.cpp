@@ -197,7 +197,9 @@ struct Counted final : StepControl {
     ++asked;
     return controller.apply(model, state, data);
   }
-  void keep(WarmStart& warm) noexcept override { controller.keep(warm); }
+  void keep(WarmStart& warm, const TreeSelection& trees) noexcept override {
+    controller.keep(warm, trees);
+  }
 };
 
 // A robot with goals takes the step whole, however fast something turns that it does not touch.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Forces of connections are part of the state: islands, saved states and copies go on with them.
+/// Forces of connections are part of the state: saved states and copies go on with them.
 
 #include <gtest/gtest.h>
 
@@ -42,36 +42,7 @@ Model ropeAndCubes() {
   return builder.build();
 }
 
-// From the state of the islands, whole, the joint step makes the same motion: in a step both stop
-// where rounding is left. A rope whose forces got lost in a regroup would be held by nothing.
-TEST(IslandsWithRopes, AgreeWithTheJointSolve) {
-  Crowd crowd(ropeAndCubes());
-  collision::SceneContacts contacts(crowd.model);
-  Data data(crowd.model);
-  double worst = 0.0;
-  int held = 0, regroups = 0;
-  for (int i = 0; i < 100; ++i) {
-    State joint = crowd.islands.state();
-    ASSERT_EQ(step(crowd.model, {}, joint, data, &contacts), SolveStatus::converged);
-    ASSERT_EQ(crowd.islands.step({}), SolveStatus::converged);
-    const VectorX& a = data.acceleration;
-    worst = std::max(worst, (crowd.islands.acceleration() - a).cwiseAbs().maxCoeff() /
-                                std::max(1.0, a.cwiseAbs().maxCoeff()));
-    const double pull = joint.connectionForces.cwiseAbs().maxCoeff();
-    EXPECT_SMALL(
-        (joint.connectionForces - crowd.islands.state().connectionForces).cwiseAbs().maxCoeff() /
-            pull,
-        1e-9);
-    EXPECT_EQ(crowd.islands.stats().stabilisedBodies, data.stats.stabilisedBodies);
-    held += data.stats.stabilisedBodies;
-    regroups += crowd.islands.islandStats().regroups;
-  }
-  EXPECT_SMALL(worst, 1e-9);
-  EXPECT_GT(held, 30);
-  EXPECT_GT(regroups, 0);
-}
-
-TEST(IslandsWithRopes, ASavedStateGoesOnToTheSameBits) {
+TEST(Ropes, ASavedStateGoesOnToTheSameBits) {
   const Model model = ropeAndCubes();
   collision::SceneContacts contacts(model);
   Data data(model), other(model);

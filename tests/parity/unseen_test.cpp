@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What only saves time is not seen: pruning of pairs and islands, on every scene of the logs.
+/// What only saves time is not seen: pruning of pairs, on every scene of the logs.
 
 #include <algorithm>
 #include <limits>
 
 #include "softgauss/collision/scene_contacts.hpp"
-#include "softgauss/collision/unit_contacts.hpp"
-#include "softgauss/engine/islands/islands.hpp"
 #include "tests/parity/comparison.hpp"
 #include "tests/parity/reference_log.hpp"
-#include "tests/support/tolerance.hpp"
 
 namespace softgauss::test {
 namespace {
@@ -49,26 +46,6 @@ TEST_P(ParityScene, PruningIsNotSeen) {
       ASSERT_EQ(status, SolveStatus::converged);
     }
   }
-}
-
-// What does not touch is solved apart, with the same result.
-TEST_P(ParityScene, IslandsAreNotSeen) {
-  constexpr double kSmallAcceleration = 1.0;  // [m/s² or rad/s²] below this, absolute
-  collision::UnitContacts unitContacts(model_);
-  Islands islands(model_, &unitContacts);
-  double worst = 0.0;
-  for (const ReferenceState& reference : log_.states) {
-    State state(model_);
-    state.q = reference.q;
-    state.v = reference.v;
-    const Input input{reference.force, reference.wrenches, {}, {}, {}};
-    islands.setState(state);
-    ASSERT_EQ(islands.step(input), SolveStatus::converged);
-    ASSERT_EQ(step(model_, input, state, data_, &contacts_), SolveStatus::converged);
-    worst = std::max(
-        worst, relativeDifference(islands.acceleration(), data_.forward.a, kSmallAcceleration));
-  }
-  EXPECT_SMALL(worst, 1e-10);
 }
 
 INSTANTIATE_TEST_SUITE_P(Mujoco, ParityScene, testing::ValuesIn(referenceLogNames()),

@@ -45,7 +45,6 @@ const std::map<std::string, Names> kMayInclude = {
     {"engine/forces", {"engine/core", "engine/model", "engine/dynamics"}},
     {"engine/constraints", {"engine/core", "engine/model", "engine/dynamics"}},
     {"engine/step", {"engine"}},
-    {"engine/islands", {"engine"}},
     {"engine", {"engine"}},
     {"gdd", {"engine"}},
     {"collision", {"engine"}},

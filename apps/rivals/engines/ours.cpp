@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// softgauss in the study, built by ModelBuilder: no file of ours is read. Settings are those of
-/// Options by the names of simulate_gdd; islands=1 steps island by island.
+/// Options by the names of simulate_gdd.
 
 #include <cmath>
 #include <numbers>
@@ -8,11 +8,10 @@
 #include "apps/rivals/engine.hpp"
 #include "apps/rivals/engines/bounce.hpp"
 #include "softgauss/collision/scene_contacts.hpp"
-#include "softgauss/collision/unit_contacts.hpp"
 #include "softgauss/engine/dynamics/energy.hpp"
 #include "softgauss/engine/dynamics/inertia.hpp"
-#include "softgauss/engine/islands/islands.hpp"
 #include "softgauss/engine/model/model_builder.hpp"
+#include "softgauss/engine/step/step.hpp"
 
 namespace rivals {
 namespace {
@@ -62,13 +61,7 @@ class Ours final : public Engine {
         data_(model_),
         kinematics_(model_) {
     place();
-    if (settings.flag("islands")) {
-      unitContacts_.emplace(model_);
-      islands_.emplace(model_, &*unitContacts_);
-      islands_->setState(state_);
-    } else {
-      contacts_.emplace(model_);
-    }
+    contacts_.emplace(model_);
     sg::computeKinematics(model_, state_, kinematics_);
   }
 
@@ -76,16 +69,15 @@ class Ours final : public Engine {
     for (int i = 0; i < count; ++i) {
       for (const auto& [v, joint] : forces_) input_.tau[v] = joint->forceAt(steps_ * h_);
       ++steps_;
-      const sg::SolveStatus status = islands_ ? islands_->step(input_)
-                                              : sg::step(model_, input_, state_, data_,
-                                                         nothingTouches_ ? nullptr : &*contacts_);
+      const sg::SolveStatus status =
+          sg::step(model_, input_, state_, data_, nothingTouches_ ? nullptr : &*contacts_);
       if (sg::isRefused(status)) return false;
     }
     return true;
   }
 
   std::vector<BodyState> state() override {
-    sg::computeKinematics(model_, islands_ ? islands_->state() : state_, kinematics_);
+    sg::computeKinematics(model_, state_, kinematics_);
     std::vector<BodyState> out;
     for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {
       const auto body = static_cast<std::size_t>(bodies_[i]);
@@ -266,8 +258,6 @@ class Ours final : public Engine {
   std::vector<std::pair<int, const Joint*>> forces_;  // of degrees of freedom
   int steps_ = 0;
   std::optional<sg::collision::SceneContacts> contacts_;
-  std::optional<sg::collision::UnitContacts> unitContacts_;
-  std::optional<sg::Islands> islands_;
 };
 
 }  // namespace

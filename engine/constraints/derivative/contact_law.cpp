@@ -41,7 +41,8 @@ ContactBlocks::FrameVector rowInFrame(const EllipticContact&, const ContactRows&
 
 void ContactLaw::begin(const Assembly& in) {
   kinematics_ = in.kinematics;
-  if (kinematics_.V_midstep.empty()) kinematics_.V_midstep = kinematics_.V;
+  if (!kinematics_.hasMidstep) kinematics_.V_midstep = kinematics_.V;
+  kinematics_.hasMidstep = true;
   if (!in.state.hasAcceleration) return;
   last_.resize(in.model.bodies.size());
   moveBodies(in.model, in.kinematics, in.state.a, last_);

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "softgauss/engine/core/segment_vectors.hpp"
+
 namespace softgauss {
 
 bool isStiffSpring(const Model& model, const Data& data, const Plan::Spring& spring) {
@@ -26,6 +28,7 @@ bool implicitFollows(const Model& model, const Data& data) {
 void addImplicitForces(const Model& model, const State& state, Data& data) {
   for (const Plan::Spring& spring : data.plan.springs) {
     if (!isStiffSpring(model, data, spring)) continue;
+    if (!data.active.holds(model, model.dofs[idx(spring.dof)].body)) continue;
     const double ahead = model.options.timestep * spring.stiffness * state.v[spring.dof];
     data.forces.c[spring.dof] += ahead;
     data.forces.net[spring.dof] -= ahead;
@@ -35,13 +38,18 @@ void addImplicitForces(const Model& model, const State& state, Data& data) {
 void addImplicitInertia(const Model& model, Data& data) {
   const double h = model.options.timestep;
   MassMatrix& inertia = data.inertia;
-  if (data.plan.hasDamping()) inertia.added += h * data.plan.damping;
+  const Segments dofs = data.active.dofs();
+  if (data.plan.hasDamping())
+    for (const Segment s : dofs) part(inertia.added, s) += h * part(data.plan.damping, s);
   for (const Plan::Spring& spring : data.plan.springs)
-    if (isStiffSpring(model, data, spring)) inertia.added[spring.dof] += h * h * spring.stiffness;
-  inertia.anyAdded = (inertia.added.array() != 0.0).any();
+    if (isStiffSpring(model, data, spring) &&
+        data.active.holds(model, model.dofs[idx(spring.dof)].body))
+      inertia.added[spring.dof] += h * h * spring.stiffness;
+  inertia.anyAdded = std::ranges::any_of(
+      dofs, [&](Segment s) { return (part(inertia.added, s).array() != 0.0).any(); });
   if (!inertia.anyAdded) return;
-  if (inertia.whole) inertia.Mhat.assign(inertia.M);
-  for (const Segment s : data.active.dofs())
+  if (inertia.whole) inertia.Mhat.assign(inertia.M, dofs);
+  for (const Segment s : dofs)
     for (int i = s.begin; i < s.end; ++i) {
       double& pivot = inertia.Mhat.row(i)[i];
       pivot = inertia.M.row(i)[i] + inertia.added[i];

@@ -24,7 +24,7 @@ bool implicitVelocity(const Model& model, Data& data, State& state) {
   else if (!solveMass(model, data, added, net))
     return false;
   s.start = state.v + h * data.acceleration;
-  if (tooFast(model, s.start)) return false;
+  if (tooFast(model, data.active, s.start)) return false;
   state.v = s.start;
   integratePosition(model, state.v, h, state.q);
   state.time += h;

@@ -3,12 +3,14 @@
 
 #include <algorithm>
 
+#include "softgauss/engine/core/segment_vectors.hpp"
+
 namespace softgauss {
 
-bool tooFast(const Model& model, const VectorX& v) {
-  if (!v.allFinite()) return true;
-  return std::any_of(model.trees.begin(), model.trees.end(), [&](const Tree& tree) {
-    const Body& root = model.bodies[static_cast<std::size_t>(tree.rootBody)];
+bool tooFast(const Model& model, const TreeSelection& trees, const VectorX& v) {
+  if (!allFinite(trees.dofs(), v)) return true;
+  return std::ranges::any_of(trees.trees(), [&](int tree) {
+    const Body& root = model.bodies[idx(model.trees[idx(tree)].rootBody)];
     return root.joint == JointKind::floating &&
            v.segment<3>(root.v + 3).cwiseAbs().maxCoeff() > 1e150;
   });
@@ -16,6 +18,7 @@ bool tooFast(const Model& model, const VectorX& v) {
 
 void keepConnectionForces(const Model& model, Data& data, State& state,
                           std::span<const std::uint8_t> trees) {
+  if (trees.empty() && !data.active.all()) trees = data.active.flags();
   if (data.plan.rows.has(RowKind::geometricStiffness))
     data.constraints.connectionForces(model, data.kinematics, trees, state.connectionForces);
 }

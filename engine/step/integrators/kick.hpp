@@ -15,7 +15,7 @@ namespace softgauss {
 void keepConnectionForces(const Model& model, Data& data, State& state,
                           std::span<const std::uint8_t> trees = {});
 
-/// Not finite, or turning so fast that the square of the angle overflows.
-bool tooFast(const Model& model, const VectorX& v);
+/// Of these trees: not finite, or turning so fast that the square of the angle overflows.
+bool tooFast(const Model& model, const TreeSelection& trees, const VectorX& v);
 
 }  // namespace softgauss

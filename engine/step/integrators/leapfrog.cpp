@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "softgauss/engine/core/segment_vectors.hpp"
 #include "softgauss/engine/step/integrators/implicit_forces.hpp"
 #include "softgauss/engine/step/integrators/kick.hpp"
 #include "softgauss/engine/step/substep_workspace.hpp"
@@ -36,7 +37,7 @@ double worstTurn(const Model& model, const Tree& tree, const VectorX& a, const V
 
 void driftBefore(const Model& model, Data& data, State& state) {
   VectorX& v = data.forward.direction;
-  v = state.v;
+  copy(data.active.dofs(), state.v, v);
   scaleStiff(model, data, 0.0, v);
   integratePosition(model, v, 0.5 * model.options.timestep, data.active.bodies(), state.q);
 }
@@ -47,7 +48,9 @@ bool predictsMidstepVelocity(const Model& model, const State& state) {
 
 void predictMidstepVelocity(const Model& model, const State& state, Data& data) {
   if (!predictsMidstepVelocity(model, state)) return;
-  data.midstepVelocity = state.v + 0.5 * model.options.timestep * state.a;
+  for (const Segment s : data.active.dofs())
+    part(data.midstepVelocity, s) =
+        part(state.v, s) + 0.5 * model.options.timestep * part(state.a, s);
   setMidstepVelocity(model, data.midstepVelocity, data.active.bodies(), data.kinematics);
 }
 
@@ -58,9 +61,10 @@ bool predictionFailed(const Model& model, Data& data, State& state) {
   std::vector<std::uint8_t>& mispredicted = data.parts->mispredicted;
   std::fill(mispredicted.begin(), mispredicted.end(), 0);
   bool any = false;
-  for (std::size_t t = 0; t < model.trees.size(); ++t) {
+  for (const int of : data.active.trees()) {
+    const std::size_t t = idx(of);
     const Tree& tree = model.trees[t];
-    if (!data.active.has(static_cast<int>(t)) || data.parts->leaves(tree.rootBody)) continue;
+    if (data.parts->leaves(tree.rootBody)) continue;
     // A joint alone has nothing to turn against.
     if (data.parts->substepSelection.free[t] || tree.dofEnd - tree.firstDof == 1) continue;
     const double off = 0.5 * h * h * worstTurn(model, tree, a, state.a);
@@ -76,14 +80,15 @@ bool predictionFailed(const Model& model, Data& data, State& state) {
 
 bool kickAndDrift(const Model& model, Data& data, State& state) {
   const double h = model.options.timestep;
+  const Segments dofs = data.active.dofs();
   VectorX& v = data.forward.start;
-  data.acceleration = data.forward.a;
-  v = state.v + h * data.acceleration;
-  if (tooFast(model, v)) return false;
-  state.v = v;
+  copy(dofs, data.forward.a, data.acceleration);
+  for (const Segment s : dofs) part(v, s) = part(state.v, s) + h * part(data.acceleration, s);
+  if (tooFast(model, data.active, v)) return false;
+  copy(dofs, v, state.v);
   scaleStiff(model, data, 2.0, v);
   integratePosition(model, v, 0.5 * h, data.active.bodies(), state.q);
-  state.a = data.acceleration;
+  copy(dofs, data.acceleration, state.a);
   state.hasAcceleration = true;
   keepConnectionForces(model, data, state);
   state.time += h;

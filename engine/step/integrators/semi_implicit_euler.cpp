@@ -21,9 +21,9 @@ bool semiImplicitEuler(const Model& model, Data& data, State& state) {
     if (!solveMass(model, data, &s.diagonal, net)) return false;
   }
   s.start = state.v + h * data.acceleration;
-  if (tooFast(model, s.start)) return false;
+  if (tooFast(model, data.active, s.start)) return false;
   state.v = s.start;
-  integratePosition(model, state.v, h, state.q);
+  integratePosition(model, state.v, h, data.active.bodies(), state.q);
   keepConnectionForces(model, data, state);
   state.time += h;
   return true;

@@ -76,5 +76,22 @@ TEST(TreeIslands, AreTreesThatPairsReach) {
   EXPECT_GT(several, 10);
 }
 
+// Who is still is of none, and ties nobody.
+TEST(TreeIslands, LeaveOutWhoIsStill) {
+  const Model model = chains(0);
+  std::vector<std::pair<int, int>> pairs;
+  for (std::size_t t = 0; t + 1 < model.trees.size(); ++t)
+    pairs.emplace_back(model.trees[t].rootBody, model.trees[t + 1].rootBody);
+  std::vector<std::uint8_t> still(model.trees.size(), 0);
+  still[3] = 1;
+  TreeIslands islands(model);
+  islands.find(model, pairs, still);
+  ASSERT_EQ(islands.size(), 2);
+  for (std::size_t t = 0; t < model.trees.size(); ++t)
+    EXPECT_EQ(islands.ofBody()[idx(model.trees[t].rootBody)], t < 3 ? 0 : t == 3 ? -1 : 1);
+  EXPECT_EQ(islands.bodies(0).size(), 1u);
+  EXPECT_EQ(islands.dofs(1).front().begin, model.trees[4].firstDof);
+}
+
 }  // namespace
 }  // namespace softgauss::test

@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include "softgauss/engine/islands/islands.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/scene.hpp"
 

@@ -65,7 +65,7 @@ TEST(BodyObjective, HasTheGradientOfMatrices) {
     Scene s = bodyScene(seed, Cone::pyramidal);
     Random random(seed);
     const VectorX a = random.vector(s.model.nv, 10.0);
-    s.data->bodies.divide(s.model, s.data->inertia, s.data->constraints);
+    s.data->bodies.divide(s.model, s.data->inertia, s.data->active, s.data->constraints);
     VectorX g(s.model.nv);
     for (int i = 0; i < s.data->bodies.islands.size(); ++i) {
       BodyObjective objective(s.model, *s.data, i);
