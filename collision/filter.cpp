@@ -98,6 +98,16 @@ bool adjacentThroughParents(const std::vector<int>& parents, int a, int b) {
   return parents[static_cast<std::size_t>(a)] == b || parents[static_cast<std::size_t>(b)] == a;
 }
 
+/// Into the order of PairFilter::pairs.
+void sortPairs(const Model& model, std::vector<GeometryPair>& pairs) {
+  const auto rank = [&](const GeometryPair& p) {
+    return std::make_pair(!isPlane(model.geometries[static_cast<std::size_t>(p.a)]),
+                          std::make_pair(p.a, p.b));
+  };
+  std::sort(pairs.begin(), pairs.end(),
+            [&](const GeometryPair& x, const GeometryPair& y) { return rank(x) < rank(y); });
+}
+
 }  // namespace
 
 Effect contactEffect(const Model& model, int bodyA, int bodyB) {
@@ -110,15 +120,6 @@ Effect contactEffect(const Model& model, int bodyA, int bodyB) {
 GeometryPair inOrder(const Model& model, int i, int j) {
   const auto kind = [&](int g) { return model.geometries[static_cast<std::size_t>(g)].shape.kind; };
   return kind(j) < kind(i) ? GeometryPair{j, i} : GeometryPair{i, j};
-}
-
-void sortPairs(const Model& model, std::vector<GeometryPair>& pairs) {
-  const auto rank = [&](const GeometryPair& p) {
-    return std::make_pair(!isPlane(model.geometries[static_cast<std::size_t>(p.a)]),
-                          std::make_pair(p.a, p.b));
-  };
-  std::sort(pairs.begin(), pairs.end(),
-            [&](const GeometryPair& x, const GeometryPair& y) { return rank(x) < rank(y); });
 }
 
 PairFilter makePairFilter(const Model& model, const InitialDistance& initialDistance,

@@ -75,8 +75,6 @@ PairFilter makePairFilter(const Model& model, const InitialDistance& initialDist
 
 /// The pair of two geometries, ordered by kind.
 GeometryPair inOrder(const Model& model, int i, int j);
-/// Into the order of PairFilter::pairs.
-void sortPairs(const Model& model, std::vector<GeometryPair>& pairs);
 
 /// The effect that makes contacts between two bodies, of which at least one moves.
 Effect contactEffect(const Model& model, int bodyA, int bodyB);

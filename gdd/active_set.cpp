@@ -211,7 +211,7 @@ void ActiveSet::finish(const Model& model, const ControlLimits& limits, const Go
   constexpr int kCorrections = 3;
   constexpr double kRounding = 1e-13;
   const double scale = std::max({1.0, largest(dofs_, data.forces.c), largest(dofs_, force_)});
-  setAppliedForce(force_, data.forces);
+  setAppliedForce(dofs_, force_, data.forces);
   bool changed = false, anew = false, searched = false;
   for (int k = 0;; ++k) {
     data.constraints.setResidual(path_.a);
@@ -307,7 +307,7 @@ GddReport ActiveSet::solve(const Model& model, GoalCost& cost, const ControlLimi
   searchAge_ = 0;
   searchWait_ = 1;
   if (model.nv == 0) return report_;
-  badDof_ = limits.firstBad(model.nv);
+  badDof_ = limits.firstBad(model.nv, data.active.dofs());
   if (badDof_ >= 0) {
     report_.status = GddStatus::badLimits;
     return report_;
@@ -380,7 +380,7 @@ bool ActiveSet::startAgain(const Model& model, const GoalCost& cost, const Contr
     u_ = first_.u;
     breakpoints_ = first_.breakpoints;
     cell_.force(u_, force_);
-    setAppliedForce(force_, data.forces);
+    setAppliedForce(dofs_, force_, data.forces);
     data.constraints.setResidual(path_.a);
     data.constraints.evaluate(changed);
   }

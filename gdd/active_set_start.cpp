@@ -29,7 +29,7 @@ double ActiveSet::moveTo(const Model& model, const GoalCost& cost, const VectorX
                          Data& data) {
   u_ = u_.cwiseMax(lower_).cwiseMin(upper_);
   cell_.force(u_, force_);
-  setAppliedForce(force_, data.forces);
+  setAppliedForce(dofs_, force_, data.forces);
   if (isRefused(forwardDynamics(model, guess, data))) {
     badDof_ = data.stats.badDof;
     return kInfinity;
@@ -189,14 +189,16 @@ GddStatus ActiveSet::start(const Model& model, const GoalCost& cost, const Contr
     value = moveAlongPath(cost, warm.gddA, data);
   }
   if (!std::isfinite(value)) value = moveTo(model, cost, known_ ? &warm.gddA : nullptr, data);
-  setAppliedForce(force_, data.forces);
+  setAppliedForce(dofs_, force_, data.forces);
   return std::isfinite(value) ? GddStatus::converged : GddStatus::notFinite;
 }
 
 void ActiveSet::keepWarmStart(WarmStart& warm) const {
-  warm.gddA = path_.a;
+  for (VectorX* x : {&warm.gddA, &warm.control, &warm.multipliers})
+    if (x->size() != force_.size()) x->setZero(force_.size());
+  copy(dofs_, path_.a, warm.gddA);
   cell_.place(u_, warm.control);
-  warm.multipliers.setZero(force_.size());
+  setZero(dofs_, warm.multipliers);
   warm.breakpoints = breakpoints_;
   warm.gddSearchAge.assign(trees_, 0);
   warm.gddSearchWait.assign(trees_, 1);

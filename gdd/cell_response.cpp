@@ -271,7 +271,8 @@ void CellResponse::pick(const VectorX& y, VectorX& u) const {
 }
 
 void CellResponse::place(const VectorX& u, VectorX& y) const {
-  y = fixed_;
+  y.resize(fixed_.size());
+  copy(dofs_, fixed_, y);
   for (int i = 0; i < columns(); ++i) y[driven_[i]] = u[i];
 }
 

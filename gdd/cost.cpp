@@ -50,7 +50,8 @@ void addRow(Segments dofs, double scale, const MatrixX& rows, std::size_t i, Vec
 
 }  // namespace
 
-void GoalCost::clear(const ForceMetric& R) {
+void GoalCost::clear(const ForceMetric& R, Segments dofs) {
+  addedDofs_.assign(dofs.begin(), dofs.end());
   select(-1);
   rows_.clear();
   share_ = 1.0;
@@ -59,13 +60,11 @@ void GoalCost::clear(const ForceMetric& R) {
   denseWeight_.clear();
   denseTarget_.clear();
   sides_.clear();
-  dofWeight_.setZero();
-  dofOffset_.setZero();
+  for (VectorX* x : {&dofWeight_, &dofOffset_, &metricSlope_}) setZero(dofs, *x);
   controlCost_.set(R);
   functions_.clear();
   forces_.clear();
   metricWeight_ = 0.0;
-  metricSlope_.setZero();
 }
 
 void GoalCost::reserve(int controls, int contacts) {

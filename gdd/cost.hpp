@@ -27,6 +27,7 @@
 
 #include "softgauss/engine/constraints/block_jacobian.hpp"
 #include "softgauss/engine/constraints/row_selection.hpp"
+#include "softgauss/engine/core/segment_vectors.hpp"
 #include "softgauss/engine/dynamics/centroidal.hpp"
 #include "softgauss/engine/dynamics/tree_islands.hpp"
 #include "softgauss/gdd/contact_force_cost.hpp"
@@ -61,6 +62,7 @@ class GoalCost {
         controlCost_(dofs),
         metricSlope_(VectorX::Zero(dofs)),
         allDofs_{0, dofs},
+        addedDofs_{allDofs_},
         scratch_(VectorX::Zero(dofs)),
         workspace_(dofs) {}
 
@@ -70,7 +72,9 @@ class GoalCost {
   /// Makes room for one-sided terms of all joints, and for so many contacts in terms of forces.
   void reserve(int controls, int contacts);
   /// No goals; force costs ½ gᵀR g.
-  void clear(const ForceMetric& R = {});
+  void clear(const ForceMetric& R = {}) { clear(R, {&allDofs_, 1}); }
+  /// The same where goals are of these dofs alone, of whole trees.
+  void clear(const ForceMetric& R, Segments dofs);
   /// From here on weights of rows, dofs and metric count so many times; 1 after clear().
   void setShare(double share) { share_ = share; }
   /// ½ weight |J a − target|² for the world acceleration J a of the point p_WP of `body`.
@@ -93,9 +97,10 @@ class GoalCost {
   template <class Target>
   void addMetric(double weight, const TreeMatrix& M, const Eigen::MatrixBase<Target>& target) {
     metricWeight_ += share_ * weight;
-    workspace_.dofs = -share_ * weight * target;
-    M.multiply(workspace_.dofs, scratch_);
-    metricSlope_ += scratch_;
+    for (const Segment s : addedDofs_)
+      part(workspace_.dofs, s) = -share_ * weight * target.segment(s.begin, s.end - s.begin);
+    M.multiply(addedDofs_, workspace_.dofs, scratch_);
+    for (const Segment s : addedDofs_) part(metricSlope_, s) += part(scratch_, s);
   }
 
   /// The control cost counts from `force` (nv) [N, N m], not from 0.
@@ -210,7 +215,8 @@ class GoalCost {
   double metricWeight_ = 0.0;            ///< m
   VectorX metricSlope_;                  ///< M o
   Segment allDofs_;
-  int island_ = -1;  ///< that is selected
+  std::vector<Segment> addedDofs_;  ///< of which goals are
+  int island_ = -1;                 ///< that is selected
   const TreeIslands* islands_ = nullptr;
   SegmentSets points_, denseRows_;  ///< of each island
   int forcesIsland_ = -1;

@@ -13,4 +13,9 @@ void Goal::errors(const GoalContext& context, const ContactForces&,
   out.push_back(distance);
 }
 
+void wake(const Model& model, const Goal& goal, SleepState& sleep) {
+  for (int t = 0; t < static_cast<int>(model.trees.size()); ++t)
+    if (goal.concerns(model, t)) softgauss::wake(sleep, t);
+}
+
 }  // namespace softgauss::gdd

@@ -67,6 +67,8 @@ class Goal {
   bool actsAt(double time) const { return startTime <= time && time < endTime; }
   /// Whether its wish stays where it is at this time [s]: no target that moves.
   virtual bool steadyAt(double) const { return true; }
+  /// Whether it may be met at rest at this time [s]: it asks for no motion.
+  virtual bool restsAt(double time) const { return steadyAt(time); }
   /// As the summary names it, e.g. "reach right_hand".
   virtual std::string name() const = 0;
   /// Adds the cost of this goal at the present state.
@@ -95,5 +97,8 @@ class Goal {
     return (m->p_WTarget - m->p_WPoint).norm();
   }
 };
+
+/// Wakes the trees that a goal concerns: to be called after it was changed.
+void wake(const Model& model, const Goal& goal, SleepState& sleep);
 
 }  // namespace softgauss::gdd

@@ -25,11 +25,11 @@ GoalDirectedController::GoalDirectedController(const Model& model)
 namespace {
 
 /// A warm start that the solver cannot begin from: it begins without.
-bool refuses(const ActiveSet&, const WarmStart& warm) {
-  return warm.gddValid && !(warm.gddA.allFinite() && warm.control.allFinite());
+bool refuses(const ActiveSet&, const WarmStart& warm, Segments dofs) {
+  return warm.gddValid && !(allFinite(dofs, warm.gddA) && allFinite(dofs, warm.control));
 }
-bool refuses(const AugmentedLagrangian&, const WarmStart& warm) {
-  return warm.gddValid && !(warm.gddA.allFinite() && warm.multipliers.allFinite());
+bool refuses(const AugmentedLagrangian&, const WarmStart& warm, Segments dofs) {
+  return warm.gddValid && !(allFinite(dofs, warm.gddA) && allFinite(dofs, warm.multipliers));
 }
 
 /// What the islands of one control may take together: each gets its share of what the ones before
@@ -139,16 +139,16 @@ const VectorX* GoalDirectedController::solve(Solver& used, const Model& model, c
   using Clock = std::chrono::steady_clock;
   const Clock::time_point start = Clock::now();
   report = {};
-  if (const BadInput bad = limits.badInput(model.nv)) {
+  if (const BadInput bad = limits.badInput(model.nv, data.active.dofs())) {
     report.status = GddStatus::badLimits;
     data.stats.refuse(model, bad);
     return nullptr;
   }
   // A disturbance is not the control's: it belongs to what the control has to cope with.
   for (const Segment s : data.active.dofs()) part(data.forces.c, s) -= part(data.forces.tau, s);
-  cost_.clear(forceMetric);
+  cost_.clear(forceMetric, data.active.dofs());
   addGoals(model, state, data, cost_);
-  data.stats.invalidWarmStarts += refuses(used, state.warmstart);
+  data.stats.invalidWarmStarts += refuses(used, state.warmstart, data.active.dofs());
   const bool solved = solveIslands(used, model, state, data);
   const GddReport own = report;
   report.addEarlier(earlier_);
@@ -160,7 +160,7 @@ const VectorX* GoalDirectedController::solve(Solver& used, const Model& model, c
   }
 
   setControl(data);
-  setAppliedForce(control, data.forces);
+  setAppliedForce(data.active.dofs(), control, data.forces);
   if (data.stages)  // an integrator that looks at the dynamics again
     held_.tau = outside_.size() == model.nv ? VectorX(outside_ + control) : control;
   return &solution_.a;
@@ -220,42 +220,38 @@ void GoalDirectedController::setControl(const Data& data) {
   if (data.active.all()) {
     limits.clamp(solution_.force, control, coordinates_);
   } else {
-    limits.clamp(solution_.force, clamped_, clampedCoordinates_);
-    copy(data.active.dofs(), clamped_, control);
-    copy(data.active.dofs(), clampedCoordinates_, coordinates_);
+    limits.clamp(data.active.dofs(), solution_.force, control, coordinates_);
   }
   limits.commands(coordinates_, commands);
 }
 
 namespace {
 
-/// Whether a goal acts at a time, 1, and its target moves, 2.
+/// Whether a goal acts at a time, 1, and asks for motion, 2.
 int acting(const Goal& goal, double time) {
-  return !goal.actsAt(time) ? 0 : goal.steadyAt(time) ? 1 : 2;
+  return !goal.actsAt(time) ? 0 : goal.restsAt(time) ? 1 : 2;
 }
 
 }  // namespace
 
-/// It does not act on the tree; or else may let it rest, and what it wants stays where it is.
+/// It does not act on the tree; or else may let it rest, and what it wants stays where it is. Where
+/// all is one problem, nobody may be left out.
 bool GoalDirectedController::letsSleep(const Model& model, int tree, double time) const noexcept {
+  if (islands_.isOneProblem()) return false;
   if (solution_.controlled[idx(tree)] == 0) return true;
   return model.options.sleep.controlled && std::ranges::none_of(goals, [&](const auto& goal) {
            return acting(*goal, time) == 2 && goal->concerns(model, tree);
          });
 }
 
-bool GoalDirectedController::markChanged(const Model& model, double time,
+bool GoalDirectedController::markChanged(const Model& model, double before, double now,
                                          std::span<std::uint8_t> trees) noexcept {
   bool any = false;
-  const auto mark = [&](const Goal* goal) {
+  for (const auto& goal : goals) {
+    if (acting(*goal, now) == acting(*goal, before)) continue;
     for (std::size_t t = 0; t < trees.size(); ++t)
-      if (goal ? goal->concerns(model, static_cast<int>(t)) : model.trees[t].actuated)
-        trees[t] = 1, any = true;
-  };
-  for (const Goal* goal : changed_) mark(goal);
-  const double before = time - model.options.timestep;
-  for (const auto& goal : goals)
-    if (acting(*goal, time) != acting(*goal, before)) mark(goal.get());
+      if (goal->concerns(model, static_cast<int>(t))) trees[t] = 1, any = true;
+  }
   return any;
 }
 
@@ -273,15 +269,13 @@ void GoalDirectedController::takeSettings(const GoalDirectedController& from) {
 
 SolveStatus GoalDirectedController::step(const Model& model, const Input& input, State& state,
                                          Data& data, ContactSource* contacts) noexcept {
-  if (data.stats.refuse(model, findBadInput(model, input, state))) return data.stats.status;
+  if (data.stats.refuse(model, findBadInput(model, input))) return data.stats.status;
   held_ = input;
   markControlled(model, held_.controlled);
   outside_ = input.tau;
   begin();
   report = {};
-  const SolveStatus status = softgauss::step(model, held_, state, data, contacts, this);
-  if (!isRefused(status)) changed_.clear();
-  return status;
+  return softgauss::step(model, held_, state, data, contacts, this);
 }
 
 }  // namespace softgauss::gdd

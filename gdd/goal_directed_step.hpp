@@ -85,12 +85,6 @@ class GoalDirectedController final : public StepControl {
   SolveStatus step(const Model& model, const Input& input, State& state, Data& data,
                    ContactSource* contacts) noexcept;
 
-  /// To be called after goals have been added, removed or changed, or the limits, the control cost
-  /// or options have been: robots that sleep under their goals wake (Sleep::controlled).
-  void changed() { changed_.assign(1, nullptr); }
-  /// To be called after this goal has been given another place, weight or time: those wake that it
-  /// concerns.
-  void changed(const Goal& goal) { changed_.push_back(&goal); }
   /// What those that sleep keep, for a controller of another process that goes on with them.
   template <class Archive>
   void archive(Archive& a) {
@@ -109,7 +103,7 @@ class GoalDirectedController final : public StepControl {
   bool acts() const noexcept override { return limits.open(); }
   bool letsSleep(const Model& model, int tree, double time) const noexcept override;
   std::span<const std::uint8_t> wanted() const noexcept override { return islands_.wanted(); }
-  bool markChanged(const Model& model, double time,
+  bool markChanged(const Model& model, double before, double now,
                    std::span<std::uint8_t> trees) noexcept override;
   void keep(WarmStart& warmstart, const TreeSelection& trees) noexcept override;
   /// cost ← that of the price of force, the goals that act and the motion limits, at the stages in
@@ -139,13 +133,11 @@ class GoalDirectedController final : public StepControl {
   GddReport earlier_;  ///< parts of the step that are taken, and what was spent beside
   GoalCost cost_;
   GravityCompensation holding_;
-  WarmStart between_;                     ///< from one solve to the next of a step
-  VectorX coordinates_;                   ///< y of the control (nv)
-  VectorX clamped_, clampedCoordinates_;  ///< (nv) scratch
-  std::vector<const Goal*> changed_;      ///< since the last step; null: all
-  Input held_;       ///< over the step, with what is controlled; its τ is the control's at the
-                     ///< end
-  VectorX outside_;  ///< τ of the caller's input (nv), or empty
+  WarmStart between_;    ///< from one solve to the next of a step
+  VectorX coordinates_;  ///< y of the control (nv)
+  Input held_;           ///< over the step, with what is controlled; its τ is the control's at the
+                         ///< end
+  VectorX outside_;      ///< τ of the caller's input (nv), or empty
 };
 
 }  // namespace softgauss::gdd

@@ -26,6 +26,7 @@ void GoalIslands::findWanted(const Model& model, bool together, const Data& data
 bool GoalIslands::find(const Model& model, const ControlLimits& limits, bool together,
                        GoalCost& cost, Data& data) {
   const TreeIslands& islands = data.bodies.islands;
+  isOneProblem_ = model.trees.size() > 1 && (together || cost.hasFunctions());
   together = together || model.trees.size() == 1;
   if (!together) {
     data.bodies.tied.clear();

@@ -34,6 +34,8 @@ class GoalIslands {
   int size() const { return static_cast<int>(controls_.size()); }
   /// Whether there is one, of all trees.
   bool isWhole() const { return isWhole_; }
+  /// Whether that is so whatever couples them, of several trees: by the solver, or by functions.
+  bool isOneProblem() const { return isOneProblem_; }
   /// (trees) the island of each, −1: none.
   const std::vector<int>& ofTree() const { return ofTree_; }
   /// Whether a control acts on an island, or there is no other.
@@ -53,7 +55,7 @@ class GoalIslands {
 
   std::vector<int> ofTree_;
   std::vector<std::uint8_t> wanted_;
-  bool isWhole_ = true;
+  bool isWhole_ = true, isOneProblem_ = false;
   std::vector<int> controls_;  ///< (islands)
 };
 

@@ -11,7 +11,8 @@ GravityCompensation::GravityCompensation(const Model& model)
 /// force ← c(q, 0).
 void GravityCompensation::setStatics(const Model& model, const State& state, const Data& data) {
   const SmoothForces& smooth = data.forces;
-  force_.setZero(model.nv);
+  for (VectorX* x : {&force_, &x_, &Px_})
+    if (x->size() != model.nv) x->setZero(model.nv);
   for (const Segment s : data.active.dofs()) {
     part(force_, s) = part(smooth.c, s) - part(smooth.bias, s);
     if (data.plan.hasDamping())
@@ -44,7 +45,7 @@ bool GravityCompensation::findFree(const Model& model, const ControlLimits& limi
 
 /// x ← the free fall of what floats, joints at rest.
 void GravityCompensation::setFall(const Model& model, const Data& data) {
-  x_.setZero(force_.size());
+  setZero(data.active.dofs(), x_);
   if (!data.plan.gravity) return;
   for (const Segment s : data.active.bodies())
     for (int b = s.begin; b < s.end; ++b) {
@@ -78,7 +79,7 @@ void GravityCompensation::stand(const Model& model, const ControlLimits& limits,
     rows.evaluate(changed);
     rows.addCurvature(factor_);
   }
-  x_.setZero(force_.size());
+  setZero(dofs, x_);
   for (const Segment s : dofs)
     for (int i = s.begin; i < s.end; ++i)
       if (free_[i])
@@ -88,14 +89,14 @@ void GravityCompensation::stand(const Model& model, const ControlLimits& limits,
   if (!factor_.factor(model, data.kinematics)) return;  // not finite: the solver will say so
   factor_.solve(model, data.kinematics, x_, motions_);
 
-  Px_.setZero(force_.size());
+  setZero(dofs, Px_);
   if (any) {
     rows.setRay(x_);
     rows.addForceRate(Px_);  // −G x
   }
-  force_ -= kStiffer * Px_;
+  for (const Segment s : dofs) part(force_, s) -= kStiffer * part(Px_, s);
   data.inertia.hat().multiply(dofs, x_, Px_);
-  force_ += Px_;
+  for (const Segment s : dofs) part(force_, s) += part(Px_, s);
 }
 
 const VectorX& GravityCompensation::compute(const Model& model, const State& state,

@@ -20,16 +20,18 @@ void IslandSolutions::reserve(int breakpoints) {
     list->reserve(idx(breakpoints));
 }
 
-void IslandSolutions::reset(const Model& model, const State& state, const ControlLimits& limits) {
+void IslandSolutions::reset(const Model& model, const State& state, const ControlLimits& limits,
+                            Segments dofs) {
   const WarmStart& last = state.warmstart;
-  if (last.valid && last.a.size() == model.nv && last.a.allFinite())
-    a = last.a;
+  if (last.valid && last.a.size() == model.nv && allFinite(dofs, last.a))
+    copy(dofs, last.a, a);
   else
-    a.setZero(model.nv);
-  warm.gddA = a;
-  warm.multipliers.setZero(model.nv);
-  limits.clamp(warm.multipliers, force, coordinates_);
-  warm.control = coordinates_;
+    setZero(dofs, a);
+  for (VectorX* x : {&warm.gddA, &warm.multipliers, &warm.control})
+    if (x->size() != model.nv) x->setZero(model.nv);
+  copy(dofs, a, warm.gddA);
+  setZero(dofs, warm.multipliers);
+  limits.clamp(dofs, warm.multipliers, force, warm.control);
   warm.gddSearchAge.assign(model.trees.size(), 0);
   warm.gddSearchWait.assign(model.trees.size(), 1);
   controlled.assign(model.trees.size(), 0);
@@ -49,7 +51,7 @@ void IslandSolutions::begin(const Model& model, const State& state, const Contro
   keeps_.assign(idx(islands.size()), again ? 1 : 0);
   ofTree_ = islands.ofTree();
   if (!again) {
-    if (!islands.isWhole()) reset(model, state, limits);
+    if (!islands.isWhole()) reset(model, state, limits, data.active.dofs());
     return;
   }
   for (const int of : data.active.trees()) {
@@ -95,7 +97,7 @@ void IslandSolutions::take(const Model& model, int island, const SequentialQuadr
     known.assign(model.trees.size(), residual ? 1 : 0);
     return;
   }
-  solved.keepWarmStart(found_);
+  solved.keepWarmStart(data.active, found_);
   copy(dofs, solved.acceleration(), a);
   copy(dofs, solved.force(), force);
   copy(dofs, found_.gddA, warm.gddA);

@@ -44,15 +44,14 @@ class IslandSolutions {
     GddReport report;
     Segment breakpoints;
   };
-  void reset(const Model& model, const State& state, const ControlLimits& limits);
+  void reset(const Model& model, const State& state, const ControlLimits& limits, Segments dofs);
   void appendBreakpoints(int island, const std::vector<BreakpointKey>& from, Segment of);
 
   std::vector<Island> islands_, before_;
   std::vector<std::uint8_t> keeps_;  ///< (islands)
   std::vector<int> ofTree_;          ///< (trees) the island, of the last begin()
   std::vector<BreakpointKey> breakpointsBefore_;
-  WarmStart found_;      ///< scratch
-  VectorX coordinates_;  ///< (nv) scratch
+  WarmStart found_;  ///< scratch
 };
 
 }  // namespace softgauss::gdd

@@ -62,16 +62,18 @@ void MotionLimits::addCost(const GoalContext& context, const ControlLimits& limi
                      (speed - allowed) / time + falls * std::max(0.0, speed) / allowed);
   };
   auto range = model.ranges.begin();
-  for (int dof = 0; dof < model.nv; ++dof) {
+  const auto boundAll = [&](int dof) {
     const int body = model.dofs[dof].body;
-    if (model.bodies[body].dofs != 1 || !isDriven(model, limits, dof)) continue;
+    if (model.bodies[body].dofs != 1 || !isDriven(model, limits, dof)) return;
     while (range != model.ranges.end() && range->body < body) ++range;
     const bool ranged = range != model.ranges.end() && range->body == body;
     const double q = context.state.q[model.bodies[body].q];
     const double gained = gain(context, limits, dof);
     bound(dof, 1.0, ranged ? range->upper - q : kInfinity, gained);
     bound(dof, -1.0, ranged ? q - range->lower : kInfinity, gained);
-  }
+  };
+  for (const Segment s : context.data.active.dofs())
+    for (int dof = s.begin; dof < s.end; ++dof) boundAll(dof);
 }
 
 }  // namespace softgauss::gdd

@@ -60,4 +60,17 @@ void ControlLimits::clamp(const VectorX& g, VectorX& tau, VectorX& y) const {
     tau = y;
 }
 
+void ControlLimits::clamp(Segments dofs, const VectorX& g, VectorX& tau, VectorX& y) const {
+  bool inside = true;
+  for (const Segment s : dofs)
+    for (int i = s.begin; i < s.end; ++i) {
+      const double asked = coordinate(i, g);
+      y[i] = std::min(std::max(asked, lower[i]), upper[i]);
+      inside &= y[i] == asked;
+    }
+  for (const Segment s : dofs)
+    for (int i = s.begin; i < s.end; ++i)
+      tau[i] = inside || isPlain(i) ? (inside ? g[i] : y[i]) : transmission->T().row(i).dot(y);
+}
+
 }  // namespace softgauss::gdd

@@ -45,18 +45,24 @@ struct ControlLimits {
   /// The first coordinate whose bounds leave no finite value, or −1: a box has lower ≤ upper, lower
   /// < ∞ and upper > −∞ (nv).
   int firstBad(int dofs) const {
+    const Segment all{0, dofs};
+    return firstBad(dofs, {&all, 1});
+  }
+  /// The same of these.
+  int firstBad(int dofs, Segments coordinates) const {
     if (lower.size() != dofs || upper.size() != dofs) return 0;
-    for (int i = 0; i < dofs; ++i)
-      if (!(lower[i] <= upper[i] && lower[i] < kInfinity && upper[i] > -kInfinity)) return i;
+    for (const Segment s : coordinates)
+      for (int i = s.begin; i < s.end; ++i)
+        if (!(lower[i] <= upper[i] && lower[i] < kInfinity && upper[i] > -kInfinity)) return i;
     return -1;
   }
   /// firstBad() as a step tells it.
-  BadInput badInput(int dofs) const {
+  BadInput badInput(int dofs, Segments coordinates) const {
     for (const VectorX* x : {&lower, &upper})
       if (x->size() != dofs)
         return {BadInputKind::controlLimitsSize, -1, static_cast<double>(x->size()),
                 static_cast<double>(dofs)};
-    const int bad = firstBad(dofs);
+    const int bad = firstBad(dofs, coordinates);
     return bad < 0 ? BadInput{} : BadInput{BadInputKind::controlLimits, bad, 0.0, 0.0};
   }
   /// Whether the box leaves anything to choose.
@@ -124,6 +130,8 @@ struct ControlLimits {
   }
   /// tau ← the force within the limits that has the coordinates of g, clamped; y ← those.
   void clamp(const VectorX& g, VectorX& tau, VectorX& y) const;
+  /// The same of these dofs, which no actuator pulls together with others.
+  void clamp(Segments dofs, const VectorX& g, VectorX& tau, VectorX& y) const;
   VectorX clamp(const VectorX& g) const {
     VectorX tau, y;
     clamp(g, tau, y);

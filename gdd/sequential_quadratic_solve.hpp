@@ -52,7 +52,9 @@ inline void copySolution(const WarmStart& from, WarmStart& to) {
 }
 /// The same of these trees.
 inline void copySolution(const WarmStart& from, const TreeSelection& trees, WarmStart& to) {
-  if (trees.all()) return copySolution(from, to);
+  if (trees.all() || to.gddA.size() != from.gddA.size() ||
+      to.gddSearchAge.size() != from.gddSearchAge.size())
+    return copySolution(from, to);
   for (VectorX WarmStart::*x : {&WarmStart::gddA, &WarmStart::multipliers, &WarmStart::control})
     copy(trees.dofs(), from.*x, to.*x);
   for (const int t : trees.trees()) {
@@ -87,7 +89,7 @@ class SequentialQuadraticSolve {
     if (!cost.hasFunctions()) {
       solves_ = 1;
       const GddReport report = solveOnce(solver, model, cost, limits, data, warm);
-      accept(solver);
+      accept(solver, data.active);
       return report;
     }
     warm_ = next_ = warm;
@@ -119,7 +121,7 @@ class SequentialQuadraticSolve {
         best = value;
         bestGap = gap;
         bestStatus = report.status;
-        accept(solver);
+        accept(solver, data.active);
         const GddReport before = total;
         total = report;
         total.status = GddStatus::iterationLimit;
@@ -158,6 +160,10 @@ class SequentialQuadraticSolve {
   bool mayGoOn() const { return iterationsLeft > 0 && !deadline.isOver(); }
   /// Writes the solution where the next solve starts from.
   void keepWarmStart(WarmStart& warm) const { copySolution(warm_, warm); }
+  /// The same of these trees.
+  void keepWarmStart(const TreeSelection& trees, WarmStart& warm) const {
+    copySolution(warm_, trees, warm);
+  }
 
  private:
   template <class Solver>
@@ -172,9 +178,9 @@ class SequentialQuadraticSolve {
     return report;
   }
   template <class Solver>
-  void accept(const Solver& solver) {
-    a_ = solver.acceleration();
-    force_ = solver.force();
+  void accept(const Solver& solver, const TreeSelection& trees) {
+    copy(trees.dofs(), solver.acceleration(), a_);
+    copy(trees.dofs(), solver.force(), force_);
     solver.keepWarmStart(warm_);
   }
   static VectorX freeAcceleration(const Data& data);

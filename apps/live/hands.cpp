@@ -39,8 +39,13 @@ Hands::Hands(const RunParts& run, bool passive, Keyframes::Named states)
 }
 
 std::string Hands::apply(const Event& event) {
+  std::string refused = act(event);
+  wakeAll(run_.state.sleep);  // whomever it may concern, in the state that there is now
+  return refused;
+}
+
+std::string Hands::act(const Event& event) {
   Drag* const drag = held();
-  wakeAll(run_.state.sleep);  // whomever it may concern
   switch (event.kind) {
     case EventKind::grab:
       return grab(event);

@@ -75,6 +75,7 @@ class Hands {
   static constexpr int kDrags = 8;
 
  private:
+  std::string act(const Event& event);
   std::string grab(const Event& event);
   std::string push(const Event& event);
   std::string setGoal(const Event& event);

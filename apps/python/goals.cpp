@@ -162,7 +162,7 @@ class Handle {
       throw py::value_error(std::string(what) + ": found " + numberText(value) +
                             ", expected a finite number >= 0");
     setting(place, what) = value;
-    held_.sim().controller().changed(*goal_);
+    gdd::wake(held_.sim().model(), *goal_, held_.sim().state().sleep);
   }
 
   void setWeight(double weight) const {
@@ -200,7 +200,7 @@ class Handle {
     if (!x.allFinite())
       throw py::value_error(std::string(what) + ": found NaN or ∞, expected finite numbers");
     for (Eigen::Index i = 0; i < x.size(); ++i) *numbers[static_cast<std::size_t>(i)] = x[i];
-    held_.sim().controller().changed(*goal_);
+    gdd::wake(held_.sim().model(), *goal_, held_.sim().state().sleep);
   }
 
   Targets some(Targets numbers, const char* what) const {

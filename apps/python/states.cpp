@@ -92,14 +92,16 @@ std::size_t States::bytes() const {
   std::size_t sum = bytesOf(states_) + bytesOf(grids_);
   for (const State& s : states_) {
     const WarmStart& w = s.warmstart;
-    sum +=
-        bytesOfAll(s.q, s.v, s.a, w.a, w.gddA, w.multipliers, w.control) + bytesOf(w.breakpoints);
+    sum += bytesOfAll(s.q, s.v, s.a, w.a, w.gddA, w.multipliers, w.control, s.sleep.island,
+                      s.sleep.restTime, s.sleep.restSpeed, s.sleep.restVelocity) +
+           bytesOf(w.breakpoints);
   }
   return sum;
 }
 
 void States::giveTo(SimulationParts& parts, long i) const {
   parts.state = states_[static_cast<std::size_t>(i)];
+  if (parts.data->sleepers) parts.data->sleepers->forgetSeen();  // whoever ran here before
   parts.grid = grids_[static_cast<std::size_t>(i)];
 }
 

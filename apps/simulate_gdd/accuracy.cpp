@@ -153,7 +153,7 @@ std::string chooseAccuracy(const SimulateOptions& options, Scene& scene) {
   Trials trials(options, scene);
   if (scene.model.options.sleep.enabled)
     throw AccuracyError(fmt::format(
-        "--accuracy {:g}: cannot be promised: what sleeps is not followed, expected no --sleep",
+        "--accuracy {:g}: cannot be promised: what sleeps is not followed, expected sleep: none",
         accuracy));
   const RunChoice run = chooseForRun(accuracy, options.duration,
                                      [&](double simulated) { return trials.over(simulated); });

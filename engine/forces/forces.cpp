@@ -48,4 +48,9 @@ void setAppliedForce(const VectorX& tau, SmoothForces& stage) {
   stage.net = tau - stage.c;
 }
 
+void setAppliedForce(Segments dofs, const VectorX& tau, SmoothForces& stage) {
+  copy(dofs, tau, stage.tau);
+  for (const Segment s : dofs) part(stage.net, s) = part(tau, s) - part(stage.c, s);
+}
+
 }  // namespace softgauss

@@ -48,5 +48,7 @@ void computeSmoothForces(const Model& model, const Plan& plan, const State& stat
 
 /// Replaces the applied force, e.g. by a control that was found after the other forces.
 void setAppliedForce(const VectorX& tau, SmoothForces& stage);
+/// The same on these dofs.
+void setAppliedForce(Segments dofs, const VectorX& tau, SmoothForces& stage);
 
 }  // namespace softgauss

@@ -149,7 +149,6 @@ enum class ConstraintModel : std::uint8_t {
   softgauss  ///< they know the load that they support and the step that resolves them
 };
 
-/// Choices that hold for the whole simulation.
 /// What is at rest is left out of steps (step/sleep.hpp).
 struct Sleep {
   bool enabled = false;
@@ -159,6 +158,7 @@ struct Sleep {
   bool controlled = false;
 };
 
+/// Choices that hold for the whole simulation.
 struct Options {
   double timestep = 0.002;                     ///< h [s]
   Vector3 gravity = Vector3(0.0, 0.0, -9.81);  ///< [m/s²], world

@@ -32,7 +32,8 @@ bool fits(const Model& model, const SleepState& sleep) {
                              }) &&
          std::ranges::all_of(sleep.restTime, isTime) &&
          std::ranges::all_of(sleep.restSpeed, isTime) && sleep.restVelocity.allFinite() &&
-         sleep.setPoint.allFinite() && sleep.setPointRate.allFinite();
+         sleep.setPoint.allFinite() && sleep.setPointRate.allFinite() &&
+         !std::isnan(sleep.lastTime);
 }
 
 }  // namespace

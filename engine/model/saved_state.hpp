@@ -45,8 +45,8 @@ void archive(Archive& a, WarmStart& warmstart) {
 }
 template <class Archive>
 void archive(Archive& a, SleepState& sleep) {
-  auto& [island, restTime, restSpeed, restVelocity, setPoint, setPointRate] = sleep;
-  a(island, restTime, restSpeed, restVelocity, setPoint, setPointRate);
+  auto& [island, restTime, restSpeed, restVelocity, setPoint, setPointRate, lastTime] = sleep;
+  a(island, restTime, restSpeed, restVelocity, setPoint, setPointRate, lastTime);
 }
 template <class Archive>
 void archive(Archive& a, State& state) {

@@ -82,6 +82,7 @@ std::uint64_t hash(const State& state) {
   if (state.hasAcceleration) mix(h, state.a.data(), state.a.size());
   mix(h, state.connectionForces.data(), state.connectionForces.size());
   for (const int island : state.sleep.island) mixBits(h, static_cast<std::uint64_t>(island));
+  if (!state.sleep.island.empty()) mix(h, &state.sleep.lastTime, 1);
   for (const std::vector<double>* x : {&state.sleep.restTime, &state.sleep.restSpeed})
     mix(h, x->data(), static_cast<Eigen::Index>(x->size()));
   for (const VectorX* x :

@@ -50,8 +50,9 @@ struct SleepState {
   std::vector<double> restTime;   ///< (trees) for which it has been at rest [s]
   std::vector<double> restSpeed;  ///< (trees) of its fastest link when it came to rest [m/s]
   VectorX restVelocity;           ///< (nv) v then
-  /// (nv) of the servos of who sleeps, as they were told last; empty where there are none.
+  /// (nv) of servos, as they were told last; empty where there are none.
   VectorX setPoint, setPointRate;
+  double lastTime = -kInfinity;  ///< at which the last step began [s]; −∞: there was none
 
   bool isAsleep(int tree) const { return !island.empty() && island[idx(tree)] >= 0; }
 };

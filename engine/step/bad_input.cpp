@@ -38,6 +38,8 @@ const char* nameOf(BadInputKind kind) {
       return "the warm start";
     case BadInputKind::tau:
       return "Input::tau";
+    case BadInputKind::sleep:
+      return "State::sleep";
     case BadInputKind::setPoint:
       return "Input::setPoint or Input::setPointRate";
     case BadInputKind::controlled:
@@ -92,6 +94,14 @@ BadInput findBadInput(const Model& model, const Input& input, const State& state
     if (const BadInput bad =
             checkSize(BadInputKind::connectionForces, state.connectionForces, numbers))
       return bad;
+  }
+  if (const SleepState& sleep = state.sleep; !sleep.island.empty()) {
+    const auto trees = static_cast<int>(model.trees.size());
+    const BadInputKind kind = BadInputKind::sleep;
+    if (const BadInput bad = checkSize(kind, sleep.island, trees)) return bad;
+    for (const std::vector<double>* x : {&sleep.restTime, &sleep.restSpeed})
+      if (const BadInput bad = checkSize(kind, *x, trees)) return bad;
+    if (const BadInput bad = checkSize(kind, sleep.restVelocity, model.nv)) return bad;
   }
   const WarmStart& warm = state.warmstart;
   if (warm.valid)

@@ -19,6 +19,7 @@ enum class BadInputKind : std::uint8_t {
   connectionForces,   ///< size of State::connectionForces, where it is not empty
   warmStart,          ///< size of a vector of State::warmstart; of the guess of forwardDynamics()
   tau,                ///< size of Input::tau
+  sleep,              ///< size of a list of State::sleep, where they are not empty
   setPoint,           ///< size of Input::setPoint or Input::setPointRate
   controlled,         ///< size of Input::controlled
   wrench,             ///< the body of one of Input::wrenches

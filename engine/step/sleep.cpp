@@ -49,13 +49,6 @@ double fastestLink(const Model& model, const Kinematics& k, const Tree& tree,
   return fastest;
 }
 
-/// Whether the sizes are those of the model, as State(model) has them.
-bool fits(const Model& model, const SleepState& sleep) {
-  const std::size_t trees = model.trees.size();
-  return sleep.island.size() == trees && sleep.restTime.size() == trees &&
-         sleep.restSpeed.size() == trees && sleep.restVelocity.size() == model.nv;
-}
-
 bool sameBits(Segments entries, const VectorX& x, const VectorX& y) {
   return std::ranges::all_of(entries, [&](Segment s) {
     return std::memcmp(x.data() + s.begin, y.data() + s.begin,
@@ -76,12 +69,29 @@ double asked(const VectorX& input, int dof, double own) {
   return input.size() > 0 ? input[dof] : own;
 }
 
+/// Whether the servos of these dofs are told what they were told in the last step, and no rate;
+/// `sleep` has it from now on.
+bool keepsSetPoints(const Model& model, const Input& input, Segment dofs, SleepState& sleep) {
+  bool same = true;
+  for (int i = dofs.begin; i < dofs.end && sleep.setPoint.size() == model.nv; ++i) {
+    const Servo& servo = model.dofs[idx(i)].servo;
+    if (!servo.exists()) continue;
+    const double place = asked(input.setPoint, i, servo.setPoint);
+    const double rate = asked(input.setPointRate, i, servo.setPointRate);
+    same = same && rate == 0.0 && place == sleep.setPoint[i] && rate == sleep.setPointRate[i];
+    sleep.setPoint[i] = place;
+    sleep.setPointRate[i] = rate;
+  }
+  return same;
+}
+
 }  // namespace
 
 Sleepers::Sleepers(const Model& model)
     : still_(model),
       known_(model.trees.size(), -1),
       q_(model.q0),
+      seenAt_(VectorX::Constant(model.nq, kNaN)),
       marked_(model.trees.size(), 0),
       gyration_(gyrationRadii(model)),
       rotor_(rotorLevers(model)),
@@ -99,7 +109,7 @@ Sleepers::Sleepers(const Model& model)
 
 void Sleepers::select(const Model& model, const State& state, Data& data) {
   const std::vector<int>& island = state.sleep.island;
-  const bool any = fits(model, state.sleep);
+  const bool any = !island.empty();
   if (any ? island == known_ : still_.none()) return;
   known_.assign(model.trees.size(), -1);
   if (any) known_ = island;
@@ -182,11 +192,31 @@ BadInput Sleepers::place(const Model& model, State& state, Data& data, ContactSo
   if (data.parts && data.parts->islands)
     computeKinematics(model, state, data.parts->islands->data.kinematics);
   if (looksForContacts(data, contacts)) contacts->detect(model, data.kinematics, all_);
+  forgetElsewhere(model, state.q);
   q_ = state.q;
   source_ = contacts;
   detections_ = contacts ? contacts->fullDetections() : 0;
   placed_ = true;
   return {};
+}
+
+/// What is kept of a sleeper for others to see is of the place where these Data saw it fall asleep.
+void Sleepers::forgetElsewhere(const Model& model, const VectorX& q) {
+  for (const int t : still_.trees()) {
+    const Tree& tree = model.trees[idx(t)];
+    const Segment at = coordinatesOf(model, tree), dofs{tree.firstDof, tree.dofEnd};
+    if (sameBits({&at, 1}, seenAt_, q)) continue;
+    part(applied_, dofs).setZero();
+    std::erase_if(contacts_, [&](const Snapshot::ContactForce& c) {
+      return treeOf_[idx(c.geometryA)] == t || treeOf_[idx(c.geometryB)] == t;
+    });
+  }
+}
+
+void Sleepers::forgetSeen() {
+  contacts_.clear();
+  applied_.setZero();
+  seenAt_.setConstant(kNaN);
 }
 
 BadInput Sleepers::begin(const Model& model, const Input& input, StepControl* control, State& state,
@@ -196,7 +226,8 @@ BadInput Sleepers::begin(const Model& model, const Input& input, StepControl* co
   if (still_.none()) return {};
   markPushed(model, input, state);
   markServoed(model, input, state.sleep);
-  if (control) anyMarked_ |= control->markChanged(model, state.time, marked_);
+  if (control && state.sleep.lastTime > -kInfinity)
+    anyMarked_ |= control->markChanged(model, state.sleep.lastTime, state.time, marked_);
   return wakeMarked(model, state, data, contacts);
 }
 
@@ -254,14 +285,16 @@ bool Sleepers::rests(const Model& model, int t, SleepState& sleep, const VectorX
 }
 
 void Sleepers::finish(const Model& model, const Input& input, const StepControl* control,
-                      State& state, Data& data) {
+                      double began, State& state, Data& data) {
   data.stats.asleepTrees = asleep();
   data.stats.wokenTrees = wokenTrees_;
-  if (!fits(model, state.sleep)) state.sleep = State(model).sleep;
+  if (state.sleep.island.empty()) state.sleep = State(model).sleep;
+  state.sleep.lastTime = began;
   const Sleep& sleep = model.options.sleep;
   for (const int t : data.active.trees()) {
     const Segment dofs{model.trees[idx(t)].firstDof, model.trees[idx(t)].dofEnd};
-    const bool may = (!control || control->letsSleep(model, t, state.time)) &&
+    const bool may = keepsSetPoints(model, input, dofs, state.sleep) &&
+                     (!control || control->letsSleep(model, t, state.time)) &&
                      (input.tau.size() == 0 || isZero(input.tau, dofs));
     double& time = state.sleep.restTime[idx(t)];
     time = may && rests(model, t, state.sleep, state.v, data) ? time + model.options.timestep : 0.0;
@@ -271,7 +304,7 @@ void Sleepers::finish(const Model& model, const Input& input, const StepControl*
   const bool any = std::ranges::any_of(
       data.active.trees(), [&](int t) { return state.sleep.restTime[idx(t)] >= sleep.time; });
   if (any) findRested(model, data, state.sleep);
-  if (std::exchange(anyMarked_, false)) fallAsleep(model, input, state, data);
+  if (std::exchange(anyMarked_, false)) fallAsleep(model, state, data);
 }
 
 /// Marks the trees of islands of which all have been at rest for long.
@@ -289,7 +322,7 @@ void Sleepers::findRested(const Model& model, const Data& data, const SleepState
     if (least_[islandOf(t)] >= model.options.sleep.time) mark(t);
 }
 
-void Sleepers::fallAsleep(const Model& model, const Input& input, State& state, Data& data) {
+void Sleepers::fallAsleep(const Model& model, State& state, Data& data) {
   SleepState& sleep = state.sleep;
   const auto isMarked = [&](int tree) { return tree >= 0 && marked_[idx(tree)] != 0; };
   std::erase_if(contacts_, [&](const Snapshot::ContactForce& c) { return !isStill(c); });
@@ -308,12 +341,9 @@ void Sleepers::fallAsleep(const Model& model, const Input& input, State& state, 
     sleep.restTime[idx(t)] = 0.0;
     const Segment dofs{tree.firstDof, tree.dofEnd};
     part(applied_, dofs) = part(tau_, dofs);
+    const Segment at = coordinatesOf(model, tree);
+    part(seenAt_, at) = part(state.q, at);
     for (VectorX* x : {&state.v, &state.a, &state.warmstart.a}) part(*x, dofs).setZero();
-    for (int i = dofs.begin; i < dofs.end && sleep.setPoint.size() == model.nv; ++i) {
-      const Servo& servo = model.dofs[idx(i)].servo;
-      sleep.setPoint[i] = asked(input.setPoint, i, servo.setPoint);
-      sleep.setPointRate[i] = asked(input.setPointRate, i, servo.setPointRate);
-    }
   }
   std::ranges::fill(marked_, 0);
 }

@@ -51,13 +51,15 @@ class Sleepers {
   /// Likewise whether there are some among these trees (1).
   bool mark(std::span<const std::uint8_t> trees);
   BadInput wakeMarked(const Model& model, State& state, Data& data, ContactSource* contacts);
-  /// The step was taken: who has rested for long falls asleep.
-  void finish(const Model& model, const Input& input, const StepControl* control, State& state,
-              Data& data);
+  /// The step, which began at this time [s], was taken: who has rested for long falls asleep.
+  void finish(const Model& model, const Input& input, const StepControl* control, double began,
+              State& state, Data& data);
   /// The step was refused: they sleep as before.
   void undo(State& state) const;
   /// Stages of another state are made in the Data: who sleeps is to be placed anew.
   void forget(const Model& model, Data& data);
+  /// Another run goes on in the Data, whose sleepers they have not seen fall asleep.
+  void forgetSeen();
 
   int asleep() const { return static_cast<int>(still_.trees().size()); }
   /// Appends the contacts of who sleeps, with the forces of their last solve in these Data.
@@ -69,7 +71,7 @@ class Sleepers {
   template <class Archive>
   void archive(Archive& a) {
     a(contacts_);
-    a.sized(applied_);
+    a.sized(applied_, seenAt_);
     const auto isGeometry = [&](int g) { return g >= 0 && idx(g) < treeOf_.size(); };
     if constexpr (Archive::kReads)
       for (const auto& c : contacts_) a.expect(isGeometry(c.geometryA) && isGeometry(c.geometryB));
@@ -84,14 +86,15 @@ class Sleepers {
   bool rests(const Model& model, int tree, SleepState& sleep, const VectorX& v, const Data& data);
   void findRested(const Model& model, const Data& data, const SleepState& sleep);
   bool isStill(const Snapshot::ContactForce& contact) const;
-  void fallAsleep(const Model& model, const Input& input, State& state, Data& data);
+  void fallAsleep(const Model& model, State& state, Data& data);
+  void forgetElsewhere(const Model& model, const VectorX& q);
 
   TreeSelection still_;
   std::vector<int> known_, before_;  ///< SleepState::island, of `still_`; before the step
   bool woke_ = false;                ///< somebody has woken in this step
   int wokenTrees_ = 0;
-  bool placed_ = false;  ///< the Data have the sleepers' kinematics, of q_
-  VectorX q_;
+  bool placed_ = false;                    ///< the Data have the sleepers' kinematics, of q_
+  VectorX q_, seenAt_;                     ///< (nq); where each fell asleep in these Data
   const ContactSource* source_ = nullptr;  ///< that has their poses, by so many detections of all
   std::int64_t detections_ = 0;
   std::vector<std::uint8_t> marked_;  ///< (trees) 1: to wake, or to fall asleep

@@ -184,6 +184,13 @@ void countMechanisms(const Model& model, const State& start, Data& data) {
   acted[Mechanism::geometricStiffness] = data.stats.stabilisedBodies;
 }
 
+/// The next solve starts from the last one's end.
+void keepAcceleration(const Data& data, WarmStart& warmstart) {
+  if (warmstart.a.size() != data.forward.a.size()) warmstart.a.setZero(data.forward.a.size());
+  copy(data.active.dofs(), data.forward.a, warmstart.a);
+  warmstart.valid = true;
+}
+
 /// `woken`: what is awake touches who sleeps; the step begins anew with them.
 enum class Tried : std::uint8_t { taken, refused, unresolved, woken };
 
@@ -228,8 +235,7 @@ Tried tryStep(const Model& model, const Given& given, const State& start, int mo
     data.parts->repeats = true;
     stats.residual = 0.0;  // what was predicted by it does not move
     stats.roundingLimitedSolves = 0;
-    copy(dofs, data.forward.a, state.warmstart.a);  // nearer than the last step's
-    state.warmstart.valid = true;
+    keepAcceleration(data, state.warmstart);  // nearer than the last step's
     computeForces(model, given.input, state, data, clock);
     assembleRows(model, given.input, state, data, clock, columns);
   }
@@ -252,8 +258,7 @@ Tried tryStep(const Model& model, const Given& given, const State& start, int mo
                              drifts ? data.parts->moved : data.acceleration, aim);
   countMechanisms(model, start, data);
   stats.unconvergedSolves += stats.status != SolveStatus::converged;
-  copy(dofs, data.forward.a, state.warmstart.a);
-  state.warmstart.valid = true;
+  keepAcceleration(data, state.warmstart);
   if (given.control) given.control->keep(state.warmstart, data.active);
   stats.times.integrate = lap(clock);
   return Tried::taken;
@@ -323,11 +328,10 @@ Tried stepIslands(const Model& model, const Given& given, State& state, Data& da
 /// A step of the trees that are awake. Where it is not taken, the state has its start.
 Tried takeStep(const Model& model, const Given& given, State& state, Data& data) noexcept {
   constexpr int kAny = SubstepSelection::kMaxDivisions;
-  for (VectorX* x : {&state.a, &state.warmstart.a})  // of a state that somebody has put together
-    if (x->size() != model.nv) x->setZero(model.nv);
   if (!data.plan.drifts) return tryStep(model, given, state, kAny, state, data);
   SubstepWorkspace& p = *data.parts;
   copyState(data.active, state, p.before);
+  if (state.a.size() != model.nv) state.a.setZero(model.nv);  // somebody has put it together
   const int most = model.options.stepDoubling ? kAny : 1;
   Tried tried = tryStep(model, given, p.before, most, state, data);
   if (tried == Tried::unresolved) {
@@ -373,6 +377,7 @@ SolveStatus step(const Model& model, const Input& input, State& state, Data& dat
     takeStep(model, {input, contacts, control}, state, data);
     return data.stats.status;
   }
+  const double began = state.time;
   bool refused = refuse(sleepers->begin(model, input, control, state, data, contacts));
   Tried tried = Tried::woken;
   while (!refused && tried == Tried::woken) {
@@ -381,7 +386,7 @@ SolveStatus step(const Model& model, const Input& input, State& state, Data& dat
     if (tried == Tried::woken) refused = refuse(sleepers->wakeMarked(model, state, data, contacts));
   }
   if (tried == Tried::taken)
-    sleepers->finish(model, input, control, state, data);
+    sleepers->finish(model, input, control, began, state, data);
   else
     sleepers->undo(state);
   return data.stats.status;

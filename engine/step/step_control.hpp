@@ -45,7 +45,11 @@ class StepControl {
   virtual std::span<const std::uint8_t> wanted() const noexcept { return {}; }
   /// Marks (trees, 1) where what the control wants has begun, ended or changed since the last step:
   /// what sleeps there wakes. Whether there is such a tree.
-  virtual bool markChanged(const Model&, double, std::span<std::uint8_t>) noexcept { return false; }
+  /// `before`, `now`: when the last step began, and this one does [s].
+  virtual bool markChanged(const Model&, double /*before*/, double /*now*/,
+                           std::span<std::uint8_t> /*trees*/) noexcept {
+    return false;
+  }
 
   /// What apply() has found has been done: keeps where the next solve may start, of these trees.
   virtual void keep(WarmStart& warmstart, const TreeSelection& trees) noexcept = 0;

@@ -66,6 +66,7 @@ class MomentumGoal final : public Goal {
   MomentumGoal(const Model& model, int robot);
 
   std::string name() const override { return "momentum"; }
+  bool restsAt(double) const override { return linear.isZero(0.0) && angular.isZero(0.0); }
   void addCost(const GoalContext& context, GoalCost& cost) const override;
   bool concerns(const Model& model, int tree) const override {
     return isOfRobot(model, tree, robot);

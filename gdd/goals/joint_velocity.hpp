@@ -18,6 +18,7 @@ class JointVelocity final : public Goal {
   double rate = 20.0;                ///< β [1/s]
 
   std::string name() const override { return "joint_velocity"; }
+  bool restsAt(double) const override { return areZero(targets); }
   void addCost(const GoalContext& context, GoalCost& cost) const override;
   bool concerns(const Model& model, int tree) const override {
     return areOfTree(model, targets, tree);

@@ -47,12 +47,18 @@ inline bool areOfTree(const Model& model, const std::vector<JointTarget>& target
       targets, [&](const JointTarget& t) { return model.bodies[idx(t.body)].tree == tree; });
 }
 
+/// Whether nothing but zero is asked for: of speeds or accelerations.
+inline bool areZero(const std::vector<JointTarget>& targets) {
+  return std::ranges::all_of(targets, [](const JointTarget& t) { return t.value == 0.0; });
+}
+
 class JointAcceleration final : public Goal {
  public:
   std::vector<JointTarget> targets;  ///< a*
   double weight = 1000.0;            ///< w [-]
 
   std::string name() const override { return "acceleration"; }
+  bool restsAt(double) const override { return areZero(targets); }
   void addCost(const GoalContext& context, GoalCost& cost) const override;
   bool concerns(const Model& model, int tree) const override {
     return areOfTree(model, targets, tree);

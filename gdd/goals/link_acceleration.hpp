@@ -34,6 +34,9 @@ class LinkAcceleration final : public Goal {
 
   std::string name() const override { return "acceleration of " + link; }
   int linkFrame() const override { return frame; }
+  bool restsAt(double) const override {
+    return linear.isZero(0.0) && (!angular || angular->isZero(0.0));
+  }
   void weighBeside(double posture) override {
     defaultWeight.setBeside(posture, weight);
     defaultRotationWeight.setBeside(posture, rotationWeight);

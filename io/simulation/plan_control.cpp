@@ -30,6 +30,9 @@ const Scene& checked(const Scene& scene) {
   if (scene.throughFcl)
     throw ModelError(scene.collisionWhere, "key 'plan'",
                      "plans touch by the own collision detection, expected no fcl");
+  if (scene.model.options.sleep.enabled)
+    throw ModelError({scene.file.string(), 0}, "key 'plan'",
+                     "a plan is of the whole scene, found the option sleep, expected none");
   return scene;
 }
 

@@ -24,7 +24,7 @@ gdd::Goal& SimulationGoals::add(std::unique_ptr<gdd::Goal> goal) {
 
 void SimulationGoals::weighDefaults() {
   gdd::weighDefaults(parts_->scene->model, parts_->controller->goals);
-  parts_->controller->changed();
+  wakeAll(parts_->state.sleep);
 }
 
 gdd::Goal& SimulationGoals::addOwn(std::unique_ptr<gdd::Goal> goal) {

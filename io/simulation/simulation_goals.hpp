@@ -52,7 +52,7 @@ class SimulationGoals {
   /// Any other goal; nothing comes with it.
   gdd::Goal& add(std::unique_ptr<gdd::Goal> goal);
   /// To be called after a goal was changed: weights that nobody has given are again what they are
-  /// beside the postures, and robots that sleep under their goals wake.
+  /// beside the postures, and who sleeps wakes.
   void weighDefaults();
   /// Removes one of the goals; what came with it stays. Throws std::invalid_argument where it is
   /// none of these.

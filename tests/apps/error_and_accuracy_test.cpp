@@ -342,7 +342,7 @@ TEST(Accuracy, IsKeptUnderATableOfIrregularRows) {
   asleep.insert(asleep.end(), {"--sleep", "objects"});
   const Outcome refused = simulate(asleep);
   EXPECT_EQ(refused.exitCode, 2);
-  EXPECT_NE(refused.err.find("expected no --sleep"), std::string::npos) << refused.err;
+  EXPECT_NE(refused.err.find("expected sleep: none"), std::string::npos) << refused.err;
 }
 
 // What begins and ends within a step, seen by none of two references, is promised by nothing.

@@ -112,7 +112,7 @@ TEST(SleepUnderGoals, MayLetRobotsSleep) {
     appliedForces(crowd.data, applied);
     EXPECT_EQ(applied, control);
     crowd.reach("robot_3", Vector3(0.0, 0.3, 0.5));
-    crowd.controller.changed();
+    wakeAll(crowd.state.sleep);
     ASSERT_TRUE(crowd.steps(1));
     EXPECT_FALSE(crowd.asleep("robot_0"));
     EXPECT_NE(crowd.controller.control, control);
@@ -157,7 +157,7 @@ TEST(SleepUnderGoals, EndsForThoseThatAGoalConcerns) {
   ASSERT_TRUE(crowd.steps(6000));
   ASSERT_EQ(crowd.awake(), 0);
   static_cast<gdd::JointPosture&>(*crowd.controller.goals[2]).targets[0].value = -0.4;
-  crowd.controller.changed(*crowd.controller.goals[2]);
+  gdd::wake(crowd.model, *crowd.controller.goals[2], crowd.state.sleep);
   ASSERT_TRUE(crowd.steps(1));
   EXPECT_EQ(crowd.awake(), 1);
   EXPECT_FALSE(crowd.asleep("robot2_0"));
@@ -232,6 +232,82 @@ TEST(SleepUnderGoals, EndsForWhoIsCoupled) {
     EXPECT_FALSE(crowd.asleep("second_rod"));
     EXPECT_EQ(crowd.asleep("alone"), byTendon);
   }
+}
+
+/// Two arms of three links that hang from the world.
+ModelBuilder twoArms() {
+  ModelBuilder builder("arms");
+  for (const char* name : {"a", "b"}) builder.add(chain(3), name);
+  return builder;
+}
+
+// A robot that sleeps stays where it is while another one moves, in Euler's step too, whose joint
+// damping follows the solve.
+TEST(SleepUnderGoals, HoldsStillInEulersStep) {
+  ModelBuilder builder = twoArms();
+  builder.options.useMujocoModel();
+  Crowd crowd(builder, kAll);
+  crowd.controller.goals.push_back(std::make_unique<gdd::VirtualDamping>());
+  crowd.controller.goals.push_back(std::make_unique<gdd::Posture>(crowd.model.q0));
+  gdd::CircleTrajectory::Circle circle;
+  circle.radius = 0.1, circle.frequency = 1.0;
+  crowd.reach("a/link2", Vector3::Zero()).trajectory =
+      std::make_shared<gdd::CircleTrajectory>(circle);
+  int i = 0;
+  while (!crowd.asleep("b/link2") && i++ < 5000) ASSERT_TRUE(crowd.steps(1));
+  const Body& b = crowd.body("b/link2");
+  const VectorX q = crowd.state.q;
+  ASSERT_TRUE(crowd.steps(1000));
+  EXPECT_TRUE(crowd.asleep("b/link2"));
+  EXPECT_EQ(crowd.state.q[b.q], q[b.q]);
+  EXPECT_NE(crowd.state.q[crowd.body("a/link2").q], q[crowd.body("a/link2").q]);
+}
+
+// A goal that begins is met whatever rounding makes of the times of steps.
+TEST(SleepUnderGoals, EndsWhereAGoalBeginsBetweenRoundedTimes) {
+  for (const auto& [h, start] :
+       {std::pair(1.0 / 120.0, 2.85), {1.0 / 60.0, 2.85}, {1.0 / 240.0, 2.9875}, {0.0033, 2.244}}) {
+    ModelBuilder builder = twoArms();
+    builder.options.timestep = h;
+    Crowd crowd(builder, kAll);
+    crowd.controller.goals.push_back(std::make_unique<gdd::VirtualDamping>());
+    crowd.reach("a/link2", Vector3(0.1, 0.1, 0.1)).startTime = start;
+    for (int k = 1; crowd.state.time < start + 2.0 * h; ++k) {
+      if (crowd.state.time > start - 2.0 * h && crowd.state.time < start) {
+        EXPECT_TRUE(crowd.asleep("a/link2"));
+      }
+      ASSERT_TRUE(crowd.steps(1));
+      crowd.state.time = k * h;  // as runs have it, on their grid
+    }
+    EXPECT_FALSE(crowd.asleep("a/link2")) << h;
+    EXPECT_TRUE(crowd.asleep("b/link2")) << h;
+  }
+}
+
+// What is to move, however slowly, is not at rest.
+TEST(SleepUnderGoals, IsNotForWhatIsToMove) {
+  Crowd crowd(twoArms(), kAll);
+  auto turn = std::make_unique<gdd::JointVelocity>();
+  const int joint = crowd.body("a/link2").v;
+  turn->targets.push_back({crowd.model.dofs[idx(joint)].body, 0.01});
+  crowd.controller.goals.push_back(std::move(turn));
+  crowd.controller.goals.push_back(std::make_unique<gdd::VirtualDamping>());
+  const double q = crowd.state.q[crowd.body("a/link2").q];
+  ASSERT_TRUE(crowd.steps(2000));
+  EXPECT_NEAR(crowd.state.q[crowd.body("a/link2").q] - q, 0.04, 0.01);
+  EXPECT_TRUE(crowd.asleep("b/link2"));
+}
+
+// Where all is one problem by the solver, nobody is left out of it.
+TEST(SleepUnderGoals, IsNotWhereAllIsOneProblem) {
+  Crowd crowd(cranes(), kAll);
+  crowd.controller.solver = gdd::GddSolver::augmentedLagrangian;
+  crowd.controller.goals.push_back(std::make_unique<gdd::VirtualDamping>());
+  for (int i = 0; i < 1500; ++i) {
+    ASSERT_TRUE(crowd.steps(1));
+    ASSERT_EQ(crowd.data.stats.wokenTrees, 0);
+  }
+  EXPECT_EQ(crowd.awake(), 5);
 }
 
 /// One goal of every kind that is of some trees, or of all.

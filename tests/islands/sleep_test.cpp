@@ -193,6 +193,20 @@ TEST(Sleep, EndsForServosThatAreToldSomethingNew) {
   EXPECT_SMALL(crowd.state.q[arm.q] - before - 0.3, 9.81 * 0.5 / 500.0);
 }
 
+// A servo that is told to turn, however slowly, does.
+TEST(Sleep, IsNotForServosThatAreToldToMove) {
+  ModelBuilder builder = oneJoint(JointType::revolute, 0.0, 0.0, 0.0);
+  builder.options.sleep = kSleep;
+  Model model = builder.build();
+  model.dofs[0].servo = {.kp = 0.0, .kd = 1.0, .setPointRate = 1e-3};
+  State state(model);
+  Data data(model);
+  for (int i = 0; i < 1000; ++i)
+    ASSERT_EQ(step(model, {}, state, data, nullptr), SolveStatus::converged);
+  EXPECT_EQ(data.stats.asleepTrees, 0);
+  EXPECT_NEAR(state.q[0], 2e-3, 1e-4);
+}
+
 // Contacts of who sleeps are told with the forces of their last solve: together the weight.
 TEST(Sleep, KeepsContactsAndTheirForces) {
   Crowd crowd(stacks(), kSleep);
