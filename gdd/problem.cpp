@@ -70,7 +70,10 @@ void ControlLimits::clamp(Segments dofs, const VectorX& g, VectorX& tau, VectorX
     }
   for (const Segment s : dofs)
     for (int i = s.begin; i < s.end; ++i)
-      tau[i] = inside || isPlain(i) ? (inside ? g[i] : y[i]) : transmission->T().row(i).dot(y);
+      if (inside)
+        tau[i] = g[i];
+      else
+        tau[i] = isPlain(i) ? y[i] : transmission->T().row(i).dot(y);
 }
 
 }  // namespace softgauss::gdd

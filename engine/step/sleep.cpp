@@ -56,6 +56,8 @@ bool sameBits(Segments entries, const VectorX& x, const VectorX& y) {
   });
 }
 
+Segment dofsOf(const Tree& tree) { return {tree.firstDof, tree.dofEnd}; }
+
 bool isZero(const VectorX& x, Segment s) { return (part(x, s).array() == 0.0).all(); }
 
 /// The tree that a wrench pushes, −1: none.
@@ -120,11 +122,7 @@ void Sleepers::select(const Model& model, const State& state, Data& data) {
 }
 
 void Sleepers::forget(const Model& model, Data& data) {
-  known_.assign(model.trees.size(), -1);
-  still_.select(model, [](int) { return false; });
-  data.active.selectAll(model);
-  data.active.setStill({});
-  placed_ = false;
+  select(model, State(), data);  // a state in which nobody sleeps
 }
 
 /// A force or a velocity that is not zero.
@@ -134,7 +132,7 @@ void Sleepers::markPushed(const Model& model, const Input& input, const State& s
     if (x->size() == 0 || std::ranges::all_of(dofs, [&](Segment s) { return isZero(*x, s); }))
       continue;
     for (const int t : still_.trees())
-      if (!isZero(*x, {model.trees[idx(t)].firstDof, model.trees[idx(t)].dofEnd})) mark(t);
+      if (!isZero(*x, dofsOf(model.trees[idx(t)]))) mark(t);
   }
   for (const ExternalWrench& w : input.wrenches)
     if (const int tree = pushedBy(model, w); tree >= 0) mark(tree);
@@ -204,9 +202,9 @@ BadInput Sleepers::place(const Model& model, State& state, Data& data, ContactSo
 void Sleepers::forgetElsewhere(const Model& model, const VectorX& q) {
   for (const int t : still_.trees()) {
     const Tree& tree = model.trees[idx(t)];
-    const Segment at = coordinatesOf(model, tree), dofs{tree.firstDof, tree.dofEnd};
+    const Segment at = coordinatesOf(model, tree);
     if (sameBits({&at, 1}, seenAt_, q)) continue;
-    part(applied_, dofs).setZero();
+    part(applied_, dofsOf(tree)).setZero();
     std::erase_if(contacts_, [&](const Snapshot::ContactForce& c) {
       return treeOf_[idx(c.geometryA)] == t || treeOf_[idx(c.geometryB)] == t;
     });
@@ -266,7 +264,7 @@ bool Sleepers::rests(const Model& model, int t, SleepState& sleep, const VectorX
                      const Data& data) {
   const double most = model.options.sleep.speed;
   const Tree& tree = model.trees[idx(t)];
-  const Segment bodies{tree.rootBody, tree.bodyEnd}, dofs{tree.firstDof, tree.dofEnd};
+  const Segment bodies{tree.rootBody, tree.bodyEnd}, dofs = dofsOf(tree);
   const Kinematics& k = data.kinematics;
   moveBodies(model, k, {&bodies, 1}, v, V_);
   double fastest = fastestLink(model, k, tree, gyration_, V_, most);
@@ -292,7 +290,7 @@ void Sleepers::finish(const Model& model, const Input& input, const StepControl*
   state.sleep.lastTime = began;
   const Sleep& sleep = model.options.sleep;
   for (const int t : data.active.trees()) {
-    const Segment dofs{model.trees[idx(t)].firstDof, model.trees[idx(t)].dofEnd};
+    const Segment dofs = dofsOf(model.trees[idx(t)]);
     const bool may = keepsSetPoints(model, input, dofs, state.sleep) &&
                      (!control || control->letsSleep(model, t, state.time)) &&
                      (input.tau.size() == 0 || isZero(input.tau, dofs));
@@ -339,7 +337,7 @@ void Sleepers::fallAsleep(const Model& model, State& state, Data& data) {
     if (first < 0) first = t;
     sleep.island[idx(t)] = first;
     sleep.restTime[idx(t)] = 0.0;
-    const Segment dofs{tree.firstDof, tree.dofEnd};
+    const Segment dofs = dofsOf(tree);
     part(applied_, dofs) = part(tau_, dofs);
     const Segment at = coordinatesOf(model, tree);
     part(seenAt_, at) = part(state.q, at);
