@@ -137,7 +137,7 @@ template <class Solver>
 const VectorX* GoalDirectedController::solve(Solver& used, const Model& model, const State& state,
                                              Data& data) {
   using Clock = std::chrono::steady_clock;
-  const Clock::time_point start = Clock::now();
+  const Clock::time_point start = data.timed ? Clock::now() : Clock::time_point();
   report = {};
   if (const BadInput bad = limits.badInput(model.nv, data.active.dofs())) {
     report.status = GddStatus::badLimits;
@@ -153,7 +153,7 @@ const VectorX* GoalDirectedController::solve(Solver& used, const Model& model, c
   const GddReport own = report;
   report.addEarlier(earlier_);
   earlier_.addCounts(own);
-  solveTime += std::chrono::duration<double>(Clock::now() - start).count();
+  if (data.timed) solveTime += std::chrono::duration<double>(Clock::now() - start).count();
   if (!solved) {
     data.stats.status = SolveStatus::notFinite;
     return nullptr;

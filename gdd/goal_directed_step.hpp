@@ -64,7 +64,7 @@ class GoalDirectedController final : public StepControl {
   VectorX
       commands;  ///< u of the last step, of the actuators of limits.transmission, in their order
   GddReport report;  ///< of the last step; of a step in parts the worst of them, counts are sums
-  double solveTime = 0.0;  ///< wall time of the last step's GDD solves [s]
+  double solveTime = 0.0;  ///< wall time of the last step's GDD solves [s], where Data::timed
 
   /// Motion limits, origin of the price, solvers with their options and budget of another one;
   /// goals, limits and forceMetric, which are of a model's dofs, stay.

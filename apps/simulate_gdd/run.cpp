@@ -61,6 +61,7 @@ class Runner {
                          scene.wrenches.empty() &&
                          std::none_of(scene.model.dofs.begin(), scene.model.dofs.end(),
                                       [](const Dof& dof) { return dof.servo.exists(); });
+    data_.timed = true;
     company_.emplace(options, scene, state_, stages_, controller_);
     tellOrigin(scene);
     const std::vector<io::EffectNote> notes = io::effectNotes(model_, scene.wrenches);

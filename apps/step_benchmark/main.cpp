@@ -71,6 +71,7 @@ class Recorder {
 void timeScene(benchmark::State& state, const std::function<std::unique_ptr<Scene>()>& make,
                int warmUp) {
   const std::unique_ptr<Scene> scene = make();
+  scene->data->timed = true;
   for (int i = 0; i < warmUp; ++i) scene->step();
   const State saved = scene->state;
   std::map<std::string, std::vector<double>> values;

@@ -94,8 +94,9 @@ Plan::Plan(const Model& model) : options_(model.options) {
     }
   run(Effect::armature, anyDof([](const Dof& d) { return d.armature != 0.0; }));
   externalWrench = run(Effect::externalWrench, model.nv > 0);  // Input is not of the model
-  diagonal = model.nv > 0 && std::all_of(model.trees.begin(), model.trees.end(),
-                                         [&](const Tree& t) { return isDiagonal(model, t); });
+  for (const Tree& tree : model.trees) diagonal.push_back(isDiagonal(model, tree));
+  anyDiagonal = std::ranges::count(diagonal, 1) > 0;
+  allDiagonal = anyDiagonal && std::ranges::count(diagonal, 0) == 0;
 
   // Rows.
   const bool servos = anyDof([](const Dof& d) { return d.servo.exists(); });

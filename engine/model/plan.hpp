@@ -80,7 +80,9 @@ struct Plan {
   bool drifts = false;          ///< the leapfrog: positions drift to mid-step before the solve
   bool inSolve = false;         ///< Options::implicitInSolve, of semi-implicit Euler and leapfrog
   bool externalWrench = false;  ///< wrenches of Input count
-  bool diagonal = false;        ///< M is diagonal, and the step needs no factor where no row acts
+  /// (trees) 1: M has nothing beside the diagonal there, so that it is divided by, not factored.
+  std::vector<std::uint8_t> diagonal;
+  bool allDiagonal = false, anyDiagonal = false;
   VectorX damping;              ///< (nv) of the dofs; empty: none has any
   std::vector<Spring> springs;
   RowKinds rows = RowKinds::none();  ///< kinds of rows that may be made

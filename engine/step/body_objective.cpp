@@ -30,6 +30,7 @@ BodySolution::BodySolution(const Model& model)
       Iray(model.bodies.size()),
       force(model.bodies.size()),
       diagonal(VectorX::Zero(model.nv)),
+      divided(diagonal),
       islands(model) {
   factor.couple(pairs, islands);
 }

@@ -21,6 +21,7 @@ struct BodySolution {
   std::vector<Force> IA, Iray;             ///< (bodies) I A and that of the ray
   std::vector<Force> force;                ///< (bodies) scratch
   VectorX diagonal;                        ///< (nv) armature and MassMatrix::added
+  VectorX divided;                         ///< (nv) scratch of solveMass()
   std::vector<std::pair<int, int>> pairs;  ///< scratch: bodies that rows couple
   /// Those for which islands and factor are, and who was asleep.
   std::vector<std::pair<int, int>> lastPairs;

@@ -69,7 +69,7 @@ struct StepStats {
   int possibleTunnelling = 0;  ///< parts in which shapes may have passed through each other unseen
   int badDof = -1;             ///< with SolveStatus::notFinite: the first dof that is not finite
   BadInput badInput;           ///< with SolveStatus::badInput: what does not fit the model
-  StepTimes times;
+  StepTimes times;  ///< where Data::timed
 
   /// Counts another solve within the step, and how it ended; false where it has no result.
   bool count(const NewtonReport& solve) {
@@ -121,6 +121,7 @@ struct Data {
   std::unique_ptr<SubstepWorkspace> parts;         ///< of the leapfrog, else null
   std::unique_ptr<IntegratorStages> stages;        ///< null where the step is one solve
   std::unique_ptr<VelocityDerivative> derivative;  ///< of the implicit integrators, else null
+  bool timed = false;  ///< whether clocks are read, for StepStats::times and what goals take
   StepStats stats;
 };
 

@@ -184,21 +184,31 @@ int mostIterations(int option, int rows) {
   return option * std::max(1, rows / kRows);
 }
 
-bool solveMass(const Model& model, Data& data, const VectorX* diagonal, VectorX& x) {
+namespace {
+
+/// y ← x over M̂ and `diagonal`, of the trees whose M̂ has nothing else.
+bool divide(const Model& model, const VectorX* diagonal, const VectorX& x, VectorX& y, Data& data) {
   const TreeMatrix& M = data.inertia.hat();
-  if (data.plan.diagonal) {
-    for (const Segment s : data.active.dofs())
-      for (int i = s.begin; i < s.end; ++i) {
-        const double pivot = M.row(i)[i] + (diagonal ? (*diagonal)[i] : 0.0);
-        if (!(pivot > 0.0)) {
-          data.stats.badDof = i;
-          return false;
-        }
-        x[i] /= pivot;
+  for (const int t : data.active.trees()) {
+    if (!data.plan.diagonal[idx(t)]) continue;
+    for (int i = model.trees[idx(t)].firstDof; i < model.trees[idx(t)].dofEnd; ++i) {
+      const double pivot = M.row(i)[i] + (diagonal ? (*diagonal)[i] : 0.0);
+      if (!(pivot > 0.0)) {
+        data.stats.badDof = i;
+        return false;
       }
-    return true;
+      y[i] = x[i] / pivot;
+    }
   }
+  return true;
+}
+
+}  // namespace
+
+bool solveMass(const Model& model, Data& data, const VectorX* diagonal, VectorX& x) {
+  if (data.plan.allDiagonal) return divide(model, diagonal, x, x, data);
   BodySolution& s = data.bodies;
+  if (data.plan.anyDiagonal && !divide(model, diagonal, x, s.divided, data)) return false;
   if (diagonal || !s.massFactored) {
     if (data.active.all())
       s.massFactor.begin(model, data.inertia);
@@ -213,6 +223,13 @@ bool solveMass(const Model& model, Data& data, const VectorX* diagonal, VectorX&
     }
   }
   s.massFactor.solve(model, data.kinematics, x, s.ray);
+  // With the bits of a scene that has no other trees.
+  if (data.plan.anyDiagonal)
+    for (const int t : data.active.trees())
+      if (data.plan.diagonal[idx(t)]) {
+        const Segment dofs{model.trees[idx(t)].firstDof, model.trees[idx(t)].dofEnd};
+        copy({&dofs, 1}, s.divided, x);
+      }
   return true;
 }
 

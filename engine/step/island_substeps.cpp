@@ -60,6 +60,7 @@ bool IslandSubsteps::divide(const Model& model, bool controlled, const Data& who
 
 void IslandSubsteps::begin(const Model& model, int island, const Data& whole, const State& before,
                            const VectorX& a, const VectorX& connectionForces) {
+  data.timed = whole.timed;
   data.active.setStill(whole.active.still());
   data.active.select(model, [&](int tree) {
     return islands_.ofBody()[idx(model.trees[idx(tree)].rootBody)] == island;

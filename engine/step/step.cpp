@@ -2,7 +2,6 @@
 #include "softgauss/engine/step/step.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "softgauss/engine/core/segment_vectors.hpp"
@@ -17,20 +16,11 @@
 #include "softgauss/engine/step/integrators/velocity_derivative.hpp"
 #include "softgauss/engine/step/realised.hpp"
 #include "softgauss/engine/step/sleep.hpp"
+#include "softgauss/engine/step/step_clock.hpp"
 #include "softgauss/engine/step/substep_workspace.hpp"
 
 namespace softgauss {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-/// Seconds since `last`, which becomes now.
-double lap(Clock::time_point& last) {
-  const Clock::time_point now = Clock::now();
-  const double seconds = std::chrono::duration<double>(now - last).count();
-  last = now;
-  return seconds;
-}
 
 /// Where a step that failed went wrong: the dof of the first force that is not finite, or else of
 /// what is largest.
@@ -56,12 +46,12 @@ struct Given {
 
 /// Smooth forces and rows, of the velocity of turning that the state predicts.
 void computeForces(const Model& model, const Input& input, const State& state, Data& data,
-                   Clock::time_point& clock) {
+                   StepClock& clock) {
   if (data.plan.drifts) predictMidstepVelocity(model, state, data);
   computeSmoothForces(model, data.plan, state, input, data.kinematics, data.inertia, data.active,
                       data.forces);
   if (data.plan.inSolve) addImplicitForces(model, state, data);
-  data.stats.times.kinematics += lap(clock);
+  data.stats.times.kinematics += clock.lap();
 }
 
 /// When M and J are matrices: for goals, where the solve is not on bodies, or M is differentiated.
@@ -72,7 +62,7 @@ Columns columnsOf(const Model& model, const StepControl* control, const Data& da
 }
 
 void assembleRows(const Model& model, const Input& input, const State& state, Data& data,
-                  Clock::time_point& clock, Columns columns) {
+                  StepClock& clock, Columns columns) {
   if (kBuiltRows.empty() || data.plan.rows.empty()) return;
   Assembly assembly{
       model, state, data.kinematics, data.contacts, data.weights, data.inertia.sparsity, &input};
@@ -86,12 +76,12 @@ void assembleRows(const Model& model, const Input& input, const State& state, Da
     data.exactDiagonal.apply(data.inertia.M, data.constraints);
   data.stats.rows = data.constraints.rowCount();
   data.stats.stabilisedBodies = data.constraints.geometricStiffness.heldBodies();
-  data.stats.times.rows += lap(clock);
+  data.stats.times.rows += clock.lap();
 }
 
-/// computeStages(); `clock` is when the last stage ended. A clock is read only after what has run.
+/// computeStages(); the clock's last lap ended with the last stage.
 SolveStatus computeStages(const Model& model, const Input& input, const State& state, Data& data,
-                          ContactSource* contacts, Clock::time_point& clock,
+                          ContactSource* contacts, StepClock& clock,
                           Columns columns = Columns::now) noexcept {
   SOFTGAUSS_ASSERT(data.plan.fits(model));
   data.stats = {};
@@ -102,7 +92,7 @@ SolveStatus computeStages(const Model& model, const Input& input, const State& s
     data.stats.badDof = firstBadDof(model, input, state);
     return data.stats.status;
   }
-  clock = Clock::now();
+  clock.lap();
   const TreeSelection& active = data.active;
   computeKinematics(model, state, active.bodies(), data.kinematics);
   computeMassMatrix(model, data.kinematics, active.bodies(), active.dofs(), data.inertia,
@@ -121,7 +111,7 @@ SolveStatus computeStages(const Model& model, const Input& input, const State& s
     data.stats.pairsSkipped = data.contacts.pairsSkipped;
     for (const Contact& c : data.contacts.contacts)
       data.stats.maxPenetration = std::max(data.stats.maxPenetration, -c.distance);
-    data.stats.times.collision = lap(clock);
+    data.stats.times.collision = clock.lap();
   } else {
     data.contacts.clear();
   }
@@ -132,13 +122,13 @@ SolveStatus computeStages(const Model& model, const Input& input, const State& s
 /// (8) where goals choose the control, then (13): what moves under it. `aim`: the acceleration that
 /// goals ask for.
 SolveStatus solve(const Model& model, const Given& given, const State& state, Data& data,
-                  const VectorX*& aim, Clock::time_point& clock) noexcept {
+                  const VectorX*& aim, StepClock& clock) noexcept {
   StepStats& stats = data.stats;
   const VectorX* guess = state.warmstart.valid ? &state.warmstart.a : nullptr;
   if (given.control) {  // (8)
     aim = guess = given.control->apply(model, state, data);
     if (!guess) return stats.status;
-    lap(clock);
+    clock.lap();
   }
   // (13), but for islands that take parts of their own
   stats.status =
@@ -146,7 +136,7 @@ SolveStatus solve(const Model& model, const Given& given, const State& state, Da
   stats.iterations += data.forward.report.iterations;
   stats.factorizations += data.forward.report.factorizations;
   stats.residual = std::max(stats.residual, data.forward.report.residual);
-  stats.times.solve += lap(clock);
+  stats.times.solve += clock.lap();
   if (isRefused(stats.status)) stats.badDof = worstDof(model, data, state);
   return stats.status;
 }
@@ -209,7 +199,7 @@ bool leavesIslands(const Model& model, const Given& given, const State& state, D
 /// Where motion needs more than `most` parts of it (6.3) it ends before the solve.
 Tried tryStep(const Model& model, const Given& given, const State& start, int most, State& state,
               Data& data) noexcept {
-  Clock::time_point clock;
+  StepClock clock(data);
   StepStats& stats = data.stats;
   const bool drifts = data.plan.drifts, resolves = drifts && !model.options.stepDoubling;
   const Segments dofs = data.active.dofs();
@@ -260,7 +250,7 @@ Tried tryStep(const Model& model, const Given& given, const State& start, int mo
   stats.unconvergedSolves += stats.status != SolveStatus::converged;
   keepAcceleration(data, state.warmstart);
   if (given.control) given.control->keep(state.warmstart, data.active);
-  stats.times.integrate = lap(clock);
+  stats.times.integrate = clock.lap();
   return Tried::taken;
 }
 
@@ -355,14 +345,14 @@ bool beginStages(const Model& model, const Input& input, const State& state, Dat
 
 SolveStatus computeStages(const Model& model, const Input& input, const State& state, Data& data,
                           ContactSource* contacts) noexcept {
-  Clock::time_point clock;
+  StepClock clock(data);
   if (!beginStages(model, input, state, data)) return data.stats.status;
   return computeStages(model, input, state, data, contacts, clock);
 }
 
 SolveStatus computeBodyStages(const Model& model, const Input& input, const State& state,
                               Data& data, ContactSource* contacts) noexcept {
-  Clock::time_point clock;
+  StepClock clock(data);
   if (!beginStages(model, input, state, data)) return data.stats.status;
   return computeStages(model, input, state, data, contacts, clock, columnsOf(model, nullptr, data));
 }

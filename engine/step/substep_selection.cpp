@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <type_traits>
 
 #include "softgauss/engine/constraints/contact_rotation.hpp"
 #include "softgauss/engine/core/memory.hpp"
@@ -34,7 +33,6 @@ SubstepSelection::SubstepSelection(const Model& model)
       turns_(model.trees.size(), 0),
       rate_(model.trees.size(), 0.0),
       change_(VectorX::Zero(model.nv)),
-      velocity_(change_),
       bias_(change_),
       alone_(change_),
       midstep_(change_) {
@@ -47,27 +45,21 @@ SubstepSelection::SubstepSelection(const Model& model)
 
 std::size_t SubstepSelection::bytes() const {
   return bytesOfAll(partsOf, coriolisChange, free, hasEquality_, touched_, turns_, rate_, change_,
-                    velocity_, bias_, alone_, midstep_);
+                    bias_, alone_, midstep_);
 }
 
 void SubstepSelection::findTouched(const Model& model, const Data& data) {
   touched_ = hasEquality_;
-  for (const Contact& c : data.contacts.contacts)
-    for (const int body : {c.bodyA, c.bodyB})
-      if (model.bodies[body].tree >= 0) touched_[model.bodies[body].tree] = 1;
-  const Segments dofs = data.active.dofs();
-  setZero(dofs, velocity_);
-  // Of joints; rows of bodies are those of connections and welds. Weights that differ, lest two
-  // rows of a joint cancel.
+  const auto touch = [&](int body) {
+    if (model.bodies[body].tree >= 0) touched_[model.bodies[body].tree] = 1;
+  };
+  for (const Contact& c : data.contacts.contacts) touch(c.bodyA), touch(c.bodyB);
   data.constraints.visitAllButContacts([&](const auto& c) {
-    if constexpr (!std::is_base_of_v<BlockRows, std::remove_cvref_t<decltype(c)>>)
-      for (int i = 0; i < c.rowCount(); ++i) c.addRow(i, 1.0 + i, velocity_);
+    for (int i = 0; i < c.rowCount(); ++i) touch(c.bodyOf(model, i));
   });
-  for (const int t : data.active.trees()) {
-    const Tree& tree = model.trees[idx(t)];
-    const auto rows = velocity_.segment(tree.firstDof, tree.dofEnd - tree.firstDof);
-    if ((rows.array() != 0.0).any()) touched_[idx(t)] = 1;
-  }
+  // A row of a coupling is its follower's.
+  if (data.constraints.coupling.rowCount() > 0)
+    for (const JointCoupling& c : model.couplings) touch(c.leader);
 }
 
 /// How far tree t turns in a step by Δb, `change_` being M⁻¹Δb and `a` the acceleration that made

@@ -76,7 +76,7 @@ class SubstepSelection {
   std::vector<std::uint8_t> touched_;                   ///< (trees) 1: there are rows of it
   std::vector<std::uint8_t> turns_;                     ///< (trees) 1: it may turn far
   std::vector<double> rate_;                            ///< (trees) r
-  VectorX change_, velocity_, bias_, alone_, midstep_;  ///< (nv) scratch
+  VectorX change_, bias_, alone_, midstep_;  ///< (nv) scratch
 };
 
 }  // namespace softgauss

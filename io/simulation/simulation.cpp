@@ -60,6 +60,7 @@ void SimulationParts::restart(bool otherModel) {
   input = {};
   grid = {};
   if (otherModel || !data) data = std::make_unique<Data>(scene->model);
+  data->timed = recording != nullptr;
   controller = std::make_unique<gdd::GoalDirectedController>(scene->model);
   hasRegularisers = hasBalance = false;
   regularisers = 0;
@@ -239,7 +240,10 @@ void Simulation::restore(std::string_view bytes) {
   parts_->grid = grid;
 }
 
-void Simulation::record() { parts_->recording = std::make_unique<RunRecording>(*parts_); }
+void Simulation::record() {
+  parts_->recording = std::make_unique<RunRecording>(*parts_);
+  parts_->data->timed = true;
+}
 
 void Simulation::saveReplay(const std::filesystem::path& file) const {
   if (!parts_->recording)

@@ -13,7 +13,8 @@ namespace {
 // same bits, in Data that have been elsewhere.
 TEST(Sleep, GoesOnFromASavedState) {
   ModelBuilder builder = heap(12, 5);
-  addCube(builder, "late", Vector3(0.1, 0.0, 12.0));
+  addCube(builder, "lower", Vector3(5.0, 0.0, 0.1));
+  addCube(builder, "late", Vector3(5.05, 0.0, 12.0));
   Crowd unbroken(builder, kSleep);
   int slept = 0, woken = 0;
   for (int part = 0; part < 12; ++part) {

@@ -29,7 +29,9 @@ bool stopsWithin(const Model& model, const Tree& tree, const Data& data) {
 
 bool movesEvenly(const Model& model, const Tree& tree, const VectorX& v) {
   const Body& body = model.bodies[idx(tree.rootBody)];
-  if (!model.isFree(tree.rootBody)) return false;
+  if (!model.isFree(tree.rootBody))
+    return std::all_of(model.bodies.begin() + tree.rootBody, model.bodies.begin() + tree.bodyEnd,
+                       [](const Body& b) { return b.joint == JointKind::prismatic; });
   const Symmetric3& I = body.I_Bcm;
   const bool ball = body.com.isZero(0.0) && I.xx == I.yy && I.yy == I.zz && I.xy == 0.0 &&
                     I.xz == 0.0 && I.yz == 0.0;

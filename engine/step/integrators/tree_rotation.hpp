@@ -25,7 +25,7 @@ double energyRate(double change, double motion);
 /// Damping stops a joint of the tree within the step, or a stiff spring turns it back: it takes the
 /// end of the step (6.1), and no sub-steps follow that.
 bool stopsWithin(const Model& model, const Tree& tree, const Data& data);
-/// What every integrator does exactly: a body that flies without turning, or a ball.
+/// Nothing turns: a body that flies without turning, a ball, or joints that slide alone.
 bool movesEvenly(const Model& model, const Tree& tree, const VectorX& v);
 /// √(2 × kinetic energy) of a tree by its largest part: max_i (|v_i| + h |a_i|) √M_ii.
 double treeSpeed(const Tree& tree, const Data& data, const VectorX& v, const VectorX& a, double h);

@@ -231,9 +231,9 @@ TEST(Plan, DiagonalMassMatrixIsDividedBy) {
     s.state.v << 0.1, 0.2, 0.3, 3.0, -2.0, 1.0;
     return s;
   };
-  EXPECT_FALSE(box({0.01, 0, 0}).data->plan.diagonal);
+  EXPECT_FALSE(box({0.01, 0, 0}).data->plan.anyDiagonal);
   Scene s = box(Vector3::Zero());
-  ASSERT_TRUE(s.data->plan.diagonal);
+  ASSERT_TRUE(s.data->plan.allDiagonal);
   s.stages();
   ASSERT_EQ(s.forward(), SolveStatus::converged);
   EXPECT_FALSE(s.data->bodies.massFactored);
@@ -273,6 +273,18 @@ TEST(Plan, KnowsWhenTheModelsOptionsHaveChanged) {
   EXPECT_TRUE(plan.fits(model));
   model.options.effects.remove(Effect::coriolis);
   EXPECT_FALSE(plan.fits(model));
+}
+
+TEST(Plan, ReadsNoClockUnlessAsked) {
+  Scene s(bareChain().build());
+  const auto spent = [&] {
+    s.steps(10);
+    const StepTimes& t = s.data->stats.times;
+    return t.kinematics + t.collision + t.rows + t.solve + t.integrate;
+  };
+  EXPECT_EQ(spent(), 0.0);
+  s.data->timed = true;
+  EXPECT_GT(spent(), 0.0);
 }
 
 }  // namespace

@@ -338,5 +338,40 @@ TEST(TreeSubstepping, CollisionsKeepLinearMomentum) {
   EXPECT_GT(changes, 5) << "in a step with contact";
 }
 
+// A double pendulum that swings fast; its shoulder has dry friction and one end of its range.
+// Turned about and its joints with it, so that the upper end is the lower one, it is the same.
+TEST(TreeSubstepping, ARangeHoldsWhereDryFrictionActs) {
+  for (const double friction : {0.0, 0.2, 1.0}) {
+    double largest[2] = {};
+    for (const bool mirrored : {false, true}) {
+      const Vector3 axis(0.0, mirrored ? -1.0 : 1.0, 0.0);
+      ModelBuilder builder("pendulum");
+      builder.base = BaseKind::fixed;
+      builder.link(emptyLink("base"));
+      for (const char* link : {"upper", "lower"})
+        builder.link(boxLink(link, 1.0, Vector3(0.02, 0.02, 0.2), Vector3(0.0, 0.0, -0.2)));
+      JointSpec shoulder = jointSpec("shoulder", JointType::revolute, "base", "upper", {}, axis);
+      JointSpec elbow = jointSpec("elbow", JointType::revolute, "upper", "lower",
+                                  {Matrix3::Identity(), Vector3(0.0, 0.0, -0.4)}, axis);
+      shoulder.actuated = elbow.actuated = false;
+      shoulder.dryFriction = friction;
+      shoulder.lower = mirrored ? -0.5 : -3.0;
+      shoulder.upper = mirrored ? 3.0 : 0.5;
+      builder.joint(shoulder), builder.joint(elbow);
+      Scene s(builder.build());
+      const double sign = mirrored ? -1.0 : 1.0;
+      s.state.v << 6.0 * sign, 30.0 * sign;
+      for (int i = 0; i < 500; ++i) {
+        s.steps(1);
+        largest[mirrored] = std::max(largest[mirrored], sign * s.state.q[0]);
+      }
+    }
+    // 2.5 mrad in the fastest blow that there is.
+    EXPECT_LT(largest[0], 0.51) << "friction " << friction;
+    EXPECT_GT(largest[0], 0.5);
+    EXPECT_NEAR(largest[0], largest[1], 1e-9);
+  }
+}
+
 }  // namespace
 }  // namespace softgauss::test
