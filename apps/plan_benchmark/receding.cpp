@@ -24,6 +24,15 @@ int floatingBody(const Model& model) {
   return -1;
 }
 
+/// Whether a robot moves in a plane: some link of it slides along the world, and nobody pulls
+/// there.
+bool slides(const Model& model) {
+  return std::ranges::any_of(model.bodies, [&](const Body& body) {
+    return body.parent == 0 && body.joint == JointKind::prismatic &&
+           !model.dofs[static_cast<std::size_t>(body.v)].actuated;
+  });
+}
+
 /// A push at the root, or none.
 struct Push {
   int body = -1;
@@ -108,14 +117,17 @@ RecedingRuns runReceding(const std::filesystem::path& file, const RecedingChoice
   all.task = file.stem().string();
   all.dofs = scene->model.nv;
   all.floats = floatingBody(scene->model) >= 0;
+  all.slides = slides(scene->model);
   for (int i = 0; i < choice.runs && !interrupted(); ++i) {
     planning::NormalNumbers random(choice.seed + static_cast<unsigned>(i));
     options.q0.clear();
-    if (!all.floats) options.q0 = disturbed(*scene, choice.disturbed, random);
+    if (!all.floats && !all.slides) options.q0 = disturbed(*scene, choice.disturbed, random);
     Simulation sim = Simulation::load(file, options);
     io::PlanTask task = io::readPlanTask(file, sim.model(), sim.scene().initial);
     task.steps.threads = choice.threads;
     PlanControl control(sim.scene(), std::move(task), true);
+    if (all.slides)
+      for (double& v : sim.state().v) v += choice.disturbed * random.next();
     const Push push = randomPush(sim.model(), choice, control.duration(), random);
     all.runs.push_back(act(sim, control, push, choice, all));
   }
@@ -135,7 +147,7 @@ std::string recedingTable(const std::vector<RecedingRuns>& all, const RecedingCh
         "{:<16}{:>4}  {:<18}{:>7}/{:<2}{:>7.2f} ms{:>7.2f} ms{:>8}{:>10.1f}{:>9.1f}\n", r.task,
         r.dofs,
         r.floats ? fmt::format("{:g} m/s", choice.push)
-                 : fmt::format("{:g} rad at first", choice.disturbed),
+                 : fmt::format("{:g} {} at first", choice.disturbed, r.slides ? "m/s" : "rad"),
         r.carriedOut(), r.runs.size(), percentile(r.tickMs, 0.5), percentile(r.tickMs, 0.999),
         failed, percentile(r.stepUs, 0.5), percentile(r.stepUs, 0.999));
   }

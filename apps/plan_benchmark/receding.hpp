@@ -6,7 +6,8 @@
 ///
 /// What floats is pushed at its root in a random horizontal direction for 0.1 s, so that all of it
 /// gains the speed that is asked for, at a random time within half a second after the first plan's
-/// end. What is fixed starts with scalar joints off by normal numbers times `disturbed`.
+/// end. What slides in a plane starts with each velocity off by normal numbers times `disturbed`,
+/// what is fixed with scalar joints.
 
 #include <filesystem>
 #include <string>
@@ -19,7 +20,7 @@ struct RecedingChoice {
   unsigned seed = 1;
   int threads = 1;          ///< over which knots go
   double push = 0.5;        ///< [m/s]
-  double disturbed = 0.05;  ///< [rad or m]
+  double disturbed = 0.05;  ///< [rad or m; rad/s or m/s of what slides]
   double timestep = 1e-3;   ///< of the simulator [s]
   double after = 3.0;       ///< for which a run goes on after its push [s]
 };
@@ -35,7 +36,7 @@ struct RecedingRun {
 struct RecedingRuns {
   std::string task;
   int dofs = 0;
-  bool floats = false;
+  bool floats = false, slides = false;
   std::vector<RecedingRun> runs;
   std::vector<double> tickMs, stepUs;  ///< ascending: planning anew, a step with its goals
 

@@ -16,6 +16,7 @@ FeasiblePhase::FeasiblePhase(const Problem& problem, KnotThreads& threads)
       x_(problem, dynamics_),
       trial_(x_),
       reference_(x_),
+      best_(x_),
       values_(static_cast<std::size_t>(problem.knots) + 1, ValueModel(problem.model.nv)),
       otherValues_(values_),
       feedback_(static_cast<std::size_t>(problem.knots),
@@ -143,7 +144,9 @@ void FeasiblePhase::forgetFeedback() {
   }
 }
 
-bool FeasiblePhase::shift(int knots, const Knot& start) {
+/// What passes are about, moved on by some knots; what there was is in otherValues_ and
+/// otherFeedback_.
+void FeasiblePhase::moveOn(int knots) {
   const int last = problem_.knots;
   for (int t = 0; t <= last; ++t) {
     const int from = std::min(t + knots, last);
@@ -151,22 +154,68 @@ bool FeasiblePhase::shift(int knots, const Knot& start) {
     otherValues_[idx(t)].slope = values_[idx(from)].slope;
     otherValues_[idx(t)].curvature = values_[idx(from)].curvature;
     if (t == last) continue;
-    const Knot& move = x_.knots[idx(std::min(from, last - 1))];
+    const auto control = idx(std::min(from, last - 1));
+    const Knot& move = x_.knots[control];
     reference_.knots[idx(t)].a = move.a, reference_.knots[idx(t)].tau = move.tau;
+    otherFeedback_[idx(t)] = feedback_[control];
   }
-  forgetFeedback();
   values_.swap(otherValues_);
-  trial_.knots[0].copyState(start);
-  rho_ = 0.0;
-  if (!pass(1.0, true, trial_)) {
-    values_.swap(otherValues_);
-    return false;
-  }
-  begin();
-  return true;
+  feedback_.swap(otherFeedback_);
 }
 
-bool FeasiblePhase::refresh() { return (!fresh_ || linearise()) && backward(); }
+bool FeasiblePhase::shift(int knots, const Knot& start, bool whatever) {
+  constexpr double kLost = 3.0;
+  struct Pass {
+    double alpha;
+    bool goalDirected;
+    double rho;
+  };
+  moveOn(knots);
+  difference(reference_.knots[0], start);
+  knotCost_.slope.noalias() = values_[0].curvature * dx_;
+  const double change = values_[0].slope.dot(dx_) + 0.5 * knotCost_.slope.dot(dx_);
+  const double most = kLost * (x_.cost + std::max(change, 0.0));
+  double least = kInfinity;
+  for (const Pass& p : {Pass{1.0, true, 0.0}, {0.0, false, 0.0}, {1.0, true, 1.0}}) {
+    rho_ = p.rho;
+    trial_.knots[0].copyState(start);
+    if (!pass(p.alpha, p.goalDirected, trial_)) continue;
+    if (trial_.cost <= most) {
+      begin();
+      return true;
+    }
+    if (trial_.cost < least) {
+      least = trial_.cost;
+      std::swap(trial_, best_);
+    }
+  }
+  if (whatever && least < kInfinity) {
+    std::swap(trial_, best_);
+    begin();
+    return true;
+  }
+  rho_ = 0.0;
+  values_.swap(otherValues_);
+  feedback_.swap(otherFeedback_);
+  return false;
+}
+
+bool FeasiblePhase::refresh() {
+  constexpr double kMostGrowth = 1e5;
+  const auto largest = [](const std::vector<ValueModel>& values) {
+    double most = 0.0;
+    for (const ValueModel& value : values)
+      most = std::max(most, value.curvature.lpNorm<Eigen::Infinity>());
+    return most;
+  };
+  if (fresh_ && !linearise()) return false;
+  const double before = largest(values_);
+  if (!backward()) return false;
+  if (largest(values_) <= kMostGrowth * before) return true;
+  values_.swap(otherValues_);
+  feedback_.swap(otherFeedback_);
+  return false;
+}
 
 /// From the trajectory that was tried.
 void FeasiblePhase::begin() {

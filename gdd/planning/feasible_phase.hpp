@@ -40,12 +40,16 @@ class FeasiblePhase {
   /// The trajectory of these controls (nv, N of them), clamped, from a state. False where it is not
   /// finite.
   bool rollOut(const Knot& start, const std::vector<VectorX>& controls);
-  /// Moves the trajectory and its value models on by some knots, and makes a feasible one of them
-  /// from `start`. False where it is not finite: then nothing has changed but what a pass has
-  /// tried.
-  bool shift(int knots, const Knot& start);
-  /// Value models and feedback about the trajectory as it is. False where no control has a minimum:
-  /// then those before stay.
+  /// Moves the trajectory, its value models and feedback on by some knots, and makes a feasible one
+  /// of them from `start`: towards V, by the controls and feedback that there were, or between
+  /// both, the first that does not cost more than three times what V promises there. False where
+  /// all do or are not finite: then nothing has changed but what passes have tried. `whatever`: the
+  /// least dear of them is taken all the same.
+  bool shift(int knots, const Knot& start, bool whatever = false);
+  /// Value models and feedback about the trajectory as it is. False where no control has a minimum,
+  /// or where the models' largest curvature is more than 10⁵ times what it was: then those before
+  /// stay. (Where a foot is about to lift or to rock, derivatives can be such that the models of
+  /// the knots before it grow without bound, to 10¹⁴, and no pass follows these.)
   bool refresh();
   /// One iteration; false where no step was found, which raises ρ for the next.
   bool iterate();
@@ -70,6 +74,7 @@ class FeasiblePhase {
   bool refuse(int knot);
   bool linearise();
   void forgetFeedback();
+  void moveOn(int knots);
   bool pass(double alpha, bool goalDirected, Trajectory& y);
   bool solveGoal(int t, Knot& knot, double alpha);
   bool solveControls(int t, Knot& knot, double alpha);
@@ -83,7 +88,7 @@ class FeasiblePhase {
   BackwardPass backward_;
   gdd::GoalDirectedController controller_;
   gdd::QuadraticValue* value_;
-  Trajectory x_, trial_, reference_;
+  Trajectory x_, trial_, reference_, best_;
   std::vector<ValueModel> values_, otherValues_;
   std::vector<Feedback> feedback_, otherFeedback_;
   ValueModel knotCost_;

@@ -53,6 +53,7 @@ std::string_view planStatusName(PlanStatus status) {
 
 Planner::Planner(const Model& model, const PlanSteps& steps, const Contacts& contacts)
     : rootCost(VectorX::Zero(model.nv)),
+      acting_(model.options),
       model_(planned(model, steps)),
       knots_(steps.knots),
       threads_(*model_, contacts, std::min(steps.threads, steps.knots)),

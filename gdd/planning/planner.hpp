@@ -120,14 +120,16 @@ class Planner {
 
   /// For who goes on with a feasible plan (receding_horizon.hpp): FeasiblePhase::shift(), iterate()
   /// and refresh(). plan() stays. False where there is none, or where they are.
-  bool moveOn(int knots, const Knot& start) {
-    return feasible_.hasTrajectory() && feasible_.shift(knots, start);
+  bool moveOn(int knots, const Knot& start, bool whatever) {
+    return feasible_.hasTrajectory() && feasible_.shift(knots, start, whatever);
   }
   bool improve() { return feasible_.iterate(); }
   bool refresh() { return feasible_.hasTrajectory() && feasible_.refresh(); }
 
   const MotionPlan& plan() const { return plan_; }
   const Model& model() const { return *model_; }
+  /// Of the model that was given: how the plan is acted out.
+  const Options& acting() const { return acting_; }
   /// Value models and feedback about the plan, of phase F.
   const FeasiblePhase& feasible() const { return feasible_; }
 
@@ -149,6 +151,7 @@ class Planner {
   template <class F>
   void makeContacts(const F& material);
 
+  Options acting_;
   std::unique_ptr<Model> model_;
   MechanismSet mechanisms_ = MechanismSet::none();  ///< of the model's own contacts
   std::vector<Material> own_;  ///< of the model's geometries, then of its pairs

@@ -9,11 +9,19 @@ namespace softgauss::planning {
 namespace {
 
 constexpr double kRounding = 1e-6;  // of a step of the plan: that near a knot is there
+constexpr int kMostLost = 3;        // ticks
+
+/// The plan's model, in the steps in which it is acted out.
+Model actedOut(const Planner& planner) {
+  Model model = planner.model();
+  model.options = planner.acting();
+  return model;
+}
 
 }  // namespace
 
 RecedingHorizon::Prediction::Prediction(const Planner& planner)
-    : model(planner.model()),
+    : model(actedOut(planner)),
       contacts(planner.contactsFor(model)),
       data(model),
       controller(model),
@@ -52,7 +60,7 @@ void RecedingHorizon::attach(gdd::GoalDirectedController& controller) {
 
 bool RecedingHorizon::begin(const State& state) {
   report_ = {};
-  planner_.cost.passed = first_ = 0;
+  planner_.cost.passed = first_ = lostInARow_ = 0;
   planner_.cost.keepsEnd = options_.keepsEnd;
   if (!planner_.refresh()) return false;
   begun_ = state.time;
@@ -78,16 +86,19 @@ void RecedingHorizon::update(const State& state) {
   if (goal_) setGoal(state.time, *goal_);
 }
 
-/// The state at the next knot, or at that which is now, as the plan's start.
+/// The state at the next knot, or at that which is now, as the plan's start: by the steps in which
+/// it is acted out.
 bool RecedingHorizon::predict(const State& state) {
   Prediction& p = *prediction_;
   p.state.q = state.q, p.state.v = state.v, p.state.time = state.time;
   p.state.forgetLastStep();
   p.state.a = state.a, p.state.hasAcceleration = state.hasAcceleration;
-  const double at = knotAt(state.time), left = std::ceil(at - kRounding) - at;
-  if (left > kRounding) {
-    p.model.options.timestep = left * planner_.model().options.timestep;
-    setGoal(state.time, *p.goal);
+  const double at = knotAt(state.time);
+  const double left = (std::ceil(at - kRounding) - at) * planner_.model().options.timestep;
+  const int steps = static_cast<int>(std::ceil(left / planner_.acting().timestep - kRounding));
+  if (steps > 0) p.model.options.timestep = left / steps;
+  for (int i = 0; i < steps; ++i) {
+    setGoal(p.state.time, *p.goal);
     if (isRefused(p.controller.step(p.model, {}, p.state, p.data, p.contacts.get()))) return false;
   }
   start_.q = p.state.q, start_.v = p.state.v;
@@ -103,7 +114,10 @@ void RecedingHorizon::tick(const State& state) {
   ++report_.ticks;
   const int next = static_cast<int>(std::ceil(knotAt(state.time) - kRounding));
   planner_.cost.passed = next;
-  if (predict(state) && planner_.moveOn(next - first_, start_)) {
+  const bool moved =
+      predict(state) && planner_.moveOn(next - first_, start_, lostInARow_ >= kMostLost);
+  lostInARow_ = moved ? 0 : lostInARow_ + 1;
+  if (moved) {
     first_ = next;
     for (int i = 0; i < options_.iterations && taken() < options_.seconds; ++i) planner_.improve();
     if (!planner_.refresh()) ++report_.failed;

@@ -17,12 +17,16 @@
 /// On the plan that is the plan's own control, at every instant; and for r → 0 it is
 /// u = −R⁻¹ (∂v̇/∂u)ᵀ ∂V/∂v, optimal control in continuous time.
 ///
-/// Every `period` it is planned anew: the state that there is is taken to the next knot by one step
-/// of r towards V, and from there on goes the plan, moved on by a knot where one has passed: one
-/// goal directed pass, iterations of phase F, and the value models about what they give. It stops
-/// in time where seconds or iterations are used up, for each is a feasible plan. A tick that fails
-/// leaves the plan before, on which the goal goes on. Without a period nothing is planned anew.
-/// Targets go by the time since begin() (PlanCost::passed).
+/// Every `period` it is planned anew: the state that there is is taken to the next knot towards V,
+/// by the steps of the simulator, and from there on goes the plan, moved on by a knot where one has
+/// passed: one goal directed pass, iterations of phase F, and the value models about what they
+/// give. It stops in time where seconds or iterations are used up, for each is a feasible plan.
+///
+/// Near where a foot lifts or lands, a pass in the plan's steps may be lost, its cost many times
+/// what V has promised. Such a tick fails (FeasiblePhase::shift()): it leaves the plan before, on
+/// which the goal goes on. After three in a row what the pass gives is taken, for then the world is
+/// not as it was planned. Without a period nothing is planned anew. Targets go by the time since
+/// begin() (PlanCost::passed).
 
 #include "softgauss/gdd/planning/planner.hpp"
 
@@ -57,7 +61,7 @@ class RecedingHorizon {
   const HorizonReport& report() const { return report_; }
 
  private:
-  /// One goal directed step of what is left of a step of the plan.
+  /// Goal directed steps through what is left of a step of the plan.
   struct Prediction {
     explicit Prediction(const Planner& planner);
     Model model;
@@ -82,6 +86,7 @@ class RecedingHorizon {
   Knot start_;
   double begun_ = 0.0;  ///< when the first plan began
   int first_ = 0;       ///< knot since then at which the plan there is begins
+  int lostInARow_ = 0;  ///< ticks
   double due_ = kInfinity;
 };
 
