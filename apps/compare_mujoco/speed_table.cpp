@@ -7,6 +7,7 @@
 #include <regex>
 #include <utility>
 
+#include "apps/compare_mujoco/batch_race.hpp"
 #include "apps/compare_mujoco/equal_error.hpp"
 #include "apps/compare_mujoco/step_duel.hpp"
 #include "apps/shared/fitted_power.hpp"
@@ -79,6 +80,15 @@ class Table {
     } else {
       row["refused"] = r.refused;
     }
+    push(std::move(row));
+  }
+
+  void addBatch() {
+    const BatchChoice choice{.rounds = options_.quick ? 1 : options_.rounds};
+    const std::string name = fmt::format("a batch of {} humanoids, a core", choice.runs);
+    if (!wants(name)) return;
+    Json row{{"name", name}};
+    setTimes(row, raceBatch(std::filesystem::path(options_.robots) / "humanoid.urdf", choice));
     push(std::move(row));
   }
 
@@ -172,6 +182,7 @@ Json measureSpeeds(const TableOptions& options) {
     table.addScene(scene);
     swung = scene.curve == kSwinging;
   }
+  table.addBatch();
   table.addBesides();
   Json result{{"heading", heading(options)}};
   result.update(table.json());
