@@ -72,10 +72,10 @@ class SubstepSelection {
   bool driven(const Model& model, const Data& data, const State& state, int tree,
               bool controlled) const;
 
-  std::vector<std::uint8_t> hasEquality_;               ///< (trees) 1: connections or welds hold it
-  std::vector<std::uint8_t> touched_;                   ///< (trees) 1: there are rows of it
-  std::vector<std::uint8_t> turns_;                     ///< (trees) 1: it may turn far
-  std::vector<double> rate_;                            ///< (trees) r
+  std::vector<std::uint8_t> hasEquality_;    ///< (trees) 1: connections or welds hold it
+  std::vector<std::uint8_t> touched_;        ///< (trees) 1: there are rows of it
+  std::vector<std::uint8_t> turns_;          ///< (trees) 1: it may turn far
+  std::vector<double> rate_;                 ///< (trees) r
   VectorX change_, bias_, alone_, midstep_;  ///< (nv) scratch
 };
 

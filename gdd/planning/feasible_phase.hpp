@@ -45,7 +45,7 @@ class FeasiblePhase {
   /// both, the first that does not cost more than three times what V promises there. False where
   /// all do or are not finite: then nothing has changed but what passes have tried. `whatever`: the
   /// least dear of them is taken all the same.
-  bool shift(int knots, const Knot& start, bool whatever = false);
+  bool shift(int knots, const Knot& start, bool whatever);
   /// Value models and feedback about the trajectory as it is. False where no control has a minimum,
   /// or where the models' largest curvature is more than 10⁵ times what it was: then those before
   /// stay. (Where a foot is about to lift or to rock, derivatives can be such that the models of
