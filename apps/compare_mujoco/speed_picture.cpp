@@ -12,16 +12,20 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// `ours`: where the name of ours stands, in characters from the end of the curve, clear of others.
+/// `ours`, `theirs`: where the names stand, in characters from the ends of the curves, clear of
+/// others.
 struct Line {
-  const char *curve, *colour, *ours = "0.8,0";
+  const char *curve, *colour, *ours = "0.8,0", *theirs = "0.8,0";
 };
-constexpr Line kLines[] = {{kLying, "#3465a4"}, {kPile, "#c17d11"}, {kBoxes, "#4e8a16", "8,-1.5"}};
+constexpr Line kLines[] = {{kLying, "#3465a4"},
+                           {kPile, "#c17d11"},
+                           {kBoxes, "#4e8a16", "8,-1.5"},
+                           {kHumanoids, "#a40000", "0.8,-0.8", "0.8,-0.8"}};
 
 /// Ours is drawn whole, MuJoCo's dashed, and each has its name at its end.
 std::string script(const Json& speeds) {
   std::string data, plots;
-  for (const auto& [name, colour, offset] : kLines)
+  for (const auto& [name, colour, offset, theirOffset] : kLines)
     for (const Json& curve : speeds["curves"]) {
       if (curve["name"] != name) continue;
       for (const bool ours : {true, false}) {
@@ -36,7 +40,7 @@ std::string script(const Json& speeds) {
             "{1} using ($0 == {4} ? $1 : NaN):2:('{5}, {6}') with labels left offset {7} "
             "tc rgb '{3}' notitle",
             plots.empty() ? "" : ", ", block, ours ? 1 : 2, colour, us.size() - 1, name,
-            ours ? "softgauss" : "MuJoCo", ours ? offset : "0.8,0");
+            ours ? "softgauss" : "MuJoCo", ours ? offset : theirOffset);
       }
     }
   if (plots.empty()) throw std::runtime_error("no scene of the picture has a figure");

@@ -207,6 +207,19 @@ TableScene onCurve(const std::string& curve, const std::string& what, int size, 
   return scene;
 }
 
+/// Each with its islands: they stand apart.
+void addHumanoids(const std::string& robots, std::vector<TableScene>& scenes) {
+  const int links = static_cast<int>(humanoids(robots, 1).bodies.size()) - 1;
+  for (const int n : {2, 5, 10, 20}) {
+    TableScene scene = onCurve(kHumanoids, fmt::format("{} humanoids", n), n * links, 5 * links,
+                               [=] { return makeHumanoids(robots, n); });
+    scene.warmUp = 250;
+    scene.windows = 6;
+    scene.steps = 10;
+    scenes.push_back(std::move(scene));
+  }
+}
+
 void addCurves(std::vector<TableScene>& scenes) {
   for (const int n : {10, 30, 100, 300, 1000}) {
     TableScene scene = onCurve(kLying, fmt::format("chain of {} links on the ground", n), n, 100,
@@ -273,6 +286,7 @@ std::vector<TableScene> tableScenes(const std::string& robots,
   std::vector<TableScene> scenes;
   addRobots(robots, scenes);
   addCurves(scenes);
+  addHumanoids(robots, scenes);
   addReaches(robots, scenes);
   for (const RobotFile& robot : extra) addExtra(robot, scenes);
   return scenes;

@@ -46,5 +46,6 @@ inline constexpr const char* kLying = "chain on the ground";
 inline constexpr const char* kSwinging = "chain swinging";
 inline constexpr const char* kPile = "pile";
 inline constexpr const char* kBoxes = "boxes at rest";
+inline constexpr const char* kHumanoids = "humanoids";
 
 }  // namespace softgauss::app

@@ -6,35 +6,44 @@
 
 namespace softgauss {
 
-void EllipticContact::assemble(const Assembly& in) {
-  const Options& options = in.model.options;
+void EllipticContact::begin() {
   clearBlocks();
   cones_.clear();
   perInertia_.clear();
   reference.clear();
-  if (options.cone == Cone::elliptic) {
-    PairSurface pair;
-    for (int i = 0; i < in.contacts.size(); ++i) {
-      const std::optional<Touch> touch = touchAt(in, i, pair);
-      if (!touch || touch->frictionDim == 0) continue;
-      const BlockMotion moves = addBlock(in, i, pair, *touch, static_cast<int>(reference.size()));
-      Softness soft = soften(in, *touch, moves.velocity);
-      const double ratio = touch->mu() / std::sqrt(options.impedanceRatio);
-      double push = soft.referenceAcceleration(moves.velocity[0], touch->distance);
-      if (options.correctsSlip())
-        soft = soft.hardened(levelCone(slipOf(in, *touch, soft, moves), ratio, push));
-      perInertia_.push_back(soft.perInertia);
-      cones_.push_back({touch->frictionDim + 1, 1.0 / soft.R, ratio, touch->friction});
-      reference.push_back(push - moves.bias[0]);
-      for (int k = 1; k <= touch->frictionDim; ++k)
-        reference.push_back(-soft.damping * moves.velocity[k] - moves.bias[k]);
-    }
-  }
+}
+
+void EllipticContact::add(const Assembly& in, int i, const PairSurface& pair, const Touch& touch) {
+  if (touch.frictionDim == 0) return;
+  const Options& options = in.model.options;
+  const BlockMotion moves = addBlock(in, i, pair, touch, static_cast<int>(reference.size()));
+  Softness soft = soften(in, touch, moves.velocity);
+  const double ratio = touch.mu() / std::sqrt(options.impedanceRatio);
+  double push = soft.referenceAcceleration(moves.velocity[0], touch.distance);
+  if (options.correctsSlip())
+    soft = soft.hardened(levelCone(slipOf(in, touch, soft, moves), ratio, push));
+  perInertia_.push_back(soft.perInertia);
+  cones_.push_back({touch.frictionDim + 1, 1.0 / soft.R, ratio, touch.friction});
+  reference.push_back(push - moves.bias[0]);
+  for (int k = 1; k <= touch.frictionDim; ++k)
+    reference.push_back(-soft.damping * moves.velocity[k] - moves.bias[k]);
+}
+
+void EllipticContact::finish() {
   for (std::vector<double>* column : {&x, &dx, &f, &df}) column->resize(reference.size());
   zones_.assign(cones_.size(), ConeZone::top);
   placed_.assign(cones_.size(), false);
   indexRows(reference.size());
   selection.reset(reference.size());
+}
+
+void EllipticContact::assemble(const Assembly& in) {
+  begin();
+  PairSurface pair;
+  if (in.model.options.cone == Cone::elliptic)
+    for (int i = 0; i < in.contacts.size(); ++i)
+      if (const std::optional<Touch> touch = touchAt(in, i, pair)) add(in, i, pair, *touch);
+  finish();
 }
 
 template <class Acceleration>

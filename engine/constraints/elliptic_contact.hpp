@@ -28,6 +28,12 @@ class EllipticContact : public ContactBlocks {
 
   int rowCount() const { return static_cast<int>(x.size()); }
   void assemble(const Assembly& in);
+  /// The same of one contact alone, the first of `in`, which touches so.
+  void assembleOne(const Assembly& in, const PairSurface& pair, const Touch& touch) {
+    begin();
+    add(in, 0, pair, touch);
+    finish();
+  }
   void addColumns(const Model& model, const Kinematics& k, const TreeSparsity& tree) {
     forEachContact(selection, [&](int i) { jacobian_.addColumns(model, k, tree, i); });
   }
@@ -83,6 +89,9 @@ class EllipticContact : public ContactBlocks {
   FrameVector breakpointInFrame(int row, int breakpoint) const;
 
  private:
+  void begin();
+  void add(const Assembly& in, int i, const PairSurface& pair, const Touch& touch);
+  void finish();
   /// Penalty of contact i at x; where it is not placed, `zone` is that of x.
   double evaluate(std::size_t i, const double* at, double* force, double* H, ConeZone& zone) const;
 

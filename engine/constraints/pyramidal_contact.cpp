@@ -18,32 +18,42 @@ void toEdges(const double* y, int frictionDim, const std::array<double, 5>& mu, 
 
 }  // namespace
 
-void PyramidalContact::assemble(const Assembly& in) {
-  const Options& options = in.model.options;
+void PyramidalContact::begin() {
   clearBlocks();
   clearRows();
-  PairSurface pair;
-  for (int i = 0; i < in.contacts.size(); ++i) {
-    const std::optional<Touch> touch = touchAt(in, i, pair);
-    if (!touch || (touch->frictionDim > 0 && options.cone != Cone::pyramidal)) continue;
-    const BlockMotion moves = addBlock(in, i, pair, *touch, static_cast<int>(reference.size()));
-    double velocity[10], bias[10];
-    toEdges(moves.velocity.data(), touch->frictionDim, touch->friction, velocity);
-    toEdges(moves.bias.data(), touch->frictionDim, touch->friction, bias);
-    const int edges = std::max(1, 2 * touch->frictionDim);
-    Softness soft = soften(in, *touch, moves.velocity);
-    double asks[10];
-    for (int edge = 0; edge < edges; ++edge)
-      asks[edge] = soft.referenceAcceleration(velocity[edge], touch->distance);
-    if (touch->frictionDim > 0 && options.correctsSlip())
-      soft = soft.hardened(
-          levelPyramid(slipOf(in, *touch, soft, moves),
-                       soft.referenceAcceleration(moves.velocity[0], touch->distance), asks));
-    for (int edge = 0; edge < edges; ++edge) asks[edge] -= bias[edge];
-    pushRows(soft, asks, static_cast<std::size_t>(edges));
-  }
+}
+
+void PyramidalContact::add(const Assembly& in, int i, const PairSurface& pair, const Touch& touch) {
+  const Options& options = in.model.options;
+  if (touch.frictionDim > 0 && options.cone != Cone::pyramidal) return;
+  const BlockMotion moves = addBlock(in, i, pair, touch, static_cast<int>(reference.size()));
+  double velocity[10], bias[10];
+  toEdges(moves.velocity.data(), touch.frictionDim, touch.friction, velocity);
+  toEdges(moves.bias.data(), touch.frictionDim, touch.friction, bias);
+  const int edges = std::max(1, 2 * touch.frictionDim);
+  Softness soft = soften(in, touch, moves.velocity);
+  double asks[10];
+  for (int edge = 0; edge < edges; ++edge)
+    asks[edge] = soft.referenceAcceleration(velocity[edge], touch.distance);
+  if (touch.frictionDim > 0 && options.correctsSlip())
+    soft = soft.hardened(levelPyramid(slipOf(in, touch, soft, moves),
+                                      soft.referenceAcceleration(moves.velocity[0], touch.distance),
+                                      asks));
+  for (int edge = 0; edge < edges; ++edge) asks[edge] -= bias[edge];
+  pushRows(soft, asks, static_cast<std::size_t>(edges));
+}
+
+void PyramidalContact::finish() {
   resizeRows(reference.size());
   indexRows(reference.size());
+}
+
+void PyramidalContact::assemble(const Assembly& in) {
+  begin();
+  PairSurface pair;
+  for (int i = 0; i < in.contacts.size(); ++i)
+    if (const std::optional<Touch> touch = touchAt(in, i, pair)) add(in, i, pair, *touch);
+  finish();
 }
 
 template <class Acceleration>

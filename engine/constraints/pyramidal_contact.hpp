@@ -21,6 +21,12 @@ class PyramidalContact : public ScalarRows<HalfQuadratic>, public ContactBlocks 
   static constexpr Cone kCone = Cone::pyramidal;
 
   void assemble(const Assembly& in);
+  /// The same of one contact alone, the first of `in`, which touches so.
+  void assembleOne(const Assembly& in, const PairSurface& pair, const Touch& touch) {
+    begin();
+    add(in, 0, pair, touch);
+    finish();
+  }
   void addColumns(const Model& model, const Kinematics& k, const TreeSparsity& tree) {
     forEachContact(selection, [&](int i) { jacobian_.addColumns(model, k, tree, i); });
   }
@@ -52,6 +58,9 @@ class PyramidalContact : public ScalarRows<HalfQuadratic>, public ContactBlocks 
   FrameVector breakpointInFrame(int row, int breakpoint) const;
 
  private:
+  void begin();
+  void add(const Assembly& in, int i, const PairSurface& pair, const Touch& touch);
+  void finish();
   /// scale · row of J, by the frame of its contact.
   FrameVector rowInFrame(int row, double scale) const;
   /// Sum over the edges of contact i of `y` times the edge.

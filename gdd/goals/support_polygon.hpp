@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 
+#include "softgauss/engine/core/check.hpp"
 #include "softgauss/engine/core/types.hpp"
 
 namespace softgauss::gdd {

@@ -83,7 +83,7 @@ TEST_P(Slides, SlabsOnABeltArePressedByTheirWeight) {
         ModelBuilder builder("belt");
         builder.base = BaseKind::fixed;
         builder.link(emptyLink("world"));
-        builder.link(boxLink("belt", 1000.0, Vector3(50.0, 1.0, 0.1)));
+        builder.link(boxLink("belt", 1e4, Vector3(50.0, 1.0, 0.1)));
         builder.joint(jointSpec("slide", JointType::prismatic, "world", "belt",
                                 {turned, Vector3(0.0, 0.0, -0.1)}, Vector3::UnitX()));
         builder.geometry(geometrySpec("belt", Shape::box(Vector3(50.0, 1.0, 0.1)), friction));
@@ -105,7 +105,6 @@ TEST_P(Slides, SlabsOnABeltArePressedByTheirWeight) {
           const Vector3 p = trial.state.q.segment<3>(slab.q), v = trial.state.v.segment<3>(slab.v);
           trial.input.tau.segment<3>(slab.v) =
               Vector3(-100.0 * p.x() - 20.0 * v.x(), -100.0 * p.y() - 20.0 * v.y(), 0.0);
-          trial.state.v[belt] = t.speed;
           if (trial.steps < last / 2) return;
           double pressed = 0.0;
           trial.data->constraints.visitContacts([&](const auto& rows) {

@@ -28,9 +28,9 @@ double gainOf(Trial& t, double has, double rises) {
 /// What two cubes gain, tied side by side, that tumble onto the floor.
 double tumble(int seed, double timestep, double ratio, double turn, double rises) {
   RandomScene scene = randomPair(seed, timestep, ratio, turn);
+  softenContacts(scene.model, seed);
   Trial t("pair " + std::to_string(seed), std::move(scene.model));
   t.state = scene.state;
-  softenContacts(t.model, seed);  // of whole steps: parts of a step keep the model of the start
   const double has = t.energy().kinetic + 0.3 * 9.81 * t.model.totalMass();
   return gainOf(t, has, rises);
 }

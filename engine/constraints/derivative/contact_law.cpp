@@ -21,6 +21,12 @@ void add(const Vector3& linear, const Vector3& angular, const Vector3& r, Motion
   m.linear += linear - angular.cross(r);
 }
 
+/// Whether a frame has turned at once: what slips at V > 0.5 (5.11) turns it by less than 1e-4.
+bool jumps(const Matrix3& from, const Matrix3& to) {
+  constexpr double kJump = 1e-3;  // [rad]
+  return (from - to).cwiseAbs().maxCoeff() > kJump;
+}
+
 double stiffnessOf(const PyramidalContact& rows, int contact) {
   return rows.D[idx(rows.contactsWithRows()[idx(contact)].row)];
 }
@@ -43,6 +49,7 @@ void ContactLaw::begin(const Assembly& in) {
   kinematics_ = in.kinematics;
   if (!kinematics_.hasMidstep) kinematics_.V_midstep = kinematics_.V;
   kinematics_.hasMidstep = true;
+  pair_ = {};
   if (!in.state.hasAcceleration) return;
   last_.resize(in.model.bodies.size());
   moveBodies(in.model, in.kinematics, in.state.a, last_);
@@ -67,10 +74,16 @@ bool ContactLaw::sample(const Assembly& in, const ContactRows& made, Contacts& r
   };
   move(L::kVelocity, V);
   move(L::kBias, A);
-  rows.assemble({in.model, in.state, kinematics_, contact_, in.weights, in.tree, in.input,
-                 in.midstepVelocity, in.load, nullptr, Columns::never,
-                 in.state.hasAcceleration ? &last_ : nullptr});
+  const Assembly alone{in.model, in.state,           kinematics_,
+                       contact_, in.weights,         in.tree,
+                       in.input, in.midstepVelocity, in.load,
+                       nullptr,  Columns::never,     in.state.hasAcceleration ? &last_ : nullptr};
+  // How a contact touches that overlaps depends on its distance alone.
+  const bool touchesSo = touch_ && touch_->distance < 0.0 && by[0] == 0.0;
+  const std::optional<Touch> touch = touchesSo ? touch_ : touchAt(alone, 0, pair_);
+  if (touch) rows.assembleOne(alone, pair_, *touch);
   V = keptV, A = keptA;
+  if (!touch) return false;
   out.rows = rows.rowCount();
   if (out.rows == 0) return false;
   std::copy(rows.reference.begin(), rows.reference.end(), out.reference);
@@ -138,6 +151,7 @@ const ContactLawDerivative& ContactLaw::of(const Assembly& in, const Contacts& c
       return cone_;
   }();
   const ContactRows& made = contacts.contactsWithRows()[i];
+  touch_ = touchAt(in, made.contact, pair_);
   L& d = derivative_;
   d.reference.setZero(), d.stiffness.setZero(), d.turn.setZero();
   const int linear = made.frictionDim > 0 ? 3 : 1, angular = std::max(0, made.frictionDim - 2);
@@ -153,8 +167,10 @@ const ContactLawDerivative& ContactLaw::of(const Assembly& in, const Contacts& c
     if (used[input] == 0.0) continue;
     const double step = stepOf(input);
     const Inputs by = Inputs::Unit(input) * step;
-    const bool ahead = sample(in, made, rows, by, more), behind = sample(in, made, rows, -by, less);
-    // Where the rows begin there is one side of it.
+    // Where the rows begin, or their frame begins to follow the slip, there is one side of it.
+    const bool ahead = sample(in, made, rows, by, more) && !jumps(made.R_WC, more.R_WC);
+    const bool behind = sample(in, made, rows, -by, less) && !jumps(made.R_WC, less.R_WC);
+    if (!ahead && !behind) continue;
     if (!ahead && !sample(in, made, rows, Inputs::Zero(), more)) continue;
     if (!behind && !sample(in, made, rows, Inputs::Zero(), less)) continue;
     difference(input, more, less, (ahead ? step : 0.0) + (behind ? step : 0.0));

@@ -7,8 +7,9 @@
 /// acceleration, the latter two in its frame: references a_ref, one stiffness D, and the frame,
 /// which may follow the slip. Their derivatives are taken where the law is, by making the rows of
 /// that contact alone again, with one entry of z a little more and a little less: a law that
-/// changes changes nothing here. What else a contact looks at, loads and levers, is taken as
-/// constant.
+/// changes changes nothing here. Where it jumps, as a pyramid that begins to follow its slip turns
+/// at once, they are those of the side on which the contact is. What else a contact looks at, loads
+/// and levers, is taken as constant.
 
 #include "softgauss/engine/constraints/constraints.hpp"
 
@@ -59,6 +60,8 @@ class ContactLaw {
   Kinematics kinematics_;
   std::vector<Motion> last_;  ///< (bodies) by State::a
   ContactSet contact_;
+  PairSurface pair_;
+  std::optional<Touch> touch_;  ///< of the contact in hand
   PyramidalContact pyramid_;
   EllipticContact cone_;
   ContactLawDerivative derivative_;

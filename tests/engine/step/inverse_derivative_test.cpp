@@ -269,6 +269,47 @@ TEST(InverseDerivative, OfContactsThatFollowTheirSlip) {
   }
 }
 
+// A pyramid turns at once where its slip becomes fast enough. A nanometre a second from there the
+// derivative is that of a slip 1 % slower, or faster, not the jump over the step of a difference.
+TEST(InverseDerivative, IsOfOneSideWhereAPyramidBeginsToFollowItsSlip) {
+  ModelBuilder b("block");
+  b.base = BaseKind::floating;
+  b.X_WRoot.p.z() = 0.0399;
+  b.link(boxLink("block", 1.0, Vector3(0.1, 0.06, 0.04)));
+  b.geometry(geometrySpec("block", Shape::box({0.1, 0.06, 0.04})));
+  b.geometry(groundSpec(1.0));
+  Scene s(b.build());
+  s.contacts = std::make_shared<collision::SceneContacts>(s.model);
+  const Vector3 way = Vector3(0.6, 0.8, 0.0);
+  const auto tangent = [&](double speed) -> Vector3 {
+    s.state.v.head<3>() = speed * way - Vector3(0.0, 0.0, 0.01);
+    s.stages();
+    return s.data->constraints.contact.contactsWithRows().at(0).R_WC.col(1);
+  };
+  double slow = 1e-6, fast = 1.0;
+  ASSERT_LT(std::abs(tangent(slow).dot(way)), 0.9);
+  ASSERT_GT(tangent(fast).dot(way), 0.99);
+  while (fast - slow > 1e-9) {
+    const double middle = 0.5 * (slow + fast);
+    (std::abs(tangent(middle).dot(way)) > 0.99 ? fast : slow) = middle;
+  }
+  VectorX a(6);
+  a << -1.0, 0.5, -9.81, 0.3, 1.0, 2.0;  // the ground holds it
+  InverseDerivative derivative(s.model);
+  const auto at = [&](double speed) {
+    tangent(speed);
+    EXPECT_EQ(derivative.compute(s.model, s.input, s.state, a, s.contacts.get(), *s.data),
+              SolveStatus::converged);
+    MatrixX G(6, 12);
+    G << derivative.q(), derivative.v();
+    return G;
+  };
+  for (const auto& [jump, beside] : {std::pair(slow, 0.99 * slow), std::pair(fast, 1.01 * fast)}) {
+    const MatrixX expected = at(beside);
+    EXPECT_APPROX(at(jump), expected, 0.03) << jump;
+  }
+}
+
 TEST(InverseDerivative, OfSoftContactsInTheirMargin) {
   Material material;
   material.margin = 0.02;
