@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <limits>
 
 namespace softgauss::app {
 namespace {
@@ -58,11 +59,22 @@ Replay::Replay(const SimulateOptions& options, const Scene& scene,
   if (!page_ && !plot_) return;
   recording_.emplace(scene.model, goals, start);
   recording_->command = options.commandLine;
+  plan_ = options.planControl;
+  if (plan_)
+    recording_->addPlot("Cost of the plan", "1/s",
+                        {"states", "control", "states, planned", "control, planned"});
   const double duration = std::isfinite(options.duration) ? options.duration : kUnknownDuration;
   recording_->reserve(static_cast<std::size_t>(duration / scene.model.options.timestep), duration);
   if (!page_) return;
   recording_->hulls = collidingHulls(scene);
   recording_->images = visualImages(scene.model, options.largestMesh, warnings_);
+}
+
+void Replay::showCost(const io::StepRecord& record) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  const MotionCost now = plan_->rate(record.q, record.v, record.u);
+  const MotionCost planned = plan_->plannedRate(record.time).value_or(MotionCost{kNone, kNone});
+  recording_->added = {now.running, now.effort, planned.running, planned.effort};
 }
 
 std::vector<std::string> Replay::finish(const io::StepRecord& last, const Data& data,

@@ -26,12 +26,11 @@ class Replay {
   Replay(const SimulateOptions& options, const Scene& scene,
          const std::vector<std::unique_ptr<gdd::Goal>>& goals, const gdd::GoalContext& start);
 
-  void addStep(const io::StepRecord& record, const Data& data) {
-    if (recording_) recording_->addStep(record, data);
-  }
   void addStep(const io::StepRecord& record, const Data& data,
                const std::vector<Snapshot::ContactForce>& contacts) {
-    if (recording_) recording_->addStep(record, data, contacts);
+    if (!recording_) return;
+    if (plan_) showCost(record);
+    recording_->addStep(record, data, contacts);
   }
   /// The run goes on from `time` [s], which lies back.
   void rewind(double time) {
@@ -51,9 +50,13 @@ class Replay {
   const std::string& written() const { return written_; }
 
  private:
+  /// What the step costs by the plan, and what it was to cost.
+  void showCost(const io::StepRecord& record);
+
   std::optional<io::Recording> recording_;
   std::optional<io::ReplayPage> page_;
   std::optional<io::Plot> plot_;
+  std::shared_ptr<PlanControl> plan_;
   std::filesystem::path view_, drawing_;
   std::vector<std::string> warnings_;
   std::string written_;

@@ -35,9 +35,19 @@ Recording::Recording(const Model& model, const std::vector<std::unique_ptr<gdd::
   }
   addJointGroups();
   addOtherGroups();
-  series_ = SeriesTable(columns_, mostEntries(columns_));
+  makeSeries();
   frames_ = FrameTrack(model.bodyCount(), static_cast<int>(goals_.size()));
   marks_.resize(goals_.size());
+}
+
+void Recording::makeSeries() { series_ = SeriesTable(columns_, mostEntries(columns_)); }
+
+void Recording::addPlot(std::string name, std::string unit,
+                        const std::vector<std::string>& curves) {
+  CurveGroup& group = addGroup(std::move(name), std::move(unit));
+  for (const std::string& curve : curves) addCurve(group, curve);
+  added.resize(added.size() + curves.size(), kNoValue);
+  makeSeries();
 }
 
 CurveGroup& Recording::addGroup(std::string name, std::string unit, bool logarithmic) {
@@ -176,6 +186,7 @@ void Recording::writeSample(const StepRecord& r, bool isEnd, double* sample) {
   for (const double x : {r.forwardUs, r.gddUs, r.stepUs}) *next++ = solved(x);
   *next++ = r.maxPenetration;
   for (const double x : {r.physicsViolation, r.gddViolation}) *next++ = solved(x);
+  for (const double x : added) *next++ = solved(x);
   SOFTGAUSS_ASSERT(next == sample + columns_);
 }
 

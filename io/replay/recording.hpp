@@ -65,6 +65,10 @@ class Recording {
   Recording(const Model& model, const std::vector<std::unique_ptr<gdd::Goal>>& goals,
             const gdd::GoalContext& start);
 
+  /// A plot of what only the caller knows, whose values of a step `added` holds as it is added, in
+  /// the order of all such curves; NaN is a gap. To be called before the first step.
+  void addPlot(std::string name, std::string unit, const std::vector<std::string>& curves);
+  std::vector<double> added;
   /// What is to come, so that memory is fetched before the run.
   void reserve(std::size_t steps, double duration) {
     series_.reserve(steps);
@@ -127,6 +131,7 @@ class Recording {
                 double upper = kInfinity);
   void addJointGroups();
   void addOtherGroups();
+  void makeSeries();
   void readMarks(const StepRecord& record, const Data& data);
   void writeSample(const StepRecord& record, bool isEnd, double* sample);
 

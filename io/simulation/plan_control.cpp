@@ -49,7 +49,8 @@ PlanControl::PlanControl(const Scene& scene, io::PlanTask task, bool receding)
                      model, collision::SceneContacts::kBroadphasePairs, true, &meshes_);
                }),
       horizon_(planner_, receding ? task_.mpc : planning::HorizonOptions{}),
-      kinematics_(scene.model) {
+      kinematics_(scene.model),
+      seen_(scene.model) {
   task_.setCosts(planner_);
 }
 
@@ -104,6 +105,23 @@ void PlanControl::addStep(const VectorX& control, double seconds) {
   cost_.running += due_;
   due_ = 0.0;
   if (!end_) cost_.effort += 0.5 * seconds * task_.effort.dot(control.cwiseAbs2());
+}
+
+MotionCost PlanControl::rateAt(int knot, const VectorX& q, const VectorX& v,
+                               const VectorX& control) {
+  seen_.q = q, seen_.v = v;
+  return {sumOf(planner_.cost.running, seen_, knot), 0.5 * task_.effort.dot(control.cwiseAbs2()),
+          0.0};
+}
+
+MotionCost PlanControl::rate(const VectorX& q, const VectorX& v, const VectorX& control) {
+  return rateAt(std::max(0, counted_ - 1), q, v, control);
+}
+
+std::optional<MotionCost> PlanControl::plannedRate(double time) {
+  if (hasEnded(time)) return std::nullopt;
+  const auto t = static_cast<std::size_t>((time - begun_ + kRounding) / task_.steps.step);
+  return rateAt(static_cast<int>(t), plan_.q[t], plan_.v[t], plan_.tau[t]);
 }
 
 double PlanControl::sumOf(const std::vector<std::unique_ptr<planning::CostTerm>>& terms,

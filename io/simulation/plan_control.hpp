@@ -57,6 +57,11 @@ class PlanControl {
 
   /// Up to `state`.
   MotionCost cost(const State& state);
+  /// What a second costs at a state that the motion is in, q and v, under this control: the running
+  /// terms and the effort.
+  MotionCost rate(const VectorX& q, const VectorX& v, const VectorX& control);
+  /// The same of the first plan, until it has ended.
+  std::optional<MotionCost> plannedRate(double time);
   /// What the final terms cost where the plan began, and where it is to end.
   double finalAtStart() const { return finalAtStart_; }
   double finalPlanned() const { return finalPlanned_; }
@@ -90,6 +95,7 @@ class PlanControl {
   static constexpr double kRounding = 1e-9;  // [s]
   double sumOf(const std::vector<std::unique_ptr<planning::CostTerm>>& terms, const State& state,
                int knot);
+  MotionCost rateAt(int knot, const VectorX& q, const VectorX& v, const VectorX& control);
 
   const Scene& scene_;
   io::PlanTask task_;
@@ -99,6 +105,7 @@ class PlanControl {
   planning::RecedingHorizon horizon_;
   planning::MotionPlan plan_;  ///< the first
   Kinematics kinematics_;
+  State seen_;  ///< of rateAt()
   MotionCost cost_;
   std::optional<State> end_;  ///< where the plan has ended
   int counted_ = 0;           ///< knots

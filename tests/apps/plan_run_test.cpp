@@ -48,6 +48,19 @@ TEST(PlanRun, ShowsThePlanInThePage) {
   EXPECT_GT(bytes("--plan"), bytes("--passive") + 3000u);
 }
 
+// Beside what was planned.
+TEST(PlanRun, DrawsWhatItCosts) {
+  const io::TempFolder folder;
+  const std::string file = folder.path() / "run.svg";
+  for (const char* option : {"--plan", "--mpc"}) {
+    ASSERT_EQ(simulate({task("cart_pole"), option, "--duration", "0.2", "--plot", file}).exitCode,
+              0);
+    const std::string svg = readFile(file);
+    for (const char* says : {"Cost of the plan [1/s]", "states, planned", "control, planned"})
+      EXPECT_NE(svg.find(says), std::string::npos) << says;
+  }
+}
+
 TEST(PlanRun, PlansAnewWhileItRuns) {
   const io::TempFolder folder;
   const std::string file = folder.path() / "summary.json";

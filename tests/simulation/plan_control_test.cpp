@@ -56,8 +56,12 @@ TEST(PlanControl, CountsAPlanAsThePlannerDoes) {
     planned.control.begin(state);
     Input input;
     input.controlled = allTrees(bare);
+    double rates = 0.0;
     for (std::size_t t = 0; t < plan.tau.size(); ++t) {
       planned.control.update(state);
+      const double rate = planned.control.plannedRate(state.time).value().total();
+      EXPECT_EQ(planned.control.rate(plan.q[t], plan.v[t], plan.tau[t]).total(), rate);
+      rates += bare.options.timestep * rate;
       // An unstable plan is not left by rounding.
       state.q = plan.q[t], state.v = plan.v[t];
       input.tau = plan.tau[t];
@@ -67,6 +71,8 @@ TEST(PlanControl, CountsAPlanAsThePlannerDoes) {
     }
     planned.control.update(state);
     EXPECT_TRUE(planned.control.hasEnded(state.time));
+    EXPECT_FALSE(planned.control.plannedRate(state.time));
+    EXPECT_NEAR(rates + planned.control.finalPlanned(), plan.cost, 1e-12 * plan.cost) << task;
     EXPECT_NEAR(planned.control.cost(state).total(), plan.cost, 1e-9 * plan.cost) << task;
   }
 }
