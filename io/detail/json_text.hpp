@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-#include "softgauss/engine/core/types.hpp"
+#include "softgauss/engine/core/spatial.hpp"
 #include "softgauss/io/detail/text.hpp"
 
 namespace softgauss::io::detail {
