@@ -21,10 +21,13 @@ void add(const Vector3& linear, const Vector3& angular, const Vector3& r, Motion
   m.linear += linear - angular.cross(r);
 }
 
-/// Whether a frame has turned at once: what slips at V > 0.5 (5.11) turns it by less than 1e-4.
-bool jumps(const Matrix3& from, const Matrix3& to) {
-  constexpr double kJump = 1e-3;  // [rad]
-  return (from - to).cwiseAbs().maxCoeff() > kJump;
+double turned(const Matrix3& from, const Matrix3& to) { return (from - to).cwiseAbs().maxCoeff(); }
+
+/// Whether a frame that has turned by so much has done so at once: by far more than it does to the
+/// other side. What slips at V > 0.5 (5.11) turns it to both, with steps of 1 ms by 1e-4 or less.
+bool jumps(double turned, double toOtherSide) {
+  constexpr double kJump = 1e-3, kTimes = 10.0;  // [rad]
+  return turned > kJump && turned > kTimes * toOtherSide;
 }
 
 double stiffnessOf(const PyramidalContact& rows, int contact) {
@@ -168,8 +171,11 @@ const ContactLawDerivative& ContactLaw::of(const Assembly& in, const Contacts& c
     const double step = stepOf(input);
     const Inputs by = Inputs::Unit(input) * step;
     // Where the rows begin, or their frame begins to follow the slip, there is one side of it.
-    const bool ahead = sample(in, made, rows, by, more) && !jumps(made.R_WC, more.R_WC);
-    const bool behind = sample(in, made, rows, -by, less) && !jumps(made.R_WC, less.R_WC);
+    bool ahead = sample(in, made, rows, by, more), behind = sample(in, made, rows, -by, less);
+    const double turnsAhead = ahead ? turned(made.R_WC, more.R_WC) : 0.0,
+                 turnsBehind = behind ? turned(made.R_WC, less.R_WC) : 0.0;
+    ahead = ahead && !jumps(turnsAhead, turnsBehind);
+    behind = behind && !jumps(turnsBehind, turnsAhead);
     if (!ahead && !behind) continue;
     if (!ahead && !sample(in, made, rows, Inputs::Zero(), more)) continue;
     if (!behind && !sample(in, made, rows, Inputs::Zero(), less)) continue;
