@@ -82,6 +82,11 @@ class Goal {
   virtual void weighBeside(double) {}
   /// What a posture leaves to it: the place it seeks, where nobody has given its weight.
   virtual std::optional<LedPlace> ledPlace() const { return std::nullopt; }
+  /// The coordinates of the place it seeks [m], for who moves that; null where there is none, or
+  /// where it moves by itself.
+  virtual double* soughtPlace() { return nullptr; }
+  /// The configuration it seeks (nq), for who changes that; null where there is none.
+  virtual VectorX* soughtPositions() { return nullptr; }
   /// Nothing for a goal that is no place.
   virtual std::optional<GoalMark> mark(const GoalContext&) const { return std::nullopt; }
   /// Appends how far the robot is from the goal; nothing where it has no aim that one could reach,

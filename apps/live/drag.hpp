@@ -29,6 +29,7 @@ class Drag final : public gdd::Goal {
   std::string name() const override { return name_; }
   bool steadyAt(double) const override { return false; }
   int linkFrame() const override { return reach.frame; }
+  double* soughtPlace() override { return held() ? reach.soughtPlace() : nullptr; }
   void weighBeside(double posture) override { reach.weighBeside(posture); }
   std::optional<gdd::LedPlace> ledPlace() const override;
   void addCost(const gdd::GoalContext& context, gdd::GoalCost& cost) const override {

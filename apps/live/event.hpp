@@ -32,6 +32,7 @@ enum class EventKind {
   gravity,
   factor,
   goal,
+  target,
   joint,
   effect,
   state,

@@ -23,8 +23,10 @@ std::optional<double> valueAt(const double* place) {
 
 }  // namespace
 
-Hands::Hands(const RunParts& run, bool passive, Keyframes::Named states)
-    : run_(run), rewind_(run.state, run.model.options.timestep) {
+Hands::Hands(const RunParts& run, bool passive, Keyframes::Named states, std::string fixedWorld)
+    : run_(run),
+      rewind_(run.state, run.model.options.timestep),
+      fixedWorld_(std::move(fixedWorld)) {
   if (!passive) {
     for (int i = 1; i <= kDrags; ++i) {
       auto drag = std::make_unique<Drag>(run_.model, i);
@@ -83,19 +85,17 @@ std::string Hands::act(const Event& event) {
       goTo(rewind_.back(run_.state, event.number("seconds")));
       return "";
     case EventKind::gravity:
-      run_.model.options.gravity = event.vector("acceleration");
-      run_.data.emplace(run_.model);
-      return "";
+    case EventKind::effect:
+      return setWorld(event);
     case EventKind::factor:
       factor_ = event.number("value");
       return "";
     case EventKind::goal:
       return setGoal(event);
+    case EventKind::target:
+      return moveTarget(event);
     case EventKind::joint:
       return setJoint(event);
-    case EventKind::effect:
-      setEffect(event);
-      return "";
     case EventKind::state:
       keyframes_->goTo(event.text("state"), run_.model, run_.state);
       jumped_ = true;
@@ -179,6 +179,14 @@ std::string Hands::setGoal(const Event& event) {
   return "";
 }
 
+std::string Hands::moveTarget(const Event& event) {
+  gdd::Goal& goal = *run_.controller.goals[idx(names_->goal(event.text("goal")))];
+  double* const place = goal.soughtPlace();
+  if (!place) return fmt::format("goal '{}' has no place that could be moved", event.text("goal"));
+  std::copy_n(event.vector("place").data(), 3, place);
+  return "";
+}
+
 void Hands::switchGoal(std::size_t index, bool on) {
   gdd::Goal& goal = *run_.controller.goals[index];
   auto* drag = dynamic_cast<Drag*>(&goal);
@@ -212,7 +220,7 @@ std::string Hands::setJoint(const Event& event) {
   if (!paused())
     return keyframes_->seek(run_.model, joint.body, event.number("position"))
                ? ""
-               : "no posture could seek it; joints are put somewhere where the run is paused";
+               : "nothing could seek it; joints are put somewhere where the run is paused";
   const Body& body = run_.model.bodies[joint.body];
   State& state = run_.state;
   state.q[body.q] = event.number("position");
@@ -225,13 +233,17 @@ std::string Hands::setJoint(const Event& event) {
   return "";
 }
 
-void Hands::setEffect(const Event& event) {
-  const Effect effect = *effectFromName(event.text("effect"));
-  if (event.flag("on"))
-    run_.model.options.effects.insert(effect);
+std::string Hands::setWorld(const Event& event) {
+  if (!fixedWorld_.empty()) return fixedWorld_;
+  Options& options = run_.model.options;
+  if (event.kind == EventKind::gravity)
+    options.gravity = event.vector("acceleration");
+  else if (const Effect effect = *effectFromName(event.text("effect")); event.flag("on"))
+    options.effects.insert(effect);
   else
-    run_.model.options.effects.remove(effect);
+    options.effects.remove(effect);
   run_.data.emplace(run_.model);
+  return "";
 }
 
 void Hands::goTo(const Rewind::Place& place) {

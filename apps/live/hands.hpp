@@ -30,8 +30,10 @@ struct RunParts {
 class Hands {
  public:
   /// Gives the controller goals that begin when somebody takes hold; none to a passive run.
-  /// `states` are those to which the run can be put by name.
-  Hands(const RunParts& run, bool passive, Keyframes::Named states = {});
+  /// `states` are those to which the run can be put by name; `fixedWorld` says why gravity and
+  /// effects cannot change, and is empty where they can.
+  Hands(const RunParts& run, bool passive, Keyframes::Named states = {},
+        std::string fixedWorld = "");
 
   const Names& names() const { return *names_; }
 
@@ -79,9 +81,10 @@ class Hands {
   std::string grab(const Event& event);
   std::string push(const Event& event);
   std::string setGoal(const Event& event);
+  std::string moveTarget(const Event& event);
   std::string setJoint(const Event& event);
   std::string keyframe(const Event& event);
-  void setEffect(const Event& event);
+  std::string setWorld(const Event& event);
   void goTo(const Rewind::Place& place);
   void switchGoal(std::size_t index, bool on);
   void weighDefaults();
@@ -101,6 +104,7 @@ class Hands {
   Rewind rewind_;
   std::optional<Push> push_;
   std::string holding_;
+  std::string fixedWorld_;
   bool paused_ = false, jumped_ = false;
   long stepsLeft_ = 0;
   double factor_ = 1.0;

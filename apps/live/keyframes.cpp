@@ -10,71 +10,76 @@ namespace softgauss::live {
 Keyframes::Keyframes(Named named, const gdd::GoalDirectedController& controller)
     : named_(std::move(named)) {
   for (const auto& goal : controller.goals) {
-    if (auto* posture = dynamic_cast<gdd::Posture*>(goal.get()))
-      postures_.emplace_back(posture, posture->q);
-    if (auto* balance = dynamic_cast<gdd::StandingBalance*>(goal.get()))
-      bases_.emplace_back(balance, balance->X_WBase);
+    if (VectorX* const q = goal->soughtPositions()) postures_.push_back(q);
+    if (double* const place = goal->soughtPlace()) places_.push_back(place);
+    if (auto* const balance = dynamic_cast<gdd::StandingBalance*>(goal.get()))
+      balances_.push_back(balance);
   }
+  start_ = now();
+}
+
+Keyframes::Sought Keyframes::now() const {
+  Sought sought;
+  for (const VectorX* q : postures_) sought.postures.push_back(*q);
+  for (const double* place : places_) sought.places.emplace_back(place[0], place[1], place[2]);
+  for (const gdd::StandingBalance* balance : balances_) sought.bases.push_back(balance->X_WBase);
+  return sought;
+}
+
+void Keyframes::seek(const Sought& sought) {
+  for (std::size_t i = 0; i < postures_.size(); ++i) *postures_[i] = sought.postures[i];
+  for (std::size_t i = 0; i < places_.size(); ++i)
+    std::copy_n(sought.places[i].data(), 3, places_[i]);
+  for (std::size_t i = 0; i < balances_.size(); ++i) balances_[i]->X_WBase = sought.bases[i];
 }
 
 void Keyframes::store(int slot, const State& state) {
-  Kept kept{state.q, state.v, {}, {}};
-  for (const auto& [posture, start] : postures_) kept.postures.push_back(posture->q);
-  for (const auto& [balance, start] : bases_) kept.bases.push_back(balance->X_WBase);
-  slots_.at(static_cast<std::size_t>(slot - 1)) = std::move(kept);
+  slots_.at(static_cast<std::size_t>(slot - 1)) = Kept{state.q, state.v, now()};
 }
 
 bool Keyframes::recall(int slot, const Model& model, State& state) {
   const std::optional<Kept>& kept = slots_.at(static_cast<std::size_t>(slot - 1));
   if (!kept) return false;
-  put(*kept, model, state);
-  for (std::size_t i = 0; i < postures_.size(); ++i) postures_[i].first->q = kept->postures[i];
-  for (std::size_t i = 0; i < bases_.size(); ++i) bases_[i].first->X_WBase = kept->bases[i];
+  put(kept->q, kept->v, model, state);
+  seek(kept->sought);
   return true;
 }
 
 void Keyframes::goTo(const std::string& name, const Model& model, State& state) {
   for (const auto& [called, q] : named_) {
     if (called != name) continue;
-    put({q, VectorX::Zero(model.nv), {}, {}}, model, state);
+    put(q, VectorX::Zero(model.nv), model, state);
     hold(model, q);
     return;
   }
 }
 
-void Keyframes::put(const Kept& kept, const Model& model, State& state) {
-  state.q = kept.q;
-  state.v = kept.v;
+void Keyframes::put(const VectorX& q, const VectorX& v, const Model& model, State& state) {
+  state.q = q;
+  state.v = v;
   // What the last step has found is of another place.
   state.warmstart = State(model).warmstart;
   state.forgetLastStep();
 }
 
 void Keyframes::hold(const Model& model, const VectorX& q) {
-  for (const auto& [posture, start] : postures_) posture->q = q;
-  for (const auto& [balance, start] : bases_) {
+  for (VectorX* posture : postures_) *posture = q;
+  for (gdd::StandingBalance* balance : balances_) {
     const int at = model.bodies[static_cast<std::size_t>(balance->base)].q;
     const Quaternion turn(q[at + 3], q[at + 4], q[at + 5], q[at + 6]);
     balance->X_WBase = {turn.normalized().toRotationMatrix(), q.segment<3>(at)};
   }
 }
 
-void Keyframes::reset() {
-  for (const auto& [posture, start] : postures_) posture->q = start;
-  for (const auto& [balance, start] : bases_) balance->X_WBase = start;
-}
-
 bool Keyframes::seek(const Model& model, int body, double position) {
-  for (const auto& [posture, start] : postures_) {
-    posture->q[model.bodies[static_cast<std::size_t>(body)].q] = position;
-    placeFollowers(model, {body}, posture->q);
+  for (VectorX* posture : postures_) {
+    (*posture)[model.bodies[static_cast<std::size_t>(body)].q] = position;
+    placeFollowers(model, {body}, *posture);
   }
   return !postures_.empty();
 }
 
-const VectorX* Keyframes::sought() const {
-  return postures_.empty() ? nullptr : &postures_.front().first->q;
-}
+const VectorX* Keyframes::sought() const { return postures_.empty() ? nullptr : postures_.front(); }
 
 std::vector<std::string> Keyframes::names() const {
   std::vector<std::string> names;

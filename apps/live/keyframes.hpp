@@ -5,7 +5,7 @@
 ///
 /// A run that is put into a state by name is at rest in it, and what holds a posture, or a robot
 /// upright, holds that state from then on; one that is put into a stored state moves as it did, and
-/// postures and balances seek what they sought then. Its time goes on.
+/// goals seek what they sought then. Its time goes on.
 
 #include <array>
 #include <optional>
@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "softgauss/gdd/goal_directed_step.hpp"
-#include "softgauss/gdd/goals/posture.hpp"
 #include "softgauss/gdd/goals/standing_balance.hpp"
 
 namespace softgauss::live {
@@ -30,29 +29,39 @@ class Keyframes {
   /// Whether there is a state to put the run into.
   bool recall(int slot, const Model& model, State& state);
   void goTo(const std::string& name, const Model& model, State& state);
-  /// Postures are again as they were at the start.
-  void reset();
-  /// Postures seek a place for a joint, by the body it carries; whether there is one.
+  /// Goals seek again what they sought at the start.
+  void reset() { seek(start_); }
+  /// Goals that seek a configuration seek a place for a joint, by the body it carries; whether
+  /// there is one.
   bool seek(const Model& model, int body, double position);
-  /// What the first posture seeks (nq); null where there is none.
+  /// What the first of these seeks (nq); null where there is none.
   const VectorX* sought() const;
 
   std::vector<std::string> names() const;
   std::vector<int> stored() const;  ///< slots, from 1 on
 
  private:
+  struct Sought {
+    std::vector<VectorX> postures;
+    std::vector<Vector3> places;
+    std::vector<Transform> bases;  ///< where balances hold them
+  };
   struct Kept {
     VectorX q, v;
-    std::vector<VectorX> postures;  ///< what they sought
-    std::vector<Transform> bases;   ///< where balances held them
+    Sought sought;
   };
-  static void put(const Kept& kept, const Model& model, State& state);
+  static void put(const VectorX& q, const VectorX& v, const Model& model, State& state);
   /// Postures and balances seek a configuration.
   void hold(const Model& model, const VectorX& q);
+  Sought now() const;
+  void seek(const Sought& sought);
 
   Named named_;
-  std::vector<std::pair<gdd::Posture*, VectorX>> postures_;  ///< and what they sought at the start
-  std::vector<std::pair<gdd::StandingBalance*, Transform>> bases_;  ///< the same of balances
+  // Of goals that seek such a thing, what they seek.
+  std::vector<VectorX*> postures_;
+  std::vector<double*> places_;
+  std::vector<gdd::StandingBalance*> balances_;
+  Sought start_;
   std::array<std::optional<Kept>, kSlots> slots_;
 };
 

@@ -14,6 +14,8 @@ class Companion {
   virtual std::string announcement() const { return ""; }
   /// Between steps, `taken` of which lie behind; here events are applied. False ends the run.
   virtual bool before(long taken) = 0;
+  /// The state is another than a step led to, as where somebody went back in time.
+  virtual void moved() {}
   /// A step was taken; `verdict` has seen it.
   virtual void after(const SeenStep& step, const Verdict& verdict) = 0;
   /// What was told at once, as that a robot fell.

@@ -19,25 +19,32 @@ Company::Company(const SimulateOptions& options, Scene& scene, State& state,
                                            : std::numeric_limits<long>::max();
   if (options.acted())
     hands_.emplace(live::RunParts{scene.model, state, instant_, data, controller},
-                   controller.goals.empty(), namedStates(scene));
+                   controller.goals.empty(), namedStates(scene),
+                   options.planControl ? "a plan is of the world as it was loaded" : "");
 }
 
 void Company::join(const Scene& scene, const gdd::GoalContext& start) {
   if (!options_.play.empty()) {
     auto play = std::make_unique<PlayRun>(options_.play, *hands_, model_.options.timestep);
     if (!std::isfinite(options_.duration)) steps_ = play->steps();
-    companion_ = std::move(play);
+    companions_.push_back(std::move(play));
   }
-  if (options_.planControl) companion_ = std::make_unique<PlanRun>(*options_.planControl, state_);
 #ifdef SOFTGAUSS_WITH_LIVE
   if (options_.live)
-    companion_ = std::make_unique<LiveRun>(options_, scene, *hands_, controller_, start);
+    companions_.push_back(std::make_unique<LiveRun>(options_, scene, *hands_, controller_, start));
 #else
   (void)scene, (void)start, (void)controller_;
 #endif
+  if (options_.planControl)
+    companions_.push_back(std::make_unique<PlanRun>(
+        *options_.planControl, state_, [this](const std::string& message) { tell(message); }));
 }
 
-std::string Company::announcement() const { return companion_ ? companion_->announcement() : ""; }
+std::string Company::announcement() const {
+  std::string text;
+  for (const auto& companion : companions_) text += companion->announcement();
+  return text;
+}
 
 void Company::countStep() {
   ++taken_;

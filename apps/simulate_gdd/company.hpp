@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "apps/live/hands.hpp"
 #include "apps/simulate_gdd/companion.hpp"
@@ -30,9 +31,11 @@ class Company {
   enum class Next { step, end, interrupted };
   template <class Back>
   Next next(Back&& back) {
-    if (companion_) {
-      if (!companion_->before(taken_)) return companion_->reloads() ? Next::end : Next::interrupted;
-      if (hands_ && hands_->jumped()) back(state_.time);
+    for (const auto& companion : companions_) {
+      if (!companion->before(taken_)) return companion->reloads() ? Next::end : Next::interrupted;
+      if (!hands_ || !hands_->jumped()) continue;
+      back(state_.time);
+      for (const auto& other : companions_) other->moved();
     }
     return taken_ < steps_ ? Next::step : Next::end;
   }
@@ -44,19 +47,19 @@ class Company {
     if (hands_) hands_->addWrench(kinematics, input.wrenches);
   }
   void after(const SeenStep& step, const Verdict& verdict) {
-    if (companion_) companion_->after(step, verdict);
+    for (const auto& companion : companions_) companion->after(step, verdict);
   }
   void tell(const std::string& message) {
-    if (companion_) companion_->tell(message);
+    for (const auto& companion : companions_) companion->tell(message);
   }
   /// A step is complete: the state's time is that of whole steps.
   void countStep();
   /// Throws std::runtime_error where a file could not be written.
   void finish() {
-    if (companion_) companion_->finish(taken_);
+    for (const auto& companion : companions_) companion->finish(taken_);
   }
   void conclude(io::Summary& summary) {
-    if (companion_) companion_->conclude(summary);
+    for (const auto& companion : companions_) companion->conclude(summary);
   }
   bool acts() const { return options_.acted(); }  ///< on the run, but for the control
   /// Of a run on which nobody acts.
@@ -74,7 +77,7 @@ class Company {
   long taken_ = 0;    ///< of those
   long instant_ = 0;  ///< from the start to the state
   std::optional<live::Hands> hands_;
-  std::unique_ptr<Companion> companion_;
+  std::vector<std::unique_ptr<Companion>> companions_;  ///< who acts, then who follows
 };
 
 }  // namespace softgauss::app

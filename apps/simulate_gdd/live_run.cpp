@@ -9,6 +9,7 @@
 
 #include "apps/live/messages.hpp"
 #include "apps/shared/interrupt.hpp"
+#include "apps/simulate_gdd/plan_run.hpp"
 #include "apps/simulate_gdd/replay.hpp"
 #include "softgauss/io/replay/page.hpp"
 
@@ -76,8 +77,8 @@ LiveRun::LiveRun(const SimulateOptions& options, const Scene& scene, live::Hands
   server.access = {place.token.empty(), place.token, live::hostOf(options.liveAddress)};
   server.page = io::livePage(
       scene_, std::string("softgauss ") + SOFTGAUSS_VERSION,
-      live::liveHeader(hands.names(),
-                       {place.token, place.loads, controller.goals.empty(), weightOf(model_)}),
+      live::liveHeader(hands.names(), {place.token, place.loads, controller.goals.empty(),
+                                       weightOf(model_), markNames()}),
       runBeside(options));
   try {
     server_ = std::make_unique<live::Server>(std::move(server), hands.names());
@@ -91,6 +92,18 @@ LiveRun::LiveRun(const SimulateOptions& options, const Scene& scene, live::Hands
 }
 
 LiveRun::~LiveRun() = default;
+
+/// By which pages ask that their places move.
+std::vector<std::string> LiveRun::markNames() const {
+  std::vector<std::string> names;
+  for (const gdd::Goal* place : scene_.places()) {
+    const auto goal = std::find_if(controller_.goals.begin(), controller_.goals.end(),
+                                   [&](const auto& one) { return one.get() == place; });
+    names.push_back(
+        hands_.names().goals[static_cast<std::size_t>(goal - controller_.goals.begin())]);
+  }
+  return names;
+}
 
 std::string LiveRun::announcement() const {
   const std::string& token = options_.live->token;
@@ -164,9 +177,12 @@ bool LiveRun::takeEvents() {
 std::string LiveRun::reload() {
   if (options_.model == "-") return "what came from standard input cannot be read anew";
   try {
-    const std::unique_ptr<Scene> scene = loadScene(options_);
+    SimulateOptions trial = options_;
+    trial.changeGoals = {};
+    const std::unique_ptr<Scene> scene = loadScene(trial);
+    if (options_.planControl) readPlan(trial, *scene);
     gdd::GoalDirectedController controller(scene->model);
-    setUp(options_, *scene, controller);
+    setUp(trial, *scene, controller);
   } catch (const std::exception& error) {
     tell(error.what());
     return error.what();

@@ -18,8 +18,6 @@ constexpr std::pair<const char*, const char*> kNotBeside[] = {
     {"--passive", "the plan is the goal"},
     {"--control-cost", "the plan has its own, plan.effort"},
     {"--sleep", "a plan is of the whole scene"},
-    {"--live", "a plan does not go back in time"},
-    {"--play", "a plan does not go back in time"},
     {"--checkpoint", "a plan is no part of a checkpoint"},
     {"--resume", "a plan is no part of a checkpoint"},
     {"--accuracy", "its trials would plan again and again"}};

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "apps/shared/interrupt.hpp"
 #include "apps/shared/standard_streams.hpp"
@@ -36,7 +37,12 @@ void readPlan(SimulateOptions& options, const Scene& scene) {
   io::PlanTask task = io::readPlanTask(options.model, scene.model, scene.initial);
   task.steps.threads = options.planThreads;
   options.planControl = std::make_shared<PlanControl>(scene, std::move(task), options.mpc);
-  if (!options.hasDuration) options.duration = options.planControl->duration();
+  const bool byTheClock = options.mpc && std::isfinite(options.planControl->task().mpc.seconds);
+  if (byTheClock && (!options.record.empty() || !options.play.empty()))
+    throw UsageError(
+        "--mpc: plan.mpc.seconds ends ticks by the clock, so that events give another run each "
+        "time; expected none of it with --record and --play");
+  if (!options.hasDuration && !options.acted()) options.duration = options.planControl->duration();
   checkSteps(options, scene.model.options.timestep, scene.timestepWhere);
   options.changeGoals = [plan = options.planControl](gdd::GoalDirectedController& controller) {
     plan->attach(controller);
@@ -94,11 +100,26 @@ std::string planText(const PlanControl& plan) {
 
 bool PlanRun::before(long taken) {
   if (taken == 0) plan_.begin(state_);
+  if (std::exchange(moved_, false)) planFromHere();
   plan_.update(state_);
   const planning::HorizonReport& report = plan_.report();
   if (report.ticks > ticks_) tickMs_.add(1e3 * report.last);
   ticks_ = report.ticks;
   return true;
+}
+
+void PlanRun::planFromHere() {
+  ticks_ = 0;
+  plan_.planner().progress = [](const MotionPlan&) { return !interrupted(); };
+  try {
+    plan_.restart(state_);
+    const MotionPlan& p = plan_.planner().plan();
+    tell_(fmt::format("planned from here in {:.3g} s: cost {:.4g}, {}", p.seconds, p.cost,
+                      planStatusName(p.status)));
+  } catch (const PlanError& error) {
+    tell_(std::string(error.what()) + "; until the state is another one nothing drives the run");
+  }
+  plan_.planner().progress = {};
 }
 
 void PlanRun::after(const SeenStep& step, const Verdict&) {

@@ -3,6 +3,7 @@
 
 /// --plan and --mpc: what a scene has its robots plan is planned, acted out in the run, and judged.
 
+#include <functional>
 #include <memory>
 
 #include "apps/simulate_gdd/companion.hpp"
@@ -27,10 +28,14 @@ std::string planText(const PlanControl& plan);
 /// Goes along with the run.
 class PlanRun final : public Companion {
  public:
-  /// Both must outlive this.
-  PlanRun(PlanControl& plan, const State& state) : plan_(plan), state_(state) {}
+  using Tell = std::function<void(const std::string&)>;
+  /// Both must outlive this. `tell` is told of plans that are made on the way.
+  PlanRun(PlanControl& plan, const State& state, Tell tell)
+      : plan_(plan), state_(state), tell_(std::move(tell)) {}
 
   bool before(long taken) override;
+  /// Before the next step it is planned from there.
+  void moved() override { moved_ = true; }
   void after(const SeenStep& step, const Verdict&) override;
   void tell(const std::string&) override {}
   void finish(long) override {}
@@ -38,12 +43,15 @@ class PlanRun final : public Companion {
   void conclude(io::Summary& summary) override;
 
  private:
+  void planFromHere();
   const char* outcomeOf(double final);
   void concludeTicks(io::Summary& summary, io::PlanOutcome& outcome) const;
 
   PlanControl& plan_;
   const State& state_;
+  Tell tell_;
   int ticks_ = 0;
+  bool moved_ = false;
   io::Series tickMs_;
 };
 

@@ -45,6 +45,7 @@ class CenterOfMass final : public Goal, public PlaceTarget {
 
   std::string name() const override { return "center_of_mass"; }
   void weighBeside(double posture) override { defaultWeight.setBeside(posture, weight); }
+  double* soughtPlace() override { return restingPlace(); }
   bool steadyAt(double time) const override { return !targetMovesAt(time); }
   void addCost(const GoalContext& context, GoalCost& cost) const override;
   bool concerns(const Model& model, int tree) const override {
@@ -91,6 +92,7 @@ class CapturePoint final : public Goal, public PlaceTarget {
   std::optional<Vector3> position(const GoalContext& context) const;
   std::string name() const override { return "capture_point"; }
   void weighBeside(double posture) override { defaultWeight.setBeside(posture, weight); }
+  double* soughtPlace() override { return restingPlace(); }
   bool steadyAt(double time) const override { return !targetMovesAt(time); }
   void addCost(const GoalContext& context, GoalCost& cost) const override;
   bool concerns(const Model& model, int tree) const override {

@@ -43,6 +43,7 @@ class LookAt final : public Goal, public PlaceTarget {
   bool concerns(const Model& model, int tree) const override {
     return isOfTree(model, frame, tree);
   }
+  double* soughtPlace() override { return restingPlace(); }
   /// The point on the axis that is as far as the place, and the place.
   std::optional<GoalMark> mark(const GoalContext& context) const override;
 };

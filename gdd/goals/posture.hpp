@@ -41,6 +41,7 @@ class Posture final : public Goal {
   explicit Posture(VectorX reference) : q(std::move(reference)) {}
 
   std::string name() const override { return "posture"; }
+  VectorX* soughtPositions() override { return &q; }
   bool steadyAt(double time) const override;
   void addCost(const GoalContext& context, GoalCost& cost) const override;
   void errors(const GoalContext& context, const ContactForces& contacts,

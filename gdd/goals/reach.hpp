@@ -74,6 +74,7 @@ class Reach final : public Goal, public PlaceTarget {
     if (!defaultWeight.isAt(weight)) return std::nullopt;
     return LedPlace{frame, p_FP, R_WTarget.has_value(), startTime, endTime};
   }
+  double* soughtPlace() override { return restingPlace(); }
   bool steadyAt(double time) const override {
     const bool comes = minimumJerk && time >= minimumJerk->startTime &&
                        time <= minimumJerk->startTime + minimumJerk->duration;

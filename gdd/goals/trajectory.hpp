@@ -125,6 +125,8 @@ struct PlaceTarget {
     return trajectory ? trajectory->movesAt(time)
                       : v_WTarget != Vector3::Zero() || a_WTarget != Vector3::Zero();
   }
+  /// The coordinates of p*; null where it follows a trajectory.
+  double* restingPlace() { return trajectory ? nullptr : p_WTarget.data(); }
   /// From now on it rests there.
   void restAt(const Vector3& p_W) {
     p_WTarget = p_W;

@@ -200,6 +200,13 @@ bool FeasiblePhase::shift(int knots, const Knot& start, bool whatever) {
   return false;
 }
 
+bool FeasiblePhase::takeCosts() {
+  cost_.begin(problem_);
+  cost_.evaluate(problem_, x_);
+  fresh_ = true;
+  return std::isfinite(x_.cost) && refresh();
+}
+
 bool FeasiblePhase::refresh() {
   constexpr double kMostGrowth = 1e5;
   const auto largest = [](const std::vector<ValueModel>& values) {

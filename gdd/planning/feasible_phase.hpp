@@ -51,6 +51,8 @@ class FeasiblePhase {
   /// stay. (Where a foot is about to lift or to rock, derivatives can be such that the models of
   /// the knots before it grow without bound, to 10¹⁴, and no pass follows these.)
   bool refresh();
+  /// The problem's costs have changed: finds that of the trajectory, and refreshes the models.
+  bool takeCosts();
   /// One iteration; false where no step was found, which raises ρ for the next.
   bool iterate();
 

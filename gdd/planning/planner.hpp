@@ -118,13 +118,15 @@ class Planner {
   void setContacts(const PlanningContacts& contacts);
   void setOwnContacts();
 
-  /// For who goes on with a feasible plan (receding_horizon.hpp): FeasiblePhase::shift(), iterate()
-  /// and refresh(). plan() stays. False where there is none, or where they are.
+  /// For who goes on with a feasible plan (receding_horizon.hpp): FeasiblePhase::shift(),
+  /// iterate(), refresh() and takeCosts(). plan() stays. False where there is none, or where they
+  /// are.
   bool moveOn(int knots, const Knot& start, bool whatever) {
     return feasible_.hasTrajectory() && feasible_.shift(knots, start, whatever);
   }
   bool improve() { return feasible_.iterate(); }
   bool refresh() { return feasible_.hasTrajectory() && feasible_.refresh(); }
+  bool takeCosts() { return feasible_.hasTrajectory() && feasible_.takeCosts(); }
 
   const MotionPlan& plan() const { return plan_; }
   const Model& model() const { return *model_; }

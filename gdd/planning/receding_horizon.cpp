@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 namespace softgauss::planning {
 namespace {
@@ -61,6 +62,7 @@ void RecedingHorizon::attach(gdd::GoalDirectedController& controller) {
 bool RecedingHorizon::begin(const State& state) {
   report_ = {};
   planner_.cost.passed = first_ = lostInARow_ = 0;
+  costsChanged_ = false;
   planner_.cost.keepsEnd = options_.keepsEnd;
   if (!planner_.refresh()) return false;
   begun_ = state.time;
@@ -71,7 +73,14 @@ bool RecedingHorizon::begin(const State& state) {
     prediction_->goal = addGoal(prediction_->controller);
   }
   report_.cost = planner_.feasible().trajectory().cost;
+  acts_ = true;
+  if (goal_) goal_->startTime = -kInfinity;
   return true;
+}
+
+void RecedingHorizon::end() {
+  acts_ = false;
+  if (goal_) goal_->startTime = kInfinity;
 }
 
 double RecedingHorizon::knotAt(double time) const {
@@ -79,6 +88,7 @@ double RecedingHorizon::knotAt(double time) const {
 }
 
 void RecedingHorizon::update(const State& state) {
+  if (!acts_) return;
   if (state.time >= due_ - kRounding * options_.period) {
     tick(state);
     while (due_ <= state.time + kRounding * options_.period) due_ += options_.period;
@@ -112,6 +122,7 @@ void RecedingHorizon::tick(const State& state) {
   const auto start = Clock::now();
   const auto taken = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
   ++report_.ticks;
+  if (std::exchange(costsChanged_, false)) planner_.takeCosts();
   const int next = static_cast<int>(std::ceil(knotAt(state.time) - kRounding));
   planner_.cost.passed = next;
   const bool moved =

@@ -56,6 +56,11 @@ class RecedingHorizon {
   void attach(gdd::GoalDirectedController& controller);
   /// The planner's plan begins now. False where it has none that is feasible.
   bool begin(const State& state);
+  /// Nothing is asked for any more, until a plan begins.
+  void end();
+  bool acts() const { return acts_; }
+  /// The planner's costs are others: from the next tick on it is planned for them.
+  void takeCosts() { costsChanged_ = true; }
   /// Before a step from `state`: plans where a tick is due, and sets the goal.
   void update(const State& state);
   const HorizonReport& report() const { return report_; }
@@ -88,6 +93,7 @@ class RecedingHorizon {
   int first_ = 0;       ///< knot since then at which the plan there is begins
   int lostInARow_ = 0;  ///< ticks
   double due_ = kInfinity;
+  bool acts_ = false, costsChanged_ = false;
 };
 
 }  // namespace softgauss::planning

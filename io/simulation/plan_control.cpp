@@ -54,29 +54,29 @@ PlanControl::PlanControl(const Scene& scene, io::PlanTask task, bool receding)
   task_.setCosts(planner_);
 }
 
-const planning::MotionPlan& PlanControl::solve() {
-  plan_ = task_.solve(planner_, scene_.initial);
-  if (plan_.status == PlanStatus::refused)
+const planning::MotionPlan& PlanControl::solve(const State& start) {
+  const planning::MotionPlan& plan = task_.solve(planner_, start);
+  if (plan.status == PlanStatus::refused)
     throw PlanError(fmt::format(
         "no plan was found: {} is not finite; try a shorter plan.step, smaller weights or a start "
         "without overlaps",
-        plan_.refusedKnot < 0
-            ? "its start or the motion from rest"
-            : fmt::format("a force or a cost at knot {}, {:.4g} s on,", plan_.refusedKnot,
-                          plan_.refusedKnot * task_.steps.step)));
-  if (plan_.status == PlanStatus::infeasible)
+        plan.refusedKnot < 0 ? "its start or the motion from rest"
+                             : fmt::format("a force or a cost at knot {}, {:.4g} s on,",
+                                           plan.refusedKnot, plan.refusedKnot * task_.steps.step)));
+  if (plan.status == PlanStatus::infeasible)
     throw PlanError(fmt::format(
         "no plan was found that the actuators can cause: after {} iterations forces of {:.3g} N or "
         "N m are left that nobody causes; try more plan.iterations.infeasible, gentler "
         "plan.contacts, a longer plan or a smaller plan.effort",
-        plan_.iterations, plan_.rootForce));
-  return plan_;
+        plan.iterations, plan.rootForce));
+  return plan_ = plan;
 }
 
 void PlanControl::attach(gdd::GoalDirectedController& controller) {
   controller.goals.clear();
   controller.motionLimits.reset();
   horizon_.attach(controller);
+  targets_.join(scene_.model, task_, !recedes_, controller.goals);
 }
 
 void PlanControl::begin(const State& state) {
@@ -89,10 +89,35 @@ void PlanControl::begin(const State& state) {
   finalAtStart_ = finalCost(state);
   State end(scene_.model);
   end.q = plan_.q.back(), end.v = plan_.v.back();
-  finalPlanned_ = finalCost(end);
+  finalPlanned_ = finalAimed_ = finalCost(end);
+}
+
+void PlanControl::restart(const State& state) {
+  horizon_.end();
+  begun_ = state.time;
+  if (targets_.update(state.time, task_)) setCosts();
+  planner_.cost.passed = 0;
+  solve(state);
+  begin(state);
+}
+
+void PlanControl::setCosts() {
+  planner_.cost.running.clear();
+  planner_.cost.final.clear();
+  task_.setCosts(planner_);
+}
+
+/// A run whose target has moved is to come to the new one from where it is.
+void PlanControl::takeTargets(const State& state) {
+  if (!targets_.update(state.time, task_)) return;
+  setCosts();
+  horizon_.takeCosts();
+  finalAtStart_ = finalCost(state);
+  finalAimed_ = 0.0;
 }
 
 void PlanControl::update(const State& state) {
+  takeTargets(state);
   const double h = task_.steps.step;
   const auto isDue = [&] { return state.time >= begun_ + h * double(counted_) - kRounding; };
   for (; isDue() && (recedes_ || counted_ < task_.steps.knots); ++counted_)
@@ -119,7 +144,7 @@ MotionCost PlanControl::rate(const VectorX& q, const VectorX& v, const VectorX& 
 }
 
 std::optional<MotionCost> PlanControl::plannedRate(double time) {
-  if (hasEnded(time)) return std::nullopt;
+  if (hasEnded(time) || !horizon_.acts()) return std::nullopt;
   const auto t = static_cast<std::size_t>((time - begun_ + kRounding) / task_.steps.step);
   return rateAt(static_cast<int>(t), plan_.q[t], plan_.v[t], plan_.tau[t]);
 }

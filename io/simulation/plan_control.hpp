@@ -13,12 +13,14 @@
 /// What the motion has cost is the plan's own sum (P.3): the terms of states at its knots, those of
 /// control all along, final ones where the plan ends. A receding one is made anew at the rate of
 /// the task, on the scene's own contacts; where the task says so, on planning contacts, with a
-/// margin of at most 5 mm.
+/// margin of at most 5 mm. Its targets may be moved meanwhile (plan_targets.hpp): from then on it
+/// plans for the new ones, and is judged by how far it came towards them.
 
 #include <algorithm>
 #include <optional>
 
 #include "softgauss/io/plan_task.hpp"
+#include "softgauss/io/simulation/plan_targets.hpp"
 #include "softgauss/io/simulation/scene.hpp"
 
 namespace softgauss {
@@ -44,12 +46,15 @@ class PlanControl {
   PlanControl(const PlanControl&) = delete;
 
   /// Plans from the scene's start. Throws PlanError.
-  const planning::MotionPlan& solve();
-  /// Gives the controller the goal, the price of control and bounds of the plan. What its goals
-  /// were is no more, nor are velocity limits, which plans do not know.
+  const planning::MotionPlan& solve() { return solve(scene_.initial); }
+  /// Gives the controller the goal, the price of control, bounds and targets of the plan. What its
+  /// goals were is no more, nor are velocity limits, which plans do not know.
   void attach(gdd::GoalDirectedController& controller);
   /// The plan begins now.
   void begin(const State& state);
+  /// The state is another than the motion led to: plans from there and begins anew. Throws
+  /// PlanError; then nothing is asked for until the next call.
+  void restart(const State& state);
   /// Before a step from `state`: plans anew where it is time, and sets the goal.
   void update(const State& state);
   /// A step by this control (nv) was taken.
@@ -62,14 +67,15 @@ class PlanControl {
   MotionCost rate(const VectorX& q, const VectorX& v, const VectorX& control);
   /// The same of the first plan, until it has ended.
   std::optional<MotionCost> plannedRate(double time);
-  /// What the final terms cost where the plan began, and where it is to end.
+  /// What the final terms cost where the plan began, or a target was moved last, and where the plan
+  /// is to end.
   double finalAtStart() const { return finalAtStart_; }
   double finalPlanned() const { return finalPlanned_; }
   /// Whether a motion that ends with these final terms has lost the plan: more than a tenth of what
   /// they were to fall by is missing.
   bool isLost(double final) const {
     constexpr double kShare = 0.1;
-    return !(final <= finalPlanned_ + kShare * std::max(finalAtStart_ - finalPlanned_, 0.0));
+    return !(final <= finalAimed_ + kShare * std::max(finalAtStart_ - finalAimed_, 0.0));
   }
   /// Whether such a motion is hardly nearer to the target than where the plan began, though that
   /// was away from it.
@@ -93,6 +99,9 @@ class PlanControl {
 
  private:
   static constexpr double kRounding = 1e-9;  // [s]
+  const planning::MotionPlan& solve(const State& start);
+  void setCosts();
+  void takeTargets(const State& state);
   double sumOf(const std::vector<std::unique_ptr<planning::CostTerm>>& terms, const State& state,
                int knot);
   MotionCost rateAt(int knot, const VectorX& q, const VectorX& v, const VectorX& control);
@@ -103,7 +112,8 @@ class PlanControl {
   collision::PreparedMeshes meshes_;
   planning::Planner planner_;
   planning::RecedingHorizon horizon_;
-  planning::MotionPlan plan_;  ///< the first
+  planning::MotionPlan plan_;  ///< the first, or that of the last restart
+  PlanTargets targets_;
   Kinematics kinematics_;
   State seen_;  ///< of rateAt()
   MotionCost cost_;
@@ -112,6 +122,7 @@ class PlanControl {
   double due_ = 0.0;          ///< their cost that no step has followed yet
   double begun_ = 0.0;        ///< [s]
   double finalAtStart_ = 0.0, finalPlanned_ = 0.0;
+  double finalAimed_ = 0.0;  ///< as planned; 0 once a target has moved
 };
 
 }  // namespace softgauss

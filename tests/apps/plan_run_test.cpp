@@ -144,6 +144,68 @@ TEST(PlanRun, AHopperHopsHalfAMetreAndStands) {
   }
 }
 
+/// A hand that is to come to a place, which an event moves; what happens to it by the events.
+struct Moved {
+  Moved(const std::string& events, const std::string& how)
+      : outcome(simulate(
+            {folder.write(
+                 "reach.yaml",
+                 "robots:\n  - urdf: " + dataFile("robots/arm.urdf") +
+                     "\nplan:\n  knots: 20\n  effort: 1e-3\n"
+                     "  running: {velocity: 0.02, points: {hand: {target: [0.5, 0.3, 0.5], "
+                     "weight: 10}}}\n"
+                     "  final: {velocity: 20, points: {hand: {target: [0.5, 0.3, 0.5], "
+                     "weight: 2000}}}\n"),
+             how, "--summary", folder.path() / "summary.json", "--play",
+             folder.write("events.yaml", "model: 'reach'\ntimestep: 0.002\nevents:\n" + events)})) {
+    if (outcome.exitCode == 0)
+      summary = nlohmann::json::parse(readFile(folder.path() / "summary.json"));
+  }
+  io::TempFolder folder;
+  Outcome outcome;
+  nlohmann::json summary;
+};
+
+// The final terms, ½ 2000 |e|² of a hand that rests, are those of the place it was moved to; they
+// are 380 there where the hand was.
+TEST(PlanRun, FollowsATargetThatMoves) {
+  const std::string events =
+      "  - {step: 500, target: {goal: 'plan hand', place: [0.45, -0.3, 0.4]}}\nsteps: 1500\n";
+  const Moved moved(events, "--mpc"), again(events, "--mpc");
+  ASSERT_EQ(moved.outcome.exitCode, 0) << moved.outcome.err;
+  EXPECT_EQ(moved.summary["plan"]["outcome"], "carried out") << moved.outcome.out;
+  EXPECT_LT(moved.summary["plan"]["final_cost"], 0.5 * 2000 * 0.005 * 0.005);
+  EXPECT_EQ(moved.summary["plan"]["ticks"]["failed"], 0);
+  EXPECT_EQ(moved.summary["state_hash"], again.summary["state_hash"]);
+}
+
+// As it was at the start, the target too: the plan there is the first one again.
+TEST(PlanRun, PlansAnewWhereSomebodyGoesBack) {
+  const std::string rest = "  - {step: 0, factor: {value: 1}}\nsteps: 1000\n",
+                    moved =
+                        "  - {step: 300, target: {goal: 'plan hand', place: [0.45, -0.3, 0.4]}}\n"
+                        "  - {step: 600, reset: {}}\nsteps: 1600\n";
+  for (const char* how : {"--plan", "--mpc"}) {
+    const bool recedes = std::string(how) == "--mpc";
+    const Moved straight(rest, how),
+        back(recedes ? moved : "  - {step: 600, reset: {}}\nsteps: 1600\n", how);
+    ASSERT_EQ(back.outcome.exitCode, 0) << how << back.outcome.err;
+    EXPECT_EQ(back.summary["plan"]["cost"], straight.summary["plan"]["cost"]) << how;
+    EXPECT_EQ(back.summary["plan"]["outcome"], "carried out") << how;
+  }
+}
+
+TEST(PlanRun, RefusesEventsOfWhichPlansDoNotKnow) {
+  for (const auto& [event, how, says] :
+       {std::tuple{"gravity: {acceleration: [0, 0, -1]}", "--mpc", "as it was loaded"},
+        {"effect: {effect: 'gravity', on: false}", "--mpc", "as it was loaded"},
+        {"target: {goal: 'plan hand', place: [0.45, -0.3, 0.4]}", "--plan", "no place"}}) {
+    const Moved moved(std::string("  - {step: 5, ") + event + "}\nsteps: 10\n", how);
+    EXPECT_EQ(moved.outcome.exitCode, 2) << event;
+    EXPECT_NE(moved.outcome.err.find(says), std::string::npos) << moved.outcome.err;
+  }
+}
+
 TEST(PlanRun, IsExplained) {
   const Outcome outcome = simulate({task("hopper"), "--mpc", "--explain"});
   EXPECT_EQ(outcome.exitCode, 0) << outcome.err;

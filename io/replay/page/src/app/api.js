@@ -56,6 +56,8 @@ export function makeApi({
     select: (name) => selection.select(name === null ? null : link(name).name),
     linkPose: (name) => run.linkPose(link(name), poses()),
     drawn: () => drawn(stage, plots, run.header.origin),
+    /** Where the mark of a goal's place is seen, by its number: window coordinates, or null. */
+    markPosition: (mark) => stage?.markPosition(mark) ?? null,
     screenPosition: (name) => stage?.screenPosition(link(name).name) ?? null,
     /**
      * Any of: mode, theme, follow, forceScale, limits and the marks as in the settings; speed,

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The mouse or a finger on a link: drags the point that it took hold of, pushes or turns the body.
+// The mouse or a finger on a link: drags the point that it took hold of, pushes or turns the body;
+// on the mark of a goal: moves the place that is sought.
 //
 // The point moves in the plane through it that faces the camera. A push is as strong as its arrow is
 // long; with the length of the robot it is the robot's weight.
@@ -49,27 +50,35 @@ export class Handle {
       return;
     }
     if (event.target !== this.stage.canvas || event.button !== 0 || !this.link.writes) return;
-    const hit = this.stage.hitAt(event.clientX, event.clientY);
-    const link = hit && this.run.linkByName.get(hit.item.link);
-    if (!link || link.body === 0) return;
+    const taken = this.#takenAt(event);
+    if (!taken) return;
     event.stopPropagation();
     event.preventDefault();
     this.stage.canvas.focus({ preventScroll: true });
     this.stage.canvas.parentElement.setPointerCapture(event.pointerId);
-    const { p, q } = placed(this.stage.poses, link.body, link);
-    const point = rotate(conjugate(q), subtract(hit.point.toArray(), p));
     const normal = this.stage.camera.camera.getWorldDirection(new Vector3());
     this.held = {
       pointer: event.pointerId,
-      action: this.#action(event),
-      link,
-      point,
       start: [event.clientX, event.clientY],
-      plane: new Plane().setFromNormalAndCoplanarPoint(normal, hit.point),
-      target: hit.point.toArray(),
+      plane: new Plane().setFromNormalAndCoplanarPoint(normal, taken.at),
+      target: taken.at.toArray(),
       moved: false,
+      ...taken,
     };
     this.stage.emit('hovered', null);
+  }
+
+  /** What a press takes hold of: a goal's place, or a point of a link. */
+  #takenAt(event) {
+    const { clientX, clientY } = event;
+    const action = this.#action(event);
+    const mark = action === 'drag' ? this.stage.markAt(clientX, clientY) : null;
+    if (mark) return { action: 'target', goal: this.run.live.marks[mark.mark], at: mark.point };
+    const hit = this.stage.hitAt(clientX, clientY);
+    const link = hit && this.run.linkByName.get(hit.item.link);
+    if (!link || link.body === 0) return null;
+    const { p, q } = placed(this.stage.poses, link.body, link);
+    return { action, link, point: rotate(conjugate(q), subtract(hit.point.toArray(), p)), at: hit.point };
   }
 
   #move(event) {
@@ -80,13 +89,15 @@ export class Handle {
       const [x, y] = held.start;
       if (Math.hypot(event.clientX - x, event.clientY - y) < 4) return;
       held.moved = true;
-      this.selection.select(held.link.name);
+      if (held.link) this.selection.select(held.link.name);
       if (held.action === 'drag') this.#grab();
     }
     const target = this.stage.pointOn(held.plane, event.clientX, event.clientY);
     if (!target) return;
     held.target = target.toArray();
-    if (held.action === 'drag') this.link.move(this.#inWorld(held.target));
+    const place = this.#inWorld(held.target);
+    if (held.action === 'target') this.link.move({ target: { goal: held.goal, place } });
+    else if (held.action === 'drag') this.link.move({ move: { target: place } });
     else this.#push();
   }
 
@@ -136,10 +147,14 @@ export class Handle {
     this.stage.changed = true;
   }
 
+  #pushes({ action }) {
+    return action === 'push' || action === 'turn';
+  }
+
   /** The arrow stays with the body. */
   #follow() {
     const { held } = this;
-    if (held?.moved && held.action !== 'drag')
+    if (held?.moved && this.#pushes(held))
       this.#drawArrow(subtract(held.target, this.#pointNow()));
   }
 
@@ -147,7 +162,7 @@ export class Handle {
     const { held } = this;
     if (!held || event.pointerId !== held.pointer) return;
     event.stopPropagation();
-    if (!held.moved) this.selection.select(held.link.name);
+    if (!held.moved && held.link) this.selection.select(held.link.name);
     this.#end();
   }
 
@@ -155,11 +170,11 @@ export class Handle {
     const { held } = this;
     this.held = null;
     if (!held?.moved) return;
-    if (held.action !== 'drag') {
+    this.link.sendMove();
+    if (this.#pushes(held)) {
       this.#drawArrow(null);
       this.link.tell({ let_go: {} });
-    } else {
-      this.link.forgetMove();
+    } else if (held.action === 'drag') {
       this.link.tell(this.settings.get('pins') ? { pin: {} } : { release: {} });
     }
   }

@@ -2,6 +2,8 @@
 // The connection to the simulation. Emits `frame`, `status`, `writes`, `connected`, `refused`.
 //
 // Of frames that come faster than pictures the newest is shown; of moves one a picture is sent.
+//
+// A move is {move: {target}} of what is held, or {target: {goal, place}}.
 
 import { Emitter } from '../app/emitter.js';
 
@@ -83,10 +85,7 @@ export class Link extends Emitter {
 
   /** To be called before every picture. */
   tick() {
-    if (this.moved) {
-      this.#send({ move: this.moved });
-      this.moved = null;
-    }
+    this.sendMove();
     if (!this.newest) return;
     const taken = this.run.take(this.newest);
     this.newest = null;
@@ -115,13 +114,14 @@ export class Link extends Emitter {
     return this.ask(what).catch((error) => this.emit('refused', error.message));
   }
 
-  move(target) {
-    this.moved = { target };
+  move(what) {
+    this.moved = what;
   }
 
-  /** What still waits to be sent is forgotten: the point was let go. */
-  forgetMove() {
-    if (this.moved) this.#send({ move: this.moved });
+  /** What still waits is sent now: the next picture is due, or the point was let go. */
+  sendMove() {
+    if (this.moved?.target) this.tell(this.moved);
+    else if (this.moved) this.#send(this.moved);
     this.moved = null;
   }
 }

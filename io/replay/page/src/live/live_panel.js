@@ -57,7 +57,7 @@ function joints(link, run) {
     hint.textContent = status.paused
       ? 'The run is paused: joints are put where the sliders are.'
       : canMove
-        ? 'The posture seeks where the sliders are.'
+        ? 'Sought is where the sliders are.'
         : 'Pause the run to move its joints.';
     rows.forEach(({ slider, value, unit }, i) => {
       slider.disabled = !canMove;
@@ -67,6 +67,12 @@ function joints(link, run) {
     });
   });
   return section('Joints', false, hint, ...rows.map(({ node }) => node));
+}
+
+/** What one may do. */
+function hint({ passive, marks }) {
+  if (passive) return 'Live. Push a link.';
+  return marks.some((name) => name.startsWith('plan')) ? 'Live. Drag a target or a link.' : 'Live. Drag a link.';
 }
 
 /** What this page has seen, as a page that replays it. */
@@ -118,7 +124,7 @@ export function livePanel(host, link, run, settings, pageText) {
     if (lost) state.textContent = 'The run has ended or cannot be reached. Trying again.';
     else if (!link.connected) state.textContent = 'Connecting.';
     else if (!link.writes) state.textContent = 'Live. Another page has the mouse; this one watches.';
-    else state.textContent = run.live.passive ? 'Live. Push a link.' : 'Live. Drag a link.';
+    else state.textContent = hint(run.live);
     state.classList.toggle('lost', lost);
     write.hidden = !link.connected || link.writes;
   };

@@ -176,6 +176,19 @@ export class Marks {
       .map((target) => new Vector3(...target));
   }
 
+  /** The nearest mark of a place there, {mark, point}, or null. */
+  hit(raycaster) {
+    let nearest = null;
+    if (!this.shown.goals) return null;
+    this.goalMarks.forEach((goal, mark) => {
+      if (!goal.group.visible) return;
+      const [hit] = raycaster.intersectObject(goal.ball);
+      if (hit && !(nearest?.distance <= hit.distance))
+        nearest = { mark, point: goal.target.clone(), distance: hit.distance };
+    });
+    return nearest;
+  }
+
   update(time, poses, camera) {
     const { run, shown } = this;
     const ground = Ground.levelHeight(this.planes, poses);

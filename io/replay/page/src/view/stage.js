@@ -145,6 +145,12 @@ export class Stage extends Emitter {
     return this.robot.hit(this.raycaster);
   }
 
+  /** The nearest mark of a goal's place there, {mark, point}, or null. */
+  markAt(x, y) {
+    this.#aim(x, y);
+    return this.marks.hit(this.raycaster);
+  }
+
   /** The point of a plane that is seen there, or null. */
   pointOn(plane, x, y) {
     this.#aim(x, y);
@@ -276,8 +282,19 @@ export class Stage extends Emitter {
     }
     const link = this.run.linkByName.get(name);
     if (!nearest && !link) return null;
-    const point = nearest?.middle ?? new Vector3(...placed(this.poses, link.body, link).p);
-    point.project(camera);
+    return this.#onScreen(
+      nearest?.middle ?? new Vector3(...placed(this.poses, link.body, link).p),
+    );
+  }
+
+  /** The same of the mark of a goal's place. */
+  markPosition(mark) {
+    const goal = this.marks.goalMarks[mark];
+    return goal?.group.visible ? this.#onScreen(goal.target.clone()) : null;
+  }
+
+  #onScreen(point) {
+    point.project(this.camera.camera);
     const { left, top, width, height } = this.canvas.getBoundingClientRect();
     return [left + ((point.x + 1) / 2) * width, top + ((1 - point.y) / 2) * height];
   }
