@@ -350,8 +350,12 @@ const planning::MotionPlan& PlanTask::solveFeasible(
 }
 
 PlanTask readPlanTask(const std::filesystem::path& file, const Model& model, const State& start) {
-  const std::string text = detail::readInput(file.string(), "a scene");
-  const std::string path = detail::inputName(file.string());
+  return parsePlanTask(detail::readInput(file.string(), "a scene"),
+                       detail::inputName(file.string()), model, start);
+}
+
+PlanTask parsePlanTask(const std::string& text, const std::string& path, const Model& model,
+                       const State& start) {
   const YamlValue root = detail::parseYaml(path, text, "robots: [...] and plan: {…}");
   if (root.kind != YamlValue::Kind::map)
     throw ModelError({path, root.line}, "file",

@@ -84,4 +84,8 @@ struct PlanTask {
 /// plan.
 PlanTask readPlanTask(const std::filesystem::path& file, const Model& model, const State& start);
 
+/// The same of a scene's text, YAML or JSON, which messages call `name`.
+PlanTask parsePlanTask(const std::string& text, const std::string& name, const Model& model,
+                       const State& start);
+
 }  // namespace softgauss::io

@@ -39,10 +39,10 @@ struct Plan {
 /// The simulation of a task, by whose controller its plan is acted out.
 class Mpc {
  public:
-  Mpc(const std::filesystem::path& file, int threads, SimulationOptions options,
-      bool receding = true)
+  Mpc(const std::filesystem::path& file, const std::optional<py::dict>& task, int threads,
+      SimulationOptions options, bool receding = true)
       : sim_(Simulation::load(file, withoutGoals(std::move(options)))),
-        control_(sim_.scene(), task(file, threads), receding) {
+        control_(sim_.scene(), read(file, task, threads), receding) {
     const py::gil_scoped_release release;
     control_.planner().progress = [](const planning::MotionPlan&) {
       seeSignals();
@@ -58,7 +58,7 @@ class Mpc {
     const VectorX nowQ = vectorOf(q, "q", sim_.model().nq, "nq"),
                   nowV = vectorOf(v, "v", sim_.model().nv, "nv");
     expectConfiguration(sim_.model(), nowQ);
-    if (!nowV.allFinite()) throw StepError("v: found NaN or ∞, expected a velocity");
+    finite(nowV, "v", "a velocity");
     const double now = time.value_or(begun_ ? time_ + timestep() : 0.0);
     if (!std::isfinite(now) || (begun_ && now < time_))
       throw py::value_error("time: found " + std::to_string(now) + " s, expected " +
@@ -74,16 +74,49 @@ class Mpc {
     return answer.tau;
   }
 
+  void move(const std::string& link, const py::object& target) {
+    const Turn turn(busy_, "this Mpc");
+    gdd::Goal& goal = targetOf("plan " + link, "link: found '" + link +
+                                                   "', expected one of plan.final.points or "
+                                                   "plan.running.points");
+    const VectorX place = finite(vectorOf(target, "target", 3, "3"), "target", "a place");
+    std::copy_n(place.data(), 3, goal.soughtPlace());
+  }
+  void seek(const py::object& q) {
+    const Turn turn(busy_, "this Mpc");
+    const VectorX sought = vectorOf(q, "q", sim_.model().nq, "nq");
+    expectConfiguration(sim_.model(), sought);
+    *targetOf("plan", "").soughtPositions() = sought;
+  }
+
   Plan plan() const { return {control_.planner().plan(), control_.task().steps.step}; }
   double timestep() const { return sim_.model().options.timestep; }
   double time() const { return time_; }
   const planning::HorizonReport& report() const { return control_.report(); }
 
  private:
-  io::PlanTask task(const std::filesystem::path& file, int threads) const {
-    io::PlanTask task = io::readPlanTask(file, sim_.model(), sim_.scene().initial);
+  static const VectorX& finite(const VectorX& x, const char* name, const char* expected) {
+    if (x.allFinite()) return x;
+    throw StepError(std::string(name) + ": found NaN or ∞, expected " + expected);
+  }
+  io::PlanTask read(const std::filesystem::path& file, const std::optional<py::dict>& given,
+                    int threads) const {
+    const State& start = sim_.scene().initial;
+    io::PlanTask task =
+        given ? io::parsePlanTask("{\"plan\": " + jsonOf(*given) + "}", "task", sim_.model(), start)
+              : io::readPlanTask(file, sim_.model(), start);
     task.steps.threads = threads;
     return task;
+  }
+  /// Arrays as lists.
+  static std::string jsonOf(const py::dict& task) {
+    const py::cpp_function listed([](const py::object& array) { return array.attr("tolist")(); });
+    return py::str(py::module_::import("json").attr("dumps")(task, py::arg("default") = listed));
+  }
+  gdd::Goal& targetOf(const std::string& name, const std::string& what) {
+    for (const auto& goal : sim_.controller().goals)
+      if (goal->name() == name) return *goal;
+    throw py::value_error(what);
   }
   static SimulationOptions withoutGoals(SimulationOptions options) {
     options.withoutGoals = true;
@@ -142,12 +175,19 @@ void bindPlanClass(py::module_& m) {
 void bindMpc(py::module_& m) {
   py::class_<Mpc>(m, "Mpc",
                   "Control by a plan that is made anew from the present state, at plan.mpc.rate.")
-      .def(py::init([](const std::filesystem::path& file, int threads, const py::kwargs& options) {
-             return std::make_unique<Mpc>(file, threads, optionsFrom(options));
+      .def(py::init([](const std::filesystem::path& file, const std::optional<py::dict>& task,
+                       int threads, const py::kwargs& options) {
+             return std::make_unique<Mpc>(file, task, threads, optionsFrom(options));
            }),
-           py::arg("file"), py::kw_only(), py::arg("threads") = 1,
-           "A scene with a key plan, which is planned here; options as of Simulation. Any number\n"
-           "of threads gives the same bits. Raises ModelError, OptionError and PlanError.")
+           py::arg("file"), py::arg("task") = py::none(), py::kw_only(), py::arg("threads") = 1,
+           "A scene with a key plan, or a robot and a `task` of what that key holds, which is\n"
+           "planned here; options as of Simulation. Any number of threads gives the same bits.\n"
+           "Raises ModelError, OptionError and PlanError.")
+      .def("move", &Mpc::move, py::arg("link"), py::arg("target"),
+           "From the next update on the plan's point of the link is to come to `target` (3,), in\n"
+           "the world [m]. Raises ValueError where the task has no such point.")
+      .def("seek", &Mpc::seek, py::arg("q"),
+           "From the next update on the plan is to end in q (nq,), at rest, as the task weighs it.")
       .def(
           "update", &Mpc::update, py::arg("q"), py::arg("v"), py::arg("time") = py::none(),
           "The control (nv,) at q (nq,) and v (nv,). `time` [s] begins with the first call; where\n"
@@ -176,12 +216,14 @@ void bindPlans(py::module_& m) {
   bindMpc(m);
   m.def(
       "plan",
-      [](const std::filesystem::path& file, int threads, const py::kwargs& options) {
-        return Mpc(file, threads, optionsFrom(options), false).plan();
+      [](const std::filesystem::path& file, const std::optional<py::dict>& task, int threads,
+         const py::kwargs& options) {
+        return Mpc(file, task, threads, optionsFrom(options), false).plan();
       },
-      py::arg("file"), py::kw_only(), py::arg("threads") = 1,
-      "Plans what the key plan of a scene asks for; options as of Simulation. Any number of\n"
-      "threads gives the same bits. Ctrl-C ends it. Raises ModelError, OptionError and PlanError.");
+      py::arg("file"), py::arg("task") = py::none(), py::kw_only(), py::arg("threads") = 1,
+      "Plans what the key plan of a scene asks for, or for any robot a `task` of what that key\n"
+      "holds; options as of Simulation. Any number of threads gives the same bits. Ctrl-C ends\n"
+      "it. Raises ModelError, OptionError and PlanError.");
 }
 
 }  // namespace softgauss::python

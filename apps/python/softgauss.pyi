@@ -7,7 +7,7 @@ is the world velocity of its origin, then its angular velocity in its own axes.
 
 import os
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, Literal
+from typing import Any, Final, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -116,41 +116,33 @@ class Solution:
 class Plan:
     """A motion that was planned: N + 1 states, N controls between them."""
 
-    @property
-    def q(self) -> Array: ...
-    @property
-    def v(self) -> Array: ...
-    @property
-    def a(self) -> Array: ...
-    @property
-    def u(self) -> Array: ...
-    @property
-    def time(self) -> Array: ...
-    @property
-    def step(self) -> float: ...
-    @property
-    def cost(self) -> float: ...
-    @property
-    def costs(self) -> list[float]: ...
-    @property
-    def status(self) -> str: ...
-    @property
-    def root_force(self) -> float: ...
-    @property
-    def gap(self) -> float: ...
-    @property
-    def certificate(self) -> float: ...
-    @property
-    def iterations(self) -> int: ...
-    @property
-    def seconds(self) -> float: ...
+    q: Final[Array]
+    v: Final[Array]
+    a: Final[Array]
+    u: Final[Array]
+    time: Final[Array]
+    step: Final[float]
+    cost: Final[float]
+    costs: Final[list[float]]
+    status: Final[str]
+    root_force: Final[float]
+    gap: Final[float]
+    certificate: Final[float]
+    iterations: Final[int]
+    seconds: Final[float]
 
 class Mpc:
     """Control by a plan that is made anew from the present state, at plan.mpc.rate."""
 
-    def __init__(self, file: Path, *, threads: int = 1, **options: Any) -> None: ...
+    def __init__(
+        self, file: Path, task: dict[str, Any] | None = None, *, threads: int = 1, **options: Any
+    ) -> None: ...
     def update(self, q: ArrayLike, v: ArrayLike, time: float | None = None) -> Array:
         """The control (nv,) at q (nq,) and v (nv,)."""
+    def move(self, link: str, target: ArrayLike) -> None:
+        """The place to which the plan's point of a link is to come [m]."""
+    def seek(self, q: ArrayLike) -> None:
+        """The configuration (nq,) in which the plan is to end at rest."""
     @property
     def plan(self) -> Plan: ...
     @property
@@ -166,8 +158,10 @@ class Mpc:
     @property
     def cost(self) -> float: ...
 
-def plan(file: Path, *, threads: int = 1, **options: Any) -> Plan:
-    """Plans what the key plan of a scene asks for; options as of Simulation."""
+def plan(
+    file: Path, task: dict[str, Any] | None = None, *, threads: int = 1, **options: Any
+) -> Plan:
+    """Plans what the key plan of a scene, or `task`, asks for; options as of Simulation."""
 
 class Simulation:
     """A URDF or a scene that is ready to run, with its goals and the defaults of simulate_gdd."""

@@ -45,6 +45,59 @@ def test_mpc_swings_up_a_pole_that_is_simulated_elsewhere():
     assert mpc.time == pytest.approx(4.5 - mpc.timestep)
 
 
+HAND = {
+    "knots": 20,
+    "effort": 1e-3,
+    "running": {"velocity": 0.02},
+    "final": {
+        "velocity": 20,
+        "points": {"hand": {"target": np.array([0.5, 0.3, 0.5]), "weight": 2000}},
+    },
+}
+
+
+def test_a_robot_is_given_its_task_as_a_dict(tmp_path):
+    arm = SOURCE / "data" / "robots" / "arm.urdf"
+    plan = softgauss.plan(arm, HAND, base="fixed")
+    sim = softgauss.Simulation(arm, base="fixed")
+    sim.q[:] = plan.q[-1]
+    assert sim.pose("hand")[:3, 3] == pytest.approx([0.5, 0.3, 0.5], abs=0.01)
+    # As a file says it.
+    file = tmp_path / "arm.yaml"
+    target = "{hand: {target: [0.5, 0.3, 0.5], weight: 2000}}"
+    file.write_text(
+        f"robots: [{{urdf: {arm}}}]\nplan: {{knots: 20, effort: 1e-3, running: "
+        f"{{velocity: 0.02}}, final: {{velocity: 20, points: {target}}}}}\n"
+    )
+    assert np.array_equal(softgauss.plan(file).q, plan.q)
+    with pytest.raises(softgauss.ModelError, match="task:1.*plan.final.points.*hnd.*did you mean"):
+        softgauss.plan(arm, {**HAND, "final": {"points": {"hnd": {}}}}, base="fixed")
+
+
+def test_targets_move():
+    arm = SOURCE / "data" / "robots" / "arm.urdf"
+    mpc, sim = softgauss.Mpc(arm, HAND), softgauss.Simulation(arm)
+    for target in [0.5, 0.3, 0.5], [0.45, -0.3, 0.4]:
+        mpc.move("hand", target)
+        for _ in range(round(2.0 / mpc.timestep)):
+            sim.tau[:] = mpc.update(sim.q, sim.v)
+            sim.step()
+        assert sim.pose("hand")[:3, 3] == pytest.approx(target, abs=0.005)
+    assert mpc.failed == 0
+    with pytest.raises(ValueError, match="found 'elbow', expected one of plan.final.points"):
+        mpc.move("elbow", [0, 0, 0])
+    with pytest.raises(softgauss.StepError, match="target: found NaN"):
+        mpc.move("hand", [0, 0, np.nan])
+    cart = softgauss.Mpc(PLANS / "cart_pole.yaml")
+    sim = softgauss.Simulation(PLANS / "cart_pole.yaml")
+    for sought in [0.0, np.pi], [0.5, np.pi]:
+        cart.seek(sought)
+        for _ in range(round(5.0 / cart.timestep)):
+            sim.tau[:] = cart.update(sim.q, sim.v)
+            sim.step()
+        assert sim.q == pytest.approx(sought, abs=0.05)
+
+
 def test_it_is_the_control_of_the_program(tmp_path):
     mpc = softgauss.Mpc(PLANS / "acrobot.yaml")
     again = softgauss.Mpc(PLANS / "acrobot.yaml")
