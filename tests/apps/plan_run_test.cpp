@@ -144,6 +144,14 @@ TEST(PlanRun, AHopperHopsHalfAMetreAndStands) {
   }
 }
 
+// An object of the scene is what the plan is about: contacts do it.
+TEST(PlanRun, ABoxIsPushedAndABallIsTurnedInTheHand) {
+  const Outcome push = simulate({task("push"), "--plan"}),
+                turn = simulate({task("hand_turns_ball"), "--mpc", "--duration", "2"});
+  for (const Outcome* outcome : {&push, &turn})
+    EXPECT_NE(outcome->out.find("\ncarried out:"), std::string::npos) << outcome->out;
+}
+
 /// A hand that is to come to a place, which an event moves; what happens to it by the events.
 struct Moved {
   Moved(const std::string& events, const std::string& how)

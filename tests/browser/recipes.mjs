@@ -25,6 +25,8 @@ const shots = [
   { name: 'rise', time: 0.25, frame: 'home' },
   { name: 'hop', time: 1.3, frame: 'side' },
   { name: 'ahead', time: 0.6, frame: 'home' },
+  { name: 'box', time: 0.6, frame: 'home' },
+  { name: 'turn', time: 1, frame: 'home', view: { forces: false } },
 ];
 const MOVING = { name: 'reach', from: 0, to: 1.2, frames: 12, width: 360 };
 
