@@ -21,6 +21,7 @@
 #include "apps/shared/wall_clock.hpp"
 #include "apps/simulate_batch/batch_summary.hpp"
 #include "apps/simulate_batch/runner.hpp"
+#include "apps/simulate_gdd/plan_run.hpp"
 #include "apps/simulate_gdd/scene.hpp"
 #include "softgauss/io/detail/output_file.hpp"
 #include "softgauss/io/replay/gnuplot.hpp"
@@ -99,6 +100,7 @@ ExitCode runOne(const Sweep& sweep, const BatchOptions& options) {
     if (!options.quiet)
       print(stdout, fmt::format("{} = {}\n", runs.parameters[p], runs.values[at]));
   }
+  std::optional<io::PlanTask> task = sweptTask(sweep, *scene);
   for (const auto& [parameter, value] : parameters)
     parameter.apply(value, scene->model, scene->initial);
   if (const std::string problem = Parameter::problemOf(scene->model); !problem.empty())
@@ -106,6 +108,10 @@ ExitCode runOne(const Sweep& sweep, const BatchOptions& options) {
   one.changeGoals = [&](gdd::GoalDirectedController& controller) {
     for (const auto& [parameter, value] : parameters) parameter.apply(value, controller);
   };
+  if (task) {
+    takePlan(one, *scene, std::move(*task));
+    if (!makePlan(one)) return kInterrupted;
+  }
   return run(one, *scene);
 }
 

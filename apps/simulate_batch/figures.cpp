@@ -9,8 +9,8 @@
 
 namespace softgauss::app {
 
-RunFigures::RunFigures(const Sweep& sweep, Simulation& sim)
-    : sweep_(sweep), start_(sim.model()), at_(sim.state()) {
+RunFigures::RunFigures(const Sweep& sweep, Simulation& sim, PlanControl* plan)
+    : sweep_(sweep), plan_(plan), start_(sim.model()), at_(sim.state()) {
   computeStages(sim.model(), {}, sim.state(), sim.data(), &sim.contacts());
   goals_.emplace(sim.controller().goals, context(sim));
   standing_.emplace(sim.model(), sim.data().kinematics);
@@ -66,6 +66,11 @@ void RunFigures::finish(Simulation& sim) {
     values_.push_back(std::any_of(outcomes.begin(), outcomes.end(),
                                   [](const StandingOutcome& o) { return o.fell; }));
   }
+  if (plan_) {
+    const MotionCost cost = plan_->cost(sim.state());
+    values_.insert(values_.end(), {plan_->planned(), cost.total(), cost.final,
+                                   plan_->outcome(sim.state()) == "carried out" ? 1.0 : 0.0});
+  }
   const Energy energy = computeEnergy(sim.model(), start_, at_.q, at_.v);
   values_.insert(values_.end(), {energy.total(), penetration_, controlRatio_});
   for (std::size_t m = 0; m < frames_.size(); ++m) {
@@ -82,6 +87,9 @@ std::vector<std::string> RunFigures::columns() const {
   }
   if (!goals_->tracks().empty()) names.emplace_back("reached");
   if (standing_->hasRobots()) names.emplace_back("fell");
+  if (sweep_.planned())
+    for (const char* name : {"planned_cost", "cost", "final_cost", "carried_out"})
+      names.emplace_back(name);
   for (const char* name : {"energy_J", "max_penetration_m", "max_control_ratio"})
     names.emplace_back(name);
   for (const Measure& measure : sweep_.measures) names.push_back(measure.name + "_m");

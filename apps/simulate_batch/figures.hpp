@@ -12,14 +12,15 @@
 #include "apps/simulate_batch/sweep.hpp"
 #include "apps/simulate_gdd/goal_record.hpp"
 #include "apps/simulate_gdd/standing.hpp"
+#include "softgauss/io/simulation/plan_control.hpp"
 #include "softgauss/io/simulation/rollout.hpp"
 
 namespace softgauss::app {
 
 class RunFigures {
  public:
-  /// At the start of a run, its goals made.
-  RunFigures(const Sweep& sweep, Simulation& sim);
+  /// At the start of a run, its goals made. `plan`: which it acts out; null where it does not.
+  RunFigures(const Sweep& sweep, Simulation& sim, PlanControl* plan = nullptr);
 
   void before(const Simulation& sim);
   void after(Simulation& sim);
@@ -35,6 +36,7 @@ class RunFigures {
   gdd::GoalContext context(const Simulation& sim) const;
 
   const Sweep& sweep_;
+  PlanControl* plan_;
   std::optional<GoalRecord> goals_;
   std::optional<Standing> standing_;
   Kinematics start_;  ///< of the step

@@ -32,9 +32,20 @@ std::string csvText(std::string text) {
 
 }  // namespace
 
+std::optional<io::PlanTask> sweptTask(const Sweep& sweep, const Scene& scene) {
+  if (!sweep.planned()) return std::nullopt;
+  io::PlanTask task = io::readPlanTask(sweep.options.model, scene.model, scene.initial);
+  if (sweep.options.mpc && std::isfinite(task.mpc.seconds))
+    throw ModelError({sweep.file.string(), 0}, "key 'mpc'",
+                     "ticks of the scene end by the clock (plan.mpc.seconds), so that a run would "
+                     "differ from time to time; expected none of it");
+  return task;
+}
+
 SweepRunner::SweepRunner(const Sweep& sweep, int threads)
     : sweep_(sweep),
       scene_(loadScene(sweep.options)),
+      duration_(sweep.options.duration),
       runs_(planRuns(sweep, scene_->model)),
       rollout_(std::make_unique<Rollout>(*scene_, rolloutOptions(sweep.options), threads)) {
   Simulation sim(copyOf(*scene_), rolloutOptions(sweep.options));
@@ -46,7 +57,18 @@ SweepRunner::SweepRunner(const Sweep& sweep, int threads)
       throw ModelError(sweep.varied[p].where, "key 'vary'", error.what());
     }
   }
+  task_ = sweptTask(sweep, *scene_);
+  if (task_) {
+    const std::unique_ptr<PlanControl> plan = planOf(*scene_);
+    plan->attach(sim.controller());
+    if (!sweep.options.hasDuration) duration_ = plan->duration();
+  }
   columns_ = RunFigures(sweep, sim).columns();
+}
+
+std::unique_ptr<PlanControl> SweepRunner::planOf(const Scene& scene) const {
+  if (!task_) return nullptr;
+  return std::make_unique<PlanControl>(scene, *task_, sweep_.options.mpc);
 }
 
 std::string SweepRunner::header() const {
@@ -87,6 +109,7 @@ std::string SweepRunner::rowOf(long run, const std::string& outcome, double time
 void SweepRunner::run(const std::vector<long>& list, const std::function<void(RunRow)>& done,
                       const std::atomic<bool>& stop) {
   struct Own {
+    std::unique_ptr<PlanControl> plan;
     std::unique_ptr<RunFigures> figures;
     double begin = 0.0, seconds = 0.0, time = 0.0;
     std::vector<double> values;
@@ -113,16 +136,25 @@ void SweepRunner::run(const std::vector<long>& list, const std::function<void(Ru
   hooks.begin = [&](RolloutRun& run) {
     ownOf(run).begin = cpuSeconds();
     setUp(sweep_.options, run.sim.scene(), run.sim.controller());
+    const std::unique_ptr<PlanControl>& plan = ownOf(run).plan = planOf(run.sim.scene());
+    if (!plan) return;
+    plan->solve();
+    plan->attach(run.sim.controller());
+    plan->begin(run.sim.state());
   };
   hooks.before = [&](RolloutRun& run) {
     Own& o = ownOf(run);
-    if (!o.figures) o.figures = std::make_unique<RunFigures>(sweep_, run.sim);
+    if (!o.figures) o.figures = std::make_unique<RunFigures>(sweep_, run.sim, o.plan.get());
     o.figures->before(run.sim);
+    if (o.plan) o.plan->update(run.sim.state());
   };
   hooks.after = [&](RolloutRun& run) {
-    ownOf(run).figures->after(run.sim);
+    const Own& o = ownOf(run);
+    const double h = run.sim.model().options.timestep;
+    o.figures->after(run.sim);
+    if (o.plan) o.plan->addStep(run.sim.controller().control, h);
     // As many steps as simulate_gdd takes.
-    return run.step < stepsIn(sweep_.options.duration, run.sim.model().options.timestep);
+    return run.step < stepsIn(duration_, h);
   };
   hooks.end = [&](RolloutRun& run) {
     Own& o = ownOf(run);
@@ -132,6 +164,7 @@ void SweepRunner::run(const std::vector<long>& list, const std::function<void(Ru
     }
     o.time = run.sim.time();
     o.figures.reset();
+    o.plan.reset();
     o.seconds = cpuSeconds() - o.begin;
   };
   hooks.finished = [&](long index, const RunOutcome& outcome) {

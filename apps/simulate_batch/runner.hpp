@@ -6,6 +6,7 @@
 #include <atomic>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,11 @@
 #include "apps/simulate_batch/sweep.hpp"
 
 namespace softgauss::app {
+
+/// What each run plans: the plan of the scene as it is loaded; what differs from run to run is its
+/// start and its model. Nothing where the sweep plans nothing. Throws ModelError, also where ticks
+/// end by the clock, for runs are to be the same again.
+std::optional<io::PlanTask> sweptTask(const Sweep& sweep, const Scene& scene);
 
 class SweepRunner {
  public:
@@ -36,8 +42,12 @@ class SweepRunner {
   std::string rowOf(long run, const std::string& outcome, double time,
                     const std::vector<double>& figures, const std::string& failure) const;
 
+  std::unique_ptr<PlanControl> planOf(const Scene& scene) const;
+
   const Sweep& sweep_;
   std::unique_ptr<Scene> scene_;
+  std::optional<io::PlanTask> task_;  ///< what each run plans
+  double duration_;                   ///< of each run [s]
   SweepRuns runs_;
   std::unique_ptr<Rollout> rollout_;
   std::vector<std::string> columns_;  ///< of figures

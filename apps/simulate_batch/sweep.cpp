@@ -124,12 +124,16 @@ class SweepReader {
   SweepReader(const YamlMap& top, Sweep& sweep) : top_(top), sweep_(sweep) {}
 
   void read() {
-    std::vector<std::string> known = {"model", "goals", "reach", "posture", "passive", "duration",
-                                      "seed",  "runs",  "vary",  "list",    "measure"};
+    std::vector<std::string> known = {"model", "goals", "reach",    "posture", "passive",
+                                      "plan",  "mpc",   "duration", "seed",    "runs",
+                                      "vary",  "list",  "measure"};
     for (const NamedOption& option : NamedOption::all()) known.emplace_back(option.name);
     top_.expectOnly(known);
     readModel();
     readGoals();
+    for (const auto& [key, asked] :
+         {std::pair{"plan", &sweep_.options.plan}, {"mpc", &sweep_.options.mpc}})
+      if (const auto* entry = top_.find(key)) readPlanned(*entry, *asked);
     if (const auto* entry = top_.find("seed"))
       sweep_.seed = static_cast<std::uint64_t>(wholeNumber(top_, *entry, 0));
     if (const auto* entry = top_.find("runs")) sweep_.repeats = wholeNumber(top_, *entry, 1);
@@ -148,6 +152,7 @@ class SweepReader {
     SimulateOptions& o = sweep_.options;
     o.model = path(top_.required("model", "a .urdf file or a .yaml scene"));
     top_.read("duration", o.duration, Range::positive);
+    o.hasDuration = top_.find("duration") != nullptr;
     for (const NamedOption& option : NamedOption::all())
       if (const auto* entry = top_.find(option.name)) readOption(option, *entry);
   }
@@ -201,6 +206,15 @@ class SweepReader {
     if (!o.isScene() && !o.passive && !o.hasGoals())
       top_.fail("goals", top_.line(),
                 "is missing, expected goals, reach, posture or passive: true beside a URDF");
+  }
+
+  void readPlanned(const YamlMap::Entry& entry, bool& asked) {
+    const SimulateOptions& o = sweep_.options;
+    asked = top_.boolean(entry);
+    if (!asked) return;
+    if (o.plan && o.mpc) top_.fail(entry, "found true beside plan, expected one of them");
+    if (o.passive || o.hasGoals()) top_.fail(entry, "the plan is the goal, expected no other");
+    if (!o.isScene()) top_.fail(entry, "found a URDF, expected a scene with a key plan");
   }
 
   void readList(const YamlMap::Entry& entry) {

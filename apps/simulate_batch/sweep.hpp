@@ -48,6 +48,7 @@ struct Sweep {
   long repeats = 1;                         ///< runs at each point of the grid or list
   std::vector<Measure> measures;
 
+  bool planned() const { return options.plan || options.mpc; }  ///< each run, from its own start
   /// The command that repeats one run.
   std::string repeatCommand(long run) const;
 };

@@ -34,7 +34,10 @@ std::string farthestText(const Model& model, const std::pair<int, double>& farth
 }  // namespace
 
 void readPlan(SimulateOptions& options, const Scene& scene) {
-  io::PlanTask task = io::readPlanTask(options.model, scene.model, scene.initial);
+  takePlan(options, scene, io::readPlanTask(options.model, scene.model, scene.initial));
+}
+
+void takePlan(SimulateOptions& options, const Scene& scene, io::PlanTask task) {
   task.steps.threads = options.planThreads;
   options.planControl = std::make_shared<PlanControl>(scene, std::move(task), options.mpc);
   const bool byTheClock = options.mpc && std::isfinite(options.planControl->task().mpc.seconds);
@@ -137,13 +140,6 @@ void PlanRun::concludeTicks(io::Summary& summary, io::PlanOutcome& outcome) cons
                   1e3 * plan_.task().mpc.period));
 }
 
-/// What somebody would say who watched, of a motion whose final terms cost this where it ended.
-const char* PlanRun::outcomeOf(double final) {
-  if (plan_.isLost(final)) return "lost";
-  if (!plan_.recedes() && plan_.isLost(plan_.finalCost(state_))) return "lost after its end";
-  return plan_.isNoNearer(final) ? "no nearer" : "carried out";
-}
-
 void PlanRun::conclude(io::Summary& summary) {
   const MotionPlan& plan = plan_.planner().plan();
   const Model& model = plan_.planner().model();
@@ -160,7 +156,7 @@ void PlanRun::conclude(io::Summary& summary) {
       "planned", fmt::format("cost {:.4g}, {:.4g} of it at the end; {} iterations in {:.3g} s, {}",
                              o.planned, o.finalPlanned, o.iterations, o.seconds, o.status));
   const bool early = !plan_.recedes() && !plan_.hasEnded(state_.time);
-  o.outcome = early ? "cut short" : outcomeOf(cost.final);
+  o.outcome = plan_.outcome(state_);
   const char* const aim = plan_.recedes() ? "the target" : "the plan's end";
   summary.verdict.emplace_back(
       o.outcome,

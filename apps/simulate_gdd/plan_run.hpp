@@ -15,6 +15,8 @@ namespace softgauss::app {
 /// Reads the scene's plan: options.plan is then its control, options.duration, where none was
 /// typed, its length. Throws ModelError.
 void readPlan(SimulateOptions& options, const Scene& scene);
+/// The same of a task that was read.
+void takePlan(SimulateOptions& options, const Scene& scene, io::PlanTask task);
 
 /// What is to be planned, for --explain.
 std::string explainPlan(const PlanControl& plan);
@@ -44,7 +46,6 @@ class PlanRun final : public Companion {
 
  private:
   void planFromHere();
-  const char* outcomeOf(double final);
   void concludeTicks(io::Summary& summary, io::PlanOutcome& outcome) const;
 
   PlanControl& plan_;

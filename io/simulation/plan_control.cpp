@@ -168,6 +168,14 @@ MotionCost PlanControl::cost(const State& state) {
   return cost;
 }
 
+std::string_view PlanControl::outcome(const State& state) {
+  if (!recedes_ && !hasEnded(state.time)) return "cut short";
+  const double final = cost(state).final;
+  if (isLost(final)) return "lost";
+  if (!recedes_ && isLost(finalCost(state))) return "lost after its end";
+  return isNoNearer(final) ? "no nearer" : "carried out";
+}
+
 std::pair<int, double> PlanControl::farthest(const State& state) const {
   const VectorX& aim = recedes_ ? task_.q.back() : plan_.q.back();
   const VectorX off = positionDifference(scene_.model, aim, (end_ ? *end_ : state).q);

@@ -18,6 +18,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <string_view>
 
 #include "softgauss/io/plan_task.hpp"
 #include "softgauss/io/simulation/plan_targets.hpp"
@@ -71,6 +72,7 @@ class PlanControl {
   /// is to end.
   double finalAtStart() const { return finalAtStart_; }
   double finalPlanned() const { return finalPlanned_; }
+  double planned() const { return plan_.cost; }  ///< cost of the first plan
   /// Whether a motion that ends with these final terms has lost the plan: more than a tenth of what
   /// they were to fall by is missing.
   bool isLost(double final) const {
@@ -83,6 +85,9 @@ class PlanControl {
     constexpr double kShare = 0.9, kAway = 0.01;
     return finalAtStart_ > kAway * plan_.cost && final > kShare * finalAtStart_;
   }
+  /// What somebody would say who watched, of a motion that has come to `state`: carried out, lost,
+  /// lost after its end, no nearer, cut short.
+  std::string_view outcome(const State& state);
   /// What the final terms cost there.
   double finalCost(const State& state);
   /// How far `state` is from the plan's end, or a receding one's target: the degree of freedom that
