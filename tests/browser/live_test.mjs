@@ -9,6 +9,7 @@ import { spawnSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { LiveProcess } from './live_process.mjs';
+import { testFoot } from './live_foot.mjs';
 import { testPlan } from './live_plan.mjs';
 import { testReload } from './live_reload.mjs';
 import { testStates } from './live_states.mjs';
@@ -288,6 +289,7 @@ try {
   await testArm();
   await testGoals();
   await testStates({ browser, simulator, folder, data, status, until, stepsMore, distance });
+  await testFoot({ browser, simulator, folder, data, status, until, stepsMore, press });
   await testPlan({ browser, simulator, folder, data, until, stepsMore, distance });
   await testReload({ browser, simulator, folder, data, until });
   await testLooks();
