@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "softgauss/gdd/goal.hpp"
 
+#include <algorithm>
+
 namespace softgauss::gdd {
 
 void Goal::errors(const GoalContext& context, const ContactForces&,
@@ -11,6 +13,18 @@ void Goal::errors(const GoalContext& context, const ContactForces&,
   distance.value = (m->p_WTarget - m->p_WPoint).norm();
   distance.frame = m->frame;
   out.push_back(distance);
+}
+
+std::vector<std::string> distinctNames(const std::vector<std::unique_ptr<Goal>>& goals) {
+  std::vector<std::string> names;
+  for (const auto& goal : goals) {
+    const std::string name = goal->name();
+    std::string own = name;
+    for (int n = 2; std::find(names.begin(), names.end(), own) != names.end(); ++n)
+      own = name + " (" + std::to_string(n) + ")";
+    names.push_back(own);
+  }
+  return names;
 }
 
 void wake(const Model& model, const Goal& goal, SleepState& sleep) {

@@ -103,6 +103,9 @@ class Goal {
   }
 };
 
+/// Their names, told apart where two are alike: "reach hand", "reach hand (2)".
+std::vector<std::string> distinctNames(const std::vector<std::unique_ptr<Goal>>& goals);
+
 /// Wakes the trees that a goal concerns: to be called after it was changed.
 void wake(const Model& model, const Goal& goal, SleepState& sleep);
 

@@ -91,15 +91,16 @@ GoalBalance::GoalBalance(const Model& model, const GoalDirectedController& contr
 
 void GoalBalance::listTerms(double time) {
   terms_.clear();
-  for (const auto& goal : controller_.goals) {
+  const std::vector<std::string> names = distinctNames(controller_.goals);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const Goal* const goal = controller_.goals[i].get();
     if (!goal->actsAt(time)) continue;
-    const auto* reach = dynamic_cast<const Reach*>(goal.get());
+    const auto* reach = dynamic_cast<const Reach*>(goal);
     const bool isPose = reach && reach->R_WTarget;
     for (const bool orientation : {false, true}) {
       if (orientation && !isPose) continue;
       Term term;
-      term.goal = goal.get();
-      term.name = orientation ? goal->name() + " (orientation)" : goal->name();
+      term.goal = goal, term.name = names[i] + (orientation ? " (orientation)" : "");
       if (isPose) term.own = partOf(*reach, orientation);
       terms_.push_back(std::move(term));
     }

@@ -22,18 +22,6 @@ std::vector<std::string> switchable(const Model& model) {
   return names;
 }
 
-std::vector<std::string> distinct(const std::vector<std::unique_ptr<gdd::Goal>>& goals) {
-  std::vector<std::string> names;
-  for (const auto& goal : goals) {
-    const std::string name = goal->name();
-    std::string own = name;
-    for (int n = 2; std::find(names.begin(), names.end(), own) != names.end(); ++n)
-      own = fmt::format("{} ({})", name, n);
-    names.push_back(own);
-  }
-  return names;
-}
-
 bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
@@ -41,7 +29,7 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
 }  // namespace
 
 Names::Names(const Model& model, const std::vector<std::unique_ptr<gdd::Goal>>& all)
-    : modelName(model.name), goals(distinct(all)), effects(switchable(model)) {
+    : modelName(model.name), goals(gdd::distinctNames(all)), effects(switchable(model)) {
   for (const Frame& frame : model.frames)
     if (frame.body != 0) links.push_back(frame.name);
   for (int b = 1; b < model.bodyCount(); ++b) {

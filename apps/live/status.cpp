@@ -100,7 +100,6 @@ std::string liveHeader(const Names& names, const LivePage& page) {
                             {"loads", page.loads},
                             {"passive", page.passive},
                             {"weight", page.weight},
-                            {"marks", page.marks},
                             {"joints", joints},
                             {"effects", names.effects},
                             {"states", names.states}};

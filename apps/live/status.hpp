@@ -65,7 +65,6 @@ struct LivePage {
   int loads = 0;         ///< how often the files were read: a page of another time begins anew
   bool passive = false;  ///< nothing drives the run
   double weight = 0.0;   ///< of all that moves [N], by which it scales arrows
-  std::vector<std::string> marks = {};  ///< names of the goals whose places it draws, in order
 };
 
 std::string statusMessage(const Status& status, const Hands& hands);

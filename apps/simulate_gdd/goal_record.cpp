@@ -13,7 +13,9 @@ namespace softgauss::app {
 GoalRecord::GoalRecord(const std::vector<std::unique_ptr<gdd::Goal>>& goals,
                        const gdd::GoalContext& start)
     : dofs_(start.model.nv) {
-  for (const auto& goal : goals) {
+  const std::vector<std::string> names = gdd::distinctNames(goals);
+  for (std::size_t i = 0; i < goals.size(); ++i) {
+    const auto& goal = goals[i];
     if (goal->isRegulariser) continue;
     figures_.clear();
     goal->errors(start, {}, figures_);
@@ -21,8 +23,7 @@ GoalRecord::GoalRecord(const std::vector<std::unique_ptr<gdd::Goal>>& goals,
     if (figures_.empty() && goal->hasLaterErrors()) figures_.emplace_back();
     for (const gdd::GoalError& figure : figures_) {
       Track track{goal.get(), {}, figure};
-      track.outcome.name =
-          *figure.what ? fmt::format("{} ({})", goal->name(), figure.what) : goal->name();
+      track.outcome.name = *figure.what ? fmt::format("{} ({})", names[i], figure.what) : names[i];
       track.outcome.unit = figure.unit;
       track.outcome.yields = figure.yields;
       track.outcome.began = false;

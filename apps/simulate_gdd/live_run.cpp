@@ -77,8 +77,8 @@ LiveRun::LiveRun(const SimulateOptions& options, const Scene& scene, live::Hands
   server.access = {place.token.empty(), place.token, live::hostOf(options.liveAddress)};
   server.page = io::livePage(
       scene_, std::string("softgauss ") + SOFTGAUSS_VERSION,
-      live::liveHeader(hands.names(), {place.token, place.loads, controller.goals.empty(),
-                                       weightOf(model_), markNames()}),
+      live::liveHeader(hands.names(),
+                       {place.token, place.loads, controller.goals.empty(), weightOf(model_)}),
       runBeside(options));
   try {
     server_ = std::make_unique<live::Server>(std::move(server), hands.names());
@@ -92,18 +92,6 @@ LiveRun::LiveRun(const SimulateOptions& options, const Scene& scene, live::Hands
 }
 
 LiveRun::~LiveRun() = default;
-
-/// By which pages ask that their places move.
-std::vector<std::string> LiveRun::markNames() const {
-  std::vector<std::string> names;
-  for (const gdd::Goal* place : scene_.places()) {
-    const auto goal = std::find_if(controller_.goals.begin(), controller_.goals.end(),
-                                   [&](const auto& one) { return one.get() == place; });
-    names.push_back(
-        hands_.names().goals[static_cast<std::size_t>(goal - controller_.goals.begin())]);
-  }
-  return names;
-}
 
 std::string LiveRun::announcement() const {
   const std::string& token = options_.live->token;

@@ -37,7 +37,6 @@ class LiveRun final : public Companion {
   void finish(long taken) override;
 
  private:
-  std::vector<std::string> markNames() const;
   bool takeEvents();
   std::string reload();
   void pause();

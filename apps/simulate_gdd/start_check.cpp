@@ -37,7 +37,7 @@ std::vector<std::string> inDegrees(const Model& model,
       for (int b = 1; b < model.bodyCount(); ++b)
         if (model.bodies[idx(b)].dofs == 1) look(*goal, b, posture->q[model.bodies[idx(b)].q]);
   }
-  return found;
+  return found.empty() ? found : std::vector<std::string>{joined(found)};
 }
 
 /// Joints that cannot hold the start against gravity.

@@ -27,11 +27,12 @@ NearLimits::NearLimits(const Curve& curve, double least, double greatest) {
 Recording::Recording(const Model& model, const std::vector<std::unique_ptr<gdd::Goal>>& goals,
                      const gdd::GoalContext& start)
     : model_(model), series_(0), frames_(0, 0) {
-  for (const std::unique_ptr<gdd::Goal>& goal : goals) {
-    const std::optional<gdd::GoalMark> mark = goal->mark(start);
+  const std::vector<std::string> names = gdd::distinctNames(goals);
+  for (std::size_t i = 0; i < goals.size(); ++i) {
+    const std::optional<gdd::GoalMark> mark = goals[i]->mark(start);
     if (!mark) continue;
-    goals_.push_back(goal.get());
-    labels_.push_back({goal->name(), model.frames[static_cast<std::size_t>(mark->frame)].name});
+    goals_.push_back(goals[i].get());
+    labels_.push_back({names[i], model.frames[static_cast<std::size_t>(mark->frame)].name});
   }
   addJointGroups();
   addOtherGroups();

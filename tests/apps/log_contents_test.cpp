@@ -99,5 +99,19 @@ TEST(SummaryFile, SaysWhatTheRunIsMadeFrom) {
   EXPECT_NE(origin["processor"], "");
 }
 
+// In the log as in the verdict.
+TEST(LogContents, GoalsOfOneNameAreToldApart) {
+  const io::TempFolder folder;
+  const std::string log = folder.path() / "log.csv";
+  const Outcome outcome =
+      simulate({dataFile("robots/arm.urdf"), "--reach", "hand=0.5,0.3,0.5", "--reach",
+                "hand=0.5,0.2,0.5", "--duration", "0.5", "--log", log});
+  const std::string text = readFile(log), header = text.substr(0, text.find('\n'));
+  for (const std::string name : {"reach hand", "reach hand (2)"}) {
+    EXPECT_NE(header.find("error:" + name + " [m]"), std::string::npos) << header;
+    EXPECT_NE(outcome.out.find(" " + name + ": "), std::string::npos) << outcome.out;
+  }
+}
+
 }  // namespace
 }  // namespace softgauss::test

@@ -25,7 +25,7 @@ export async function testPlan({ browser, simulator, folder, data, until, stepsM
   const run = await LiveProcess.start(simulator, folder, 'live_planned', [scene, '--mpc']);
   const page = await browser.visit(run.address, { width: 1000, height: 700 });
   assert.equal(await page.locator('#live-state').textContent(), 'Live. Drag a target or a link.');
-  const mark = await page.evaluate(() => window.softgauss.header.live.marks.indexOf('plan hand'));
+  const mark = await page.evaluate(() => window.softgauss.header.goals.findIndex(({ name }) => name === 'plan hand'));
   const place = () => page.evaluate((i) => window.softgauss.drawn().goals[i], mark);
   const arrives = async () => {
     await until(

@@ -73,7 +73,7 @@ export class Handle {
     const { clientX, clientY } = event;
     const action = this.#action(event);
     const mark = action === 'drag' ? this.stage.markAt(clientX, clientY) : null;
-    if (mark) return { action: 'target', goal: this.run.live.marks[mark.mark], at: mark.point };
+    if (mark) return { action: 'target', goal: this.run.header.goals[mark.mark].name, at: mark.point };
     const hit = this.stage.hitAt(clientX, clientY);
     const link = hit && this.run.linkByName.get(hit.item.link);
     if (!link || link.body === 0) return null;

@@ -70,9 +70,9 @@ function joints(link, run) {
 }
 
 /** What one may do. */
-function hint({ passive, marks }) {
-  if (passive) return 'Live. Push a link.';
-  return marks.some((name) => name.startsWith('plan')) ? 'Live. Drag a target or a link.' : 'Live. Drag a link.';
+function hint({ live, header }) {
+  if (live.passive) return 'Live. Push a link.';
+  return header.goals.some(({ name }) => name.startsWith('plan')) ? 'Live. Drag a target or a link.' : 'Live. Drag a link.';
 }
 
 /** What this page has seen, as a page that replays it. */
@@ -124,7 +124,7 @@ export function livePanel(host, link, run, settings, pageText) {
     if (lost) state.textContent = 'The run has ended or cannot be reached. Trying again.';
     else if (!link.connected) state.textContent = 'Connecting.';
     else if (!link.writes) state.textContent = 'Live. Another page has the mouse; this one watches.';
-    else state.textContent = hint(run.live);
+    else state.textContent = hint(run);
     state.classList.toggle('lost', lost);
     write.hidden = !link.connected || link.writes;
   };
