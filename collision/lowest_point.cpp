@@ -20,6 +20,8 @@ double lowestPoint(const Shape& shape, const Transform& X_WG) {
              std::abs(up.z()) * shape.halfLength;
     case ShapeKind::box:
       return X_WG.p.z() - up.cwiseAbs().dot(shape.halfExtents);
+    case ShapeKind::ellipsoid:
+      return X_WG.p.z() - up.cwiseProduct(shape.halfExtents).norm();
     case ShapeKind::mesh:
     case ShapeKind::triangles:
       break;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "softgauss/collision/contact_reduction.hpp"
+#include "softgauss/collision/support.hpp"
 
 namespace softgauss::collision {
 namespace {
@@ -82,6 +83,13 @@ void planeCylinder(const Transform& X_WA, const Shape& cylinder, const Transform
   const Vector3 side = u.cross(a) * (r * std::sqrt(0.75));
   addPoint(n, p, lowerDisc - u * (0.5 * r) + side, margin, out);
   addPoint(n, p, lowerDisc - u * (0.5 * r) - side, margin, out);
+}
+
+void planeEllipsoid(const Transform& X_WA, const Shape& ellipsoid, const Transform& X_WB,
+                    double margin, PairContacts& out) {
+  const Vector3 n = X_WA.R.col(2);
+  const Vector3 lowest = supportPoint({&ellipsoid, nullptr}, X_WB, -n);
+  addPoint(n, X_WA.p, lowest, margin, out);
 }
 
 void planeHull(const Transform& X_WA, const ConvexHull& hull, const Transform& X_WB, double margin,

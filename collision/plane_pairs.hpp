@@ -11,6 +11,7 @@
 ///   box        the four corners below its centre, in the order of their sign bits (x lowest)
 ///   cylinder   lowest point of the lower rim and of the upper rim, and two more of the lower rim
 ///              at ±120° from the first, so that a disc lying flat stands on a regular triangle
+///   ellipsoid  its lowest point
 ///   hull       the vertices below the margin, thinned to four by addReduced()
 /// Points with d < margin are reported. Same points and order as MuJoCo's for the primitives.
 
@@ -29,6 +30,8 @@ void planeBox(const Transform& X_WA, const Shape& box, const Transform& X_WB, do
               PairContacts& out);
 void planeCylinder(const Transform& X_WA, const Shape& cylinder, const Transform& X_WB,
                    double margin, PairContacts& out);
+void planeEllipsoid(const Transform& X_WA, const Shape& ellipsoid, const Transform& X_WB,
+                    double margin, PairContacts& out);
 void planeHull(const Transform& X_WA, const ConvexHull& hull, const Transform& X_WB, double margin,
                PairContacts& out);
 

@@ -21,7 +21,7 @@ bool hasClosedForm(ShapeKind a, ShapeKind b) {
     case ShapeKind::plane:
       return b != ShapeKind::plane && b != ShapeKind::triangles;
     case ShapeKind::sphere:
-      return b != ShapeKind::mesh && b != ShapeKind::triangles;
+      return b < ShapeKind::ellipsoid;
     case ShapeKind::capsule:
       return b == ShapeKind::capsule || b == ShapeKind::box;
     case ShapeKind::box:
@@ -43,6 +43,8 @@ void collideInOrder(const Shape& a, const Transform& X_WA, const Shape& b, const
       return planeCylinder(X_WA, b, X_WB, margin, out);
     case pairOf(plane, box):
       return planeBox(X_WA, b, X_WB, margin, out);
+    case pairOf(plane, ellipsoid):
+      return planeEllipsoid(X_WA, b, X_WB, margin, out);
     case pairOf(plane, mesh):
       return planeHull(X_WA, *hullB, X_WB, margin, out);
     case pairOf(sphere, sphere):

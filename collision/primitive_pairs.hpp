@@ -3,10 +3,9 @@
 
 /// One entrance to all pairs of shapes that are solved in closed form.
 ///
-/// Shapes are ordered by kind, plane < sphere < capsule < cylinder < box < mesh
-/// < triangles; the lower kind is
-/// A, and the normal points from A to B. Closed forms:
-///   plane    with sphere, capsule, cylinder, box, mesh (its hull)      plane_pairs.hpp
+/// Shapes are ordered by kind, plane < sphere < capsule < cylinder < box < ellipsoid < mesh
+/// < triangles; the lower kind is A, and the normal points from A to B. Closed forms:
+///   plane    with every other but triangles (of a mesh its hull)       plane_pairs.hpp
 ///   sphere   with sphere, capsule, cylinder                            round_pairs.hpp
 ///   capsule  with capsule                                              round_pairs.hpp
 ///   box      with sphere, capsule, box                                 box_pairs.hpp

@@ -148,6 +148,13 @@ Vector3 corePoint(const Convex& convex, const Transform& X_WG, const Vector3& d_
       return X_WG * Vector3(std::copysign(h.x(), d_G.x()), std::copysign(h.y(), d_G.y()),
                             std::copysign(h.z(), d_G.z()));
     }
+    case ShapeKind::ellipsoid: {
+      const Vector3 d_G = X_WG.R.transpose() * d_W;
+      const Vector3 scaled = shape.halfExtents.cwiseProduct(d_G);  // to a unit ball
+      const double length = scaled.norm();
+      if (length == 0.0) return X_WG.p;
+      return X_WG * Vector3(shape.halfExtents.cwiseProduct(scaled) / length);
+    }
     case ShapeKind::mesh:
       return X_WG * convex.hull->support(X_WG.R.transpose() * d_W);
     case ShapeKind::triangles: {
@@ -181,6 +188,7 @@ SupportFace supportFace(const Convex& convex, const Transform& X_WG, const Vecto
     case ShapeKind::triangles:
       return triangleFace(convex.triangles, X_WG, X_WG.R.transpose() * d_W);
     case ShapeKind::sphere:
+    case ShapeKind::ellipsoid:
     case ShapeKind::plane:
       break;
   }

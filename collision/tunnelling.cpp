@@ -52,6 +52,8 @@ Extent extentOf(const Shape& shape, const ConvexHull* hull, const TriangleMesh* 
               std::hypot(shape.radius, shape.halfLength)};
     case ShapeKind::box:
       return {2.0 * shape.halfExtents.minCoeff(), shape.halfExtents.norm()};
+    case ShapeKind::ellipsoid:
+      return {2.0 * shape.halfExtents.minCoeff(), shape.halfExtents.maxCoeff()};
     case ShapeKind::mesh:
       return {hullThickness(*hull), hull->boundingRadius};
     case ShapeKind::triangles:
@@ -76,6 +78,8 @@ double halfWidth(const MovingShape& f, const Vector3& n) {
     }
     case ShapeKind::box:
       return (f.X_WG->R.transpose() * n).cwiseAbs().dot(shape.halfExtents);
+    case ShapeKind::ellipsoid:
+      return (f.X_WG->R.transpose() * n).cwiseProduct(shape.halfExtents).norm();
     case ShapeKind::mesh:
       return (f.X_WG->R.transpose() * n).cwiseAbs().dot(f.hull->halfExtents);
     case ShapeKind::triangles:

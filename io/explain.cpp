@@ -132,6 +132,8 @@ const char* shapeName(ShapeKind kind) {
       return "cylinder";
     case ShapeKind::box:
       return "box";
+    case ShapeKind::ellipsoid:
+      return "ellipsoid";
     case ShapeKind::mesh:
       return "mesh";
     case ShapeKind::triangles:

@@ -182,6 +182,9 @@ class Writer {
       case ShapeKind::box:
         shape = fmt::format("type=\"box\" size=\"{}\"", text(s.halfExtents));
         break;
+      case ShapeKind::ellipsoid:
+        shape = fmt::format("type=\"ellipsoid\" size=\"{}\"", text(s.halfExtents));
+        break;
       case ShapeKind::mesh:
       case ShapeKind::triangles:  // MuJoCo takes the hull of either
         shape = fmt::format("type=\"mesh\" mesh=\"{}\"", meshNames_.at(s.mesh.get()));

@@ -25,6 +25,7 @@ Vector3 localHalfExtents(const Shape& s, const ConvexHull* hull) {
     case ShapeKind::cylinder:
       return {s.radius, s.radius, s.halfLength};
     case ShapeKind::box:
+    case ShapeKind::ellipsoid:
       return s.halfExtents;
     default:
       return hull->halfExtents;
@@ -70,12 +71,16 @@ Collider makeCollider(const Shape& shape, const ConvexHull* hull) {
 
 namespace {
 
-/// The best of a direction and the normals of the faces that it meets. A sphere touches in one
-/// point, whatever the normal, and takes the best.
+/// Shapes that touch in one point, whatever the normal.
+bool isPointed(const Shape& shape) {
+  return shape.kind == ShapeKind::sphere || shape.kind == ShapeKind::ellipsoid;
+}
+
+/// The best of a direction and the normals of the faces that it meets. A sphere or an ellipsoid
+/// takes the best.
 Separation withFaces(const Collider& a, const Transform& X_WA, const Collider& b,
                      const Transform& X_WB, Separation best, double size) {
-  const bool isPoint =
-      a.convex.shape->kind == ShapeKind::sphere || b.convex.shape->kind == ShapeKind::sphere;
+  const bool isPoint = isPointed(*a.convex.shape) || isPointed(*b.convex.shape);
   double preference = isPoint ? 0.0 : kFacePreference * size;
   const Vector3 faceA = supportFaceNormal(a.convex, X_WA, best.n_W);
   const Vector3 faceB = -supportFaceNormal(b.convex, X_WB, -best.n_W);

@@ -54,6 +54,8 @@ Geometries geometryOf(const Shape& s, const detail::GeometrySet& set, std::size_
       return std::make_shared<fcl::Cylinderd>(s.radius, 2.0 * s.halfLength);
     case ShapeKind::box:
       return std::make_shared<fcl::Boxd>(Vector3(2.0 * s.halfExtents));
+    case ShapeKind::ellipsoid:
+      return std::make_shared<fcl::Ellipsoidd>(s.halfExtents);
     case ShapeKind::mesh:
       return convexOf(*set.hull[i]);
     case ShapeKind::triangles:

@@ -21,6 +21,8 @@ double boundingRadius(const Shape& shape, const ConvexHull* hull, const Triangle
       return std::hypot(shape.radius, shape.halfLength);
     case ShapeKind::box:
       return shape.halfExtents.norm();
+    case ShapeKind::ellipsoid:
+      return shape.halfExtents.maxCoeff();
     case ShapeKind::mesh:
       return hull->boundingRadius;
     case ShapeKind::triangles:

@@ -61,6 +61,7 @@ struct Carried {
 std::array<Vector3, 2> along(const Collider& of, const Transform& X,
                              const std::array<Vector3, 4>& corners, int count, const Vector3& n) {
   std::array<Vector3, 2> result{Vector3::Zero(), Vector3::Zero()};
+  if (of.convex.shape->kind == ShapeKind::ellipsoid) return result;
   if (of.convex.shape->kind == ShapeKind::cylinder) {
     if (std::abs(n.dot(X.R.col(2))) < kAcross) result[0] = X.R.col(2);
     return result;

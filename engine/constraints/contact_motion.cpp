@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "softgauss/engine/constraints/ellipsoid_point.hpp"
+
 namespace softgauss {
 namespace {
 
@@ -50,6 +52,15 @@ std::optional<ContactPointVelocity> alongSurface(const Shape& shape, const Trans
     case ShapeKind::mesh:
     case ShapeKind::triangles:
       return ContactPointVelocity{Vector3::Zero()};
+    case ShapeKind::ellipsoid: {
+      // Its curvature changes within angles of least/most.
+      const double least = shape.halfExtents.minCoeff(), most = shape.halfExtents.maxCoeff();
+      const Vector3 e = omega.cross(n);
+      if (!(timestep * e.norm() * most < kMaxRimAngle * least)) return std::nullopt;
+      const Matrix3 W = ellipsoidTensor(X_WG.R, shape.halfExtents);
+      const double depth = 0.3 * least * least / most;
+      return ContactPointVelocity{ellipsoidPointRate(W, -n, e), depth, depth};
+    }
     case ShapeKind::cylinder: {
       const Vector3 a = X_WG.R.col(2);
       const double slope2 = a.cross(n).squaredNorm(), turns = -a.dot(n.cross(omega.cross(n)));

@@ -70,6 +70,12 @@ MassProperties solidOf(const Shape& shape, double density) {
       return symmetric(mass, mass / 3.0 * (sq.y() + sq.z()), mass / 3.0 * (sq.z() + sq.x()),
                        mass / 3.0 * (sq.x() + sq.y()));
     }
+    case ShapeKind::ellipsoid: {
+      const Vector3 sq = shape.halfExtents.cwiseAbs2();
+      const double mass = density * 4.0 / 3.0 * kPi * shape.halfExtents.prod();
+      return symmetric(mass, mass / 5.0 * (sq.y() + sq.z()), mass / 5.0 * (sq.z() + sq.x()),
+                       mass / 5.0 * (sq.x() + sq.y()));
+    }
     case ShapeKind::mesh:
     case ShapeKind::triangles:
       return solidMesh(*shape.mesh, density);

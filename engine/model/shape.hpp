@@ -31,20 +31,21 @@ struct Mesh {
 };
 
 enum class ShapeKind : std::uint8_t {
-  plane,     ///< half-space z ≤ 0 of G; the normal is +z
-  sphere,    ///< radius
-  capsule,   ///< radius, halfLength of the segment along z of G (without the caps)
-  cylinder,  ///< radius, halfLength along z of G
-  box,       ///< halfExtents along the axes of G
-  mesh,      ///< convex hull of mesh->vertices
-  triangles  ///< the surface mesh->triangles, met from the side that it faces
+  plane,      ///< half-space z ≤ 0 of G; the normal is +z
+  sphere,     ///< radius
+  capsule,    ///< radius, halfLength of the segment along z of G (without the caps)
+  cylinder,   ///< radius, halfLength along z of G
+  box,        ///< halfExtents along the axes of G
+  ellipsoid,  ///< halfExtents, its radii along the axes of G
+  mesh,       ///< convex hull of mesh->vertices
+  triangles   ///< the surface mesh->triangles, met from the side that it faces
 };
 
 struct Shape {
   ShapeKind kind = ShapeKind::sphere;
   double radius = 0.0;                         ///< [m] sphere, capsule, cylinder
   double halfLength = 0.0;                     ///< [m] capsule, cylinder
-  Vector3 halfExtents = Vector3::Zero();       ///< [m] box
+  Vector3 halfExtents = Vector3::Zero();       ///< [m] box, ellipsoid
   std::shared_ptr<const Mesh> mesh = nullptr;  ///< mesh, triangles
 
   static Shape plane() { return make(ShapeKind::plane, 0.0, 0.0); }
@@ -58,6 +59,11 @@ struct Shape {
   static Shape box(const Vector3& halfExtents) {
     Shape shape = make(ShapeKind::box, 0.0, 0.0);
     shape.halfExtents = halfExtents;
+    return shape;
+  }
+  static Shape ellipsoid(const Vector3& radii) {
+    Shape shape = make(ShapeKind::ellipsoid, 0.0, 0.0);
+    shape.halfExtents = radii;
     return shape;
   }
   static Shape hull(std::shared_ptr<const Mesh> mesh) {

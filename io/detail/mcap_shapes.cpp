@@ -47,6 +47,8 @@ void writeBox(const Drawn& d, JsonText& json) {
 void writeSpheres(const Drawn& d, JsonText& json) {
   const Vector3 size = Vector3::Constant(2.0 * d.shape->radius);
   if (d.shape->kind == ShapeKind::sphere) writeSolid(d.X, size, d.rgba, false, json);
+  if (d.shape->kind == ShapeKind::ellipsoid)
+    writeSolid(d.X, 2.0 * d.shape->halfExtents, d.rgba, false, json);
   if (d.shape->kind != ShapeKind::capsule) return;
   for (const double end : {-d.shape->halfLength, d.shape->halfLength})
     writeSolid({d.X.R, d.X * Vector3(0.0, 0.0, end)}, size, d.rgba, false, json);

@@ -62,6 +62,8 @@ double farthest(const UrdfShape& shape, const Vector3& p_LP, MeshBoxes& boxes) {
       return centre + std::hypot(s.halfLength, s.radius);
     case ShapeKind::box:
       return centre + s.halfExtents.norm();
+    case ShapeKind::ellipsoid:
+      return centre + s.halfExtents.maxCoeff();
     case ShapeKind::mesh:
     case ShapeKind::triangles:
       break;

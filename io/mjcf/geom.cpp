@@ -38,9 +38,8 @@ Shape primitive(const Geom& geom) {
       expectSizes(geom, 3);
       return Shape::box({geom.size[0], geom.size[1], geom.size[2]});
     case Type::ellipsoid:
-      geom.element.fail(
-          "is an ellipsoid, which is not simulated; expected a sphere, capsule, cylinder, box or "
-          "mesh (of the ellipsoid's surface, say)");
+      expectSizes(geom, 3);
+      return Shape::ellipsoid({geom.size[0], geom.size[1], geom.size[2]});
     case Type::sdf:
       geom.element.fail("is a signed distance field, which is not simulated; expected a mesh");
     case Type::hfield:
@@ -53,16 +52,16 @@ Shape primitive(const Geom& geom) {
 /// Ends of the axis in place of pos, orientation and length.
 void placeByEnds(Geom& geom, Transform& X) {
   const std::array<double, 6>& e = *geom.fromto;
-  const bool hasAxis =
-      geom.type == Type::capsule || geom.type == Type::cylinder || geom.type == Type::box;
-  if (!hasAxis && geom.type != Type::ellipsoid)
-    geom.element.fail("fromto is for a capsule, cylinder or box, expected size and pos here");
+  const bool isThreeSized = geom.type == Type::box || geom.type == Type::ellipsoid;
+  if (!isThreeSized && geom.type != Type::capsule && geom.type != Type::cylinder)
+    geom.element.fail(
+        "fromto is for a capsule, cylinder, box or ellipsoid, expected size and pos here");
   if (!geom.pose.pos.isZero(0.0)) geom.element.fail("has pos and fromto, expected one of them");
   const Vector3 from(e[0], e[1], e[2]), to(e[3], e[4], e[5]);
   const double length = (from - to).norm();
   if (!(length > 2e-14)) geom.element.fail("the points of fromto coincide, expected two");
-  geom.size[geom.type == Type::box ? 2 : 1] = 0.5 * length;
-  if (geom.type == Type::box) geom.size[1] = geom.size[0];
+  geom.size[isThreeSized ? 2 : 1] = 0.5 * length;
+  if (isThreeSized) geom.size[1] = geom.size[0];
   X.p = 0.5 * (from + to);
   X.R = rotationOfZ((from - to) / length);
 }

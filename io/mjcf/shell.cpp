@@ -54,6 +54,21 @@ MassProperties boxShell(const Vector3& half) {
   return p;
 }
 
+/// The area by Thomsen's formula, and the moments of a layer of a millionth of a metre, as MuJoCo
+/// has them: neither has a closed form.
+MassProperties ellipsoidShell(const Vector3& h) {
+  constexpr double kPower = 1.6075, kLayer = 1e-6;
+  const auto product = [&](int i, int j) { return std::pow(h[i] * h[j], kPower); };
+  const double mass =
+      4.0 * M_PI * std::pow((product(0, 1) + product(1, 2) + product(2, 0)) / 3.0, 1.0 / kPower);
+  const MassProperties inner = solidOf(Shape::ellipsoid(h), 1.0),
+                       outer = solidOf(Shape::ellipsoid(h + Vector3::Constant(kLayer)), 1.0);
+  MassProperties p;
+  p.mass = mass;
+  p.I_Gcm = (outer.I_Gcm - inner.I_Gcm) * (mass / (outer.mass - inner.mass));
+  return p;
+}
+
 }  // namespace
 
 MassProperties shellOf(const Shape& shape) {
@@ -69,6 +84,8 @@ MassProperties shellOf(const Shape& shape) {
       return cylinderShell(r, l);
     case ShapeKind::box:
       return boxShell(shape.halfExtents);
+    case ShapeKind::ellipsoid:
+      return ellipsoidShell(shape.halfExtents);
     case ShapeKind::plane:
     case ShapeKind::mesh:
     case ShapeKind::triangles:

@@ -120,6 +120,8 @@ Json toJson(const Shape& shape, MeshWriter& meshes) {
       return {{"kind", "cylinder"}, {"radius", shape.radius}, {"halfLength", shape.halfLength}};
     case ShapeKind::box:
       return {{"kind", "box"}, {"halfExtents", toJson(shape.halfExtents)}};
+    case ShapeKind::ellipsoid:
+      return {{"kind", "ellipsoid"}, {"halfExtents", toJson(shape.halfExtents)}};
     case ShapeKind::mesh:
     case ShapeKind::triangles:
       return {{"kind", "mesh"}, {"mesh", meshes.place(shape.mesh)}};

@@ -22,7 +22,7 @@ namespace {
 using namespace collision;
 using enum ShapeKind;
 
-constexpr ShapeKind kKinds[] = {plane, sphere, capsule, cylinder, box, mesh};
+constexpr ShapeKind kKinds[] = {plane, sphere, capsule, cylinder, box, ellipsoid, mesh};
 /// Seconds that a pair of kinds may take; it takes a tenth of one.
 constexpr double kLimit = 60.0;
 /// How near to touching two answers may differ [m]: the tolerance of FCL's search is 1e-6 of its

@@ -57,6 +57,8 @@ inline FclGeometry toFcl(const Shape& s, const collision::ConvexHull* hull) {
       return std::make_shared<fcl::Cylinderd>(s.radius, 2 * s.halfLength);
     case ShapeKind::box:
       return std::make_shared<fcl::Boxd>(Vector3(2 * s.halfExtents));
+    case ShapeKind::ellipsoid:
+      return std::make_shared<fcl::Ellipsoidd>(s.halfExtents);
     case ShapeKind::mesh:
       return fclHull(*hull);
     case ShapeKind::triangles:

@@ -36,6 +36,8 @@ class RandomPairs {
         return Shape::cylinder(uniform(0.1, 0.4), uniform(0.1, 0.5));
       case ShapeKind::box:
         return Shape::box({uniform(0.1, 0.5), uniform(0.1, 0.5), uniform(0.1, 0.5)});
+      case ShapeKind::ellipsoid:
+        return Shape::ellipsoid({uniform(0.1, 0.5), uniform(0.1, 0.5), uniform(0.1, 0.5)});
       default:
         return Shape::plane();
     }

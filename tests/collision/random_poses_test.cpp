@@ -28,11 +28,11 @@ constexpr double kDeep = 2e-3;
 // ---- Shapes -------------------------------------------------------------------------------------
 
 Shape anyShape(RandomPairs& random) {
-  const int kind = int(random.uniform(0, 9));
-  if (kind < 4)
+  const int kind = int(random.uniform(0, 10));
+  if (kind < 5)
     return random.shape(std::array{ShapeKind::sphere, ShapeKind::capsule, ShapeKind::cylinder,
-                                   ShapeKind::box}[idx(kind)]);
-  if (kind == 4) return Shape::hull(bumpyBall(random, 0.3));
+                                   ShapeKind::box, ShapeKind::ellipsoid}[idx(kind)]);
+  if (kind == 5) return Shape::hull(bumpyBall(random, 0.3));
   return Shape::surface(closedMesh(random));
 }
 
@@ -63,6 +63,9 @@ double depthIn(const Shape& s, const collision::ConvexHull* hull, const Vector3&
              Vector3(x.x(), x.y(), x.z() - std::clamp(x.z(), -s.halfLength, s.halfLength)).norm();
     case ShapeKind::cylinder:
       return std::min(s.radius - x.head<2>().norm(), s.halfLength - std::abs(x.z()));
+    case ShapeKind::ellipsoid:
+      // The ellipsoid scaled to pass through x has the same shape.
+      return s.halfExtents.minCoeff() * (1.0 - x.cwiseQuotient(s.halfExtents).norm());
     case ShapeKind::box:
       return (s.halfExtents - x.cwiseAbs()).minCoeff();
     case ShapeKind::mesh: {

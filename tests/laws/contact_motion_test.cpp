@@ -34,7 +34,9 @@ const Pair kPairs[] = {
     {Shape::plane(), Shape::cylinder(0.1, 0.03), 0.01, false},
     {Shape::plane(), Shape::box({0.1, 0.07, 0.05}), 0.01, true},
     {Shape::plane(), Shape::hull(boxSurface({0.1, 0.07, 0.05})), 0.01, true},
+    {Shape::plane(), Shape::ellipsoid({0.1, 0.07, 0.05}), 0.01, true},
     {kBlock, Shape::sphere(0.1), 0.01, true},
+    {kBlock, Shape::ellipsoid({0.05, 0.1, 0.08}), 0.01, false},
     {kBlock, Shape::capsule(0.05, 0.1), 0.01, false},
     {kBlock, Shape::cylinder(0.1, 0.03), 0.01, true},
 };
@@ -44,6 +46,8 @@ double reachOf(const Shape& shape, const Vector3& n) {
   switch (shape.kind) {
     case ShapeKind::box:
       return shape.halfExtents.dot(n.cwiseAbs());
+    case ShapeKind::ellipsoid:
+      return shape.halfExtents.cwiseProduct(n).norm();
     case ShapeKind::capsule:
       return shape.radius + shape.halfLength * std::abs(n.z());
     case ShapeKind::cylinder:
@@ -133,7 +137,7 @@ struct TwoBodies {
 };
 
 std::string nameOf(const Pair& pair) {
-  const char* kNames[] = {"Plane", "Sphere", "Capsule", "Cylinder", "Box", "Hull"};
+  const char* kNames[] = {"Plane", "Sphere", "Capsule", "Cylinder", "Box", "Ellipsoid", "Hull"};
   const std::string flat = kNames[static_cast<int>(pair.flat.kind)],
                     other = kNames[static_cast<int>(pair.other.kind)];
   return pair.flatFirst ? other + "On" + flat : flat + "Under" + other;

@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "softgauss/engine/constraints/contact_motion.hpp"
+#include "softgauss/engine/constraints/ellipsoid_point.hpp"
+#include "softgauss/engine/core/rotation.hpp"
 
 namespace softgauss {
 namespace {
@@ -19,7 +21,7 @@ bool isRound(ShapeKind kind) { return kind == ShapeKind::sphere || kind == Shape
 
 /// Shapes that touch a plane with a point of theirs, or of a rim or ball of theirs.
 bool touchesPlanes(ShapeKind kind) {
-  return kind != ShapeKind::plane && kind != ShapeKind::triangles;
+  return kind != ShapeKind::plane && kind != ShapeKind::triangles && kind != ShapeKind::ellipsoid;
 }
 
 }  // namespace
@@ -126,9 +128,14 @@ void ContactShift::setOther(const Model& model, const Kinematics& k, const Conta
   const Shape& shape = model.geometries[geometry].shape;
   if (isRound(shape.kind)) radius_ = shape.radius;
   if (shape.kind == ShapeKind::cylinder) setRim(model, k, c, geometry);
+  if (shape.kind == ShapeKind::ellipsoid)
+    ellipsoid_ = ellipsoidTensor(
+        k.X_WB[model.geometries[geometry].body].R * model.geometries[geometry].X_BG.R,
+        shape.halfExtents);
 }
 
 Vector3 ContactShift::along(const Vector3& angular) const {
+  if (ellipsoid_) return ellipsoidPointRate(*ellipsoid_, -n_, angular.cross(n_));
   if (!rim_) return radius_ * angular.cross(n_);
   const double slope2 = axis_.cross(n_).squaredNorm();
   if (slope2 == 0.0) return Vector3::Zero();
@@ -138,7 +145,13 @@ Vector3 ContactShift::along(const Vector3& angular) const {
 Vector3 ContactShift::alongChange(const Vector3& angular, const Vector3& dAngular,
                                   const Vector3& dn, const PointMotion& moved, const Vector3& dp,
                                   double dDistance) const {
-  if (!rim_) return radius_ * (dAngular.cross(n_) + angular.cross(dn));
+  const Vector3 de = dAngular.cross(n_) + angular.cross(dn);
+  if (ellipsoid_) {
+    const Matrix3 turned = skew(moved.angular) * *ellipsoid_;
+    return ellipsoidPointRateChange(*ellipsoid_, turned + turned.transpose(), -n_, -dn,
+                                    angular.cross(n_), de);
+  }
+  if (!rim_) return radius_ * de;
   const Vector3 &a = axis_, &n = n_, an = a.cross(n), w = angular.cross(n);
   const double slope2 = an.squaredNorm();
   if (slope2 == 0.0) return Vector3::Zero();

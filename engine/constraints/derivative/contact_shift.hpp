@@ -98,6 +98,7 @@ class ContactShift {
   Core coreA_, coreB_;
   Vector3 axis_ = Vector3::UnitZ(), fromCentre_ = Vector3::Zero();  ///< of a rim: a, s of (4.10)
   Vector3 centre_ = Vector3::Zero();  ///< of a rim: its cylinder's centre less p
+  std::optional<Matrix3> ellipsoid_;  ///< W of O (ellipsoid_point.hpp)
   Wish wish_ = Wish::world;
   Vector3 wished_ = Vector3::UnitY(), contactNormal_ = Vector3::UnitZ(), t2_ = Vector3::UnitX();
   double wishedLength_ = 1.0;  ///< |u|

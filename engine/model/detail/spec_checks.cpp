@@ -184,6 +184,10 @@ void checkGeometry(const GeometrySpec& g, const Options& options) {
       positive(g.shape.radius, "radius");
       positive(g.shape.halfLength, "half length");
       break;
+    case ShapeKind::ellipsoid:
+      positive(g.shape.halfExtents.minCoeff(), "smallest radius");
+      positive(g.shape.halfExtents.maxCoeff(), "largest radius");
+      break;
     case ShapeKind::box:
       positive(g.shape.halfExtents.minCoeff(), "smallest half extent");
       positive(g.shape.halfExtents.maxCoeff(), "largest half extent");

@@ -320,7 +320,10 @@ TEST(InverseDerivative, OfSoftContactsInTheirMargin) {
 
 TEST(InverseDerivative, OfContactsOfShapesWithoutAClosedForm) {
   expectContacts(
-      {{Shape::box({0.1, 0.06, 0.04}), Ground::box}, {Shape::capsule(0.04, 0.1), Ground::box}},
+      {{Shape::box({0.1, 0.06, 0.04}), Ground::box},
+       {Shape::capsule(0.04, 0.1), Ground::box},
+       {Shape::ellipsoid({0.1, 0.06, 0.08}), Ground::plane},
+       {Shape::ellipsoid({0.1, 0.06, 0.08}), Ground::tilting}},
       [](Scene&) {}, {}, 0.5, 1e-6);  // themselves differences
 }
 

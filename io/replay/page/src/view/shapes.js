@@ -75,6 +75,8 @@ export class Shapes {
         return [this.#primitive('cylinder', [shape.radius, shape.radius, shape.halfLength])];
       case 'box':
         return [this.#primitive('box', shape.halfExtents)];
+      case 'ellipsoid':
+        return [this.#primitive('sphere', shape.halfExtents)];
       case 'capsule':
         return [
           { geometry: this.#capsule(shape), scale: [1, 1, 1], opaque: null, coloured: false, image: null },
