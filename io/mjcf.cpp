@@ -42,6 +42,9 @@ class MjcfReader {
     refuseSections();
     readAssets();
     bodies_ = mjcf::readBodies(sections("worldbody"), compiler_, defaults_);
+    if (!scene_.builder.options.effects.has(Effect::spring) &&
+        !scene_.builder.options.effects.has(Effect::damping))
+      for (mjcf::Body& body : bodies_) body.link.gravityCompensation = 0.0;  // as MuJoCo
     readContacts();
     std::set<std::string> paired;
     for (const mjcf::Pair& pair : pairs_) paired.insert({pair.geom1, pair.geom2});

@@ -18,7 +18,9 @@ class MujocoFile {
   explicit MujocoFile(const std::filesystem::path& file)
       : model_(load(file), mj_deleteModel), data_(mj_makeData(model_.get()), mj_deleteData) {
     model_->opt.tolerance = 0.0;
+    model_->opt.ls_tolerance = 1e-10;
     model_->opt.iterations = 1000;
+    model_->opt.ls_iterations = 1000;
     model_->opt.solver = mjSOL_NEWTON;
     model_->opt.disableflags |= mjDSBL_CONTACT | mjDSBL_ACTUATION;
     // Its weight of a joint whose body only slides leaves out the armature; here it has it.

@@ -38,7 +38,9 @@ bool usesSupportedMass(const Assembly& in, const Impedance& tie) {
   return in.load && !underdampedReference(tie, in.model.options);
 }
 
-double equalityInverseMass(const Assembly& in, const Impedance& tie, int bodyA, int bodyB) {
+double equalityInverseMass(const Assembly& in, const Impedance& tie, int bodyA, int bodyB,
+                           double ofCenters) {
+  if (in.model.options.constraintModel == ConstraintModel::mujoco) return ofCenters;
   const double weight = in.weights.translation[bodyA] + in.weights.translation[bodyB];
   if (!usesSupportedMass(in, tie)) return weight;
   const double loaded =
@@ -68,9 +70,10 @@ void ConnectionRows::assemble(const Assembly& in) {
       if (!in.takesPart(c.bodyA, c.bodyB)) continue;
       connections_.push_back(static_cast<int>(i));
       const PointOffset offset(in, c.bodyA, c.p_AP, c.bodyB, c.p_BP);
-      const Softness soft =
-          equalitySoftness(c.impedance, offset.r.norm(),
-                           equalityInverseMass(in, c.impedance, c.bodyA, c.bodyB), model.options);
+      const Softness soft = equalitySoftness(
+          c.impedance, offset.r.norm(),
+          equalityInverseMass(in, c.impedance, c.bodyA, c.bodyB, in.weights.connection[i]),
+          model.options);
       const RelativeMotion motion = offsetMotion(c.bodyA, offset.p_WA, c.bodyB, offset.p_WB);
       jacobian_.add(model, in.kinematics, in.tree, motion, in.columns);
       pushRows(offset, soft);

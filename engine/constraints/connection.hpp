@@ -41,7 +41,9 @@ RelativeMotion offsetMotion(int bodyA, const Vector3& p_WA, int bodyB, const Vec
 /// Whether an equality constraint of this impedance knows what it carries: those that bounce do not
 /// (5.1).
 bool usesSupportedMass(const Assembly& in, const Impedance& tie);
-/// A of an equality constraint of two bodies' translation [1/kg].
-double equalityInverseMass(const Assembly& in, const Impedance& tie, int bodyA, int bodyB);
+/// A of an equality constraint of two bodies' translation [1/kg]; `ofCenters`, what MuJoCo's model
+/// takes for it (InverseWeights).
+double equalityInverseMass(const Assembly& in, const Impedance& tie, int bodyA, int bodyB,
+                           double ofCenters);
 
 }  // namespace softgauss

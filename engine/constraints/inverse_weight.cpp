@@ -64,12 +64,21 @@ std::vector<Articulated> articulate(const Model& model, const Kinematics& k) {
   return all;
 }
 
+/// Mean mobility of a point p of a body over the three translations.
+double translationAt(const Body& body, const Matrix3& R_WB, const Matrix6& mobility,
+                     const Vector3& p_B) {
+  const Matrix6 X = shift(R_WB * (p_B - body.com));
+  return (X * mobility * X.transpose()).bottomRightCorner<3, 3>().trace() / 3.0;
+}
+
 }  // namespace
 
 InverseWeights::InverseWeights(const Model& model)
     : translation(model.bodies.size(), 0.0),
       rotation(model.bodies.size(), 0.0),
-      dof(model.dofs.size(), 0.0) {
+      dof(model.dofs.size(), 0.0),
+      connection(model.connections.size(), 0.0),
+      weld(model.welds.size(), 0.0) {
   if (model.nv == 0) return;
   State state(model);
   for (const Body& body : model.bodies)
@@ -109,6 +118,14 @@ InverseWeights::InverseWeights(const Model& model)
       for (int i = first; i < first + 3; ++i) dof[body.v + i] = mean;
     }
   }
+  const auto ofTies = [&](const auto& ties, std::vector<double>& sums) {
+    for (std::size_t i = 0; i < ties.size(); ++i)
+      for (const auto& [b, p] : {std::pair(ties[i].bodyA, ties[i].centers.inA),
+                                 std::pair(ties[i].bodyB, ties[i].centers.inB)})
+        if (b != 0) sums[i] += translationAt(model.bodies[b], k.X_WB[b].R, all[b].mobility, p);
+  };
+  ofTies(model.connections, connection);
+  ofTies(model.welds, weld);
 }
 
 }  // namespace softgauss

@@ -18,6 +18,8 @@ struct InverseWeights {
   std::vector<double> translation;  ///< (bodies) [1/kg]; 0 for the world
   std::vector<double> rotation;     ///< (bodies) [1/(kg m²)]
   std::vector<double> dof;          ///< (nv)
+  /// Of both bodies of a tie together, at Connection::centers and Weld::centers [1/kg].
+  std::vector<double> connection, weld;
 
   InverseWeights() = default;
   /// Throws ModelError when the mass matrix is singular in both.

@@ -39,7 +39,8 @@ void WeldRows::assemble(const Assembly& in) {
   const Kinematics& k = in.kinematics;
   clearBlocks();
   if (model.options.effects.has(Effect::equality)) {
-    for (const Weld& weld : model.welds) {
+    for (std::size_t i = 0; i < model.welds.size(); ++i) {
+      const Weld& weld = model.welds[i];
       if (!in.takesPart(weld.bodyA, weld.bodyB)) continue;
       const Transform X_WA = k.X_WB[weld.bodyA] * weld.X_AF, X_WB = k.X_WB[weld.bodyB] * weld.X_BF;
       const PointOffset point(in, weld.bodyA, weld.X_AF.p, weld.bodyB, weld.X_BF.p);
@@ -49,8 +50,8 @@ void WeldRows::assemble(const Assembly& in) {
         return equalitySoftness(weld.impedance, distance, weight, model.options);
       };
       RelativeMotion motion = offsetMotion(weld.bodyA, point.p_WA, weld.bodyB, point.p_WB);
-      const Softness linear =
-          softness(equalityInverseMass(in, weld.impedance, weld.bodyA, weld.bodyB));
+      const Softness linear = softness(
+          equalityInverseMass(in, weld.impedance, weld.bodyA, weld.bodyB, in.weights.weld[i]));
       jacobian_.add(model, k, in.tree, motion, in.columns);
       pushRows(point, linear);
 

@@ -4,6 +4,7 @@
 #include "softgauss/engine/core/segment_vectors.hpp"
 #include "softgauss/engine/forces/damping.hpp"
 #include "softgauss/engine/forces/external_wrench.hpp"
+#include "softgauss/engine/forces/gravity_compensation.hpp"
 #include "softgauss/engine/forces/spring.hpp"
 
 namespace softgauss {
@@ -19,6 +20,7 @@ void computeSmoothForces(const Model& model, const Plan& plan, const State& stat
   }
   const Segments dofs = trees.dofs();
   copy(dofs, stage.bias, stage.c);
+  if (plan.bearsWeight) addGravityCompensation(model, k, trees, stage.c);
   if (plan.hasDamping()) {
     ++calls.damping;
     addDamping(dofs, plan.damping, state.v, stage.c);

@@ -5,8 +5,8 @@
 ///
 ///   c = b(q, v) + D v + K (q − q_s) − Σ J_Bᵀ F_B,   τ = applied generalised force
 ///
-/// b: gravity, Coriolis and centripetal terms (rnea.hpp); D: joint damping; K:
-/// joint springs; F_B: external wrenches.
+/// b: gravity, Coriolis and centripetal terms (rnea.hpp); D: joint damping; K: joint springs; F_B:
+/// external wrenches, and weights that are borne (gravity_compensation.hpp).
 /// c is the paper's c(q, v): all that does not depend on the control or the acceleration.
 
 #include "softgauss/engine/dynamics/rnea.hpp"

@@ -11,12 +11,20 @@
 
 namespace softgauss {
 
+/// Where MuJoCo's model takes the weights of two tied bodies: their centres of mass, or those of
+/// links that are fixed to others, which are bodies to it [m].
+struct TieCenters {
+  Vector3 inA = Vector3::Zero();  ///< in body A
+  Vector3 inB = Vector3::Zero();  ///< in body B
+};
+
 /// A point of body A and a point of body B coincide, as in a ball joint.
 struct Connection {
   int bodyA = 0, bodyB = 0;
   Vector3 p_AP = Vector3::Zero();  ///< in body A [m]
   Vector3 p_BP = Vector3::Zero();  ///< in body B [m]
   Impedance impedance;
+  TieCenters centers;
 };
 
 /// A frame of body A and a frame of body B coincide.
@@ -26,6 +34,7 @@ struct Weld {
   Transform X_BF;
   double torqueScale = 1.0;  ///< [m] how much a rotation counts against a distance
   Impedance impedance;
+  TieCenters centers;
 };
 
 /// q_follower = c₀ + c₁ q_leader + … + c₄ q_leader⁴. A mimic joint of a URDF has c = (offset,

@@ -50,6 +50,8 @@ struct Body {
   Vector3 com = Vector3::Zero();  ///< p_BoBcm_B [m]
   Symmetric3 I_Bcm;               ///< central rotational inertia in B axes [kg m²]
   double reference = 0.0;         ///< q of a scalar joint at which weights of rows are [rad or m]
+  double borneMass = 0.0;         ///< of which the weight is borne (gravity_compensation.hpp) [kg]
+  Vector3 borneCom = Vector3::Zero();  ///< its centre, in B [m]
 };
 
 /// A kinematic tree: everything that hangs from one child of the world.

@@ -285,6 +285,11 @@ class Assembler {
     body.mass = mass;
     body.I_Bcm = sum;
     body.massless = false;
+    if (const double borne = spec.gravityCompensation * spec.mass; borne != 0.0) {
+      const double all = body.borneMass + borne;
+      if (all != 0.0) body.borneCom = (body.borneMass * body.borneCom + borne * com) / all;
+      body.borneMass = all;
+    }
   }
 
   Model& model_;

@@ -22,6 +22,7 @@ struct LinkSpec {
   Vector3 com = Vector3::Zero();    ///< p_LoLcm_L [m]
   Matrix3 I_Lcm = Matrix3::Zero();  ///< central inertia in link axes [kg m²]
   SourceLocation where;
+  double gravityCompensation = 0.0;  ///< share of its weight that is borne
 };
 
 enum class JointType : std::uint8_t { fixed, revolute, continuous, prismatic, floating, planar };
@@ -84,6 +85,7 @@ struct ConnectSpec {
   Vector3 p_LBP = Vector3::Zero();  ///< in link B [m]
   Impedance impedance;
   SourceLocation where;
+  std::optional<Vector3> comA = {}, comB = {};  ///< of TieCenters, in the links [m]
 };
 
 /// Ties a frame of link A to a frame of link B.
@@ -94,6 +96,7 @@ struct WeldSpec {
   double torqueScale = 1.0;  ///< [m]
   Impedance impedance;
   SourceLocation where;
+  std::optional<Vector3> comA = {}, comB = {};  ///< of TieCenters, in the links [m]
 };
 
 /// q_follower = c₀ + c₁ q_leader + … + c₄ q_leader⁴; without a leader q_follower = c₀.

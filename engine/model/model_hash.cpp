@@ -57,9 +57,9 @@ class Hasher {
   }
   void add(const Body& b) {
     const auto& [joint, massless, parent, q, v, dofs, tree, robot, subtreeEnd, X_PB, axis, mass,
-                 com, I_Bcm, reference] = b;
+                 com, I_Bcm, reference, borneMass, borneCom] = b;
     (*this)(joint, massless, parent, q, v, dofs, tree, robot, subtreeEnd, X_PB, axis, mass, com,
-            I_Bcm, reference);
+            I_Bcm, reference, borneMass, borneCom);
   }
   void add(const Tree& t) {
     const auto& [rootBody, bodyEnd, firstDof, dofEnd, mass, actuated] = t;
@@ -95,12 +95,12 @@ class Hasher {
     (*this)(body, lower, upper, margin, impedance);
   }
   void add(const Connection& c) {
-    const auto& [bodyA, bodyB, p_AP, p_BP, impedance] = c;
-    (*this)(bodyA, bodyB, p_AP, p_BP, impedance);
+    const auto& [bodyA, bodyB, p_AP, p_BP, impedance, centers] = c;
+    (*this)(bodyA, bodyB, p_AP, p_BP, impedance, centers.inA, centers.inB);
   }
   void add(const Weld& w) {
-    const auto& [bodyA, bodyB, X_AF, X_BF, torqueScale, impedance] = w;
-    (*this)(bodyA, bodyB, X_AF, X_BF, torqueScale, impedance);
+    const auto& [bodyA, bodyB, X_AF, X_BF, torqueScale, impedance, centers] = w;
+    (*this)(bodyA, bodyB, X_AF, X_BF, torqueScale, impedance, centers.inA, centers.inB);
   }
   void add(const JointCoupling& c) {
     const auto& [follower, leader, polynomial, impedance] = c;

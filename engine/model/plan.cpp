@@ -75,6 +75,8 @@ Plan::Plan(const Model& model) : options_(model.options) {
 
   // Smooth forces and the integrator.
   gravity = run(Effect::gravity, model.nv > 0 && !model.options.gravity.isZero(0.0));
+  bearsWeight = gravity && std::any_of(model.bodies.begin(), model.bodies.end(),
+                                       [](const Body& b) { return b.borneMass != 0.0; });
   coriolis = run(Effect::coriolis,
                  std::any_of(model.bodies.begin(), model.bodies.end(), [](const Body& body) {
                    return body.joint == JointKind::revolute || body.joint == JointKind::floating;

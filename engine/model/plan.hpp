@@ -76,6 +76,7 @@ struct Plan {
   };
 
   bool gravity = false;         ///< a gravity that is not zero
+  bool bearsWeight = false;     ///< of which a body's part is borne (Body::borneMass)
   bool coriolis = false;        ///< a body that can turn
   bool drifts = false;          ///< the leapfrog: positions drift to mid-step before the solve
   bool inSolve = false;         ///< Options::implicitInSolve, of semi-implicit Euler and leapfrog
@@ -83,7 +84,7 @@ struct Plan {
   /// (trees) 1: M has nothing beside the diagonal there, so that it is divided by, not factored.
   std::vector<std::uint8_t> diagonal;
   bool allDiagonal = false, anyDiagonal = false;
-  VectorX damping;              ///< (nv) of the dofs; empty: none has any
+  VectorX damping;  ///< (nv) of the dofs; empty: none has any
   std::vector<Spring> springs;
   RowKinds rows = RowKinds::none();  ///< kinds of rows that may be made
   /// Effects that run: what an element calls for and Options::effects has.

@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "softgauss/engine/forces/external_wrench_derivative.hpp"
+#include "softgauss/engine/forces/gravity_compensation.hpp"
 #include "softgauss/engine/step/integrators/implicit_forces.hpp"
 #include "softgauss/engine/step/integrators/leapfrog.hpp"
 #include "softgauss/engine/step/inverse.hpp"
@@ -31,6 +32,7 @@ void InverseDerivative::addSmooth(const Model& model, const Input& input, const 
         v_(s.dof, s.dof) += model.options.timestep * s.stiffness;
     }
   }
+  if (data.plan.bearsWeight) addGravityCompensationDerivative(model, data.kinematics, q_);
   if (data.plan.hasExternalWrench())
     for (const ExternalWrench& wrench : input.wrenches)
       addExternalWrenchDerivative(model, data.kinematics, wrench, q_);

@@ -57,15 +57,11 @@ class BodyReader {
   void readBody(const Element& e, int parent, const Transform& X_PF, const DefaultClass& around) {
     e.expectAttributes({"name", "childclass", "pos", "quat", "axisangle", "xyaxes", "zaxis",
                         "euler", "mocap", "gravcomp", "sleep", "simple", "user"});
-    double gravityCompensation = 0.0;
-    if (e.read("gravcomp", gravityCompensation) && gravityCompensation != 0.0)
-      e.fail(
-          "has gravcomp, which is not simulated; expected 0, or gravity left out "
-          "(--effects no_gravity) where all bodies have it");
     Body body;
     body.element = e;
     body.name = e.text("name");
     body.parent = parent;
+    e.read("gravcomp", body.link.gravityCompensation);
     PoseAttributes pose;
     pose.read(e);
     body.pos = pose.pos;

@@ -40,6 +40,8 @@ class EqualityReader {
     spec.p_LBP = bySites ? b.X_BF.p : Vector3(poseOf(b).inverse() * (poseOf(a) * anchor));
     spec.impedance = impedance;
     spec.where = e.where;
+    spec.comA = a.body->link.com;
+    spec.comB = b.body->link.com;
     builder_.connect(spec);
   }
 
@@ -67,11 +69,14 @@ class EqualityReader {
     }
     e.read("torquescale", spec.torqueScale);
     if (spec.torqueScale == 0.0) {  // no moment: a connection
-      builder_.connect({spec.linkA, spec.linkB, spec.X_LAF.p, spec.X_LBF.p, impedance, e.where});
+      builder_.connect({spec.linkA, spec.linkB, spec.X_LAF.p, spec.X_LBF.p, impedance, e.where,
+                        a.body->link.com, b.body->link.com});
       return;
     }
     spec.impedance = impedance;
     spec.where = e.where;
+    spec.comA = a.body->link.com;
+    spec.comB = b.body->link.com;
     builder_.weld(spec);
   }
 

@@ -4,6 +4,7 @@
 #include <tuple>
 #include <utility>
 
+#include "softgauss/engine/core/index.hpp"
 #include "softgauss/engine/core/rotation.hpp"
 #include "tests/support/reference_solver.hpp"
 
@@ -74,6 +75,8 @@ void addEqualities(Scene& scene, Random random) {
   connection.p_AP = random.vector3(0.2);
   const Transform at{Matrix3::Identity(), X_WB[connection.bodyA] * connection.p_AP};
   connection.p_BP = X_WB[connection.bodyB].inverse() * almost(at).p;
+  connection.centers = {model.bodies[idx(connection.bodyA)].com,
+                        model.bodies[idx(connection.bodyB)].com};
   model.connections.push_back(connection);
   Weld weld;
   weld.bodyA = anyBody();
@@ -81,6 +84,7 @@ void addEqualities(Scene& scene, Random random) {
   weld.X_AF = {random.rotation(), random.vector3(0.2)};
   weld.X_BF = X_WB[weld.bodyB].inverse() * almost(X_WB[weld.bodyA] * weld.X_AF);
   weld.torqueScale = random.uniform(0.2, 2.0);
+  weld.centers = {model.bodies[idx(weld.bodyA)].com, model.bodies[idx(weld.bodyB)].com};
   model.welds.push_back(weld);
   std::vector<int> scalar;
   for (int b = 1; b < model.bodyCount(); ++b)

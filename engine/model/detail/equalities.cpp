@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string_view>
 #include <unordered_map>
 
@@ -85,6 +86,15 @@ void addCoupling(Model& model, const JointCoupling& coupling, const SourceLocati
   model.couplings.push_back(coupling);
 }
 
+TieCenters centersOf(const Model& model, const Frame& a, const std::optional<Vector3>& comA,
+                     const Frame& b, const std::optional<Vector3>& comB) {
+  const auto center = [&](const Frame& frame, const std::optional<Vector3>& com) -> Vector3 {
+    if (com) return frame.X_BF * *com;
+    return model.bodies[static_cast<std::size_t>(frame.body)].com;
+  };
+  return {center(a, comA), center(b, comB)};
+}
+
 }  // namespace
 
 void addConnections(Model& model, const std::vector<ConnectSpec>& specs) {
@@ -98,8 +108,8 @@ void addConnections(Model& model, const std::vector<ConnectSpec>& specs) {
     checkPose({Matrix3::Identity(), spec.p_LAP}, spec.where, element);
     checkPose({Matrix3::Identity(), spec.p_LBP}, spec.where, element);
     checkImpedance(spec.impedance, spec.where, element);
-    model.connections.push_back(
-        {a.body, b.body, a.X_BF * spec.p_LAP, b.X_BF * spec.p_LBP, spec.impedance});
+    model.connections.push_back({a.body, b.body, a.X_BF * spec.p_LAP, b.X_BF * spec.p_LBP,
+                                 spec.impedance, centersOf(model, a, spec.comA, b, spec.comB)});
   }
 }
 
@@ -117,7 +127,8 @@ void addWelds(Model& model, const std::vector<WeldSpec>& specs) {
     if (!(spec.torqueScale > 0.0) || !std::isfinite(spec.torqueScale))
       throw ModelError(spec.where, element, "torque scale is not positive");
     model.welds.push_back({a.body, b.body, a.X_BF * spec.X_LAF, b.X_BF * spec.X_LBF,
-                           spec.torqueScale, spec.impedance});
+                           spec.torqueScale, spec.impedance,
+                           centersOf(model, a, spec.comA, b, spec.comB)});
   }
 }
 

@@ -97,6 +97,22 @@ TEST(InverseDerivative, OfTreesSpringsDampingAndWrenches) {
   expectFewKinks(count);
 }
 
+TEST(InverseDerivative, OfWeightsThatAreBorne) {
+  Count count;
+  for (int seed = 0; seed < 20; ++seed) {
+    RandomTreeOptions options;
+    options.ranges = options.geometries = false;
+    Random random(seed);
+    Model model = randomScene(seed, 0, options).model;
+    for (Body& body : model.bodies)
+      if (body.dofs > 0) body.borneMass = 2.0, body.borneCom = random.vector3(0.3);
+    Scene s(model);
+    s.state = randomScene(seed, 0, options).state;
+    expectDerivative(s, random.vector(s.model.nv, 10.0), count);
+  }
+  expectFewKinks(count);
+}
+
 TEST(InverseDerivative, OfTheVelocityOfTurningThatTheLastStepPredicts) {
   Count count;
   for (int seed = 0; seed < 10; ++seed) {
