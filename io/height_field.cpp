@@ -46,14 +46,14 @@ Heights fromCsv(const std::string& file, const std::string& text) {
   return heights;
 }
 
-Heights fromPng(const std::string& file, const std::string& bytes) {
-  detail::GreyImage image = detail::readGreyPng(file, bytes);
+Heights fromPng(const std::string& file, const std::string& bytes, PngLevels levels) {
+  detail::GreyImage image = detail::readGreyPng(file, bytes, levels == PngLevels::red);
   return {image.height, image.width, std::move(image.levels)};
 }
 
 }  // namespace
 
-Heights readHeights(const std::filesystem::path& file) {
+Heights readHeights(const std::filesystem::path& file, PngLevels levels) {
   const auto fail = [&](const std::string& problem) {
     throw ModelError({file.string(), 0}, "heights", problem);
   };
@@ -65,7 +65,7 @@ Heights readHeights(const std::filesystem::path& file) {
     fail(fmt::format("unknown format '{}', expected .png or .csv", extension));
   const std::string bytes = detail::readInput(file.string(), "a .png or .csv file");
   Heights heights =
-      extension == ".png" ? fromPng(file.string(), bytes) : fromCsv(file.string(), bytes);
+      extension == ".png" ? fromPng(file.string(), bytes, levels) : fromCsv(file.string(), bytes);
   if (heights.rows < 2 || heights.columns < 2)
     fail(fmt::format("found {} by {} values, expected at least 2 by 2", heights.rows,
                      heights.columns));

@@ -19,10 +19,13 @@ struct Heights {
   std::vector<double> values;  ///< (rows × columns)
 };
 
+/// What of a .png is a level: one of grey alone, or the red of one that has colours.
+enum class PngLevels { grey, red };
+
 /// Grey levels of a .png, 0 black to 1 white, or the numbers of a .csv, a line for each row. Throws
 /// ModelError naming file and line where the file cannot be read, a number is none, rows differ in
 /// length, or there are fewer than two rows or columns or more than four million values.
-Heights readHeights(const std::filesystem::path& file);
+Heights readHeights(const std::filesystem::path& file, PngLevels levels = PngLevels::grey);
 
 /// The solid over a rectangle of size x by y [m], its surface at `scale` times the values [m]. The
 /// bottom is `base` [m], > 0, below the lowest of them.

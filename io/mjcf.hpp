@@ -4,8 +4,8 @@
 /// Reads MJCF files, the format of MuJoCo 3.12, as far as the engine can express them exactly.
 ///
 /// What it cannot express, and would change the motion, ends in a ModelError `file:line: element:
-/// what was found, what was expected`: ball joints, ellipsoids, tendons with forces, flex, plugins,
-/// muscles, replicate, attach and more (docs/limits.md). What changes no motion (sensors, cameras,
+/// what was found, what was expected`: ball joints, tendons with forces, flex, plugins, muscles,
+/// attach and more (docs/limits.md). What changes no motion (sensors, cameras,
 /// lights, textures, statistics) is read past, and told in one line of SceneFile::notes.
 ///
 /// A body is a link of its name, a site with a name a link without mass fixed to it. Several joints

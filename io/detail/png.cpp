@@ -21,11 +21,13 @@ constexpr std::uint32_t kMostPixels = 16384;
 struct Header {
   std::uint32_t width = 0, height = 0;
   int bytesPerPixel = 1;
+  int bytesPerLevel = 1;
 };
 
 class PngReader {
  public:
-  PngReader(const std::string& file, std::string_view bytes) : file_(file), rest_(bytes) {}
+  PngReader(const std::string& file, std::string_view bytes, bool redOfColours)
+      : file_(file), rest_(bytes), redOfColours_(redOfColours) {}
 
   GreyImage read() {
     constexpr std::string_view kSignature = "\x89PNG\r\n\x1a\n";
@@ -67,15 +69,24 @@ class PngReader {
     return {type, data};
   }
 
+  /// Levels of a pixel by its colour type: grey, red with green and blue, and with transparency; 0
+  /// of a palette.
+  static int channelsOf(char type) {
+    return type == 0 ? 1 : type == 2 ? 3 : type == 4 ? 2 : type == 6 ? 4 : 0;
+  }
+
   Header headerOf(std::string_view data) const {
     if (data.size() != 13) fail("has a header of unknown size");
-    Header header{number(data), number(data.substr(4)), data[8] == 16 ? 2 : 1};
+    Header header{number(data), number(data.substr(4))};
     if (header.width == 0 || header.height == 0 || header.width > kMostPixels ||
         header.height > kMostPixels)
       fail(fmt::format("has {} by {} pixels, at most {} a side can be read", header.width,
                        header.height, kMostPixels));
-    if (data[9] != 0) fail("has colours or transparency");
+    const int channels = channelsOf(data[9]);
+    if (channels == 0 || (channels > 1 && !redOfColours_)) fail("has colours or transparency");
     if (data[8] != 8 && data[8] != 16) fail(fmt::format("has {} bits a pixel", int{data[8]}));
+    header.bytesPerLevel = data[8] / 8;
+    header.bytesPerPixel = channels * header.bytesPerLevel;
     if (data[12] != 0) fail("is interlaced");
     return header;
   }
@@ -123,21 +134,21 @@ class PngReader {
   static GreyImage greyOf(const Header& h, const Bytes& pixels) {
     GreyImage image{static_cast<int>(h.width), static_cast<int>(h.height), {}};
     image.levels.reserve(std::size_t{h.width} * h.height);
-    for (std::size_t i = 0; i < std::size_t{h.width} * h.height; ++i)
-      image.levels.push_back(h.bytesPerPixel == 1
-                                 ? pixels[i] / 255.0
-                                 : (256 * pixels[2 * i] + pixels[2 * i + 1]) / 65535.0);
+    for (std::size_t i = 0; i < pixels.size(); i += static_cast<std::size_t>(h.bytesPerPixel))
+      image.levels.push_back(h.bytesPerLevel == 1 ? pixels[i] / 255.0
+                                                  : (256 * pixels[i] + pixels[i + 1]) / 65535.0);
     return image;
   }
 
   const std::string& file_;
   std::string_view rest_;
+  bool redOfColours_;
 };
 
 }  // namespace
 
-GreyImage readGreyPng(const std::string& file, const std::string& bytes) {
-  return PngReader(file, bytes).read();
+GreyImage readGreyPng(const std::string& file, const std::string& bytes, bool redOfColours) {
+  return PngReader(file, bytes, redOfColours).read();
 }
 
 }  // namespace softgauss::io::detail

@@ -14,8 +14,9 @@ struct GreyImage {
   std::vector<double> levels;  ///< (height × width)
 };
 
-/// Reads a grey PNG of 8 or 16 bits, not interlaced. Throws ModelError naming `file` where `bytes`
-/// are no such image, with what was found.
-GreyImage readGreyPng(const std::string& file, const std::string& bytes);
+/// Reads a grey PNG of 8 or 16 bits, not interlaced; with `redOfColours` one of colours or
+/// transparency too, of which the red, or the grey, is the level. Throws ModelError naming `file`
+/// where `bytes` are no such image, with what was found.
+GreyImage readGreyPng(const std::string& file, const std::string& bytes, bool redOfColours = false);
 
 }  // namespace softgauss::io::detail

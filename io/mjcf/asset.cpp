@@ -10,6 +10,7 @@
 #include "softgauss/io/detail/text.hpp"
 #include "softgauss/io/height_field.hpp"
 #include "softgauss/io/mjcf/mesh_mass.hpp"
+#include "softgauss/io/mjcf/msh.hpp"
 #include "softgauss/io/mjcf/pose.hpp"
 
 namespace softgauss::io::mjcf {
@@ -63,6 +64,8 @@ Mesh inlineMesh(const Element& element) {
   }
   return mesh;
 }
+
+constexpr double kMostElevations = 4e6;
 
 /// size of <hfield>: half extents, elevation, base.
 std::array<double, 4> sizeOf(const Element& element) {
@@ -145,11 +148,11 @@ std::shared_ptr<const Mesh> Assets::load(const GivenMesh& given) {
     const std::filesystem::path file = compiler_.meshFile(model_, element.requiredText("file"));
     if (const std::string problem = detail::inputProblem(file.string()); !problem.empty())
       element.fail(
-          fmt::format("file {} {}, expected a mesh there (STL or OBJ; from the model's "
+          fmt::format("file {} {}, expected a mesh there (STL, OBJ or MSH; from the model's "
                       "folder, in the compiler's meshdir)",
                       detail::quotedText(file.string()), problem));
     try {
-      mesh = *cache_.get(file, Vector3::Ones());
+      mesh = isMsh(file) ? mshMesh(file) : *cache_.get(file, Vector3::Ones());
     } catch (const ModelError& error) {
       element.fail(error.what());
     }
@@ -166,6 +169,12 @@ std::shared_ptr<const Mesh> Assets::load(const GivenMesh& given) {
   if (s[0] * s[1] * s[2] < 0.0)
     for (auto& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
   return std::make_shared<const Mesh>(std::move(mesh));
+}
+
+Mesh Assets::mshMesh(const std::filesystem::path& file) {
+  Mesh mesh = readMsh(file, largestMesh_);
+  otherFiles_.push_back(file);
+  return mesh;
 }
 
 const MeshAsset& Assets::mesh(const std::string& name, const Element& user) {
@@ -212,18 +221,21 @@ std::shared_ptr<const Mesh> Assets::heightField(const std::string& name, const E
                       "grey .png, or nrow, ncol and elevation",
                       detail::quotedText(file.string())));
     try {
-      heights = readHeights(file);
+      heights = readHeights(file, PngLevels::red);  // of colours, as MuJoCo
     } catch (const ModelError& error) {
       element.fail(error.what());
     }
-    heightFiles_.push_back(file);
+    otherFiles_.push_back(file);
   } else {
     element.read("nrow", heights.rows);
     element.read("ncol", heights.columns);
-    heights.values = element.numbers("elevation").value_or(std::vector<double>());
     const auto count = static_cast<double>(heights.rows) * heights.columns;
-    if (heights.rows < 2 || heights.columns < 2 ||
-        count != static_cast<double>(heights.values.size()))
+    const bool fits = heights.rows >= 2 && heights.columns >= 2 && count <= kMostElevations;
+    if (element.has("elevation"))
+      heights.values = *element.numbers("elevation");
+    else if (fits)
+      heights.values.assign(static_cast<std::size_t>(count), 0.0);  // level
+    if (!fits || count != static_cast<double>(heights.values.size()))
       element.fail(
           fmt::format("has {} elevations for {} rows and {} columns, expected one for each "
                       "of at least 2 by 2",
@@ -253,7 +265,7 @@ std::optional<std::array<double, 4>> Assets::colour(const std::string& material,
 
 std::vector<std::filesystem::path> Assets::files() const {
   std::vector<std::filesystem::path> all = cache_.files();
-  all.insert(all.end(), heightFiles_.begin(), heightFiles_.end());
+  all.insert(all.end(), otherFiles_.begin(), otherFiles_.end());
   return all;
 }
 

@@ -44,6 +44,7 @@ class Assets {
       : model_(std::move(model)),
         compiler_(compiler),
         cache_(largestMesh),
+        largestMesh_(largestMesh),
         readVisuals_(readVisuals) {}
 
   /// <mesh>, over the attributes of its class.
@@ -69,17 +70,19 @@ class Assets {
     MeshAttributes attributes;
   };
   std::shared_ptr<const Mesh> load(const GivenMesh& given);
+  Mesh mshMesh(const std::filesystem::path& file);
 
   std::filesystem::path model_;
   const Compiler& compiler_;
   MeshCache cache_;
+  std::uintmax_t largestMesh_;
   bool readVisuals_;
   std::map<std::string, GivenMesh> meshes_;
   std::map<std::string, MeshAsset> read_;
   std::map<std::string, Element> heightFields_;
   std::map<std::string, std::shared_ptr<const Mesh>> landscapes_;
   std::map<std::string, std::optional<std::array<double, 4>>> materials_;
-  std::vector<std::filesystem::path> heightFiles_;
+  std::vector<std::filesystem::path> otherFiles_;
 };
 
 }  // namespace softgauss::io::mjcf

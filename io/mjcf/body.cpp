@@ -6,6 +6,7 @@
 #include <set>
 
 #include "softgauss/io/detail/text.hpp"
+#include "softgauss/io/mjcf/replicate.hpp"
 
 namespace softgauss::io::mjcf {
 namespace {
@@ -35,6 +36,9 @@ class BodyReader {
         readBody(e, body, X_BF, childclass);
       } else if (e.tag == "frame") {
         readFrame(e, body, X_BF, childclass);
+      } else if (e.tag == "replicate") {
+        for (const Element& frame : replicated(e, compiler_, replicated_))
+          readFrame(frame, body, X_BF, childclass);
       } else if (e.tag == "geom") {
         Placed<Geom> geom{defaults_.of(e, childclass).geom, X_BF};
         geom.item.read(e);
@@ -48,8 +52,8 @@ class BodyReader {
         if (at(body).inertial) e.fail("is the second of its body, expected one");
         at(body).inertial = e;
       } else if (e.tag != "camera" && e.tag != "light") {
-        element.expectChildren(
-            {"body", "frame", "inertial", "joint", "freejoint", "geom", "site", "camera", "light"});
+        element.expectChildren({"body", "frame", "replicate", "inertial", "joint", "freejoint",
+                                "geom", "site", "camera", "light"});
       }
     }
   }
@@ -161,6 +165,7 @@ class BodyReader {
   const Compiler& compiler_;
   const Defaults& defaults_;
   std::vector<Body> bodies_;
+  std::size_t replicated_ = 0;  ///< elements in copies
 };
 
 }  // namespace

@@ -33,15 +33,19 @@ struct Png {
   int level(std::uint32_t x, std::uint32_t y) const {
     return static_cast<int>((7919 * (x + 10 * y) + 31 * x * y) % (1u << bits));
   }
-  /// Row y is written with filter y mod 5.
+  /// Of a pixel: grey, or red with green and blue, and with transparency.
+  std::size_t channels() const { return colour == 2 ? 3 : colour == 4 ? 2 : colour == 6 ? 4 : 1; }
+  /// Row y is written with filter y mod 5; levels beside the first are of no meaning.
   std::string text() const {
-    const std::size_t step = static_cast<std::size_t>(bits / 8), row = width * step;
+    const std::size_t bytes = static_cast<std::size_t>(bits / 8), step = bytes * channels(),
+                      row = width * step;
     std::string pixels(height * row, '\0'), raw;
     for (std::uint32_t y = 0; y < height; ++y)
       for (std::uint32_t x = 0; x < width; ++x)
         for (std::size_t b = 0; b < step; ++b)
           pixels[y * row + x * step + b] =
-              static_cast<char>(level(x, y) >> (8 * (step - 1 - b)) & 255);
+              b < bytes ? static_cast<char>(level(x, y) >> (8 * (bytes - 1 - b)) & 255)
+                        : static_cast<char>(37 * x + 11 * b);
     for (std::size_t y = 0; y < height; ++y) {
       raw += static_cast<char>(y % 5);
       for (std::size_t i = 0; i < row; ++i) {
@@ -82,10 +86,12 @@ std::string refusalOf(const std::string& name, const std::string& text) {
 
 TEST(Heights, ArePixelsOfAnImage) {
   const io::TempFolder folder;
-  for (const int bits : {8, 16}) {
+  for (const auto& [bits, colour] : {std::pair(8, 0), {16, 0}, {8, 2}, {16, 4}, {8, 6}, {16, 6}}) {
     Png png;
     png.bits = bits;
-    const io::Heights heights = io::readHeights(folder.write("h.PNG", png.text()));
+    png.colour = colour;
+    const io::Heights heights = io::readHeights(
+        folder.write("h.PNG", png.text()), colour == 0 ? io::PngLevels::grey : io::PngLevels::red);
     ASSERT_EQ(heights.columns, 3);
     ASSERT_EQ(heights.rows, 5);
     for (std::uint32_t y = 0; y < 5; ++y)
