@@ -155,8 +155,8 @@ void PlanRun::conclude(io::Summary& summary) {
   summary.verdict.emplace_back(
       "planned", fmt::format("cost {:.4g}, {:.4g} of it at the end; {} iterations in {:.3g} s, {}",
                              o.planned, o.finalPlanned, o.iterations, o.seconds, o.status));
-  const bool early = !plan_.recedes() && !plan_.hasEnded(state_.time);
   o.outcome = plan_.outcome(state_);
+  const bool early = o.outcome == "cut short";
   const char* const aim = plan_.recedes() ? "the target" : "the plan's end";
   summary.verdict.emplace_back(
       o.outcome,

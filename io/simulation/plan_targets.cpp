@@ -92,10 +92,18 @@ PlanTask::StateWeights PlanTargets::at(const Seen& now, const PlanTask::StateWei
   return weights;
 }
 
+/// Asked at every step: nothing is copied.
+bool PlanTargets::isAsSeen(double time) const {
+  if (posture_->actsAt(time) != seen_.acts[0] || posture_->q != seen_.q) return false;
+  for (std::size_t i = 0; i < places_.size(); ++i)
+    if (places_[i]->actsAt(time) != seen_.acts[1 + i] || places_[i]->target != seen_.places[i])
+      return false;
+  return true;
+}
+
 bool PlanTargets::update(double time, PlanTask& task) {
-  if (!posture_) return false;
+  if (!posture_ || isAsSeen(time)) return false;
   Seen now = seen(time);
-  if (now == seen_) return false;
   if (now.q != seen_.q) task.q = {now.q}, task.v = {VectorX::Zero(task.v.back().size())};
   task.running = at(now, running_, placeOfRunning_);
   task.final = at(now, final_, placeOfFinal_);

@@ -75,8 +75,8 @@ class PlanTargets {
     VectorX q;
     std::vector<Vector3> places;
     std::vector<bool> acts;  ///< the configuration, then the places
-    bool operator==(const Seen&) const = default;
   };
+  bool isAsSeen(double time) const;
   Seen seen(double time) const;
   io::PlanTask::StateWeights at(const Seen& now, const io::PlanTask::StateWeights& given,
                                 const std::vector<std::size_t>& placeOf) const;
